@@ -20,6 +20,7 @@
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/row_efforts.hpp"
+#include "sinew/sim/sensor_source.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::viewer {
@@ -159,6 +160,8 @@ std::string group_of(const sim::Observable& observable) {
       return unit == "m" ? "error" : "rotation error";
     case sim::ObservableKind::probe:
       return unit == "rad" ? "angle" : "probe";
+    case sim::ObservableKind::sensor:
+      return unit.empty() ? "sensor" : "sensor " + unit;
     case sim::ObservableKind::contact:
       return unit == "N" ? "contact" : unit == "m" ? "gap" : "touching";
     case sim::ObservableKind::energy:
@@ -185,6 +188,10 @@ void add_signals(const sim::Observable& observable, std::vector<SignalInfo>& lis
         signal.label = signal.key;
         signal.key = "probe." + signal.key;
         break;
+      case sim::ObservableKind::sensor:
+        signal.label = component;
+        signal.key = "sensor." + signal.key;
+        break;
       case sim::ObservableKind::effector:
       case sim::ObservableKind::contact:
         signal.label = component;
@@ -204,7 +211,8 @@ Json keys_of(const sim::Observables& observables, sim::ObservableKind kind,
              const std::string& owner) {
   std::vector<SignalInfo> signals;
   for (const sim::Observable& one : observables.list()) {
-    if (one.kind == kind && one.owner == owner) add_signals(one, signals);
+    const bool asked = one.kind == kind && one.owner == owner;
+    if (asked && one.quantity != "true") add_signals(one, signals);
   }
   Json keys = Json::array();
   for (const SignalInfo& signal : signals) keys.push_back(signal.key);
@@ -216,6 +224,15 @@ Json probe_json(const sim::Observables& observables, const constraint::Probe& pr
           {"kind", probe.kind()},
           {"marks", probe.mark_count()},
           {"signals", keys_of(observables, sim::ObservableKind::probe, probe.name())}};
+}
+
+// Drawn and listed as probes are.
+Json sensor_json(const sim::Observables& observables, const sim::SensorModel& sensor) {
+  const constraint::Probe* probe = sensor.source->probe();
+  return {{"name", sensor.name},
+          {"kind", sensor.kind},
+          {"marks", probe != nullptr ? probe->mark_count() : 0},
+          {"signals", keys_of(observables, sim::ObservableKind::sensor, sensor.name)}};
 }
 
 // A rigid body's own surface is drawn with it.
@@ -323,6 +340,8 @@ bool is_signal(const sim::Observable& observable) {
       return observable.size() == 1;
     case sim::ObservableKind::probe:  // the points of a line are seen
       return observable.quantity == "value";
+    case sim::ObservableKind::sensor:
+      return observable.quantity != "sample_time";
     default:
       return true;
   }
@@ -400,6 +419,9 @@ Description describe(const scene::Robot& robot, const sim::Observables& observab
     result.effectors.push_back(model.effectors()[i].name);
   }
   for (const auto& probe : model.probes()) probes.push_back(probe_json(observables, probe));
+  for (const sim::SensorModel& sensor : model.sensors()) {
+    probes.push_back(sensor_json(observables, sensor));
+  }
   Json contacts = Json::array();
   for (std::size_t c = 0; c < model.contacts().size(); ++c) {
     contacts.push_back(contact_json(observables, static_cast<int>(c)));

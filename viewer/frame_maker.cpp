@@ -9,6 +9,7 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/sensor_source.hpp"
 #include "sinew/sim/state.hpp"
 
 namespace sinew::viewer {
@@ -65,9 +66,13 @@ void FrameMaker::fill_points(Frame& frame) {
     const Points points = cable->points(simulation_.configuration());
     for (Eigen::Index k = 0; k < points.rows(); ++k) put(frame.cables, points.row(k).transpose());
   }
-  for (const auto& probe : model.probes()) {
+  const auto put_marks = [&](const constraint::Probe& probe) {
     const Points marks = probe.marks(simulation_.configuration());
     for (Eigen::Index k = 0; k < marks.rows(); ++k) put(frame.probes, marks.row(k).transpose());
+  };
+  for (const auto& probe : model.probes()) put_marks(probe);
+  for (const sim::SensorModel& sensor : model.sensors()) {
+    if (const constraint::Probe* probe = sensor.source->probe()) put_marks(*probe);
   }
   // Rotations are no points.
   const auto put_numbers = [&](std::vector<float>& list, std::size_t observable) {

@@ -243,6 +243,10 @@ Facts scene_facts(const InfoOptions& options) {
     facts.json["probes"].push_back(probe.name());
     facts.text += fmt::format("  probe {}: {}\n", probe.name(), probe.kind());
   }
+  for (const sim::SensorModel& sensor : model.sensors()) {
+    facts.json["sensors"].push_back({{"name", sensor.name}, {"kind", sensor.kind}});
+    facts.text += fmt::format("  sensor {}: {}\n", sensor.name, sensor.kind);
+  }
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
     const std::string& name = model.contacts()[i].name;
     const constraint::Contact& contact = model.contact(static_cast<int>(i));

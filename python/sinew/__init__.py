@@ -11,7 +11,7 @@ SI units everywhere. docs/python.md is the guide.
 
 import importlib as _importlib
 
-from . import collision, errors, fields, mesh, pcc, qp
+from . import collision, errors, fields, mesh, pcc, qp, sensors
 from ._core import (
     Actuator,
     Body,
@@ -30,6 +30,7 @@ from ._core import (
     Ramp,
     Response,
     Samples,
+    Sensor,
     Signal,
     Simulation,
     State,
@@ -70,6 +71,7 @@ __all__ = [
     "Response",
     "RunError",
     "Samples",
+    "Sensor",
     "Signal",
     "Simulation",
     "State",
@@ -94,6 +96,7 @@ __all__ = [
     "pcc",
     "qp",
     "render",
+    "sensors",
     "view",
 ]
 

@@ -27,7 +27,8 @@ def _pyplot():
 
 
 # Shown units: what one SI unit is in them.
-SHOWN = {"m": ("mm", 1e3), "Pa": ("kPa", 1e-3), "m^3": ("ml", 1e6), "J": ("mJ", 1e3), "rad": ("degrees", 180 / math.pi)}
+SHOWN = {"m": ("mm", 1e3), "Pa": ("kPa", 1e-3), "m^3": ("ml", 1e6), "J": ("mJ", 1e3), "rad": ("degrees", 180 / math.pi),
+         "m^3/s": ("ml/s", 1e6), "F": ("pF", 1e12)}
 
 
 def read_run(folder, table="run.csv") -> dict[str, list[float]]:
@@ -40,7 +41,7 @@ def read_run(folder, table="run.csv") -> dict[str, list[float]]:
     folder : path-like
         As `sinew run` wrote it.
     table : str
-        Or "probes.csv".
+        Or "probes.csv", "sensors.csv".
     """
     with open(pathlib.Path(folder) / table, newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
@@ -88,11 +89,25 @@ def _panel(heading: str) -> tuple[str, str] | None:
     return f"Input ({unit})", of + told
 
 
-def run(folder, out) -> pathlib.Path:
-    """Draws efforts, motions, effectors, contacts, probes, errors and energies of a recorded run over time.
+def _owner(name: str) -> str:
+    return name.removesuffix(" command").removesuffix(" true")
 
-    What is commanded is drawn as a thin dashed line of its actuator's colour, and targets so in grey; of a line that
-    is probed, its length.
+
+def _sensor(heading: str) -> tuple[str, str] | None:
+    """The panel that a column of sensors.csv belongs to, and its name there; None: in none."""
+    name, unit = _split(heading)
+    of, _, last = name.rpartition(".")
+    quantity, _, component = last.partition("_")
+    if quantity not in ("measured", "true"):
+        return None
+    return f"Sensors ({unit})" if unit else "Sensors", f"{of} {component}".strip() + (" true" if quantity == "true" else "")
+
+
+def run(folder, out) -> pathlib.Path:
+    """Draws efforts, motions, effectors, contacts, probes, sensors, errors and energies of a recorded run over time.
+
+    What is commanded is drawn as a thin dashed line of its actuator's colour, what is true so beside what a sensor
+    measured, and targets so in grey; of a line that is probed, its length.
 
     Parameters
     ----------
@@ -114,14 +129,18 @@ def run(folder, out) -> pathlib.Path:
         name, unit = _split(heading)
         if name != "time" and not re.search(r"\.\d+\.[xyz]$", name):
             panels.setdefault(f"Probes ({unit})", []).append((name.removesuffix(".length"), unit, values))
+    sensors = read_run(folder, "sensors.csv") if (pathlib.Path(folder) / "sensors.csv").exists() else {}
+    for heading, values in sensors.items():
+        if (panel := _sensor(heading)) is not None:
+            panels.setdefault(panel[0], []).append((panel[1], _split(heading)[1], values))
     count = max(1, len(panels))
     figure, axes = plt.subplots(count, 1, figsize=(9, 2.3 * count + 0.3), sharex=True, squeeze=False)
     for axis, (group, series) in zip(axes[:, 0], panels.items()):
         names = [name for name, _, _ in series]
-        owners = list(dict.fromkeys(name.removesuffix(" command") for name in names if ".target_" not in name))
+        owners = list(dict.fromkeys(_owner(name) for name in names if ".target_" not in name))
         for name, unit, values in series:
             shown, scale = SHOWN.get(unit, (unit, 1.0))
-            owner = name.removesuffix(" command")
+            owner = _owner(name)
             target, asked = ".target_" in name, ".target_" in name or name != owner
             axis.plot(time, [scale * v for v in values], "--" if asked else "-", lw=1.0 if asked else 1.5,
                       color=QUIET if target else COLOURS[owners.index(owner) % len(COLOURS)],

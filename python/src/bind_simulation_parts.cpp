@@ -58,6 +58,12 @@ An effector by its name. Raises Error (unknown-name) with a suggestion.
 
 A probe by its name. Raises Error (unknown-name) with a suggestion.
 )")
+      .def("sensor", named<Sensor>(&sim::Model::sensor_index), py::arg("name"),
+           R"(sensor($self, name)
+--
+
+A sensor by its name. Raises Error (unknown-name) with a suggestion.
+)")
       .def("load", named<Load>(&sim::Model::load_index), py::arg("name"),
            R"(load($self, name)
 --
@@ -100,6 +106,8 @@ void bind_lists(SimulationType& type) {
                              "dict: all effectors by name, in the scene's order.")
       .def_property_readonly("probes", all<Probe>(&sim::Model::probes),
                              "dict: all probes by name, in the scene's order.")
+      .def_property_readonly("sensors", all<Sensor>(&sim::Model::sensors),
+                             "dict: all sensors by name, in the scene's order.")
       .def_property_readonly("masses", all<PointMass>(&sim::Model::masses),
                              "dict: all masses that hang on bodies by name, body by body.")
       .def_property_readonly("contacts", all<Contact>(&sim::Model::contacts),

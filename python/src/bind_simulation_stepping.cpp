@@ -197,7 +197,8 @@ dict of ndarray
     'NAME.displacement' (k,) m, and what is commanded of them, 'NAME.tension_command' and
     'NAME.displacement_command', NaN while another quantity is (a controller commands efforts); for
     every effector 'NAME.position' (k, 3) m or 'NAME.rotation' (k, 3) rad; for every probe
-    'NAME.value'; for every contact 'NAME.force' (k, 3) N, 'NAME.normal_force', 'NAME.gap' and so
+    'NAME.value'; for every sensor 'NAME.measured', 'NAME.true' and 'NAME.sample_time' s, NaN before
+    its first sample; for every contact 'NAME.force' (k, 3) N, 'NAME.normal_force', 'NAME.gap' and so
     on; 'residual' (k,) N and other numbers of the step's report; 'status' (k,) of str; with a
     controller 'NAME.target' (k, 3), 'NAME.error' (k,), 'error' (k,) m and 'controller' (k,) of str.
     On request for every body 'NAME.positions' (k, n, 3) m and 'NAME.velocities'; for the n points

@@ -27,6 +27,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_load(module);
   python::bind_mass(module);
   python::bind_probe(module);
+  python::bind_sensor(module);
   python::bind_state(module);
   python::bind_contact(module);
   python::bind_joint(module);

@@ -644,6 +644,36 @@ effectors:"""
     assert done.returncode == DONE and not done.stderr, done.stderr
 
 
+def test_sensors_are_recorded_plotted_and_read_back(scene, tmp_path):
+    sensors = """sensors:
+  eye: {type: marker, body: beam, set: x_max, noise: 0.1 mm, rate: 50 Hz, delay: 20 ms, dropout: 10 %}
+  skin: {type: stretch, body: beam, line: [0 10 10 mm, 100 10 10 mm], noise: 1e-3}
+effectors:"""
+    path, out = scene(replace=("effectors:", sensors)), tmp_path / "out"
+    assert sinew("run", path, "--out", out, "--quiet").returncode == DONE
+    rows, plain = rows_of(out / "sensors.csv"), rows_of(out / "run.csv")
+    assert [row["time [s]"] for row in rows] == [row["time [s]"] for row in plain]
+    assert list(rows[0])[:8] == ["time [s]", "eye.measured_x [m]", "eye.measured_y [m]", "eye.measured_z [m]", "eye.true_x [m]",
+                                 "eye.true_y [m]", "eye.true_z [m]", "eye.sample_time [s]"]
+    assert rows[0]["eye.measured_x [m]"] == "nan" and float(rows[-1]["eye.measured_x [m]"]) > 0.05
+    assert not any("eye" in heading or "skin" in heading for heading in plain[0])
+    with h5py.File(out / "run.h5") as run:
+        assert run["sensors/eye"].attrs["kind"] == "marker"
+        assert run["sensors/skin/measured"][-1] == float(rows[-1]["skin.measured"])
+    done = sinew("plot", out)
+    assert done.returncode == DONE and not done.stderr, done.stderr
+    recorded = f"{{type: marker, body: beam, set: x_max, file: {out / 'sensors.csv'}, missing: lost}}"
+    old = "{type: marker, body: beam, set: x_max, noise: 0.1 mm, rate: 50 Hz, delay: 20 ms, dropout: 10 %}"
+    path.write_text(path.read_text().replace(old, recorded))
+    assert sinew("run", path, "--out", tmp_path / "again", "--quiet").returncode == DONE
+    again = rows_of(tmp_path / "again" / "sensors.csv")
+    for name in list(rows[0])[1:4] + ["eye.sample_time [s]"]:
+        assert [row[name] for row in again] == [row[name] for row in rows], name
+    path.write_text(path.read_text().replace("missing: lost", "missing: error"))
+    refused = sinew("run", path, "--out", tmp_path / "no")
+    assert refused.returncode == WRONG and "sensors.csv:2" in refused.stderr and "[not-finite]" in refused.stderr
+
+
 def test_fit_writes_a_material_that_a_scene_takes(scene, tmp_path):
     stretch = np.linspace(1.0, 3.0, 20)
     stress = 12.0 * 2 * (stretch - stretch**-2) + 0.3 * 4 * (stretch**2 + 2 / stretch - 3) * (stretch - stretch**-2)

@@ -45,6 +45,11 @@ masses:
 probes:
   axis: {body: a, line: [0 0 0, 0 0 1]}
   girth: {body: a, extent: {across: z}}
+sensors:
+  mark: {type: marker, body: a, point: 0 0 1}
+  light: {type: attenuation, body: a, line: [0 0 0, 0 0 1]}
+  plates: {type: capacitance, body: a, electrodes: [{patch: {point: 0 0 0}}, {set: b}]}
+  on: {type: touch, contact: floor, file: a.csv}
 contacts:
   floor: {body: a, surface: {plane: {}}, motion: {}}
 controllers:
@@ -73,6 +78,7 @@ class Dump {
     for (const auto& mass : scene.masses) add(mass.outside);
     for (const auto& effector : scene.effectors) add(effector.directions, effector.outside);
     for (const auto& probe : scene.probes) add(probe.samples, probe.way, probe.outside);
+    for (const auto& sensor : scene.sensors) add_sensor(sensor);
     for (const auto& contact : scene.contacts) {
       const auto& plane = std::get<constraint::Plane>(contact.surface);
       add(plane.point, plane.normal, contact.friction, contact.outside, contact.motion->axis);
@@ -94,6 +100,12 @@ class Dump {
     add(body.mass_damping, body.stiffness_damping, body.fixed[0].normal, body.fixed[0].within);
     const auto start = body.initial_velocity.value_or(InitialVelocityDescription{});
     add(start.linear, start.angular);
+  }
+  void add_sensor(const SensorDescription& sensor) {
+    const sim::ChannelSettings& channel = sensor.channel;
+    add(channel.noise, channel.bias, channel.drift, channel.delay, channel.dropout, channel.seed);
+    add(sensor.samples, sensor.outside, sensor.loss_per_length, sensor.loss_per_turn);
+    add(sensor.permittivity, sensor.threshold, sensor.electrodes[0].angle);
   }
   void add_actuator(const ActuatorDescription& actuator) {
     if (const auto* cable = std::get_if<CableDescription>(&actuator.own)) {

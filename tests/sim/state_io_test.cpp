@@ -66,7 +66,7 @@ TEST(StateIo, WrongBytesAreRefused) {
   EXPECT_EQ(kind_of(simulation, good.substr(0, good.size() - 1)), ErrorKind::state_corrupt);
   EXPECT_EQ(kind_of(simulation, good + "x"), ErrorKind::state_corrupt);
   std::string version = good;
-  version[8] = 9;
+  version[8] = static_cast<char>(kStateVersion + 1);
   EXPECT_EQ(kind_of(simulation, version), ErrorKind::state_version);
   std::string damaged = good;
   damaged[100] = static_cast<char>(damaged[100] ^ 1);
@@ -151,7 +151,7 @@ TEST(StateIo, AHeaderTellsOfAState) {
   EXPECT_TRUE(is_state(bytes));
   EXPECT_FALSE(is_state("SINEWS"));
   const StateHeader header = read_state_header(bytes, "test.state");
-  EXPECT_EQ(header.version, kStateVersion);
+  EXPECT_EQ(header.version, kVersionWithoutSensors);
   EXPECT_EQ(header.fingerprint, simulation.model().fingerprint());
   EXPECT_EQ(header.steps, 3);
   EXPECT_EQ(header.count, simulation.state().size());

@@ -18,14 +18,14 @@ namespace sinew::constraint {
 /// One number of a probe.
 struct ProbeComponent {
   std::string name;  ///< "x", "length", "3.x"; empty for a probe's only number
-  const char* unit;  ///< "m" or "rad"
+  const char* unit;  ///< "m", "rad", "1/m"; empty of a ratio
 };
 
 class Probe {
  public:
   virtual ~Probe() = default;
   const std::string& name() const { return name_; }
-  /// "point", "line", "bend", "distance" or "extent".
+  /// "point", "line", "bend", "distance" or "extent"; others of what sensors measure.
   virtual const char* kind() const = 0;
   /// What measure() writes.
   const std::vector<ProbeComponent>& components() const { return components_; }

@@ -50,6 +50,10 @@ constexpr std::array kWords = {
     DimensionWords{dimension::kTemperature, "a temperature", "293.15 K", {"K"}, 0},
     DimensionWords{dimension::kHeatCapacity, "a heat capacity", "0.1 J/K", {"J/K", "mJ/K"}, 0},
     DimensionWords{dimension::kHeatLoss, "a heat loss", "0.01 W/K", {"W/K", "mW/K"}, 0},
+    DimensionWords{dimension::kCurrent, "a current", "0.5 A", {"A", "mA", "uA"}, 0},
+    DimensionWords{
+        dimension::kResistance, "a resistance", "1 kOhm", {"MOhm", "kOhm", "Ohm", "mOhm"}, 2},
+    DimensionWords{dimension::kCapacitance, "a capacitance", "10 pF", {"F", "uF", "nF", "pF"}, 3},
     DimensionWords{
         dimension::kPressureRate, "a pressure rate", "20 kPa/s", {"MPa/s", "kPa/s", "Pa/s"}, 2},
 };

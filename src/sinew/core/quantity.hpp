@@ -11,13 +11,14 @@
 
 namespace sinew {
 
-/// Exponents of length, mass, time and temperature: a force is {1, 1, -2}. Angles and ratios have
-/// no dimension.
+/// Exponents of length, mass, time, temperature and current: a force is {1, 1, -2}. Angles and
+/// ratios have no dimension.
 struct Dimension {
   int length = 0;
   int mass = 0;
   int time = 0;
   int temperature = 0;
+  int current = 0;
 
   constexpr bool operator==(const Dimension&) const = default;
 };
@@ -45,8 +46,11 @@ inline constexpr Dimension kVolumeRate{3, 0, -1};     ///< m^3/s
 inline constexpr Dimension kPressureRate{-1, 1, -3};  ///< Pa/s
 inline constexpr Dimension kConductance{4, -1, 1};    ///< m^3/(s Pa), of a valve
 inline constexpr Dimension kTemperature{0, 0, 0, 1};  ///< K
-inline constexpr Dimension kHeatCapacity{2, 1, -2, -1};  ///< J/K
-inline constexpr Dimension kHeatLoss{2, 1, -3, -1};      ///< W/K
+inline constexpr Dimension kHeatCapacity{2, 1, -2, -1};    ///< J/K
+inline constexpr Dimension kHeatLoss{2, 1, -3, -1};        ///< W/K
+inline constexpr Dimension kCurrent{0, 0, 0, 0, 1};        ///< A
+inline constexpr Dimension kResistance{2, 1, -3, 0, -2};   ///< Ohm
+inline constexpr Dimension kCapacitance{-2, -1, 4, 0, 2};  ///< F
 }  // namespace dimension
 
 /// "a mass", "a density"; dimensions without a name as "a quantity in kg^2 m".
@@ -57,7 +61,8 @@ std::string dimension_example(Dimension dimension);
 
 /// One number and its unit, in SI. A bare number is SI. The number is read as in C, whatever the
 /// locale. A unit is a product of factors: names with SI prefixes (m, g, s, N, Pa, J, W, K, Hz, l,
-/// L, bar, Nm), names without (psi, atm, in, min, h, deg, rad, %), parentheses and 1, joined by
+/// L, bar, Nm, A, Ohm, F), names without (psi, atm, in, min, h, deg, rad, dB, %), parentheses and
+/// 1, joined by
 /// `*`, blanks or `/`, each with an integer power: "kg/m^3", "N s/m", "kg m^-3", "1/s".
 /// A blank after a `/` ("N/m s") is refused, since it is read in two ways.
 /// Throws Error at `place`: not-a-number, not-finite, unknown-unit, wrong-dimension, wrong-length

@@ -47,6 +47,9 @@ constexpr std::array kUnits = {
     NamedUnit{"Nm", {1.0, 1.0, dimension::kEnergy}, true},
     NamedUnit{"l", {1.0, 1e3, dimension::kVolume}, true},
     NamedUnit{"L", {1.0, 1e3, dimension::kVolume}, true},
+    NamedUnit{"A", {1.0, 1.0, dimension::kCurrent}, true},
+    NamedUnit{"Ohm", {1.0, 1.0, dimension::kResistance}, true},
+    NamedUnit{"F", {1.0, 1.0, dimension::kCapacitance}, true},
     NamedUnit{"bar", {1e5, 1.0, dimension::kPressure}, true},
     NamedUnit{"psi", {4.4482216152605, 0.00064516, dimension::kPressure}, false},
     NamedUnit{"atm", {101325.0, 1.0, dimension::kPressure}, false},
@@ -56,6 +59,7 @@ constexpr std::array kUnits = {
     NamedUnit{"rad", {1.0, 1.0, dimension::kNone}, false},
     NamedUnit{"deg", {std::numbers::pi, 180.0, dimension::kNone}, false},
     NamedUnit{"°", {std::numbers::pi, 180.0, dimension::kNone}, false},
+    NamedUnit{"dB", {1.0, 1.0, dimension::kNone}, false},
     NamedUnit{"%", {1.0, 100.0, dimension::kNone}, false},
     NamedUnit{"1", {1.0, 1.0, dimension::kNone}, false},
 };
@@ -86,8 +90,8 @@ std::string suggest(std::string_view name) {
   }
   const std::string nearest = nearest_word(name, kCommon);
   if (nearest.empty())
-    return "known are m, g, s, N, Pa, J, W, K, Hz, l, bar with SI prefixes, psi, "
-           "atm, in, min, h, deg, rad, % and their products";
+    return "known are m, g, s, N, Pa, J, W, K, Hz, l, bar, A, Ohm, F with SI prefixes, psi, "
+           "atm, in, min, h, deg, rad, dB, % and their products";
   return fmt::format("did you mean '{}'?", nearest);
 }
 
@@ -214,14 +218,15 @@ Unit operator*(const Unit& a, const Unit& b) {
   return {numerator,
           denominator,
           {a.dimension.length + b.dimension.length, a.dimension.mass + b.dimension.mass,
-           a.dimension.time + b.dimension.time, a.dimension.temperature + b.dimension.temperature}};
+           a.dimension.time + b.dimension.time, a.dimension.temperature + b.dimension.temperature,
+           a.dimension.current + b.dimension.current}};
 }
 
 Unit inverse(const Unit& unit) {
   return {unit.denominator,
           unit.numerator,
           {-unit.dimension.length, -unit.dimension.mass, -unit.dimension.time,
-           -unit.dimension.temperature}};
+           -unit.dimension.temperature, -unit.dimension.current}};
 }
 
 Unit power(const Unit& unit, int exponent) {
@@ -246,6 +251,7 @@ std::string si_unit_name(Dimension dimension) {
   append("m", dimension.length);
   append("s", dimension.time);
   append("K", dimension.temperature);
+  append("A", dimension.current);
   return name.empty() ? "1" : name;
 }
 

@@ -19,6 +19,8 @@ std::string dataset_of(const sim::Observable& observable) {
       return in("effectors");
     case sim::ObservableKind::probe:
       return in("probes");
+    case sim::ObservableKind::sensor:
+      return in("sensors");
     case sim::ObservableKind::contact_point:
       return in("contacts");
     case sim::ObservableKind::contact:
@@ -48,8 +50,9 @@ bool is_state(const sim::Observable& observable) {
 bool is_in_table(const sim::Observable& observable, TableKind table) {
   if (observable.kind == sim::ObservableKind::time) return true;
   if (is_state(observable) || observable.kind == sim::ObservableKind::timing) return false;
-  const bool probe = observable.kind == sim::ObservableKind::probe;
-  return probe == (table == TableKind::probes);
+  if (observable.kind == sim::ObservableKind::probe) return table == TableKind::probes;
+  if (observable.kind == sim::ObservableKind::sensor) return table == TableKind::sensors;
+  return table == TableKind::run;
 }
 
 std::vector<std::string> headings_of(const sim::Observable& observable) {

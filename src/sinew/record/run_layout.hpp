@@ -11,8 +11,9 @@ namespace sinew::record {
 
 /// The tables of a run.
 enum class TableKind {
-  run,     ///< run.csv
-  probes,  ///< probes.csv
+  run,      ///< run.csv
+  probes,   ///< probes.csv
+  sensors,  ///< sensors.csv
 };
 
 /// The dataset of run.h5, as RunRecorder lists them: "/actuators/long_0/effort"; empty for what

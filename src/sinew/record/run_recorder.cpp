@@ -44,7 +44,8 @@ void require_writable(const fs::path& folder) {
   if (problem) unwritable(folder, problem.message());
   if (!fs::is_directory(folder)) unwritable(folder, "it is a file");
   if (::access(folder.c_str(), W_OK | X_OK) != 0) unwritable(folder, std::strerror(errno));
-  for (const char* name : {"run.csv", "run.h5", "scene.yaml", "probes.csv", "run.png"}) {
+  for (const char* name :
+       {"run.csv", "run.h5", "scene.yaml", "probes.csv", "sensors.csv", "run.png"}) {
     const fs::path file = folder / name;
     if (!fs::exists(file)) continue;
     if (!fs::is_regular_file(file)) unwritable(file, "it is no regular file");
@@ -168,10 +169,15 @@ struct RunRecorder::Files {
     write_file(settings.folder / "scene.yaml", settings.scene);
     remove_series(settings.folder);
     // An older run's would be taken for this one's.
-    for (const char* name : {"probes.csv", "run.png"}) fs::remove(settings.folder / name);
+    for (const char* name : {"probes.csv", "sensors.csv", "run.png"}) {
+      fs::remove(settings.folder / name);
+    }
     const sim::Simulation& simulation = observables.simulation();
     if (!simulation.model().probes().empty()) {
       probes.emplace(settings.folder / "probes.csv", observables, TableKind::probes);
+    }
+    if (!simulation.model().sensors().empty()) {
+      sensors.emplace(settings.folder / "sensors.csv", observables, TableKind::sensors);
     }
     if (settings.vtk) series.emplace(settings.folder, simulation);
   }
@@ -179,6 +185,7 @@ struct RunRecorder::Files {
     observables.refresh();
     table.write();
     if (probes) probes->write();
+    if (sensors) sensors->write();
     states.write();
     if (series) series->write();
     ++frames;
@@ -188,7 +195,7 @@ struct RunRecorder::Files {
   RecordSettings settings;
   RunStates states;  // first: a file that another program holds open stops everything
   RunTable table;
-  std::optional<RunTable> probes;
+  std::optional<RunTable> probes, sensors;
   std::optional<ParaviewSeries> series;
   std::int64_t frames = 0;
 };

@@ -33,8 +33,8 @@ struct RecordSettings {
 /// what was recorded outlives a crash.
 ///
 /// What is recorded is what sim::Observables lists, timing aside: numbers in run.csv and run.h5,
-/// probes' in probes.csv and run.h5, arrays of bodies and contact points in run.h5 alone; see
-/// record/run_layout.hpp for names and paths.
+/// probes' in probes.csv and run.h5, sensors' in sensors.csv and run.h5, arrays of bodies and
+/// contact points in run.h5 alone; see record/run_layout.hpp for names and paths.
 ///
 /// run.csv, one row a frame, units in the headings: `time [s]`; per actuator `long_0.tension [N]`,
 /// `long_0.displacement [m]` and what is commanded of either, `long_0.tension_command [N]` and
@@ -55,11 +55,16 @@ struct RecordSettings {
 /// (a bend, a distance, an extent), `tip.x [m]` ... (a point), or `axis.length [m]` and
 /// `axis.0.x [m]`, `axis.0.y [m]` ... of every point of a line.
 ///
+/// sensors.csv, where the scene has sensors, one row a frame: `time [s]`, then per sensor what it
+/// says, `tip.measured_x [m]` ... or `length.measured [m]`, what is true, `tip.true_x [m]` ..., and
+/// when it was sampled, `tip.sample_time [s]`; nan before the first sample.
+///
 /// run.h5: /time (frames,) s; /positions/BODY (frames, n, 3) m; /velocities/BODY in dynamics, m/s;
 /// /coordinates/BODY (frames, c) of an arm; /actuators/NAME/{effort,motion} (frames,) and
 /// /actuators/NAME/{effort_command,motion_command,input_command}; /effectors/NAME/position (frames,
 /// 3); /probes/NAME/value (frames,), of a point (frames, 3), of a line its length, with
-/// /probes/NAME/positions (frames, k, 3); with states, of n points that may touch a surface,
+/// /probes/NAME/positions (frames, k, 3); /sensors/NAME/{measured,true} (frames,) or (frames, k)
+/// and /sensors/NAME/sample_time; with states, of n points that may touch a surface,
 /// /contacts/NAME/{gap,normal_force,state} (frames, n) (state: 0 open, 1 stick, 2 slip),
 /// /contacts/NAME/{position,normal,friction_force} (frames, n, 3) and the surface's
 /// /contacts/NAME/pose (frames, 3, 4), rotation and translation from where the scene puts it;

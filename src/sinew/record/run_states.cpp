@@ -86,6 +86,10 @@ void RunStates::describe_owners() {
   for (const auto& probe : model.probes()) {
     file_.attribute("/probes/" + probe.name(), "kind", std::string_view(probe.kind()));
   }
+  for (const sim::SensorModel& sensor : model.sensors()) {
+    file_.attribute("/sensors/" + sensor.name, "kind", std::string_view(sensor.kind));
+    file_.attribute("/sensors/" + sensor.name, "observable", std::string_view(sensor.observable));
+  }
 }
 
 void RunStates::write() {

@@ -1,5 +1,5 @@
 /// @file
-/// run.csv and probes.csv: headings and rows of a simulation.
+/// run.csv, probes.csv and sensors.csv: headings and rows of a simulation.
 #pragma once
 
 #include <filesystem>

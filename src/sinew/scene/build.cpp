@@ -144,6 +144,9 @@ Robot build(SceneDescription description) {
     }
   }
   add_joints(true);
+  for (const SensorDescription& sensor : description.sensors) {
+    add_sensor(builder, description, sensor, body_of);
+  }
   robot.model = builder.build(factorisation_settings(description.solver));
   for (const ControllerDescription& controller : description.controllers) {
     robot.controllers.push_back(controller_of(controller, *robot.model));

@@ -99,4 +99,9 @@ int add_joint(sim::ModelBuilder& builder, const JointDescription& joint, const B
 /// @param builder that has the bodies. @param probe to be added. @param body_of finds bodies.
 void add_probe(sim::ModelBuilder& builder, const ProbeDescription& probe, const BodyOf& body_of);
 
+/// @param builder that has the bodies, actuators and contacts. @param scene of the sensor, for its
+/// gravity. @param sensor to be added. @param body_of finds bodies.
+void add_sensor(sim::ModelBuilder& builder, const SceneDescription& scene,
+                const SensorDescription& sensor, const BodyOf& body_of);
+
 }  // namespace sinew::scene

@@ -8,6 +8,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -35,6 +36,7 @@
 #include "sinew/sim/force_settings.hpp"
 #include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/motor_settings.hpp"
+#include "sinew/sim/sensor_model.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/spring_line_settings.hpp"
 #include "sinew/sim/step_settings.hpp"
@@ -295,6 +297,35 @@ struct ProbeDescription {
   mesh::Outside outside = mesh::Outside::error;
 };
 
+/// Something that is measured as a sensor would, and acts on nothing.
+struct SensorDescription {
+  std::string name;
+  Location place, rate_place;
+  std::string type;  ///< its word in scenes: "marker"
+  std::string body, actuator, contact;
+  PointList points;                   ///< marker, line; those that an orientation turns with
+  std::optional<FixedRegion> region;  ///< set of a marker, patch of a contact
+  std::string patch_body;             ///< empty: the first of the contact
+  mesh::Outside outside = mesh::Outside::error;
+  int samples = 21;              ///< of a line
+  std::vector<double> places;    ///< curvature: m along the line
+  double gauge = 0.0;            ///< curvature: m; 0: a tenth of the line
+  std::optional<Vector3> about;  ///< curvature: unit length
+  double resistance = 0.0;       ///< Ohm
+  double gauge_factor = 0.0;     ///< of a resistance
+  double loss_per_length = 0.0;  ///< attenuation: dB/m
+  double loss_per_turn = 0.0;    ///< attenuation: dB/rad
+  double permittivity = 1.0;     ///< relative
+  std::array<SurfaceDescription, 2> electrodes;
+  std::array<std::string, 2> electrode_bodies;  ///< empty: the sensor's
+  double motor_constant = 0.0;                  ///< N m/A or N/A
+  bool turns = true;                            ///< the constant is of a torque
+  double radius = 0.0;                          ///< m, of a drum; 0: none
+  double threshold = 0.0;                       ///< touch: N
+  sim::ChannelSettings channel;
+  std::shared_ptr<const sim::SensorRecord> record;  ///< of a file
+};
+
 /// A surface that points of a body may touch, or two bodies.
 struct ContactDescription {
   std::string name;
@@ -390,6 +421,7 @@ struct SceneDescription {
   std::vector<MembraneDescription> membranes;
   std::vector<EffectorDescription> effectors;
   std::vector<ProbeDescription> probes;
+  std::vector<SensorDescription> sensors;
   std::vector<ContactDescription> contacts;
   std::vector<JointDescription> joints;
   std::vector<ControllerDescription> controllers;

@@ -101,6 +101,11 @@ void for_each_body_name(SceneDescription& scene, Rename&& rename) {
   for (ProbeDescription& probe : scene.probes) {
     for (ProbeDescription::Part& part : probe.parts) rename(part.body, part.place);
   }
+  for (SensorDescription& sensor : scene.sensors) {
+    rename(sensor.body, sensor.place);
+    rename(sensor.patch_body, sensor.place);
+    for (std::string& body : sensor.electrode_bodies) rename(body, sensor.place);
+  }
   for (ContactDescription& contact : scene.contacts) {
     rename(contact.body, contact.place);
     rename(contact.other, contact.between_place);

@@ -230,6 +230,12 @@ KeyTable scene_table() {
        .forms = {names(probe_form())},
        .example = "{bend: {body: finger, bend: [{set: bottom}, {set: top}]}}",
        .description = "Measurements that are recorded; they do not affect the robot."});
+  scene.keys.push_back(
+      {.name = "sensors",
+       .forms = {names(sensor_form())},
+       .example = "{tip: {type: marker, body: trunk, point: 0 0 195 mm, noise: 0.1 mm}}",
+       .description = "What the robot or cameras measure, with the errors of real sensors; they do "
+                      "not affect the robot."});
   scene.keys.push_back({.name = "contacts",
                         .forms = {names(contact_form())},
                         .example = "{floor: {body: block, surface: {plane: {}}, friction: 0.5}}",
@@ -250,7 +256,6 @@ KeyTable scene_table() {
                         .description = "What a run writes."});
   scene.keys.push_back(later_key("materials", "Materials by name."));
   scene.keys.push_back(later_key("obstacles", "What surrounds the robot."));
-  scene.keys.push_back(later_key("sensors", "What the robot feels."));
   scene.keys.push_back(later_key("estimators", "What is concluded from sensors."));
   return scene;
 }

@@ -29,6 +29,12 @@ Measure power() { return {dimension::kPower, "W"}; }
 Measure temperature() { return {dimension::kTemperature, "K"}; }
 Measure heat_capacity() { return {dimension::kHeatCapacity, "J/K"}; }
 Measure heat_loss() { return {dimension::kHeatLoss, "W/K"}; }
+Measure curvature() { return {Dimension{-1, 0, 0}, "1/m"}; }
+Measure current() { return {dimension::kCurrent, "A"}; }
+Measure resistance() { return {dimension::kResistance, "Ohm"}; }
+Measure capacitance() { return {dimension::kCapacitance, "F"}; }
+Measure torque_constant() { return {Dimension{2, 1, -2, 0, -1}, "N m/A"}; }
+Measure force_constant() { return {Dimension{1, 1, -2, 0, -1}, "N/A"}; }
 
 Range any() { return {}; }
 Range positive() { return {.min = 0.0, .above_min = true}; }

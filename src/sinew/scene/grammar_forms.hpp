@@ -48,6 +48,12 @@ Measure power();
 Measure temperature();
 Measure heat_capacity();
 Measure heat_loss();
+Measure curvature();
+Measure current();
+Measure resistance();
+Measure capacitance();
+Measure torque_constant();
+Measure force_constant();
 
 Range any();
 Range positive();
@@ -142,6 +148,7 @@ Form effector_form();
 Form contact_form();
 Form joint_form();
 Form probe_form();
+Form sensor_form();
 Form controller_form();
 
 }  // namespace sinew::scene::forms

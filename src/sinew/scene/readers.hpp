@@ -4,7 +4,9 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "sinew/scene/description.hpp"
 #include "sinew/scene/fields.hpp"
@@ -46,6 +48,16 @@ JointDescription read_joint(const Node::Entry& entry, const ReadContext& context
 /// A motion over time. @param fields of its map. @param context of the scene.
 sim::BaseMotion read_motion(const Fields& fields, const ReadContext& context);
 ProbeDescription read_probe(const Node::Entry& entry, const ReadContext& context);
+SensorDescription read_sensor(const Node::Entry& entry, const ReadContext& context);
+/// The samples under `file`; null without, and when files are not opened.
+/// @param fields of the sensor. @param sensor read so far: its name, rate and delay.
+/// @param numbers names of its components: "x", "y", "z"; empty for its only one.
+/// @param context of the scene. Throws Error: wrong-columns, non-monotonic-time, not-finite,
+/// malformed-table and bad-signal (a gap) with the line.
+std::shared_ptr<const sim::SensorRecord> read_sensor_record(const Fields& fields,
+                                                            const SensorDescription& sensor,
+                                                            const std::vector<std::string>& numbers,
+                                                            const ReadContext& context);
 /// A unit vector, or the axis that x, y or z names. @param node,forms what is read, as one of
 /// these.
 Vector3 read_axis(const Node& node, const std::vector<Form>& forms);

@@ -180,6 +180,8 @@ SceneDescription read_scene(const Node& tree, const ReadContext& context) {
               [&](const auto& entry) { scene.effectors.push_back(read_effector(entry, context)); });
   for_entries(fields, "probes",
               [&](const auto& entry) { scene.probes.push_back(read_probe(entry, context)); });
+  for_entries(fields, "sensors",
+              [&](const auto& entry) { scene.sensors.push_back(read_sensor(entry, context)); });
   for_entries(fields, "contacts",
               [&](const auto& entry) { scene.contacts.push_back(read_contact(entry, context)); });
   for_entries(fields, "joints",

@@ -34,6 +34,7 @@ struct ForceSettings;
 struct LoadSettings;
 struct ModelData;
 struct ProbeSettings;
+struct SensorSettings;
 struct SpringLineSettings;
 struct TorqueSettings;
 struct JointSettings;
@@ -69,5 +70,7 @@ int add_weld(ModelData& data, const WeldSettings& settings);
 
 int add_effector(ModelData& data, const EffectorSettings& settings);
 int add_probe(ModelData& data, const ProbeSettings& settings);
+/// After what it reads.
+int add_sensor(ModelData& data, const SensorSettings& settings);
 
 }  // namespace sinew::sim

@@ -91,6 +91,10 @@ int Model::probe_index(std::string_view name) const {
   return find_by_name(data_.probes, name, "probe", [](const auto& p) { return p->name(); });
 }
 
+int Model::sensor_index(std::string_view name) const {
+  return find_by_name(data_.sensors, name, "sensor", [](const auto& s) { return s.name; });
+}
+
 const mechanics::BodyModel& Model::body(int index) const {
   return *data_.bodies.at(static_cast<std::size_t>(index));
 }

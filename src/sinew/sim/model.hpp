@@ -40,6 +40,7 @@ class Model {
   const std::vector<AnchorModel>& anchors() const { return data_.anchors; }
   const std::vector<CouplingModel>& couplings() const { return data_.couplings; }
   PartList<constraint::Probe> probes() const { return PartList(data_.probes); }
+  const std::vector<SensorModel>& sensors() const { return data_.sensors; }
   const mechanics::RowPattern& rows() const { return data_.rows; }
   const std::vector<mechanics::RowCurvature>& curvatures() const { return data_.curvatures; }
   const StepSettings& step() const { return data_.step; }
@@ -60,6 +61,7 @@ class Model {
   int load_index(std::string_view name) const;
   int mass_index(std::string_view name) const;
   int probe_index(std::string_view name) const;
+  int sensor_index(std::string_view name) const;
 
   /// By these positions.
   const mechanics::BodyModel& body(int index) const;

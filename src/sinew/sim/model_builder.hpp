@@ -30,6 +30,7 @@ struct EffectorSettings;
 struct ForceSettings;
 struct LoadSettings;
 struct ProbeSettings;
+struct SensorSettings;
 struct SpringLineSettings;
 struct TorqueSettings;
 struct JointSettings;
@@ -82,6 +83,11 @@ class ModelBuilder {
   int add_motor(const MotorSettings& settings);
   /// Throws Error: too-few-points, empty-region, point-outside-mesh, degenerate-orientation.
   int add_probe(const ProbeSettings& settings);
+  /// After actuators and contacts. Throws Error: what its channel does, out-of-range (a rate that
+  /// is no whole part of the steps', a place beyond its line), unknown-name, wrong-actuator-type,
+  /// missing-key and conflicting-keys (the radius of a drum), wrong-length and
+  /// degenerate-orientation, too-few-points, point-outside-mesh, empty-region, zero-volume.
+  int add_sensor(const SensorSettings& settings);
 
   /// Plans and hands the model over; the builder is empty afterwards.
   /// @param settings of the factorisation.

@@ -14,6 +14,7 @@
 #include "sinew/mechanics/rows.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/base_motion.hpp"
+#include "sinew/sim/sensor_model.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/step_settings.hpp"
 
@@ -136,6 +137,7 @@ struct ModelData {
   std::vector<AnchorModel> anchors;
   std::vector<CouplingModel> couplings;
   std::vector<std::unique_ptr<constraint::Probe>> probes;
+  std::vector<SensorModel> sensors;
   std::vector<BaseMotion> base_motions;
   std::vector<LoadModel> loads;
   std::vector<MassModel> masses;

@@ -26,6 +26,7 @@ enum class ObservableKind {
   actuator,       ///< effort, motion, and what is commanded of either
   effector,       ///< position or rotation
   probe,          ///< what it measures
+  sensor,         ///< what it says, and what is true
   contact_point,  ///< of every point of a contact, and the pose of its surface
   contact,        ///< of all points of a contact together
   joint,          ///< force, moment, gap and motion
@@ -84,8 +85,10 @@ class Observables {
   /// `NAME.angular_velocity` (3,) rad/s, of an arm `NAME.coordinates` (c,) rad, extensions in m; of
   /// every actuator effort and motion, as `NAME.tension` and `NAME.displacement`, and its commands
   /// (see commanded()); of every effector `NAME.position` (3,) m or `NAME.rotation` (3,) rad; of
-  /// every probe `NAME.value`, and of a line `NAME.positions` (k, 3) m; of every contact of n
-  /// points `NAME.pose` (3, 4) and `NAME.points.position` (n, 3), `.gap` (n,), `.normal` (n, 3),
+  /// every probe `NAME.value`, and of a line `NAME.positions` (k, 3) m; of every sensor
+  /// `NAME.measured` and `NAME.true` and when the former was taken, `NAME.sample_time` s (NaN
+  /// before the first sample); of every contact of n points `NAME.pose` (3, 4) and
+  /// `NAME.points.position` (n, 3), `.gap` (n,), `.normal` (n, 3),
   /// `.normal_force` (n,), `.friction_force` (n, 3), `.state` (n,), and, of the points together,
   /// `NAME.force` (3,) N, `NAME.normal_force` and `NAME.friction_force` N, `NAME.gap` m,
   /// `NAME.sticking`, `NAME.slipping`; of every joint `NAME.force` (3,) N and `NAME.moment` (3,) N

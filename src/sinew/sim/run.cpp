@@ -23,8 +23,10 @@ Run::Run(std::shared_ptr<const Model> shared_model, int threads)
                               .poll = &watch.poll()}),
       actuation(*model),
       surroundings(*model, world.bodies()),
-      effort(static_cast<std::size_t>(model->rows().rows()), 0.0) {
+      effort(static_cast<std::size_t>(model->rows().rows()), 0.0),
+      sensors(*model) {
   finish_step();
+  sensors.restart(*this);
   keep(before);
 }
 
@@ -75,6 +77,7 @@ void Run::restart() {
   finish_step();
   if (controller != nullptr) controller->forget();
   report = {};
+  sensors.restart(*this);
 }
 
 std::size_t Run::bytes() const {

@@ -9,6 +9,7 @@
 #include "sinew/core/thread_pool.hpp"
 #include "sinew/sim/actuation.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/sensors.hpp"
 #include "sinew/sim/stage_clock.hpp"
 #include "sinew/sim/state.hpp"
 #include "sinew/sim/step_report.hpp"
@@ -75,6 +76,7 @@ struct Run {
   double now = 0.0;  ///< s, end of the substep in hand
   State before;      ///< before that, or before the search in hand
   StepReport report;
+  Sensors sensors;
   StageClock clock;
 };
 

@@ -61,6 +61,7 @@ void Run::keep(State& state) const {
   state.last_step = last_step;
   state.next_step = next_step;
   state.steps = steps;
+  sensors.save(state.sensors);
 }
 
 void Run::restore(const State& state) {
@@ -80,6 +81,7 @@ void Run::restore(const State& state) {
   last_step = state.last_step;
   next_step = state.next_step;
   steps = state.steps;
+  if (!sensors.load(state.sensors)) sensors.restart(*this);
   if (controller == nullptr) return;
   if (!state.controller.empty() && state.controller.size() == controller->memory_size()) {
     controller->load_memory(state.controller);

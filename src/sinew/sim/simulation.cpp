@@ -29,6 +29,7 @@ std::int64_t Simulation::steps() const { return run_->steps; }
 
 const StepReport& Simulation::step() {
   stepper_->step();
+  run_->sensors.advance(*run_);
   return run_->report;
 }
 
@@ -38,12 +39,17 @@ mechanics::Energies Simulation::energies() { return run_->world.bodies().energie
 const EnergyLedger& Simulation::ledger() const { return run_->ledger.sums(); }
 
 StaticReport Simulation::solve_static(const StaticSettings& settings) {
-  return StaticSolver(*run_, settings).run();
+  StaticReport report = StaticSolver(*run_, settings).run();
+  run_->sensors.settle(*run_);
+  return report;
 }
 
 std::vector<PathPoint> Simulation::follow_path(const PathSettings& settings,
                                                const std::function<void()>& visit) {
-  return PathFollower(*run_, settings).follow(visit);
+  return PathFollower(*run_, settings).follow([&] {
+    run_->sensors.settle(*run_);
+    if (visit) visit();
+  });
 }
 
 void Simulation::reset() { run_->restart(); }
@@ -78,6 +84,22 @@ std::vector<double> Simulation::probe_values(int index) const {
   std::vector<double> values(probe.components().size());
   probe.measure(configuration(), values);
   return values;
+}
+
+const Channel& Simulation::sensor(int index) const { return run_->sensors.channel(index); }
+
+std::vector<double> Simulation::sensor_truth(int index) const {
+  std::vector<double> values(sensor(index).size());
+  read_sensor_truth(index, values);
+  return values;
+}
+
+void Simulation::read_sensor_truth(int index, std::span<double> values) const {
+  run_->sensors.read_true(*run_, index, values);
+}
+
+void Simulation::feed_sensor(int index, double time, std::span<const double> value) {
+  run_->sensors.channel(index).receive(time, value);
 }
 
 ContactReader Simulation::contacts() const { return ContactReader(*run_); }

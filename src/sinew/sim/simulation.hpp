@@ -30,6 +30,7 @@ class Controller;
 namespace sinew::sim {
 
 struct ActuatorState;
+class Channel;
 struct Command;
 class ContactReader;
 struct EnergyLedger;
@@ -114,6 +115,18 @@ class Simulation {
   /// (components,) what a probe measures now, m and rad. @param index of Model::probes().
   std::vector<double> probe_values(int index) const;
 
+  /// The channel of a sensor: what it says, when it was taken. @param index of Model::sensors().
+  const Channel& sensor(int index) const;
+  /// (size,) what it would say now without errors and delay. @param index of Model::sensors().
+  std::vector<double> sensor_truth(int index) const;
+  /// The same into (size,) numbers, which allocates nothing. @param index of Model::sensors().
+  /// @param values replaced.
+  void read_sensor_truth(int index, std::span<double> values) const;
+  /// Takes a sample of a real sensor in place of the simulated ones, from now until reset(). Throws
+  /// what Channel::receive() does. @param index of Model::sensors(). @param time s, when it was
+  /// taken. @param value (size,).
+  void feed_sensor(int index, double time, std::span<const double> value);
+
   /// Forces, gaps and states of contacts; valid as long as the simulation.
   ContactReader contacts() const;
 
@@ -143,7 +156,8 @@ class Simulation {
   /// Everything that decides, with the inputs, how the run goes on.
   State state() const;
   /// Takes up a state, of this simulation or of another one of the same model. A controller takes
-  /// up its memory where the state has it; otherwise it begins anew. Commands stay as they are.
+  /// up its memory where the state has it; otherwise it begins anew, as do sensors where those of
+  /// the state are others. Commands stay as they are.
   /// Throws Error(wrong-length) for a state of another model, and is then unchanged.
   void restore(const State& state);
   /// What acts from outside: commands, load factors, forces, tethers, and where bases are asked to

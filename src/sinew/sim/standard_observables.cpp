@@ -18,6 +18,7 @@
 #include "sinew/sim/joint_load.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/observables.hpp"
+#include "sinew/sim/sensor_source.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
 
@@ -182,6 +183,38 @@ void add_probes(Observables& list) {
     if (line) parts.push_back(part("positions", {probe.mark_count(), 3}, 1, numbers.size()));
     list.add(std::move(parts), [&simulation, &probe](std::span<double> to) {
       probe.measure(simulation.configuration(), to);
+    });
+  }
+}
+
+void add_sensors(Observables& list) {
+  const Simulation& simulation = list.simulation();
+  const Model& model = simulation.model();
+  for (std::size_t i = 0; i < model.sensors().size(); ++i) {
+    const SensorModel& sensor = model.sensors()[i];
+    const auto& numbers = sensor.source->components();
+    std::vector<Observable> parts;
+    const auto add = [&](const char* quantity) {
+      Observable one = of(ObservableKind::sensor, sensor.name, quantity, numbers.front().unit);
+      if (numbers.size() > 1) {
+        one.shape = {numbers.size()};
+        one.components.clear();
+        for (const auto& number : numbers) {
+          one.components.push_back(fmt::format("{}_{}", one.name, number.name));
+        }
+      }
+      parts.push_back(std::move(one));
+    };
+    add("measured");
+    add("true");
+    parts.push_back(of(ObservableKind::sensor, sensor.name, "sample_time", "s"));
+    list.add(std::move(parts), [&simulation, i](std::span<double> all) {
+      const auto index = static_cast<int>(i);
+      const Channel& channel = simulation.sensor(index);
+      const std::size_t size = channel.size();
+      std::ranges::copy(channel.value(), all.begin());
+      simulation.read_sensor_truth(index, all.subspan(size, size));
+      all.back() = channel.time();
     });
   }
 }
@@ -397,6 +430,7 @@ void list_standard_observables(Observables& list) {
   add_actuators(list);
   add_effectors(list);
   add_probes(list);
+  add_sensors(list);
   add_contacts(list);
   add_joints(list);
   add_energies(list);

@@ -154,9 +154,10 @@ SavedState read(std::string_view bytes, const std::string& name) {
   state.steps = saved.header.steps;
   state.bodies.resize(reader.count());
   State::visit(state, [&](std::string_view part, auto& numbers) {
-    // Robots of before had no joints that move, and no surfaces that touched each other.
+    // Robots of before had no joints that move, no surfaces that touched each other, no sensors.
     const bool lacks = (part == "joints" && saved.header.version < kFirstWithJoints) ||
-                       (part == "points" && saved.header.version < kFirstWithPoints);
+                       (part == "points" && saved.header.version < kFirstWithPoints) ||
+                       (part == "sensors" && saved.header.version <= kVersionWithoutSensors);
     if (!lacks) reader.number(numbers);
   });
   if (!reader.done()) corrupt(name, "something follows the last number");
@@ -173,7 +174,8 @@ std::string format_state(const Simulation& simulation) {
 std::string format_state(const State& state, const Model& model) {
   Writer writer;
   writer.append(kMagic.data(), kMagic.size());
-  const std::uint32_t version[2] = {kStateVersion, 0};
+  const bool senses = !state.sensors.empty();
+  const std::uint32_t version[2] = {senses ? kStateVersion : kVersionWithoutSensors, 0};
   writer.append(version, sizeof version);
   writer.word(model.fingerprint());
   writer.word(static_cast<std::uint64_t>(state.steps));
@@ -183,7 +185,9 @@ std::string format_state(const State& state, const Model& model) {
     writer.text(part.name);
   }
   writer.word(state.bodies.size());
-  State::visit(state, [&](std::string_view, const auto& numbers) { writer.number(numbers); });
+  State::visit(state, [&](std::string_view part, const auto& numbers) {
+    if (senses || part != "sensors") writer.number(numbers);
+  });
   return writer.finish();
 }
 

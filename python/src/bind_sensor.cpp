@@ -1,0 +1,288 @@
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sinew/sim/channel.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/sensor_source.hpp"
+#include "sinew/sim/simulation.hpp"
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "session.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+using sim::Channel;
+using sim::ChannelSettings;
+
+const sim::SensorModel& model(const Sensor& self) {
+  return self.session->model().sensors()[static_cast<std::size_t>(self.index)];
+}
+
+// A number of one component, an array of several.
+py::object to_python(std::span<const double> values) {
+  if (values.size() == 1) return py::float_(values.front());
+  const auto count = static_cast<Eigen::Index>(values.size());
+  return copy(VectorX(Eigen::Map<const VectorX>(values.data(), count)));
+}
+
+// A number or (size,), NaN included.
+std::vector<double> to_value(const py::object& value, const std::string& place) {
+  const auto array = Array::ensure(value);
+  if (!array || array.ndim() > 1) {
+    PyErr_Clear();
+    throw Error(ErrorKind::wrong_type, {.item = place}, "this is no number and no list of numbers",
+                "give a number, or an array of the sensor's numbers");
+  }
+  return {array.data(), array.data() + array.size()};
+}
+
+template <class Get>
+auto of_channel(Get get) {
+  return [get](const Sensor& self) {
+    const Session::Use use(*self.session);
+    const sim::Simulation& simulation = self.session->simulation();
+    return get(simulation.sensor(self.index), simulation);
+  };
+}
+
+void feed(const Sensor& self, const py::object& value, const std::optional<double>& time) {
+  const std::string place = fmt::format("sensor('{}').feed", model(self).name);
+  const std::vector<double> numbers = to_value(value, place);
+  const Session::Use use(*self.session);
+  sim::Simulation& simulation = self.session->simulation();
+  try {
+    simulation.feed_sensor(self.index, time.value_or(simulation.time()), numbers);
+  } catch (const Error& error) {
+    throw Error(error.kind(), {.item = place}, error.message(), error.remedy());
+  }
+}
+
+void bind_sensor_type(py::module_& module) {
+  py::class_<Sensor>(module, "Sensor",
+                     "A sensor of the scene, which acts on nothing. From Simulation.sensor() or "
+                     "Simulation.sensors.")
+      .def_property_readonly(
+          "name", [](const Sensor& self) { return model(self).name; }, "str: as in the scene.")
+      .def_property_readonly(
+          "kind", [](const Sensor& self) { return model(self).kind; },
+          "str: its type in the scene, such as 'marker' or 'cable-length'.")
+      .def_property_readonly(
+          "unit", [](const Sensor& self) { return model(self).source->components().front().unit; },
+          "str: SI unit of its numbers; 'dB' of an attenuation; empty of a strain and a switch.")
+      .def_property_readonly(
+          "size", [](const Sensor& self) { return model(self).source->size(); },
+          "int: how many numbers a sample has.")
+      .def_property_readonly(
+          "observable", [](const Sensor& self) { return model(self).observable; },
+          "str: the observable that it reads, such as 'long_0.displacement'; its own 'NAME.true' "
+          "where nothing else observes the same.")
+      .def_property_readonly(
+          "std", [](const Sensor& self) { return model(self).channel.standard_deviation(); },
+          "float: standard deviation of one sample about the true value, sqrt(noise^2 + "
+          "quantum^2/12), in its unit; bias and drift aside.")
+      .def_property_readonly(
+          "rate",
+          [](const Sensor& self) -> py::object {
+            const double rate = model(self).channel.rate;
+            return rate > 0.0 ? py::object(py::float_(rate)) : py::none();
+          },
+          "float or None: samples per second; None: one every step.")
+      .def_property_readonly(
+          "delay", [](const Sensor& self) { return model(self).channel.delay; },
+          "float: from taking a sample to its delivery (s).")
+      .def_property_readonly("value",
+                             of_channel([](const Channel& channel, const sim::Simulation&) {
+                               return to_python(channel.value());
+                             }),
+                             "float, or (size,) ndarray: the sample delivered last, in its unit; "
+                             "nan before the first.")
+      .def_property_readonly("time", of_channel([](const Channel& channel, const sim::Simulation&) {
+                               return channel.time();
+                             }),
+                             "float: when that sample was taken (s); nan before the first.")
+      .def_property_readonly(
+          "fresh", of_channel([](const Channel& channel, const sim::Simulation&) {
+            return channel.fresh();
+          }),
+          "bool: whether it was delivered in the last step, by the last search for an equilibrium, "
+          "or by feed() since the step before the last.")
+      .def_property_readonly(
+          "valid", of_channel([](const Channel& channel, const sim::Simulation& simulation) {
+            return channel.valid(simulation.time());
+          }),
+          "bool: whether there is a sample that is not older than the scene's `timeout`.")
+      .def_property_readonly("missing",
+                             of_channel([](const Channel& channel, const sim::Simulation&) {
+                               return channel.missing();
+                             }),
+                             "int: samples that were lost or fed with a nan, since the start.")
+      .def_property_readonly(
+          "true_value",
+          [](const Sensor& self) {
+            const Session::Use use(*self.session);
+            return to_python(self.session->simulation().sensor_truth(self.index));
+          },
+          "float, or (size,) ndarray: what it would say now without errors and delay.")
+      .def("feed", &feed, py::arg("value"), py::arg("time") = py::none(),
+           R"(feed($self, value, time=None)
+--
+
+A sample of a real sensor, in place of the simulated ones from now until reset().
+
+Parameters
+----------
+value : float, or (size,) array-like
+    In its unit. A sample with a nan is missing: the one before stays, and `missing` counts it.
+time : float, optional
+    When it was taken (s); left out: the simulation's present time.
+
+Raises
+------
+Error
+    wrong-type; wrong-length; not-finite for infinite numbers; non-monotonic-time for a sample
+    before the last.
+)")
+      .def("__repr__", [](const Sensor& self) {
+        return fmt::format("<sinew.Sensor '{}', {}>", model(self).name, model(self).kind);
+      });
+}
+
+Channel make_channel(double noise, double bias, double drift, double quantum, double rate,
+                     double delay, double dropout,
+                     const std::optional<std::pair<double, double>>& range,
+                     const std::optional<double>& timeout, std::int64_t seed, std::int64_t size) {
+  ChannelSettings settings;
+  settings.noise = noise;
+  settings.bias = bias;
+  settings.drift = drift;
+  settings.quantum = quantum;
+  settings.rate = rate;
+  settings.delay = delay;
+  settings.dropout = dropout;
+  if (range) {
+    settings.min = range->first;
+    settings.max = range->second;
+  }
+  if (timeout) settings.timeout = *timeout;
+  settings.seed = static_cast<std::uint64_t>(seed);
+  if (size < 1 || size > 1'000'000) {
+    throw Error(ErrorKind::out_of_range, {.item = "size"}, fmt::format("size is {}", size),
+                "give 1 or more");
+  }
+  return Channel(settings, static_cast<std::size_t>(size));
+}
+
+void bind_channel_type(py::module_& module) {
+  py::class_<Channel>(module, "Channel",
+                      R"(Channel(*, noise=0, bias=0, drift=0, quantum=0, rate=0, delay=0, dropout=0,
+        range=None, timeout=None, seed=0, size=1)
+--
+
+What becomes of a quantity on its way through a sensor. Knows no physics: values are offered to it.
+A sample k of a true value x, taken at t_k, says
+
+    y = clamp(round((x + bias + w_k + noise n_k)/quantum) quantum, range)
+    w_k = w_(k-1) + drift sqrt(t_k - t_(k-1)) m_k,  w_0 = 0
+
+n_k, m_k standard normal. Sample k draws n_k (component c) from words 0 and 1 and m_k from words 2
+and 3 of block (k, c, 0, 0) of Philox4x64-10 (Salmon et al., SC'11) with the key (seed, 0), and
+whether it is lost from word 0 of block (k, 2^64 - 1, 0, 0): the same bits on any number of threads.
+
+Parameters
+----------
+noise, bias, drift, quantum : float
+    In the value's unit; drift: standard deviation that the random walk gains in 1 s; quantum 0: no
+    rounding.
+rate : float
+    Samples per second; 0: every value that is offered.
+delay : float
+    From taking a sample to its delivery (s).
+dropout : float
+    Probability that a sample is lost.
+range : (float, float), optional
+    Where values saturate.
+timeout : float, optional
+    Age from which a sample is no longer valid (s).
+seed : int
+    Of the random numbers.
+size : int
+    Numbers of a value.
+
+Raises
+------
+Error
+    out-of-range.
+)")
+      .def(py::init(&make_channel), py::kw_only(), py::arg("noise") = 0.0, py::arg("bias") = 0.0,
+           py::arg("drift") = 0.0, py::arg("quantum") = 0.0, py::arg("rate") = 0.0,
+           py::arg("delay") = 0.0, py::arg("dropout") = 0.0, py::arg("range") = py::none(),
+           py::arg("timeout") = py::none(), py::arg("seed") = 0, py::arg("size") = 1)
+      .def(
+          "offer",
+          [](Channel& self, double time, const py::object& value) {
+            const std::vector<double> numbers = to_value(value, "offer");
+            if (numbers.size() != self.size()) {
+              throw Error(
+                  ErrorKind::wrong_length, {.item = "offer"},
+                  fmt::format("{} numbers for a channel of {}", numbers.size(), self.size()),
+                  fmt::format("give {}", self.size()));
+            }
+            self.offer(time, numbers);
+            return self.fresh();
+          },
+          py::arg("time"), py::arg("value"),
+          R"(offer($self, time, value)
+--
+
+The true value at a time (s), not before the last. Samples it where one is due, and delivers what is
+due. Returns whether a sample was delivered. Raises Error: wrong-type, wrong-length.
+)")
+      .def(
+          "receive",
+          [](Channel& self, double time, const py::object& value) {
+            self.receive(time, to_value(value, "receive"));
+          },
+          py::arg("time"), py::arg("value"),
+          R"(receive($self, time, value)
+--
+
+A sample of a real sensor; from then on nothing that is offered is sampled. One with a nan is
+missing. Raises Error: wrong-type, wrong-length, not-finite, non-monotonic-time.
+)")
+      .def("restart", &Channel::restart, "restart($self)\n--\n\nBack to the start.\n")
+      .def(
+          "valid", [](const Channel& self, double now) { return self.valid(now); }, py::arg("now"),
+          "valid($self, now)\n--\n\nWhether there is a sample not older than the timeout at a time "
+          "(s).\n")
+      .def_property_readonly(
+          "value", [](const Channel& self) { return to_python(self.value()); },
+          "float, or (size,) ndarray: the sample delivered last; nan before the first.")
+      .def_property_readonly("time", &Channel::time,
+                             "float: when it was taken (s); nan before the first.")
+      .def_property_readonly("fresh", &Channel::fresh,
+                             "bool: whether the last offer() delivered a sample.")
+      .def_property_readonly("samples", &Channel::samples,
+                             "int: samples taken, lost ones included.")
+      .def_property_readonly("missing", &Channel::missing, "int: samples lost, or with a nan.")
+      .def_property_readonly(
+          "std", [](const Channel& self) { return self.settings().standard_deviation(); },
+          "float: of one sample, sqrt(noise^2 + quantum^2/12); bias and drift aside.")
+      .def("__copy__", [](const Channel& self) { return Channel(self); })
+      .def("__deepcopy__", [](const Channel& self, const py::dict&) { return Channel(self); });
+}
+
+}  // namespace
+
+void bind_sensor(py::module_& module) {
+  bind_sensor_type(module);
+  bind_channel_type(module);
+}
+
+}  // namespace sinew::python

@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "sinew/core/error.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mesh/selection.hpp"
+#include "sinew/scene/build_parts.hpp"
+#include "sinew/scene/readers.hpp"
+#include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/sensor_settings.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+using What = decltype(sim::SensorSettings::what);
+
+/// What one sensor measures, on the bodies of a scene.
+class Measured {
+ public:
+  Measured(const SceneDescription& scene, const SensorDescription& sensor, const BodyOf& body_of)
+      : scene_(scene), sensor_(sensor), body_of_(body_of) {}
+
+  What what() const {
+    static const std::map<std::string, What (Measured::*)() const> kinds = {
+        {"marker", &Measured::marker},
+        {"orientation", &Measured::motion},
+        {"gyroscope", &Measured::motion},
+        {"accelerometer", &Measured::motion},
+        {"stretch", &Measured::line},
+        {"resistance", &Measured::line},
+        {"attenuation", &Measured::line},
+        {"curvature", &Measured::curvature},
+        {"capacitance", &Measured::capacitance},
+        {"contact-force", &Measured::contact},
+        {"touch", &Measured::contact}};
+    const auto found = kinds.find(sensor_.type);
+    return found == kinds.end() ? drive() : (this->*found->second)();
+  }
+
+ private:
+  std::vector<NodeId> nodes(const std::string& body) const {
+    const Location& place = sensor_.region->place;
+    return at_place(place, [&] {
+      return mesh::select_nodes(body_of_(body).model->mesh(), region_of(*sensor_.region),
+                                place.item);
+    });
+  }
+  int body() const { return body_of_(sensor_.body).number; }
+
+  What marker() const {
+    sim::ProbeSpot spot;
+    spot.body = body();
+    spot.points = sensor_.points.points;
+    if (sensor_.region) spot.nodes = nodes(sensor_.body);
+    return spot;
+  }
+
+  What motion() const {
+    using Kind = sim::SensorMotion::What;
+    const Kind kind = sensor_.type == "orientation" ? Kind::orientation
+                      : sensor_.type == "gyroscope" ? Kind::gyroscope
+                                                    : Kind::accelerometer;
+    return sim::SensorMotion{kind, body(), sensor_.points.points, scene_.gravity};
+  }
+
+  What drive() const {
+    using Kind = sim::SensorDrive::What;
+    static const std::map<std::string, Kind> kinds = {{"cable-length", Kind::cable_length},
+                                                      {"cable-tension", Kind::cable_tension},
+                                                      {"pressure", Kind::pressure},
+                                                      {"volume", Kind::volume},
+                                                      {"flow", Kind::flow},
+                                                      {"motor-current", Kind::motor_current}};
+    return sim::SensorDrive{kinds.at(sensor_.type), sensor_.actuator, sensor_.motor_constant,
+                            sensor_.turns, sensor_.radius};
+  }
+
+  What line() const {
+    using Kind = sim::SensorLine::What;
+    const Kind kind = sensor_.type == "stretch"      ? Kind::stretch
+                      : sensor_.type == "resistance" ? Kind::resistance
+                                                     : Kind::attenuation;
+    return sim::SensorLine{kind,
+                           {body(), sensor_.points.points, sensor_.samples},
+                           sensor_.gauge_factor,
+                           sensor_.resistance,
+                           sensor_.loss_per_length,
+                           sensor_.loss_per_turn};
+  }
+
+  What curvature() const {
+    return sim::SensorCurvature{body(), sensor_.points.points, sensor_.places, sensor_.gauge,
+                                sensor_.about};
+  }
+
+  What capacitance() const {
+    sim::SensorCapacitance capacitance;
+    capacitance.relative_permittivity = sensor_.permittivity;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const BuiltBody on = body_of_(sensor_.electrode_bodies[k]);
+      capacitance.electrodes[k] = {on.number, faces_of(sensor_.electrodes[k], on.model->mesh())};
+    }
+    return capacitance;
+  }
+
+  What contact() const {
+    sim::SensorContact touch{sensor_.contact, -1, {}, {}};
+    if (sensor_.type == "touch") touch.threshold = sensor_.threshold;
+    if (!sensor_.region) return touch;
+    const std::string name = sensor_.patch_body.empty() ? first_body() : sensor_.patch_body;
+    touch.body = body_of_(name).number;
+    touch.patch = nodes(name);
+    return touch;
+  }
+
+  std::string first_body() const {
+    const auto found =
+        std::ranges::find(scene_.contacts, sensor_.contact, &ContactDescription::name);
+    if (found != scene_.contacts.end() && !found->body.empty()) return found->body;
+    throw Error(ErrorKind::missing_key, sensor_.region->place, "the patch names no body",
+                "add body: followed by the body that has the patch");
+  }
+
+  const SceneDescription& scene_;
+  const SensorDescription& sensor_;
+  const BodyOf& body_of_;
+};
+
+}  // namespace
+
+void add_sensor(sim::ModelBuilder& builder, const SceneDescription& scene,
+                const SensorDescription& sensor, const BodyOf& body_of) {
+  sim::SensorSettings settings;
+  settings.name = sensor.name;
+  settings.place = sensor.place;
+  settings.rate_place = sensor.rate_place;
+  settings.kind = sensor.type;
+  settings.outside = sensor.outside;
+  settings.channel = sensor.channel;
+  settings.record = sensor.record;
+  settings.what = Measured(scene, sensor, body_of).what();
+  builder.add_sensor(settings);
+}
+
+}  // namespace sinew::scene

@@ -1,0 +1,414 @@
+// The tables of sensors: what each measures, and the channel that all have.
+#include "sinew/scene/grammar_forms.hpp"
+
+namespace sinew::scene::forms {
+
+namespace {
+
+// What a sensor says, for the keys of its channel.
+struct Said {
+  Measure measure;
+  const char* error;    // a likely noise
+  const char* quantum;  // a likely step
+  const char* range;
+};
+
+std::vector<Key> transport_keys() {
+  return {{.name = "rate",
+           .forms = {quantity(frequency(), positive())},
+           .example = "100 Hz",
+           .description = "Samples per second, every k-th time step. Without: one every step."},
+          {.name = "delay",
+           .forms = {quantity(time(), non_negative())},
+           .example = "20 ms",
+           .default_text = "0 s",
+           .description = "From taking a sample to its delivery, at the first step after it."},
+          {.name = "dropout",
+           .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
+           .example = "1 %",
+           .default_text = "0",
+           .description = "Probability that a sample is lost; the one before then stays."},
+          {.name = "timeout",
+           .forms = {quantity(time(), positive())},
+           .example = "100 ms",
+           .description = "Age from which a sample is no longer valid. Without: none."},
+          {.name = "seed",
+           .forms = {integer(0, 2'000'000'000)},
+           .example = "1",
+           .default_text = "0",
+           .description = "Of its random numbers, which depend on its name, too."}};
+}
+
+std::vector<Key> file_keys(const Measure& measure) {
+  std::vector<Key> keys = {
+      {.name = "file",
+       .forms = {file()},
+       .example = "measured.csv",
+       .description =
+           "A CSV of a real sensor's samples, which replace the simulated ones: times in "
+           "s in the first column, then values; or with headings, as in sensors.csv. "
+           "`delay` is added to the times; `noise` then tells how exact it is."},
+      {.name = "columns",
+       .forms = {list({text()})},
+       .example = "[marker_x, marker_y, marker_z]",
+       .description = "Headings of the columns with its values. Without: those that sensors.csv "
+                      "has, or else all behind the time.",
+       .only_with = "file"},
+      {.name = "missing",
+       .forms = {choice({{"error", "Cells that are empty or nan, and gaps in time, are errors."},
+                         {"lost", "They are lost samples."}})},
+       .example = "lost",
+       .default_text = "error",
+       .description = "What samples that are missing from the file mean. With `rate`, times more "
+                      "than one and a half periods apart are a gap.",
+       .only_with = "file"}};
+  if (*measure.unit != '\0') {
+    keys.push_back({.name = "unit",
+                    .forms = {unit(measure)},
+                    .example = measure.unit,
+                    .description = "Unit of the file's values. Without: that of the headings, SI "
+                                   "where they have none.",
+                    .only_with = "file"});
+  }
+  return keys;
+}
+
+std::vector<Key> error_keys(const Said& said) {
+  const std::string zero = std::string("0 ") + said.measure.unit;
+  return {{.name = "noise",
+           .forms = {quantity(said.measure, non_negative())},
+           .example = said.error,
+           .default_text = zero,
+           .description = "Standard deviation of white noise, of each number of each sample."},
+          {.name = "bias",
+           .forms = {quantity(said.measure)},
+           .example = said.error,
+           .default_text = zero,
+           .description = "Constant error."},
+          {.name = "drift",
+           .forms = {quantity(said.measure, non_negative())},
+           .example = said.error,
+           .default_text = zero,
+           .description = "Random walk: its standard deviation after 1 s, which grows with the "
+                          "square root of time."},
+          {.name = "quantum",
+           .forms = {quantity(said.measure, positive())},
+           .example = said.quantum,
+           .description = "Step to which values are rounded. Without: none."},
+          {.name = "range",
+           .forms = {vector(said.measure, 2)},
+           .example = said.range,
+           .description = "Least and greatest value; it saturates there. Without: none."}};
+}
+
+void append(std::vector<Key>& keys, std::vector<Key> more) {
+  for (Key& key : more) keys.push_back(std::move(key));
+}
+
+std::shared_ptr<const KeyTable> sensor_table(const char* type, const char* description,
+                                             std::vector<Key> own, const Said& said) {
+  KeyTable sensor{.name = std::string("sensor: type ") + type,
+                  .description = description,
+                  .keys = std::move(own)};
+  append(sensor.keys, error_keys(said));
+  append(sensor.keys, transport_keys());
+  append(sensor.keys, file_keys(said.measure));
+  return make_table(std::move(sensor));
+}
+
+Said position() { return {length(), "0.1 mm", "0.01 mm", "-0.5 0.5 m"}; }
+
+std::shared_ptr<const KeyTable> marker_table() {
+  std::vector<Key> keys = {body_key(),
+                           {.name = "point",
+                            .forms = {vector(length())},
+                            .example = "0 0 195 mm",
+                            .description = "A point, in the mesh at rest."},
+                           {.name = "points",
+                            .forms = {table(point_file_table()), list({vector(length())})},
+                            .example = "[10 0 195 mm, -10 0 195 mm]",
+                            .description = "The mean of several points."},
+                           {.name = "set",
+                            .forms = {text()},
+                            .example = "tip",
+                            .description = "The mean of the nodes of a named set of the mesh."},
+                           outside_key()};
+  KeyTable marker =
+      *sensor_table("marker",
+                    "Where a point is, (3,) m: a marker that cameras follow. Exactly one of point, "
+                    "points and set.",
+                    std::move(keys), position());
+  marker.alternatives = {{{"point", "points", "set"}, true}};
+  return make_table(std::move(marker));
+}
+
+std::vector<Key> frame_keys() {
+  return {body_key(),
+          {.name = "at",
+           .forms = {list({vector(length())}, 3, 3), vector(length())},
+           .example = "[0 0 190 mm, 10 0 190 mm, 0 10 190 mm]",
+           .description = "Three points that turn it, or one point in a section of an arm or in a "
+                          "rigid body, in the mesh at rest.",
+           .required = true},
+          outside_key()};
+}
+
+std::vector<Key> actuator_keys(const char* example) {
+  return {{.name = "actuator",
+           .forms = {reference("actuators")},
+           .example = example,
+           .description = "The actuator that it is on.",
+           .required = true}};
+}
+
+std::vector<Key> line_keys(bool sampled) {
+  std::vector<Key> keys = {
+      body_key(),
+      {.name = "line",
+       .forms = {table(point_file_table()), list({vector(length())}, 2)},
+       .example = "[0 0 0 mm, 0 0 195 mm]",
+       .description = "The corners of the line along which it lies, in the mesh at rest.",
+       .required = true},
+      outside_key()};
+  if (!sampled) return keys;
+  keys.push_back({.name = "samples",
+                  .forms = {integer(2, 10000)},
+                  .example = "21",
+                  .default_text = "21",
+                  .description = "Number of points along the line, evenly spaced at rest; the "
+                                 "corners are always included."});
+  return keys;
+}
+
+Key number_key(const char* name, const Measure& measure, const char* example,
+               const char* description) {
+  return {.name = name,
+          .forms = {quantity(measure, positive())},
+          .example = example,
+          .description = description,
+          .required = true};
+}
+
+std::shared_ptr<const KeyTable> resistance_table() {
+  std::vector<Key> keys = line_keys(true);
+  keys.push_back(number_key("resistance", resistance(), "1 kOhm", "Resistance at rest R_0."));
+  keys.push_back(number_key("gauge_factor", plain_number(), "2", "Gauge factor G."));
+  return sensor_table("resistance",
+                      "A resistive strain gauge along a line: R_0 (1 + G (L/L_0 - 1)), Ohm.",
+                      std::move(keys), {resistance(), "1 Ohm", "0.1 Ohm", "0 2 kOhm"});
+}
+
+std::shared_ptr<const KeyTable> curvature_table() {
+  std::vector<Key> keys = line_keys(false);
+  keys.push_back({.name = "places",
+                  .forms = {list({quantity(length(), non_negative())})},
+                  .example = "[50 mm, 100 mm, 150 mm]",
+                  .description = "Lengths along the line at rest at which it is measured.",
+                  .required = true});
+  keys.push_back({.name = "gauge",
+                  .forms = {quantity(length(), positive())},
+                  .example = "20 mm",
+                  .description = "Length over which each is measured; more than an element of the "
+                                 "mesh. Without: a tenth of the line."});
+  keys.push_back({.name = "about",
+                  .forms = axis_forms(),
+                  .example = "y",
+                  .description = "An axis: the curvature about it, positive by the right-hand rule "
+                                 "along the line. Without: its magnitude."});
+  return sensor_table("curvature",
+                      "Curvature at places along a line, (places,) 1/m: gratings in an optical "
+                      "fibre. Of the circle through the ends and the middle of each length.",
+                      std::move(keys), {curvature(), "0.1 1/m", "0.01 1/m", "-100 100 1/m"});
+}
+
+std::shared_ptr<const KeyTable> attenuation_table() {
+  std::vector<Key> keys = line_keys(true);
+  const auto loss = [](const char* name, const Measure& measure, const char* example,
+                       const char* description) {
+    return Key{.name = name,
+               .forms = {quantity(measure, non_negative())},
+               .example = example,
+               .default_text = "0",
+               .description = description};
+  };
+  keys.push_back(loss("loss_per_length", curvature(), "20 dB/m", "a."));
+  keys.push_back(loss("loss_per_turn", plain_number(), "1.5 dB", "b, in dB/rad."));
+  return sensor_table("attenuation",
+                      "What light loses in a waveguide along a line, dB: a L + b times the angle "
+                      "by which it turns, whatever its direction (the integral of the curvature's "
+                      "magnitude).",
+                      std::move(keys), {plain_number(), "0.01 dB", "0.01 dB", "0 40 dB"});
+}
+
+std::shared_ptr<const KeyTable> electrode_table() {
+  KeyTable electrode{
+      .name = "electrode",
+      .description = "Faces of a body's surface: exactly one of patch, box, sphere, plane and set.",
+      .keys = {*surface_table()->find("patch")},
+      .alternatives = {{{"patch", "box", "sphere", "plane", "set"}, true}}};
+  append(electrode.keys, region_keys("Faces with all their nodes"));
+  Key body = body_key();
+  body.required = false;
+  body.description = "The body that has the faces. Without: the sensor's.";
+  electrode.keys.push_back(std::move(body));
+  return make_table(std::move(electrode));
+}
+
+std::shared_ptr<const KeyTable> capacitance_table() {
+  return sensor_table(
+      "capacitance",
+      "Two electrodes that follow the body, F: permittivity times area over distance, face by "
+      "face, as for parallel plates without fringes.",
+      {body_key(),
+       {.name = "electrodes",
+        .forms = {list({table(electrode_table())}, 2, 2)},
+        .example = "[{set: bottom}, {set: top}]",
+        .description = "Both.",
+        .required = true},
+       {.name = "permittivity",
+        .forms = {quantity(plain_number(), {.min = 1.0})},
+        .example = "2.8",
+        .default_text = "1",
+        .description = "Relative permittivity of what lies between them."}},
+      {capacitance(), "0.01 pF", "0.001 pF", "0 100 pF"});
+}
+
+std::vector<Key> contact_keys() {
+  std::vector<Key> patch = region_keys("Nodes");
+  Key body = body_key();
+  body.required = false;
+  body.description = "The body that has the patch. Without: the first of the contact.";
+  patch.push_back(std::move(body));
+  return {{.name = "contact",
+           .forms = {reference("contacts")},
+           .example = "floor",
+           .description = "The contact that it feels.",
+           .required = true},
+          {.name = "patch",
+           .forms = {table(make_table(
+               {.name = "patch of a contact",
+                .description = "Nodes of the mesh at rest: exactly one of box, sphere, plane and "
+                               "set. Points count whose nearest node of the surface is among them.",
+                .keys = std::move(patch),
+                .alternatives = {{{"box", "sphere", "plane", "set"}, true}}}))},
+           .example = "{set: pad}",
+           .description = "Where it feels. Without: everywhere."}};
+}
+
+std::shared_ptr<const KeyTable> touch_table() {
+  KeyTable touch{.name = "sensor: type touch",
+                 .description = "Whether something touches, 1 or 0: a switch.",
+                 .keys = contact_keys()};
+  touch.keys.push_back({.name = "threshold",
+                        .forms = {quantity(force(), non_negative())},
+                        .example = "0.1 N",
+                        .default_text = "0 N",
+                        .description = "Normal force above which it is on."});
+  append(touch.keys, transport_keys());
+  append(touch.keys, file_keys(plain_number()));
+  return make_table(std::move(touch));
+}
+
+std::shared_ptr<const KeyTable> current_table() {
+  std::vector<Key> keys = actuator_keys("drive");
+  keys.push_back({.name = "torque_constant",
+                  .forms = {quantity(torque_constant(), positive())},
+                  .example = "0.05 N m/A",
+                  .description = "Torque over current, of a motor or of one that winds a cable."});
+  keys.push_back({.name = "force_constant",
+                  .forms = {quantity(force_constant(), positive())},
+                  .example = "10 N/A",
+                  .description = "Force over current, of a linear motor."});
+  keys.push_back({.name = "radius",
+                  .forms = {quantity(length(), positive())},
+                  .example = "8 mm",
+                  .description = "Of the drum that winds a cable; of cables alone."});
+  KeyTable current_sensor = *sensor_table(
+      "motor-current",
+      "Current of a motor, A: its torque, tension times the drum's radius, or force over its "
+      "constant.",
+      std::move(keys), {current(), "10 mA", "1 mA", "-5 5 A"});
+  current_sensor.alternatives = {{{"torque_constant", "force_constant"}, true}};
+  return make_table(std::move(current_sensor));
+}
+
+}  // namespace
+
+Form sensor_form() {
+  const Said stress_said{stress(), "100 Pa", "10 Pa", "0 100 kPa"};
+  const Said volume_said{volume(), "0.1 ml", "0.01 ml", "0 50 ml"};
+  return variants(
+      "type",
+      {{.word = "marker", .description = "Position of a point.", .table = marker_table()},
+       {.word = "orientation",
+        .description = "Rotation since rest.",
+        .table = sensor_table("orientation",
+                              "How something has turned since rest, (3,) rad: a rotation vector "
+                              "about the world's axes. Errors are added to its components.",
+                              frame_keys(), {angle(), "0.5 deg", "0.01 deg", "-180 180 deg"})},
+       {.word = "gyroscope",
+        .description = "Angular velocity.",
+        .table = sensor_table("gyroscope",
+                              "Angular velocity in its own axes, (3,) rad/s: those of the world at "
+                              "rest, turned with it. The mean over a time step.",
+                              frame_keys(),
+                              {angular_speed(), "0.01 rad/s", "1e-3 rad/s", "-35 35 rad/s"})},
+       {.word = "accelerometer",
+        .description = "Specific force.",
+        .table = sensor_table("accelerometer",
+                              "Acceleration less gravity in its own axes, (3,) m/s^2; at rest it "
+                              "points upwards. The mean over a time step; quasi-static robots do "
+                              "not accelerate.",
+                              frame_keys(),
+                              {acceleration(), "0.05 m/s^2", "0.01 m/s^2", "-80 80 m/s^2"})},
+       {.word = "cable-length",
+        .description = "Length of cable pulled out.",
+        .table = sensor_table("cable-length",
+                              "Length of a cable or spring pulled out since rest, m: an encoder.",
+                              actuator_keys("long_0"), position())},
+       {.word = "cable-tension",
+        .description = "Tension of a cable.",
+        .table = sensor_table("cable-tension",
+                              "Tension of a cable or spring at its pull point, N: a load cell.",
+                              actuator_keys("long_0"), {force(), "0.05 N", "0.01 N", "0 50 N"})},
+       {.word = "pressure",
+        .description = "Pressure of a chamber.",
+        .table = sensor_table("pressure", "Pressure of a chamber above ambient, Pa.",
+                              actuator_keys("air"), stress_said)},
+       {.word = "volume",
+        .description = "Volume gained by a chamber.",
+        .table = sensor_table("volume", "Volume that a chamber has gained since rest, m^3.",
+                              actuator_keys("air"), volume_said)},
+       {.word = "flow",
+        .description = "Flow into a chamber.",
+        .table = sensor_table("flow",
+                              "Flow into a chamber, m^3/s, the mean over a time step: of its gas, "
+                              "as volume at ambient pressure, or its liquid; without either the "
+                              "growth of its volume.",
+                              actuator_keys("air"),
+                              {volume_rate(), "0.1 ml/s", "0.01 ml/s", "-100 100 ml/s"})},
+       {.word = "motor-current", .description = "Current of a motor.", .table = current_table()},
+       {.word = "stretch",
+        .description = "Strain along a line.",
+        .table = sensor_table("stretch", "Strain of a line: L/L_0 - 1.", line_keys(true),
+                              {plain_number(), "0.001", "1e-4", "-0.5 1"})},
+       {.word = "resistance",
+        .description = "Resistive strain gauge along a line.",
+        .table = resistance_table()},
+       {.word = "curvature",
+        .description = "Curvature at places along a line.",
+        .table = curvature_table()},
+       {.word = "attenuation",
+        .description = "Loss of light along a line.",
+        .table = attenuation_table()},
+       {.word = "capacitance",
+        .description = "Two electrodes on a body.",
+        .table = capacitance_table()},
+       {.word = "contact-force",
+        .description = "Normal force of a contact.",
+        .table = sensor_table("contact-force", "Sum of the normal forces of a contact, N.",
+                              contact_keys(), {force(), "0.05 N", "0.01 N", "0 10 N"})},
+       {.word = "touch", .description = "Whether a contact is loaded.", .table = touch_table()}});
+}
+
+}  // namespace sinew::scene::forms

@@ -1,0 +1,90 @@
+/// @file
+/// What ModelBuilder::add_sensor() is told.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "sinew/core/error.hpp"
+#include "sinew/mesh/embedding.hpp"
+#include "sinew/mesh/topology.hpp"
+#include "sinew/sim/channel.hpp"
+#include "sinew/sim/probe_settings.hpp"
+#include "sinew/sim/sensor_model.hpp"
+
+namespace sinew::sim {
+
+/// Rotation since rest, its rate, or specific force: of the frame through three points, or of the
+/// rigid section that one point lies in.
+struct SensorMotion {
+  enum class What { orientation, gyroscope, accelerometer };
+  What what = What::orientation;
+  int body = 0;
+  Points points = Points(0, 3);       ///< (3, 3) or (1, 3) m
+  Vector3 gravity = Vector3::Zero();  ///< m/s^2
+};
+
+/// Of an actuator.
+struct SensorDrive {
+  enum class What { cable_length, cable_tension, pressure, volume, flow, motor_current };
+  What what = What::cable_length;
+  std::string actuator;
+  double motor_constant = 0.0;  ///< motor_current: N m/A, or N/A
+  bool turns = true;            ///< motor_current: the constant is of a torque
+  double radius = 0.0;          ///< motor_current, of a cable: m, of its drum; 0: none
+};
+
+/// Along a polyline of a body at rest.
+struct SensorLine {
+  enum class What { stretch, resistance, attenuation };
+  What what = What::stretch;
+  ProbeLine line;
+  double gauge_factor = 0.0;                          ///< resistance
+  double resistance = 0.0;                            ///< resistance: ohm, at rest
+  double loss_per_length = 0.0, loss_per_turn = 0.0;  ///< attenuation: dB/m, dB/rad
+};
+
+/// Curvature at places along such a line.
+struct SensorCurvature {
+  int body = 0;
+  Points corners;              ///< (n, 3) m, n >= 2
+  std::vector<double> places;  ///< m along the line at rest
+  double gauge = 0.0;          ///< m: over which length; 0: a tenth of the line
+  std::optional<Vector3> about;
+};
+
+/// Of two electrodes.
+struct SensorCapacitance {
+  struct Electrode {
+    int body = 0;
+    std::vector<mesh::Face> faces;
+  };
+  std::array<Electrode, 2> electrodes;
+  double relative_permittivity = 1.0;
+};
+
+/// Normal force of a contact.
+struct SensorContact {
+  std::string contact;
+  int body = -1;                    ///< of the patch; -1: the first of the contact
+  std::vector<NodeId> patch;        ///< of its mesh; empty: all
+  std::optional<double> threshold;  ///< N, of a switch
+};
+
+struct SensorSettings {
+  std::string name;
+  Location place, rate_place;
+  std::string kind;  ///< its type, for users
+  mesh::Outside outside = mesh::Outside::error;
+  ChannelSettings channel;  ///< its stream is the sensor's own: a hash of the name
+  std::shared_ptr<const SensorRecord> record;
+  std::variant<ProbeSpot, SensorMotion, SensorDrive, SensorLine, SensorCurvature, SensorCapacitance,
+               SensorContact>
+      what;
+};
+
+}  // namespace sinew::sim
