@@ -14,6 +14,7 @@ import importlib as _importlib
 from . import collision, errors, fields, mesh, pcc, qp, sensors
 from ._core import (
     Actuator,
+    Batch,
     Body,
     Circle,
     Contact,
@@ -51,6 +52,7 @@ from .scene import load, loads
 
 __all__ = [
     "Actuator",
+    "Batch",
     "Body",
     "Circle",
     "Contact",

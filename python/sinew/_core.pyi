@@ -8,7 +8,7 @@ from typing import Any, Literal, Optional, Sequence, Type, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import Notice
+from .errors import Notice, RunError
 
 __version__: str
 compiler: str
@@ -614,6 +614,16 @@ class Simulation:
     def controller(self) -> Optional[InverseController]: ...
     def detach(self) -> None: ...
 
+class Batch:
+    def __init__(self, simulations: Sequence[Simulation], *, threads: int = 1) -> None: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: int) -> Simulation: ...
+    @property
+    def threads(self) -> int: ...
+    def command(self, quantity: str, values: ArrayLike, which: Optional[ArrayLike] = None) -> None: ...
+    def step(self, n: int = 1, which: Optional[ArrayLike] = None) -> list[Optional[RunError]]: ...
+    def read(self, names: Sequence[str]) -> _Floats: ...
+
 class Arm:
     def __init__(
         self,
@@ -685,6 +695,7 @@ class Arm:
         time_step: float = 0.001,
         integrator: str = "generalized-alpha",
         spectral_radius: float = 0.8,
+        threads: int = 1,
     ) -> tuple[_Floats, _Floats]: ...
 
 def published_arm(

@@ -40,6 +40,7 @@ void bind_joint(py::module_& module);
 void bind_body(py::module_& module);
 void bind_state(py::module_& module);
 void bind_simulation(py::module_& module);
+void bind_batch(py::module_& module);
 void bind_controller(py::module_& module);
 void bind_mesh(py::module_& module);
 void bind_view(py::module_& module);

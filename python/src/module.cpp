@@ -34,6 +34,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_body(module);
   python::bind_response(module);
   python::bind_simulation(module);
+  python::bind_batch(module);
   python::bind_controller(module);
   python::bind_view(module);
   python::bind_material(module);

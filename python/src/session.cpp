@@ -102,6 +102,17 @@ void Session::advance(std::int64_t count) {
   warn();
 }
 
+void Session::advance_unlocked(std::int64_t count, const std::function<bool()>& ended) {
+  const Use use(*this);
+  check_loads();
+  for (std::int64_t done = 0; done < count; ++done) {
+    simulation_.step();
+    note_status();
+    steps_.store(simulation_.steps(), std::memory_order_relaxed);
+    if (ended()) return;
+  }
+}
+
 void Session::note_status() {
   const sim::StepStatus status = simulation_.report().status;
   if (!sim::is_flagged(status)) return;

@@ -92,6 +92,11 @@ class Session {
   /// (sinew.SinewWarning) of flagged steps, of each status once until the next reset. Throws
   /// what sim::Simulation::step() does, and Error(not-finite) for external forces that are not.
   void advance(std::int64_t count);
+  /// The same by any thread that does not hold the interpreter's lock, without looking for Ctrl-C
+  /// or warning. @param ended asked after each step; true: it is the last one.
+  void advance_unlocked(std::int64_t count, const std::function<bool()>& ended);
+  /// Of flagged steps; see advance().
+  void warn();
   sim::StaticReport solve_static(const sim::StaticSettings& settings);
   /// @param visit is called without the interpreter's lock.
   std::vector<sim::PathPoint> follow_path(const sim::PathSettings& settings,
@@ -128,7 +133,6 @@ class Session {
  private:
   void check_loads() const;
   void note_status();
-  void warn();
 
   std::shared_ptr<const LoadedRobot> robot_;
   sim::Simulation simulation_;

@@ -277,6 +277,45 @@ def test_a_run_that_cannot_go_on_terminates(monkeypatch):
     assert same(observations[1], before[1])
 
 
+# Simulations that are stepped with one call
+
+
+@pytest.mark.parametrize("mode", ["NEXT_STEP", "SAME_STEP", "DISABLED"])
+def test_one_call_for_all_is_one_call_each(mode):
+    options = dict(time_limit=0.06, autoreset_mode=mode, material_scale=(0.8, 1.25), payload=(0.0, 0.01), models=2, action_delay=(0, 2))
+    together, each = (sinew.gym.make_vec("arm-swing-up", 4, threads=2, **options) for _ in range(2))
+    assert together._together is not None
+    each._together = None
+    assert same(together.reset(seed=3), each.reset(seed=3))
+    for k, a in enumerate(actions_of(together, 9)):
+        if mode == "DISABLED" and k == 2:  # the others go on
+            mask = {"reset_mask": np.array([False, True, False, True])}
+            assert same(together.reset(options=mask), each.reset(options=mask))
+        if mode == "DISABLED" and each._ended.any():
+            mask = {"reset_mask": each._ended.copy()}
+            assert same(together.reset(options=mask), each.reset(options=mask))
+        assert same(together.step(a), each.step(a))
+        for one, other in zip(together.episodes, each.episodes):
+            assert one.steps == other.steps and same(one.commands, other.commands) and same(one.action, other.action)
+            assert one.memory == other.memory and one.robot.sim.state_hash == other.robot.sim.state_hash
+
+
+@pytest.mark.parametrize("mode", ["NEXT_STEP", "SAME_STEP"])
+def test_one_call_for_all_tells_which_failed(mode):
+    huge = {"actuators.fourth.limits.torque": {"min": -1e7, "max": 0.18}}
+    together, each = (sinew.gym.make_vec("arm-swing-up", 3, autoreset_mode=mode, set=huge) for _ in range(2))
+    each._together = None
+    assert same(together.reset(seed=0), each.reset(seed=0))
+    a = np.ones((3, 3))
+    a[1] = -1.0
+    for step in range(3):
+        one, other = together.step(a), each.step(a)
+        assert same(one, other)
+        if step == 0:
+            infos = one[4] if mode == "NEXT_STEP" else one[4]["final_info"]
+            assert one[2].tolist() == [False, True, False] and one[1][1] == -100.0 and "Newton" in infos["failure"][1]
+
+
 # Tasks
 
 

@@ -23,6 +23,7 @@ namespace {
 using testing::fluidic;
 using testing::make;
 using testing::mixed;
+using testing::planar;
 using testing::random_vector;
 using Complex = std::complex<double>;
 
@@ -216,6 +217,8 @@ TEST_P(ArmKinds, DerivativesAgreeWithComplexStep) {
   const VectorX acceleration = random_vector(random, n, 5.0);
   const auto linear = equations.linearise(q, rate, acceleration);
   EXPECT_LT((linear.by_acceleration - equations.mass_matrix(q)).norm(), 1e-14);
+  const VectorX residual = equations.residual(q, rate, acceleration);
+  EXPECT_LT((linear.residual - residual).norm(), 1e-14 * (1.0 + residual.norm()));
   ArmDynamics<Complex> complex(arm);
   const double tiny = 1e-30;
   const auto size = static_cast<std::size_t>(n);
@@ -321,13 +324,13 @@ TEST_P(ArmKinds, SectionsTurnByTheirAngularJacobian) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, ArmKinds,
-                         ::testing::Values(std::pair("arc", fluidic(MassCentre::arc)),
-                                           std::pair("chord", fluidic(MassCentre::chord)),
-                                           std::pair("distributed",
-                                                     fluidic(MassCentre::distributed)),
-                                           std::pair("mixed", mixed())),
-                         [](const auto& kind) { return std::string(kind.param.first); });
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, ArmKinds,
+    ::testing::Values(std::pair("arc", fluidic(MassCentre::arc)),
+                      std::pair("chord", fluidic(MassCentre::chord)),
+                      std::pair("distributed", fluidic(MassCentre::distributed)),
+                      std::pair("planar", planar()), std::pair("mixed", mixed())),
+    [](const auto& kind) { return std::string(kind.param.first); });
 
 TEST(Arm, BadNumbersAreErrors) {
   const auto refused = [](auto change) {

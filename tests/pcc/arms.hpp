@@ -4,6 +4,8 @@
 #include <memory>
 #include <random>
 
+#include <Eigen/Geometry>
+
 #include "sinew/pcc/published.hpp"
 
 namespace sinew::pcc::testing {
@@ -26,6 +28,19 @@ inline ArmSettings mixed(MassCentre centre = MassCentre::distributed) {
   settings.gravity = {1.0, -2.0, -9.0};
   settings.base = {0.1, 0.2, 0.3};
   settings.loads.push_back({1, 0.7, {0.1, -0.2, 0.05}});
+  return settings;
+}
+
+/// In one plane, with dead lengths, a base and a gravity that are skew to it, and loads.
+inline ArmSettings planar(MassCentre centre = MassCentre::distributed) {
+  ArmSettings settings = fluidic(centre);
+  settings.segments[0].dead_length = 0.02;
+  settings.segments[2].dead_length = 0.01;
+  settings.frame = Eigen::AngleAxisd(0.7, Vector3(1.0, 2.0, -0.5).normalized()).matrix();
+  settings.gravity = {1.0, -2.0, -9.0};
+  settings.base = {0.1, 0.2, 0.3};
+  settings.loads.push_back({1, 0.7, {0.1, -0.2, 0.05}});
+  settings.loads.push_back({3, 1.0, {-0.1, 0.3, 0.2}});
   return settings;
 }
 

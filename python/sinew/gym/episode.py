@@ -82,8 +82,7 @@ class Episode:
     def step(self, action: np.ndarray) -> tuple[float, bool, bool, dict[str, Any]]:
         """Takes an action: reward, terminated, truncated, info."""
         task, robot = self.task, self.robot
-        self._late.append(action)
-        acting = self._late.popleft()
+        acting = self.late(action)
         if acting is not None:
             self.action = acting
             self.commands = task.commands(self, acting)
@@ -99,6 +98,11 @@ class Episode:
         if report.flagged:
             info["flagged"] = report.status
         return reward, over, self.steps >= task.episode_steps, info
+
+    def late(self, action: np.ndarray) -> Optional[np.ndarray]:
+        """Takes an action: the one that acts now; None before the first one has arrived."""
+        self._late.append(action)
+        return self._late.popleft()
 
     def release(self) -> None:
         """Hands the robot back."""

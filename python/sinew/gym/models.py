@@ -11,9 +11,11 @@ from __future__ import annotations
 import tempfile
 import threading
 from pathlib import Path
-from typing import Any, Mapping
+from typing import Any, Mapping, Optional, Sequence
 
-from .._core import Simulation, State
+import numpy as np
+
+from .._core import Batch, Simulation, State
 from ..scene import load
 
 __all__ = ["Model", "Models", "Robot"]
@@ -38,6 +40,13 @@ class Robot:
         self.actuators = list(sim.actuators.values())
         self.tip: Any = next(iter(sim.effectors.values()), None)
         self.body = next(iter(sim.bodies.values()))
+        self._alone: Optional[Batch] = None
+
+    def read(self, names: Sequence[str]) -> np.ndarray:
+        """Observables now, (1, numbers), as sinew.Batch reads them."""
+        if self._alone is None:
+            self._alone = Batch([self.sim])
+        return self._alone.read(names)
 
 
 class Model:

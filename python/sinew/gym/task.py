@@ -44,7 +44,9 @@ class Task:
     """A robot, what it may do, what it senses and what it is rewarded for.
 
     A task never changes while environments use it; what belongs to one environment is in its Episode. A subclass sets the
-    class attributes and defines `sense`, `reward`, and what else it needs of the methods below.
+    class attributes and defines `sense`, `reward`, and what else it needs of the methods below. A task whose steps take
+    microseconds names `observables` and defines `sense_rows` and `reward_rows` in their place: VectorEnv then takes all
+    environments at once.
 
     Parameters
     ----------
@@ -79,6 +81,7 @@ class Task:
     substeps = 1  # simulated steps to an action
     default_time_limit = 1.0
     camera = "corner"  # of pictures
+    observables: tuple[str, ...] = ()  # that sense_rows and reward_rows look at, as sinew.Batch reads them
     failure_reward = -100.0  # of a step that the simulation cannot take; the episode then ends
 
     def __init__(
@@ -195,10 +198,37 @@ class Task:
 
     def sense(self, episode: Any, out: np.ndarray) -> None:
         """Writes an observation into out, (observation size,)."""
-        raise NotImplementedError
+        self.sense_rows([episode], episode.robot.read(self.observables), out[None])
 
     def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
         """Reward of the step just taken, whether the task is over, and info."""
+        rewards, over, infos = self.reward_rows([episode], episode.robot.read(self.observables), episode.action[None])
+        return rewards.item(), bool(over[0]), {key: values[0].item() for key, values in infos.items()}
+
+    def sense_rows(self, episodes: Sequence[Any], read: np.ndarray, out: np.ndarray) -> None:
+        """The same as `sense` for many episodes, of tasks with `observables`; it may call no method of the robots.
+
+        Parameters
+        ----------
+        episodes : list of n Episode
+        read : (n, numbers)
+            The `observables` of their robots, side by side.
+        out : (n, observation size)
+        """
+        raise NotImplementedError
+
+    def reward_rows(
+        self, episodes: Sequence[Any], read: np.ndarray, actions: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
+        """The same as `reward`: rewards, whether the task is over, and infos, arrays (n,).
+
+        Parameters
+        ----------
+        episodes, read
+            As of `sense_rows`.
+        actions : (n, actions)
+            Those that acted.
+        """
         raise NotImplementedError
 
     #: Names that reset(options=...) takes for an environment, and how many axes a value has.
@@ -214,8 +244,12 @@ class Task:
 
     def commands(self, episode: Any, action: np.ndarray) -> np.ndarray:
         """Commands of the actuators (N, m or N m) for an action in [-1, 1], (actuators,) each."""
+        return self.next_commands(episode.commands, action)
+
+    def next_commands(self, commands: np.ndarray, action: np.ndarray) -> np.ndarray:
+        """The same from the last commands, (..., actuators) each."""
         if self.is_increment:  # np.clip takes four times as long
-            return np.minimum(np.maximum(episode.commands + action * self.increment, self.low), self.high)
+            return np.minimum(np.maximum(commands + action * self.increment, self.low), self.high)
         return self.low + 0.5 * (action + 1.0) * (self.high - self.low)
 
     @classmethod

@@ -9,6 +9,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/linalg/dense_factor.hpp"
+#include "sinew/pcc/planar_equations.hpp"
 
 namespace sinew::pcc {
 
@@ -49,6 +50,7 @@ struct ArmEquations::Work {
     columns.resize(n);
     linear.residual = VectorX::Zero(size);
     linear.by_position = linear.by_rate = linear.by_acceleration = MatrixX::Zero(size, size);
+    if (PlanarEquations::apply_to(*arm)) planar = std::make_unique<PlanarEquations>(arm);
   }
 
   std::shared_ptr<const Arm> arm;
@@ -60,6 +62,7 @@ struct ArmEquations::Work {
   linalg::CholeskyFactor decomposed;
   Linearisation linear;
   ForwardDerivatives forward;
+  std::unique_ptr<PlanarEquations> planar;  // null: the arm leaves the plane
   // Those with derivatives are made when first asked for.
   std::unique_ptr<ArmDynamics<Timed>> timed;
   std::unique_ptr<ArmDynamics<First>> first;
@@ -173,6 +176,10 @@ const MatrixX& ArmEquations::coriolis_matrix(const VectorX& q, const VectorX& ra
 const ArmEquations::Linearisation& ArmEquations::linearise(const VectorX& q, const VectorX& rate,
                                                            const VectorX& acceleration) {
   Work& w = *work_;
+  if (w.planar) {
+    w.planar->linearise(q, rate, acceleration, w.linear);
+    return w.linear;
+  }
   const std::size_t n = w.n;
   if (!w.first) w.first = std::make_unique<ArmDynamics<First>>(w.arm);
   if (w.first_q.empty()) {

@@ -1,6 +1,14 @@
 #include "sinew/pcc/row_stiffness.hpp"
 
+#include <algorithm>
+
 namespace sinew::pcc {
+
+namespace {
+
+using Kind = ArmBodyModel::Attachment::Kind;
+
+}  // namespace
 
 RowStiffness::RowStiffness(const ArmBodyModel& model)
     : model_(model),
@@ -8,20 +16,25 @@ RowStiffness::RowStiffness(const ArmBodyModel& model)
       columns_(static_cast<std::size_t>(model.arm().coordinates())),
       q_(columns_.size()) {}
 
+// A row on a coordinate pulls by the same share wherever the arm is.
+bool RowStiffness::pulls(const mechanics::OwnRows::Entry& entry, const ArmState& state) const {
+  return state.memory.effort[entry.row] != 0.0 &&
+         model_.attachment(entry.site).kind != Kind::coordinate;
+}
+
 void RowStiffness::add(const ArmState& state, MatrixX& matrix) {
-  if (state.memory.effort.size() == 0 || state.memory.effort.isZero(0.0)) return;
+  const auto& entries = model_.own_rows().entries;
+  const auto one_pulls = [&](const auto& entry) { return pulls(entry, state); };
+  if (std::ranges::none_of(entries, one_pulls)) return;
   const std::size_t n = q_.size();
-  using Kind = ArmBodyModel::Attachment::Kind;
   for (std::size_t k = 0; k < n; ++k) q_[k] = state.q[static_cast<Eigen::Index>(k)];
   const auto direction = [&](std::size_t k) -> Dual<8>::Lanes& { return q_[k].grad; };
   in_passes<8>(n, direction, [&](std::size_t from, std::size_t used) {
     slopes_.place(q_);
-    for (std::size_t e = 0; e < model_.own_rows().entries.size(); ++e) {
-      const auto& entry = model_.own_rows().entries[e];
-      const auto& attachment = model_.attachment(entry.site);
-      const double effort = state.memory.effort[entry.row];
-      if (effort == 0.0 || attachment.kind == Kind::coordinate) continue;
-      const Vector3 pull = effort * state.memory.directions[e];
+    for (std::size_t e = 0; e < entries.size(); ++e) {
+      if (!pulls(entries[e], state)) continue;
+      const auto& attachment = model_.attachment(entries[e].site);
+      const Vector3 pull = state.memory.effort[entries[e].row] * state.memory.directions[e];
       if (attachment.kind == Kind::point) {
         slopes_.jacobian(attachment.point, columns_);
       } else {

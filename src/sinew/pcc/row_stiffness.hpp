@@ -24,6 +24,8 @@ class RowStiffness {
   void add(const ArmState& state, MatrixX& matrix);
 
  private:
+  bool pulls(const mechanics::OwnRows::Entry& entry, const ArmState& state) const;
+
   const ArmBodyModel& model_;
   ArmDynamics<Dual<8>> slopes_;
   std::vector<Vec3<Dual<8>>> columns_;

@@ -82,12 +82,13 @@ class Observables {
   /// Lists, in this order: `time`; of every body `NAME.positions` (n, 3) m, in dynamics
   /// `NAME.velocities` (n, 3) m/s, of a rigid body `NAME.position` (3,) m and `NAME.rotation` (4,)
   /// w, x, y, z of its frame, `NAME.velocity` (3,) m/s of its centre of mass,
-  /// `NAME.angular_velocity` (3,) rad/s, of an arm `NAME.coordinates` (c,) rad, extensions in m; of
-  /// every actuator effort and motion, as `NAME.tension` and `NAME.displacement`, and its commands
-  /// (see commanded()); of every effector `NAME.position` (3,) m or `NAME.rotation` (3,) rad; of
-  /// every probe `NAME.value`, and of a line `NAME.positions` (k, 3) m; of every sensor
-  /// `NAME.measured` and `NAME.true` and when the former was taken, `NAME.sample_time` s (NaN
-  /// before the first sample); of every contact of n points `NAME.pose` (3, 4) and
+  /// `NAME.angular_velocity` (3,) rad/s, of an arm `NAME.coordinates` (c,) rad and, in dynamics,
+  /// `NAME.rates` (c,) rad/s, extensions in m and m/s; of every actuator effort and motion, as
+  /// `NAME.tension` and `NAME.displacement`, and its commands (see commanded()); of every effector
+  /// `NAME.position` (3,) m or `NAME.rotation` (3,) rad; of every probe `NAME.value`, and of a line
+  /// `NAME.positions` (k, 3) m; of every sensor `NAME.measured` and `NAME.true` and when the former
+  /// was taken, `NAME.sample_time` s (NaN before the first sample); of every contact of n points
+  /// `NAME.pose` (3, 4) and
   /// `NAME.points.position` (n, 3), `.gap` (n,), `.normal` (n, 3),
   /// `.normal_force` (n,), `.friction_force` (n, 3), `.state` (n,), and, of the points together,
   /// `NAME.force` (3,) N, `NAME.normal_force` and `NAME.friction_force` N, `NAME.gap` m,

@@ -104,6 +104,11 @@ void add_bodies(Observables& list) {
       add("coordinates", "rad",
           [arm](const mechanics::Body&) -> const VectorX& { return arm->coordinates(); },
           {static_cast<std::size_t>(arm->coordinates().size())});
+      if (moving) {
+        add("rates", "rad/s",
+            [arm](const mechanics::Body&) -> const VectorX& { return arm->rates(); },
+            {static_cast<std::size_t>(arm->rates().size())});
+      }
     }
   }
 }

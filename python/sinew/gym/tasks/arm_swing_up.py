@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Mapping
+from typing import Any, Mapping, Sequence
 
 import numpy as np
 
@@ -34,6 +34,7 @@ class ArmSwingUp(Task):
     summary = "swing the tip of a fluidic arm up"
     scene = SCENES / "arm.yaml"
     actions = ("torque",)
+    observables = ("arm.coordinates", "arm.rates", "second.torque", "third.torque", "fourth.torque", "tip.position")
     substeps = 10
     default_time_limit = 4.0
     camera = "front"
@@ -88,17 +89,21 @@ class ArmSwingUp(Task):
         return ([f"angle {k} / 1 rad" for k in range(4)] + [f"rate {k} / 10 rad/s" for k in range(4)]
                 + [f"{name} torque / limit" for name in robot.sim.actuators] + ["tip x / 0.56 m", "tip z / 0.56 m"])  # fmt: skip
 
-    def sense(self, episode: Any, out: np.ndarray) -> None:
-        """Writes an observation."""
-        robot = episode.robot
-        out[:4] = robot.body.coordinates
-        out[4:8] = robot.body.rates / 10.0
-        out[8:11] = [actuator.torque for actuator in robot.actuators] / self.high
-        out[11:] = robot.tip.position[::2] / 0.56
+    def sense_rows(self, episodes: Sequence[Any], read: np.ndarray, out: np.ndarray) -> None:
+        """Writes observations."""
+        out[:, :4] = read[:, :4]
+        out[:, 4:8] = read[:, 4:8] / 10.0
+        out[:, 8:11] = read[:, 8:11] / self.high
+        out[:, 11:] = read[:, 11::2] / 0.56
 
-    def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
+    def reward_rows(
+        self, episodes: Sequence[Any], read: np.ndarray, actions: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
         """Height over length, less a little effort."""
-        height = float(episode.robot.tip.position[2] - episode.model.rest["tip"][2])
-        effort = float(np.mean(episode.action**2))
-        episode.memory["highest"] = max(episode.memory["highest"], height)
-        return height / 0.56 - 0.01 * effort, False, {"height": height, "success": episode.memory["highest"] > self.HIGH}
+        height = read[:, 13] - [episode.model.rest["tip"][2] for episode in episodes]
+        effort = np.mean(actions**2, axis=1)
+        highest = np.maximum(height, [episode.memory["highest"] for episode in episodes])
+        for episode, value in zip(episodes, highest.tolist()):
+            episode.memory["highest"] = value
+        over = np.zeros(len(episodes), dtype=bool)
+        return height / 0.56 - 0.01 * effort, over, {"height": height, "success": highest > self.HIGH}
