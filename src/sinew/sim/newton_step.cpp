@@ -35,6 +35,10 @@ constexpr int kSteeredIterations = 8;
 // A dynamic step that can be halved is given up after so many: a crawling robot's steps of 40 ms
 // end within 15 or not within 50 (docs/performance.md).
 constexpr int kIterationsBeforeHalving = 16;
+// Joints contradict each other where the last iteration moved less than this part of what they
+// lack, and where the contradiction, which all that take part in it share, is no less of it.
+constexpr double kAtRest = 0.1;
+constexpr double kShare = 0.01;
 
 bool converged(const NewtonReport& result) { return result.status == NewtonStatus::converged; }
 
@@ -69,7 +73,10 @@ NewtonSettings NewtonStep::settings_of_part(double time_step) const {
 void NewtonStep::solve(double time_step) {
   const NewtonReport result = search(time_step);
   take_report(result);
-  if (converged(result) || (!run_.model->step().dynamic() && is_usable(result))) return;
+  if (converged(result)) return;
+  const JointConflict conflict = find_conflict(result, time_step);
+  if (!run_.model->step().dynamic() && is_usable(result) && !conflict.opens) return;
+  if (!conflict.text.empty()) fail_joints(run_, conflict);
   if (result.status == NewtonStatus::law_failed) fail_law(run_);
   const std::string folded =
       describe_folded_cable(*run_.model, run_.world.configuration(), run_.effort);
@@ -262,6 +269,15 @@ bool NewtonStep::is_usable(const NewtonReport& result) const {
   if (run_.model->contacts().empty()) return true;
   return result.relative_residual <= (run_.controller == nullptr ? kSearched : kBalanced) &&
          result.violation <= kMotionTolerance * run_.model->size();
+}
+
+// Where iterations have come to rest although joints are open.
+JointConflict NewtonStep::find_conflict(const NewtonReport& result, double time_step) const {
+  const double open = result.violation, size = run_.model->size();
+  const double tolerance = settings(time_step).motion_tolerance;
+  const bool rests = result.motion.finite && result.motion.largest_move <= kAtRest * open;
+  if (result.law == LawStatus::failed || !rests || !(open > tolerance * size)) return {};
+  return find_joint_conflict(run_.world, kShare * open);
 }
 
 void NewtonStep::take_report(const NewtonReport& result) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "sinew/sim/joint_conflict.hpp"
 #include "sinew/sim/newton.hpp"
 
 namespace sinew::sim {
@@ -32,6 +33,7 @@ class NewtonStep {
   NewtonReport approach(double time_step);
   NewtonReport descend(double time_step, int iterations);
   bool is_usable(const NewtonReport& result) const;
+  JointConflict find_conflict(const NewtonReport& result, double time_step) const;
   void take_report(const NewtonReport& result);
 
   Run& run_;

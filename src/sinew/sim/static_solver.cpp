@@ -120,8 +120,16 @@ void StaticSolver::approach() {
   const std::string known = describe(fraction);
   blend(0.0);
   run_.world.homotopy().set_fraction(0.0);
+  const JointConflict conflict = find_conflict();
   if (!limit_point_ && motion_.relax_from_here()) return;
+  if (!limit_point_ && !conflict.text.empty()) fail_joints(run_, conflict);
   fail_to_find(known);
+}
+
+// Of the last equilibrium on the way, as condensed by describe(), with all that is commanded.
+JointConflict StaticSolver::find_conflict() const {
+  if (run_.world.inertia().status == linalg::FactorStatus::singular) return {};
+  return find_joint_conflict(run_.world, kSurfaceTolerance * run_.model->size());
 }
 
 // The fraction of the imbalance that is left at the end.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/joint_conflict.hpp"
 #include "sinew/sim/overdamped_motion.hpp"
 #include "sinew/sim/static_search.hpp"
 #include "sinew/step/step_problem.hpp"
@@ -37,6 +38,7 @@ class StaticSolver {
   void find();
   void read_goal();
   void approach();
+  JointConflict find_conflict() const;
   double step_load();
   void blend(double fraction);
   std::string describe(double fraction);

@@ -9,6 +9,7 @@
 #include "sinew/constraint/contact.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/sim/contact_reader.hpp"
+#include "sinew/sim/joint_conflict.hpp"
 #include "sinew/sim/run.hpp"
 
 namespace sinew::sim {
@@ -63,6 +64,16 @@ void fail(Run& run, ErrorKind kind, const std::string& message, const std::strin
   throw Error(kind,
               {.item = fmt::format("step {} (t = {:g} s), body {}", run.steps + 1, run.now, names)},
               message, remedy);
+}
+
+void fail_joints(Run& run, const JointConflict& conflict) {
+  fail(
+      run, ErrorKind::not_converged,
+      fmt::format("joints, limits and given motions contradict each other: {}, wherever the bodies "
+                  "go",
+                  conflict.text),
+      "let a joint leave what the others hold (a ball or cylindrical one in place of a hinge), or "
+      "change the commands, limits and motions of bodies that they cannot follow");
 }
 
 void fail_law(Run& run) {

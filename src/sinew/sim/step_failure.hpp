@@ -8,6 +8,7 @@
 
 namespace sinew::sim {
 
+struct JointConflict;
 struct Run;
 
 /// Goes back to `before` of a run and throws, with the step and the bodies.
@@ -15,5 +16,7 @@ struct Run;
                        const std::string& remedy);
 /// The same where no efforts obey the law.
 [[noreturn]] void fail_law(Run& run);
+/// And where joints and what moves them contradict each other.
+[[noreturn]] void fail_joints(Run& run, const JointConflict& conflict);
 
 }  // namespace sinew::sim

@@ -1,0 +1,219 @@
+#include "sinew/sim/joint_conflict.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "sinew/constraint/joint.hpp"
+#include "sinew/linalg/dense_factor.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/world.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// Eigenvalues of W, scaled to a diagonal of ones, below this are zero.
+constexpr double kNull = 1e-10;
+// Rows below this part of the largest do not take part.
+constexpr double kPart = 1e-3;
+constexpr std::size_t kNamed = 6;
+constexpr double kAtLimit = 1e-6;  // of the robot's size
+
+struct Row {
+  step::HeldRow held;
+  double gap = 0.0;           // m, rad or m^3
+  double motion_scale = 1.0;  // m per gap
+  int side = 0;               // of a limit, which acts one way: 1 the greatest motion, -1 the least
+  double unclosed = 0.0;      // of the gap, that no motion of the linearisation closes
+  bool takes_part = false;
+};
+
+// -1 or 1 where a motion is at a limit or beyond it.
+int side_of(const step::ActuatorBlock& block, double motion, double size) {
+  const double near = kAtLimit * size / block.motion_scale;
+  if (motion > block.motion_max - near) return 1;
+  return motion < block.motion_min + near ? -1 : 0;
+}
+
+// What the rows lack at the present state.
+std::vector<Row> list_rows(const step::StepProblem& problem) {
+  std::vector<Row> rows;
+  const auto add = [&](const auto& block, double target, int side) {
+    const double gap = problem.delta[block.row] - target;
+    rows.push_back({{block.row, 0.0}, gap, block.motion_scale, side});
+  };
+  for (const step::BilateralBlock& block : problem.bilaterals) add(block, block.motion, 0);
+  for (const step::ActuatorBlock& block : problem.actuators) {
+    if (block.row < 0 || !std::isinf(block.effort_min) || !std::isinf(block.effort_max)) continue;
+    const double motion = problem.delta[block.row];
+    const int side = side_of(block, motion, problem.size);
+    if (block.holds_motion()) {
+      add(block, block.value, 0);
+    } else if (side != 0) {
+      add(block, std::clamp(motion, block.motion_min, block.motion_max), side);
+    }
+  }
+  for (const step::StiffnessBlock& block : problem.stiffness) {
+    if (block.stiffness != 0.0) rows.push_back({{block.row, 1.0 / block.stiffness}});
+  }
+  return rows;
+}
+
+// What lies along loads that cancel. @return whether it is none, since a limit would have to pull.
+bool find_unclosed(const step::StepProblem& problem, std::vector<Row>& rows) {
+  std::vector<step::HeldRow> held;
+  for (const Row& row : rows) held.push_back(row.held);
+  const step::HeldCompliance compliance = step::held_compliance(problem, held);
+  const linalg::SymmetricSpectrum spectrum(compliance.matrix);
+  VectorX gaps(compliance.scale.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) gaps[static_cast<Eigen::Index>(k)] = rows[k].gap;
+  gaps.array() *= compliance.scale.array();
+  VectorX load = VectorX::Zero(gaps.size());
+  const double null = kNull * std::max(spectrum.values().cwiseAbs().maxCoeff(), 1.0);
+  for (Eigen::Index k = 0; k < gaps.size(); ++k) {
+    if (std::abs(spectrum.values()[k]) > null) continue;
+    load += spectrum.vectors().col(k).dot(gaps) * spectrum.vectors().col(k);
+  }
+  const double least = kPart * load.cwiseAbs().maxCoeff();
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    // A row whose motion is given has no compliance, and no scale to compare by.
+    const bool given = compliance.matrix(i, i) == 0.0;
+    rows[k].takes_part = std::abs(load[i]) > (given ? 0.0 : least);
+    rows[k].unclosed = load[i] / compliance.scale[i];
+    if (rows[k].takes_part && load[i] * rows[k].side < 0.0) return false;
+  }
+  return true;
+}
+
+// What a row lacks is measured in.
+enum class Unit { length, angle, volume };
+constexpr std::size_t kUnits = 3;
+
+// What the rows of one part lack together.
+struct Lack {
+  std::string name;
+  bool joint = false;
+  std::array<double, kUnits> squares{};  // m^2, rad^2, m^6
+  std::array<double, kUnits> largest{};  // m, of the rows of each unit
+
+  double most() const { return *std::ranges::max_element(largest); }
+
+  std::string amount() const {
+    constexpr std::array<double, kUnits> kFactor = {1e3, 180.0 / std::numbers::pi, 1e6};
+    constexpr std::array<const char*, kUnits> kName = {"mm", "deg", "ml"};
+    std::string text;
+    for (std::size_t unit = 0; unit < kUnits; ++unit) {
+      if (!(largest[unit] > kPart * most())) continue;
+      text += fmt::format("{}{:.3g} {}", text.empty() ? "" : " and ",
+                          kFactor[unit] * std::sqrt(squares[unit]), kName[unit]);
+    }
+    return text;
+  }
+};
+
+Unit unit_of(ActuatorType type) {
+  if (type == ActuatorType::pressure) return Unit::volume;
+  const bool turns = type == ActuatorType::motor || type == ActuatorType::torque;
+  return turns ? Unit::angle : Unit::length;
+}
+
+class Names {
+ public:
+  explicit Names(const Model& model) : model_(model) {}
+
+  void add(const Row& row) {
+    for (std::size_t j = 0; j < model_.joints().size(); ++j) {
+      if (add_joint(j, row)) return;
+    }
+    for (const ActuatorModel& actuator : model_.actuators()) {
+      if (actuator.row != row.held.row) continue;
+      add("the command of '" + actuator.name + "'", false, row, unit_of(actuator.type));
+    }
+  }
+
+  JointConflict conflict() const {
+    const double open = kPart * std::ranges::max_element(lacks_, {}, &Lack::most)->most();
+    JointConflict result;
+    std::vector<std::string> gaps, others;
+    for (const Lack& lack : lacks_) {
+      if (!(lack.most() > open)) {
+        others.push_back(lack.name);
+        continue;
+      }
+      gaps.push_back(
+          fmt::format("{} is {} by {}", lack.name, lack.joint ? "open" : "missed", lack.amount()));
+      result.opens = result.opens || lack.joint;
+    }
+    result.text = join(gaps);
+    if (!others.empty()) result.text += " against " + join(others);
+    return result;
+  }
+
+ private:
+  static bool contains(const constraint::Constraint& rows, int row) {
+    return row >= rows.first_row() && row < rows.first_row() + rows.row_count();
+  }
+  // Whether the row is one of the joint's, or one that limits it.
+  bool add_joint(std::size_t index, const Row& row) {
+    const JointModel& joint = model_.joints()[index];
+    const constraint::Joint* rigid = model_.joint(static_cast<int>(index));
+    if (contains(model_.constraint(joint.constraint), row.held.row)) {
+      const bool turns = rigid != nullptr && rigid->is_turn(row.held.row);
+      add("'" + joint.name + "'", true, row, turns ? Unit::angle : Unit::length);
+      return true;
+    }
+    for (std::size_t motion = 0; motion < joint.motions.size(); ++motion) {
+      const int own = joint.motions[motion];
+      if (own < 0 || !contains(model_.constraint(own), row.held.row)) continue;
+      add("the limit of '" + joint.name + "'", false, row,
+          motion == 0 ? Unit::angle : Unit::length);
+      return true;
+    }
+    return false;
+  }
+  static std::string join(const std::vector<std::string>& texts) {
+    const std::size_t named = std::min(kNamed, texts.size());
+    std::string text;
+    for (std::size_t k = 0; k < named; ++k) {
+      if (k > 0) text += k + 1 == texts.size() ? " and " : ", ";
+      text += texts[k];
+    }
+    return named < texts.size() ? fmt::format("{} and {} more", text, texts.size() - named) : text;
+  }
+  void add(const std::string& name, bool joint, const Row& row, Unit unit) {
+    auto at = std::ranges::find(lacks_, name, &Lack::name);
+    if (at == lacks_.end()) at = lacks_.insert(at, {name, joint});
+    const auto of = static_cast<std::size_t>(unit);
+    at->squares[of] += row.gap * row.gap;
+    at->largest[of] = std::max(at->largest[of], row.motion_scale * std::abs(row.gap));
+  }
+
+  const Model& model_;
+  std::vector<Lack> lacks_;
+};
+
+}  // namespace
+
+JointConflict find_joint_conflict(const World& world, double least) {
+  const step::StepProblem& problem = world.problem();
+  std::vector<Row> rows = list_rows(problem);
+  if (rows.empty()) return {};
+  if (!find_unclosed(problem, rows)) return {};
+  const auto in_metres = [](const Row& row) { return row.motion_scale * std::abs(row.unclosed); };
+  if (!(in_metres(*std::ranges::max_element(rows, {}, in_metres)) > least)) return {};
+  Names names(world.model());
+  for (const Row& row : rows) {
+    if (row.takes_part) names.add(row);
+  }
+  return names.conflict();
+}
+
+}  // namespace sinew::sim
