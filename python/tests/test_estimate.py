@@ -305,6 +305,14 @@ def test_no_force_is_said(scene):
     assert found.status == "no-force"
 
 
+def test_places_that_sensors_do_not_tell_are_refused(scene):
+    twin = made(scene, (), [estimate.Measured("tip.position", 1.0)])  # a marker that is good to 1 m
+    areas = estimate.patches(twin.sim, "finger", 12)
+    found = estimate.locate(twin, dict(zip(("tip.x", "tip.y", "tip.z"), twin.predict(np.zeros(0)) + [0.5, 0.0, 0.0])), areas)
+    assert found.status == "unobservable"
+    np.testing.assert_allclose(found.probability, [a.area / sum(b.area for b in areas) for a in areas], rtol=0.3)
+
+
 def test_readings_that_no_place_explains_are_refused(scene):
     twin = made(scene, ())
     areas = estimate.patches(twin.sim, "finger", 12)
