@@ -228,6 +228,38 @@ def test_friction_of_a_wall_from_a_tip_that_slides(scene):
     assert found.values["contacts.wall.friction"] == pytest.approx(0.3, rel=1e-2)
 
 
+def test_unknown_pressure_and_a_reading_of_the_volume():
+    tree = {"sinew": 1, "bodies": {"tube": {
+        "type": "fem",
+        "mesh": {"shape": "hollow-cylinder", "inner_radius": 0.01, "outer_radius": 0.015, "height": 0.03, "element_size": 0.004},
+        "element": "hex8", "material": "ecoflex-00-30", "fixed": [{"set": "bottom"}, {"set": "top"}]}},
+        "actuators": {"air": {"type": "pressure", "body": "tube", "surface": {"set": "inner"}, "cap": True,
+                              "command": {"pressure": 0}}},
+        "effectors": {"wall": {"body": "tube", "point": [0.015, 0, 0.015], "outside": "nearest"}}}
+    measured = [estimate.Measured("wall.position", 1e-5), estimate.Measured("air.volume_growth", 1e-8)]
+    twin = estimate.Twin(tree, measured, [estimate.Effort("air", 2000.0)])
+    assert twin.is_linear_in_rows
+    agrees(twin, np.array([1200.0]), np.array([1.0]))
+    found = estimate.solve(twin, dict(zip(twin.outputs, twin.predict([1200.0]))))
+    assert found.values["air.effort"] == pytest.approx(1200.0, abs=1.0)
+
+
+def test_arm_of_constant_curvature_with_a_torque_that_is_not_known():
+    tree = {"sinew": 1, "gravity": "0 0 -9.81 m/s^2", "bodies": {"arm": {
+        "type": "pcc", "segments": [{"length": 0.14, "mass": 0.1, "stiffness": 0.1, "damping": 4e-3},
+                                    {"length": 0.14, "mass": 0.1, "stiffness": 0.1, "damping": 4e-3}]}},
+        "actuators": {"first": {"type": "torque", "body": "arm", "segment": 0, "command": {"torque": 0}}},
+        "effectors": {"tip": {"body": "arm", "point": [0, 0, -0.28], "outside": "nearest"}}}
+    twin = estimate.Twin(tree, [estimate.Measured("tip.position", 1e-4)],
+                         [estimate.Effort("first", 0.1), estimate.Force("hand", "arm", (0, 0, -0.28), prior=0.5)])
+    assert twin.is_linear_in_rows
+    truth = np.array([0.08, 0.05, 0.0, 0.02])
+    agrees(twin, truth, np.full(4, 1e-3))
+    found = estimate.solve(twin, dict(zip(twin.outputs, twin.predict(truth))))
+    assert any("1.00 hand.y" in text for text in found.observability.unobservable)  # out of the plane that the arm bends in
+    assert max(abs(r) for r in found.residuals.values()) < 0.5
+
+
 def test_lost_sensors_leave_the_others(scene):
     twin = made(scene)
     truth = np.concatenate([[0.4, -0.3, 0.1], PULL])
@@ -303,6 +335,14 @@ def test_no_force_is_said(scene):
     areas = estimate.patches(twin.sim, "finger", 12)
     found = estimate.locate(twin, readings_of(twin, np.zeros(4), np.random.default_rng(2)), areas)
     assert found.status == "no-force"
+
+
+def test_places_that_sensors_do_not_tell_are_refused(scene):
+    twin = made(scene, (), [estimate.Measured("tip.position", 1.0)])  # a marker that is good to 1 m
+    areas = estimate.patches(twin.sim, "finger", 12)
+    found = estimate.locate(twin, dict(zip(("tip.x", "tip.y", "tip.z"), twin.predict(np.zeros(0)) + [0.5, 0.0, 0.0])), areas)
+    assert found.status == "unobservable"
+    np.testing.assert_allclose(found.probability, [a.area / sum(b.area for b in areas) for a in areas], rtol=0.3)
 
 
 def test_readings_that_no_place_explains_are_refused(scene):

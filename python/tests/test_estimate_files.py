@@ -12,6 +12,7 @@ import sinew
 pytest.importorskip("scipy")
 pytest.importorskip("yaml")
 
+import sinew.estimate  # noqa: E402
 from sinew.estimate import files, replay  # noqa: E402
 
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
@@ -116,6 +117,28 @@ def test_command_line_estimates_a_modulus(scene, recorded, tmp_path):
     assert done.returncode == 0, done.stderr
     table = np.genfromtxt(out / "estimate.csv", delimiter=",", names=True, deletechars="", dtype=None, encoding="utf-8")
     assert table["bodies.finger.material.young_modulus"][0] == pytest.approx(400e3, rel=0.05)
+
+
+def test_command_line_searches_a_place(scene, tmp_path):
+    sim = sinew.load(scene)
+    area = sinew.estimate.patches(sim, "finger", 12)[4]
+    body = sim.body("finger")
+    forces = np.zeros_like(np.asarray(body.external_forces))
+    forces[area.nodes] = np.outer(area.weights, -0.8 * area.normal)
+    body.external_forces = forces
+    sim.solve_static()
+    middle = body.positions[np.argmin(np.linalg.norm(np.array(body.rest_positions) - [0.01, 0, 0.05], axis=1))]
+    rest = np.array(body.rest_positions)[np.argmin(np.linalg.norm(np.array(body.rest_positions) - [0.01, 0, 0.05], axis=1))]
+    tip = sim.effector("tip").position
+    heads = [f"{name}.{axis} [m]" for name in ("tip", "side") for axis in "xyz"]
+    path = write(tmp_path, ",".join(["time [s]", *heads]) + "\n" + ",".join(map(repr, [0.0, *map(float, tip), *map(float, middle)])) + "\n")
+    out = tmp_path / "out"
+    done = command(scene, "--measured", path, "--std", "tip.*=0.02mm", "--std", "side.*=0.02mm", "--search", "finger:12:1N", "--out", out,
+                   "--marker", "side=finger:" + " ".join(f"{1e3 * x:.9g}" for x in rest) + " mm")
+    assert done.returncode == 0, done.stderr
+    table = np.genfromtxt(out / "estimate.csv", delimiter=",", names=True, deletechars="", dtype=None, encoding="utf-8")
+    assert table["patch"] == 4 and table["status"] == "found"
+    np.testing.assert_allclose([table[f"force.{axis}_[N]"] for axis in "xyz"], -0.8 * area.normal, atol=0.2)
 
 
 def test_command_line_refuses_wrong_input(scene, recorded, tmp_path):

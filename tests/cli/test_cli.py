@@ -403,7 +403,7 @@ def test_wrong_arguments(arguments, kind, words, scene, tmp_path):
     assert sorted(tmp_path.rglob("*")) == before
 
 
-@pytest.mark.parametrize("command", [[], ["run"], ["bench"], ["info"], ["mesh"], ["validate"], ["schema"], ["plot"], ["sweep"]],
+@pytest.mark.parametrize("command", [[], ["run"], ["bench"], ["info"], ["mesh"], ["validate"], ["schema"], ["plot"], ["sweep"], ["estimate"]],
                          ids=lambda c: " ".join(c) or "sinew")
 def test_help(command):
     result = sinew(*command, "--help")

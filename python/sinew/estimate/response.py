@@ -14,7 +14,7 @@ __all__ = ["Response"]
 
 _CONTACT = re.compile(r"(?P<name>.+) point (?P<point>\d+) normal$")
 _MOTIONS = {"displacement", "angle", "volume_growth"}
-_ROW_TYPES = {"cable", "force", "pressure"}
+_ROW_TYPES = {"cable", "force", "pressure", "torque"}
 _CLOSED = 1e-9  # of the largest effort: a contact or a cable below it has no force
 _LARGEST = 1e10  # of an inverse whose matrix has a diagonal of one: beyond it rows repeat each other
 _SLIDES = 1e-6  # of friction's limit: nearer to it a point slides
