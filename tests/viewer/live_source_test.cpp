@@ -2,6 +2,7 @@
 #include "viewer/live_source.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <future>
 #include <thread>
 
@@ -13,6 +14,7 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/channel.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
@@ -119,6 +121,38 @@ TEST(LiveSource, ShowsFieldsAndProbesAsTheyAreMeasured) {
   EXPECT_EQ(signal("probe.axis"), state.simulation().probe_values(1)[0]);
   ASSERT_EQ(frame->probes.size(), 3 * (2 + 4u));
   EXPECT_EQ(frame->probes[3 * 5 + 2], static_cast<float>(state.simulation().effector_value(0).z()));
+}
+
+TEST(LiveSource, ShowsSensorsBesideProbes) {
+  std::string text = kScene;
+  text.insert(text.find("controllers:"), R"(sensors:
+  eye: {type: marker, body: beam, point: 60 10 10 mm, noise: 0.1 mm, delay: 20 ms}
+  load: {type: cable-tension, actuator: up, bias: 1 N}
+)");
+  const scene::Robot same = scene::build(scene::parse_scene_text(text, "test", {}));
+  RobotState state(same);
+  const Description& description = state.description();
+  const Json probes = Json::parse(description.scene)["probes"];
+  ASSERT_EQ(probes.size(), 4u);
+  EXPECT_EQ(probes[2]["kind"], "marker");
+  EXPECT_EQ(probes[2]["marks"], 1);
+  EXPECT_EQ(probes[2]["signals"].size(), 3u);
+  EXPECT_EQ(probes[3]["marks"], 0);
+  EXPECT_EQ(probes[3]["signals"], Json::array({"sensor.load.measured"}));
+  const auto number = [&](const Frame& frame, const char* key) {
+    const auto found = std::ranges::find(description.signals, key, &SignalInfo::key);
+    return frame.signals.at(static_cast<std::size_t>(found - description.signals.begin()));
+  };
+  const auto start = state.frame(FieldChoice(list_fields().size(), false), 1.0);
+  EXPECT_TRUE(std::isnan(number(*start, "sensor.eye.measured_x")));  // on its way
+  for (int k = 0; k < 4; ++k) state.step();
+  const auto frame = state.frame(FieldChoice(list_fields().size(), false), 1.0);
+  const sim::Simulation& simulation = state.simulation();
+  EXPECT_EQ(number(*frame, "sensor.eye.measured_x"), simulation.sensor(0).value()[0]);
+  EXPECT_EQ(number(*frame, "sensor.eye.true_x"), simulation.effector_value(0).x());
+  EXPECT_EQ(number(*frame, "sensor.load.measured"), simulation.actuator(0).effort + 1.0);
+  ASSERT_EQ(frame->probes.size(), 3 * (2 + 4 + 1u));
+  EXPECT_EQ(frame->probes[3 * 6], static_cast<float>(simulation.effector_value(0).x()));
 }
 
 TEST(LiveSource, ResetsBitForBit) {
