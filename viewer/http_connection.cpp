@@ -14,11 +14,12 @@ namespace http = boost::beast::http;
 
 namespace {
 
-// Nothing from other origins runs or is loaded, and no other page may frame this one.
+// Nothing from other origins runs or is loaded, and no page but of this machine, a notebook, may
+// frame this one.
 constexpr const char* kPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
     "img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
-    "frame-ancestors 'none'";
+    "frame-ancestors http://localhost:* http://127.0.0.1:*";
 
 std::string_view text(boost::beast::string_view view) { return {view.data(), view.size()}; }
 

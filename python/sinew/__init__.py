@@ -48,6 +48,7 @@ from ._core import (
     view,
 )
 from .errors import Error, Location, Notice, RunError, SinewWarning
+from .notebook import frame_of as _frame_of
 from .scene import load, loads
 
 __all__ = [
@@ -117,6 +118,7 @@ def _repr_png_(sim):
 
 
 Simulation._repr_png_ = _repr_png_  # a notebook shows a picture
+View._repr_html_ = _frame_of  # and the page
 
 # Names by which users know them, whatever module compiled them.
 for _name in __all__:

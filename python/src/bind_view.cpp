@@ -147,7 +147,10 @@ void drive(const std::shared_ptr<Session>& session, const ViewOptions& options) 
     viewer::LiveSource* live = source.get();
     viewer::Server server(where, std::move(source));
     server.start();
-    announce(server, options, "; Ctrl-C goes on");
+    const auto notebook = py::module_::import("sinew.notebook");
+    ViewOptions once = options;
+    if (notebook.attr("show")(server.url()).cast<bool>()) once.open_browser = false;
+    announce(server, once, "; Ctrl-C goes on");
     while (PyErr_CheckSignals() == 0) {
       const py::gil_scoped_release release;
       std::this_thread::sleep_for(kPause);
@@ -204,7 +207,7 @@ void bind_view(py::module_& module) {
   py::class_<View>(module, "View",
                    R"(A script's simulation in the browser, from sinew.view(sim, block=False).
 
-The script steps and calls update(); a `with` statement closes the view at its end.)")
+The script steps and calls update(); a `with` statement closes the view at its end. A notebook shows the page, in a frame.)")
       .def("update", &View::update,
            R"(update($self)
 --
@@ -244,7 +247,7 @@ Ends the view; the simulation stays as it is.
 Opens a simulation in the browser.
 
 With `block` the page drives it, from where it stands, until Ctrl-C; afterwards it is where the page
-left it, controller and targets included. Without `block` the script goes on stepping and the page
+left it, controller and targets included. A notebook shows the page below the cell. Without `block` the script goes on stepping and the page
 looks on and helps:
 
     with sinew.view(sim, block=False) as view:

@@ -6,7 +6,9 @@ The page itself, driving and watching a script, is tested in a browser (web/test
 import gzip
 import os
 import signal
+import sys
 import threading
+import types
 import urllib.error
 import urllib.request
 
@@ -117,3 +119,30 @@ def test_broken_arguments(follow, arguments, kind, block):
     assert caught.value.kind == kind
     sim.step()  # the simulation is as it was, its controller attached
     assert sim.controller.status in ("moving", "rate-limited", "on-target")
+
+
+def test_a_notebook_shows_the_page_in_a_frame(scene):
+    sim = sinew.load(scene)
+    with sinew.view(sim, block=False, **HERE) as view:
+        assert view._repr_html_() == f'<iframe src="{view.url}" width="100%" height="600" style="border: 0"></iframe>'
+        with urllib.request.urlopen(view.url) as answer:
+            ancestors = answer.headers["Content-Security-Policy"].split("frame-ancestors ")[1]
+        assert ancestors == "http://localhost:* http://127.0.0.1:*"  # pages of this machine alone
+    assert view._repr_html_() is None
+    assert sim._repr_png_() is None or sim._repr_png_().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("kernel", [True, False])
+def test_a_view_that_blocks_a_cell_is_shown_below_it(scene, monkeypatch, capsys, kernel):
+    shown = []
+    shell = types.SimpleNamespace(kernel=object()) if kernel else types.SimpleNamespace()
+    display = types.ModuleType("IPython.display")
+    display.HTML, display.display = lambda text: text, shown.append
+    ipython = types.ModuleType("IPython")
+    ipython.get_ipython = lambda: shell
+    monkeypatch.setitem(sys.modules, "IPython", ipython)
+    monkeypatch.setitem(sys.modules, "IPython.display", display)
+    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    sinew.view(sinew.load(scene), speed=1.0, **HERE)
+    page = capsys.readouterr().out.split("the view is at ")[1].split(";")[0]
+    assert shown == ([f'<iframe src="{page}" width="100%" height="600" style="border: 0"></iframe>'] if kernel else [])

@@ -30,8 +30,8 @@ def tasks() -> dict[str, str]:
     return {name: task.summary for name, task in _TASKS.items()}
 
 
-def _task(task: Union[str, Task], options: dict[str, Any]) -> Task:
-    """A task by its name, or the task itself."""
+def _task(task: Union[str, Task], options: dict[str, Any], own: tuple[str, ...]) -> Task:
+    """A task by its name, or the task itself. `own` are the options that do not go to the task."""
     if isinstance(task, Task):
         if options:
             raise Error("bad-argument", "make", f"{', '.join(options)} given with a task that is made", "give them to the task")
@@ -41,7 +41,7 @@ def _task(task: Union[str, Task], options: dict[str, Any]) -> Task:
     known = _TASKS[task].keywords()
     for name in options:
         if name not in known:
-            raise unknown("make", f"option of {task}", name, known)
+            raise unknown("make", f"option of {task}", name, [*own, *known])
     return _TASKS[task](**options)
 
 
@@ -70,7 +70,7 @@ def make(task: Union[str, Task], *, render_mode: Optional[str] = None, **options
     --------
     >>> env = sinew.gym.make("trunk-reach", time_limit=1.0)
     """
-    return Env(_task(task, options), render_mode=render_mode)
+    return Env(_task(task, options, ("render_mode",)), render_mode=render_mode)
 
 
 def make_vec(
@@ -112,7 +112,8 @@ def make_vec(
     --------
     >>> envs = sinew.gym.make_vec("trunk-reach", num_envs=64, threads=2)
     """
-    return VectorEnv(_task(task, options), num_envs, threads=threads, autoreset_mode=autoreset_mode, render_mode=render_mode)
+    made = _task(task, options, ("num_envs", "threads", "autoreset_mode", "render_mode"))
+    return VectorEnv(made, num_envs, threads=threads, autoreset_mode=autoreset_mode, render_mode=render_mode)
 
 
 def _register() -> None:
