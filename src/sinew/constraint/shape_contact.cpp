@@ -79,23 +79,14 @@ void ShapeContact::find_points(const Configuration& configuration, const Eigen::
   const collision::TouchingPoints found = collision::touching_points(
       collision::moved(own_->shape, own_->pose(configuration)), collision::moved(surface_, start),
       std::numeric_limits<double>::infinity());
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    const Vector3 normal = carry.linear() * found[k].normal;
-    set_frame(k, carry * found[k].on_first, collision::tangent_frame(normal), found[k].gap, values);
-    watch(configuration, k, found[k].on_first, values);
+  const Vector3 centre = configuration.position(own_->centre);
+  for (std::size_t k = 0; k < size(); ++k) {
+    const bool used = k < found.size();
+    const Vector3 at = used ? found[k].on_first : centre;
+    const Vector3 normal = used ? Vector3(carry.linear() * found[k].normal) : Vector3::UnitZ();
+    set_frame(k, carry * at, collision::tangent_frame(normal), used ? found[k].gap : kIdle, values);
+    watch(configuration, k, at, values);
   }
-  for (std::size_t k = found.size(); k < size(); ++k) {
-    if (!idle(k, values)) put_away(configuration, k, values);
-  }
-}
-
-// It stays as it is for as long as it has no use: at the centre, whatever the bodies do.
-void ShapeContact::put_away(const Configuration& configuration, std::size_t point,
-                            mechanics::RowValues& values) const {
-  const Vector3 at = configuration.position(own_->centre);
-  set_frame(point, at, collision::tangent_frame(Vector3::UnitZ()), kIdle, values);
-  watch(configuration, point, at, values);
-  values.delta.segment<3>(row(point)) = values.reference.segment<3>(row(point));
 }
 
 bool ShapeContact::idle(std::size_t point, const mechanics::RowValues& values) const {
@@ -240,7 +231,6 @@ void ShapeContact::linearise(const Configuration& configuration,
                              mechanics::RowValues& values) const {
   const bool begun = !values.arm.empty();
   for (std::size_t i = 0; i < size(); ++i) {
-    if (idle(i, values)) continue;
     if ((own_ || carrier_) && begun) write_sides(configuration, i, values);
     values.delta.segment<3>(row(i)) =
         row_values(i, position_beside(configuration, i, values), values);
@@ -298,7 +288,6 @@ void ShapeContact::load(const double* from, mechanics::RowValues& values) const 
     if (!own_) continue;
     values.arm[entry(k, 1)] = Eigen::Map<const Vector3>(from);
     from += 3;
-    values.reference[row(k)] = 0.0;  // the next step says whether it has a use
   }
 }
 
