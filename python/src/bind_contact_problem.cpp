@@ -27,13 +27,6 @@ Array copy_list(const std::vector<double>& list) {
   return Array(static_cast<py::ssize_t>(list.size()), list.data());
 }
 
-ContactProblem problem_of(const Session& session) {
-  const Session::Use use(session);
-  const step::ContactProblem problem = session.simulation().contacts().problem();
-  return {copy(problem.compliance), copy(problem.motion), copy_list(problem.friction),
-          copy(problem.effort)};
-}
-
 py::object by_columns(const Eigen::SparseMatrix<double>& matrix) {
   const auto entries = static_cast<py::ssize_t>(matrix.nonZeros());
   const auto columns = static_cast<py::ssize_t>(matrix.cols());
@@ -42,6 +35,25 @@ py::object by_columns(const Eigen::SparseMatrix<double>& matrix) {
                                          py::array_t<int>(columns + 1, matrix.outerIndexPtr()));
   return py::module_::import("scipy.sparse")
       .attr("csc_matrix")(parts, py::arg("shape") = py::make_tuple(columns, columns));
+}
+
+// Problems of fewer points are small as they stand; above, up to this part of W stands as sparse.
+constexpr Eigen::Index kFewPoints = 32;
+constexpr double kSparse = 0.25;
+
+bool stands_as_sparse(const Eigen::SparseMatrix<double>& matrix) {
+  const auto size = static_cast<double>(matrix.rows());
+  return matrix.rows() > 3 * kFewPoints &&
+         static_cast<double>(matrix.nonZeros()) <= kSparse * size * size;
+}
+
+ContactProblem problem_of(const Session& session, const std::optional<bool>& sparse) {
+  const Session::Use use(session);
+  const step::ContactProblem problem = session.simulation().contacts().problem();
+  const bool by_blocks = sparse.value_or(stands_as_sparse(problem.compliance));
+  return {
+      by_blocks ? by_columns(problem.compliance) : py::object(copy(MatrixX(problem.compliance))),
+      copy(problem.motion), copy_list(problem.friction), copy(problem.effort)};
 }
 
 ContactProblem read_fclib(const std::filesystem::path& path) {
@@ -138,7 +150,8 @@ void bind_contact_problem(py::module_& module, SimulationType& type) {
       .def_readonly("friction", &ContactProblem::friction, "(n,) ndarray: mu of each contact.")
       .def_readonly("r", &ContactProblem::r,
                     "(3n,) ndarray: a solution; None where there is none.");
-  type.def("contact_problem", problem_of, R"(contact_problem($self)
+  type.def("contact_problem", problem_of, py::arg("sparse") = py::none(),
+           R"(contact_problem($self, sparse=None)
 --
 
 The problem that the contact forces of the last step, or equilibrium, solve.
@@ -147,6 +160,13 @@ Its n contacts are the points that took part, in the order of contacts and their
 those of the last substep's last linearisation. Everything else keeps the state of the step: what
 holds a motion (joints, cables at a commanded length) goes on to hold it, what is at a limit keeps
 its effort, a gas is linearised. It is no part of the state: empty before the first step.
+
+Parameters
+----------
+sparse : bool, optional
+    Whether W is a scipy.sparse.csc_matrix (needs scipy) or an ndarray. By default it is sparse where
+    more than 32 points leave three quarters of it zero: points on bodies that have nothing in
+    common, as rigid ones, share no entry.
 
 Returns
 -------

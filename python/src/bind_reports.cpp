@@ -52,6 +52,11 @@ void bind_step_report(py::module_& module) {
                     "that is not against its friction (m).")
       .def_readonly("contact_complementarity", &StepReport::contact_complementarity,
                     "float: largest product of a point's gap and normal force (J).")
+      .def_readonly(
+          "contact_aggregation", &StepReport::contact_aggregation,
+          "float: of contacts with `aggregate`, about how far their forces are from those "
+          "of single points, relative to the sum of the zones' forces; 0 without. Friction "
+          "counts from where the run began or a state was loaded.")
       .def_readonly("iterations", &StepReport::iterations, "int: linear solutions in the step.")
       .def_readonly("substeps", &StepReport::substeps,
                     "int: parts that the step was made in; more than 1 where the whole found no "

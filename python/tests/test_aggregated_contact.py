@@ -88,6 +88,25 @@ def test_deformable_bodies_touch_in_zones():
         assert rows_of(sim) <= rows_of(whole) / 3
 
 
+@pytest.mark.parametrize("friction, least, most", [(0.0, 0.8, 8.0), (0.5, 0.1, 2.0)])
+@pytest.mark.parametrize("zone", ["10 mm", "20 mm"])
+def test_every_step_tells_about_how_far_it_is_from_single_points(friction, least, most, zone):
+    """The report against the same scene with single points; what friction lacks is seen in part."""
+    whole, sim = (sinew.load(pressed(given, friction=friction, edge="4 mm")) for given in (None, zone))
+    for step in range(22):
+        whole.step()
+        sim.step()
+        assert whole.report.contact_aggregation == 0.0
+        reference = np.linalg.norm(whole.contact("grip").force)
+        if step < 5:
+            continue
+        true = np.linalg.norm(sim.contact("grip").force - whole.contact("grip").force) / reference
+        assert least * true - 1e-4 < sim.report.contact_aggregation < most * true + 3e-4
+    assert sim.report.contact_aggregation > 1e-5
+    sim.reset()
+    assert sim.report.contact_aggregation == 0.0
+
+
 def test_a_grip_lifts_what_friction_can_hold():
     """Two pads press on a box and lift it: forces are its weight, as with single points."""
     grip = {"friction": 0.6, "aggregate": "8 mm"}

@@ -150,12 +150,11 @@ def test_the_order_of_nodes_and_elements_changes_nothing(tmp_path, on, friction,
         assert max(differences(one, other)) < 1e-9
 
 
-@pytest.mark.parametrize("on, tolerance", [("plane", 1e-8), ("block", 2e-3)])
-def test_the_order_of_hexahedra_decides_how_their_faces_are_cut(tmp_path, on, tolerance):
-    """A quadrilateral is cut at its lowest node. Another diagonal is another surface where the face is not plane; on a plane
-    nodes alone touch, and ten laws solved to 1e-10 are left."""
+@pytest.mark.parametrize("on, tolerance", [("plane", 1e-8), ("block", 1e-8)])
+def test_the_order_of_hexahedra_changes_nothing(tmp_path, on, tolerance):
+    """A quadrilateral is cut along its shorter diagonal, or by where its corners are; ten laws solved to 1e-10 are left."""
     given, shuffled = (Dragged(tmp_path, "hexahedron", 0.5, on, number) for number in (None, 2))
     for one, other in zip(given.results(), shuffled.results()):
         force, position, _ = differences(one, other)
-        assert force < min(tolerance, 1e-4)
+        assert force < tolerance
         assert position < tolerance

@@ -69,6 +69,42 @@ def test_empty_before_the_first_step():
     assert problem.W.shape == (0, 0) and problem.q.shape == (0,) and problem.friction.shape == (0,)
 
 
+def heap(pairs):
+    """Boxes on a table, two on each other: each pile has nothing in common with the others."""
+    box = {"type": "rigid", "shape": {"box": [0.03, 0.03, 0.02]}, "density": 1000.0}
+    bodies = {"table": {"type": "rigid", "shape": {"box": [3.0, 3.0, 0.02]}, "density": 1000.0, "fixed": True,
+                        "pose": {"position": [0, 0, -0.01]}}}  # fmt: skip
+    for k in range(pairs):
+        for level in (0, 1):
+            bodies[f"box{k}_{level}"] = {**box, "pose": {"position": [0.1 * (k - 0.5 * pairs), 0, 0.01 + 0.02 * level]}}
+    return {"sinew": 1, "integrator": "backward-euler", "time_step": 2e-3, "gravity": [0.5, 0, -9.81], "bodies": bodies,
+            "contacts": {"all": {"between": "all", "friction": 0.4}}}
+
+
+def test_piles_that_have_nothing_in_common_are_sparse(tmp_path):
+    sim = sinew.load(heap(8))
+    sim.step(3)
+    problem, whole = sim.contact_problem(), sim.contact_problem(sparse=False)
+    assert isinstance(problem.W, sparse.csc_matrix) and isinstance(whole.W, np.ndarray)
+    n = len(problem.friction)
+    assert n == 8 * 8 and problem.W.shape == (3 * n, 3 * n)
+    assert np.array_equal(problem.W.toarray(), whole.W)
+    assert problem.W.nnz == np.count_nonzero(np.kron(whole.W.reshape(n, 3, n, 3).any(axis=(1, 3)), np.ones((3, 3))))
+    assert problem.W.nnz <= (3 * n) ** 2 / 7
+    one, other = (solved_by_itself(each) for each in (problem, whole))
+    assert np.abs(one[1] - other[1]).max() < 1e-8 * np.abs(problem.q).max()
+    sinew.qp.write_fclib(tmp_path / "piles.hdf5", problem.W, problem.q, problem.friction, problem.r)
+    assert np.array_equal(sinew.qp.read_fclib(tmp_path / "piles.hdf5").W.toarray(), whole.W)
+
+
+def test_few_points_are_dense_unless_asked_for():
+    sim = sinew.load(heap(1))
+    sim.step()
+    assert isinstance(sim.contact_problem().W, np.ndarray)
+    assert isinstance(sim.contact_problem(sparse=True).W, sparse.csc_matrix)
+    assert np.array_equal(sim.contact_problem(sparse=True).W.toarray(), sim.contact_problem().W)
+
+
 def test_round_trip(tmp_path):
     sim = sinew.load(INCLINE)
     sim.step(20)

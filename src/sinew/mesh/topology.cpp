@@ -1,6 +1,7 @@
 #include "sinew/mesh/topology.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -154,7 +155,34 @@ std::array<Triangle, 4> quarters(const Face& face) {
   return {{{n[0], m[0], m[2]}, {m[0], n[1], m[1]}, {m[2], m[1], n[2]}, {m[0], m[1], m[2]}}};
 }
 
-std::vector<Triangle> triangles_of(std::span<const Face> faces) {
+namespace {
+
+// Lengths and coordinates that differ by less than this part of a face are the same.
+constexpr double kAlike = 1e-9;
+
+bool lies_before(const Vector3& one, const Vector3& other, double alike) {
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (std::abs(one[axis] - other[axis]) > alike) return one[axis] < other[axis];
+  }
+  return false;
+}
+
+// An end of the diagonal that a quadrilateral is split along, see triangles_of().
+std::size_t first_corner(const Points& nodes, const Face& face) {
+  const auto at = [&](std::size_t k) -> Vector3 { return nodes.row(face.node[k]).transpose(); };
+  const double even = (at(2) - at(0)).norm(), odd = (at(3) - at(1)).norm();
+  const double alike = kAlike * std::max(even, odd);
+  if (std::abs(even - odd) > alike) return even < odd ? 0 : 1;
+  std::size_t first = 0;
+  for (std::size_t k = 1; k < 4; ++k) {
+    if (lies_before(at(k), at(first), alike)) first = k;
+  }
+  return first;
+}
+
+}  // namespace
+
+std::vector<Triangle> triangles_of(const Points& nodes, std::span<const Face> faces) {
   std::vector<Triangle> triangles;
   for (const Face& face : faces) {
     if (face.is_quadratic()) {
@@ -162,8 +190,9 @@ std::vector<Triangle> triangles_of(std::span<const Face> faces) {
       continue;
     }
     auto n = face.node;
-    if (face.corners() == 4) {  // split at the lowest node
-      std::rotate(n.begin(), std::min_element(n.begin(), n.end()), n.end());
+    if (face.corners() == 4) {
+      const auto first = static_cast<std::ptrdiff_t>(first_corner(nodes, face));
+      std::rotate(n.begin(), n.begin() + first, n.end());
       triangles.push_back({n[0], n[2], n[3]});
     }
     triangles.push_back({n[0], n[1], n[2]});
@@ -172,7 +201,9 @@ std::vector<Triangle> triangles_of(std::span<const Face> faces) {
 }
 
 Surface boundary_surface(const Mesh& mesh) {
-  return {.name = mesh.name, .nodes = mesh.nodes, .triangles = triangles_of(boundary_faces(mesh))};
+  return {.name = mesh.name,
+          .nodes = mesh.nodes,
+          .triangles = triangles_of(mesh.nodes, boundary_faces(mesh))};
 }
 
 double longest_edge(const Surface& surface) {

@@ -50,8 +50,11 @@ std::vector<Face> boundary_faces(const Mesh& mesh);
 /// The nodes of boundary_faces(), ascending; middles of quadratic faces included.
 std::vector<NodeId> outer_nodes(const Mesh& mesh);
 
-/// The triangles that stand for faces: quarters of quadratic ones, quadrilaterals split in two.
-std::vector<Triangle> triangles_of(std::span<const Face> faces);
+/// The triangles that stand for faces: quarters of quadratic ones, quadrilaterals split in two
+/// along the shorter diagonal; of two that are as long, that with the corner of the least x, of
+/// these the least y, then z. The numbers of nodes and elements decide nothing.
+/// @param nodes (n, 3) m. @param faces of these nodes.
+std::vector<Triangle> triangles_of(const Points& nodes, std::span<const Face> faces);
 
 /// The surface of the volume elements: triangles_of() boundary_faces(). Nodes are
 /// those of the mesh, in its numbering, unused ones included.

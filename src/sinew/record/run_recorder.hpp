@@ -47,9 +47,9 @@ struct RecordSettings {
 /// less dissipation less what the energies gained: the integrator's, and what moved a base), all
 /// `[J]`; `residual [N]`, `relative_residual`, `iterations`, `substeps`, `scale` (of the motion, <
 /// 1 when a step was cut back), `smallest_volume_ratio`, with contacts `contact_residual`,
-/// `contact_signorini [m]` and `contact_coulomb [m]`, and in words `status` and, where the list
-/// has one, `controller`. The row at t = 0 is the start, before any step, whose statuses are
-/// `start`.
+/// `contact_signorini [m]` and `contact_coulomb [m]`, with zones `contact_aggregation`, and in
+/// words `status` and, where the list has one, `controller`. The row at t = 0 is the start, before
+/// any step, whose statuses are `start`.
 ///
 /// probes.csv, where the scene has probes, one row a frame: `time [s]`, then per probe `bend [rad]`
 /// (a bend, a distance, an extent), `tip.x [m]` ... (a point), or `axis.length [m]` and

@@ -479,6 +479,27 @@ bool ContactRows::touches_softly(std::span<const double> effort) const {
   return touches;
 }
 
+double ContactRows::end_zones(const step::StepProblem& problem, const RowNumbering& numbering,
+                              std::span<const double> effort) {
+  ContactZones::ForceError sum;
+  for (std::size_t i = 0; i < zones_.size(); ++i) {
+    if (!zones_[i]) continue;
+    const constraint::Contact& contact = *planes_.contacts()[i];
+    friction_.resize(contact.size());
+    for (std::size_t k = 0; k < contact.size(); ++k) friction_[k] = friction(contact, k);
+    const auto own = zones_[i]->end_step(problem, numbering, effort, friction_, rows_);
+    sum.change += own.change;
+    sum.force += own.force;
+  }
+  return sum.force > 0.0 ? sum.change / sum.force : 0.0;
+}
+
+void ContactRows::forget_friction() {
+  for (const auto& zones : zones_) {
+    if (zones) zones->forget_friction();
+  }
+}
+
 bool ContactRows::passed() const {
   return std::ranges::any_of(planes_.surfaces(),
                              [](const auto& touching) { return touching->passed(); });

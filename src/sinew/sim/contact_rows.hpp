@@ -106,6 +106,13 @@ class ContactRows {
   /// @param effort (rows of the problem,) N. @param time_step h, s.
   bool turns_back(const step::StepProblem& problem, const RowNumbering& numbering,
                   const linalg::AlignedNumbers& effort, double time_step) const;
+  /// When a step has ended: about how far the forces of aggregated contacts are from those of
+  /// single points, of the sum of the zones' forces (ContactZones::end_step()); 0 without forces.
+  /// @param problem,numbering of the step. @param effort (rows,) N.
+  double end_zones(const step::StepProblem& problem, const RowNumbering& numbering,
+                   std::span<const double> effort);
+  /// Friction of zones starts afresh.
+  void forget_friction();
   /// Whether surfaces have passed through each other in the step.
   bool passed() const;
   /// m, >= 0: how deep a point without a normal force is in its surface's tangent plane, at most.
@@ -148,13 +155,13 @@ class ContactRows {
   std::vector<std::unique_ptr<ContactZones>> zones_;  // (contacts,) null: single points
   std::vector<TouchingSurfaces*> surfaces_;           // (contacts,) null: with a shape
   bool left_out_ = false;                             // some point
-  int rounds_left_ = 0;        // of a step, in which overlapping surfaces get points
-  std::vector<double> gaps_;   // (points,) m, of one contact
-  int zone_rounds_left_ = 0;   // of a step, in which zones spread their forces anew
-  std::vector<char> touched_;  // (rows,) normal rows with a force when the step began
-  bool has_kinetic_ = false;   // some contact has two coefficients
-  double still_ = 0.0;         // m/s: what is slower stays
-  std::vector<char> slides_;   // (rows,) normal rows whose friction is kinetic
+  int rounds_left_ = 0;                  // of a step, in which overlapping surfaces get points
+  std::vector<double> gaps_, friction_;  // (points,) m, and coefficients, of one contact
+  int zone_rounds_left_ = 0;             // of a step, in which zones spread their forces anew
+  std::vector<char> touched_;            // (rows,) normal rows with a force when the step began
+  bool has_kinetic_ = false;             // some contact has two coefficients
+  double still_ = 0.0;                   // m/s: what is slower stays
+  std::vector<char> slides_;             // (rows,) normal rows whose friction is kinetic
   std::vector<Vector3>
       along_;  // (rows,) where those slide to, of any length; empty: no such contact
   std::vector<char> strikes_;  // (contacts,)

@@ -69,6 +69,7 @@ void ContactZones::make_zones(const Points& at) {
     zone_of_place_.push_back(nearest(at.row(i).transpose()).first);
   }
   zones_.resize(seeds.size());
+  forget_friction();
   measure_spacing(at);
 }
 
@@ -257,6 +258,73 @@ bool ContactZones::refine(std::span<const double> gaps, const step::StepProblem&
   }
   if (found) group(rows);
   return found;
+}
+
+// Those of each zone that have a force or overlap.
+void ContactZones::list_points(std::span<const double> effort, const mechanics::RowValues& rows) {
+  for (Zone& zone : zones_) zone.begin = -1;
+  for (std::size_t k = contact_.size(); k-- > 0;) {
+    if (contact_.idle(k, rows)) continue;
+    if (!(normal_effort(k, effort) > 0.0 || rows.delta[contact_.row(k)] < 0.0)) continue;
+    Zone& zone = zones_[static_cast<std::size_t>(zone_of(k, rows))];
+    next_[k] = zone.begin;
+    zone.begin = static_cast<int>(k);
+  }
+}
+
+void ContactZones::take_points(const Zone& zone, std::span<const double> effort,
+                               std::span<const double> friction, const mechanics::RowValues& rows) {
+  zone_points_.clear();
+  for (int k = zone.begin; k >= 0; k = next_[static_cast<std::size_t>(k)]) {
+    const auto point = static_cast<std::size_t>(k);
+    const int row = contact_.row(point);
+    zone_points_.push_back({contact_.position_now(configuration_, point, rows),
+                            contact_.frame(point, rows),
+                            Vector3::Map(&effort[static_cast<std::size_t>(row)]),
+                            rows.delta.segment<3>(row), friction[point]});
+  }
+}
+
+// Of the zone whose points are listed.
+void ContactZones::add_lack(double& friction_lack, const Vector3& compliance,
+                            ForceError& sum) const {
+  Vector3 resultant = Vector3::Zero(), own = Vector3::Zero(), normal = Vector3::Zero();
+  for (const ZonePoint& point : zone_points_) {
+    own += point.force;
+    resultant += point.frame * point.force;
+    normal += point.force[0] * point.frame.col(0);
+  }
+  if (!(own[0] > 0.0)) {
+    friction_lack = 0.0;
+    return;
+  }
+  normal.normalize();
+  const Vector3 change = zone_force_change(zone_points_, compliance, spread_);
+  const double along = normal.dot(change), across = (change - along * normal).norm();
+  const double limit = zone_points_.front().friction * own[0];
+  const bool slides = own.tail<2>().norm() >= (1.0 - kAlike) * limit;
+  friction_lack = slides ? across : std::min(friction_lack + across, 2.0 * limit);
+  sum.change += std::hypot(along, friction_lack);
+  sum.force += resultant.norm();
+}
+
+ContactZones::ForceError ContactZones::end_step(const step::StepProblem& problem,
+                                                const RowNumbering& numbering,
+                                                std::span<const double> effort,
+                                                std::span<const double> friction,
+                                                const mechanics::RowValues& rows) {
+  list_points(effort, rows);
+  ForceError sum;
+  for (std::size_t z = 0; z < zones_.size(); ++z) {
+    const Zone& zone = zones_[z];
+    const int row = zone.first < 0 ? -1 : numbering.problem_row_of(zone.first);
+    zone_points_.clear();
+    if (row >= 0) take_points(zone, effort, friction, rows);
+    const Vector3 compliance =
+        row < 0 ? Vector3(Vector3::Zero()) : Vector3(problem.compliance.diagonal().segment<3>(row));
+    add_lack(lacks_[z], compliance, sum);
+  }
+  return sum;
 }
 
 bool ContactZones::gap_closed(std::span<const double> effort,

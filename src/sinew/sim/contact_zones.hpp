@@ -9,6 +9,7 @@
 #include "sinew/core/types.hpp"
 #include "sinew/linalg/scratch.hpp"
 #include "sinew/mechanics/rows.hpp"
+#include "sinew/sim/zone_estimate.hpp"
 
 namespace sinew::constraint {
 class Configuration;
@@ -36,6 +37,12 @@ class RowNumbering;
 /// whatever the zones. What stays is that all points of a zone stick or slide together.
 class ContactZones {
  public:
+  /// N, sums over zones, see end_step().
+  struct ForceError {
+    double change = 0.0;  ///< of what each zone's resultant lacks
+    double force = 0.0;   ///< of the resultants
+  };
+
   /// @param contact of the points. @param size m, > 0: how large a zone is. @param configuration
   /// of the bodies, at rest.
   ContactZones(const constraint::Contact& contact, double size,
@@ -61,6 +68,17 @@ class ContactZones {
   bool refine(std::span<const double> gaps, const step::StepProblem& problem,
               const RowNumbering& numbering, const linalg::AlignedNumbers& effort,
               mechanics::RowValues& rows);
+  /// When a step has ended: about how far the forces are from those of single points. Along the
+  /// normal by zone_force_change() of the end. Friction remembers its way: what each step adds
+  /// across the normal is summed up for as long as a zone has a force and sticks, at most to twice
+  /// the limit of its friction. That memory is for this figure alone, and part of no state.
+  /// @param problem,numbering of the step. @param effort (rows,) N. @param friction (points,)
+  /// Coulomb's coefficients. @param rows at the end.
+  ForceError end_step(const step::StepProblem& problem, const RowNumbering& numbering,
+                      std::span<const double> effort, std::span<const double> friction,
+                      const mechanics::RowValues& rows);
+  /// Friction starts afresh.
+  void forget_friction() { lacks_.assign(zones_.size(), 0.0); }
   /// Whether a zone has a force that had none when the step began. @param effort (rows,) N.
   /// @param rows of the step.
   bool gap_closed(std::span<const double> effort, const mechanics::RowValues& rows) const;
@@ -82,6 +100,10 @@ class ContactZones {
   double normal_effort(std::size_t point, std::span<const double> effort) const;
   void group(mechanics::RowValues& rows);
   void measure_overlaps(std::span<const double> gaps, const mechanics::RowValues& rows);
+  void list_points(std::span<const double> effort, const mechanics::RowValues& rows);
+  void take_points(const Zone& zone, std::span<const double> effort,
+                   std::span<const double> friction, const mechanics::RowValues& rows);
+  void add_lack(double& friction_lack, const Vector3& compliance, ForceError& sum) const;
   void smooth(const Zone& zone, std::span<const double> gaps, double force, double compliance,
               const mechanics::RowValues& rows);
 
@@ -97,6 +119,9 @@ class ContactZones {
   std::vector<std::size_t> points_;
   std::vector<Vector3> places_;
   std::vector<double> force_, goal_, compliance_;
+  // Of the zone whose error is estimated, and N, of each zone's friction.
+  std::vector<ZonePoint> zone_points_;
+  std::vector<double> lacks_;
 };
 
 }  // namespace sinew::sim

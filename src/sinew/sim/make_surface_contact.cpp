@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "sinew/collision/penetration.hpp"
+#include "sinew/collision/point_query.hpp"
 #include "sinew/collision/proximity.hpp"
 #include "sinew/collision/surface_topology.hpp"
 #include "sinew/collision/surface_tree.hpp"
@@ -28,6 +29,8 @@ constexpr double kDeepest = 1e-6;
 // Overlaps are undone up to this part of an edge and of the thinnest wall: what is deeper in a wall
 // would leave it on the other side.
 constexpr double kDepth = 0.45;
+// Cosine of the angle up to which two sides of a wall need not be parallel.
+constexpr double kOpposite = 0.9;
 
 // A surface at rest.
 struct RestSurface {
@@ -49,10 +52,29 @@ struct RestSurface {
   double size = 0.0;
 };
 
-// m, or `most` where no wall is thinner.
+Vector3 normal_of(const collision::Corners& x) {
+  return (x[1] - x[0]).cross(x[2] - x[0]).normalized();
+}
+
+// m: from the middle of a triangle through the material to what looks the other way, or `most`.
+double wall_behind(const collision::SurfaceTree& tree, int triangle, double most) {
+  const collision::Corners own = tree.corners(triangle);
+  const Vector3 middle = (own[0] + own[1] + own[2]) / 3.0, normal = normal_of(own);
+  const auto skips = [&](int number) {
+    const collision::Corners other = tree.corners(number);
+    const Vector3 there = normal_of(other);
+    return !(there.dot(normal) < -kOpposite && there.dot(middle - other[0]) < 0.0);
+  };
+  return std::min(most, collision::nearest_on_surface(tree, middle, most, skips).distance);
+}
+
+// m, or `most` where no wall is thinner. Vertices see walls that are thinner at one place; plates
+// have none but at their rims, which edges join to the other side's.
 double thinnest_wall(const RestSurface& surface, double most, ThreadPool& pool) {
   collision::Proximity proximity(pool);
   double thinnest = most;
+  const auto triangles = static_cast<int>(surface.tree.topology().triangles().size());
+  for (int t = 0; t < triangles; ++t) thinnest = wall_behind(surface.tree, t, thinnest);
   for (const auto& pair : proximity.within(surface.tree, {.distance = 0.0, .depth = most})) {
     thinnest = std::min(thinnest, -pair.distance);
   }

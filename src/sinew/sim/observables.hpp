@@ -97,8 +97,8 @@ class Observables {
   /// `strain_energy`, `kinetic_energy`, `gravity_energy`, `actuator_work`, `outside_work`,
   /// `dissipation`, `numerical_loss` J; the report's `residual` N, `relative_residual`,
   /// `iterations`, `substeps`, `scale`, `smallest_volume_ratio`, with contacts `contact_residual`,
-  /// `contact_signorini` and `contact_coulomb` m; `status`; `time.step` and the
-  /// stages' times, s.
+  /// `contact_signorini` and `contact_coulomb` m, with zones `contact_aggregation`; `status`;
+  /// `time.step` and the stages' times, s.
   /// @param simulation must outlive the list.
   explicit Observables(Simulation& simulation);
   Observables(const Observables&) = delete;

@@ -161,7 +161,10 @@ State Simulation::state() const {
   return state;
 }
 
-void Simulation::restore(const State& state) { run_->restore(state); }
+void Simulation::restore(const State& state) {
+  run_->restore(state);
+  run_->world.contacts().forget_friction();
+}
 Inputs Simulation::inputs() const { return run_->inputs(); }
 void Simulation::set_inputs(const Inputs& inputs) { run_->set_inputs(inputs); }
 

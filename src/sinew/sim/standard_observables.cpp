@@ -388,12 +388,15 @@ void add_report(Observables& list) {
     parts.push_back(number(ObservableKind::report, "contact_signorini", "m"));
     parts.push_back(number(ObservableKind::report, "contact_coulomb", "m"));
   }
+  const bool zones = std::ranges::any_of(
+      simulation.model().contacts(), [](const auto& contact) { return contact.aggregate > 0.0; });
+  if (zones) parts.push_back(number(ObservableKind::report, "contact_aggregation"));
   parts.push_back(number(ObservableKind::status, "status"));
   parts.back().words = {{kStart, "start"}};
   for (int code = 0; code <= static_cast<int>(StepStatus::gaining_energy); ++code) {
     parts.back().words.push_back({code, step_status_name(static_cast<StepStatus>(code))});
   }
-  list.add(std::move(parts), [&simulation, touches](std::span<double> all) {
+  list.add(std::move(parts), [&simulation, touches, zones](std::span<double> all) {
     const StepReport& report = simulation.report();
     Numbers to(all);
     to.put(report.residual);
@@ -407,6 +410,7 @@ void add_report(Observables& list) {
       to.put(report.contact_signorini);
       to.put(report.contact_coulomb);
     }
+    if (zones) to.put(report.contact_aggregation);
     to.put(simulation.steps() > 0 ? static_cast<int>(report.status) : kStart);
   });
 }

@@ -28,7 +28,9 @@ std::string describe_worst(const Run& run) {
   std::size_t worst = 0;
   for (std::size_t k = 0; k < tried.friction.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(3 * k);
-    const double scale = tried.compliance.block<3, 3>(at, at).trace() / 3.0;
+    double scale = 0.0;
+    for (Eigen::Index row = at; row < at + 3; ++row)
+      scale += tried.compliance.coeff(row, row) / 3.0;
     if (!(scale > 0.0)) continue;
     const double distance =
         std::sqrt(scale) * qp::cone_residual(tried.effort.segment<3>(at), motion.segment<3>(at),

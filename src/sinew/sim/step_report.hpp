@@ -31,6 +31,9 @@ struct StepReport {
   double contact_signorini = 0.0;        ///< m
   double contact_coulomb = 0.0;          ///< m
   double contact_complementarity = 0.0;  ///< J, of gap times normal force
+  /// Of aggregated contacts: about how far their forces are from those of single points, relative
+  /// to the sum of the zones' forces, see ContactZones::end_step(); 0 without zones.
+  double contact_aggregation = 0.0;
   /// Whether a controller's choice did not settle and was held as it was: another one, that serves
   /// about as well, may have been found from other rounding.
   bool choice_held = false;

@@ -105,6 +105,8 @@ void Substep::end_as_midpoint(double time_step) {
 }
 
 void Substep::count() {
+  run_.report.contact_aggregation =
+      run_.world.contacts().end_zones(run_.world.problem(), run_.world.numbering(), run_.effort);
   run_.finish_step();
   run_.actuation.advance_drives(run_.world.problem().actuators);
   run_.ledger.count(*run_.model, run_.world, run_.actuation, run_.effort);

@@ -156,6 +156,7 @@ void World::restart() {
   joints_.restart();
   bodies_.restart();
   contacts_.planes().forget_points();
+  contacts_.forget_friction();
   contacts_.planes().find_points(contacts_.reach(0.0, 0.0), {});
   place_contacts(0.0, 0.0);
 }

@@ -336,25 +336,67 @@ bool DirectSolver::switch_branches(const StepProblem& problem,
   return switched;
 }
 
+namespace {
+
+// (3n, 3n) without its blocks of zeros.
+Eigen::SparseMatrix<double> without_zeros(const Eigen::Ref<const MatrixX>& dense) {
+  const Eigen::Index count = dense.rows();
+  Eigen::SparseMatrix<double> sparse(count, count);
+  std::vector<int> blocks(static_cast<std::size_t>(count), 0);  // entries of each column
+  const auto is_zero = [&](Eigen::Index i, Eigen::Index j) {
+    return dense.block<3, 3>(i, j).cwiseAbs().maxCoeff() == 0.0;
+  };
+  for (Eigen::Index j = 0; j < count; j += 3) {
+    for (Eigen::Index i = 0; i < count; i += 3) {
+      if (is_zero(i, j)) continue;
+      for (Eigen::Index c = j; c < j + 3; ++c) blocks[static_cast<std::size_t>(c)] += 3;
+    }
+  }
+  sparse.reserve(blocks);
+  for (Eigen::Index j = 0; j < count; j += 3) {
+    for (Eigen::Index i = 0; i < count; i += 3) {
+      if (is_zero(i, j)) continue;
+      for (Eigen::Index c = j; c < j + 3; ++c) {
+        for (Eigen::Index r = i; r < i + 3; ++r) sparse.insert(r, c) = dense(r, c);
+      }
+    }
+  }
+  sparse.makeCompressed();
+  return sparse;
+}
+
+}  // namespace
+
 // Followers are taken out of compliance_ and motion_ already; boxes that hold a motion are here.
 ContactProblem DirectSolver::contact_problem() const {
   const auto count = static_cast<Eigen::Index>(3 * cones_.size());
-  ContactProblem result{MatrixX(count, count), VectorX(count), {}, VectorX(count)};
+  ContactProblem result{
+      Eigen::SparseMatrix<double>(count, count), VectorX(count), {}, VectorX(count)};
   if (cones_.empty()) return result;
-  StepProblem all;
-  all.compliance = compliance_.view();
-  all.delta_free = motion_.view().col(0);
+  const auto all = compliance_.view();
+  VectorX free = motion_.view().col(0);
   Followers held;
+  bool holds_any = false;
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
     const Box& box = boxes_[i];
     const auto row = static_cast<Eigen::Index>(i);
-    const bool holds = x_[i] > box.lower && x_[i] < box.upper && all.compliance(row, row) > 0.0;
+    const bool holds = x_[i] > box.lower && x_[i] < box.upper && all(row, row) > 0.0;
     if (holds) held.add_held(static_cast<int>(i), box.motion);
-    if (!holds) all.delta_free += x_[i] * all.compliance.col(row);
+    if (!holds) free += x_[i] * all.col(row);
+    holds_any = holds_any || holds;
   }
-  std::vector<int> rows(static_cast<std::size_t>(count));
-  std::iota(rows.begin(), rows.end(), static_cast<int>(boxes_.size()));
-  held.take_out(all, all.delta_free, rows, result.compliance, result.motion);
+  result.motion = free.tail(count);
+  if (holds_any) {
+    MatrixX left(count, count);
+    std::vector<int> rows(static_cast<std::size_t>(count));
+    std::iota(rows.begin(), rows.end(), static_cast<int>(boxes_.size()));
+    StepProblem copy;
+    copy.compliance = all;
+    held.take_out(copy, free, rows, left, result.motion);
+    result.compliance = without_zeros(left);
+  } else {
+    result.compliance = without_zeros(all.bottomRightCorner(count, count));
+  }
   result.effort = Eigen::Map<const VectorX>(x_.data() + boxes_.size(), count);
   for (const qp::ConeBlock& cone : cones_) result.friction.push_back(cone.friction);
   return result;

@@ -1,0 +1,32 @@
+/// @file
+/// What a zone's forces would change by, if each of its points obeyed the laws of contact by
+/// itself.
+#pragma once
+
+#include <vector>
+
+#include "sinew/core/types.hpp"
+
+namespace sinew::sim {
+
+/// A point of a zone when a step has ended.
+struct ZonePoint {
+  Vector3 place = Vector3::Zero();   ///< m
+  Matrix3 frame;                     ///< columns: the normal and two tangents
+  Vector3 force = Vector3::Zero();   ///< N, in its frame, that the zone's resultant gives it
+  Vector3 motion = Vector3::Zero();  ///< m, in its frame: gap and slip
+  double friction = 0.0;             ///< Coulomb's coefficient
+};
+
+/// Estimates by a local problem (Bank & Weiser, Math. Comp. 44 (1985) 283): with all other zones as
+/// they are, forces f+ in place of f with
+///   u+ = u + B (f+ - f),   0 <= g+ _|_ r_n+ >= 0,   |r_t+| <= mu r_n+ against u_t+,
+/// B_kl = (b_n n n^T + b_t (1 - n n^T)) / sqrt(|x_k - x_l|^2 + a^2) as in ContactZones, b_n and b_t
+/// from the zone's compliance along and across the normal. Solved by block Gauss-Seidel.
+/// @param points of the zone, each with a force or an overlap. @param compliance (3,) m/N, of its
+/// resultant in the frame of its points. @param spread a, m.
+/// @return (3,) N: the sum of f+ - f, in world axes.
+Vector3 zone_force_change(const std::vector<ZonePoint>& points, const Vector3& compliance,
+                          double spread);
+
+}  // namespace sinew::sim
