@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/contact.hpp"
 #include "sinew/sim/model.hpp"
 
 #include "arrays.hpp"
