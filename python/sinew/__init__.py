@@ -45,6 +45,7 @@ from ._core import (
     view,
 )
 from .errors import Error, Location, Notice, RunError, SinewWarning
+from .high_rate import HighRateLoop, HighRateOutput, HighRateReport, HighRateTimes, Snapshot, UdpReport
 from .scene import load, loads
 
 __all__ = [
@@ -55,6 +56,10 @@ __all__ = [
     "Effector",
     "Load",
     "Error",
+    "HighRateLoop",
+    "HighRateOutput",
+    "HighRateReport",
+    "HighRateTimes",
     "InverseController",
     "Joint",
     "Limits",
@@ -73,11 +78,13 @@ __all__ = [
     "State",
     "Sine",
     "SinewWarning",
+    "Snapshot",
     "StaticReport",
     "StepReport",
     "Steps",
     "Target",
     "Trajectory",
+    "UdpReport",
     "View",
     "__version__",
     "collision",
