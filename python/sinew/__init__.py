@@ -48,6 +48,7 @@ from ._core import (
     view,
 )
 from .errors import Error, Location, Notice, RunError, SinewWarning
+from .high_rate import HighRateLoop, HighRateOutput, HighRateReport, HighRateTimes, Snapshot, UdpReport
 from .notebook import frame_of as _frame_of
 from .scene import load, loads
 
@@ -60,6 +61,10 @@ __all__ = [
     "Effector",
     "Load",
     "Error",
+    "HighRateLoop",
+    "HighRateOutput",
+    "HighRateReport",
+    "HighRateTimes",
     "InverseController",
     "Joint",
     "Limits",
@@ -80,11 +85,13 @@ __all__ = [
     "State",
     "Sine",
     "SinewWarning",
+    "Snapshot",
     "StaticReport",
     "StepReport",
     "Steps",
     "Target",
     "Trajectory",
+    "UdpReport",
     "View",
     "__version__",
     "collision",

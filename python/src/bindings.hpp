@@ -60,6 +60,7 @@ void bind_quantity(py::module_& module);
 void bind_collision(py::module_& module);
 void bind_collision_pairs(py::module_& module);
 void bind_collision_primitives(py::module_& module);
+void bind_high_rate(py::module_& module);
 void bind_identify(py::module_& module);
 void bind_identify_arm(py::module_& module);
 void bind_identify_material(py::module_& module);

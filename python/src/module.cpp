@@ -36,6 +36,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_simulation(module);
   python::bind_batch(module);
   python::bind_controller(module);
+  python::bind_high_rate(module);
   python::bind_view(module);
   python::bind_material(module);
   python::bind_pcc(module);

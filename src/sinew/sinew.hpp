@@ -1,6 +1,6 @@
 /// @file
 /// One include for robots that are built and simulated in C++: meshes, materials, bodies,
-/// actuators, contacts, the simulation and its inverse controller.
+/// actuators, contacts, the simulation, its inverse controller and the high-rate loop.
 ///
 /// Not included, because they pull in files, formats or optional dependencies:
 /// scene files (sinew/scene/build.hpp), records of runs (sinew/record/run_recorder.hpp), both in
@@ -8,6 +8,8 @@
 /// planning (sinew/plan/..., target sinew::plan).
 #pragma once
 
+#include "sinew/control/high_rate_loop.hpp"
+#include "sinew/control/snapshot.hpp"
 #include "sinew/core/build_info.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/file.hpp"

@@ -1,0 +1,98 @@
+#!/usr/bin/env python3
+"""A hand on a virtual wall of 1 N/mm at 1 kHz: the energy that the wall creates with passivity control and without, and
+the force that the hand feels as a number and an arrow, in a figure beside this script or in the folder given.
+
+    wall.py [FOLDER]      on an ideal clock
+    wall.py --live        ten seconds in a thread of its own: the arrow in the terminal, then how late periods began
+"""
+
+import sys
+import time
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+import sinew
+
+STIFFNESS, RATE, DURATION, SEED = 1000.0, 1000.0, 60.0, 1  # N/m, 1/s, s
+WALL = sinew.Snapshot(np.array([[1.0 / STIFFNESS]]), np.zeros(1))
+
+
+def hand(times):
+    """m: eight sines of up to 6 Hz with seeded phases, at most 10 mm, in the wall where positive."""
+    random = np.random.default_rng(SEED)
+    frequencies, phases = np.r_[6.0, random.uniform(0.2, 6.0, 7)], random.uniform(0.0, 2.0 * np.pi, 8)
+    place = np.sin(2.0 * np.pi * np.multiply.outer(times, frequencies) + phases).sum(axis=1)
+    return 10e-3 * place / np.abs(place).max()
+
+
+def feel(places, passivity):
+    """Forces of the hand (N), the energy created (J) and the mean damping in the wall (N s/m)."""
+    loop = sinew.HighRateLoop(None, hands=["hand"], rate=RATE, passivity=passivity)
+    forces, energies, damping = np.zeros((3, len(places)))
+    for k, place in enumerate(places):
+        if k % 10 == 0:
+            loop.publish(WALL)  # a model of 100 Hz
+        loop.set_input(hands={"hand": place})
+        loop.advance()
+        output = loop.output
+        forces[k], energies[k], damping[k] = output.hands["hand"], output.energy_created, output.damping
+    return forces, energies, damping[(forces > 0.0) & (np.gradient(places) != 0.0)].mean()
+
+
+def draw(times, places, found, folder):
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4))
+    some = times < 1.0
+    left.plot(times[some], 1e3 * places[some], "k", lw=1)
+    left.axhspan(0.0, 11.0, color="0.85", label="wall")
+    forces = found[True][0]
+    for k in np.flatnonzero(some)[::40]:
+        if forces[k] > 0.0:
+            left.annotate("", (times[k], 1e3 * places[k] - 0.8 * forces[k]), (times[k], 1e3 * places[k]),
+                          arrowprops={"arrowstyle": "->", "color": "C3"})  # fmt: skip
+            left.text(times[k], 1e3 * places[k] + 0.3, f"{forces[k]:.1f}", ha="center", fontsize=7, color="C3")
+    left.set(xlabel="time (s)", ylabel="hand (mm)", title="force that the hand feels (N)", ylim=(-11, 11))
+    for passivity, name in ((True, "passivity controlled"), (False, "not controlled")):
+        right.plot(times, 1e3 * found[passivity][1], label=name)
+    right.set(xlabel="time (s)", ylabel="energy created (mJ)")
+    right.legend()
+    figure.tight_layout()
+    figure.savefig(folder / "wall.png", dpi=110)
+
+
+def live():
+    loop = sinew.HighRateLoop(None, hands=["hand"], rate=RATE)
+    begin = time.monotonic()
+    with loop:
+        while (now := time.monotonic() - begin) < 10.0:
+            loop.publish(WALL)
+            loop.set_input(hands={"hand": 8e-3 * np.sin(2.0 * np.pi * 0.5 * now)})
+            force = loop.output.hands["hand"]
+            print(f"\r{force:6.2f} N  {'<' + '-' * round(5.0 * force) if force > 0.0 else '':50}", end="", flush=True)
+            time.sleep(0.01)
+    report, late = loop.report, loop.lateness
+    print(f"\n{report.scheduling}; {report.missed} of {report.periods} periods missed")
+    print("periods began late by", ", ".join(f"{1e6 * late.quantile(part):.0f} us ({part:.1%})" for part in (0.5, 0.99, 0.999)))
+
+
+def main():
+    if sys.argv[1:] == ["--live"]:
+        return live()
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent
+    times = np.arange(0.0, DURATION, 1.0 / RATE)
+    places = hand(times)
+    found = {passivity: feel(places, passivity) for passivity in (True, False)}
+    pressed = found[False][0][:-1] > 0.0
+    theory = 0.5 * STIFFNESS * (np.diff(places)[pressed] ** 2).sum()
+    for passivity, (forces, energies, damping) in found.items():
+        name = "with passivity control" if passivity else "without"
+        print(f"{name}: {1e3 * energies[-1]:.2f} mJ created, {forces.max():.2f} N at most, {damping:.3f} N s/m added")
+    print(f"K T/2 = {0.5 * STIFFNESS / RATE:.3f} N s/m, of which theory has {1e3 * theory:.2f} mJ created")
+    draw(times, places, found, folder)
+
+
+if __name__ == "__main__":
+    main()
