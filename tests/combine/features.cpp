@@ -158,11 +158,13 @@ std::vector<Feature> list_features() {
       {"cable_end", {"own", "link"}},
       {"effector", or_none(without(alternatives(effector, "point"), "points"))},
       {"probe", or_none(without(alternatives(probe, "point"), "points"))},
+      {"sensor", or_none(words(variants(items("sensors"), "type")))},
       {"controller", or_none(words(variants(items("controllers"), "type")))},
       {"regularisation", words(map_of(controller, "regularisation"), "of")},
       {"membrane", switched},
       {"contact_zones", switched},
       {"kinetic_friction", switched},
+      {"force_task", {"none", "force", "limits", "reserve"}},
   };
 }
 

@@ -112,10 +112,11 @@ class Drafter {
     add_contact();
     add_effector();
     add_probe();
+    add_sensor();
     add_controller();
     SceneDraft draft{settings_, {}};
     for (const char* section : {"bodies", "actuators", "loads", "masses", "membranes", "effectors",
-                                "probes", "contacts", "joints", "controllers"}) {
+                                "probes", "sensors", "contacts", "joints", "controllers"}) {
       if (!sections_[section].empty()) draft.sections.emplace_back(section, sections_[section]);
     }
     return draft;
@@ -634,6 +635,62 @@ class Drafter {
     add("probes", "gauge", fmt::format("{{body: <{}>, outside: nearest, {}}}", on->id, what));
   }
 
+  bool stands(const char* section, std::string_view id) {
+    return std::ranges::any_of(sections_[section], [&](const Item& one) { return one.id == id; });
+  }
+
+  // What a sensor of a type reads; empty where the robot has no such thing.
+  std::string sensed(const std::string& kind, const Body& on) {
+    const BodyShape& shape = on.shape;
+    const std::string middle = vector_text(shape.at(0.5, 0.2, 0.0));
+    const std::string end = vector_text(shape.at(0.9, 0.2, 0.0));
+    const std::string own = fmt::format("body: <{}>, outside: nearest, ", on.id);
+    const std::string line = fmt::format("{}line: [{}, {}]", own, middle, end);
+    const std::string frame = on.fem ? fmt::format("{}at: [{}, {}, {}]", own, end, middle,
+                                                   vector_text(shape.at(0.9, 0.0, 0.5)))
+                                     : own + "at: " + end;
+    const char* cable = stands("actuators", "cable_0") ? "actuator: <cable_0>" : "";
+    const char* air = stands("actuators", "chamber") ? "actuator: <chamber>" : "";
+    const char* floor = stands("contacts", "floor") ? "contact: <floor>" : "";
+    const std::string winch =
+        *cable == '\0' ? "" : fmt::format("{}, torque_constant: 0.05 N m/A, radius: 8 mm", cable);
+    const std::string plates =
+        on.fem ? fmt::format("body: <{}>, electrodes: [{{set: {}}}, {{set: {}}}]", on.id,
+                             shape.base, shape.tip)
+               : "";
+    return look_up("sensor", kind,
+                   {{"marker", own + "point: " + end},
+                    {"orientation", frame},
+                    {"gyroscope", frame},
+                    {"accelerometer", frame},
+                    {"cable-length", cable},
+                    {"cable-tension", cable},
+                    {"pressure", air},
+                    {"volume", air},
+                    {"flow", air},
+                    {"motor-current", winch},
+                    {"stretch", line},
+                    {"resistance", line + ", resistance: 1 kOhm, gauge_factor: 2"},
+                    {"curvature", line + ", places: [12 mm]"},
+                    {"attenuation", line + ", loss_per_turn: 1 dB"},
+                    {"capacitance", plates},
+                    {"contact-force", floor},
+                    {"touch", floor}});
+  }
+
+  void add_sensor() {
+    if (!has("sensor")) return;
+    std::string kind = of("sensor");
+    const Body& on = some_body();
+    std::string what = sensed(kind, on);
+    if (what.empty()) {
+      kind = "marker";
+      what = sensed(kind, on);
+    }
+    add("sensors", "sense",
+        fmt::format("{{type: {}, {}, delay: 15 ms, dropout: 20 %}}", kind, what));
+  }
+
   void add_controller() {
     if (!has("controller") || steerable_.empty()) return;
     if (of("controller") != "inverse") unknown("controller", of("controller"));
@@ -647,9 +704,20 @@ class Drafter {
       if (random_.below(3) == 0) break;  // others obey their commands
     }
     add("controllers", "follow",
-        fmt::format("{{type: inverse, effectors: {{<tip>: {{{}}}}}, actuators: [{}], "
+        fmt::format("{{type: inverse, effectors: {{<tip>: {{{}}}}}, actuators: [{}], {}"
                     "regularisation: {{of: {}}}}}",
-                    task, actuators, of("regularisation")));
+                    task, actuators, force_task(), of("regularisation")));
+  }
+
+  // What the controller asks of the contact with the floor.
+  std::string force_task() {
+    if (!has("force_task") || !stands("contacts", "floor")) return "";
+    const std::string& kind = of("force_task");
+    const bool reserved = kind == "reserve" && has("contact_friction");
+    return fmt::format("contacts: {{<floor>: {{{}}}}}, ",
+                       kind == "force" ? "normal_force: 100 mN"
+                       : reserved      ? "slip: false, reserve: 0.2"
+                                       : "normal_force: {min: 50 mN, max: 1 N}");
   }
 
   const Selection& selection_;

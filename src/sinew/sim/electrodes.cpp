@@ -39,9 +39,9 @@ std::vector<constraint::ElectrodeTriangle> attach_electrode(
     const SensorCapacitance::Electrode& other, const Location& place) {
   const Points& here = attacher.on(own.body).mesh().nodes;
   mechanics::BodyModel& across = attacher.on(other.body);
-  const std::vector<mesh::Triangle> others = mesh::triangles_of(other.faces);
+  const std::vector<mesh::Triangle> others = mesh::triangles_of(across.mesh().nodes, other.faces);
   std::vector<constraint::ElectrodeTriangle> result;
-  for (const mesh::Triangle& triangle : mesh::triangles_of(own.faces)) {
+  for (const mesh::Triangle& triangle : mesh::triangles_of(here, own.faces)) {
     Vector3 middle = Vector3::Zero();
     for (const NodeId node : triangle) middle += corner(here, node) / 3.0;
     const Opposite opposite = find_opposite(middle, across.mesh().nodes, others);
