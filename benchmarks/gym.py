@@ -214,6 +214,8 @@ def main():
     restore, reset, again, size = reset_times(given.task)
     print(f"restore of a state of {size} bytes: {restore:.0f} us; reset of an environment: {reset:.0f} us; sim.reset(): {again:.0f} us")
     made = sinew.gym.make_vec(given.task, 1)
+    made.reset(seed=0)
+    made.step(random_actions(made, 1)[0])
     print(f"memory of an environment's simulation: {made.memory / 1e6:.2f} MB")
 
 

@@ -79,7 +79,9 @@ void bind_balance(SimulationType& type) {
           "energies gained: the integrator's, and what solve_static(), follow_path() and a moved "
           "base put in.")
       .def_property_readonly("memory", guarded([](const sim::Simulation& s) { return s.bytes(); }),
-                             "int: bytes of this simulation without the model that it shares.");
+                             "int: bytes of this simulation without the model that it shares. Of "
+                             "many simulations of a model only those that are in a step hold a "
+                             "factor; between steps it is not counted.");
 }
 
 void bind_scene(SimulationType& type) {

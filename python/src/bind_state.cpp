@@ -20,24 +20,27 @@ void bind_state(py::module_& module) {
       "Simulation.state(); states of one robot compare, copy and pickle.")
       .def_property_readonly("steps", &SavedState::steps, "int: since the start.")
       .def_property_readonly(
-          "bytes", [](const SavedState& self) { return py::bytes(self.bytes); },
+          "bytes", [](const SavedState& self) { return py::bytes(self.bytes()); },
           "bytes: as Simulation.save_state() writes them.")
-      .def("__eq__", [](const SavedState& a, const SavedState& b) { return a.bytes == b.bytes; })
+      .def("__eq__",
+           [](const SavedState& a, const SavedState& b) { return a.bytes() == b.bytes(); })
       .def("__eq__", [](const SavedState&, const py::object&) { return false; })
-      .def("__hash__", [](const SavedState& self) { return std::hash<std::string>{}(self.bytes); })
+      .def("__hash__",
+           [](const SavedState& self) { return std::hash<std::string>{}(self.bytes()); })
       .def("__copy__", [](const SavedState& self) { return self; })
       .def("__deepcopy__", [](const SavedState& self, const py::dict&) { return self; })
       .def("__repr__",
            [](const SavedState& self) {
              return fmt::format("<sinew.State after {} steps, {} bytes>", self.steps(),
-                                self.bytes.size());
+                                self.bytes().size());
            })
-      .def(py::pickle([](const SavedState& self) { return py::make_tuple(py::bytes(self.bytes)); },
-                      [](const py::tuple& parts) {
-                        SavedState state{parts[0].cast<std::string>()};
-                        state.steps();  // refuses what is no state
-                        return state;
-                      }));
+      .def(
+          py::pickle([](const SavedState& self) { return py::make_tuple(py::bytes(self.bytes())); },
+                     [](const py::tuple& parts) {
+                       SavedState state(parts[0].cast<std::string>());
+                       state.steps();  // refuses what is no state
+                       return state;
+                     }));
 }
 
 }  // namespace sinew::python

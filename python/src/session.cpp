@@ -14,6 +14,7 @@
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
 #include "sinew/sim/watched.hpp"
+#include "sinew/sim/world.hpp"
 
 #include "errors.hpp"
 
@@ -34,6 +35,9 @@ sim::Watched look_for_signals(sim::Simulation& simulation) {
           }};
 }
 
+// Python's simulations are many, as environments are: one that is not in a step needs no factor.
+void lend_factors(sim::Simulation& simulation) { simulation.world().bodies().release(); }
+
 }  // namespace
 
 mechanics::Tangent to_tangent(const std::string& word, const std::string& argument) {
@@ -41,6 +45,20 @@ mechanics::Tangent to_tangent(const std::string& word, const std::string& argume
   throw Error(ErrorKind::unknown_choice, {.item = argument},
               fmt::format("there is no tangent '{}'", word),
               "use 'exact', 'projected' or 'rotated'");
+}
+
+const std::string& SavedState::bytes() const {
+  if (bytes_.empty() && state_ != nullptr) bytes_ = sim::format_state(*state_, *model_);
+  return bytes_;
+}
+
+const sim::State* SavedState::of(const sim::Model& model) const {
+  if (state_ == nullptr || model_->fingerprint() != model.fingerprint()) return nullptr;
+  return state_.get();
+}
+
+std::int64_t SavedState::steps() const {
+  return state_ != nullptr ? state_->steps : sim::read_state_header(bytes_, "state").steps;
 }
 
 Session::Use::Use(const Session& session) : session_(session) {
@@ -99,6 +117,7 @@ void Session::advance(std::int64_t count) {
     }
     if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
   }
+  lend_factors(simulation_);
   warn();
 }
 
@@ -109,8 +128,9 @@ void Session::advance_unlocked(std::int64_t count, const std::function<bool()>& 
     simulation_.step();
     note_status();
     steps_.store(simulation_.steps(), std::memory_order_relaxed);
-    if (ended()) return;
+    if (ended()) break;
   }
+  lend_factors(simulation_);
 }
 
 void Session::note_status() {
@@ -136,7 +156,9 @@ sim::StaticReport Session::solve_static(const sim::StaticSettings& settings) {
   check_loads();
   const sim::Watched watched = look_for_signals(simulation_);
   const pybind11::gil_scoped_release release;
-  return simulation_.solve_static(settings);
+  const sim::StaticReport report = simulation_.solve_static(settings);
+  lend_factors(simulation_);
+  return report;
 }
 
 std::vector<sim::PathPoint> Session::follow_path(const sim::PathSettings& settings,
@@ -160,18 +182,15 @@ void Session::reset() {
 
 SavedState Session::state() const {
   const Use use(*this);
-  auto state = std::make_shared<const sim::State>(simulation_.state());
-  const sim::Model& model = simulation_.model();
-  std::string bytes = sim::format_state(*state, model);
-  return {std::move(bytes), std::move(state), model.fingerprint()};
+  return {std::make_shared<const sim::State>(simulation_.state()), simulation_.shared_model()};
 }
 
 void Session::restore(const SavedState& state) {
   const Use use(*this);
-  if (state.state != nullptr && state.fingerprint == simulation_.model().fingerprint()) {
-    simulation_.restore(*state.state);
+  if (const sim::State* known = state.of(simulation_.model())) {
+    simulation_.restore(*known);
   } else {
-    sim::parse_state(simulation_, state.bytes, "state");
+    sim::parse_state(simulation_, state.bytes(), "state");
   }
   steps_ = simulation_.steps();
 }

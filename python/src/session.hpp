@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sinew/inverse/inverse_controller.hpp"
@@ -40,16 +41,25 @@ struct LoadedRobot {
 /// @param argument as "linearise(tangent)".
 mechanics::Tangent to_tangent(const std::string& word, const std::string& argument);
 
-/// A state as bytes, see sim/state_io.hpp.
-struct SavedState {
-  std::string bytes;
-  /// What the bytes say, where they were made in this process, and the fingerprint of the model;
-  /// null: they have to be read.
-  std::shared_ptr<const sim::State> state = nullptr;
-  std::uint64_t fingerprint = 0;
+/// A state of a simulation of this process, or the bytes of one (sim/state_io.hpp).
+class SavedState {
+ public:
+  explicit SavedState(std::string bytes) : bytes_(std::move(bytes)) {}
+  SavedState(std::shared_ptr<const sim::State> state, std::shared_ptr<const sim::Model> model)
+      : state_(std::move(state)), model_(std::move(model)) {}
 
+  /// Of a state of this process made when they are first asked for, with the interpreter's lock:
+  /// most states are only restored.
+  const std::string& bytes() const;
+  /// Null where only bytes are known, or the model is another one.
+  const sim::State* of(const sim::Model& model) const;
   /// Throws Error(state-corrupt), Error(state-version).
-  std::int64_t steps() const { return sim::read_state_header(bytes, "state").steps; }
+  std::int64_t steps() const;
+
+ private:
+  mutable std::string bytes_;  // empty: not made yet
+  std::shared_ptr<const sim::State> state_;
+  std::shared_ptr<const sim::Model> model_;
 };
 
 /// See the file.

@@ -277,6 +277,16 @@ def test_a_run_that_cannot_go_on_terminates(monkeypatch):
     assert same(observations[1], before[1])
 
 
+def test_environments_hold_no_factor_between_steps():
+    for name in ("trunk-reach", "trunk-damp"):
+        envs = sinew.gym.make_vec(name, 3, threads=2)
+        with pytest.raises(sinew.Error, match="reset"):
+            envs.memory
+        envs.reset(seed=0)
+        envs.step(np.zeros((3, 8)))
+        assert envs.memory < 2.0e6  # bytes, what the trunk's factor has alone
+
+
 # Simulations that are stepped with one call
 
 

@@ -79,6 +79,7 @@ TEST(Allocation, NumericPhaseAllocatesNothing) {
         factorisation->factorise(system.matrix, system.rows, system.right);
         factorisation->solve_with_effort(effort, std::span(x).first(system.right.size()));
         factorisation->solve(x, x, 3);
+        factorisation->release();
       }
       EXPECT_EQ(allocations.load(), before) << threads << " threads";
       EXPECT_EQ(factorisation->negative_pivots() > 0, indefinite);

@@ -7,6 +7,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/linalg/dense.hpp"
+#include "sinew/linalg/factor_memory.hpp"
 
 #include "mesh_matrices.hpp"
 
@@ -358,7 +359,9 @@ TEST(Factorisation, PlanTellsWhatItCosts) {
     EXPECT_GE(plan->factor_entries(), stored);
     EXPECT_GT(plan->factor_flops(), static_cast<double>(plan->factor_entries()));
     ThreadPool pool(1);
-    EXPECT_GE(plan->create(pool)->bytes(), plan->factor_entries() * sizeof(double));
+    const auto factorisation = plan->create(pool);
+    factorise(*factorisation, system);
+    EXPECT_GE(factorisation->bytes(), plan->factor_entries() * sizeof(double));
   }
 }
 
@@ -416,6 +419,93 @@ TEST(Factorisation, RejectsWhatDoesNotFit) {
   BlockPattern pattern = system.pattern;
   std::swap(pattern.row[0], pattern.row[1]);
   EXPECT_EQ(kind_of(pattern, system.border, {}), ErrorKind::index_out_of_range);
+}
+
+// Factorisations of one plan lend each other the memory of their factors.
+
+BlockSystem system_of(unsigned seed) {
+  testing::RandomSettings random;
+  random.nodes = 60;
+  random.rows = 5;
+  random.seed = seed;
+  return testing::random_system(random);
+}
+
+/// W and A^-1 b of a system whose pattern the plan is of.
+struct Answer {
+  MatrixX compliance;
+  VectorX motion;
+
+  Answer(Factorisation& factorisation, const BlockSystem& system) : motion(system.size()) {
+    factorisation.factorise(system.matrix, system.rows, system.right);
+    compliance = factorisation.compliance();
+    const auto size = static_cast<std::size_t>(motion.size());
+    factorisation.solve(system.right, {motion.data(), size});
+  }
+  bool operator==(const Answer& other) const {
+    return compliance == other.compliance && motion == other.motion;
+  }
+};
+
+TEST(FactorMemory, GivesWhatWasGivenBackLast) {
+  FactorMemory memory(100);
+  AlignedBuffer first = memory.take(), second = memory.take();
+  ASSERT_EQ(first.size(), 100U);
+  const double* const place = second.data();
+  EXPECT_NE(first.data(), place);
+  memory.give_back(std::move(first));
+  memory.give_back(std::move(second));
+  EXPECT_EQ(memory.take().data(), place);
+}
+
+TEST(FactorMemory, OfFactorisationsInTurnHoldsOneFactor) {
+  ThreadPool pool(1);
+  const BlockSystem system = system_of(1);
+  BlockSystem softer = system;
+  for (double& value : softer.matrix) value *= 0.5;
+  const auto plan = analyse(system.pattern, system.border, {});
+  const auto first = plan->create(pool), second = plan->create(pool);
+  const std::size_t empty = first->bytes();
+  const Answer alone(*first, system);
+  const std::size_t factor = first->bytes() - empty;
+  EXPECT_GE(factor, sizeof(double) * plan->factor_entries());
+  first->release();
+  first->release();  // once more does no harm
+  EXPECT_EQ(first->bytes(), empty);
+  EXPECT_EQ(first->compliance(), alone.compliance);  // results stay
+  const Answer other(*second, softer);
+  VectorX x(system.size());
+  const std::span<double> solution(x.data(), static_cast<std::size_t>(x.size()));
+  const std::vector<double> effort(5, 1.0);
+  EXPECT_THROW(first->solve(system.right, solution), Error);
+  EXPECT_THROW(first->solve_with_effort(effort, solution), Error);
+  EXPECT_THROW(first->condense_transient(system.border, system.rows), Error);
+  second->release();
+  EXPECT_TRUE(Answer(*first, system) == alone);  // where the other one's factor stood
+  first->release();
+  EXPECT_TRUE(Answer(*second, softer) == other);
+}
+
+TEST(FactorMemory, ServesThreads) {
+  const BlockSystem system = system_of(2);
+  const auto plan = analyse(system.pattern, system.border, {});
+  ThreadPool pool(1);
+  const auto reference = plan->create(pool);
+  const Answer expected(*reference, system);
+  std::vector<int> wrong(4, 0);
+  std::vector<std::thread> threads;
+  for (int& count : wrong) {
+    threads.emplace_back([&] {
+      ThreadPool own(1);
+      const auto factorisation = plan->create(own);
+      for (int k = 0; k < 200; ++k) {
+        if (!(Answer(*factorisation, system) == expected)) ++count;
+        factorisation->release();
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(wrong, std::vector<int>(4, 0));
 }
 
 }  // namespace

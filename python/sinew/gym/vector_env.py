@@ -186,8 +186,9 @@ class VectorEnv(VectorEnvBase):
 
     @property
     def memory(self) -> int:
-        """Bytes of an environment's simulation, without the shared model."""
-        return self.episodes[0].model.first.sim.memory
+        """Bytes of an environment's simulation between steps, without the shared model. It is to be reset before."""
+        self._check_begun(ended=True)
+        return self.episodes[0].robot.sim.memory
 
     def __repr__(self) -> str:
         return f"VectorEnv({self.task.name!r}, num_envs={self.num_envs}, threads={self.threads}, {self.autoreset_mode.name})"

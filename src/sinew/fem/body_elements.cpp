@@ -101,6 +101,12 @@ void BodyElements::end_step(double time_step) {
   prepared_step_.reset();
 }
 
+void BodyElements::release() {
+  for (SystemNumbers* n : {plain_.get(), curved_.get()}) {
+    if (n != nullptr) n->factorisation->release();
+  }
+}
+
 double BodyElements::strain_energy() {
   // What relaxing parts store beside the law's energy is not in it.
   prepare_history(0.0);

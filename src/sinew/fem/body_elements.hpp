@@ -42,6 +42,9 @@ class BodyElements {
   /// What elements keep follows. @param time_step s, 0 in statics.
   void end_step(double time_step);
 
+  /// Lends the memory of factors to other bodies of the model.
+  void release();
+
   double strain_energy();  ///< J, at the present positions
   mechanics::SmallestVolume smallest_volume();
   std::size_t bytes() const;

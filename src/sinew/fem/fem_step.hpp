@@ -42,6 +42,7 @@ class FemStep : public mechanics::StepSystem {
   mechanics::MotionReport apply_motion(double scale) override;
   mechanics::SmallestVolume smallest_volume() override { return elements_.smallest_volume(); }
   mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;
+  void release() override { elements_.release(); }
   bool can_carry_on() const override;
   void scale_motion(double factor) override;
   void add_velocity(std::span<const double> change) override;

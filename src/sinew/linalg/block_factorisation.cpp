@@ -2,10 +2,12 @@
 #include <memory>
 #include <utility>
 
+#include "sinew/core/error.hpp"
 #include "sinew/linalg/backends.hpp"
 #include "sinew/linalg/block_numeric.hpp"
 #include "sinew/linalg/block_schedule.hpp"
 #include "sinew/linalg/block_symbolic.hpp"
+#include "sinew/linalg/factor_memory.hpp"
 #include "sinew/linalg/transient_rows.hpp"
 
 namespace sinew::linalg {
@@ -18,10 +20,11 @@ constexpr double kDissectionBonus = 1.1;
 
 class BlockFactorisation final : public Factorisation {
  public:
-  BlockFactorisation(std::shared_ptr<const BlockSymbolic> symbolic, ThreadPool& pool)
+  BlockFactorisation(std::shared_ptr<const BlockSymbolic> symbolic,
+                     std::shared_ptr<FactorMemory> memory, ThreadPool& pool)
       : symbolic_(std::move(symbolic)),
         pool_(pool),
-        numeric_(*symbolic_, pool.size()),
+        numeric_(*symbolic_, std::move(memory), pool.size()),
         schedule_(*symbolic_, pool.size()),
         transient_(*symbolic_),
         unknowns_(3 * static_cast<std::size_t>(symbolic_->nodes)),
@@ -31,6 +34,7 @@ class BlockFactorisation final : public Factorisation {
 
   FactorStatus factorise(std::span<const double> matrix, std::span<const double> border,
                          std::span<const double> right) override {
+    numeric_.begin();
     schedule_.factorise(numeric_, {matrix.data(), border.data(), right.data()}, pool_);
     read_border();
     if (numeric_.singular()) return FactorStatus::singular;
@@ -42,7 +46,10 @@ class BlockFactorisation final : public Factorisation {
   const VectorX& free_motion() const override { return free_motion_; }
   double free_energy() const override { return free_energy_; }
 
+  void release() override { numeric_.release(); }
+
   void solve_with_effort(std::span<const double> effort, std::span<double> x) override {
+    check_factor();
     std::fill_n(unknowns_.data(), unknowns_.size(), 0.0);
     std::copy(effort.begin(), effort.end(), weights_.data());
     weights_.data()[symbolic_->border_rows] = 1.0;
@@ -51,6 +58,7 @@ class BlockFactorisation final : public Factorisation {
   }
 
   void solve(std::span<const double> right, std::span<double> x, int count) override {
+    check_factor();
     const std::size_t size = unknowns_.size();
     std::fill_n(weights_.data(), weights_.size(), 0.0);
     for (std::size_t c = 0; c < static_cast<std::size_t>(count); ++c) {
@@ -62,6 +70,7 @@ class BlockFactorisation final : public Factorisation {
   }
 
   void condense_transient(const BorderPattern& rows, std::span<const double> values) override {
+    check_factor();
     transient_.condense(numeric_, rows, values);
   }
   const MatrixX& transient_compliance() const override { return transient_.compliance(); }
@@ -76,6 +85,11 @@ class BlockFactorisation final : public Factorisation {
   }
 
  private:
+  void check_factor() const {
+    if (numeric_.holds_factor()) return;
+    throw Error(ErrorKind::internal, {}, "a factor is asked for that was given back");
+  }
+
   void read_border() {
     const int rows = symbolic_->border_rows;
     for (int j = 0; j < rows; ++j) {
@@ -115,7 +129,9 @@ class BlockFactorisation final : public Factorisation {
 class BlockPlan final : public FactorisationPlan {
  public:
   BlockPlan(std::shared_ptr<const BlockSymbolic> symbolic, Ordering ordering)
-      : symbolic_(std::move(symbolic)), ordering_(ordering) {}
+      : symbolic_(std::move(symbolic)),
+        ordering_(ordering),
+        memory_(std::make_shared<FactorMemory>(BlockNumeric::factor_size(*symbolic_))) {}
 
   std::string_view backend() const override { return "block"; }
   std::string_view ordering() const override {
@@ -126,12 +142,13 @@ class BlockPlan final : public FactorisationPlan {
   }
   double factor_flops() const override { return symbolic_->flops; }
   std::unique_ptr<Factorisation> create(ThreadPool& pool) const override {
-    return std::make_unique<BlockFactorisation>(symbolic_, pool);
+    return std::make_unique<BlockFactorisation>(symbolic_, memory_, pool);
   }
 
  private:
   std::shared_ptr<const BlockSymbolic> symbolic_;
   Ordering ordering_;
+  std::shared_ptr<FactorMemory> memory_;
 };
 
 }  // namespace

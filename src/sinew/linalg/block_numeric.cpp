@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <utility>
 
 #include "sinew/linalg/dense_kernels.hpp"
 #include "sinew/linalg/index.hpp"
@@ -31,9 +32,10 @@ void place_transposed(const double* block, double* to, long leading) {
 
 }  // namespace
 
-BlockNumeric::BlockNumeric(const BlockSymbolic& symbolic, int threads)
+BlockNumeric::BlockNumeric(const BlockSymbolic& symbolic, std::shared_ptr<FactorMemory> memory,
+                           int threads)
     : symbolic_(&symbolic),
-      factor_(static_cast<std::size_t>(symbolic.doubles) + kOverrun),
+      memory_(std::move(memory)),
       inverse_(3 * at(symbolic.nodes)),
       sign_(3 * at(symbolic.nodes)),
       negatives_(at(symbolic.panel_count())),
@@ -54,6 +56,18 @@ BlockNumeric::BlockNumeric(const BlockSymbolic& symbolic, int threads)
     scratch.values = AlignedBuffer(at(symbolic.max_leading) + kOverrun);
     scratch.column_place.resize(width / 3);
   }
+}
+
+std::size_t BlockNumeric::factor_size(const BlockSymbolic& symbolic) {
+  return static_cast<std::size_t>(symbolic.doubles) + kOverrun;
+}
+
+void BlockNumeric::begin() {
+  if (!holds_factor()) factor_ = memory_->take();
+}
+
+void BlockNumeric::release() {
+  if (holds_factor()) memory_->give_back(std::exchange(factor_, {}));
 }
 
 void BlockNumeric::assemble(int p, const BlockInput& input) {

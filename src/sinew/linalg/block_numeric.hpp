@@ -10,6 +10,7 @@
 #include "sinew/linalg/aligned_buffer.hpp"
 #include "sinew/linalg/block_symbolic.hpp"
 #include "sinew/linalg/dense_kernels.hpp"
+#include "sinew/linalg/factor_memory.hpp"
 
 namespace sinew::linalg {
 
@@ -31,7 +32,16 @@ class BlockNumeric {
     std::vector<int> column_place;  ///< of an update's nodes in the target
   };
 
-  BlockNumeric(const BlockSymbolic& symbolic, int threads);
+  /// @param symbolic must outlive this. @param memory of factors of factor_size(symbolic).
+  BlockNumeric(const BlockSymbolic& symbolic, std::shared_ptr<FactorMemory> memory, int threads);
+  /// Doubles.
+  static std::size_t factor_size(const BlockSymbolic& symbolic);
+
+  /// Takes memory for the factor, where it holds none. Before the first panel.
+  void begin();
+  /// Gives it back.
+  void release();
+  bool holds_factor() const { return factor_.size() > 0; }
 
   /// Sets panel rows to the entries of A, H and b.
   void assemble(int panel, const BlockInput& input);
@@ -70,7 +80,8 @@ class BlockNumeric {
   void apply(const Update& update, const Panel& target, double* panel, int row_begin, int row_end,
              Scratch& scratch) const;
   const BlockSymbolic* symbolic_;
-  AlignedBuffer factor_;
+  std::shared_ptr<FactorMemory> memory_;
+  AlignedBuffer factor_;   ///< empty: given back
   AlignedBuffer inverse_;  ///< 1 / L_jj; before a panel is factorised, the magnitude of A_jj
   AlignedBuffer sign_;
   AlignedBuffer border_sums_;

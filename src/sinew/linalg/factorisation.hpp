@@ -34,7 +34,8 @@ struct FactorisationSettings {
   bool operator==(const FactorisationSettings&) const = default;
 };
 
-/// Numeric phase, one per simulation. After construction nothing allocates.
+/// Numeric phase, one per simulation. After construction nothing allocates, but the first
+/// factorise() where no other factorisation of the plan has given memory back.
 class Factorisation {
  public:
   virtual ~Factorisation() = default;
@@ -45,6 +46,10 @@ class Factorisation {
   /// @param right (3 n,) b.
   virtual FactorStatus factorise(std::span<const double> matrix, std::span<const double> border,
                                  std::span<const double> right) = 0;
+
+  /// Lends the memory of the factor to other factorisations of the plan, until the next
+  /// factorise(). Results stay; solving and condensing throw Error(internal) until then.
+  virtual void release() {}
 
   /// W = H A^-1 H^T, (m, m), symmetric, both triangles filled. Valid after factorise().
   virtual const MatrixX& compliance() const = 0;

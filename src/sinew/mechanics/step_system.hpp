@@ -129,6 +129,8 @@ class StepSystem {
   /// Of the current state, which is finite; costs nothing where it is linearised.
   virtual SmallestVolume smallest_volume() { return {}; }
   virtual StepEnd end_step(const StepWeights& weights) = 0;
+  /// Nothing is asked of the last condensation any more: other simulations may use its memory.
+  virtual void release() {}
 
   /// Whether the second half of a step may repeat the motion of the first: not where a base moves
   /// or the material remembers its strain.

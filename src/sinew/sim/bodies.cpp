@@ -173,6 +173,10 @@ void Bodies::add_velocity(const VectorX& change) {
                 [](auto& system, std::span<const double> part) { system.add_velocity(part); });
 }
 
+void Bodies::release() {
+  for (auto* system : systems_) system->release();
+}
+
 double Bodies::end_step(const mechanics::StepWeights& weights) {
   double worst = 0.0;
   for (std::size_t i = 0; i < systems_.size(); ++i) {

@@ -71,6 +71,8 @@ class Bodies {
   void add_velocity(const VectorX& change);
   /// The largest error estimate of any body, m.
   double end_step(const mechanics::StepWeights& weights);
+  /// See mechanics::StepSystem.
+  void release();
   /// What the last step of each came to.
   std::span<const mechanics::StepEnd> ends() const { return ends_; }
 
