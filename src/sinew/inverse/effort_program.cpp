@@ -198,7 +198,8 @@ LawStatus EffortProgram::solve_guarded(const StepProblem& problem, const Respons
   const Eigen::Index count = program_.gradient.size();
   const auto guards = static_cast<Eigen::Index>(response.guards().size());
   if (guarded_.rows.rows() < count + guards || guarded_.gradient.size() != count) {
-    const int rows = static_cast<int>(count + guards + guards / 2 + 16);
+    // A multiple of the widest vectors: how many rows are empty changes no bit of the others.
+    const auto rows = static_cast<int>((count + guards + guards / 2 + 32) / 16 * 16);
     guarded_ = qp::QuadraticProgram::sized(static_cast<int>(count), rows);
     guarded_solver_ = qp::QpSolver(static_cast<int>(count), rows);
   }

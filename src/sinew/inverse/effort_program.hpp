@@ -66,7 +66,8 @@ class EffortProgram {
   step::LawStatus solve(const sim::Model& model, const step::StepProblem& problem,
                         const step::Response& response, std::span<double> effort);
   /// The same within the response's guards, too. Failed where nothing is.
-  /// @param tight whether those that are tight have no slack.
+  /// @param problem,response,effort as there. @param tight whether those that are tight have no
+  /// slack.
   step::LawStatus solve_guarded(const step::StepProblem& problem, const step::Response& response,
                                 bool tight, std::span<double> effort);
 

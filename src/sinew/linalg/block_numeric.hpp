@@ -33,6 +33,7 @@ class BlockNumeric {
   };
 
   /// @param symbolic must outlive this. @param memory of factors of factor_size(symbolic).
+  /// @param threads that factorise.
   BlockNumeric(const BlockSymbolic& symbolic, std::shared_ptr<FactorMemory> memory, int threads);
   /// Doubles.
   static std::size_t factor_size(const BlockSymbolic& symbolic);

@@ -1,21 +1,21 @@
 /// @file
 /// The equations of motion of an arm whose segments all bend in one plane, with their first
 /// derivatives in closed form: ArmEquations::linearise() of such arms.
-///
-/// Vectors of the plane are complex numbers, along the base's axis + i towards its x. Segment n
-/// begins turned by u_n = e^(i phi_n), phi_n = sum_(k<n) theta_k, and a point of it, at the
-/// fraction f of its arc, lies at
-///   x = o_n + u_n f L_n E(f theta_n),   E(a) = (e^(ia) - 1)/(ia),
-/// o_n the start and e_n the end of its bend. With J_k = dx/dtheta_k and g = L E',
-///   J_k = i (x - e_k) + u_k g_k                      for k < n,   J_n = u_n f^2 L_n E',
-///   d2x/dtheta_k dtheta_j = i J_max(k,j)              for k != j,
-///   d2x/dtheta_k^2 = i J_k + u_k (g'_k - i g_k)       for k < n,
-/// since theta_k turns all beyond e_k. By the same rule, with Omega_k = sum_(j<k) theta'_j and
-/// alpha_k = theta''_k + 2 i Omega_k theta'_k,
-///   x''             = sum_k J_k alpha_k + x_kk theta'_k^2,
-///   dx''/dtheta_m   = J_m (i sum_(k<m) alpha_k - sum_(k<m) theta'_k^2) + x_mm alpha_m
-///                     + x_mmm theta'_m^2 + i sum_(k>m) (J_k alpha_k + x_kk theta'_k^2),
-///   dx''/dtheta'_m  = 2 (x_mm theta'_m + i J_m Omega_m + i sum_(k>m) J_k theta'_k).
+
+// Vectors of the plane are complex numbers, along the base's axis + i towards its x. Segment n
+// begins turned by u_n = e^(i phi_n), phi_n = sum_(k<n) theta_k, and a point of it, at the
+// fraction f of its arc, lies at
+//   x = o_n + u_n f L_n E(f theta_n),   E(a) = (e^(ia) - 1)/(ia),
+// o_n the start and e_n the end of its bend. With J_k = dx/dtheta_k and g = L E',
+//   J_k = i (x - e_k) + u_k g_k                      for k < n,   J_n = u_n f^2 L_n E',
+//   d2x/dtheta_k dtheta_j = i J_max(k,j)              for k != j,
+//   d2x/dtheta_k^2 = i J_k + u_k (g'_k - i g_k)       for k < n,
+// since theta_k turns all beyond e_k. By the same rule, with Omega_k = sum_(j<k) theta'_j and
+// alpha_k = theta''_k + 2 i Omega_k theta'_k,
+//   x''             = sum_k J_k alpha_k + x_kk theta'_k^2,
+//   dx''/dtheta_m   = J_m (i sum_(k<m) alpha_k - sum_(k<m) theta'_k^2) + x_mm alpha_m
+//                     + x_mmm theta'_m^2 + i sum_(k>m) (J_k alpha_k + x_kk theta'_k^2),
+//   dx''/dtheta'_m  = 2 (x_mm theta'_m + i J_m Omega_m + i sum_(k>m) J_k theta'_k).
 #pragma once
 
 #include <memory>
@@ -39,7 +39,8 @@ class PlanarEquations {
   /// @param arm to which they apply.
   explicit PlanarEquations(std::shared_ptr<const Arm> arm);
 
-  /// See ArmEquations::linearise(). @param result of the arm's size, overwritten.
+  /// See ArmEquations::linearise(). @param q,rate,acceleration as there. @param result of the arm's
+  /// size, overwritten.
   void linearise(const VectorX& q, const VectorX& rate, const VectorX& acceleration,
                  ArmEquations::Linearisation& result);
 

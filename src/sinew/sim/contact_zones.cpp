@@ -286,8 +286,7 @@ void ContactZones::take_points(const Zone& zone, std::span<const double> effort,
 }
 
 // Of the zone whose points are listed.
-void ContactZones::add_lack(double& friction_lack, const Vector3& compliance,
-                            ForceError& sum) const {
+void ContactZones::add_lack(double& friction_lack, const Vector3& compliance, ForceError& sum) {
   Vector3 resultant = Vector3::Zero(), own = Vector3::Zero(), normal = Vector3::Zero();
   for (const ZonePoint& point : zone_points_) {
     own += point.force;
@@ -299,7 +298,7 @@ void ContactZones::add_lack(double& friction_lack, const Vector3& compliance,
     return;
   }
   normal.normalize();
-  const Vector3 change = zone_force_change(zone_points_, compliance, spread_);
+  const Vector3 change = estimate_.force_change(zone_points_, compliance, spread_);
   const double along = normal.dot(change), across = (change - along * normal).norm();
   const double limit = zone_points_.front().friction * own[0];
   const bool slides = own.tail<2>().norm() >= (1.0 - kAlike) * limit;

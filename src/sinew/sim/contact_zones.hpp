@@ -69,7 +69,7 @@ class ContactZones {
               const RowNumbering& numbering, const linalg::AlignedNumbers& effort,
               mechanics::RowValues& rows);
   /// When a step has ended: about how far the forces are from those of single points. Along the
-  /// normal by zone_force_change() of the end. Friction remembers its way: what each step adds
+  /// normal by a ZoneEstimate of the end. Friction remembers its way: what each step adds
   /// across the normal is summed up for as long as a zone has a force and sticks, at most to twice
   /// the limit of its friction. That memory is for this figure alone, and part of no state.
   /// @param problem,numbering of the step. @param effort (rows,) N. @param friction (points,)
@@ -103,7 +103,7 @@ class ContactZones {
   void list_points(std::span<const double> effort, const mechanics::RowValues& rows);
   void take_points(const Zone& zone, std::span<const double> effort,
                    std::span<const double> friction, const mechanics::RowValues& rows);
-  void add_lack(double& friction_lack, const Vector3& compliance, ForceError& sum) const;
+  void add_lack(double& friction_lack, const Vector3& compliance, ForceError& sum);
   void smooth(const Zone& zone, std::span<const double> gaps, double force, double compliance,
               const mechanics::RowValues& rows);
 
@@ -121,6 +121,7 @@ class ContactZones {
   std::vector<double> force_, goal_, compliance_;
   // Of the zone whose error is estimated, and N, of each zone's friction.
   std::vector<ZonePoint> zone_points_;
+  ZoneEstimate estimate_;
   std::vector<double> lacks_;
 };
 

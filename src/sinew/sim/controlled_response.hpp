@@ -23,8 +23,8 @@ struct ControlledResponse {
 };
 
 /// Of the present state, which stays as it is bit for bit. Throws Error(singular-matrix).
-/// @param controlled indices of Model::actuators(), each once, in any order, which is that of the
-/// result. @param choice see there.
+/// @param simulation in any state. @param controlled indices of Model::actuators(), each once, in
+/// any order, which is that of the result. @param choice see there.
 ControlledResponse controlled_response(Simulation& simulation, std::span<const int> controlled,
                                        const LinearisationChoice& choice = {});
 

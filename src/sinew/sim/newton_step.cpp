@@ -177,14 +177,14 @@ NewtonReport NewtonStep::stay(double time_step) {
   NewtonReport result = run_.newton(nullptr, settings(time_step));
   if (!converged(result)) result = approach(time_step);
   if (!converged(result)) result = descend(time_step, kMaxDescents);
-  if (goes_on(result) && !is_usable(result)) result = remain(time_step, result.iterations);
+  if (goes_on(result) && !is_usable(result)) result = remain(time_step, result);
   run_.controller->load_memory(memory);
   return result;
 }
 
 // The robot at the end of the last step, which was about to buckle and from where Newton leads
 // nowhere: as near to equilibrium as it was then.
-NewtonReport NewtonStep::remain(double time_step, int iterations) {
+NewtonReport NewtonStep::remain(double time_step, const NewtonReport& failed) {
   run_.restore(run_.before);
   run_.begin_world(time_step);
   World& world = run_.world;
@@ -193,12 +193,13 @@ NewtonReport NewtonStep::remain(double time_step, int iterations) {
   world.form_rows(run_.effort, how.geometric);
   NewtonReport result;
   result.status = NewtonStatus::stalled;
-  result.iterations = iterations;
+  result.iterations = failed.iterations;
   result.residual = world.bodies().residual(run_.effort);
   result.relative_residual = result.residual / (world.bodies().force_scale() + 1e-300);
   result.violation = world.violation(run_.effort, result.law);
   result.motion.finite = true;
   result.motion.volume.ratio = run_.volume_ratio;
+  if (!(result.relative_residual <= kBalanced)) return failed;
   return result;
 }
 

@@ -29,7 +29,7 @@ class NewtonStep {
   std::optional<NewtonReport> hold_motors(double time_step);
   NewtonReport hold_choice(const NewtonReport& chosen, double time_step);
   NewtonReport stay(double time_step);
-  NewtonReport remain(double time_step, int iterations);
+  NewtonReport remain(double time_step, const NewtonReport& failed);
   NewtonReport approach(double time_step);
   NewtonReport descend(double time_step, int iterations);
   bool is_usable(const NewtonReport& result) const;

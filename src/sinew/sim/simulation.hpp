@@ -133,6 +133,7 @@ class Simulation {
   /// Gives a controller the actuators that it chooses efforts for, in every step until it is
   /// detached. One controller at a time. Throws Error(actuator-owned); Error(not-in-this-version)
   /// with event-driven integration.
+  /// @param controller must be detached before it ends. @param actuators of the model.
   /// @param contacts whose forces it asks for, see ContactRows::want().
   void attach(step::Controller& controller, std::span<const int> actuators,
               std::span<const int> contacts = {});

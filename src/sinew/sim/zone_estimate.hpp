@@ -22,11 +22,25 @@ struct ZonePoint {
 /// they are, forces f+ in place of f with
 ///   u+ = u + B (f+ - f),   0 <= g+ _|_ r_n+ >= 0,   |r_t+| <= mu r_n+ against u_t+,
 /// B_kl = (b_n n n^T + b_t (1 - n n^T)) / sqrt(|x_k - x_l|^2 + a^2) as in ContactZones, b_n and b_t
-/// from the zone's compliance along and across the normal. Solved by block Gauss-Seidel.
-/// @param points of the zone, each with a force or an overlap. @param compliance (3,) m/N, of its
-/// resultant in the frame of its points. @param spread a, m.
-/// @return (3,) N: the sum of f+ - f, in world axes.
-Vector3 zone_force_change(const std::vector<ZonePoint>& points, const Vector3& compliance,
-                          double spread);
+/// from the zone's compliance along and across the normal. Solved by block Gauss-Seidel. Keeps its
+/// memory from one zone to the next.
+class ZoneEstimate {
+ public:
+  /// @param points of the zone, each with a force or an overlap. @param compliance (3,) m/N, of its
+  /// resultant in the frame of its points. @param spread a, m.
+  /// @return (3,) N: the sum of f+ - f, in world axes.
+  Vector3 force_change(const std::vector<ZonePoint>& points, const Vector3& compliance,
+                       double spread);
+
+ private:
+  void begin(const std::vector<ZonePoint>& points, const Vector3& compliance, double spread);
+  Vector3 motion(const std::vector<ZonePoint>& points, std::size_t i) const;
+  double relax(const std::vector<ZonePoint>& points, std::size_t i);
+
+  double total_ = 0.0;                      // N, of normal forces
+  double normal_ = 0.0, tangential_ = 0.0;  // b_n and b_t, m^2/N
+  std::vector<double> kernel_;              // (n, n) 1/m
+  std::vector<Vector3> change_;             // (n,) N, in world axes
+};
 
 }  // namespace sinew::sim

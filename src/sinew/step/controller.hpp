@@ -53,7 +53,7 @@ class Controller {
   virtual double negligible_gain() const { return 0.0; }
   /// Whether it wants to know more of its choices, see take_certificate().
   virtual bool certifies() const { return false; }
-  /// Of what accept() was told. @param certificate see there.
+  /// Of what accept() was told.
   virtual void take_certificate(const Certificate&) {}
   /// What came of choose(). @param motion (rows,) delta, as everything on the robot obeys its law.
   /// @param problem,response as for choose(). @param own,effort as for merit(); they may differ
