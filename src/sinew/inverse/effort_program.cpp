@@ -134,7 +134,8 @@ void EffortProgram::regularise(const StepProblem& problem, const Response& respo
     asked = forces_.weight() * slope.squaredNorm();
   }
   // So that curvatures along efforts and along what forces lack compare.
-  if (asked > 0.0 && forces_.count() > 0) slack_scale_ = std::sqrt(asked / forces_.weight());
+  const bool compares = asked > 0.0 && forces_.count() > 0;
+  slack_scale_ = compares ? std::sqrt(asked / forces_.weight()) : problem.size;
   const double eps = pull.epsilon * (asked > 0.0 ? asked : norm) / norm;
   const double keep = pull.damping - pull.to_zero;
   const double stay = pull.damping_within - 1.0;

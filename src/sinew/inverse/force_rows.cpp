@@ -20,6 +20,8 @@ using step::StepProblem;
 // Of the largest weight of a target: a target that lacks 1 mm moves a force by what moves its
 // point by 0.1 um.
 constexpr double kForceWeight = 1e4;
+// Of what the compliances of a force and an effort allow: less is rounding.
+constexpr double kCoupled = 1e-10;
 constexpr int kSides = 8;  // of the polygon in a friction cone
 
 double beyond(double value, double lower, double upper) {
@@ -62,6 +64,8 @@ void ForceRows::begin(const StepProblem& problem, double largest) {
     const Reference& reference = references_[task];
     const Eigen::Index first = first_[task];
     if (tasks_[task].reserve) upper_.segment(first + 1, kSides).setConstant(0.0);
+    lower_[first] = -kInfinity;
+    upper_[first] = kInfinity;
     if (reference.row < 0) continue;
     const double now =
         reference.compliance * normal_force(task, problem, problem.delta, problem.effort_before);
@@ -104,9 +108,27 @@ void ForceRows::form(const StepProblem& problem, const Response& response) {
         }
       }
     }
-    if (closed) continue;
+    if (closed) {
+      clear_rounding(problem, response, task);
+      continue;
+    }
     offset_[first] = -response.free()[reference.row];
     slope_.row(first) = -response.compliance().row(reference.row);
+  }
+}
+
+// An effort that does not reach the contact must not be chosen by rounding, see step::Response.
+void ForceRows::clear_rounding(const StepProblem& problem, const Response& response,
+                               std::size_t task) {
+  const Eigen::Index rows = 1 + (tasks_[task].reserve ? kSides : 0);
+  for (Eigen::Index k = 0; k < slope_.cols(); ++k) {
+    const int index = response.controlled()[static_cast<std::size_t>(k)];
+    const int row = problem.actuators[static_cast<std::size_t>(index)].row;
+    const double own = std::abs(problem.compliance(row, row));
+    const double least = kCoupled * std::sqrt(references_[task].compliance * own);
+    for (Eigen::Index r = first_[task]; r < first_[task] + rows; ++r) {
+      if (std::abs(slope_(r, k)) <= least) slope_(r, k) = 0.0;
+    }
   }
 }
 

@@ -70,6 +70,8 @@ class ForceRows {
                       std::span<const double> effort) const;
   Vector3 resultant(std::size_t task, const step::StepProblem& problem,
                     std::span<const double> effort) const;
+  void clear_rounding(const step::StepProblem& problem, const step::Response& response,
+                      std::size_t task);
   Vector3 cone_side(std::size_t task, int side) const;
 
   std::vector<ContactTask> tasks_;
