@@ -12,7 +12,6 @@ namespace sinew::inverse {
 
 namespace {
 
-using step::BlockState;
 using step::ContactBlock;
 using step::Response;
 using step::StepProblem;
