@@ -17,49 +17,15 @@
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
 
-#include "../sim/robots.hpp"
+#include "../sim/shaped_block.hpp"
 
 namespace sinew::constraint {
 namespace {
 
-constexpr double kLength = 0.1, kWidth = 0.02;  // m
-
-struct Block {
-  Block() {
-    fem::FemBodySettings body;
-    body.name = "block";
-    mesh_ = std::make_shared<const mesh::Mesh>(mesh::block(
-        {.corner = {0.0, -0.01, -0.01}, .size = {kLength, kWidth, kWidth}, .cells = {10, 2, 2}}));
-    body.mesh = mesh_;
-    body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
-    body.elements.fixed_nodes = mesh_->node_sets.at("x_min");
-    builder_.add_fem_body(std::move(body));
-  }
+struct Block : sim::ShapedBlock {
   template <typename What>
   void add(const char* name, What what, mesh::Outside outside = mesh::Outside::error) {
     builder_.add_probe({name, {}, outside, std::move(what)});
-  }
-  void finish() { simulation_ = std::make_unique<sim::Simulation>(builder_.build()); }
-  /// x = move(X) at every node.
-  template <typename Move>
-  void deform(Move&& move) {
-    auto& body = simulation_->body(0);
-    std::vector<double> state(body.state_size());
-    body.save_state(state);
-    for (Eigen::Index i = 0; i < mesh_->nodes.rows(); ++i) {
-      const Vector3 x = move(Vector3(mesh_->nodes.row(i).transpose()));
-      for (Eigen::Index c = 0; c < 3; ++c) state[static_cast<std::size_t>(3 * i + c)] = x[c];
-    }
-    body.load_state(state);
-  }
-  /// The axis, along x, becomes an arc in the plane of x and z that turns by `angle` over the
-  /// length.
-  void bend(double angle) {
-    const double radius = kLength / angle;
-    deform([=](const Vector3& x) -> Vector3 {
-      const double turn = x.x() / radius, distance = radius - x.z();
-      return {distance * std::sin(turn), x.y(), radius - distance * std::cos(turn)};
-    });
   }
   std::vector<double> values(const char* name) {
     return simulation_->probe_values(simulation_->model().probe_index(name));
@@ -80,10 +46,6 @@ struct Block {
     line.samples = samples;
     return line;
   }
-
-  sim::ModelBuilder builder_;
-  std::shared_ptr<const mesh::Mesh> mesh_;
-  std::unique_ptr<sim::Simulation> simulation_;
 };
 
 class Probes : public ::testing::Test, public Block {};

@@ -20,26 +20,15 @@
 #include "sinew/sim/sensor_settings.hpp"
 
 #include "../support/allocation_guard.hpp"
-#include "robots.hpp"
+#include "shaped_block.hpp"
 
 namespace sinew::sim {
 namespace {
 
-constexpr double kLength = 0.1, kWidth = 0.02;  // m
 constexpr double kFreeSpace = 8.8541878128e-12;
 
-class SensorBlock : public ::testing::Test {
+class SensorBlock : public ::testing::Test, public ShapedBlock {
  protected:
-  SensorBlock() {
-    fem::FemBodySettings body;
-    body.name = "block";
-    mesh_ = std::make_shared<const mesh::Mesh>(mesh::block(
-        {.corner = {0.0, -0.01, -0.01}, .size = {kLength, kWidth, kWidth}, .cells = {10, 2, 2}}));
-    body.mesh = mesh_;
-    body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
-    body.elements.fixed_nodes = mesh_->node_sets.at("x_min");
-    builder_.add_fem_body(std::move(body));
-  }
   template <typename What>
   void add(const char* name, What what) {
     SensorSettings settings;
@@ -47,27 +36,6 @@ class SensorBlock : public ::testing::Test {
     settings.kind = name;
     settings.what = std::move(what);
     builder_.add_sensor(settings);
-  }
-  void finish() { simulation_ = std::make_unique<Simulation>(builder_.build()); }
-  /// x = move(X) at every node.
-  template <typename Move>
-  void deform(Move&& move) {
-    auto& body = simulation_->body(0);
-    std::vector<double> state(body.state_size());
-    body.save_state(state);
-    for (Eigen::Index i = 0; i < mesh_->nodes.rows(); ++i) {
-      const Vector3 x = move(Vector3(mesh_->nodes.row(i).transpose()));
-      for (Eigen::Index c = 0; c < 3; ++c) state[static_cast<std::size_t>(3 * i + c)] = x[c];
-    }
-    body.load_state(state);
-  }
-  /// The axis, along x, becomes an arc in the plane of x and z that turns by `angle`.
-  void bend(double angle) {
-    const double radius = kLength / angle;
-    deform([=](const Vector3& x) -> Vector3 {
-      const double turn = x.x() / radius, distance = radius - x.z();
-      return {distance * std::sin(turn), x.y(), radius - distance * std::cos(turn)};
-    });
   }
   std::vector<double> truth(const char* name) {
     return simulation_->sensor_truth(simulation_->model().sensor_index(name));
@@ -77,10 +45,6 @@ class SensorBlock : public ::testing::Test {
     corners << 0.0, 0.0, z, kLength, 0.0, z;
     return corners;
   }
-
-  ModelBuilder builder_;
-  std::shared_ptr<const mesh::Mesh> mesh_;
-  std::unique_ptr<Simulation> simulation_;
 };
 
 TEST_F(SensorBlock, CurvatureOfAnArcIsOneOverItsRadius) {

@@ -51,7 +51,6 @@ EffortProgram::EffortProgram(std::vector<int> rows, VectorX weights, int actuato
       scale_(VectorX::Ones(actuators)),
       scaled_effort_(VectorX::Zero(actuators)),
       forces_(std::move(forces)),
-      count_(actuators),
       pull_hessian_(MatrixX::Zero(actuators, actuators)),
       pull_gradient_(VectorX::Zero(actuators)),
       bound_multiplier_(VectorX::Zero(actuators)),
@@ -83,7 +82,7 @@ void EffortProgram::begin(const StepProblem& problem, const Response& response,
 }
 
 void EffortProgram::form_rows(const StepProblem& problem, const Response& response) {
-  const Eigen::Index count = count_;
+  const Eigen::Index count = scale_.size();
   forces_.form(problem, response);
   for (Eigen::Index j = 0; j < count; ++j) {
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -106,13 +105,13 @@ void EffortProgram::form_rows(const StepProblem& problem, const Response& respon
 void EffortProgram::form(const StepProblem& problem, const Response& response,
                          const VectorX& residual) {
   form_rows(problem, response);
-  auto hessian = program_.hessian.topLeftCorner(count_, count_);
+  auto hessian = program_.hessian.topLeftCorner(scale_.size(), scale_.size());
   hessian.noalias() = jacobian_.transpose() * weighted_;
   hessian += pull_hessian_;
-  auto gradient = program_.gradient.head(count_);
+  auto gradient = program_.gradient.head(scale_.size());
   gradient.noalias() = weighted_.transpose() * residual;
   gradient += pull_gradient_;
-  for (Eigen::Index f = count_; f < program_.gradient.size(); ++f) {
+  for (Eigen::Index f = scale_.size(); f < program_.gradient.size(); ++f) {
     program_.hessian(f, f) = forces_.weight() * slack_scale_ * slack_scale_;
   }
   left_ = 0.5 * residual.dot(weights_.cwiseProduct(residual));
@@ -121,7 +120,7 @@ void EffortProgram::form(const StepProblem& problem, const Response& response,
 // Where friction slides R would be unsymmetric, and keeps its diagonal alone.
 void EffortProgram::regularise(const StepProblem& problem, const Response& response,
                                const EffortPull& pull) {
-  const Eigen::Index count = count_;
+  const Eigen::Index count = scale_.size();
   double norm = 0.0;
   for (Eigen::Index i = 0; i < count; ++i) {
     norm = std::max(norm, std::abs(scale_[i]) * program_.rows.row(i).cwiseAbs().sum());
@@ -177,7 +176,7 @@ double EffortProgram::excess(const StepProblem& problem, const VectorX& motion,
 void EffortProgram::form_limits(const StepProblem& problem, const Response& response,
                                 qp::QuadraticProgram& program) const {
   form_forces(program);
-  for (Eigen::Index k = 0; k < count_; ++k) {
+  for (Eigen::Index k = 0; k < scale_.size(); ++k) {
     const ActuatorBlock& own = controlled_block(problem, response, k);
     const double free = response.free()[own.row];
     program.lower[k] = own.effort_min / scale_[k];
@@ -189,8 +188,8 @@ void EffortProgram::form_limits(const StepProblem& problem, const Response& resp
 
 void EffortProgram::form_forces(qp::QuadraticProgram& program) const {
   const Eigen::Index rows = forces_.count();
-  program.row_lower.segment(count_, rows) = forces_.lower() - forces_.offset();
-  program.row_upper.segment(count_, rows) = forces_.upper() - forces_.offset();
+  program.row_lower.segment(scale_.size(), rows) = forces_.lower() - forces_.offset();
+  program.row_upper.segment(scale_.size(), rows) = forces_.upper() - forces_.offset();
 }
 
 // Rows for guards are made for more than there are: others are empty.
@@ -213,7 +212,7 @@ LawStatus EffortProgram::solve_guarded(const StepProblem& problem, const Respons
   guarded_.row_upper.tail(guarded_.rows.rows() - count).setConstant(kInfinity);
   for (Eigen::Index g = 0; g < guards; ++g) {
     const auto number = static_cast<std::size_t>(g);
-    guarded_.rows.row(count + g).head(count_) =
+    guarded_.rows.row(count + g).head(scale_.size()) =
         response.guard_slope(number).cwiseProduct(scale_).transpose();
     const step::Guard& guard = response.guards()[number];
     guarded_.row_lower[count + g] = -guard.offset;
@@ -231,7 +230,7 @@ LawStatus EffortProgram::solve_guarded(const StepProblem& problem, const Respons
 void EffortProgram::keep(const qp::QpResult& result) {
   scaled_effort_ = result.x;
   bound_multiplier_ = result.bound_multiplier;
-  row_multiplier_ = result.row_multiplier.head(count_);
+  row_multiplier_ = result.row_multiplier.head(scale_.size());
   foreseen_ = left_ + program_.gradient.dot(result.x) + half_square(program_.hessian, result.x);
 }
 

@@ -115,7 +115,6 @@ class EffortProgram {
   mutable VectorX scaled_trial_;  // of pull_value()
   std::vector<int> controlled_;   // of the response
   ForceRows forces_;
-  Eigen::Index count_ = 0;    // of efforts
   double slack_scale_ = 1.0;  // m, of what rows of forces lack
   MatrixX pull_hessian_;      // (controlled, controlled)
   VectorX pull_gradient_;     // (controlled,)

@@ -19,8 +19,6 @@ using step::StepProblem;
 // Of the largest weight of a target: a target that lacks 1 mm moves a force by what moves its
 // point by 0.1 um.
 constexpr double kForceWeight = 1e4;
-// Of what the compliances of a force and an effort allow: less is rounding.
-constexpr double kCoupled = 1e-10;
 constexpr int kSides = 8;  // of the polygon in a friction cone
 
 double beyond(double value, double lower, double upper) {
@@ -124,7 +122,7 @@ void ForceRows::clear_rounding(const StepProblem& problem, const Response& respo
     const int index = response.controlled()[static_cast<std::size_t>(k)];
     const int row = problem.actuators[static_cast<std::size_t>(index)].row;
     const double own = std::abs(problem.compliance(row, row));
-    const double least = kCoupled * std::sqrt(references_[task].compliance * own);
+    const double least = Response::kCoupled * std::sqrt(references_[task].compliance * own);
     for (Eigen::Index r = first_[task]; r < first_[task] + rows; ++r) {
       if (std::abs(slope_(r, k)) <= least) slope_(r, k) = 0.0;
     }

@@ -233,36 +233,29 @@ std::vector<Form> axis_forms() {
 
 Form effector_form() {
   const Form axis = axis_forms().front();
-  return table(make_table(
-      {.name = "effector",
-       .description = "A point or frame on a body whose motion is observed and controlled: exactly "
-                      "one of point, points, set and orientation.",
-       .keys = {body_key(),
-                {.name = "point",
-                 .forms = {vector(length())},
-                 .example = "0 0 195 mm",
-                 .description = "A point, in the mesh at rest."},
-                {.name = "points",
-                 .forms = {table(point_file_table()), list({vector(length())})},
-                 .example = "[10 0 195 mm, -10 0 195 mm]",
-                 .description = "The mean of several points."},
-                {.name = "set",
-                 .forms = {text()},
-                 .example = "tip",
-                 .description = "The mean of the nodes of a named set of the mesh."},
-                {.name = "orientation",
-                 .forms = {list({vector(length())}, 3, 3), vector(length())},
-                 .example = "[0 0 190 mm, 10 0 190 mm, 0 10 190 mm]",
-                 .description = "The rotation of the frame through three points, or of the section "
-                                "of an arm that one point lies in, as a rotation vector from "
-                                "rest."},
-                {.name = "directions",
-                 .forms = {axis, list(axis_forms(), 1, 3)},
-                 .example = "[x, y]",
-                 .default_text = "[x, y, z]",
-                 .description = "Controlled directions: axes or linearly independent vectors."},
-                outside_key()},
-       .alternatives = {{{"point", "points", "set", "orientation"}, true}}}));
+  KeyTable effector{
+      .name = "effector",
+      .description =
+          "A point or frame on a body whose motion is observed and controlled: exactly "
+          "one of point, points, set and orientation.",
+      .keys = spot_keys(),
+      .alternatives = {{{"point", "points", "set", "orientation"}, true}}};
+  effector.keys.insert(effector.keys.begin(), body_key());
+  effector.keys.push_back({.name = "orientation",
+                           .forms = {list({vector(length())}, 3, 3), vector(length())},
+                           .example = "[0 0 190 mm, 10 0 190 mm, 0 10 190 mm]",
+                           .description =
+                               "The rotation of the frame through three points, or of the section "
+                               "of an arm that one point lies in, as a rotation vector from "
+                               "rest."});
+  effector.keys.push_back(
+      {.name = "directions",
+       .forms = {axis, list(axis_forms(), 1, 3)},
+       .example = "[x, y]",
+       .default_text = "[x, y, z]",
+       .description = "Controlled directions: axes or linearly independent vectors."});
+  effector.keys.push_back(outside_key());
+  return table(make_table(std::move(effector)));
 }
 
 }  // namespace sinew::scene::forms

@@ -110,6 +110,8 @@ std::vector<Key> drive_keys(const DriveWords& words);
 Key body_key();
 /// A length of a shape, positive and required.
 Key shape_length(const char* name, const char* example, const char* description);
+/// point, points and set: where something is on a body.
+std::vector<Key> spot_keys();
 Key outside_key();
 /// `file` of a mesh, required.
 Key mesh_file_key(const char* example);

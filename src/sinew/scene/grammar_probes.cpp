@@ -12,21 +12,6 @@ Key optional_body_key() {
   return key;
 }
 
-std::vector<Key> spot_keys() {
-  return {{.name = "point",
-           .forms = {vector(length())},
-           .example = "0 0 195 mm",
-           .description = "A point, in the mesh at rest."},
-          {.name = "points",
-           .forms = {table(point_file_table()), list({vector(length())})},
-           .example = "[10 0 195 mm, -10 0 195 mm]",
-           .description = "The mean of several points."},
-          {.name = "set",
-           .forms = {text()},
-           .example = "tip",
-           .description = "The mean of the nodes of a named set of the mesh."}};
-}
-
 std::shared_ptr<const KeyTable> end_table() {
   KeyTable end{.name = "end of a distance",
                .description = "Exactly one of point, points and set.",
@@ -77,6 +62,21 @@ std::shared_ptr<const KeyTable> extent_table() {
 }
 
 }  // namespace
+
+std::vector<Key> spot_keys() {
+  return {{.name = "point",
+           .forms = {vector(length())},
+           .example = "0 0 195 mm",
+           .description = "A point, in the mesh at rest."},
+          {.name = "points",
+           .forms = {table(point_file_table()), list({vector(length())})},
+           .example = "[10 0 195 mm, -10 0 195 mm]",
+           .description = "The mean of several points."},
+          {.name = "set",
+           .forms = {text()},
+           .example = "tip",
+           .description = "The mean of the nodes of a named set of the mesh."}};
+}
 
 Form probe_form() {
   KeyTable probe{

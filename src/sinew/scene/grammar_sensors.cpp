@@ -119,20 +119,9 @@ std::shared_ptr<const KeyTable> sensor_table(const char* type, const char* descr
 Said position() { return {length(), "0.1 mm", "0.01 mm", "-0.5 0.5 m"}; }
 
 std::shared_ptr<const KeyTable> marker_table() {
-  std::vector<Key> keys = {body_key(),
-                           {.name = "point",
-                            .forms = {vector(length())},
-                            .example = "0 0 195 mm",
-                            .description = "A point, in the mesh at rest."},
-                           {.name = "points",
-                            .forms = {table(point_file_table()), list({vector(length())})},
-                            .example = "[10 0 195 mm, -10 0 195 mm]",
-                            .description = "The mean of several points."},
-                           {.name = "set",
-                            .forms = {text()},
-                            .example = "tip",
-                            .description = "The mean of the nodes of a named set of the mesh."},
-                           outside_key()};
+  std::vector<Key> keys = spot_keys();
+  keys.insert(keys.begin(), body_key());
+  keys.push_back(outside_key());
   KeyTable marker =
       *sensor_table("marker",
                     "Where a point is, (3,) m: a marker that cameras follow. Exactly one of point, "

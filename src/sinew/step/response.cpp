@@ -14,8 +14,6 @@ namespace {
 
 // Friction of a cable within this part of the tension of its limit is at it.
 constexpr double kSlides = 1e-7;
-// Of what two rows' own compliances allow: where others are held, less is rounding.
-constexpr double kCoupled = 1e-10;
 // Around a cone: they lie outside it by up to 8 %, and the law says where it really slips.
 constexpr int kPlanes = 8;
 

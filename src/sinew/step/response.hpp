@@ -99,6 +99,9 @@ class Response {
     return {slopes_.data() + guard * count, static_cast<Eigen::Index>(count)};
   }
 
+  /// Of what two rows' own compliances allow: where others are held, less is rounding.
+  static constexpr double kCoupled = 1e-10;
+
  private:
   struct Term {
     int row = -1;
