@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Three soft fingers hold an egg-shaped shell with 1 N each while the hand moves: contact forces as targets.
 
-    PYTHONPATH=build/release/python /usr/bin/python3 examples/steer/grip.py [--force 1.0] [--out FOLDER]
+    PYTHONPATH=build/release/python /usr/bin/python3 examples/steer/grip.py [--force 1.0] [--hold 60] [--out FOLDER]
 
 The hand of examples/grasp (three trunks with one cable each) closes on the standing shell. From the moment at which all
 fingers touch it, an inverse controller chooses the three tensions, and is asked for nothing but the normal force of each
-finger. The hand then rises by 60 mm within a second and goes aside by 40 mm within another. FOLDER gets grip.png.
+finger. The hand then rises by 60 mm within a second and goes aside by 40 mm within another. With --hold it stays there for
+so many seconds, and the creep of the shell is printed. FOLDER gets grip.png.
 """
 
 import argparse
@@ -113,6 +114,16 @@ def hold(force):
     return np.array(rows), sim
 
 
+def creep(sim, seconds):
+    """How far the shell's nodes go from where they are now, at most (m), while the simulation runs on."""
+    shell, farthest = sim.body("cup"), 0.0
+    start = shell.positions.copy()
+    for _ in range(round(seconds / sim.time_step)):
+        sim.step()
+        farthest = max(farthest, np.linalg.norm(shell.positions - start, axis=1).max())
+    return farthest
+
+
 def report(force, rows):
     """The largest deviation of a finger's force while the hand moves and after, a part of what is asked."""
     late = rows[rows[:, 0] > LIFTS + 0.25]
@@ -141,10 +152,13 @@ def draw(force, rows, sim, path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--force", type=float, default=1.0, help="normal force of each finger, N")
+    parser.add_argument("--hold", type=float, default=0.0, help="seconds to hold the shell afterwards")
     parser.add_argument("--out", type=Path, help="folder for grip.png")
     given = parser.parse_args()
     rows, sim = hold(given.force)
     report(given.force, rows)
+    if given.hold > 0.0:
+        print(f"within {given.hold:g} s the shell creeps by {1e9 * creep(sim, given.hold):.1f} nm, it is {1e3 * 2 * TALL:.0f} mm tall")
     if given.out is not None:
         given.out.mkdir(parents=True, exist_ok=True)
         draw(given.force, rows, sim, given.out / "grip.png")
