@@ -31,7 +31,7 @@ sys.path.insert(0, str(HERE))
 if importlib.util.find_spec("sinew") is None:
     sys.path.append(str(HERE.parent / "build" / "release" / "python"))
 
-from suite import scorecard  # noqa: E402
+from suite import kept, scorecard  # noqa: E402
 from suite.case import MISSED, Case, Result  # noqa: E402
 
 
@@ -57,17 +57,21 @@ def run_case(name: str, images: pathlib.Path) -> Result:
     return result
 
 
-def run_all(names: list[str], images: pathlib.Path, jobs: int) -> list[Result]:
-    """Side by side in processes, the longest first; says what has ended."""
+def run_all(names: list[str], images: pathlib.Path, jobs: int, resume: bool) -> list[Result]:
+    """Side by side in processes, the longest first; says what has ended. Resumed: without the cases that have."""
     cost = {name: getattr(importlib.import_module(f"cases.{name}"), "COST", 1) for name in names}
-    results = {}
+    ended = {name: kept.find(name, images) for name in names} if resume else {}
+    results = {name: result for name, result in ended.items() if result is not None}
+    if resume:
+        print(f"{len(results)} of {len(names)} cases have ended before", flush=True)
     context = multiprocessing.get_context("spawn")
     with concurrent.futures.ProcessPoolExecutor(jobs, mp_context=context) as pool:
         pending = {pool.submit(run_case, name, images): name
-                   for name in sorted(names, key=lambda n: -cost[n])}
+                   for name in sorted(set(names) - set(results), key=lambda n: (-cost[n], n))}
         for done in concurrent.futures.as_completed(pending):
             result = done.result()
             results[result.name] = result
+            kept.keep(result)
             tell(result, len(results), len(names))
     return [results[name] for name in names]
 
@@ -95,6 +99,8 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("cases", nargs="*", metavar="CASE", help="all by default")
     parser.add_argument("--list", action="store_true", help="names the cases and ends")
     parser.add_argument("--fast", action="store_true", help="only the cases that take seconds")
+    parser.add_argument("--resume", action="store_true",
+                        help="runs only the cases that have not ended with this build")
     parser.add_argument("--out", type=pathlib.Path, default=HERE.parent / "docs",
                         help="folder for scorecard.md and images/validation (default: docs)")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)),
@@ -124,7 +130,7 @@ def main() -> int:
             print(f"{name:28} {modules[name].TITLE}")
         return 0
     images = options.out / "images" / "validation"
-    results = run_all(names, images, min(options.jobs, len(names)))
+    results = run_all(names, images, min(options.jobs, len(names)), options.resume)
     print(scorecard.totals(results))
     if names == case_names():
         scorecard.write(results, options.out / "scorecard.md", images)

@@ -43,7 +43,7 @@ fs::path validation_script() {
 
 struct ValidateOptions {
   std::vector<std::string> cases;
-  bool list = false, fast = false;
+  bool list = false, fast = false, resume = false;
   std::optional<std::string> out;
   std::optional<int> jobs;
 };
@@ -55,6 +55,7 @@ int validate(const ValidateOptions& options) {
   std::vector<std::string> words = {kInterpreter, script};
   if (options.list) words.emplace_back("--list");
   if (options.fast) words.emplace_back("--fast");
+  if (options.resume) words.emplace_back("--resume");
   if (options.out) words.push_back("--out=" + *options.out);
   if (options.jobs) words.push_back(fmt::format("--jobs={}", *options.jobs));
   words.insert(words.end(), options.cases.begin(), options.cases.end());
@@ -99,6 +100,9 @@ void add_validate(CommandLine& line) {
   command.add_option("CASE", options->cases, "Cases to run (default: all)");
   command.add_flag("--list", options->list, "Name the cases and end");
   command.add_flag("--fast", options->fast, "Only the cases that take seconds");
+  command.add_flag("--resume", options->resume,
+                   "Only the cases that have not ended with this build: goes on with a run that "
+                   "was interrupted");
   command
       .add_option("--out", options->out,
                   "Folder for scorecard.md and images/validation (default: docs)")

@@ -714,6 +714,30 @@ def test_validate_passes_cases_on(tmp_path):
     assert nowhere.returncode == WRONG and "[tool-missing]" in nowhere.stderr
 
 
+def test_validation_resumes_with_the_cases_that_have_not_ended(tmp_path):
+    folder, runs = tmp_path / "validation", tmp_path / "runs"
+    shutil.copytree(ROOT / "validation" / "suite", folder / "suite", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(ROOT / "validation" / "run.py", folder)
+    (folder / "cases").mkdir()
+    case = folder / "cases" / "circle.py"
+    case.write_text('TITLE, SETUP, SOURCES = "Circle", "A circle.", {"Archimedes": "Measurement of a circle"}\n'
+                    f'def run(case):\n    open("{runs}", "a").write("x")\n'
+                    '    case.check("pi", 3.1416, 3.14159265, 1e-5, source="Archimedes")\n')
+
+    def validate(*options):
+        done = subprocess.run([os.path.abspath(PROGRAM), "validate", *options, "--out", str(tmp_path / "docs")], capture_output=True,
+                              text=True, env={**os.environ, "SINEW_VALIDATION_DIR": str(folder)}, check=False)
+        assert done.returncode == 0, done.stderr
+        return len(runs.read_text()), (tmp_path / "docs" / "scorecard.md").read_text()
+
+    assert validate()[0] == 1
+    assert validate()[0] == 2
+    count, card = validate("--resume")
+    assert count == 2 and "1 held, 0 missed" in card
+    case.write_text(case.read_text().replace("3.1416", "3.14159"))
+    assert validate("--resume")[0] == 3
+
+
 def test_elements_are_named_and_warned_of(scene, tmp_path):
     law = ("{model: corotational, young_modulus: 200 kPa, poisson_ratio: 0.4}",
            "{model: corotational, young_modulus: 200 kPa, poisson_ratio: 0.45}")
