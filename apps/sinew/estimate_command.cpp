@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "commands.hpp"
 #include "python_tool.hpp"
 
@@ -21,23 +19,19 @@ struct EstimateOptions {
 };
 
 int estimate(const EstimateOptions& options) {
-  std::vector<std::string> words{fmt::format("--measured={}", options.measured)};
-  const auto add = [&words](const char* option, const std::string& value) {
-    words.push_back(fmt::format("--{}={}", option, value));
-  };
-  for (const std::string& text : options.stds) add("std", text);
-  for (const std::string& text : options.forces) add("force", text);
-  for (const std::string& text : options.parameters) add("parameter", text);
-  for (const std::string& text : options.markers) add("marker", text);
-  for (const std::string& text : options.overrides) add("set", text);
-  if (options.out) add("out", *options.out);
-  if (options.walk) add("walk", *options.walk);
-  if (options.method) add("method", *options.method);
-  if (options.search) add("search", *options.search);
-  if (options.quiet) words.emplace_back("--quiet");
-  words.emplace_back("--");
-  words.push_back(options.scene);
-  return become_python_module("sinew.estimate", words);
+  PythonWords words;
+  words.add("measured", options.measured);
+  words.add("std", options.stds);
+  words.add("force", options.forces);
+  words.add("parameter", options.parameters);
+  words.add("marker", options.markers);
+  words.add("set", options.overrides);
+  words.add("out", options.out);
+  words.add("walk", options.walk);
+  words.add("method", options.method);
+  words.add("search", options.search);
+  words.add_flag("quiet", options.quiet);
+  return become_python_module("sinew.estimate", words.with({options.scene}));
 }
 
 void add_readings(Command& command, EstimateOptions& options) {

@@ -2,8 +2,11 @@
 /// Parts of the program that are Python: validation and plots.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 namespace sinew::cli {
 
@@ -17,6 +20,35 @@ void use_own_python_package();
 /// @param arguments what to draw. Throws Error(tool-missing) when the script or the interpreter is
 ///   not there.
 int draw_plot(const std::vector<std::string>& arguments);
+
+/// The words with which a command calls its Python part, option by option: "--name=value".
+class PythonWords {
+ public:
+  void add(const char* option, const std::string& value) {
+    words_.push_back(fmt::format("--{}={}", option, value));
+  }
+  void add(const char* option, const std::vector<std::string>& values) {
+    for (const std::string& value : values) add(option, value);
+  }
+  template <typename T>
+  void add(const char* option, const std::optional<T>& value) {
+    if (value) add(option, fmt::format("{}", *value));
+  }
+  /// "--name" where it is set.
+  void add_flag(const char* option, bool set) {
+    if (set) words_.push_back(fmt::format("--{}", option));
+  }
+  /// All words, and after them the operands, which may begin with a dash.
+  std::vector<std::string> with(const std::vector<std::string>& operands) const {
+    std::vector<std::string> all = words_;
+    all.emplace_back("--");
+    all.insert(all.end(), operands.begin(), operands.end());
+    return all;
+  }
+
+ private:
+  std::vector<std::string> words_;
+};
 
 /// Runs a module of the package in place of this program: signals and the terminal are its own, and
 /// its exit code is the program's.

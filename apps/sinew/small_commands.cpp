@@ -51,14 +51,15 @@ struct ValidateOptions {
 int validate(const ValidateOptions& options) {
   const std::string script = validation_script().string();
   use_own_python_package();
+  PythonWords asked;
+  asked.add_flag("list", options.list);
+  asked.add_flag("fast", options.fast);
+  asked.add_flag("resume", options.resume);
+  asked.add("out", options.out);
+  asked.add("jobs", options.jobs);
+  std::vector<std::string> words = asked.with(options.cases);
+  words.insert(words.begin(), {kInterpreter, script});
   std::vector<char*> arguments;
-  std::vector<std::string> words = {kInterpreter, script};
-  if (options.list) words.emplace_back("--list");
-  if (options.fast) words.emplace_back("--fast");
-  if (options.resume) words.emplace_back("--resume");
-  if (options.out) words.push_back("--out=" + *options.out);
-  if (options.jobs) words.push_back(fmt::format("--jobs={}", *options.jobs));
-  words.insert(words.end(), options.cases.begin(), options.cases.end());
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);

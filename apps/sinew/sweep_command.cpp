@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "commands.hpp"
 #include "python_tool.hpp"
 
@@ -22,26 +20,21 @@ struct SweepOptions {
 };
 
 int sweep(const SweepOptions& options) {
-  std::vector<std::string> words;
-  const auto add = [&words](const char* option, const std::string& value) {
-    words.push_back(fmt::format("--{}={}", option, value));
-  };
-  for (const std::string& keys : options.vary) add("vary", keys);
-  for (const std::string& name : options.measures) add("measure", name);
-  for (const std::string& assignment : options.overrides) add("set", assignment);
-  add("out", options.out);
-  if (options.sample) add("sample", *options.sample);
-  if (options.scheduler) add("scheduler", *options.scheduler);
-  if (options.duration) add("duration", *options.duration);
-  if (options.timeout) add("timeout", *options.timeout);
-  if (options.workers) add("workers", fmt::format("{}", *options.workers));
-  if (options.seed) add("seed", fmt::format("{}", *options.seed));
-  if (options.fixed) words.emplace_back("--static");
-  if (options.resume) words.emplace_back("--resume");
-  if (options.quiet) words.emplace_back("--quiet");
-  words.emplace_back("--");
-  words.push_back(options.scene);
-  return become_python_module("sinew.sweep", words);
+  PythonWords words;
+  words.add("vary", options.vary);
+  words.add("measure", options.measures);
+  words.add("set", options.overrides);
+  words.add("out", options.out);
+  words.add("sample", options.sample);
+  words.add("scheduler", options.scheduler);
+  words.add("duration", options.duration);
+  words.add("timeout", options.timeout);
+  words.add("workers", options.workers);
+  words.add("seed", options.seed);
+  words.add_flag("static", options.fixed);
+  words.add_flag("resume", options.resume);
+  words.add_flag("quiet", options.quiet);
+  return become_python_module("sinew.sweep", words.with({options.scene}));
 }
 
 void add_samples(Command& command, SweepOptions& options) {

@@ -708,7 +708,7 @@ def test_validate_passes_cases_on(tmp_path):
     result = subprocess.run([os.path.abspath(PROGRAM), "validate", "patch", "--jobs", "2", "--list"],
                             capture_output=True, text=True, env={**os.environ, "SINEW_VALIDATION_DIR": str(tmp_path)}, check=False)
     assert result.returncode == 3
-    assert result.stdout.strip() == "['--list', '--jobs=2', 'patch']"
+    assert result.stdout.strip() == "['--list', '--jobs=2', '--', 'patch']"
     nowhere = subprocess.run([os.path.abspath(PROGRAM), "validate"], capture_output=True, text=True,
                              env={**os.environ, "SINEW_VALIDATION_DIR": "/nowhere"}, check=False)
     assert nowhere.returncode == WRONG and "[tool-missing]" in nowhere.stderr
