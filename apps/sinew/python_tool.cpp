@@ -52,7 +52,7 @@ std::vector<char*> pointers_to(std::vector<std::string>& words) {
 
 std::vector<std::string> module_call(const std::string& module,
                                      const std::vector<std::string>& arguments) {
-  std::vector<std::string> words = {kInterpreter, "-m", module};
+  std::vector<std::string> words = {"-m", module};
   words.insert(words.end(), arguments.begin(), arguments.end());
   return words;
 }
@@ -64,6 +64,7 @@ std::vector<std::string> module_call(const std::string& module,
 }
 
 int run_interpreter(std::vector<std::string> words) {
+  words.insert(words.begin(), kInterpreter);
   std::vector<char*> pointers = pointers_to(words);
   std::fflush(stdout);
   const pid_t child = fork();
@@ -82,7 +83,7 @@ int run_interpreter(std::vector<std::string> words) {
 }  // namespace
 
 int draw_plot(const std::vector<std::string>& arguments) {
-  std::vector<std::string> words = {kInterpreter, plot_script().string()};
+  std::vector<std::string> words = {plot_script().string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   return run_interpreter(std::move(words));
 }
@@ -92,13 +93,18 @@ int run_python_module(const std::string& module, const std::vector<std::string>&
   return run_interpreter(module_call(module, arguments));
 }
 
-int become_python_module(const std::string& module, const std::vector<std::string>& arguments) {
+int become_python(std::vector<std::string> words, const std::string& what) {
   use_own_python_package();
-  std::vector<std::string> words = module_call(module, arguments);
+  words.insert(words.begin(), kInterpreter);
   std::vector<char*> pointers = pointers_to(words);
   std::fflush(stdout);
   execv(kInterpreter, pointers.data());
-  throw_missing_interpreter(fmt::format("'{}' is a part of the Python package", module));
+  throw_missing_interpreter(what);
+}
+
+int become_python_module(const std::string& module, const std::vector<std::string>& arguments) {
+  return become_python(module_call(module, arguments),
+                       fmt::format("'{}' is a part of the Python package", module));
 }
 
 int draw_json(const std::string& kind, const std::string& json, const std::string& out) {

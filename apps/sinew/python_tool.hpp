@@ -50,6 +50,13 @@ class PythonWords {
   std::vector<std::string> words_;
 };
 
+/// Runs the interpreter in place of this program, where `import sinew` finds the package of its
+/// build.
+/// @param words of the interpreter: a script, or "-m" and a module, and their arguments. @param
+/// what
+///   says what for, where there is no interpreter. Throws Error(tool-missing) then.
+int become_python(std::vector<std::string> words, const std::string& what);
+
 /// Runs a module of the package in place of this program: signals and the terminal are its own, and
 /// its exit code is the program's.
 /// @param module "sinew.sweep". @param arguments of it. Throws Error(tool-missing) when the

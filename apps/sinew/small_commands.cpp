@@ -1,16 +1,11 @@
 // sinew schema, reference and validate: each a few lines.
-#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <fmt/format.h>
-#include <unistd.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/scene/reference.hpp"
@@ -49,25 +44,15 @@ struct ValidateOptions {
 };
 
 int validate(const ValidateOptions& options) {
-  const std::string script = validation_script().string();
-  use_own_python_package();
-  PythonWords asked;
-  asked.add_flag("list", options.list);
-  asked.add_flag("fast", options.fast);
-  asked.add_flag("resume", options.resume);
-  asked.add("out", options.out);
-  asked.add("jobs", options.jobs);
-  std::vector<std::string> words = asked.with(options.cases);
-  words.insert(words.begin(), {kInterpreter, script});
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  std::fflush(stdout);
-  execv(kInterpreter, arguments.data());
-  throw Error(ErrorKind::tool_missing, {.file = kInterpreter},
-              fmt::format("the interpreter cannot be started: {}", std::strerror(errno)),
-              "install Python: apt-get install python3 python3-numpy python3-matplotlib");
+  PythonWords words;
+  words.add_flag("list", options.list);
+  words.add_flag("fast", options.fast);
+  words.add_flag("resume", options.resume);
+  words.add("out", options.out);
+  words.add("jobs", options.jobs);
+  std::vector<std::string> all = words.with(options.cases);
+  all.insert(all.begin(), validation_script().string());
+  return become_python(std::move(all), "the validation is written in Python");
 }
 
 Command add_page(CommandLine& line, const char* name, const char* description,
