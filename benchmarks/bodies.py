@@ -17,7 +17,7 @@ import warnings
 import numpy as np
 import sinew
 
-STEPS, MOST_SECONDS = 20, 20.0
+STEPS, MAX_SECONDS = 20, 20.0
 BALLS_A_LAYER = 25
 
 
@@ -69,7 +69,7 @@ def measure(name, parts, gravity, threads):
     clock = time.process_time if threads == 1 else time.perf_counter
     taken = []
     started = time.monotonic()
-    while len(taken) < 4 or (len(taken) < STEPS and time.monotonic() - started < MOST_SECONDS):
+    while len(taken) < 4 or (len(taken) < STEPS and time.monotonic() - started < MAX_SECONDS):
         start = clock()
         sim.step()
         taken.append(1e3 * (clock() - start))

@@ -93,7 +93,7 @@ void add_benchmarks(const std::shared_ptr<const mesh::Mesh>& mesh, const std::st
   }
   const auto model = std::make_shared<const fem::FemModel>(mesh, settings);
   const std::pair<const char*, fem::Tangent> kTangents[] = {{"forces", fem::Tangent::none},
-                                                            {"rotated", fem::Tangent::rotated},
+                                                            {"corotated", fem::Tangent::corotated},
                                                             {"exact", fem::Tangent::exact}};
   for (const auto& [name, tangent] : kTangents) {
     benchmark::RegisterBenchmark(

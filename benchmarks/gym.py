@@ -37,9 +37,9 @@ SETTINGS = [
     ("tolerance 1e-3", {"solver": {"tolerance": 1e-3}}),
     ("tolerance 5e-4", {"solver": {"tolerance": 5e-4}}),
     ("tolerance 1e-4", {"solver": {"tolerance": 1e-4}}),
-    ("1e-1, rotated", {"solver": {"tolerance": 1e-1, "tangent": "rotated"}}),
+    ("1e-1, corotated", {"solver": {"tolerance": 1e-1, "tangent": "corotated"}}),
     ("one linearisation", {"solver": "one-linearisation"}),
-    ("one, rotated", {"solver": {"method": "one-linearisation", "tangent": "rotated"}}),
+    ("one, corotated", {"solver": {"method": "one-linearisation", "tangent": "corotated"}}),
 ]
 CABLES = [f"{kind}_{k}" for kind in ("long", "short") for k in range(4)]
 

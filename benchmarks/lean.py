@@ -28,7 +28,7 @@ STAGES = ("assembly", "rows", "factorisation", "law", "correction")
 # Flanks by the long cable that lies in them: points of different number touch.
 FLANKS = {"+y": 0, "+x": 3}
 SETTINGS = {
-    "one linearisation, rotated": ("backward-euler", {"method": "one-linearisation", "tangent": "rotated"}),
+    "one linearisation, corotated": ("backward-euler", {"method": "one-linearisation", "tangent": "corotated"}),
     "one linearisation": ("backward-euler", {"method": "one-linearisation"}),
     "Newton, the default": ("backward-euler", {"method": "newton"}),
     "Newton, quasi-static": ("quasi-static", {"method": "newton"}),

@@ -65,7 +65,7 @@ def arm(element, size):
 def module(element, size):
     mesh = {"shape": "chambered-cylinder", "radius": 0.0125, "height": 0.065, "chamber_radius": 0.0037,
             "chamber_offset": 0.0073, "chamber_top": 0.06, "element_size": size * 1e-3}
-    air = {"type": "pressure", "surface": {"set": "chamber"}, "cap": True}
+    air = {"type": "chamber", "surface": {"set": "chamber"}, "cap": True}
     return measure(scene(mesh, element, RUBBER, [{"set": "bottom"}], air, [0, 0, 0.065]), "pressure", 10.0)
 
 

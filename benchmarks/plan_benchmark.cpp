@@ -16,8 +16,8 @@ namespace {
 using namespace sinew;
 using namespace sinew::plan;
 
-Task task_of(const benchmark::State& state) {
-  Task task = plan::testing::grab(plan::testing::kGoals[state.range(0)]);
+PlanTask task_of(const benchmark::State& state) {
+  PlanTask task = plan::testing::grab(plan::testing::kGoals[state.range(0)]);
   task.limits.torque_rate = VectorX::Constant(4, 2.0);
   return task;
 }
@@ -56,11 +56,11 @@ void cold(benchmark::State& state) {
 
 /// The goal moves by up to 2 cm.
 void warm_goal(benchmark::State& state) {
-  const Task task = task_of(state);
+  const PlanTask task = task_of(state);
   const Plan before = Planner(arm(), task).plan(1);
   std::mt19937 random(3);
   plan_each(state, [&] {
-    Task moved = task;
+    PlanTask moved = task;
     const VectorX by = pcc::testing::random_vector(random, 2, 0.014);
     moved.goal.position += Vector3(by[0], 0.0, by[1]);
     return Planner(arm(), moved).replan(before);
@@ -69,25 +69,25 @@ void warm_goal(benchmark::State& state) {
 
 /// The start is up to 0.05 rad off.
 void warm_start(benchmark::State& state) {
-  const Task task = task_of(state);
+  const PlanTask task = task_of(state);
   const Plan before = Planner(arm(), task).plan(1);
   std::mt19937 random(3);
   plan_each(state, [&] {
-    Task moved = task;
+    PlanTask moved = task;
     moved.start.position = pcc::testing::random_vector(random, 4, 0.05);
     return Planner(arm(), moved).replan(before);
   });
 }
 
 void reach_proof(benchmark::State& state) {
-  const Task task = task_of(state);
+  const PlanTask task = task_of(state);
   for (auto _ : state) {
     benchmark::DoNotOptimize(prove_out_of_reach(arm(), task.limits, task.goal.position).boxes);
   }
 }
 
 void regulator(benchmark::State& state) {
-  const Task task = task_of(state);
+  const PlanTask task = task_of(state);
   const Plan plan = Planner(arm(), task).plan(1);
   for (auto _ : state) benchmark::DoNotOptimize(Tracker(arm(), task, plan).gain(0)(0, 0));
 }

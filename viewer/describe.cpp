@@ -71,7 +71,7 @@ Ends motion_ends(const sim::Model& model, int index) {
 }
 
 Ends effort_ends(const sim::ActuatorModel& actuator) {
-  if (actuator.type == sim::ActuatorType::pressure) return {-kStrongPressure, kStrongPressure};
+  if (actuator.type == sim::ActuatorType::chamber) return {-kStrongPressure, kStrongPressure};
   if (actuator.type == sim::ActuatorType::torque || actuator.type == sim::ActuatorType::motor) {
     return {-kStrongTorque, kStrongTorque};
   }
@@ -267,7 +267,7 @@ Json contact_json(const sim::Observables& observables, int index) {
           {"signals", keys_of(observables, sim::ObservableKind::contact, contact.name())}};
 }
 
-Json body_json(const mechanics::BodyModel& model, const Surface& surface) {
+Json body_json(const mechanics::BodyModel& model, const DisplaySurface& surface) {
   const mesh::Mesh& mesh = model.mesh();
   return {{"name", model.name()},
           {"vertices", surface.nodes.size()},
@@ -314,7 +314,7 @@ Json controllers_json(const scene::Robot& robot) {
   Json list = Json::array();
   for (const scene::SceneController& controller : robot.controllers) {
     Json effectors = Json::array();
-    for (const inverse::Task& task : controller.settings.tasks) {
+    for (const inverse::EffectorTask& task : controller.settings.tasks) {
       effectors.push_back(robot.model->effectors()[static_cast<std::size_t>(task.effector)].name);
     }
     list.push_back({{"name", controller.name}, {"type", "inverse"}, {"effectors", effectors}});
@@ -380,8 +380,8 @@ const std::vector<FieldInfo>& list_fields() {
   return list;
 }
 
-Surface surface_of(const mesh::Mesh& mesh) {
-  Surface result;
+DisplaySurface surface_of(const mesh::Mesh& mesh) {
+  DisplaySurface result;
   std::vector<int> vertex(static_cast<std::size_t>(mesh.nodes.rows()), -1);
   for (const mesh::Triangle& triangle : mesh::boundary_surface(mesh).triangles) {
     for (const NodeId node : triangle) {

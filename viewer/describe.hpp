@@ -38,7 +38,7 @@ using FieldChoice = std::vector<bool>;
 bool is_signal(const sim::Observable& observable);
 
 /// The outside of a body's mesh, its vertices numbered anew.
-Surface surface_of(const mesh::Mesh& mesh);
+DisplaySurface surface_of(const mesh::Mesh& mesh);
 
 /// Everything at once. @param robot what is shown. @param observables of its simulation.
 Description describe(const scene::Robot& robot, const sim::Observables& observables);

@@ -77,7 +77,8 @@ void put_bodies(const Frame& frame, const FrameChoice& choice, Writer& writer) {
 
 }  // namespace
 
-std::vector<std::byte> encode_surface(const Surface& surface, int body, std::uint16_t generation) {
+std::vector<std::byte> encode_surface(const DisplaySurface& surface, int body,
+                                      std::uint16_t generation) {
   constexpr std::size_t kMaxFloats = std::numeric_limits<std::uint32_t>::max() / sizeof(float);
   if (surface.rest.size() > kMaxFloats || surface.triangles.size() > kMaxFloats) {
     throw Error(ErrorKind::size_limit, {.item = "surface"},

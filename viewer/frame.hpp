@@ -14,7 +14,7 @@
 namespace sinew::viewer {
 
 /// The surface of a body, which alone is sent.
-struct Surface {
+struct DisplaySurface {
   std::string body;                      ///< its name
   std::vector<NodeId> nodes;             ///< (v,) mesh node of each vertex
   std::vector<float> rest;               ///< (3 v,) m
@@ -37,11 +37,11 @@ struct SignalInfo {
 
 /// Everything that does not change while one robot is shown.
 struct Description {
-  std::string scene;                ///< JSON object: `scene` of the protocol
-  std::vector<Surface> surfaces;    ///< one a body
-  std::vector<std::string> fields;  ///< names, in the order of BodyFrame::fields
-  std::vector<CableInfo> cables;    ///< in the order of Frame::cables
-  std::vector<SignalInfo> signals;  ///< in the order of Frame::signals
+  std::string scene;                     ///< JSON object: `scene` of the protocol
+  std::vector<DisplaySurface> surfaces;  ///< one a body
+  std::vector<std::string> fields;       ///< names, in the order of BodyFrame::fields
+  std::vector<CableInfo> cables;         ///< in the order of Frame::cables
+  std::vector<SignalInfo> signals;       ///< in the order of Frame::signals
   std::vector<std::string> effectors;
 };
 
@@ -79,7 +79,8 @@ struct Frame {
 /// Bytes of a surface: message kind 1. Throws Error(size-limit) beyond 2^32 bytes.
 /// @param surface,body the surface and its position among the bodies.
 /// @param generation which robot, as in the scene message.
-std::vector<std::byte> encode_surface(const Surface& surface, int body, std::uint16_t generation);
+std::vector<std::byte> encode_surface(const DisplaySurface& surface, int body,
+                                      std::uint16_t generation);
 
 /// What a connection already has or does not want.
 struct FrameChoice {

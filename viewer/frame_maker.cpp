@@ -37,7 +37,7 @@ void FrameMaker::fill_signals(Frame& frame) {
 
 void FrameMaker::fill_body(std::size_t index, const FieldChoice& wanted, BodyFrame& frame) {
   const mechanics::Body& body = simulation_.body(static_cast<int>(index));
-  const Surface& surface = description_.surfaces[index];
+  const DisplaySurface& surface = description_.surfaces[index];
   frame.positions.reserve(3 * surface.nodes.size());
   for (const NodeId node : surface.nodes) {
     for (int c = 0; c < 3; ++c) {

@@ -213,7 +213,7 @@ Request read_request(const std::string& type, Fields& fields) {
   if (type == "open") return Open{fields.text("name")};
   if (type == "gallery") return ShowGallery{};
   if (type == "field") return ChooseField{fields.text_or_null("name")};
-  if (type == "drive") return Drive{fields.truth("on")};
+  if (type == "drive") return DriveRequest{fields.truth("on")};
   if (type == "ping") return Ping{};
   fail(ErrorKind::unknown_choice, "type", fmt::format("there is no message '{}'", type));
 }

@@ -81,7 +81,7 @@ struct ChooseField {
   std::optional<std::string> name;
 };
 /// Takes over driving, or lets go of it.
-struct Drive {
+struct DriveRequest {
   bool on = true;
 };
 /// Answered at once, to measure the way there and back.
@@ -89,7 +89,7 @@ struct Ping {};
 
 using Request = std::variant<Hello, Play, Pause, Step, Reset, Settle, Speed, SetCommand,
                              ChooseController, SetTarget, Pull, Release, Record, Seek, Open,
-                             ShowGallery, ChooseField, Drive, Ping>;
+                             ShowGallery, ChooseField, DriveRequest, Ping>;
 
 /// A request and the number by which its reply is told from others.
 struct Message {

@@ -22,7 +22,7 @@ constexpr double kTimeTolerance = 1e-9;
 Recording::Recording(const Description& shown, std::string name)
     : shown_(shown), interval_(kMotionInterval) {
   motion_.name = std::move(name);
-  for (const Surface& surface : shown.surfaces) {
+  for (const DisplaySurface& surface : shown.surfaces) {
     motion_.surfaces.push_back({surface.body, surface.triangles, {}});
     frame_bytes_ += surface.rest.size() * sizeof(float);
   }

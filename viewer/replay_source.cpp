@@ -47,7 +47,7 @@ scene::Robot recorded_robot(const record::RunFile& file) {
   if (file.frames() == 0) {
     throw Error(ErrorKind::empty_list, {.item = "run.h5"}, "the run has no frames", "run it again");
   }
-  return scene::build(scene::parse_scene_text(file.scene(), file.scene_name(), {}));
+  return scene::build(scene::parse_recorded_scene(file.scene(), file.scene_name()));
 }
 
 }  // namespace

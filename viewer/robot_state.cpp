@@ -147,7 +147,7 @@ void RobotState::set_target(const SetTarget& target) {
     for (const scene::SceneController& controller : robot_.controllers) {
       if (controller.name != controller_name_) continue;
       const auto found =
-          std::ranges::find(controller.settings.tasks, effector, &inverse::Task::effector);
+          std::ranges::find(controller.settings.tasks, effector, &inverse::EffectorTask::effector);
       if (found == controller.settings.tasks.end()) continue;
       controller_->set_target(task_of(effector), found->target);
     }
@@ -176,7 +176,7 @@ void RobotState::show(const RecordedState& recorded) {
 
 void RobotState::pull(const Pull& pull) {
   const int body = simulation_->model().body_index(pull.body);
-  const Surface& surface = description_.surfaces[static_cast<std::size_t>(body)];
+  const DisplaySurface& surface = description_.surfaces[static_cast<std::size_t>(body)];
   mechanics::Tether tether;
   for (std::size_t k = 0; k < 3; ++k) {
     const int vertex = pull.vertices[k];

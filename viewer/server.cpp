@@ -371,7 +371,7 @@ void Server::Hub::receive(ViewConnection& view, const Message& message) {
       return answer({});
     }
     if (std::holds_alternative<Ping>(message.request)) return answer({});
-    if (const auto* drive = std::get_if<Drive>(&message.request)) {
+    if (const auto* drive = std::get_if<DriveRequest>(&message.request)) {
       if (drive->on) {
         driver_ = view.number();
       } else if (driver_ == view.number()) {

@@ -7,11 +7,11 @@
 
 namespace sinew::cli {
 
-plan::Limits limits_of(const ArmScene& scene) {
+plan::ArmLimits limits_of(const ArmScene& scene) {
   const auto bounded = [](const VectorX& values) -> VectorX {
     return values.cwiseMax(-plan::kNoBound).cwiseMin(plan::kNoBound);
   };
-  plan::Limits limits;
+  plan::ArmLimits limits;
   limits.torque_lower = bounded(scene.torque_lower);
   limits.torque_upper = bounded(scene.torque_upper);
   limits.torque_rate = bounded(scene.torque_rate);

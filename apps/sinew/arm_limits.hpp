@@ -9,7 +9,7 @@
 namespace sinew::cli {
 
 /// The scene's limits, those left out as none.
-plan::Limits limits_of(const ArmScene& scene);
+plan::ArmLimits limits_of(const ArmScene& scene);
 
 /// Throws Error(no-actuators) where no torque drives the arm.
 void require_inputs(const ArmScene& scene);

@@ -203,7 +203,7 @@ void check_options(const BenchOptions& options) {
   if (options.tangent && !mechanics::tangent_of(*options.tangent)) {
     throw Error(ErrorKind::unknown_choice, {.item = "--tangent"},
                 fmt::format("there is no tangent '{}'", *options.tangent),
-                "write exact, projected or rotated");
+                "write exact, projected or corotated");
   }
 }
 
@@ -240,7 +240,7 @@ void add_bench(CommandLine& line) {
   command.add_option("--json", options->json, "Also write the figures to a file").type_name("FILE");
   command
       .add_option("--tangent", options->tangent,
-                  "exact, projected or rotated (default: the scene's)")
+                  "exact, projected or corotated (default: the scene's)")
       .type_name("NAME");
   command.add_flag("--compare-eigen", options->compare_eigen,
                    "Also time Eigen's SimplicialLDLT on the same matrix, on one thread");

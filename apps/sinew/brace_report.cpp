@@ -34,7 +34,7 @@ Json conditions_json(const Brace& brace) {
   return result;
 }
 
-Json object_json(const constraint::Surface& surface, const std::string& name) {
+Json object_json(const constraint::SmoothSurface& surface, const std::string& name) {
   Json result = {{"name", name}};
   if (const auto* plane = std::get_if<constraint::Plane>(&surface)) {
     result["plane"] = {{"point_m", list(plane->point)}, {"normal", list(plane->normal)}};

@@ -57,7 +57,7 @@ SparseMatrix step_matrix(const sim::Simulation& simulation, int index) {
   ThreadPool pool(1);
   fem::Assembly assembly(elements, pool);
   assembly.evaluate(body.positions(),
-                    {fem::Tangent::rotated, 1.0 + weights.velocity.motion * damping.stiffness,
+                    {fem::Tangent::corotated, 1.0 + weights.velocity.motion * damping.stiffness,
                      weights.acceleration.motion + weights.velocity.motion * damping.mass});
   return expand(elements->pattern(), std::as_const(assembly).matrix());
 }

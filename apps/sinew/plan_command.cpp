@@ -28,10 +28,10 @@ namespace sinew::cli {
 
 namespace {
 
-using plan::Method;
+using plan::CollocationMethod;
 using plan::Plan;
+using plan::PlanTask;
 using plan::Replay;
-using plan::Task;
 
 constexpr int kMaxSeeds = 1000;
 constexpr int kMaxIntervals = 10000;
@@ -59,8 +59,9 @@ struct Attempt {
   Plan plan;
 };
 
-Method method_of(const std::string& name) {
-  for (const Method method : {Method::radau, Method::backward_euler}) {
+CollocationMethod method_of(const std::string& name) {
+  for (const CollocationMethod method :
+       {CollocationMethod::radau, CollocationMethod::backward_euler}) {
     if (name == plan::method_name(method)) return method;
   }
   throw Error(ErrorKind::unknown_choice, {.item = "--method"},
@@ -78,8 +79,8 @@ double torque_rate(const std::string& text) {
   }
 }
 
-Task task_of(const PlanOptions& options, const ArmScene& scene) {
-  Task task;
+PlanTask task_of(const PlanOptions& options, const ArmScene& scene) {
+  PlanTask task;
   task.goal.position = parse_vector3(options.goal, dimension::kLength, {.item = "--goal"});
   if (options.tolerance) {
     task.goal.tolerance = positive_quantity("--tolerance", *options.tolerance, dimension::kLength);
@@ -105,7 +106,8 @@ Task task_of(const PlanOptions& options, const ArmScene& scene) {
   return plan::completed(*scene.arm, std::move(task));
 }
 
-std::vector<Attempt> search(const PlanOptions& options, const ArmScene& scene, const Task& task) {
+std::vector<Attempt> search(const PlanOptions& options, const ArmScene& scene,
+                            const PlanTask& task) {
   plan::Planner planner(scene.arm, task);
   std::vector<Attempt> attempts;
   ProgressBar bar(options.seeds, true);
@@ -184,7 +186,7 @@ std::string torque_table(const ArmScene& scene, const Plan& plan) {
     append_csv_row(text, row);
   };
   const VectorX& times = plan.knots.times;
-  const bool constant = plan.method == Method::backward_euler;
+  const bool constant = plan.method == CollocationMethod::backward_euler;
   if (!constant) add(times[0], 0);
   for (Eigen::Index k = 1; k < times.size(); ++k) {
     // An interval's constant torque is that of its end.
@@ -204,7 +206,7 @@ nlohmann::ordered_json rows_of(const MatrixX& values) {
   return rows;
 }
 
-nlohmann::ordered_json to_json(const ArmScene& scene, const Task& task,
+nlohmann::ordered_json to_json(const ArmScene& scene, const PlanTask& task,
                                const std::vector<Attempt>& attempts) {
   const auto list = [](const VectorX& v) { return std::vector<double>(v.begin(), v.end()); };
   nlohmann::ordered_json json = {{"scene", scene.description.name},
@@ -257,7 +259,7 @@ int make_plan(const PlanOptions& options) {
   require_range("--seeds", options.seeds, 1, kMaxSeeds);
   const ArmScene scene = load_arm_scene(options.scene);
   require_inputs(scene);
-  const Task task = task_of(options, scene);
+  const PlanTask task = task_of(options, scene);
   print_left_out(scene);
   const std::vector<Attempt> attempts = search(options, scene, task);
   if (attempts.empty()) return 0;  // interrupted

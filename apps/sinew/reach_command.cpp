@@ -47,15 +47,15 @@ struct GoalReach {
 std::vector<Vector3> goals_of(const ReachOptions& options, const pcc::Arm& arm) {
   std::vector<Vector3> goals;
   for (const std::string& text : options.goals) {
-    plan::Task task;
+    plan::PlanTask task;
     task.goal.position = parse_vector3(text, dimension::kLength, {.item = "--goal"});
     goals.push_back(plan::completed(arm, std::move(task)).goal.position);
   }
   return goals;
 }
 
-plan::Limits torque_limits(const ArmScene& scene) {
-  plan::Limits limits = limits_of(scene);
+plan::ArmLimits torque_limits(const ArmScene& scene) {
+  plan::ArmLimits limits = limits_of(scene);
   for (std::size_t u = 0; u < scene.inputs.size(); ++u) {
     const auto at = static_cast<Eigen::Index>(u);
     if (limits.torque_lower[at] > -plan::kNoBound && limits.torque_upper[at] < plan::kNoBound) {
@@ -153,7 +153,7 @@ int reach(const ReachOptions& options) {
   require_range("--samples", options.samples, 1, kMaxSamples);
   const ArmScene scene = load_arm_scene(options.scene);
   require_inputs(scene);
-  const plan::Limits limits = torque_limits(scene);
+  const plan::ArmLimits limits = torque_limits(scene);
   const std::vector<Vector3> wanted = goals_of(options, *scene.arm);
   const bool provable = is_planar(*scene.arm);
   print_left_out(scene);

@@ -97,7 +97,7 @@ double run_duration(const scene::Robot& robot) {
 
 // An error is of the largest of all tasks, in m where none of them is an orientation.
 std::string error_text(const Session& session, double error) {
-  for (const inverse::Task& task : session.controller()->settings().tasks) {
+  for (const inverse::EffectorTask& task : session.controller()->settings().tasks) {
     const auto kind = session.robot().model->effector(task.effector).kind();
     if (kind == constraint::EffectorKind::orientation) {
       return fmt::format("{:.4g} m or rad", error);

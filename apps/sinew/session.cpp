@@ -58,7 +58,7 @@ Session::Session(const SceneOptions& options)
 double Session::first_turn() const {
   double end = 0.0;
   if (!controller_) return end;
-  for (const inverse::Task& task : controller_->settings().tasks) {
+  for (const inverse::EffectorTask& task : controller_->settings().tasks) {
     end = std::max(end, task.target.end_time());
   }
   return end;

@@ -56,7 +56,7 @@ def inside(chamber):
 def scene(mesh, friction):
     """The scene as a dict, its commands still missing."""
     sole = [[2 * i * CELL[0], 2 * j * CELL[1], 0.0] for i in range(len(cells()) // 2 + 1) for j in range(4)]
-    chambers = {name: {"type": "pressure", "body": "strip", "surface": {"inside": inside(2 - k)}}
+    chambers = {name: {"type": "chamber", "body": "strip", "surface": {"inside": inside(2 - k)}}
                 for k, name in enumerate(CHAMBERS)}  # fmt: skip
     return {
         "sinew": 1, "gravity": "0 0 -9.81 m/s^2", "integrator": "backward-euler", "time_step": STEP, "duration": 3 * PERIOD,

@@ -58,7 +58,7 @@ def scene(data, folder, friction):
                                 "thickness": "1 mm", "young_modulus": "5 MPa", "poisson_ratio": 0.49}},
         "contacts": {"floor": {"body": "robot", "surface": {"plane": {}}, "points": (1e-3 * sole_points(nodes)).tolist(),
                                "friction": friction}},
-        "actuators": {name: {"type": "pressure", "body": "robot", "surface": {"file": str(folder / f"{name}.stl")}}
+        "actuators": {name: {"type": "chamber", "body": "robot", "surface": {"file": str(folder / f"{name}.stl")}}
                       for name in CHAMBERS},
     }  # fmt: skip
 

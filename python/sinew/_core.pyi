@@ -19,7 +19,7 @@ _Integers = NDArray[np.int32]
 _Command = Union[float, "Signal", ArrayLike]
 _Goal = Union["Target", ArrayLike]
 _Path = Union[str, os.PathLike[str]]
-_Tangent = Literal["exact", "projected", "rotated"]
+_Tangent = Literal["exact", "projected", "corotated"]
 
 class Signal:
     def value(self, time: float) -> float: ...
@@ -190,7 +190,7 @@ class Actuator:
     @property
     def name(self) -> str: ...
     @property
-    def type(self) -> Literal["cable", "force", "pressure", "spring"]: ...
+    def type(self) -> Literal["cable", "force", "chamber", "spring", "torque", "motor", "linear-motor"]: ...
     @property
     def displacement(self) -> float: ...
     @displacement.setter
@@ -828,6 +828,7 @@ def load_file(path: str, overrides: list[str], threads: Optional[int]) -> Simula
 def load_text(
     text: str, overrides: list[str], folder: str, name: str, threads: Optional[int]
 ) -> Simulation: ...
+def load_recorded(text: str) -> Simulation: ...
 def load_tree(
     tree: Mapping[str, Any],
     overrides: list[str],

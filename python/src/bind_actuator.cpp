@@ -282,7 +282,7 @@ void bind_actuator(py::module_& module) {
           "name", [](const Actuator& self) { return model(self).name; }, "str: as in the scene.")
       .def_property_readonly(
           "type", [](const Actuator& self) { return model(self).words().type; },
-          "str: 'cable', 'force', 'pressure' or 'spring'.")
+          "str: 'cable', 'force', 'chamber', 'spring', 'torque', 'motor' or 'linear-motor'.")
       .def("__repr__", [](const Actuator& self) {
         return fmt::format("<sinew.Actuator '{}', a {}>", model(self).name,
                            model(self).words().type);

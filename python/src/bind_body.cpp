@@ -389,7 +389,7 @@ Parameters
 ----------
 positions : (n, 3) array_like, optional
     m; the present ones by default. The simulation is not changed.
-tangent : {'exact', 'projected', 'rotated'}
+tangent : {'exact', 'projected', 'corotated'}
     The derivative of the forces, the same made positive semi-definite element by element, or
     R K0 R^T with the rotations held fixed.
 

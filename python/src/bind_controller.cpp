@@ -13,9 +13,9 @@ namespace sinew::python {
 
 namespace {
 
+using inverse::EffectorTask;
 using inverse::InverseController;
 using inverse::InverseSettings;
-using inverse::Task;
 
 // What `controller.targets` returns: a live mapping from effectors to targets.
 struct Targets {
@@ -24,7 +24,7 @@ struct Targets {
 
 const InverseController& law(const Controller& self) { return *self.attached->law; }
 
-const std::string& effector_name(const Controller& self, const Task& task) {
+const std::string& effector_name(const Controller& self, const EffectorTask& task) {
   return self.session->model().effectors()[static_cast<std::size_t>(task.effector)].name;
 }
 
@@ -61,9 +61,9 @@ py::dict to_dict(const py::handle& value, const char* place) {
               "give a dict such as {'tip': [0.03, 0.0, 0.18]}");
 }
 
-std::vector<Task> to_tasks(const sim::Model& model, const py::handle& targets,
-                           const py::object& weights) {
-  std::vector<Task> tasks;
+std::vector<EffectorTask> to_tasks(const sim::Model& model, const py::handle& targets,
+                                   const py::object& weights) {
+  std::vector<EffectorTask> tasks;
   for (const auto& [key, value] : to_dict(targets, "InverseController(targets)")) {
     const std::string name = text_key(key, "InverseController(targets)");
     tasks.push_back(
@@ -72,8 +72,9 @@ std::vector<Task> to_tasks(const sim::Model& model, const py::handle& targets,
   if (weights.is_none()) return tasks;
   for (const auto& [key, value] : to_dict(weights, "InverseController(weights)")) {
     const int effector = model.effector_index(text_key(key, "InverseController(weights)"));
-    const auto found = std::find_if(tasks.begin(), tasks.end(),
-                                    [&](const Task& task) { return task.effector == effector; });
+    const auto found = std::find_if(tasks.begin(), tasks.end(), [&](const EffectorTask& task) {
+      return task.effector == effector;
+    });
     if (found == tasks.end()) {
       throw Error(ErrorKind::unknown_name, {.item = "InverseController(weights)"},
                   fmt::format("'{}' has a weight but no target", std::string(py::str(key))),
@@ -131,11 +132,11 @@ std::vector<inverse::ContactTask> to_contact_tasks(const sim::Model& model,
 }
 
 void set_priorities(const sim::Model& model, const py::object& priorities,
-                    std::vector<Task>& tasks) {
+                    std::vector<EffectorTask>& tasks) {
   if (priorities.is_none()) return;
   for (const auto& [key, value] : to_dict(priorities, "InverseController(priorities)")) {
     const int effector = model.effector_index(text_key(key, "InverseController(priorities)"));
-    const auto found = std::ranges::find(tasks, effector, &Task::effector);
+    const auto found = std::ranges::find(tasks, effector, &EffectorTask::effector);
     if (found == tasks.end()) {
       throw Error(ErrorKind::unknown_name, {.item = "InverseController(priorities)"},
                   fmt::format("'{}' has a priority but no target", std::string(py::str(key))),
@@ -208,7 +209,7 @@ void set_target(const Targets& self, const std::string& name, const py::object& 
 
 py::list target_names(const Targets& self) {
   py::list names;
-  for (const Task& task : law(self.controller).settings().tasks) {
+  for (const EffectorTask& task : law(self.controller).settings().tasks) {
     names.append(effector_name(self.controller, task));
   }
   return names;

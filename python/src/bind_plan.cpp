@@ -21,7 +21,7 @@ namespace {
 /// What Python knows as sinew.plan.Task.
 struct PlanTask {
   std::shared_ptr<const pcc::Arm> arm;
-  plan::Task task;
+  plan::PlanTask task;
 };
 
 struct TrackerOf {
@@ -39,7 +39,7 @@ PlanTask make_task(const PccArm& of, const py::object& goal, const py::object& t
                    int backbone_points, const py::object& actuators, const py::object& cylinders,
                    const py::object& lead, const py::object& command_rate_limits, double command) {
   const pcc::Arm& arm = *of.arm;
-  plan::Task task;
+  plan::PlanTask task;
   task.goal.position = to_vector3(goal, "Task(goal)", "m");
   task.goal.tolerance = tolerance;
   task.goal.speed_tolerance = speed_tolerance.is_none()
@@ -63,9 +63,9 @@ PlanTask make_task(const PccArm& of, const py::object& goal, const py::object& t
     task.grid.min_duration = range[0];
     task.grid.max_duration = range[1];
   }
-  if (method == plan::method_name(plan::Method::backward_euler)) {
-    task.grid.method = plan::Method::backward_euler;
-  } else if (method != plan::method_name(plan::Method::radau)) {
+  if (method == plan::method_name(plan::CollocationMethod::backward_euler)) {
+    task.grid.method = plan::CollocationMethod::backward_euler;
+  } else if (method != plan::method_name(plan::CollocationMethod::radau)) {
     throw Error(ErrorKind::unknown_choice, {.item = "Task(method)"},
                 fmt::format("there is no '{}'", method), "use 'radau' or 'backward-euler'");
   }

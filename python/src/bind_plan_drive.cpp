@@ -33,11 +33,11 @@ std::string name(qp::QpStatus status) { return std::string(qp::qp_status_name(st
 
 }  // namespace
 
-std::optional<plan::Drive> to_drive(const py::object& actuators, const py::object& cylinders,
-                                    const py::object& lead, const char* item) {
+std::optional<plan::DriveTrain> to_drive(const py::object& actuators, const py::object& cylinders,
+                                         const py::object& lead, const char* item) {
   if (actuators.is_none() && cylinders.is_none()) return {};
   const auto list = [](const py::object& given) { return given.is_none() ? py::list() : given; };
-  plan::Drive drive;
+  plan::DriveTrain drive;
   drive.channels = channels_of(list(actuators).cast<std::vector<pcc::FluidicActuator>>(),
                                list(cylinders).cast<std::vector<pcc::DriveCylinder>>(), item);
   if (!lead.is_none()) {

@@ -15,7 +15,7 @@ void bind_plan_reach(py::module_& module) {
       "plan_sample_reach",
       [](const PccArm& arm, const py::object& torque_limits, int samples, std::uint64_t seed,
          const py::object& angle_limits) {
-        const plan::Limits limits = to_limits(*arm.arm, torque_limits, angle_limits);
+        const plan::ArmLimits limits = to_limits(*arm.arm, torque_limits, angle_limits);
         const plan::ReachMap map = plan::sample_reach(arm.arm, limits, samples, seed);
         py::dict result;
         result["tip"] = copy(map.tip);
@@ -47,7 +47,7 @@ dict
       "plan_nearest_reach",
       [](const PccArm& arm, const py::object& torque_limits, const py::object& goal, int starts,
          std::uint64_t seed, const py::object& angle_limits) {
-        const plan::Limits limits = to_limits(*arm.arm, torque_limits, angle_limits);
+        const plan::ArmLimits limits = to_limits(*arm.arm, torque_limits, angle_limits);
         const auto best = plan::nearest_reach(
             arm.arm, limits, to_vector3(goal, "nearest_reach(goal)", "m"), starts, seed);
         py::dict result;
@@ -76,7 +76,7 @@ dict
       "plan_prove_out_of_reach",
       [](const PccArm& arm, const py::object& torque_limits, const py::object& goal,
          double tolerance, double angle, long max_boxes, const py::object& angle_limits) {
-        const plan::Limits limits = to_limits(*arm.arm, torque_limits, angle_limits);
+        const plan::ArmLimits limits = to_limits(*arm.arm, torque_limits, angle_limits);
         const Vector3 at = to_vector3(goal, "prove_out_of_reach(goal)", "m");
         const auto proof =
             plan::prove_out_of_reach(arm.arm, limits, at, {tolerance, angle, max_boxes});

@@ -1,6 +1,7 @@
 // sinew.Simulation, and how a scene becomes one.
 #include <fmt/format.h>
 
+#include "sinew/scene/renamed_words.hpp"
 #include "sinew/scene/scene.hpp"
 #include "sinew/sim/model.hpp"
 
@@ -40,6 +41,12 @@ std::shared_ptr<Session> load_text(const std::string& text,
   return build(scene::parse_yaml(text, name), overrides, folder, name, threads);
 }
 
+std::shared_ptr<Session> load_recorded(const std::string& text) {
+  scene::Node tree = scene::parse_yaml(text, "scene");
+  scene::replace_renamed_words(tree);
+  return build(std::move(tree), {}, {}, "scene", std::nullopt);
+}
+
 std::shared_ptr<Session> load_tree(const py::object& tree,
                                    const std::vector<std::string>& overrides,
                                    const std::string& folder, const std::string& name,
@@ -74,6 +81,20 @@ void bind_load_functions(py::module_& module) {
   module.def("load_text", &load_text, py::arg("text"), py::arg("overrides"), py::arg("folder"),
              py::arg("name"), py::arg("threads"),
              "load_text(text, overrides, folder, name, threads)\n--\n\nSee sinew.loads().");
+  module.def("load_recorded", &load_recorded, py::arg("text"), R"(load_recorded(text)
+--
+
+The robot of a recorded run. Words of its scene that have another name now are replaced.
+
+Parameters
+----------
+text : str
+    The scene in run.h5, YAML.
+
+Returns
+-------
+Simulation
+)");
   module.def("load_tree", &load_tree, py::arg("tree"), py::arg("overrides"), py::arg("folder"),
              py::arg("name"), py::arg("threads"),
              "load_tree(tree, overrides, folder, name, threads)\n--\n\nSee sinew.load().");

@@ -37,7 +37,7 @@ How motions follow from efforts near the present state, which is not changed.
 
 Parameters
 ----------
-tangent : {'exact', 'projected', 'rotated'}
+tangent : {'exact', 'projected', 'corotated'}
     The elements' stiffness: the derivative of the forces, the same made positive semi-definite
     element by element, or R K0 R^T with rotations held fixed.
 geometric_stiffness : bool

@@ -14,8 +14,8 @@ namespace sinew::python {
 /// @param actuators,cylinders lists from Python, or None. @param lead s, or None: the longest
 /// delay.
 /// @param item what an error names.
-std::optional<plan::Drive> to_drive(const py::object& actuators, const py::object& cylinders,
-                                    const py::object& lead, const char* item);
+std::optional<plan::DriveTrain> to_drive(const py::object& actuators, const py::object& cylinders,
+                                         const py::object& lead, const char* item);
 /// "times", "command", "volume", "lead".
 py::dict drive_result(const plan::DriveRun& run);
 

@@ -41,8 +41,8 @@ VectorX to_optional(const py::object& value, const std::string& place, Eigen::In
   return to_vector(value, place, n, unit);
 }
 
-plan::Limits to_limits(const pcc::Arm& arm, const py::object& torque, const py::object& angle) {
-  plan::Limits limits;
+plan::ArmLimits to_limits(const pcc::Arm& arm, const py::object& torque, const py::object& angle) {
+  plan::ArmLimits limits;
   set_limits(torque, "torque_limits", arm.inputs(), "N m", limits.torque_lower,
              limits.torque_upper);
   set_limits(angle, "angle_limits", arm.coordinates(), "rad", limits.angle_lower,

@@ -18,6 +18,6 @@ VectorX to_optional(const py::object& value, const std::string& place, Eigen::In
 
 /// Limits of torque and angle, each None, (n,) either way, or (2, n) with the lower ones first.
 /// Throws as above. @param arm whose. @param torque N m. @param angle rad.
-plan::Limits to_limits(const pcc::Arm& arm, const py::object& torque, const py::object& angle);
+plan::ArmLimits to_limits(const pcc::Arm& arm, const py::object& torque, const py::object& angle);
 
 }  // namespace sinew::python

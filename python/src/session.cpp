@@ -44,7 +44,7 @@ mechanics::Tangent to_tangent(const std::string& word, const std::string& argume
   if (const auto tangent = mechanics::tangent_of(word)) return *tangent;
   throw Error(ErrorKind::unknown_choice, {.item = argument},
               fmt::format("there is no tangent '{}'", word),
-              "use 'exact', 'projected' or 'rotated'");
+              "use 'exact', 'projected' or 'corotated'");
 }
 
 const std::string& SavedState::bytes() const {

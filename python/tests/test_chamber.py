@@ -18,7 +18,7 @@ def robot(**chamber):
                      "element_size": 0.004},
             "element": "hex8", "material": "ecoflex-00-30",
             "fixed": [{"set": "bottom"}, {"set": "top"}]}},
-        "actuators": {"air": {"type": "pressure", "body": "tube", "surface": {"set": "inner"}, "cap": True,
+        "actuators": {"air": {"type": "chamber", "body": "tube", "surface": {"set": "inner"}, "cap": True,
                               **chamber}},
         "effectors": {"wall": {"body": "tube", "point": [0.015, 0, 0.015], "outside": "nearest"}},
     })

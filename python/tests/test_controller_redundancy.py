@@ -118,7 +118,7 @@ def test_beside_gas():
                      "chamber_top": "62.5 mm", "element_size": "6 mm"},
         }},
         "actuators": {
-            "air": {"type": "pressure", "body": "b", "surface": {"inside": "7.3 0 30 mm"}, "gas": {"dead_volume": 2e-6}},
+            "air": {"type": "chamber", "body": "b", "surface": {"inside": "7.3 0 30 mm"}, "gas": {"dead_volume": 2e-6}},
             "east": {"type": "cable", "body": "b", "points": [[0.0, 0.011, 0], [0.0, 0.011, 0.03], [0.0, 0.011, 0.06]]},
             "west": {"type": "cable", "body": "b", "points": [[0.0, -0.011, 0], [0.0, -0.011, 0.03], [0.0, -0.011, 0.06]]},
         },

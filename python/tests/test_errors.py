@@ -94,8 +94,8 @@ CALLS = [
     ("wrong-type", "list", lambda s: s.run(0.1, record="tip.position")),
     ("wrong-type", "function", lambda s: s.run(0.1, progress=True)),
     ("out-of-range", "", lambda s: s.solve_static(tolerance=0)),
-    ("unknown-choice", "rotated", lambda s: s.linearise(tangent="rough")),
-    ("unknown-choice", "rotated", lambda s: s.body("finger").stiffness(tangent="rough")),
+    ("unknown-choice", "corotated", lambda s: s.linearise(tangent="rough")),
+    ("unknown-choice", "corotated", lambda s: s.body("finger").stiffness(tangent="rough")),
     # bodies
     ("wrong-shape", "(63, 3)", lambda s: s.body("finger").internal_forces(np.zeros((4, 3)))),
     ("wrong-type", "", lambda s: s.body("finger").internal_forces("rest")),

@@ -233,7 +233,7 @@ def test_unknown_pressure_and_a_reading_of_the_volume():
         "type": "fem",
         "mesh": {"shape": "hollow-cylinder", "inner_radius": 0.01, "outer_radius": 0.015, "height": 0.03, "element_size": 0.004},
         "element": "hex8", "material": "ecoflex-00-30", "fixed": [{"set": "bottom"}, {"set": "top"}]}},
-        "actuators": {"air": {"type": "pressure", "body": "tube", "surface": {"set": "inner"}, "cap": True,
+        "actuators": {"air": {"type": "chamber", "body": "tube", "surface": {"set": "inner"}, "cap": True,
                               "command": {"pressure": 0}}},
         "effectors": {"wall": {"body": "tube", "point": [0.015, 0, 0.015], "outside": "nearest"}}}
     measured = [estimate.Measured("wall.position", 1e-5), estimate.Measured("air.volume_growth", 1e-8)]

@@ -82,7 +82,7 @@ def test_weight_of_liquid_in_a_chamber_bends_its_body():
                                            "chamber_radius": "3.7 mm", "chamber_offset": "7.3 mm",
                                            "chamber_bottom": "2.5 mm", "chamber_top": "62.5 mm",
                                            "element_size": "6 mm"}}},
-            "actuators": {"chamber": {"type": "pressure", "body": "module",
+            "actuators": {"chamber": {"type": "chamber", "body": "module",
                                       "surface": {"inside": "7.3 0 30 mm"}, "liquid": liquid}}})
         sim.solve_static()
         forces = np.array(sim.body("module").load_forces).sum(axis=0)

@@ -62,7 +62,7 @@ def random_robot(rng, walls):
                           "direction": rng.normal(size=3).tolist(),
                           "limits": {"force": {"min": -0.5, "max": 0.5}}}
     for k in range(rng.integers(0, 3)):
-        owned[f"chamber{k}"] = {"type": "pressure", "body": "b", "surface": {"file": walls[k]},
+        owned[f"chamber{k}"] = {"type": "chamber", "body": "b", "surface": {"file": walls[k]},
                                 "limits": {"pressure": {"min": 0.0, "max": float(rng.uniform(2e3, 3e4))}}}
     for k in range(rng.integers(0, 3)):
         beside[f"spring{k}"] = {"type": "spring", "body": "b", "points": line(*rng.uniform(0.003, 0.017, 2)),
@@ -207,7 +207,7 @@ def test_cables_that_move_nothing_do_not_disturb_others_in_any_order(first):
     points = [[0.003, 0.014, -0.049], [0.03, 0.014, -0.0489], [0.057, 0.0128, -0.049]]
     idle = {"type": "cable", "body": "link", "pull": "body", "points": points, "outside": "nearest",
             "limits": {"tension": {"max": "5 N"}, "displacement": {"min": "-10 mm", "max": "8 mm"}}}
-    chamber = {"type": "pressure", "body": "tube", "surface": {"set": "inner"}, "cap": True, "limits": {"pressure": {"min": "-10 kPa", "max": "20 kPa"}},
+    chamber = {"type": "chamber", "body": "tube", "surface": {"set": "inner"}, "cap": True, "limits": {"pressure": {"min": "-10 kPa", "max": "20 kPa"}},
                "command": {"volume_growth": {"ramp": {"to": "0.08 ml", "duration": "40 ms"}}}}
     cables = {"cable_0": idle, "cable_1": {**idle, "command": {"tension": {"ramp": {"to": 0.4, "duration": "40 ms"}}}}}
     segment = {"length": "30 mm", "mass": "10 g", "stiffness": "0.02 N m", "damping": "2e-4 N m s"}

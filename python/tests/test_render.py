@@ -564,6 +564,20 @@ def test_a_recorded_run_looks_as_it_did(pulled, tmp_path):
         assert run.at(-1.0).time == 0.0 and run.at(9.0).time == pytest.approx(0.2)
 
 
+def test_a_run_that_was_recorded_with_words_that_have_another_name_now(tmp_path):
+    sphere = "contacts.left.surface={sphere: {centre: -8 0 20 mm, radius: 8 mm}}"
+    sim = sinew.load(ROOT / "examples/contact/squeeze.yaml", set=[sphere])
+    folder = record(sim, tmp_path / "run", 0.01)
+    with h5py.File(folder / "run.h5", "a") as file:
+        text = file["scene"][()].decode()
+        del file["scene"]
+        file["scene"] = text.replace("centre", "center").encode()
+    with pytest.raises(sinew.Error, match="'center' in .* has another name now; write centre"):
+        sinew.loads(text.replace("centre", "center"))
+    with Recording(folder) as run:
+        assert run.sim.to_yaml() == text
+
+
 def test_a_recorded_run_with_contacts(tmp_path):
     sim = sinew.load(ROOT / "examples/contact/squeeze.yaml")
     folder = record(sim, tmp_path / "run", 0.05)

@@ -207,7 +207,7 @@ def test_the_finger_with_sensors_runs():
 
 @pytest.mark.parametrize(("sensor", "kind", "part"), [
     ({"type": "cable-length", "actuator": "pul"}, "unknown-name", "did you mean 'pull'"),
-    ({"type": "pressure", "actuator": "pull"}, "wrong-actuator-type", "name an actuator of type pressure"),
+    ({"type": "pressure", "actuator": "pull"}, "wrong-actuator-type", "name an actuator of type chamber"),
     ({"type": "cable-length", "actuator": "pull", "rate": 30}, "out-of-range", "choose 25 Hz"),
     ({"type": "cable-length", "actuator": "pull", "noise": -1}, "out-of-range", "sensors.s.noise"),
     ({"type": "marker", "body": "beam", "point": [1, 1, 1]}, "point-outside-mesh", "point 0 of sensor 's'"),

@@ -1,11 +1,13 @@
 /// @file
-/// One include for robots that are built and simulated in C++: meshes, materials, bodies,
-/// actuators, contacts, the simulation, its inverse controller and the high-rate loop.
+/// Includes what a program needs to build and simulate a robot: meshes, materials, bodies,
+/// actuators, contacts, joints, sensors, the simulation, the inverse controller and the high-rate
+/// loop. It is not the whole public interface. Include the following headers where you need them:
 ///
-/// Not included, because they pull in files, formats or optional dependencies:
-/// scene files (sinew/scene/build.hpp), records of runs (sinew/record/run_recorder.hpp), both in
-/// the target sinew::sinew; identification (sinew/identify/..., target sinew::identify) and
-/// planning (sinew/plan/..., target sinew::plan).
+/// - sinew/scene/build.hpp: scene files (target sinew::sinew)
+/// - sinew/record/run_recorder.hpp: recorded runs (target sinew::sinew)
+/// - sinew/collision/...: queries on surfaces (target sinew::sinew)
+/// - sinew/identify/...: parameter identification (target sinew::identify)
+/// - sinew/plan/...: motion planning (target sinew::plan)
 #pragma once
 
 #include "sinew/control/high_rate_loop.hpp"
@@ -22,6 +24,7 @@
 #include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/inverse/target.hpp"
 #include "sinew/linalg/factorisation.hpp"
+#include "sinew/material/library.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/embedding.hpp"
@@ -34,7 +37,9 @@
 #include "sinew/pcc/arm.hpp"
 #include "sinew/pcc/bending_motion.hpp"
 #include "sinew/qp/quadratic_program.hpp"
+#include "sinew/rigid/rigid_settings.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/base_motion.hpp"
 #include "sinew/sim/cable_settings.hpp"
 #include "sinew/sim/chamber_settings.hpp"
 #include "sinew/sim/channel.hpp"

@@ -90,7 +90,7 @@ def test_run_records_what_was_asked(scene, tmp_path):
 def test_flagged_steps_end_with_one_unless_told_to_keep_going(tmp_path):
     trunk = ROOT / "examples" / "trunk" / "trunk.yaml"
     pull = ["--duration", "1.5s", "--set", "actuators.long_0.command.displacement.ramp.to=30mm"]
-    rough = ["--set", "solver={method: one-linearisation, tangent: rotated}",
+    rough = ["--set", "solver={method: one-linearisation, tangent: corotated}",
              "--set", "actuators.long_0.geometric_stiffness=false"]
     solved = sinew("run", trunk, *pull, "--out", "solved", cwd=tmp_path)
     assert solved.returncode == DONE and solved.stderr == "", solved.stderr
@@ -271,13 +271,13 @@ def test_a_long_step_in_the_view_can_be_ended(tmp_path):
 
 
 def test_rubber_takes_the_exact_tangent_in_place_of_the_rotated_one(scene, tmp_path):
-    soft = ["--set", "solver.tangent=rotated", "--set", "bodies.beam.material.model=neo-hookean", "--duration", "0.05s"]
+    soft = ["--set", "solver.tangent=corotated", "--set", "bodies.beam.material.model=neo-hookean", "--duration", "0.05s"]
     told = sinew("run", scene(), *soft, "--out", "o", cwd=tmp_path)
-    assert told.returncode == DONE and "'beam' has no rotated tangent" in told.stderr
+    assert told.returncode == DONE and "'beam' has no corotated tangent" in told.stderr
     assert told.stderr.rstrip().endswith("[other-tangent]") and told.stderr.count("\n") == 1
     iterations = [float(row["iterations"]) for row in rows_of(tmp_path / "o" / "run.csv")]
     assert max(iterations) <= 6
-    plain = sinew("run", scene(), "--set", "solver.tangent=rotated", "--duration", "0.05s", "--out", "p", cwd=tmp_path)
+    plain = sinew("run", scene(), "--set", "solver.tangent=corotated", "--duration", "0.05s", "--out", "p", cwd=tmp_path)
     assert plain.stderr == ""
 
 
@@ -366,7 +366,7 @@ WRONG_ARGUMENTS = [
     (["run", "{scene}", "--out", "/proc/nothing/here"], "file-unwritable", "--out"),
     (["bench", "{scene}", "--steps", "0"], "out-of-range", "--steps"),
     (["bench", "{scene}", "--steps", "many"], "bad-argument", "--steps"),
-    (["bench", "{scene}", "--tangent", "best"], "unknown-choice", "exact, projected or rotated"),
+    (["bench", "{scene}", "--tangent", "best"], "unknown-choice", "exact, projected or corotated"),
     (["validate", "patch", "--json"], "unknown-option", "there is no option '--json'"),
     (["validate", "patch", "--lst"], "unknown-option", "did you mean --list?"),
     (["validate", "--jobs", "two"], "bad-argument", "--jobs"),
@@ -473,7 +473,7 @@ def test_info_of_every_kind(scene, tmp_path):
 
 def test_info_writes_few_digits(scene):
     path = scene(replace=("effectors:", """  air:
-    type: pressure
+    type: chamber
     body: beam
     surface: {file: cavity.stl, unit: mm}
 effectors:"""))
@@ -776,7 +776,7 @@ bodies:
     fixed: [{box: -20 -20 0 20 20 20 mm}]
 actuators:
   long_0:
-    type: cable                 # cable | pressure | spring | force
+    type: cable                 # cable | chamber | spring | force
     body: trunk
     points: {file: long_0.csv, unit: mm}      # or an inline list of "x y z mm"; the first is the pull point
     pull: world                               # world | body: what the pull point is fixed to

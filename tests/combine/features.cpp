@@ -97,7 +97,7 @@ std::vector<Feature> list_features() {
   const KeyTable& solver = map_of(scene::grammar(), "solver");
   const KeyTable& fem = variant_table("bodies", "fem");
   const KeyTable& cable = variant_table("actuators", "cable");
-  const KeyTable& pressure = variant_table("actuators", "pressure");
+  const KeyTable& chamber = variant_table("actuators", "chamber");
   const KeyTable& force = variant_table("actuators", "force");
   const KeyTable& torque = variant_table("actuators", "torque");
   const KeyTable& spring = variant_table("actuators", "spring");
@@ -135,8 +135,8 @@ std::vector<Feature> list_features() {
       {"cable_guides", {"none", "radius", "spacing"}},
       {"cable_stiffness", switched},
       {"second_cable", {"none", "twin", "antagonist"}},
-      {"chamber", or_none(alternatives(map_of(pressure, "command"), "pressure"))},
-      {"medium", or_none(alternatives(pressure, "gas"))},
+      {"chamber", or_none(alternatives(map_of(chamber, "command"), "pressure"))},
+      {"medium", or_none(alternatives(chamber, "gas"))},
       {"spring", or_none(with(alternatives(spring, "stiffness"), {"coil", "band"}))},
       {"force", or_none(alternatives(map_of(force, "command"), "force"))},
       {"torque", or_none(alternatives(map_of(torque, "command"), "torque"))},

@@ -406,7 +406,7 @@ class Drafter {
     if (told == "gas" || told == "liquid") medium = told;
     const bool closed = of("mesh") == "chambered-cylinder";
     std::string text = fmt::format(
-        "type: pressure, body: <{}>, surface: {}, limits: {{pressure: {{min: -10 kPa, max: 20 "
+        "type: chamber, body: <{}>, surface: {}, limits: {{pressure: {{min: -10 kPa, max: 20 "
         "kPa}}}}",
         on->id, closed ? "{inside: 4 0 30 mm}" : "{set: inner}, cap: true");
     text += look_up("medium", medium,

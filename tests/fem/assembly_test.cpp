@@ -88,12 +88,12 @@ INSTANTIATE_TEST_SUITE_P(
                                      Case{"block", {3, 2, 4}, 0.1, false},
                                      Case{"three materials", {3, 3, 3}, 0.1, true},
                                      Case{"inverted elements", {3, 2, 3}, 0.45, true}),
-                     testing::Values(Tangent::none, Tangent::rotated, Tangent::exact),
+                     testing::Values(Tangent::none, Tangent::corotated, Tangent::exact),
                      testing::Values(MassMatrix::lumped, MassMatrix::consistent)));
 
 class EveryTangent : public testing::TestWithParam<Tangent> {};
 INSTANTIATE_TEST_SUITE_P(Tangents, EveryTangent,
-                         testing::Values(Tangent::none, Tangent::rotated, Tangent::projected,
+                         testing::Values(Tangent::none, Tangent::corotated, Tangent::projected,
                                          Tangent::exact));
 
 TEST_P(EveryTangent, ThreadsDoNotChangeABit) {
@@ -244,7 +244,7 @@ TEST(Assembly, ForcesAndMatrixTurnWithTheBody) {
   Assembly assembly(model, pool);
   const Points positions = moved(*mesh, kEdge, 0.1);
   const Matrix3 turn = Eigen::AngleAxisd(2.0, Vector3(1, 2, 3).normalized()).toRotationMatrix();
-  for (const Tangent tangent : {Tangent::rotated, Tangent::exact, Tangent::rates}) {
+  for (const Tangent tangent : {Tangent::corotated, Tangent::exact, Tangent::rates}) {
     assembly.evaluate(positions, {.tangent = tangent});
     const MatrixX before = dense_matrix(assembly);
     MatrixX turns = MatrixX::Zero(before.rows(), before.cols());
@@ -331,7 +331,7 @@ TEST(Assembly, PassesTheAffinePatchTest) {
     ASSERT_EQ(model->free_count(), 27);
     ThreadPool pool(1);
     Assembly assembly(model, pool);
-    assembly.evaluate(mesh->nodes * gradient.transpose(), {.tangent = Tangent::rotated});
+    assembly.evaluate(mesh->nodes * gradient.transpose(), {.tangent = Tangent::corotated});
     const double scale = dense_matrix(assembly).cwiseAbs().maxCoeff() * kEdge;
     for (const double force : assembly.forces()) EXPECT_NEAR(force, 0.0, 1e-13 * scale);
   }
@@ -342,13 +342,13 @@ TEST(Assembly, MatricesAreSymmetricAndTheRotatedOneIsPositive) {
   const auto model = std::make_shared<const FemModel>(mesh, law_settings(*mesh));
   ThreadPool pool(1);
   Assembly assembly(model, pool);
-  for (const Tangent tangent : {Tangent::rotated, Tangent::exact}) {
+  for (const Tangent tangent : {Tangent::corotated, Tangent::exact}) {
     assembly.evaluate(moved(*mesh, kEdge, 0.2), {.tangent = tangent});
     const MatrixX matrix = dense_matrix(assembly);  // off-diagonal blocks symmetric by storage
     EXPECT_LT((matrix - matrix.transpose()).cwiseAbs().maxCoeff(),
               1e-15 * matrix.cwiseAbs().maxCoeff());
     const double smallest = linalg::symmetric_eigenvalues(matrix)[0];
-    if (tangent == Tangent::rotated) {
+    if (tangent == Tangent::corotated) {
       EXPECT_GT(smallest, 0.0);
     }
   }
@@ -361,7 +361,7 @@ TEST(Assembly, BothTangentsAgreeAtRest) {
   Assembly assembly(model, pool);
   assembly.evaluate(mesh->nodes, {.tangent = Tangent::exact});
   const MatrixX exact = dense_matrix(assembly);
-  assembly.evaluate(mesh->nodes, {.tangent = Tangent::rotated});
+  assembly.evaluate(mesh->nodes, {.tangent = Tangent::corotated});
   EXPECT_LT((exact - dense_matrix(assembly)).norm(), 1e-13 * exact.norm());
 }
 
@@ -412,7 +412,7 @@ TEST(Assembly, FindsTheWorstElement) {
   EXPECT_EQ(measure.element, assembly.worst_element());
 
   positions(corner, 1) = std::numeric_limits<double>::quiet_NaN();
-  assembly.evaluate(positions, {.tangent = Tangent::rotated});
+  assembly.evaluate(positions, {.tangent = Tangent::corotated});
   EXPECT_EQ(assembly.minimum_volume_ratio(), -std::numeric_limits<double>::infinity());
 }
 

@@ -49,7 +49,7 @@ struct Shown {
   explicit Shown(Kind kind, std::shared_ptr<const mesh::Mesh> mesh = nullptr) {
     FemBodySettings settings;
     settings.mesh = mesh ? std::move(mesh) : mesh_of(kind);
-    Region region{.constants = {kYoung, kPoisson}, .density = 1000.0, .hyperelastic = {}};
+    MaterialRegion region{.constants = {kYoung, kPoisson}, .density = 1000.0, .hyperelastic = {}};
     region.law = kind == Kind::linear ? material::Law::linear : material::Law::corotational;
     if (kind != Kind::linear && kind != Kind::corotational) {
       region.hyperelastic = material::neo_hookean(kShear);

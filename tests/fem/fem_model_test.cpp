@@ -115,7 +115,7 @@ TEST(FemModel, EvenMassIsSharedByTheNodesInUse) {
   mesh->nodes.bottomRows(1).setConstant(1.0);  // unused
   FemModelSettings settings = settings_of(*mesh);
   settings.total_mass = 0.027;
-  settings.even_mass = true;
+  settings.equal_nodal_masses = true;
   const FemModel model(mesh, settings);
   for (NodeId node = 0; node < 27; ++node) EXPECT_NEAR(model.lumped_mass()[node], 1e-3, 1e-17);
   EXPECT_EQ(model.lumped_mass()[27], 0.0);
@@ -199,10 +199,11 @@ TEST(FemModel, RefusesBadInputByItsKind) {
       {"nan density", K::out_of_range, [nan](auto&, auto& s) { s.regions[0].density = nan; }},
       {"zero mass", K::out_of_range, [](auto&, auto& s) { s.total_mass = 0.0; }},
       {"infinite mass", K::out_of_range, [](auto&, auto& s) { s.total_mass = 1.0 / 0.0; }},
-      {"even without total", K::conflicting_keys, [](auto&, auto& s) { s.even_mass = true; }},
+      {"even without total", K::conflicting_keys,
+       [](auto&, auto& s) { s.equal_nodal_masses = true; }},
       {"even and consistent", K::conflicting_keys,
        [](auto&, auto& s) {
-         s.even_mass = true;
+         s.equal_nodal_masses = true;
          s.total_mass = 1.0;
          s.mass = MassMatrix::consistent;
        }},

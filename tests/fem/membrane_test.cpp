@@ -34,7 +34,7 @@ class Layer {
  public:
   explicit Layer(Kind kind) : mesh_(solid_bodies::box(kind, 2, 3, 1, 0.0)), pool_(1) {
     FemModelSettings settings;
-    Region region;
+    MaterialRegion region;
     region.hyperelastic = solid_bodies::rubber(0.4);
     region.density = 1e3;
     settings.regions = {region};

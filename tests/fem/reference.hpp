@@ -78,8 +78,8 @@ inline Reference reference(const FemModel& model, const FemModelSettings& settin
   const Eigen::Index size = 3 * model.free_count();
   result.forces = VectorX::Zero(size);
   result.matrix = MatrixX::Zero(size, size);
-  std::vector<const Region*> region_of(mesh.tetrahedra.size(), &settings.regions.front());
-  for (const Region& region : settings.regions) {
+  std::vector<const MaterialRegion*> region_of(mesh.tetrahedra.size(), &settings.regions.front());
+  for (const MaterialRegion& region : settings.regions) {
     for (const NodeId t : region.elements) region_of[static_cast<std::size_t>(t)] = &region;
   }
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {

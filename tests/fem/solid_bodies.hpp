@@ -79,7 +79,8 @@ inline FemModelSettings mixed_settings(const mesh::Mesh& mesh) {
     settings.regions[static_cast<std::size_t>(e < tetrahedra ? e % 3 : e % 2)].elements.push_back(
         e);
   }
-  std::erase_if(settings.regions, [](const Region& region) { return region.elements.empty(); });
+  std::erase_if(settings.regions,
+                [](const MaterialRegion& region) { return region.elements.empty(); });
   settings.fixed_nodes = bottom_nodes(mesh, kEdge);
   return settings;
 }
@@ -89,7 +90,7 @@ inline FemModelSettings mixed_settings(Kind kind, const mesh::Mesh& mesh) {
   FemModelSettings settings = mixed_settings(mesh);
   if (kind != Kind::patches) return settings;
   settings.regions.pop_back();
-  for (Region& region : settings.regions) {
+  for (MaterialRegion& region : settings.regions) {
     region.elements.clear();
     region.patches = true;
   }

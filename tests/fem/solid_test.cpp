@@ -71,10 +71,10 @@ TEST_P(EveryKind, TheRotatedMatrixIsPositive) {
   const auto lowest = [](const MatrixX& m) { return linalg::symmetric_eigenvalues(m)[0]; };
   const MatrixX exact = body.matrix(x, Tangent::exact);
   EXPECT_LT(lowest(exact), 0.0);
-  EXPECT_GT(lowest(body.matrix(x, Tangent::rotated)), 0.0);
+  EXPECT_GT(lowest(body.matrix(x, Tangent::corotated)), 0.0);
   // At rest there is nothing to project.
   const MatrixX rest = body.matrix(mesh->nodes, Tangent::exact);
-  EXPECT_LT((body.matrix(mesh->nodes, Tangent::rotated) - rest).norm(), 1e-9 * rest.norm());
+  EXPECT_LT((body.matrix(mesh->nodes, Tangent::corotated) - rest).norm(), 1e-9 * rest.norm());
 }
 
 // A mesh of both is not conforming: a hexahedron's face that meets those of two tetrahedra bends in
@@ -124,7 +124,7 @@ TEST_P(EveryKind, ThreadsDoNotChangeABit) {
   const auto mesh = box(GetParam(), 4, 3, 8);
   const FemModelSettings settings = mixed_settings(GetParam(), *mesh);
   const Points x = moved(*mesh, kEdge, 0.1);
-  for (const Tangent tangent : {Tangent::none, Tangent::rotated, Tangent::exact}) {
+  for (const Tangent tangent : {Tangent::none, Tangent::corotated, Tangent::exact}) {
     Body one(mesh, settings), four(mesh, settings, 4);
     one.assembly.evaluate(x, {.tangent = tangent, .mass = 2.0});
     four.assembly.evaluate(x, {.tangent = tangent, .mass = 2.0});
@@ -142,7 +142,7 @@ TEST_P(EveryKind, NothingAllocatesAfterTheFirst) {
   const auto mesh = box(GetParam(), 2, 2, 4);
   Body body(mesh, mixed_settings(GetParam(), *mesh), 2);
   const Points x = moved(*mesh, kEdge, 0.1);
-  for (const Tangent tangent : {Tangent::rotated, Tangent::exact}) {
+  for (const Tangent tangent : {Tangent::corotated, Tangent::exact}) {
     body.assembly.evaluate(x, {.tangent = tangent});
     const std::size_t before = allocation_count();
     body.assembly.evaluate(x, {.tangent = tangent});
@@ -199,7 +199,7 @@ void expect_one_way(Kind kind) {
   const VectorX forces = general.forces(x);
   EXPECT_LT((fast.forces(x) - forces).norm(), 1e-13 * forces.norm());
   EXPECT_NEAR(fast.energy(x), general.energy(x), 1e-13 * general.energy(x));
-  for (const Tangent tangent : {Tangent::exact, Tangent::rotated}) {
+  for (const Tangent tangent : {Tangent::exact, Tangent::corotated}) {
     const MatrixX matrix = general.matrix(x, tangent);
     EXPECT_LT((fast.matrix(x, tangent) - matrix).norm(), 1e-12 * matrix.norm());
     EXPECT_EQ(fast.assembly.minimum_volume_ratio(), general.assembly.minimum_volume_ratio());

@@ -272,7 +272,7 @@ TEST_P(EveryViscousKind, ThreadsDoNotChangeABitAndNothingAllocates) {
     const std::size_t before = allocation_count();
     for (Body* body : {&one, &four}) {
       body->history.begin_step(0.02 * k);
-      body->assembly.evaluate(x, {.tangent = Tangent::rotated});
+      body->assembly.evaluate(x, {.tangent = Tangent::corotated});
       body->assembly.advance(x, body->history);
     }
     EXPECT_EQ(allocation_count(), before);

@@ -80,7 +80,8 @@ void check_derivatives(BraceProgram& program, std::mt19937& random) {
   }
 }
 
-BraceProblem problem(const pcc::Arm& arm, const constraint::Surface& surface, std::size_t patch) {
+BraceProblem problem(const pcc::Arm& arm, const constraint::SmoothSurface& surface,
+                     std::size_t patch) {
   BraceTask task;
   task.limits.torque_upper = VectorX::Constant(arm.inputs(), 0.2);
   task.limits.torque_lower = -task.limits.torque_upper;
@@ -102,13 +103,13 @@ BraceProblem problem(const pcc::Arm& arm, const constraint::Surface& surface, st
 
 TEST(Brace, DerivativesAreExact) {
   std::mt19937 random(3);
-  const std::vector<constraint::Surface> surfaces{
+  const std::vector<constraint::SmoothSurface> surfaces{
       constraint::Plane{{0.3, 0.1, 0.0}, Vector3(1.0, 2.0, -0.5).normalized()},
       constraint::Sphere{{0.9, 0.4, -0.3}, 0.2},
       constraint::Capsule{{0.9, 0.0, -0.3}, {1.1, 0.5, 0.1}, 0.1}};
   for (const bool spatial : {false, true}) {
     const auto arm = make(spatial ? pcc::testing::mixed() : pcc::testing::fluidic());
-    for (const constraint::Surface& surface : surfaces) {
+    for (const constraint::SmoothSurface& surface : surfaces) {
       for (std::size_t patch = 0; patch < patches_of(surface).size(); ++patch) {
         BraceProblem of = problem(*arm, surface, patch);
         BraceProgram program(arm, of);

@@ -14,14 +14,14 @@ using testing::make;
 
 struct Kind {
   const char* name;
-  Method method;
+  CollocationMethod method;
   bool free, mixed, driven = false;
 };
 
 class Derivatives : public ::testing::TestWithParam<Kind> {
  protected:
-  static Task task() {
-    Task task = grab();
+  static PlanTask task() {
+    PlanTask task = grab();
     const bool mixed = GetParam().mixed;
     if (mixed) task.limits = {};
     task.goal.position = {0.1, 0.05, -0.2};
@@ -48,8 +48,8 @@ class Derivatives : public ::testing::TestWithParam<Kind> {
   }
   /// Volumes and torques about one, so that differences are good: with delays that are no whole
   /// samples, with and without feedthrough, one at rest as its limits demand.
-  static Drive drive() {
-    Drive drive;
+  static DriveTrain drive() {
+    DriveTrain drive;
     for (const double delay : {0.0, 0.033, 0.05, 0.0771}) {
       DriveChannel channel{{0.4, 0.9, delay},
                            pcc::DriveCylinder::second_order(1.1, 40.0, 0.8, 0.01)};
@@ -156,16 +156,16 @@ TEST_P(Derivatives, KnotsPackAndUnpack) {
   EXPECT_EQ(program_.pack(program_.unpack(x_)), x_);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Derivatives,
-                         ::testing::Values(Kind{"Euler", Method::backward_euler, false, false},
-                                           Kind{"EulerFree", Method::backward_euler, true, false},
-                                           Kind{"Radau", Method::radau, false, false},
-                                           Kind{"RadauFree", Method::radau, true, false},
-                                           Kind{"RadauFreeMixed", Method::radau, true, true},
-                                           Kind{"EulerDriven", Method::backward_euler, false, false,
-                                                true},
-                                           Kind{"RadauDriven", Method::radau, false, false, true}),
-                         [](const auto& kind) { return kind.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, Derivatives,
+    ::testing::Values(Kind{"Euler", CollocationMethod::backward_euler, false, false},
+                      Kind{"EulerFree", CollocationMethod::backward_euler, true, false},
+                      Kind{"Radau", CollocationMethod::radau, false, false},
+                      Kind{"RadauFree", CollocationMethod::radau, true, false},
+                      Kind{"RadauFreeMixed", CollocationMethod::radau, true, true},
+                      Kind{"EulerDriven", CollocationMethod::backward_euler, false, false, true},
+                      Kind{"RadauDriven", CollocationMethod::radau, false, false, true}),
+    [](const auto& kind) { return kind.param.name; });
 
 /// Radau's stages are exact where the position is a cubic, its last where it is of degree four;
 /// backward Euler on a straight line.
@@ -176,7 +176,7 @@ TEST(Transcription, IsExactOnPolynomials) {
                       -2.0 + 6.0 * t - 12.0 * t * t + 4.0 * fourth * t * t * t,
                       6.0 - 24.0 * t + 12.0 * fourth * t * t};
   };
-  const Transcription rules(Method::radau, h);
+  const Transcription rules(CollocationMethod::radau, h);
   EXPECT_EQ(rules.defects(), 0);
   for (const double fourth : {0.0, 5.0}) {
     VectorX knots(6);
@@ -186,7 +186,7 @@ TEST(Transcription, IsExactOnPolynomials) {
       }
     }
     double area = 0.0;
-    for (const Stage& stage : rules.stages) {
+    for (const CollocationStage& stage : rules.stages) {
       const VectorX motion = stage.state.value * knots;
       const auto expected = quartic(stage.time * h, fourth);
       // The position within is that of a cubic.
@@ -197,7 +197,7 @@ TEST(Transcription, IsExactOnPolynomials) {
     }
     EXPECT_NEAR(area, knots[3] - knots[0], 1e-14);
   }
-  const Transcription euler(Method::backward_euler, h);
+  const Transcription euler(CollocationMethod::backward_euler, h);
   const VectorX line{{1.0, -2.0, 1.0 - 2.0 * h, -2.0}};
   EXPECT_NEAR((euler.defect.value * line)[0], 0.0, 1e-15);
   EXPECT_NEAR((euler.stages[0].state.value * line)[2], 0.0, 1e-15);
@@ -207,7 +207,7 @@ TEST(Transcription, IsExactOnPolynomials) {
 /// Hermite-Simpson would keep it whole.
 TEST(Transcription, DampsWhatKnotsDoNotResolve) {
   const double h = 0.032;
-  const Transcription rules(Method::radau, h);
+  const Transcription rules(CollocationMethod::radau, h);
   for (const double rate : {1.0, 1e3, 1e5, 1e7}) {
     Matrix3 left;
     Vector3 right;

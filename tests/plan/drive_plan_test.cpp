@@ -25,8 +25,8 @@ using testing::TipEnd;
 constexpr double kLead = 0.25;
 
 /// @param frequency rad/s, of the cylinders.
-Drive drive(double frequency) {
-  Drive drive;
+DriveTrain drive(double frequency) {
+  DriveTrain drive;
   drive.lead = kLead;
   for (int i = 0; i < 4; ++i) {
     DriveChannel channel{{0.0, 4e12, 0.077},
@@ -40,8 +40,8 @@ Drive drive(double frequency) {
   return drive;
 }
 
-Task driven(const Vector3& goal, double frequency) {
-  Task task = grab(goal);
+PlanTask driven(const Vector3& goal, double frequency) {
+  PlanTask task = grab(goal);
   task.drive = drive(frequency);
   return task;
 }
@@ -53,7 +53,7 @@ class DrivePlan : public ::testing::TestWithParam<double> {};
 TEST_P(DrivePlan, EndsAtTheGoalThroughTheChain) {
   const auto arm = make(pcc::testing::fluidic());
   for (const Vector3& goal : {kGoals[1], kGoals[2]}) {
-    const Task task = driven(goal, GetParam());
+    const PlanTask task = driven(goal, GetParam());
     const Plan found = Planner(arm, task).plan(1);
     ASSERT_TRUE(found.found());
     const Replay run = replay(arm, task, *found.knots.drive);
@@ -66,7 +66,7 @@ TEST_P(DrivePlan, EndsAtTheGoalThroughTheChain) {
     EXPECT_NEAR((end.position - goal).norm(), found.tip_error, 0.005 * task.goal.tolerance);
     EXPECT_NEAR(end.velocity.norm(), found.tip_speed, 0.005 * task.goal.speed_tolerance);
 
-    Task torques = task;
+    PlanTask torques = task;
     torques.drive.reset();
     torques.limits.torque_rate = VectorX::Constant(4, 2.0);
     const DriveInversion inverse =
@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(Cylinders, DrivePlan, ::testing::Values(40.0, 20.0),
 
 TEST(DrivePlan, KeepsItsLimits) {
   const auto arm = make(pcc::testing::fluidic());
-  Task task = driven(kGoals[2], 20.0);
+  PlanTask task = driven(kGoals[2], 20.0);
   const double volume = 2.9e-5, command = 3.6e-5, rate = 5e-4;
   for (DriveChannel& channel : task.drive->channels) {
     channel.cylinder.highest_volume = volume;
@@ -110,7 +110,7 @@ TEST(DrivePlan, KeepsItsLimits) {
 
 TEST(DrivePlan, CostsMoreTheSlowerTheCylindersAre) {
   const auto arm = make(pcc::testing::fluidic());
-  Task task = grab(kGoals[1]);
+  PlanTask task = grab(kGoals[1]);
   double before = 0.0;
   for (const double frequency : {80.0, 40.0, 15.0}) {
     task.drive = drive(frequency);
@@ -124,7 +124,7 @@ TEST(DrivePlan, CostsMoreTheSlowerTheCylindersAre) {
 
 TEST(DrivePlan, BeginsAtATorqueHeld) {
   const auto arm = make(pcc::testing::fluidic());
-  Task task = driven(kGoals[1], 30.0);
+  PlanTask task = driven(kGoals[1], 30.0);
   // Whole samples, so that one stands where the plan begins.
   for (DriveChannel& channel : task.drive->channels) channel.actuator.delay = 0.08;
   task.start.torque = VectorX{{0.0, 0.02, -0.03, 0.04}};

@@ -19,9 +19,9 @@ using testing::make;
 constexpr double kStep = 0.01;
 
 /// Of the published arm's four inputs, of which the first has no torque.
-Task driven(double lead = -1.0) {
-  Task task = grab();
-  Drive drive;
+PlanTask driven(double lead = -1.0) {
+  PlanTask task = grab();
+  DriveTrain drive;
   drive.lead = lead;
   for (const double delay : {0.0, 0.033, 0.05, 0.0771}) {
     DriveChannel channel{{10.0, 4e12, delay},
@@ -37,7 +37,7 @@ Task driven(double lead = -1.0) {
 }
 
 /// Smooth commands from rest, which begin with the plan.
-DriveRun commands(const Task& task) {
+DriveRun commands(const PlanTask& task) {
   const Eigen::Index count =
       sample_count(task.drive->channels[0].cylinder, task.drive->lead + task.grid.duration) + 3;
   MatrixX command = MatrixX::Zero(count, 4);
@@ -74,7 +74,7 @@ TEST(SampleWeights, AreExactOnParabolas) {
 /// What cylinders do satisfies the rows, in which their states are eliminated, for any lead.
 TEST(DriveTranscription, RowsAreTheCylinders) {
   for (const double lead : {-1.0, 0.0771, 0.25}) {
-    const Task task = driven(lead);
+    const PlanTask task = driven(lead);
     const int variable = 7, row = 3;
     const DriveTranscription drive(task, 0.1, variable, row);
     const DriveRun run = commands(task);
@@ -94,7 +94,7 @@ TEST(DriveTranscription, RowsAreTheCylinders) {
 
 /// The delay is a shift of time: the torque at a time within the plan is that of the form's volume.
 TEST(DriveTranscription, VolumesActAfterTheDelay) {
-  const Task task = driven(0.25);
+  const PlanTask task = driven(0.25);
   const DriveTranscription drive(task, 0.1, 0, 0);
   const DriveRun run = commands(task);
   const VectorX x = drive.pack(run);
@@ -123,7 +123,7 @@ TEST(DriveTranscription, VolumesActAfterTheDelay) {
 }
 
 TEST(DriveTranscription, BoundsAreThoseOfTorqueAndVolume) {
-  const Task task = driven();
+  const PlanTask task = driven();
   const DriveTranscription drive(task, 0.1, 0, 0);
   const auto& lower = drive.variable_bounds().lower;
   const auto& upper = drive.variable_bounds().upper;
@@ -138,28 +138,28 @@ TEST(DriveTranscription, BoundsAreThoseOfTorqueAndVolume) {
 
 TEST(DriveTranscription, RefusesWhatCannotBe) {
   const auto arm = make(pcc::testing::fluidic());
-  const Task good = driven();
+  const PlanTask good = driven();
   EXPECT_DOUBLE_EQ(good.drive->lead, 0.08);
   const auto kind = [&](auto change) {
-    Task task = good;
+    PlanTask task = good;
     change(task);
     return kind_of([&] { completed(*arm, task); });
   };
-  EXPECT_EQ(kind([](Task& t) { t.drive->channels.pop_back(); }), ErrorKind::wrong_length);
-  EXPECT_EQ(kind([](Task& t) { t.drive->lead = 0.05; }), ErrorKind::out_of_range);
-  EXPECT_EQ(kind([](Task& t) { t.drive->channels[1].cylinder.sample_time = 0.02; }),
+  EXPECT_EQ(kind([](PlanTask& t) { t.drive->channels.pop_back(); }), ErrorKind::wrong_length);
+  EXPECT_EQ(kind([](PlanTask& t) { t.drive->lead = 0.05; }), ErrorKind::out_of_range);
+  EXPECT_EQ(kind([](PlanTask& t) { t.drive->channels[1].cylinder.sample_time = 0.02; }),
             ErrorKind::out_of_range);
-  EXPECT_EQ(kind([](Task& t) { t.drive->channels[1].cylinder.c.setZero(); }),
+  EXPECT_EQ(kind([](PlanTask& t) { t.drive->channels[1].cylinder.c.setZero(); }),
             ErrorKind::out_of_range);
-  EXPECT_EQ(kind([](Task& t) { t.grid.min_duration = t.grid.max_duration = 2.0; }),
+  EXPECT_EQ(kind([](PlanTask& t) { t.grid.min_duration = t.grid.max_duration = 2.0; }),
             ErrorKind::contradictory_limits);
-  EXPECT_EQ(kind([](Task& t) { t.objective.command = 0.0; }), ErrorKind::out_of_range);
-  EXPECT_EQ(kind([](Task& t) { t.limits.command_rate.setZero(); }), ErrorKind::out_of_range);
-  EXPECT_EQ(kind([](Task& t) { t.start.torque[3] = -0.17; }), ErrorKind::contradictory_limits);
+  EXPECT_EQ(kind([](PlanTask& t) { t.objective.command = 0.0; }), ErrorKind::out_of_range);
+  EXPECT_EQ(kind([](PlanTask& t) { t.limits.command_rate.setZero(); }), ErrorKind::out_of_range);
+  EXPECT_EQ(kind([](PlanTask& t) { t.start.torque[3] = -0.17; }), ErrorKind::contradictory_limits);
 }
 
 TEST(DriveRun, RefusesWhatDoesNotFit) {
-  const Task task = driven();
+  const PlanTask task = driven();
   const auto& channels = task.drive->channels;
   EXPECT_EQ(kind_of([&] { DriveRun(channels, MatrixX::Zero(9, 3), 0.1); }),
             ErrorKind::wrong_length);

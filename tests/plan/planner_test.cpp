@@ -20,7 +20,7 @@ using testing::TipEnd;
 
 std::shared_ptr<const pcc::Arm> fluidic() { return make(pcc::testing::fluidic()); }
 
-ErrorKind kind_of(const Task& task) {
+ErrorKind kind_of(const PlanTask& task) {
   try {
     completed(*fluidic(), task);
   } catch (const Error& error) {
@@ -39,7 +39,7 @@ TEST(Planner, ClaimsAreThoseOfAnIndependentIntegration) {
     for (const Vector3& goal : goals) {
       // Torques that change by 2 N m/s at most do not swing the arm so high in this time.
       if (rate < kNoBound && goal == goals.back()) continue;
-      Task task = grab(goal);
+      PlanTask task = grab(goal);
       task.limits.torque_rate = VectorX::Constant(4, rate);
       const Plan plan = Planner(arm, task).plan(1);
       ASSERT_EQ(plan.status, PlanStatus::solved) << goal.transpose();
@@ -55,8 +55,8 @@ TEST(Planner, ClaimsAreThoseOfAnIndependentIntegration) {
 /// Backward Euler's damping at 80 ms is the plan's alone.
 TEST(Planner, SaysWhereTheMotionOfTheTorquesMisses) {
   const auto arm = fluidic();
-  Task task = grab(kGoals[2]);
-  task.grid = {.method = Method::backward_euler, .duration = 2.4, .intervals = 30};
+  PlanTask task = grab(kGoals[2]);
+  task.grid = {.method = CollocationMethod::backward_euler, .duration = 2.4, .intervals = 30};
   const Plan plan = Planner(arm, task, {.corrections = 0}).plan(1);
   EXPECT_EQ(plan.status, PlanStatus::not_met_on_replay);
   EXPECT_EQ(status_name(plan.status), "not-met-on-replay");
@@ -71,7 +71,7 @@ TEST(Planner, SaysWhereTheMotionOfTheTorquesMisses) {
 /// Few knots are too coarse: what is missed moves the aim or cuts intervals.
 TEST(Planner, CorrectsWhatCoarseKnotsMiss) {
   const auto arm = fluidic();
-  Task task = grab(kGoals[0]);
+  PlanTask task = grab(kGoals[0]);
   task.grid.intervals = 8;
   const Plan before = Planner(arm, task, {.corrections = 0}).plan(1);
   ASSERT_EQ(before.status, PlanStatus::not_met_on_replay);
@@ -89,7 +89,7 @@ TEST(Planner, CorrectsWhatCoarseKnotsMiss) {
 TEST(Planner, PlansThatAreCarriedOutReachTheirGoals) {
   const auto arm = fluidic();
   for (const Vector3& goal : kGoals) {
-    Task task = grab(goal);
+    PlanTask task = grab(goal);
     task.limits.torque_rate = VectorX::Constant(4, 2.0);
     const Plan plan = Planner(arm, task).plan(1);
     ASSERT_EQ(plan.status, PlanStatus::solved);
@@ -107,8 +107,8 @@ TEST(Planner, PlansThatAreCarriedOutReachTheirGoals) {
 /// Backward Euler's knots are the states of the simulation's steps of backward Euler.
 TEST(Planner, EulersPlanIsTheSimulationsMotion) {
   const auto arm = fluidic();
-  Task task = grab(kGoals[2]);
-  task.grid = {.method = Method::backward_euler, .duration = 2.4, .intervals = 30};
+  PlanTask task = grab(kGoals[2]);
+  task.grid = {.method = CollocationMethod::backward_euler, .duration = 2.4, .intervals = 30};
   const Plan plan = Planner(arm, task, {.corrections = 0}).plan(1);
   ASSERT_EQ(plan.status, PlanStatus::not_met_on_replay);
   pcc::ArmSimulation simulation(
@@ -125,7 +125,7 @@ TEST(Planner, RadauConverges) {
   const auto arm = fluidic();
   std::vector<double> gaps;
   for (const int intervals : {20, 40}) {
-    Task task = grab(kGoals[1]);
+    PlanTask task = grab(kGoals[1]);
     task.grid.intervals = intervals;
     const Plan plan = Planner(arm, task, {.corrections = 0}).plan(1);
     const Replay run = replay(arm, task, plan);
@@ -153,7 +153,7 @@ TEST(Planner, AWarmStartNeedsFewerIterations) {
   ASSERT_TRUE(warm.found());
   EXPECT_NEAR(warm.objective, cold.objective, 1e-4 * cold.objective);
   EXPECT_LT(warm.iterations, cold.iterations);
-  Task other = grab(kGoals[2]);
+  PlanTask other = grab(kGoals[2]);
   other.limits.torque_rate = VectorX::Constant(4, 2.0);
   EXPECT_THROW(Planner(arm, other).replan(before), Error);
 }
@@ -163,7 +163,7 @@ TEST(Planner, PlansFromDisturbedStarts) {
   const auto arm = fluidic();
   std::mt19937 random(3);
   for (int trial = 0; trial < 3; ++trial) {
-    Task task = grab(kGoals[2]);
+    PlanTask task = grab(kGoals[2]);
     task.limits.torque_rate = VectorX::Constant(4, 2.0);
     task.start.position = pcc::testing::random_vector(random, 4, 0.1);
     task.start.rate = pcc::testing::random_vector(random, 4, 0.5);
@@ -177,7 +177,7 @@ TEST(Planner, PlansFromDisturbedStarts) {
 
 TEST(Planner, AFreeDurationDoesNotCostMore) {
   const auto arm = fluidic();
-  Task task = grab(kGoals[2]);
+  PlanTask task = grab(kGoals[2]);
   const Plan fixed = Planner(arm, task).plan(1);
   task.grid.min_duration = 1.0;
   task.grid.max_duration = 2.0;
@@ -191,7 +191,7 @@ TEST(Planner, AFreeDurationDoesNotCostMore) {
 
 TEST(Planner, KeepsClearOfObstacles) {
   const auto arm = fluidic();
-  Task task = grab(kGoals[2]);
+  PlanTask task = grab(kGoals[2]);
   const Plan before = Planner(arm, task).plan(1);
   // In the way of the tip, where it is furthest from the goal.
   const Points tip = replay(arm, task, before).tip;
@@ -210,7 +210,7 @@ TEST(Planner, KeepsClearOfObstacles) {
 }
 
 TEST(Planner, SaysWhereThereIsNoPlan) {
-  Task task = grab(kGoals[3]);
+  PlanTask task = grab(kGoals[3]);
   task.grid.duration = 0.3;  // no time for a swing
   task.grid.intervals = 10;
   const Plan plan = Planner(fluidic(), task).plan(1);
@@ -229,7 +229,7 @@ TEST(Planner, StopsAtItsLimits) {
 TEST(Planner, RefusesTasksThatMakeNoSense) {
   EXPECT_EQ(kind_of(grab({0.5, 0.0, -0.4})), ErrorKind::out_of_range);  // beyond 0.56 m
   EXPECT_EQ(kind_of(grab({std::nan(""), 0.0, -0.4})), ErrorKind::not_finite);
-  Task task = grab();
+  PlanTask task = grab();
   task.limits.torque_lower[1] = 0.2;
   EXPECT_EQ(kind_of(task), ErrorKind::contradictory_limits);
   task = grab();

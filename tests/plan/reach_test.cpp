@@ -17,7 +17,7 @@ using testing::make;
 
 TEST(Reach, SamplesAreEquilibriaWithinTheirLimits) {
   const auto arm = make(pcc::testing::fluidic());
-  const Limits limits = grab().limits;
+  const ArmLimits limits = grab().limits;
   const ReachMap map = sample_reach(arm, limits, 40);
   ASSERT_GT(map.tip.rows(), 40);
   pcc::ArmEquations equations(arm);
@@ -63,7 +63,7 @@ TEST(Reach, NeverProvesAnEquilibriumAway) {
       settings.gravity = {1.0, 0.5, -9.0};
     }
     const auto arm = make(settings);
-    Limits limits = grab().limits;
+    ArmLimits limits = grab().limits;
     limits.torque_upper[0] = 0.05;
     limits.torque_lower = -limits.torque_upper;
     const ReachMap map = sample_reach(arm, limits, 20, 5);

@@ -77,9 +77,9 @@ struct TipEnd {
 };
 
 /// Where the plan's torques bring the tip, and how fast it is there.
-inline TipEnd reintegrated(const std::shared_ptr<const pcc::Arm>& arm, const Task& asked,
+inline TipEnd reintegrated(const std::shared_ptr<const pcc::Arm>& arm, const PlanTask& asked,
                            const Plan& plan) {
-  const Task task = completed(*arm, asked);
+  const PlanTask task = completed(*arm, asked);
   const Eigen::Index n = arm->coordinates();
   VectorX y(2 * n);
   y << task.start.position, task.start.rate;

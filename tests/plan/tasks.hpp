@@ -15,8 +15,8 @@ inline const Vector3 kGoals[] = {
     {-0.25, 0.0, -0.45}, {0.15, 0.0, -0.35}, {0.20, 0.0, -0.40}, {-0.30, 0.0, -0.30}};
 
 /// A grab as published: torques limited, the first segment without.
-inline Task grab(const Vector3& goal = kGoals[0]) {
-  Task task;
+inline PlanTask grab(const Vector3& goal = kGoals[0]) {
+  PlanTask task;
   task.goal.position = goal;
   task.limits.torque_upper = pcc::published_torque_limits();
   task.limits.torque_lower = -task.limits.torque_upper;

@@ -78,7 +78,7 @@ TEST(Tracking, SolvesRiccatisEquation) {
 
 TEST(Tracking, FeedbackBringsDisturbedArmsNearer) {
   const auto arm = make(pcc::testing::fluidic());
-  const Task task = grab(kGoals[2]);
+  const PlanTask task = grab(kGoals[2]);
   const Plan plan = Planner(arm, task).plan(1);
   ASSERT_TRUE(plan.found());
   const Tracker tracker(arm, task, plan);
@@ -100,7 +100,7 @@ TEST(Tracking, FeedbackBringsDisturbedArmsNearer) {
 
 TEST(Tracking, KeepsTheLimits) {
   const auto arm = make(pcc::testing::fluidic());
-  const Task task = grab(kGoals[2]);
+  const PlanTask task = grab(kGoals[2]);
   const Plan plan = Planner(arm, task).plan(1);
   const Tracker tracker(arm, task, plan);
   const Replay run = track(arm, tracker, {.position = VectorX::Constant(4, 0.3)});

@@ -30,7 +30,7 @@ bodies:
     fixed: {box: -20 -20 0 20 20 20 mm}
 actuators:
   long_0:
-    type: cable                 # cable | pressure | spring | force
+    type: cable                 # cable | chamber | spring | force
     body: trunk
     points: {file: long_0.csv, unit: mm}      # or an inline list of "x y z mm"; the first is the pull point
     pull: world                               # world | body: what the pull point is fixed to

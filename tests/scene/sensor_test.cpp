@@ -46,7 +46,7 @@ bodies:
 actuators:
   cable: {type: cable, body: finger, points: [-9 0 0 mm, -9 0 60 mm],
           command: {displacement: {ramp: {to: 5 mm, duration: 0.2 s}}}}
-  air: {type: pressure, body: finger, surface: {set: chamber}, cap: true,
+  air: {type: chamber, body: finger, surface: {set: chamber}, cap: true,
         gas: {supply: {conductance: 1e-10 m^3/(s Pa)}},
         command: {pressure: {ramp: {to: 10 kPa, duration: 0.1 s}}}}
 effectors:
@@ -271,7 +271,7 @@ TEST(Sensors, WhatIsWrongNamesPlaceValueAndRemedy) {
        {Broken{"{type: cable-length, actuator: cabel}", ErrorKind::unknown_name, "cabel",
                "did you mean 'cable'"},
         Broken{"{type: cable-length, actuator: air}", ErrorKind::wrong_actuator_type,
-               "'air' is of type pressure", "cable or spring"},
+               "'air' is of type chamber", "cable or spring"},
         Broken{"{type: pressure, actuator: cable}", ErrorKind::wrong_actuator_type,
                "'cable' is of type cable", "pressure"},
         Broken{"{type: marker, body: finger, point: 0 0 65 mm, rate: 30 Hz}",

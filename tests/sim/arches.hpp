@@ -47,7 +47,7 @@ inline fem::FemBodySettings arch_part(const char* name, double from, double to) 
   }
   const auto mesh = std::make_shared<const mesh::Mesh>(std::move(made));
   body.mesh = mesh;
-  fem::Region region;
+  fem::MaterialRegion region;
   region.hyperelastic = material::neo_hookean(4e4);
   region.hyperelastic->bulk_modulus = 1e5;
   region.density = 1000.0;

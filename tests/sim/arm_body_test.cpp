@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/constraint/surface.hpp"
+#include "sinew/constraint/smooth_surface.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/thread_pool.hpp"
 #include "sinew/mechanics/body.hpp"

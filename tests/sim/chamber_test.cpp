@@ -326,7 +326,7 @@ std::shared_ptr<const Model> balloon() {
   body.name = "balloon";
   const auto mesh = std::make_shared<const mesh::Mesh>(std::move(made));
   body.mesh = mesh;
-  fem::Region region;
+  fem::MaterialRegion region;
   region.hyperelastic = material::neo_hookean(4e4);
   region.hyperelastic->bulk_modulus = 1e6;
   region.density = 1000.0;

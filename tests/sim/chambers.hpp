@@ -62,7 +62,7 @@ inline std::shared_ptr<const sim::Model> chamber(const ChamberOptions& options =
       options.quadratic ? mesh::with_middle_nodes(linear) : linear);
   body.mesh = mesh;
   body.damping = options.damping;
-  fem::Region region;
+  fem::MaterialRegion region;
   region.hyperelastic = material::neo_hookean(30e3);
   region.hyperelastic->bulk_modulus = material::bulk_modulus_of(30e3, 0.45);
   region.density = options.density;

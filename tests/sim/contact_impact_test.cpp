@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/constraint/surface.hpp"
+#include "sinew/constraint/smooth_surface.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/fem/fem_model.hpp"
 #include "sinew/mechanics/body.hpp"
@@ -53,7 +53,7 @@ std::unique_ptr<Simulation> thrown(const Throw& options) {
   const auto mesh = std::make_shared<const mesh::Mesh>(mesh::block(
       {.size = {side, side, kLength}, .cells = {1, 1, options.cells}}, mesh::Cells::hexahedra));
   body.mesh = mesh;
-  fem::Region region;  // nu = 0
+  fem::MaterialRegion region;  // nu = 0
   region.hyperelastic = material::neo_hookean(kModulus / 2.0);
   region.hyperelastic->bulk_modulus = kModulus / 3.0;
   region.density = kDensity;

@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "sinew/constraint/surface.hpp"
+#include "sinew/constraint/smooth_surface.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body.hpp"

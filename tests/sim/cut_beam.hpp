@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "sinew/constraint/surface.hpp"
+#include "sinew/constraint/smooth_surface.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/sim/cable_settings.hpp"

@@ -113,7 +113,7 @@ TEST(DefaultStep, AStepAtRestTakesOneIteration) {
 TEST(DefaultStep, OneLinearisationSaysThatItLeftEquilibrium) {
   BeamOptions options;
   options.step.method = Method::one_linearisation;
-  options.step.tangent = mechanics::Tangent::rotated;
+  options.step.tangent = mechanics::Tangent::corotated;
   options.geometric_stiffness = false;
   Simulation simulation(beam(options));
   simulation.command(0, {CommandKind::motion, Signal::ramp({0.0, 0.06, 0.0, 0.5})});
@@ -138,7 +138,7 @@ TEST(DefaultStep, ASwingKeepsItsEnergyOrSaysThatItDoesNot) {
       options.step.integrator = integrator;
       options.step.method = method;
       if (method == Method::one_linearisation) {
-        options.step.tangent = mechanics::Tangent::rotated;
+        options.step.tangent = mechanics::Tangent::corotated;
       }
       Simulation simulation(beam(options));
       const double start = simulation.energies().strain + simulation.energies().gravity;

@@ -33,7 +33,7 @@ std::shared_ptr<const Model> cube(material::Hyperelastic rubber, const StepSetti
                   mesh::Cells::hexahedra));
   body.mesh = mesh;
   rubber.bulk_modulus = material::bulk_modulus_of(rubber.shear_modulus(), 0.4999);
-  fem::Region region;
+  fem::MaterialRegion region;
   region.hyperelastic = std::move(rubber);
   body.elements.regions = {std::move(region)};
   for (int axis = 0; axis < 3; ++axis) {

@@ -208,7 +208,7 @@ TEST(Pressure, OpenSurfaceConvergesQuadraticallyInStatics) {
   const auto mesh = std::make_shared<const mesh::Mesh>(
       mesh::block({.size = {0.1, 0.01, 0.01}, .cells = {20, 2, 2}}, mesh::Cells::hexahedra));
   body.mesh = mesh;
-  fem::Region region;
+  fem::MaterialRegion region;
   region.hyperelastic = material::neo_hookean(4e4);
   region.hyperelastic->bulk_modulus = 1e5;
   region.density = 1000.0;
@@ -317,7 +317,7 @@ TEST(LineLoad, MayLeaveTheBody) {
     const auto mesh = std::make_shared<const mesh::Mesh>(
         mesh::block({.size = {0.1, 0.02, 0.02}, .cells = {5, 1, 1}}, cells));
     body.mesh = mesh;
-    fem::Region region;
+    fem::MaterialRegion region;
     region.hyperelastic = material::neo_hookean(4e4);
     region.hyperelastic->bulk_modulus = 1e5;
     body.elements.regions = {region};

@@ -305,7 +305,7 @@ std::shared_ptr<const Model> beam_on_a_ball() {
       mesh::block({.corner = {0.0, -0.01, -0.01}, .size = {0.1, 0.02, 0.02}, .cells = {10, 2, 2}},
                   mesh::Cells::hexahedra));
   body.mesh = mesh;
-  fem::Region region;
+  fem::MaterialRegion region;
   region.hyperelastic = material::neo_hookean(4e4);
   region.hyperelastic->bulk_modulus = 1e5;
   region.density = 1000.0;

@@ -43,7 +43,7 @@ fem::FemBodySettings cantilever(Kind kind, std::vector<fem::PointMassSettings> m
                                                             ? mesh::Cells::hexahedra
                                                             : mesh::Cells::tetrahedra));
   body.mesh = mesh;
-  fem::Region region;
+  fem::MaterialRegion region;
   region.hyperelastic = material::neo_hookean(4e4);
   region.hyperelastic->bulk_modulus = 2e5;
   region.density = 1000.0;
@@ -140,7 +140,7 @@ TEST(PointMass, SwingsALightBeamAtItsFrequency) {
   const auto mesh = std::make_shared<const mesh::Mesh>(
       mesh::block({.size = {length, side, side}, .cells = {20, 1, 1}}, mesh::Cells::quadratic));
   body.mesh = mesh;
-  fem::Region region;
+  fem::MaterialRegion region;
   region.hyperelastic = material::neo_hookean(young / 2.6);
   region.hyperelastic->bulk_modulus = young / 1.2;  // nu = 0.3
   region.density = density;

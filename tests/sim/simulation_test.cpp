@@ -155,7 +155,7 @@ TEST(Simulation, RotatedAndExactTangentLeadToTheSameStep) {
   options.step.method = Method::newton;
   options.step.tolerance = 1e-12;
   options.damping = {.mass = 0.0, .stiffness = 0.005};
-  options.step.tangent = mechanics::Tangent::rotated;
+  options.step.tangent = mechanics::Tangent::corotated;
   Simulation rough(beam(options));
   options.step.tangent = mechanics::Tangent::exact;
   Simulation exact(beam(options));

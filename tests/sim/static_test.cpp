@@ -40,7 +40,7 @@ fem::FemBodySettings block(const Vector3& size, const std::array<int, 3>& cells,
   fem::FemBodySettings body;
   body.name = "block";
   body.mesh = std::make_shared<const mesh::Mesh>(mesh::block({.size = size, .cells = cells}, kind));
-  fem::Region region;
+  fem::MaterialRegion region;
   region.hyperelastic = material::neo_hookean(young / (2.0 * (1.0 + poisson)));
   region.hyperelastic->bulk_modulus = young / (3.0 * (1.0 - 2.0 * poisson));
   region.density = 1000.0;

@@ -16,7 +16,7 @@ T number(const std::vector<std::byte>& bytes, std::size_t at) {
 }
 
 TEST(Frame, SurfaceStandsAsDocumented) {
-  Surface surface;
+  DisplaySurface surface;
   surface.rest = {1, 2, 3, 4, 5, 6, 7, 8, 9};
   surface.triangles = {2, 1, 0};
   const auto bytes = encode_surface(surface, 5, 7);

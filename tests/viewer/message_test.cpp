@@ -54,7 +54,7 @@ TEST(Message, ReadsEveryKind) {
   read<ShowGallery>(R"({"type": "gallery"})");
   EXPECT_EQ(read<ChooseField>(R"({"type": "field", "name": "von_mises_stress"})").name,
             "von_mises_stress");
-  EXPECT_FALSE(read<Drive>(R"({"type": "drive", "on": false})").on);
+  EXPECT_FALSE(read<DriveRequest>(R"({"type": "drive", "on": false})").on);
   read<Ping>(R"({"type": "ping"})");
   EXPECT_EQ(parse_message(R"({"id": 9007199254740991, "type": "ping"})").id, 9007199254740991);
   EXPECT_FALSE(parse_message(R"({"type": "ping"})").id);

@@ -13,7 +13,7 @@ namespace {
 
 Description triangle_and_wire(std::size_t signals) {
   Description shown;
-  Surface surface;
+  DisplaySurface surface;
   surface.body = "sheet";
   surface.rest = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   surface.triangles = {0, 1, 2};

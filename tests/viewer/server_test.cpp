@@ -34,7 +34,7 @@ class FakeSource final : public Source {
  public:
   explicit FakeSource(std::size_t vertices = 30) {
     description_.scene = R"({"name": "fake"})";
-    Surface surface;
+    DisplaySurface surface;
     surface.rest.assign(3 * vertices, 0.5F);
     surface.triangles = {0, 1, 2};
     description_.surfaces = {surface};

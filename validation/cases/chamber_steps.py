@@ -20,7 +20,7 @@ COST = 45
 
 
 def tube(step, integrator, gas=None, method="one-linearisation"):
-    air = {"type": "pressure", "body": "tube", "surface": {"set": "inner"}, "cap": True}
+    air = {"type": "chamber", "body": "tube", "surface": {"set": "inner"}, "cap": True}
     if gas is not None:
         air["gas"] = gas
     return sinew.load({

@@ -1,4 +1,4 @@
-"""W against finite differences of the nonlinear statics, reciprocity, and the rotated tangent."""
+"""W against finite differences of the nonlinear statics, reciprocity, and the corotated tangent."""
 
 import numpy as np
 import sinew
@@ -6,17 +6,17 @@ import sinew
 from suite import plots
 from suite.robots import own_trunk, published_trunk
 
-TITLE = "Compliance W: finite differences, reciprocity, and the rotated tangent"
+TITLE = "Compliance W: finite differences, reciprocity, and the corotated tangent"
 SETUP = """The trunk of examples/trunk with point forces on its tip, held by one cable's tension at
 several deflections. Each column of W with the exact tangent and the cables' geometric stiffness is
 compared with central differences of static equilibria under efforts changed by 1e-4 of themselves;
-W must be symmetric (Maxwell-Betti). The rotated tangent without geometric stiffness is set
+W must be symmetric (Maxwell-Betti). The corotated tangent without geometric stiffness is set
 beside it: how far its tip compliance is off, not scored."""
 SOURCES = {
     "differences": "central differences of solve_static, this suite",
     "Betti 1872": "E. Betti, Teoria della elasticita, Il Nuovo Cimento 7 (1872) 5-21, "
                   "doi:10.1007/BF02824597",
-    "rotated tangent": "M. Mueller, M. Gross, Interactive Virtual Materials, Graphics Interface "
+    "corotated tangent": "M. Mueller, M. Gross, Interactive Virtual Materials, Graphics Interface "
                        "2004, section 3: rotation held fixed; no reference for its error",
     "published mesh": "trunk.vtk of SofaDefrost/SofaGym; compliance by Sinew's own linear "
                       "tetrahedra and an independent assembly, E = 450 kPa, nu = 0.45",
@@ -42,7 +42,7 @@ def compare(sim, tension):
     bend = np.linalg.norm(np.array(sim.effector("tip").position) - rest)
     lin = sim.linearise(tangent="exact", geometric_stiffness=True)
     rows, w = lin.rows, np.array(lin.W)
-    rough = np.array(sim.linearise(tangent="rotated", geometric_stiffness=False).W)
+    rough = np.array(sim.linearise(tangent="corotated", geometric_stiffness=False).W)
     worst = 0.0
     for name in ("long_0", "tip_x", "tip_y", "tip_z"):
         actuator = sim.actuator(name)
@@ -80,13 +80,13 @@ def run(case):
                       / np.linalg.norm(w), 1e-10, source="Betti 1872")
         exact, fast = tip_block(w, rows), tip_block(rough, rows)
         off.append(100 * np.linalg.norm(fast - exact) / np.linalg.norm(exact))
-        case.report(f"rotated tangent: tip compliance off, tip moved by {1e3 * bend:.0f} mm",
-                    off[-1], unit="%", source="rotated tangent")
+        case.report(f"corotated tangent: tip compliance off, tip moved by {1e3 * bend:.0f} mm",
+                    off[-1], unit="%", source="corotated tangent")
     published(case)
     figure, axis = plots.axes()
     axis.plot(bends, off, "o-", color=plots.OURS)
     axis.set(xlabel="deflection of the tip (mm)", ylabel="tip compliance off by (%)")
-    case.figure(figure, "The rotated tangent's error of tip compliance grows with deflection.")
+    case.figure(figure, "The corotated tangent's error of tip compliance grows with deflection.")
 
 
 def published(case):

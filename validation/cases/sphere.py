@@ -32,7 +32,7 @@ def sphere(case, law, ratio, around, through, command):
     return sinew.load({
         "sinew": 1, "solver": SOLVER,
         "bodies": {"shell": {"type": "fem", "mesh": {"file": str(path), "unit": "m"}, "material": law, "fixed": rollers}},
-        "actuators": {"air": {"type": "pressure", "body": "shell", "surface": {"inside": [0, 0, 0]},
+        "actuators": {"air": {"type": "chamber", "body": "shell", "surface": {"inside": [0, 0, 0]},
                               "command": command}}})
 
 

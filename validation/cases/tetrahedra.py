@@ -74,7 +74,7 @@ def module(element, size):
             "mesh": {"shape": "chambered-cylinder", "radius": 0.0125, "height": 0.065, "chamber_radius": 0.0037,
                      "chamber_offset": 0.0073, "chamber_top": 0.06, "element_size": 1e-3 * size},
             "material": {"model": "neo-hookean", "young_modulus": 72e3, "poisson_ratio": 0.49}}},
-        "actuators": {"air": {"body": "module", "type": "pressure", "surface": {"set": "chamber"}, "cap": True}},
+        "actuators": {"air": {"body": "module", "type": "chamber", "surface": {"set": "chamber"}, "cap": True}},
         "effectors": {"tip": {"body": "module", "point": [0, 0, 0.065], "outside": "nearest"}}})
     start = sim.effector("tip").position[0]
     sim.actuator("air").pressure = 10.0

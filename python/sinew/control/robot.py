@@ -74,7 +74,7 @@ class Robot:
         self.directions = [np.array(effector.directions) for effector in self.effectors.values()]
 
     def _kinds(self, command: Union[str, Mapping[str, str], None], place: str) -> list[str]:
-        kinds = {name: "effort" if a.type == "pressure" else "motion" for name, a in self.actuators.items()}
+        kinds = {name: "effort" if a.type == "chamber" else "motion" for name, a in self.actuators.items()}
         given = {name: command for name in kinds} if isinstance(command, str) else dict(command or {})
         for name, kind in given.items():
             if name not in kinds:

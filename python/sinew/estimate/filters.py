@@ -13,12 +13,12 @@ import numpy as np
 from ..errors import Error
 from .quantities import Measured
 
-__all__ = ["ExtendedKalman", "Filter", "Model", "MovingHorizon", "Reading", "UnscentedKalman"]
+__all__ = ["ExtendedKalman", "Filter", "MovingHorizon", "ProcessModel", "Reading", "UnscentedKalman"]
 
 _TOGETHER = 1e-9  # s: instants nearer than this are one
 
 
-class Model(Protocol):
+class ProcessModel(Protocol):
     """What a filter needs of a robot: x(t + h) = advance(x) + w, w of covariance noise(h), and y = read(x) + v.
 
     A model may keep more than x to itself (positions of finite elements): save() and restore() carry it. A filter restores an
@@ -91,7 +91,7 @@ class Filter:
 
     Parameters
     ----------
-    model : Model
+    model : ProcessModel
     step : float
         s, of the model, > 0.
     start : ((n,) ndarray, (n, n) ndarray), optional
@@ -111,7 +111,7 @@ class Filter:
         Readings that came too late.
     """
 
-    def __init__(self, model: Model, step: float, *, start: Optional[tuple[np.ndarray, np.ndarray]] = None, time: float = 0.0,
+    def __init__(self, model: ProcessModel, step: float, *, start: Optional[tuple[np.ndarray, np.ndarray]] = None, time: float = 0.0,
                  memory: float = 0.5, silence: float = 5.0) -> None:
         if not (math.isfinite(step) and step > 0.0):
             raise Error("out-of-range", "Filter(step)", f"{step!r} is no time step", "give s, > 0")
@@ -347,7 +347,7 @@ class MovingHorizon(ExtendedKalman):
         Bounds on the states, enforced by projection at every iteration.
     """
 
-    def __init__(self, model: Model, step: float, *, horizon: int = 10, iterations: int = 5, lower: Optional[Sequence[float]] = None,
+    def __init__(self, model: ProcessModel, step: float, *, horizon: int = 10, iterations: int = 5, lower: Optional[Sequence[float]] = None,
                  upper: Optional[Sequence[float]] = None, start: Optional[tuple[np.ndarray, np.ndarray]] = None, time: float = 0.0,
                  memory: float = 0.5, silence: float = 5.0) -> None:
         if horizon < 1:

@@ -14,7 +14,7 @@ __all__ = ["Response"]
 
 _CONTACT = re.compile(r"(?P<name>.+) point (?P<point>\d+) normal$")
 _MOTIONS = {"displacement", "angle", "volume_growth"}
-_ROW_TYPES = {"cable", "force", "pressure", "torque"}
+_ROW_TYPES = {"cable", "force", "chamber", "torque"}
 _CLOSED = 1e-9  # of the largest effort: a contact or a cable below it has no force
 _LARGEST = 1e10  # of an inverse whose matrix has a diagonal of one: beyond it rows repeat each other
 _SLIDES = 1e-6  # of friction's limit: nearer to it a point slides
@@ -50,7 +50,7 @@ class Response:
         Of the simulation, where they are known already.
     """
 
-    def __init__(self, sim: _core.Simulation, linear: _core.Linearisation, actuators: Optional[list["Drive"]] = None) -> None:
+    def __init__(self, sim: _core.Simulation, linear: _core.Linearisation, actuators: Optional[list["DrivenActuator"]] = None) -> None:
         self.linear = linear
         self.rows = {name: k for k, name in enumerate(linear.rows)}
         self._compliance, self._effort = linear.W, linear.effort
@@ -70,7 +70,7 @@ class Response:
         self.held.append(row)
         self._basis.append(direction)
 
-    def _hold_actuators(self, actuators: list["Drive"]) -> None:
+    def _hold_actuators(self, actuators: list["DrivenActuator"]) -> None:
         least = _CLOSED * max(self._scale, 1e-12)
         for drive in actuators:
             row = self.rows[drive.name]
@@ -129,7 +129,7 @@ class Response:
         return motions, efforts
 
 
-class Drive(NamedTuple):
+class DrivenActuator(NamedTuple):
     """An actuator as Response sees it."""
 
     name: str
@@ -138,12 +138,12 @@ class Drive(NamedTuple):
     most: float  # N, of its effort
 
 
-def drives(sim: _core.Simulation) -> list[Drive]:
+def drives(sim: _core.Simulation) -> list[DrivenActuator]:
     """Of all actuators, as commanded now."""
     found = []
     for name, actuator in sim.actuators.items():
         most = next((limit.max for quantity, limit in actuator.limits.items() if quantity not in _MOTIONS), math.inf)
-        found.append(Drive(name, actuator.type == "cable", actuator.command[0] in _MOTIONS, most))
+        found.append(DrivenActuator(name, actuator.type == "cable", actuator.command[0] in _MOTIONS, most))
     return found
 
 
@@ -169,14 +169,14 @@ class StandingRows:
     ----------
     rows : list of str
         Of the simulation.
-    actuators : list of Drive
+    actuators : list of DrivenActuator
     by_effort, by_motion : list of (int, str)
         Numbers of the inputs with the rows whose effort or motion they are.
     motions, efforts : list of (int, str)
         Numbers of the outputs with the rows whose motion or effort they are.
     """
 
-    def __init__(self, rows: list[str], actuators: list[Drive], by_effort, by_motion, motions, efforts) -> None:
+    def __init__(self, rows: list[str], actuators: list[DrivenActuator], by_effort, by_motion, motions, efforts) -> None:
         at = {name: k for k, name in enumerate(rows)}
         self._holds = np.array([at[d.name] for d in actuators if d.holds_motion], int)
         self._cables = np.array([d.is_cable for d in actuators if d.holds_motion], bool)

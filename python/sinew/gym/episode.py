@@ -8,7 +8,7 @@ from typing import Any, Mapping, Optional
 import numpy as np
 
 from ..errors import Error, RunError
-from .models import Model, Models, Robot
+from .models import Models, Robot, TaskModel
 from .task import Task, unknown
 
 __all__ = ["Episode"]
@@ -23,7 +23,7 @@ class Episode:
     ----------
     task : Task
     random : numpy.random.Generator
-    model : Model
+    model : TaskModel
         Of the current episode.
     robot : Robot
         The simulation, a clone of the model's.
@@ -42,7 +42,7 @@ class Episode:
     def __init__(self, task: Task, models: Models) -> None:
         self.task, self._models = task, models
         self.random: Optional[np.random.Generator] = None
-        self.model: Model = models[0]
+        self.model: TaskModel = models[0]
         self.robot: Optional[Robot] = None
         self.goal: Optional[np.ndarray] = None
         self.memory: dict[str, Any] = {}  # the task's own
@@ -110,7 +110,7 @@ class Episode:
             self.model.give_back(self.robot)
             self.robot = None
 
-    def _put(self, model: Model) -> None:
+    def _put(self, model: TaskModel) -> None:
         """Takes a robot of the model."""
         if self.robot is None or model is not self.model:
             self.release()

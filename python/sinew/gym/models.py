@@ -18,7 +18,7 @@ import numpy as np
 from .._core import Batch, Simulation, State
 from ..scene import load
 
-__all__ = ["Model", "Models", "Robot"]
+__all__ = ["Models", "Robot", "TaskModel"]
 
 
 class Robot:
@@ -49,7 +49,7 @@ class Robot:
         return self._alone.read(names)
 
 
-class Model:
+class TaskModel:
     """One robot of a task.
 
     Attributes
@@ -116,10 +116,10 @@ class Models:
                     drawn[name] = low * (high / low) ** ((k + 0.5) / count)
                 else:
                     drawn[name] = low + (high - low) * (((k + 0.5) * stride) % 1.0)
-            self.all.append(Model(task, drawn))
+            self.all.append(TaskModel(task, drawn))
 
     def __len__(self) -> int:
         return len(self.all)
 
-    def __getitem__(self, index: int) -> Model:
+    def __getitem__(self, index: int) -> TaskModel:
         return self.all[index]

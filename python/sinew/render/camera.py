@@ -17,7 +17,7 @@ __all__ = ["Camera", "VIEWS", "axes_of_view", "camera_of", "fit"]
 # Where the camera stands: rightward, towards the front, and up, in the axes of axes_of_view().
 VIEWS = {"corner": (0.45, 0.80, 0.36), "front": (0.0, 1.0, 0.0), "side": (1.0, 0.0, 0.0), "top": (0.0, 0.0, 1.0)}
 _FIELD_OF_VIEW = 0.55  # rad, that of a lens somewhat longer than the eye: little distortion
-_LEAST_SIZE = 1e-6  # m, of a scene
+_MIN_SIZE = 1e-6  # m, of a scene
 
 
 @dataclasses.dataclass(frozen=True)
@@ -148,12 +148,12 @@ def fit(points: np.ndarray, up: np.ndarray, view: str, size: tuple[int, int], le
     # Each side is a plane through the camera; the two of a pair that touch the points give the distance and the middle.
     depth = seen[:, 2:]
     high, low = (seen[:, :2] + above * depth).max(axis=0), (seen[:, :2] - below * depth).min(axis=0)
-    distance = max(((high - low) / (above + below)).max(), depth.max() + _LEAST_SIZE, _LEAST_SIZE)
+    distance = max(((high - low) / (above + below)).max(), depth.max() + _MIN_SIZE, _MIN_SIZE)
     middle = 0.5 * (high - above * distance + low + below * distance)
     position = np.array([*middle, distance]) @ frame
     target = np.array([*middle, 0.5 * (depth.max() + depth.min())]) @ frame
-    if np.linalg.norm(position - target) < _LEAST_SIZE:
-        position = target + _LEAST_SIZE * back
+    if np.linalg.norm(position - target) < _MIN_SIZE:
+        position = target + _MIN_SIZE * back
     return Camera(tuple(position), tuple(target), tuple(lifted))
 
 

@@ -11,7 +11,7 @@ from .camera import Camera, axes_of_view
 from .context import Context
 from .marks import Marks
 
-__all__ = ["Patch", "Stage", "Triangles", "draw"]
+__all__ = ["DrawList", "Patch", "Triangles", "draw"]
 
 # Where the light of the sun comes from: rightward, towards the front, and up, in the axes of axes_of_view().
 _SUN = np.array([-0.38, 0.42, 0.82])
@@ -96,7 +96,7 @@ class Patch:
 
 
 @dataclasses.dataclass
-class Stage:
+class DrawList:
     """All that is drawn.
 
     Attributes
@@ -124,38 +124,38 @@ class Stage:
     edges: bool = False
 
 
-def draw(context: Context, stage: Stage, camera: Camera, size: tuple[int, int]) -> np.ndarray:
+def draw(context: Context, draw_list: DrawList, camera: Camera, size: tuple[int, int]) -> np.ndarray:
     """A picture (height, width, 3) uint8."""
     import moderngl
 
     gl = context.gl
     target, single = context.frames(size)
-    solids, marks = _Uploaded(context, stage.solids), _Uploaded(context, stage.marks)
-    points = [stage.triangles.points, solids.points, marks.points]
-    matrix = _bytes(camera.matrix(size, *_depths(points, stage.patches, camera)))
-    sun = _SUN @ axes_of_view(stage.up)
+    solids, marks = _Uploaded(context, draw_list.solids), _Uploaded(context, draw_list.marks)
+    points = [draw_list.triangles.points, solids.points, marks.points]
+    matrix = _bytes(camera.matrix(size, *_depths(points, draw_list.patches, camera)))
+    sun = _SUN @ axes_of_view(draw_list.up)
     for program in (context.body, context.mark):
-        program["eye"].value, program["up"].value, program["sun"].value = camera.position, tuple(stage.up), tuple(sun)
+        program["eye"].value, program["up"].value, program["sun"].value = camera.position, tuple(draw_list.up), tuple(sun)
     for program in (context.body, context.mark, context.plane):
         program["matrix"].write(matrix)
-    shadow = _cast_shadow(context, stage.triangles, solids, sun) if stage.patches else None
+    shadow = _cast_shadow(context, draw_list.triangles, solids, sun) if draw_list.patches else None
     target.use()
-    target.clear(*stage.background, 1.0)
+    target.clear(*draw_list.background, 1.0)
     gl.enable_only(moderngl.DEPTH_TEST)
     gl.depth_func = "<="
     gl.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-    if stage.triangles.count:
-        stage.palette.use(0)
-        context.body["palette"].value, context.body["lit"].value = 0, stage.lit
-        stage.triangles.faces.render()
+    if draw_list.triangles.count:
+        draw_list.palette.use(0)
+        context.body["palette"].value, context.body["lit"].value = 0, draw_list.lit
+        draw_list.triangles.faces.render()
     solids.render(1.0)
     target.depth_mask = False
     gl.enable(moderngl.BLEND)
-    if stage.edges and stage.triangles.count:
+    if draw_list.edges and draw_list.triangles.count:
         context.plain["matrix"].write(matrix)
         context.plain["nearer"].value, context.plain["colour"].value = 2e-4, _EDGE
-        stage.triangles.edges.render(moderngl.LINES)
-    for patch in stage.patches:
+        draw_list.triangles.edges.render(moderngl.LINES)
+    for patch in draw_list.patches:
         _draw_patch(context, patch, camera, shadow)
     gl.enable(moderngl.CULL_FACE)
     gl.depth_func = ">"

@@ -8,8 +8,8 @@ from typing import Any, Optional, Union
 
 import numpy as np
 
+from .. import _core
 from ..errors import Error
-from ..scene import loads
 from .moment import Moment, between, moment_of
 from .scene import outline_of
 
@@ -68,7 +68,7 @@ class Recording:
         # A run that was killed may have series that are longer than others.
         frames = min(len(series) for series in [self._file["time"], *self._file["positions"].values()])
         self.times = self._file["time"][:frames]
-        self.sim = loads(self._file["scene"][()].decode("utf-8"))
+        self.sim = _core.load_recorded(self._file["scene"][()].decode("utf-8"))
         self._outline = outline_of(self.sim.to_yaml())
         self._start = moment_of(self.sim, self._outline)
         missing = [name for name in self.sim.bodies if name not in self._file["positions"]]

@@ -15,7 +15,7 @@ from . import colours
 from .arguments import checked_range, checked_size, goal_points
 from .camera import Camera, axes_of_view, camera_of
 from .context import context, current
-from .drawing import Patch, Stage, Triangles, draw
+from .drawing import DrawList, Patch, Triangles, draw
 from .geometry import Skin, boundary_of
 from .marks import Marks
 from .moment import Moment, moment_of
@@ -30,7 +30,7 @@ _GOAL, _EFFECTOR, _FORCE, _SURFACE = (colours.parse(c, "") for c in ("#d55e00", 
 # Sizes, of the size of the scene.
 _CABLE, _BALL, _SHAFT, _ARROW = 0.0045, 0.011, 0.0042, 0.22
 _FAR = 10.0  # planes that are farther away, in sizes of the robot, need not be in the picture
-_LEAST = 0.01  # forces under this share of the largest are not drawn
+_MIN_FORCE = 0.01  # forces under this share of the largest are not drawn
 
 
 class Renderer:
@@ -163,9 +163,9 @@ class Renderer:
             _add_solid(solids, surface)
         if self._ground is None or not isinstance(self.camera, Camera):
             self.see(self.extent(moment))
-        stage = Stage(self._background, self.outline.up, self._triangles, self._context.palette(self.colour_map, self._palette),
+        draw_list = DrawList(self._background, self.outline.up, self._triangles, self._context.palette(self.colour_map, self._palette),
                       solids, marks, self._patches(surfaces), self._lit, self._edges)
-        picture = draw(self._context, stage, self.camera, self.size)
+        picture = draw(self._context, draw_list, self.camera, self.size)
         if self.field is not None and self._bar and moment.values:
             colours.put_bar(picture, str(self.field), low, high, self.colour_map, self._background)
         return picture
@@ -255,7 +255,7 @@ class Renderer:
     def _add_forces(self, moment: Moment, marks: Marks) -> None:
         lengths = np.linalg.norm(moment.forces, axis=1)
         self._largest_force = max(self._largest_force, float(lengths.max()))
-        drawn = lengths > max(_LEAST * self._largest_force, 1e-12)
+        drawn = lengths > max(_MIN_FORCE * self._largest_force, 1e-12)
         if not drawn.any():
             return
         arrows = moment.forces[drawn] * (_ARROW * self._scale / self._largest_force)

@@ -22,7 +22,7 @@ from .renderer import Renderer
 __all__ = ["check_path", "need_pillow", "video"]
 
 _ANIMATED = (".webp", ".gif")
-_MOST_FRAMES = 1_000_000
+_MAX_FRAMES = 1_000_000
 _LOOKED_AT = 40  # moments of a recorded run, before it is drawn
 
 
@@ -96,7 +96,7 @@ def video(
 def _count(duration: float, fps: float, speed: float) -> int:
     """Frames of a duration, its two ends included."""
     frames = duration * fps / speed
-    if not 0.0 <= frames < _MOST_FRAMES:
+    if not 0.0 <= frames < _MAX_FRAMES:
         raise Error("out-of-range", "video(duration)", f"{duration:g} s are {frames:g} frames",
                     "give a duration of less than a million frames")
     return int(np.floor(frames + 1e-9)) + 1

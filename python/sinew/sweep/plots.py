@@ -14,7 +14,7 @@ from ..errors import Error
 from .table import component_names, load
 
 _Path = Union[str, "os.PathLike[str]"]
-_MOST_PANELS = 7
+_MAX_PANELS = 7
 # Powers of ten that numbers of a unit are shown by.
 _SHOWN = {"m": ("mm", 1e3), "Pa": ("kPa", 1e-3), "m^3": ("ml", 1e6), "J": ("mJ", 1e3)}
 
@@ -59,7 +59,7 @@ class _Table:
 
 def _scatter(plt: Any, table: _Table) -> Any:
     """Each column against each, histograms on the diagonal."""
-    names = (table.inputs[: _MOST_PANELS - 1] + table.outputs)[:_MOST_PANELS]
+    names = (table.inputs[: _MAX_PANELS - 1] + table.outputs)[:_MAX_PANELS]
     if len(names) < 2:
         return None
     size = len(names)

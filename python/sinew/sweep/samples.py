@@ -16,7 +16,7 @@ from .sensitivity import saltelli_points
 
 Value = Union[int, float, str]
 METHODS = ("sobol", "halton", "random", "saltelli")
-_MOST = 10_000_000
+_MAX_SAMPLES = 10_000_000
 _BASE_UNITS = ("m", "kg", "s", "K")  # as _core._quantity() orders them
 _UNITS = {(-1, 1, -2, 0): "Pa", (1, 1, -2, 0): "N", (2, 1, -2, 0): "J", (2, 1, -3, 0): "W", (-3, 1, 0, 0): "kg/m^3", (1, 0, -1, 0): "m/s"}
 
@@ -96,8 +96,8 @@ class Design:
             self.size = math.prod(self._shape)
         else:
             self.size = count * (len(axes) + 2) if method == "saltelli" else count
-        if self.size > _MOST:
-            raise Error("size-limit", "sweep", f"these are {self.size} samples, and {_MOST} are the most", "vary fewer values")
+        if self.size > _MAX_SAMPLES:
+            raise Error("size-limit", "sweep", f"these are {self.size} samples, and {_MAX_SAMPLES} are the most", "vary fewer values")
         self._shares = None if method == "grid" else _shares(method, len(axes), count, seed)
 
     @property
@@ -207,8 +207,8 @@ def _axis_of_text(key: str, text: str) -> Axis:
         return Axis(key, "range", low=low, high=high, unit=unit)
     if not re.fullmatch(r"[0-9]+", ends[2]) or int(ends[2]) < 2:
         raise Error("bad-argument", key, f"'{ends[2]}' is no number of values of a grid", "write FROM:TO:N with N of 2 or more")
-    if int(ends[2]) > _MOST:
-        raise Error("size-limit", key, f"{ends[2]} values are more than {_MOST}", "vary fewer values")
+    if int(ends[2]) > _MAX_SAMPLES:
+        raise Error("size-limit", key, f"{ends[2]} values are more than {_MAX_SAMPLES}", "vary fewer values")
     values: list[Value] = [float(value) for value in np.linspace(low, high, int(ends[2]))]
     whole = all(re.fullmatch(r"[+-]?[0-9]+", end) for end in ends[:2]) and all(value.is_integer() for value in values)
     return Axis(key, "grid", tuple(int(value) for value in values) if whole else tuple(values), unit=unit)

@@ -15,7 +15,7 @@ from .store import Rows
 if TYPE_CHECKING:
     import pandas
 
-_MOST_COLUMNS = 64  # of one output
+_MAX_COLUMNS = 64  # of one output
 _AXES = {(3,): "xyz", (4,): "wxyz"}
 _Path = Union[str, "os.PathLike[str]"]
 
@@ -50,7 +50,7 @@ def load(folder: _Path) -> pandas.DataFrame:
     columns = {name: rows.values(name) for name in rows.inputs}
     for name, shape in rows.outputs.items():
         size = int(np.prod(shape, dtype=int))
-        if size <= _MOST_COLUMNS:
+        if size <= _MAX_COLUMNS:
             columns.update(zip(component_names(name, shape), rows.values(name).reshape(len(rows), size).T))
     for name in ("status", "error", "seconds", "version", "instruction_set", "worker"):
         columns[name] = rows.values(name)

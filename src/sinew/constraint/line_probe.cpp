@@ -41,7 +41,7 @@ std::vector<ProbeComponent> numbered(std::size_t count, const char* unit) {
 
 }  // namespace
 
-CurvatureProbe::CurvatureProbe(std::string name, std::vector<Place> places,
+CurvatureProbe::CurvatureProbe(std::string name, std::vector<Triple> places,
                                const std::optional<Vector3>& about)
     : Probe(std::move(name), numbered(places.size(), "1/m")),
       places_(std::move(places)),

@@ -20,16 +20,16 @@ namespace sinew::constraint {
 /// positive for a turn by the right hand along the line.
 class CurvatureProbe : public Probe {
  public:
-  using Place = std::array<mechanics::MaterialPoint, 3>;
+  using Triple = std::array<mechanics::MaterialPoint, 3>;
   /// @param name for headings. @param places along the line. @param about unit length, or none.
-  CurvatureProbe(std::string name, std::vector<Place> places, const std::optional<Vector3>& about);
+  CurvatureProbe(std::string name, std::vector<Triple> places, const std::optional<Vector3>& about);
   const char* kind() const override { return "curvature"; }
   void measure(const Configuration& configuration, std::span<double> values) const override;
   Points marks(const Configuration& configuration) const override;
   std::size_t mark_count() const override { return places_.size(); }
 
  private:
-  std::vector<Place> places_;
+  std::vector<Triple> places_;
   std::optional<Vector3> about_;
 };
 

@@ -11,7 +11,7 @@
 #include "sinew/collision/approach.hpp"
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/rigid_side.hpp"
-#include "sinew/constraint/surface.hpp"
+#include "sinew/constraint/smooth_surface.hpp"
 
 namespace sinew::constraint {
 

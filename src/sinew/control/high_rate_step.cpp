@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 // Least part of the way to what was found: it grows back in twelve periods.
-constexpr double kLeastShare = 1.0 / 4096.0;
+constexpr double kMinShare = 1.0 / 4096.0;
 
 Eigen::Index length(const auto& list) { return static_cast<Eigen::Index>(list.size()); }
 
@@ -198,7 +198,7 @@ void HighRateStep::estimate(const HighRateInput& input) {
   unknown_ = unknown_before_ + belief_ * (unknown_ - unknown_before_);
   settle(input);
   const bool serves = estimate_.misfit(law_, driven_, input.sensors, unknown_) <= before;
-  belief_ = std::clamp(serves ? 2.0 * belief_ : 0.5 * belief_, kLeastShare, 1.0);
+  belief_ = std::clamp(serves ? 2.0 * belief_ : 0.5 * belief_, kMinShare, 1.0);
   if (!serves) unknown_ = unknown_before_;
 }
 
@@ -214,7 +214,7 @@ void HighRateStep::drive(const HighRateInput& input) {
   driven_ = applied_ + share_ * (driven_ - applied_);
   settle(input);
   const bool serves = !within || drive_.missed(asked, driven_) <= before;
-  share_ = std::clamp(serves ? 2.0 * share_ : 0.5 * share_, kLeastShare, 1.0);
+  share_ = std::clamp(serves ? 2.0 * share_ : 0.5 * share_, kMinShare, 1.0);
   if (serves) return;
   driven_ = applied_;
   settle(input);

@@ -17,7 +17,7 @@ namespace sinew::control {
 namespace {
 
 // Datagrams looked at in one period: more would be a flood.
-constexpr int kMostPackets = 64;
+constexpr int kMaxPackets = 64;
 // s of silence after which a device may have started anew, with small numbers.
 constexpr double kRestart = 1.0;
 
@@ -79,7 +79,7 @@ UdpReport UdpDevice::report() const {
 
 bool UdpDevice::read(HighRateInput& input) {
   bool fresh = false;
-  for (int k = 0; k < kMostPackets; ++k) {
+  for (int k = 0; k < kMaxPackets; ++k) {
     sockaddr_in from{};
     socklen_t size = sizeof from;
     const ssize_t got = ::recvfrom(socket_, bytes_.data(), bytes_.size(), 0,

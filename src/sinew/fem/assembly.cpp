@@ -75,8 +75,8 @@ struct Assembly::Records {
 
   static std::size_t record_size(Tangent tangent) {
     if (tangent == Tangent::none) return 0;
-    const bool rotated = tangent == Tangent::rotated || tangent == Tangent::rates;
-    return static_cast<std::size_t>(rotated ? kRotatedRecord : kExactRecord);
+    const bool corotated = tangent == Tangent::corotated || tangent == Tangent::rates;
+    return static_cast<std::size_t>(corotated ? kCorotatedRecord : kExactRecord);
   }
 
   static constexpr std::size_t kPadding = 7 * 7;  // between the arrays, see ThreadScratch

@@ -19,12 +19,12 @@ enum class Tangent {
   none,  ///< forces and energy only; the matrix is left as it was
   /// Positive semi-definite: R K0 R^T with the rotation held fixed, what real-time codes use; of
   /// hyperelastic laws the projected derivative.
-  rotated,
+  corotated,
   /// The exact derivative of each element (of hyperelastic laws: of each point) projected onto the
   /// positive semi-definite matrices: never less than the exact one.
   projected,
   /// What rates of strain are resisted with: blind to spins of each point, of hyperelastic laws
-  /// otherwise as rotated (material::Projection::rates).
+  /// otherwise as corotated (material::Projection::rates).
   rates,
   exact,  ///< second derivative of the energy, rotation's derivative included; may be indefinite
 };
@@ -33,7 +33,7 @@ enum class Tangent {
 /// which one runs. (1, 0) is quasi-static. (1, 1/h^2 + alpha/h) is backward Euler with mass damping
 /// alpha M. BodyElements adds the stiffness damping (beta/h) K, with K ahead in the step.
 struct AssemblyWeights {
-  Tangent tangent = Tangent::rotated;
+  Tangent tangent = Tangent::corotated;
   double stiffness = 1.0;
   double mass = 0.0;
   /// Whether rubber that was stretched before is softer.

@@ -74,7 +74,7 @@ SINEW_INLINE Block rotation_terms(const GatherLists& lists, std::int32_t begin, 
 template <Tangent tangent>
 SINEW_INLINE Block gather_block(const GatherLists& lists, std::size_t visit,
                                 const double* records) {
-  constexpr int kRecord = tangent == Tangent::exact ? kExactRecord : kRotatedRecord;
+  constexpr int kRecord = tangent == Tangent::exact ? kExactRecord : kCorotatedRecord;
   const std::int32_t first = lists.contribution_start[visit];
   Block result;
   if constexpr (tangent == Tangent::exact) {
@@ -123,7 +123,7 @@ void gather_columns(const GatherLists& lists, const linalg::BlockPattern& patter
                     const AssemblyWeights& weights, const double* node_mass,
                     const double* block_mass, double* matrix) {
   constexpr double kDiagonal =
-      tangent == Tangent::exact ? 2.0 : (tangent == Tangent::rotated ? 1.0 : 0.0);
+      tangent == Tangent::exact ? 2.0 : (tangent == Tangent::corotated ? 1.0 : 0.0);
   const double diagonal = weights.stiffness * kDiagonal;
   for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
     const auto j = static_cast<std::size_t>(lists.column[k]);
@@ -152,9 +152,9 @@ void gather_blocks(const GatherLists& lists, const linalg::BlockPattern& pattern
   if (weights.tangent == Tangent::exact || weights.tangent == Tangent::projected) {
     gather_columns<Tangent::exact>(lists, pattern, begin, end, records, solids, patch_rows, weights,
                                    node_mass, block_mass, matrix);
-  } else if (weights.tangent == Tangent::rotated) {
-    gather_columns<Tangent::rotated>(lists, pattern, begin, end, records, solids, patch_rows,
-                                     weights, node_mass, block_mass, matrix);
+  } else if (weights.tangent == Tangent::corotated) {
+    gather_columns<Tangent::corotated>(lists, pattern, begin, end, records, solids, patch_rows,
+                                       weights, node_mass, block_mass, matrix);
   } else if (weights.tangent == Tangent::rates) {
     gather_columns<Tangent::rates>(lists, pattern, begin, end, records, solids, patch_rows, weights,
                                    node_mass, block_mass, matrix);

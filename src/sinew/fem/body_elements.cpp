@@ -4,8 +4,8 @@ namespace sinew::fem {
 
 Tangent element_tangent(mechanics::Tangent tangent) {
   switch (tangent) {
-    case mechanics::Tangent::rotated:
-      return Tangent::rotated;
+    case mechanics::Tangent::corotated:
+      return Tangent::corotated;
     case mechanics::Tangent::projected:
       return Tangent::projected;
     case mechanics::Tangent::exact:
@@ -15,14 +15,14 @@ Tangent element_tangent(mechanics::Tangent tangent) {
 }
 
 BodyElements::BodyElements(FemState& state, ThreadPool& pool, bool with_curvature)
-    : state_(state), pool_(pool), active_(&numbers(with_curvature)) {}
+    : state_(state), pool_(pool), active_(&workspace(with_curvature)) {}
 
-SystemNumbers& BodyElements::numbers(bool with_curvature) {
+SystemWorkspace& BodyElements::workspace(bool with_curvature) {
   const FemBodyModel& model = state_.model;
   const FemSystem& system = model.system(with_curvature);
   auto& own = model.is_plain(system) ? plain_ : curved_;
   if (!own) {
-    own = std::make_unique<SystemNumbers>(system, pool_);
+    own = std::make_unique<SystemWorkspace>(system, pool_);
     if (!state_.element_history.empty()) own->assembly.set_history(&state_.element_history);
   }
   return *own;
@@ -45,8 +45,8 @@ void BodyElements::begin_step() {
 // Softening has no part in it: where a step ends at the largest strain so far its slope jumps, and
 // rounding would decide.
 void BodyElements::linearise(const mechanics::LinearisationRequest& request, bool first) {
-  SystemNumbers* const before = active_;
-  active_ = &numbers(request.with_curvature);
+  SystemWorkspace* const before = active_;
+  active_ = &workspace(request.with_curvature);
   if (active_ != before) before->present.reset();
   active_->iterating = request.iterating;
   prepare_history(request.weights.time_step);
@@ -102,7 +102,7 @@ void BodyElements::end_step(double time_step) {
 }
 
 void BodyElements::release() {
-  for (SystemNumbers* n : {plain_.get(), curved_.get()}) {
+  for (SystemWorkspace* n : {plain_.get(), curved_.get()}) {
     if (n != nullptr) n->factorisation->release();
   }
 }
@@ -124,7 +124,7 @@ mechanics::SmallestVolume BodyElements::smallest_volume() {
 
 std::size_t BodyElements::bytes() const {
   std::size_t total = sizeof(double) * static_cast<std::size_t>(ahead_.size());
-  for (const SystemNumbers* n : {plain_.get(), curved_.get()}) {
+  for (const SystemWorkspace* n : {plain_.get(), curved_.get()}) {
     if (n != nullptr) total += n->bytes();
   }
   return total;

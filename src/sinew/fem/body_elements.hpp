@@ -9,7 +9,7 @@
 #include "sinew/core/thread_pool.hpp"
 #include "sinew/fem/assembly.hpp"
 #include "sinew/fem/fem_state.hpp"
-#include "sinew/fem/system_numbers.hpp"
+#include "sinew/fem/system_workspace.hpp"
 #include "sinew/mechanics/step_system.hpp"
 #include "sinew/mechanics/tangent.hpp"
 
@@ -26,8 +26,8 @@ class BodyElements {
   BodyElements(FemState& state, ThreadPool& pool, bool with_curvature);
 
   /// What the last linearisation was over.
-  SystemNumbers& active() { return *active_; }
-  const SystemNumbers& active() const { return *active_; }
+  SystemWorkspace& active() { return *active_; }
+  const SystemWorkspace& active() const { return *active_; }
 
   void begin_step();
   /// Forces and matrix at the present positions. @param request what the matrix is to be.
@@ -50,14 +50,14 @@ class BodyElements {
   std::size_t bytes() const;
 
  private:
-  SystemNumbers& numbers(bool with_curvature);
+  SystemWorkspace& workspace(bool with_curvature);
   void prepare_history(double time_step);
   void keep_damping_stiffness(const mechanics::StepWeights& weights);
 
   FemState& state_;
   ThreadPool& pool_;
-  std::unique_ptr<SystemNumbers> plain_, curved_;
-  SystemNumbers* active_ = nullptr;
+  std::unique_ptr<SystemWorkspace> plain_, curved_;
+  SystemWorkspace* active_ = nullptr;
   Points ahead_ = Points(0, 3);          // m, in the step, as the velocity leads
   std::optional<double> prepared_step_;  // that the elements' history was last prepared for
 };

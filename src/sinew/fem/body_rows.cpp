@@ -6,14 +6,14 @@ namespace sinew::fem {
 
 BodyRows::BodyRows(const FemBodyModel& model) : model_(model), fixed_effort_(model.fixed_rows()) {}
 
-void BodyRows::take(const mechanics::RowValues& rows, SystemNumbers& numbers) {
-  std::ranges::fill(numbers.border, 0.0);
-  for (const auto& s : numbers.system.scatter) {
-    double* value = numbers.border.data() + 3 * static_cast<std::size_t>(s.position);
+void BodyRows::take(const mechanics::RowValues& rows, SystemWorkspace& workspace) {
+  std::ranges::fill(workspace.border, 0.0);
+  for (const auto& s : workspace.system.scatter) {
+    double* value = workspace.border.data() + 3 * static_cast<std::size_t>(s.position);
     const Vector3& direction = rows.direction[static_cast<std::size_t>(s.entry)];
     for (int c = 0; c < 3; ++c) value[c] += s.weight * direction[c];
   }
-  hold(numbers.system.border, numbers.border);
+  hold(workspace.system.border, workspace.border);
   take_transient(rows);
   hold(transient_, transient_values_);
 }
@@ -113,7 +113,7 @@ void BodyRows::hold(const linalg::BorderPattern& pattern, std::vector<double>& v
 
 // Calls add(free node, row's effort, (3,) of H) for every entry of rows that have an effort.
 template <typename Add>
-void BodyRows::each_entry(std::span<const double> effort, const SystemNumbers& numbers,
+void BodyRows::each_entry(std::span<const double> effort, const SystemWorkspace& workspace,
                           Add add) const {
   const auto each = [&](const linalg::BorderPattern& pattern, std::span<const double> values,
                         std::size_t k, double lambda) {
@@ -124,7 +124,7 @@ void BodyRows::each_entry(std::span<const double> effort, const SystemNumbers& n
     }
   };
   for (std::size_t k = 0; k < model_.fixed_rows(); ++k) {
-    each(numbers.system.border, numbers.border, k,
+    each(workspace.system.border, workspace.border, k,
          effort[static_cast<std::size_t>(model_.rows()[k])]);
   }
   for (std::size_t k = 0; k < static_cast<std::size_t>(transient_.rows()); ++k) {
@@ -132,27 +132,27 @@ void BodyRows::each_entry(std::span<const double> effort, const SystemNumbers& n
   }
 }
 
-void BodyRows::add_forces(std::span<const double> effort, const SystemNumbers& numbers,
+void BodyRows::add_forces(std::span<const double> effort, const SystemWorkspace& workspace,
                           VectorX& sum) const {
-  each_entry(effort, numbers, [&](std::int32_t node, double lambda, const double* value) {
+  each_entry(effort, workspace, [&](std::int32_t node, double lambda, const double* value) {
     double* r = sum.data() + 3 * node;
     for (int c = 0; c < 3; ++c) r[c] += lambda * value[c];
   });
 }
 
-void BodyRows::add_forces(std::span<const double> effort, const SystemNumbers& numbers,
+void BodyRows::add_forces(std::span<const double> effort, const SystemWorkspace& workspace,
                           Points& forces) const {
   const auto nodes = model_.elements().free_nodes();
-  each_entry(effort, numbers, [&](std::int32_t node, double lambda, const double* value) {
+  each_entry(effort, workspace, [&](std::int32_t node, double lambda, const double* value) {
     auto r = forces.row(nodes[static_cast<std::size_t>(node)]);
     for (int c = 0; c < 3; ++c) r[c] += lambda * value[c];
   });
 }
 
-void BodyRows::add_compliance(std::span<const int> problem_row, const SystemNumbers& numbers,
+void BodyRows::add_compliance(std::span<const int> problem_row, const SystemWorkspace& workspace,
                               MatrixX& compliance, VectorX& free_motion) const {
-  const MatrixX& own = numbers.factorisation->compliance();
-  const VectorX& motion = numbers.factorisation->free_motion();
+  const MatrixX& own = workspace.factorisation->compliance();
+  const VectorX& motion = workspace.factorisation->free_motion();
   const std::span<const std::int32_t> rows(model_.rows());
   const std::size_t fixed = model_.fixed_rows();
   const auto problem_row_of = [&](std::size_t i) {
@@ -167,14 +167,14 @@ void BodyRows::add_compliance(std::span<const int> problem_row, const SystemNumb
     }
   }
   if (transient_.rows() > 0) {
-    add_transient_compliance(problem_row, numbers, compliance, free_motion);
+    add_transient_compliance(problem_row, workspace, compliance, free_motion);
   }
 }
 
 void BodyRows::add_transient_compliance(std::span<const int> problem_row,
-                                        const SystemNumbers& numbers, MatrixX& compliance,
+                                        const SystemWorkspace& workspace, MatrixX& compliance,
                                         VectorX& free_motion) const {
-  linalg::Factorisation& factor = *numbers.factorisation;
+  linalg::Factorisation& factor = *workspace.factorisation;
   factor.condense_transient(transient_, transient_values_);
   const MatrixX& own = factor.transient_compliance();
   const MatrixX& coupling = factor.transient_coupling();

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sinew/core/types.hpp"
-#include "sinew/fem/system_numbers.hpp"
+#include "sinew/fem/system_workspace.hpp"
 #include "sinew/linalg/block_pattern.hpp"
 #include "sinew/mechanics/rows.hpp"
 
@@ -24,24 +24,25 @@ class BodyRows {
   explicit BodyRows(const FemBodyModel& model);
 
   /// Takes directions, and which of the transient rows are active.
-  void take(const mechanics::RowValues& rows, SystemNumbers& numbers);
-  /// Adds H^T effort. @param effort,numbers as the class says. @param sum (3 free,) N.
-  void add_forces(std::span<const double> effort, const SystemNumbers& numbers, VectorX& sum) const;
-  /// The same on mesh nodes. @param effort,numbers as before. @param forces (n, 3) N.
-  void add_forces(std::span<const double> effort, const SystemNumbers& numbers,
+  void take(const mechanics::RowValues& rows, SystemWorkspace& workspace);
+  /// Adds H^T effort. @param effort,workspace as the class says. @param sum (3 free,) N.
+  void add_forces(std::span<const double> effort, const SystemWorkspace& workspace,
+                  VectorX& sum) const;
+  /// The same on mesh nodes. @param effort,workspace as before. @param forces (n, 3) N.
+  void add_forces(std::span<const double> effort, const SystemWorkspace& workspace,
                   Points& forces) const;
   /// See mechanics::StepSystem.
-  void add_compliance(std::span<const int> problem_row, const SystemNumbers& numbers,
+  void add_compliance(std::span<const int> problem_row, const SystemWorkspace& workspace,
                       MatrixX& compliance, VectorX& free_motion) const;
   /// Of the rows that are always there, as the factorisation counts them.
   std::span<const double> fixed_effort(std::span<const double> effort);
 
  private:
   template <typename Add>
-  void each_entry(std::span<const double> effort, const SystemNumbers& numbers, Add add) const;
+  void each_entry(std::span<const double> effort, const SystemWorkspace& workspace, Add add) const;
   template <typename Visit>
   void each_node(std::int32_t entry, const mechanics::RowValues& rows, Visit visit) const;
-  void add_transient_compliance(std::span<const int> problem_row, const SystemNumbers& numbers,
+  void add_transient_compliance(std::span<const int> problem_row, const SystemWorkspace& workspace,
                                 MatrixX& compliance, VectorX& free_motion) const;
   void take_transient(const mechanics::RowValues& rows);
   void add_triple(std::int32_t row, const mechanics::RowValues& rows);

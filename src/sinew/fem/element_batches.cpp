@@ -40,12 +40,13 @@ void check_volume(const mesh::Mesh& mesh, int tetrahedron, const Matrix3& edge) 
 }
 
 /// Tetrahedra in the order of slots, each law filled up to whole batches with -1.
-std::vector<std::int32_t> slot_order(const mesh::Mesh& mesh, std::span<const Region> regions,
+std::vector<std::int32_t> slot_order(const mesh::Mesh& mesh,
+                                     std::span<const MaterialRegion> regions,
                                      std::span<const std::int32_t> region_of,
                                      std::span<const std::int32_t> rank) {
   std::vector<std::int32_t> order;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-    const Region& region = regions[static_cast<std::size_t>(region_of[t])];
+    const MaterialRegion& region = regions[static_cast<std::size_t>(region_of[t])];
     if (!region.hyperelastic) order.push_back(static_cast<std::int32_t>(t));
   }
   const auto lowest = [&](std::int32_t t) {
@@ -72,8 +73,8 @@ std::vector<std::int32_t> slot_order(const mesh::Mesh& mesh, std::span<const Reg
   return slots;
 }
 
-void set_lane(BatchConstants& batch, std::size_t lane, const Matrix3& edge, const Region& region,
-              bool filling) {
+void set_lane(BatchConstants& batch, std::size_t lane, const Matrix3& edge,
+              const MaterialRegion& region, bool filling) {
   const Matrix3 inverse = edge.inverse();  // row a - 1 is g_a
   for (int a = 0; a < 3; ++a) {
     for (int c = 0; c < 3; ++c) batch.gradient[a][c].value[lane] = inverse(a, c);
@@ -87,7 +88,7 @@ void set_lane(BatchConstants& batch, std::size_t lane, const Matrix3& edge, cons
 
 }  // namespace
 
-ElementBatches make_element_batches(const mesh::Mesh& mesh, std::span<const Region> regions,
+ElementBatches make_element_batches(const mesh::Mesh& mesh, std::span<const MaterialRegion> regions,
                                     std::span<const std::int32_t> region_of,
                                     std::span<const std::int32_t> rank) {
   ElementBatches result;
@@ -104,7 +105,7 @@ ElementBatches make_element_batches(const mesh::Mesh& mesh, std::span<const Regi
     const auto element = static_cast<std::size_t>(last);
     const Matrix3 edge = edges(mesh, last);
     if (!filling) check_volume(mesh, last, edge);
-    const Region& region = regions[static_cast<std::size_t>(region_of[element])];
+    const MaterialRegion& region = regions[static_cast<std::size_t>(region_of[element])];
     result.region[slot] = region_of[element];
     set_lane(result.constants[batch], lane, edge, region, filling);
     for (std::size_t a = 0; a < 4; ++a) {

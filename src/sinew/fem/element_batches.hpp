@@ -41,7 +41,7 @@ struct ElementBatches {
 /// @param region_of region of each tetrahedron of the mesh.
 /// @param rank spatial rank of each node.
 /// Throws Error(zero-volume, inverted-element) naming the tetrahedron.
-ElementBatches make_element_batches(const mesh::Mesh& mesh, std::span<const Region> regions,
+ElementBatches make_element_batches(const mesh::Mesh& mesh, std::span<const MaterialRegion> regions,
                                     std::span<const std::int32_t> region_of,
                                     std::span<const std::int32_t> rank);
 

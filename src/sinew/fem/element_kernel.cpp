@@ -134,11 +134,11 @@ void evaluate(const ElementBatches& elements, int begin, int end, const double* 
     minimum.see(response.determinant, b);
     if constexpr (tangent == Tangent::rates && law == Law::corotational) {
       on_gradients(to_present(f), batch, row(batch.root))
-          .store(output.records + kRotatedRecord * kLanes * b, kRotatedRecord);
+          .store(output.records + kCorotatedRecord * kLanes * b, kCorotatedRecord);
     } else if constexpr (tangent != Tangent::none) {
       const NodeVectors h = on_gradients(response.rotation, batch, row(batch.root));
-      if constexpr (tangent == Tangent::rotated || tangent == Tangent::rates) {
-        h.store(output.records + kRotatedRecord * kLanes * b, kRotatedRecord);
+      if constexpr (tangent == Tangent::corotated || tangent == Tangent::rates) {
+        h.store(output.records + kCorotatedRecord * kLanes * b, kCorotatedRecord);
       } else {
         const material::ExactTangent full =
             tangent == Tangent::exact ? material::exact_tangent<law>(f, moduli, response)
@@ -167,8 +167,8 @@ SmallestRatio evaluate_batches(const ElementBatches& elements, int begin, int en
     case Tangent::none:
       evaluate_laws<Tangent::none>(elements, begin, end, points, output, minimum);
       break;
-    case Tangent::rotated:
-      evaluate_laws<Tangent::rotated>(elements, begin, end, points, output, minimum);
+    case Tangent::corotated:
+      evaluate_laws<Tangent::corotated>(elements, begin, end, points, output, minimum);
       break;
     case Tangent::rates:
       evaluate_laws<Tangent::rates>(elements, begin, end, points, output, minimum);

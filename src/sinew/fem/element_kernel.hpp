@@ -19,8 +19,8 @@
 namespace sinew::fem {
 
 /// Doubles in a record, by slot; 3-vectors are padded to four so that each is one load.
-inline constexpr int kForceRecord = 16;    ///< f_0 . f_1 . f_2 . f_3 . : V P g_a in N, padding 0
-inline constexpr int kRotatedRecord = 16;  ///< h_0 . h_1 . h_2 . h_3 . , padding 0
+inline constexpr int kForceRecord = 16;      ///< f_0 . f_1 . f_2 . f_3 . : V P g_a in N, padding 0
+inline constexpr int kCorotatedRecord = 16;  ///< h_0 . h_1 . h_2 . h_3 . , padding 0
 /// h_0..h_3 | p_0..p_3 | columns of G | unused quad; the scalars of kPairPosition and
 /// kKappaPosition stand where padding would.
 inline constexpr int kExactRecord = 48;
@@ -40,7 +40,7 @@ struct SmallestRatio {
 /// Where batches write. Record arrays are 64-byte aligned.
 struct ElementOutput {
   double* forces;   ///< kForceRecord a slot
-  double* records;  ///< kRotatedRecord or kExactRecord a slot; not touched for Tangent::none
+  double* records;  ///< kCorotatedRecord or kExactRecord a slot; not touched for Tangent::none
   double* energy;   ///< one a batch, J
 };
 

@@ -32,8 +32,8 @@ std::vector<NamedHash> FemBodyModel::parts() const {
   const FemModelSettings& elements = settings_.elements;
   const mesh::Mesh& mesh = *settings_.mesh;
   ValueHash material, mass, points;
-  mass.add(elements.mass, elements.total_mass, elements.even_mass);
-  for (const Region& region : elements.regions) {
+  mass.add(elements.mass, elements.total_mass, elements.equal_nodal_masses);
+  for (const MaterialRegion& region : elements.regions) {
     mass.add(region.density);
     material.add(region.constants.young_modulus, region.constants.poisson_ratio, region.law,
                  region.elements, region.patches, region.hyperelastic.has_value());

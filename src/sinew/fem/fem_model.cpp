@@ -17,7 +17,7 @@ namespace sinew::fem {
 
 double stiffest_modulus(const FemModelSettings& settings) {
   double modulus = 0.0;
-  for (const Region& region : settings.regions) {
+  for (const MaterialRegion& region : settings.regions) {
     modulus = std::max(modulus, region.young_modulus());
   }
   return modulus;
@@ -51,7 +51,7 @@ namespace {
 
 constexpr double kPseudoDensity = 1e3;  // kg/m^3
 
-void check_region(const Region& region) {
+void check_region(const MaterialRegion& region) {
   if (region.patches && (!region.hyperelastic || region.hyperelastic->saint_venant_shear != 0.0)) {
     throw Error(ErrorKind::unsupported_element, {.item = "material"},
                 "patches of tetrahedra need a law whose volumetric part stands apart",
@@ -66,7 +66,7 @@ void check_region(const Region& region) {
 
 /// Region of each element.
 std::vector<std::int32_t> assign_regions(const mesh::Mesh& mesh,
-                                         const std::vector<Region>& regions) {
+                                         const std::vector<MaterialRegion>& regions) {
   const auto fail = [&](ErrorKind kind, const std::string& message, const std::string& remedy) {
     throw Error(kind, {.file = mesh.name, .item = "material"}, message, remedy);
   };

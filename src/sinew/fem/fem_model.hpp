@@ -23,7 +23,7 @@ struct GatherLists;
 struct SolidGroup;
 
 /// A part of the mesh made of one material.
-struct Region {
+struct MaterialRegion {
   material::ElasticConstants constants;
   material::Law law = material::Law::corotational;
   double density = 0.0;  ///< kg/m^3, >= 0
@@ -62,12 +62,12 @@ struct SupportMass {
 };
 
 struct FemModelSettings {
-  std::vector<Region> regions;      ///< every element stands in exactly one
-  std::vector<NodeId> fixed_nodes;  ///< removed from the system; any order, repeats allowed
-  std::vector<HeldAxis> held_axes;  ///< of nodes that are not fixed; any order, repeats allowed
+  std::vector<MaterialRegion> regions;  ///< every element stands in exactly one
+  std::vector<NodeId> fixed_nodes;      ///< removed from the system; any order, repeats allowed
+  std::vector<HeldAxis> held_axes;      ///< of nodes that are not fixed; any order, repeats allowed
   MassMatrix mass = MassMatrix::lumped;
   std::optional<double> total_mass;     ///< kg, > 0; scales the densities (by volume if all are 0)
-  bool even_mass = false;               ///< total_mass / n at each of the n used nodes
+  bool equal_nodal_masses = false;      ///< total_mass / n at each of the n used nodes
   std::vector<PointMass> point_masses;  ///< beside the material's mass, whatever total_mass says
   std::vector<MembraneLayer> membranes;
   /// Further groups of nodes that may couple (the nodes of a cable segment, for its geometric

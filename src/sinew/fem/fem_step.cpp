@@ -113,15 +113,15 @@ void FemStep::add_curvature(const mechanics::RowCurvature& curvature) {
 void FemStep::take_rows(const mechanics::RowValues& rows) { rows_.take(rows, elements_.active()); }
 
 mechanics::Inertia FemStep::condense() {
-  SystemNumbers& numbers = elements_.active();
-  if (state_.tether) stiffen(*state_.tether, state_.model.elements(), numbers.assembly);
-  loads_.stiffen(tangent_, numbers.assembly);
-  numbers.assembly.hold();
-  numbers.present.reset();
+  SystemWorkspace& workspace = elements_.active();
+  if (state_.tether) stiffen(*state_.tether, state_.model.elements(), workspace.assembly);
+  loads_.stiffen(tangent_, workspace.assembly);
+  workspace.assembly.hold();
+  workspace.present.reset();
   mechanics::Inertia inertia;
-  inertia.status =
-      numbers.factorisation->factorise(numbers.assembly.matrix(), numbers.border, span_of(right_));
-  inertia.negative_pivots = numbers.factorisation->negative_pivots();
+  inertia.status = workspace.factorisation->factorise(workspace.assembly.matrix(), workspace.border,
+                                                      span_of(right_));
+  inertia.negative_pivots = workspace.factorisation->negative_pivots();
   inertia.unsymmetric = !loads_.unsymmetric().empty();
   return inertia;
 }
@@ -143,8 +143,8 @@ double FemStep::residual(std::span<const double> effort, std::span<double> imbal
 }
 
 double FemStep::rounding_floor() const {
-  const SystemNumbers& numbers = elements_.active();
-  return fem::rounding_floor(numbers.system.elements->pattern(), numbers.assembly.matrix(),
+  const SystemWorkspace& workspace = elements_.active();
+  return fem::rounding_floor(workspace.system.elements->pattern(), workspace.assembly.matrix(),
                              state_.model.elements().held(),
                              state_.positions.cwiseAbs().maxCoeff());
 }

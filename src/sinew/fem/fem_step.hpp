@@ -70,7 +70,7 @@ class FemStep : public mechanics::StepSystem {
   BodyLoads loads_;
   BodyRows rows_;
   InertiaForces inertia_;
-  mechanics::Tangent tangent_ = mechanics::Tangent::rotated;  // of the last linearisation
+  mechanics::Tangent tangent_ = mechanics::Tangent::corotated;  // of the last linearisation
   bool first_linearisation_ = true;
 
   // Over free nodes, (3 free,); lessening_ from the first time that it is given.

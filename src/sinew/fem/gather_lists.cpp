@@ -76,8 +76,8 @@ Vector3 gradient(const BatchConstants& batch, std::size_t lane, std::size_t a) {
 }
 
 /// Appends the blocks in the lower triangle to which a slot contributes.
-void append_parts(const ElementBatches& elements, std::span<const Region> regions, std::size_t slot,
-                  const std::array<NodeId, 4>& free, const BlockVisits& visits,
+void append_parts(const ElementBatches& elements, std::span<const MaterialRegion> regions,
+                  std::size_t slot, const std::array<NodeId, 4>& free, const BlockVisits& visits,
                   std::vector<Part>& parts) {
   const BatchConstants& batch = elements.constants[slot / kLanes];
   const std::size_t lane = slot % kLanes;
@@ -244,7 +244,8 @@ void write_solids(std::vector<SolidPart>& parts, int blocks, GatherLists& lists)
 }  // namespace
 
 GatherLists make_gather_lists(const ElementBatches& elements, std::span<const SolidGroup> solids,
-                              std::span<const Region> regions, std::span<const NodeId> free_index,
+                              std::span<const MaterialRegion> regions,
+                              std::span<const NodeId> free_index,
                               std::span<const std::int32_t> rank,
                               const linalg::BlockPattern& pattern) {
   const std::size_t slots = elements.tetrahedron.size();

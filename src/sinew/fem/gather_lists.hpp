@@ -57,7 +57,8 @@ struct GatherLists {
 /// @param rank spatial rank of each mesh node.
 /// Throws Error(size-limit) beyond 2^28 element slots.
 GatherLists make_gather_lists(const ElementBatches& elements, std::span<const SolidGroup> solids,
-                              std::span<const Region> regions, std::span<const NodeId> free_index,
+                              std::span<const MaterialRegion> regions,
+                              std::span<const NodeId> free_index,
                               std::span<const std::int32_t> rank,
                               const linalg::BlockPattern& pattern);
 

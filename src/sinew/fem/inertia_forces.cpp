@@ -15,13 +15,13 @@ void InertiaForces::multiply_by_mass(const FemModel& elements) {
   elements.apply_mass(view(motion_), view(force_));
 }
 
-void InertiaForces::multiply_by_stiffness(const SystemNumbers& numbers) {
+void InertiaForces::multiply_by_stiffness(const SystemWorkspace& workspace) {
   force_.resize(motion_.size());
-  linalg::multiply(numbers.system.elements->pattern(), numbers.damping_stiffness, view(motion_),
+  linalg::multiply(workspace.system.elements->pattern(), workspace.damping_stiffness, view(motion_),
                    view(force_));
 }
 
-double InertiaForces::add(const mechanics::StepWeights& weights, const SystemNumbers& numbers,
+double InertiaForces::add(const mechanics::StepWeights& weights, const SystemWorkspace& workspace,
                           bool first, VectorX& right) {
   const RayleighDamping& damping = state_.model.settings().damping;
   const auto sum = [&](double a, double v) { return -(a + damping.mass * v); };
@@ -29,15 +29,15 @@ double InertiaForces::add(const mechanics::StepWeights& weights, const SystemNum
   const mechanics::Combination inertia{sum(a.motion, v.motion), sum(a.velocity, v.velocity),
                                        sum(a.first, v.first), sum(a.second, v.second)};
   state_.combine(inertia, motion_);
-  multiply_by_mass(*numbers.system.elements);
+  multiply_by_mass(*workspace.system.elements);
   base_.add_momentum(inertia, force_);
   right += force_;
   const double size = force_.norm();
-  if (!numbers.damped) return size;
+  if (!workspace.damped) return size;
   if (first) base_.find_velocity(weights);
   state_.combine(weights.velocity, motion_);
   base_.subtract_velocity(motion_);
-  multiply_by_stiffness(numbers);
+  multiply_by_stiffness(workspace);
   right -= damping.stiffness * force_;
   return size;
 }
@@ -45,7 +45,7 @@ double InertiaForces::add(const mechanics::StepWeights& weights, const SystemNum
 // (C v) . d with C = alpha M + beta K as the step had it. K v is without the base's velocity, and
 // dissipates in the motion beside the base's: the rest of its work is the base's.
 double InertiaForces::damped_work(const mechanics::StepWeights& weights,
-                                  const SystemNumbers& numbers) {
+                                  const SystemWorkspace& workspace) {
   const RayleighDamping& damping = state_.model.settings().damping;
   const auto nodes = state_.model.elements().free_nodes();
   const auto moved = [&](std::int32_t i) -> Vector3 {
@@ -63,14 +63,14 @@ double InertiaForces::damped_work(const mechanics::StepWeights& weights,
   double work = 0.0;
   if (damping.mass > 0.0) {
     state_.combine(weights.velocity, motion_);
-    multiply_by_mass(*numbers.system.elements);
+    multiply_by_mass(*workspace.system.elements);
     base_.add_momentum(weights.velocity, force_);
     work += damping.mass * along(moved);
   }
-  if (!numbers.damped) return work;
+  if (!workspace.damped) return work;
   state_.combine(weights.velocity, motion_);
   base_.subtract_velocity(motion_);
-  multiply_by_stiffness(numbers);
+  multiply_by_stiffness(workspace);
   return work + damping.stiffness * along(strayed);
 }
 

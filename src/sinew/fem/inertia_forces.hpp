@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "sinew/fem/base_carry.hpp"
-#include "sinew/fem/system_numbers.hpp"
+#include "sinew/fem/system_workspace.hpp"
 
 namespace sinew::fem {
 
@@ -17,14 +17,14 @@ class InertiaForces {
   BaseCarry& base() { return base_; }
 
   /// Adds -(M a + C v) at the end of the step. @param weights of the step, which a and v follow
-  /// from. @param numbers of the linearisation.
+  /// from. @param workspace of the linearisation.
   /// @param first whether none of this step was before. @param right (3 free,) N, added to.
   /// @return the norm of what masses take part with, N.
-  double add(const mechanics::StepWeights& weights, const SystemNumbers& numbers, bool first,
+  double add(const mechanics::StepWeights& weights, const SystemWorkspace& workspace, bool first,
              VectorX& right);
   /// J taken out by damping in the step, which is at its end. @param weights of the step.
-  /// @param numbers of its last linearisation.
-  double damped_work(const mechanics::StepWeights& weights, const SystemNumbers& numbers);
+  /// @param workspace of its last linearisation.
+  double damped_work(const mechanics::StepWeights& weights, const SystemWorkspace& workspace);
   double kinetic_energy();  ///< J, now
 
   std::size_t bytes() const {
@@ -34,7 +34,7 @@ class InertiaForces {
 
  private:
   void multiply_by_mass(const FemModel& elements);
-  void multiply_by_stiffness(const SystemNumbers& numbers);
+  void multiply_by_stiffness(const SystemWorkspace& workspace);
 
   FemState& state_;
   BaseCarry base_;

@@ -19,7 +19,7 @@ namespace sinew::fem {
 namespace {
 
 void check_masses(const FemModelSettings& settings) {
-  for (const Region& region : settings.regions) {
+  for (const MaterialRegion& region : settings.regions) {
     if (std::isfinite(region.density) && region.density >= 0.0) continue;
     throw Error(ErrorKind::out_of_range, {.file = {}, .item = "density"},
                 fmt::format("the density is {} kg/m^3", region.density),
@@ -103,7 +103,7 @@ std::vector<double> element_masses(const FemModelSettings& settings,
   check_masses(settings);
   std::vector<double> masses(volumes.begin(), volumes.end());
   const bool any_density = std::ranges::any_of(
-      settings.regions, [](const Region& region) { return region.density > 0.0; });
+      settings.regions, [](const MaterialRegion& region) { return region.density > 0.0; });
   if (any_density || !settings.total_mass) {
     for (std::size_t t = 0; t < masses.size(); ++t) {
       masses[t] *= settings.regions[static_cast<std::size_t>(region_of[t])].density;
@@ -127,14 +127,14 @@ VectorX spread(const mesh::Mesh& mesh, const FemModelSettings& settings,
     const auto nodes = list.nodes(e);
     const ElementMass shares = element_mass(mesh, list, e);
     for (std::size_t a = 0; a < nodes.size(); ++a) {
-      if (settings.even_mass) {
+      if (settings.equal_nodal_masses) {
         result[nodes[a]] = 1.0;
       } else {
         result[nodes[a]] += masses[static_cast<std::size_t>(e)] * share(shares, a);
       }
     }
   }
-  if (settings.even_mass) result *= *settings.total_mass / result.sum();
+  if (settings.equal_nodal_masses) result *= *settings.total_mass / result.sum();
   return result;
 }
 
@@ -142,12 +142,12 @@ VectorX spread(const mesh::Mesh& mesh, const FemModelSettings& settings,
 
 VectorX lumped_masses(const mesh::Mesh& mesh, const FemModelSettings& settings,
                       std::span<const double> masses) {
-  if (settings.even_mass && !settings.total_mass) {
+  if (settings.equal_nodal_masses && !settings.total_mass) {
     throw Error(ErrorKind::conflicting_keys, {.file = {}, .item = "mass"},
                 "masses are to be spread evenly over nodes, but there is no total mass",
                 "give the total mass");
   }
-  if (settings.even_mass && settings.mass == MassMatrix::consistent) {
+  if (settings.equal_nodal_masses && settings.mass == MassMatrix::consistent) {
     throw Error(ErrorKind::conflicting_keys, {.file = {}, .item = "mass"},
                 "masses spread evenly over nodes have no consistent matrix",
                 "choose the lumped mass matrix");

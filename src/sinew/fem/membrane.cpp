@@ -124,7 +124,7 @@ void Membranes::add_stiffness(const Triangle& triangle, const Strained& now, Tan
                               double stiffness, std::span<double> matrix) {
   Matrix2d stress = Matrix2d::Zero();  // of the geometric stiffness
   if (tangent == Tangent::exact) stress = now.stress;
-  if (tangent == Tangent::projected || tangent == Tangent::rotated) {
+  if (tangent == Tangent::projected || tangent == Tangent::corotated) {
     stress = linalg::positive_part(now.stress);
   }
   const auto& f = now.gradient;

@@ -76,7 +76,7 @@ void check_volumes(const mesh::Mesh& mesh, int element, std::span<const PointCon
 
 /// Elements by (kind, region), each list in spatial order.
 std::map<std::pair<std::size_t, std::int32_t>, std::vector<std::int32_t>> sorted_elements(
-    const mesh::Mesh& mesh, std::span<const Region> regions,
+    const mesh::Mesh& mesh, std::span<const MaterialRegion> regions,
     std::span<const std::int32_t> region_of, std::span<const std::int32_t> rank) {
   const ElementList list(mesh);
   std::map<std::pair<std::size_t, std::int32_t>, std::vector<std::int32_t>> result;
@@ -136,7 +136,8 @@ std::string ElementList::name(int element) const {
   return fmt::format("hexahedron {}", element - static_cast<int>(mesh_.tetrahedra.size()));
 }
 
-std::vector<SolidGroup> make_solid_groups(const mesh::Mesh& mesh, std::span<const Region> regions,
+std::vector<SolidGroup> make_solid_groups(const mesh::Mesh& mesh,
+                                          std::span<const MaterialRegion> regions,
                                           std::span<const std::int32_t> region_of,
                                           std::span<const std::int32_t> rank,
                                           const ElementBatches& batches) {

@@ -32,7 +32,7 @@
 
 namespace sinew::fem {
 
-struct Region;
+struct MaterialRegion;
 
 /// Doubles of a stiffness block in a record: three columns, padded to four.
 inline constexpr int kSolidBlock = 12;
@@ -109,7 +109,8 @@ class ElementList {
 /// @param mesh,regions,region_of,rank as for make_element_batches(); region_of over ElementList.
 /// @param batches of the other elements, after which slots and force records count on.
 /// Throws Error(zero-volume, inverted-element) naming the element.
-std::vector<SolidGroup> make_solid_groups(const mesh::Mesh& mesh, std::span<const Region> regions,
+std::vector<SolidGroup> make_solid_groups(const mesh::Mesh& mesh,
+                                          std::span<const MaterialRegion> regions,
                                           std::span<const std::int32_t> region_of,
                                           std::span<const std::int32_t> rank,
                                           const ElementBatches& batches);

@@ -324,7 +324,7 @@ void evaluate_kind(const SolidGroup& group, int begin, int end, const double* po
   switch (tangent) {
     case Tangent::none:
       return evaluate<N, Q, Tangent::none>(group, begin, end, points, output, minimum);
-    case Tangent::rotated:
+    case Tangent::corotated:
     case Tangent::projected:
       return evaluate<N, Q, Tangent::projected>(group, begin, end, points, output, minimum);
     case Tangent::rates:

@@ -35,7 +35,7 @@ struct SolidOutput {
 /// Evaluates batches begin .. end-1 of a group.
 /// @param group,begin,end which batches.
 /// @param points (n, 4) m, positions padded to four.
-/// @param tangent exact: the derivative; rotated: its projection onto the positive semi-definite
+/// @param tangent exact: the derivative; corotated: its projection onto the positive semi-definite
 ///   matrices, point by point; rates: see there. @param output where everything is written.
 /// The smallest det F at a point of integration is returned, with the slot among all of the body;
 /// positions that are not finite give minus infinity.

@@ -14,9 +14,9 @@ namespace sinew::identify {
 namespace {
 
 /// Torques of the inputs at a time, and their derivatives.
-class Drive {
+class RecordedDrive {
  public:
-  Drive(const ArmModel& model, const MotionRecord& record)
+  RecordedDrive(const ArmModel& model, const MotionRecord& record)
       : model_(model), signal_(record), torque_(VectorX::Zero(model.arm->inputs())) {
     const Eigen::Index inputs = record.input.cols();
     passive_ = inputs == 0;
@@ -95,7 +95,7 @@ MatrixX predict_motion(const ArmModel& model, const MotionRecord& record, const 
   const pcc::Arm& arm = *model.arm;
   const Eigen::Index n = arm.coordinates(), wide = 3 * arm.segments();
   const Eigen::Index parameters = map != nullptr ? map->delay.size() : 0;
-  Drive drive(model, record);
+  RecordedDrive drive(model, record);
   const double begin = record.time[0], duration = record.time[record.samples() - 1] - begin;
   const auto steps =
       static_cast<Eigen::Index>(std::max(1.0, std::ceil(duration / settings.time_step - 1e-9)));

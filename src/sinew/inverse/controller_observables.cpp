@@ -107,14 +107,14 @@ void add_status(sim::Observables& list, AttachedController controller) {
 int task_of(const InverseController* controller, int effector) {
   if (controller == nullptr) return -1;
   const auto& tasks = controller->settings().tasks;
-  const auto found = std::ranges::find(tasks, effector, &Task::effector);
+  const auto found = std::ranges::find(tasks, effector, &EffectorTask::effector);
   return found == tasks.end() ? -1 : static_cast<int>(found - tasks.begin());
 }
 
 std::vector<int> steered_effectors(const InverseController* controller) {
   std::vector<int> effectors;
   if (controller == nullptr) return effectors;
-  for (const Task& task : controller->settings().tasks) {
+  for (const EffectorTask& task : controller->settings().tasks) {
     if (std::ranges::find(effectors, task.effector) == effectors.end()) {
       effectors.push_back(task.effector);
     }

@@ -43,11 +43,11 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
   const sim::Model& model = simulation_.model();
   check_settings(simulation_, settings_);
   std::vector<double> weights;
-  for (const Task& task : settings_.tasks) {
+  for (const EffectorTask& task : settings_.tasks) {
     const auto& effector = model.effector(task.effector);
     for (int k = 0; k < effector.row_count(); ++k) {
       effector_rows_.push_back(effector.first_row() + k);
-      weights.push_back(task.weight(k) * std::pow(Task::kLaterPriority, task.priority - 1));
+      weights.push_back(task.weight(k) * std::pow(EffectorTask::kLaterPriority, task.priority - 1));
     }
   }
   const auto rows = static_cast<Eigen::Index>(effector_rows_.size());
@@ -292,7 +292,7 @@ void InverseController::begin_step() { program_.reset(); }
 
 // Of the present configuration, which may be a restored one whose rows no step has formed yet.
 double InverseController::error(int task) const {
-  const Task& asked = settings_.tasks.at(static_cast<std::size_t>(task));
+  const EffectorTask& asked = settings_.tasks.at(static_cast<std::size_t>(task));
   const auto& effector = simulation_.model().effector(asked.effector);
   const auto& configuration = simulation_.configuration();
   VectorX goal(effector.row_count()), now(effector.row_count());

@@ -106,7 +106,7 @@ void check_settings(const sim::Simulation& simulation, InverseSettings& settings
           "leave it out for the default");
     }
   }
-  for (const Task& task : settings.tasks) {
+  for (const EffectorTask& task : settings.tasks) {
     check_target(simulation, task.effector, task.target);
     const auto& effector = model.effector(task.effector);
     const auto given = static_cast<int>(task.weights.size());

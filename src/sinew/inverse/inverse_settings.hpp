@@ -20,7 +20,7 @@ enum class Regularisation {
 };
 
 /// What is asked of one effector.
-struct Task {
+struct EffectorTask {
   int effector = 0;
   Target target;
   /// One for all rows of the effector, or one each; >= 0. Squared distances are multiplied by it.
@@ -39,7 +39,7 @@ struct Task {
 };
 
 struct InverseSettings {
-  std::vector<Task> tasks;
+  std::vector<EffectorTask> tasks;
   std::vector<ContactTask> contacts;
   std::vector<int> actuators;  ///< that the controller owns; empty: all
   Regularisation regularisation = Regularisation::change;

@@ -40,7 +40,7 @@ void DenseStep::make_room(Eigen::Index columns) {
 }
 
 void DenseStep::linearise(const LinearisationRequest& request) {
-  definite_wanted_ = request.tangent == Tangent::rotated;
+  definite_wanted_ = request.tangent == Tangent::corotated;
   iterating_ = request.iterating;
   force_scale_ = form(request, right_, matrix_);
   if (lessens_) right_ -= lessening_;
@@ -191,8 +191,8 @@ void DenseStep::respond() {
   }
 }
 
-// In the directions in which the body would buckle the rotated tangent is as stiff as the exact one
-// is soft there: a law's program must be convex, and a step must go downhill.
+// In the directions in which the body would buckle the corotated tangent is as stiff as the exact
+// one is soft there: a law's program must be convex, and a step must go downhill.
 void DenseStep::make_definite() {
   spectrum_.compute(symmetric_);
   const double floor = softest();

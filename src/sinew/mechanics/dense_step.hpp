@@ -54,7 +54,7 @@ class DenseStep : public StepSystem {
   /// The same of a point of the surface. Asked of bodies that have one; others throw
   /// Error(internal).
   virtual void patch_jacobian(const Patch& patch, MatrixX& result) const;
-  /// The softest that a rotated tangent lets a direction be: see Tangent.
+  /// The softest that a corotated tangent lets a direction be: see Tangent.
   virtual double softest() const = 0;
   /// The motion proposed next starts from the present state.
   virtual void depart() = 0;

@@ -26,7 +26,7 @@ namespace sinew::mechanics {
 /// What a body looks at when it linearises.
 struct LinearisationRequest {
   StepWeights weights;
-  Tangent tangent = Tangent::rotated;
+  Tangent tangent = Tangent::corotated;
   /// Rows' curvature will be added (see add_curvature); costs a wider pattern.
   bool with_curvature = false;
   /// Further linearisations of the same step may follow (Newton's iterations).

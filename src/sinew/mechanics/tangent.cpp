@@ -4,8 +4,8 @@ namespace sinew::mechanics {
 
 std::string_view tangent_name(Tangent tangent) {
   switch (tangent) {
-    case Tangent::rotated:
-      return "rotated";
+    case Tangent::corotated:
+      return "corotated";
     case Tangent::projected:
       return "projected";
     case Tangent::exact:
@@ -15,7 +15,7 @@ std::string_view tangent_name(Tangent tangent) {
 }
 
 std::optional<Tangent> tangent_of(std::string_view word) {
-  for (const Tangent tangent : {Tangent::rotated, Tangent::projected, Tangent::exact}) {
+  for (const Tangent tangent : {Tangent::corotated, Tangent::projected, Tangent::exact}) {
     if (word == tangent_name(tangent)) return tangent;
   }
   return std::nullopt;

@@ -11,12 +11,12 @@ namespace sinew::mechanics {
 enum class Tangent {
   /// Corotational elements: R K0 R^T with the rotation held fixed, positive semi-definite; other
   /// elements as projected. An arm: made definite.
-  rotated,
+  corotated,
   projected,  ///< the exact derivative, projected piece by piece to be positive semi-definite
   exact,      ///< the exact derivative df/dq, which may be indefinite
 };
 
-/// "rotated", "projected", "exact".
+/// "corotated", "projected", "exact".
 std::string_view tangent_name(Tangent tangent);
 
 /// The tangent of that name; nothing for any other word.

@@ -10,7 +10,7 @@ namespace {
 
 // An angle of so many turns has blown up.
 constexpr double kLargestAngle = 1e3;
-// Softest that a rotated tangent is let be, of the stiffest segment.
+// Softest that a corotated tangent is let be, of the stiffest segment.
 constexpr double kSoftest = 1e-3;
 // Residuals are not judged by loads that bend a segment less than this.
 constexpr double kMinAngle = 1e-5;

@@ -35,7 +35,7 @@ bool same_point(const pcc::ArmPoint& a, const pcc::ArmPoint& b) {
 }
 
 /// Whether the first n segments could be long enough to touch.
-bool in_reach(const pcc::Arm& arm, const constraint::Surface& surface, int segments) {
+bool in_reach(const pcc::Arm& arm, const constraint::SmoothSurface& surface, int segments) {
   double length = arm.settings().radius;
   for (int n = 0; n < segments; ++n) {
     const pcc::Segment& segment = arm.settings().segments[static_cast<std::size_t>(n)];
@@ -87,7 +87,7 @@ void hold_as_measured(BraceProblem& problem, const pcc::Arm& arm, double turn,
   std::vector<pcc::ArmPoint> clear;
   for (std::size_t p = 1; p < looked_at.size(); ++p) {
     const Vector3 place = in_world(at[p].value);
-    if (std::ranges::all_of(problem.surfaces, [&](const constraint::Surface& surface) {
+    if (std::ranges::all_of(problem.surfaces, [&](const constraint::SmoothSurface& surface) {
           return constraint::distance(surface, place).gap >= problem.clearance;
         })) {
       clear.push_back(looked_at[p]);
@@ -105,7 +105,7 @@ Brace find_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& gi
   }
   BraceSearch search(arm, task, Reserve::demanded);
   const auto objects = static_cast<int>(task.objects.size());
-  const auto surface = [&](int object) -> const constraint::Surface& {
+  const auto surface = [&](int object) -> const constraint::SmoothSurface& {
     return task.objects[static_cast<std::size_t>(object)].surface;
   };
   bool any_in_reach = objects == 0;

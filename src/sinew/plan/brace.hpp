@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sinew/constraint/surface.hpp"
+#include "sinew/constraint/smooth_surface.hpp"
 #include "sinew/pcc/arm_dynamics.hpp"
 #include "sinew/plan/brace_conditions.hpp"
 #include "sinew/plan/task.hpp"
@@ -17,7 +17,7 @@ namespace sinew::plan {
 
 /// What the arm may lean against.
 struct BraceObject {
-  constraint::Surface surface;
+  constraint::SmoothSurface surface;
   FrictionRange friction = kSiliconeOnSteel;
   TouchStiffness stiffness = kRigid;
 };
@@ -25,7 +25,7 @@ struct BraceObject {
 struct BraceTask {
   Vector3 goal = Vector3::Zero();  ///< m, of the tip
   double tolerance = 5e-3;         ///< m, > 0; a brace is found with 40 % of it
-  Limits limits;                   ///< on torque, all of them, and on angles
+  ArmLimits limits;                ///< on torque, all of them, and on angles
   std::vector<BraceObject> objects;
   /// rad: the base turns about the arm's axis by an angle between these. Both 0: it does not.
   double turn_lower = 0.0, turn_upper = 0.0;

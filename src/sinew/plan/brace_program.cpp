@@ -48,7 +48,7 @@ double SurfacePatch::gap(const Vector3& p) const {
   return ((projection * (p - centre)).squaredNorm() - radius * radius) / (2.0 * radius);
 }
 
-std::vector<SurfacePatch> patches_of(const constraint::Surface& surface) {
+std::vector<SurfacePatch> patches_of(const constraint::SmoothSurface& surface) {
   const auto ball = [](const Vector3& centre, double radius) {
     SurfacePatch patch;
     patch.projection = Matrix3::Identity();
@@ -80,7 +80,7 @@ std::vector<SurfacePatch> patches_of(const constraint::Surface& surface) {
   return {side, first, last};
 }
 
-Matrix3 distance_hessian(const constraint::Surface& surface, const Vector3& point) {
+Matrix3 distance_hessian(const constraint::SmoothSurface& surface, const Vector3& point) {
   const collision::PrincipalFrame at = principal_frame(surface, point);
   return at.frame * at.curvature.asDiagonal() * at.frame.transpose();
 }
@@ -100,7 +100,7 @@ BraceProgram::BraceProgram(const std::shared_ptr<const pcc::Arm>& arm, BraceProb
       first_clear_(first_held_ + static_cast<int>(problem_.held.cols())),
       still_(VectorX::Zero(n_)),
       spin_(cross_matrix(arm->settings().frame.col(2))) {
-  const Limits& limits = problem_.limits;
+  const ArmLimits& limits = problem_.limits;
   torque_scale_ = std::max(
       {limits.torque_upper.cwiseAbs().maxCoeff(), limits.torque_lower.cwiseAbs().maxCoeff(), 1e-6});
   tip_factor_ = problem_.tip_weight / (problem_.tolerance * problem_.tolerance);
@@ -204,7 +204,7 @@ void BraceProgram::constraints(const VectorX& x, VectorX& result) {
       problem_.held.transpose() * (world_[1].value - problem_.place);
   Eigen::Index row = first_clear_;
   for (std::size_t p = 2; p < world_.size(); ++p) {
-    for (const constraint::Surface& surface : problem_.surfaces) {
+    for (const constraint::SmoothSurface& surface : problem_.surfaces) {
       result[row++] = constraint::distance(surface, world_[p].value).gap;
     }
   }
@@ -246,7 +246,7 @@ void BraceProgram::jacobian(const VectorX& x, double* values) {
       error.transpose() * world_[0].jacobian / std::hypot(error.norm(), problem_.tolerance);
   Eigen::Index row = first_clear_;
   for (std::size_t p = 2; p < world_.size(); ++p) {
-    for (const constraint::Surface& surface : problem_.surfaces) {
+    for (const constraint::SmoothSurface& surface : problem_.surfaces) {
       dense_.row(row++).head(n_ + 1) =
           constraint::distance(surface, world_[p].value).normal.transpose() * world_[p].jacobian;
     }
@@ -329,7 +329,7 @@ void BraceProgram::hessian(const VectorX& x, double factor, const VectorX& multi
       by_tip * slope * slope.transpose();
   Eigen::Index row = first_clear_;
   for (std::size_t p = 2; p < world_.size(); ++p) {
-    for (const constraint::Surface& surface : problem_.surfaces) {
+    for (const constraint::SmoothSurface& surface : problem_.surfaces) {
       const double weight = multipliers[row++];
       add_hessian(world_[p], weight * constraint::distance(surface, world_[p].value).normal);
       dense_.topLeftCorner(size, size) += weight * world_[p].jacobian.transpose() *

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "sinew/constraint/surface.hpp"
+#include "sinew/constraint/smooth_surface.hpp"
 #include "sinew/pcc/arm_equations.hpp"
 #include "sinew/plan/nonlinear_program.hpp"
 #include "sinew/plan/point_derivatives.hpp"
@@ -31,13 +31,13 @@ struct SurfacePatch {
   double gap(const Vector3& p) const;
 };
 /// One for a plane or a sphere, three for a capsule: the cylinder and two half balls.
-std::vector<SurfacePatch> patches_of(const constraint::Surface& surface);
+std::vector<SurfacePatch> patches_of(const constraint::SmoothSurface& surface);
 /// Second derivative of constraint::distance().
-Matrix3 distance_hessian(const constraint::Surface& surface, const Vector3& point);
+Matrix3 distance_hessian(const constraint::SmoothSurface& surface, const Vector3& point);
 
 /// See BraceProgram.
 struct BraceProblem {
-  Limits limits;                              ///< completed_limits()
+  ArmLimits limits;                           ///< completed_limits()
   double turn_lower = 0.0, turn_upper = 0.0;  ///< rad, of the base about the arm's axis
   Vector3 goal = Vector3::Zero();             ///< m
   double tolerance = 2e-3;                    ///< m, > 0
@@ -54,7 +54,7 @@ struct BraceProblem {
   double tip_weight = 10.0, hold_weight = 10.0;  ///< w_e, w_h
   std::vector<pcc::ArmPoint> clear_points;       ///< that keep ...
   double clearance = 0.0;                        ///< m, away from ...
-  std::vector<constraint::Surface> surfaces;
+  std::vector<constraint::SmoothSurface> surfaces;
 };
 
 /// min |tau|^2/s^2 + w_f |f|^2 + w_e |e|^2/d^2 - w_h h over x = (q, gamma, tau, h, f), s the

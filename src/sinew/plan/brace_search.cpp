@@ -70,7 +70,7 @@ void BraceSearch::attempt(BraceProblem problem, int object, const VectorX& start
 }
 
 VectorX BraceSearch::random_start(const BraceProblem& problem) {
-  const Limits& limits = problem.limits;
+  const ArmLimits& limits = problem.limits;
   VectorX start(arm_->coordinates() + 1 + arm_->inputs());
   Eigen::Index at = 0;
   for (Eigen::Index i = 0; i < arm_->coordinates(); ++i) {

@@ -15,7 +15,7 @@
 namespace sinew::plan {
 
 BraceTask completed(const pcc::Arm& arm, BraceTask task) {
-  Task common;
+  PlanTask common;
   common.goal = {task.goal, task.tolerance, kNoBound};
   static_cast<void>(completed(arm, common));  // the goal's checks
   task.limits = completed_limits(arm, task.limits);

@@ -23,7 +23,7 @@ std::vector<pcc::ArmPoint> backbone(const pcc::Arm& arm, int points) {
 
 }  // namespace
 
-Collocation::Collocation(std::shared_ptr<const pcc::Arm> arm, Task task)
+Collocation::Collocation(std::shared_ptr<const pcc::Arm> arm, PlanTask task)
     : arm_(std::move(arm)),
       task_(std::move(task)),
       grid_(task_.grid),
@@ -57,7 +57,7 @@ Collocation::Collocation(std::shared_ptr<const pcc::Arm> arm, Task task)
 }
 
 void Collocation::set_bounds() {
-  const Limits& limits = task_.limits;
+  const ArmLimits& limits = task_.limits;
   variable_bounds_ = {VectorX::Constant(variables_, -kNoBound),
                       VectorX::Constant(variables_, kNoBound)};
   for (int k = 0; k <= grid_.intervals; ++k) {
@@ -280,7 +280,7 @@ void Collocation::constraints(const VectorX& x, VectorX& result) {
     result.segment(row(k), n_ * defects_).reshaped(n_, defects_) =
         knots * rules.defect.value.transpose();
     for (std::size_t s = 0; s < rules.stages.size(); ++s) {
-      const Stage& stage = rules.stages[s];
+      const CollocationStage& stage = rules.stages[s];
       const MatrixX motion = knots * stage.state.value.transpose();
       result.segment(stage_row(k, static_cast<int>(s)), n_) =
           equations_.residual(motion.col(0), motion.col(1), motion.col(2)) -

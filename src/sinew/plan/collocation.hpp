@@ -49,9 +49,9 @@ struct Aim {
 class Collocation final : public NonlinearProgram {
  public:
   /// @param arm what moves. @param task completed().
-  Collocation(std::shared_ptr<const pcc::Arm> arm, Task task);
+  Collocation(std::shared_ptr<const pcc::Arm> arm, PlanTask task);
 
-  const Task& task() const { return task_; }
+  const PlanTask& task() const { return task_; }
   const Aim& aim() const { return aim_; }
   void set_aim(const Aim& aim);
   int variables() const { return variables_; }
@@ -128,7 +128,7 @@ class Collocation final : public NonlinearProgram {
   const VectorDerivatives& tip_velocity(const VectorX& x);
 
   std::shared_ptr<const pcc::Arm> arm_;
-  Task task_;
+  PlanTask task_;
   Grid grid_;
   Aim aim_;
   VectorX begins_;  // (intervals + 1,) fractions of the duration at which intervals begin
@@ -148,7 +148,7 @@ template <typename Do>
 void Collocation::each_effort_point(const VectorX& x, const Do& of) const {
   const std::vector<Transcription>& all = rules(x);
   for (int k = 0; k < grid_.intervals; ++k) {
-    for (const Stage& stage : all[static_cast<std::size_t>(k)].stages) {
+    for (const CollocationStage& stage : all[static_cast<std::size_t>(k)].stages) {
       of(k, stage.time, stage.fraction * grid_.fractions[k]);
     }
   }

@@ -66,7 +66,7 @@ void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
       }
     }
     for (std::size_t s = 0; s < rules.stages.size(); ++s) {
-      const Stage& stage = rules.stages[s];
+      const CollocationStage& stage = rules.stages[s];
       const int first = stage_row(k, static_cast<int>(s));
       const MatrixX motion = knots * stage.state.value.transpose();
       const auto& linear = equations_.linearise(motion.col(0), motion.col(1), motion.col(2));

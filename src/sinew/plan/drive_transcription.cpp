@@ -23,7 +23,7 @@ double LinearForm::of(const VectorX& x) const {
   return sum;
 }
 
-DriveTranscription::DriveTranscription(const Task& task, double torque, int variable, int row)
+DriveTranscription::DriveTranscription(const PlanTask& task, double torque, int variable, int row)
     : drive_(*task.drive),
       step_(drive_.channels.front().cylinder.sample_time),
       duration_(task.grid.duration),
@@ -42,7 +42,7 @@ DriveTranscription::DriveTranscription(const Task& task, double torque, int vari
   }
 }
 
-DriveTranscription::Channel DriveTranscription::channel(const Task& task, int input,
+DriveTranscription::Channel DriveTranscription::channel(const PlanTask& task, int input,
                                                         double torque) const {
   Channel of{.drive = drive_.channels[static_cast<std::size_t>(input)]};
   const pcc::FluidicActuator& actuator = of.drive.actuator;

@@ -33,7 +33,7 @@ class DriveTranscription {
  public:
   /// @param task completed(), with a drive. @param torque N m, a typical one.
   /// @param variable,row first unknown and constraint of the block.
-  DriveTranscription(const Task& task, double torque, int variable, int row);
+  DriveTranscription(const PlanTask& task, double torque, int variable, int row);
 
   int variables() const { return variables_; }
   int rows() const { return static_cast<int>(row_bounds_.lower.size()); }
@@ -72,13 +72,13 @@ class DriveTranscription {
     double lower = 0.0, upper = 0.0, scale = 0.0;  ///< m^3
     bool driven() const { return lower < upper; }
   };
-  Channel channel(const Task& task, int input, double torque) const;
+  Channel channel(const PlanTask& task, int input, double torque) const;
   void add_bounds(const Channel& of);
   void add_rows(const Channel& of, int row);
   void add_rate_rows(const Channel& of, int row, double limit);
   void add_cost(const Channel& of, double weight);
 
-  Drive drive_;
+  DriveTrain drive_;
   double step_ = 0.0, duration_ = 0.0;  // s
   int first_ = 0, variables_ = 0;
   std::vector<Channel> channels_;

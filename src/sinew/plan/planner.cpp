@@ -20,7 +20,8 @@ namespace {
 /// Random torques: two sines an input, that begin at the start's torque.
 class Excitation {
  public:
-  Excitation(const Task& task, double torque, double frequency, std::uint64_t seed) : task_(task) {
+  Excitation(const PlanTask& task, double torque, double frequency, std::uint64_t seed)
+      : task_(task) {
     Uniform uniform(seed);
     const Eigen::Index inputs = task.start.torque.size();
     for (auto* part : {&sizes_, &frequencies_}) part->resize(inputs, kSines);
@@ -44,13 +45,13 @@ class Excitation {
 
  private:
   static constexpr Eigen::Index kSines = 2;
-  const Task& task_;
+  const PlanTask& task_;
   MatrixX sizes_, frequencies_;  // N m, rad/s
 };
 
 /// The task in torques alone, within what the drives' volumes allow.
-Task without_drive(Task task) {
-  Limits& limits = task.limits;
+PlanTask without_drive(PlanTask task) {
+  ArmLimits& limits = task.limits;
   for (std::size_t i = 0; i < task.drive->channels.size(); ++i) {
     const auto& [actuator, cylinder] = task.drive->channels[i];
     const auto u = static_cast<Eigen::Index>(i);
@@ -119,12 +120,12 @@ VectorX Plan::torque(double time) const {
   const double rounding = 1e-12 * duration();
   const auto after = std::lower_bound(times.begin() + 1, times.end() - 1, time - rounding);
   const Eigen::Index k = after - times.begin();
-  if (method == Method::backward_euler) return knots.torque.row(k);
+  if (method == CollocationMethod::backward_euler) return knots.torque.row(k);
   const double fraction = std::clamp((time - times[k - 1]) / (times[k] - times[k - 1]), 0.0, 1.0);
   return (1.0 - fraction) * knots.torque.row(k - 1) + fraction * knots.torque.row(k);
 }
 
-Planner::Planner(std::shared_ptr<const pcc::Arm> arm, const Task& task,
+Planner::Planner(std::shared_ptr<const pcc::Arm> arm, const PlanTask& task,
                  const PlannerSettings& settings)
     : arm_(std::move(arm)),
       asked_(completed(*arm_, task)),

@@ -29,7 +29,7 @@ std::string_view status_name(PlanStatus status);
 /// integrated anew by pcc::AdaptiveMotion without regard to the knots.
 struct Plan {
   PlanStatus status = PlanStatus::failed;
-  Method method = Method::radau;
+  CollocationMethod method = CollocationMethod::radau;
   Knots knots;
   double objective = 0.0;
   double tip_error = 0.0;  ///< m, at the end
@@ -66,10 +66,10 @@ struct PlannerSettings {
 class Planner {
  public:
   /// Throws what completed() throws.
-  Planner(std::shared_ptr<const pcc::Arm> arm, const Task& task,
+  Planner(std::shared_ptr<const pcc::Arm> arm, const PlanTask& task,
           const PlannerSettings& settings = {});
 
-  const Task& task() const { return asked_; }
+  const PlanTask& task() const { return asked_; }
   /// From the motion that random torques within the limits cause; with a drive from the plan of
   /// torques found so, inverted, with its multipliers. @param seed of the random torques.
   Plan plan(std::uint64_t seed);
@@ -100,7 +100,7 @@ class Planner {
   Plan refined_plan(const Plan& plan);
 
   std::shared_ptr<const pcc::Arm> arm_;
-  Task asked_, task_;  // as given, and on the mesh at hand
+  PlanTask asked_, task_;  // as given, and on the mesh at hand
   PlannerSettings settings_;
   std::unique_ptr<Collocation> program_;
   pcc::ArmEquations equations_;

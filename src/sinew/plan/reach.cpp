@@ -19,7 +19,7 @@ namespace {
 /// min |tip - goal|^2 over (q, tau) at rest.
 class NearestProgram final : public NonlinearProgram {
  public:
-  NearestProgram(const std::shared_ptr<const pcc::Arm>& arm, const Limits& limits,
+  NearestProgram(const std::shared_ptr<const pcc::Arm>& arm, const ArmLimits& limits,
                  const Vector3& goal)
       : arm_(arm),
         equations_(arm),
@@ -92,8 +92,8 @@ class NearestProgram final : public NonlinearProgram {
 
 }  // namespace
 
-Limits completed_limits(const pcc::Arm& arm, const Limits& limits) {
-  Task task;
+ArmLimits completed_limits(const pcc::Arm& arm, const ArmLimits& limits) {
+  PlanTask task;
   task.goal.position = arm.settings().base;
   task.limits = limits;
   // Only limits matter here: a start that they exclude is none of theirs.
@@ -105,7 +105,7 @@ Limits completed_limits(const pcc::Arm& arm, const Limits& limits) {
   };
   task.start.position = inside(limits.angle_lower, limits.angle_upper, arm.coordinates());
   task.start.torque = inside(limits.torque_lower, limits.torque_upper, arm.inputs());
-  Limits result = completed(arm, task).limits;
+  ArmLimits result = completed(arm, task).limits;
   for (Eigen::Index u = 0; u < arm.inputs(); ++u) {
     if (result.torque_lower[u] <= -kNoBound || result.torque_upper[u] >= kNoBound) {
       throw Error(ErrorKind::out_of_range, {.item = fmt::format("limits.torque[{}]", u)},
@@ -115,13 +115,13 @@ Limits completed_limits(const pcc::Arm& arm, const Limits& limits) {
   return result;
 }
 
-ReachMap sample_reach(const std::shared_ptr<const pcc::Arm>& arm, const Limits& given, int samples,
-                      std::uint64_t seed) {
+ReachMap sample_reach(const std::shared_ptr<const pcc::Arm>& arm, const ArmLimits& given,
+                      int samples, std::uint64_t seed) {
   if (samples < 1) {
     throw Error(ErrorKind::out_of_range, {.item = "samples"}, fmt::format("{}", samples),
                 "give 1 or more");
   }
-  const Limits limits = completed_limits(*arm, given);
+  const ArmLimits limits = completed_limits(*arm, given);
   pcc::ArmEquations equations(arm);
   Uniform random(seed);
   const Eigen::Index n = arm->coordinates(), inputs = arm->inputs();
@@ -159,9 +159,9 @@ ReachMap sample_reach(const std::shared_ptr<const pcc::Arm>& arm, const Limits& 
   return result;
 }
 
-NearestReach nearest_reach(const std::shared_ptr<const pcc::Arm>& arm, const Limits& given,
+NearestReach nearest_reach(const std::shared_ptr<const pcc::Arm>& arm, const ArmLimits& given,
                            const Vector3& goal, int starts, std::uint64_t seed) {
-  const Limits limits = completed_limits(*arm, given);
+  const ArmLimits limits = completed_limits(*arm, given);
   NearestProgram program(arm, limits, goal);
   pcc::ArmEquations equations(arm);
   Uniform random(seed);

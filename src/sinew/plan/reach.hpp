@@ -16,7 +16,7 @@ namespace sinew::plan {
 
 /// Limits with every vector at its size, torques limited. Throws what completed() throws, and
 /// Error(out-of-range) where a torque has no limit.
-Limits completed_limits(const pcc::Arm& arm, const Limits& limits);
+ArmLimits completed_limits(const pcc::Arm& arm, const ArmLimits& limits);
 
 /// Stable equilibria, one a row.
 struct ReachMap {
@@ -30,8 +30,8 @@ struct ReachMap {
 /// @param arm which. @param limits on torque, and on angles: what breaks them is left out.
 /// @param samples >= 1. @param seed of the random numbers. Throws what completed_limits()
 /// throws.
-ReachMap sample_reach(const std::shared_ptr<const pcc::Arm>& arm, const Limits& limits, int samples,
-                      std::uint64_t seed = 1);
+ReachMap sample_reach(const std::shared_ptr<const pcc::Arm>& arm, const ArmLimits& limits,
+                      int samples, std::uint64_t seed = 1);
 
 /// An equilibrium near a goal.
 struct NearestReach {
@@ -47,7 +47,7 @@ struct NearestReach {
 /// min |tip - goal|^2 over equilibria K q + G(q) = B tau within the limits, from many starts: the
 /// best local minimum found. Unstable equilibria count. @param arm which. @param limits on torque
 /// and angles. @param goal m. @param starts random ones, >= 1. @param seed of them.
-NearestReach nearest_reach(const std::shared_ptr<const pcc::Arm>& arm, const Limits& limits,
+NearestReach nearest_reach(const std::shared_ptr<const pcc::Arm>& arm, const ArmLimits& limits,
                            const Vector3& goal, int starts = 20, std::uint64_t seed = 1);
 
 struct ReachProofSettings {
@@ -80,7 +80,7 @@ std::string_view verdict_name(ReachProof::Verdict verdict);
 /// shrink it (Hansen & Walster, Global Optimization Using Interval Analysis, 2004, ch. 10-11).
 /// Exact but for rounding, against which every bound is widened by 1e-9. Throws
 /// Error(out-of-range): a spatial segment, a setting that makes no sense.
-ReachProof prove_out_of_reach(const std::shared_ptr<const pcc::Arm>& arm, const Limits& limits,
+ReachProof prove_out_of_reach(const std::shared_ptr<const pcc::Arm>& arm, const ArmLimits& limits,
                               const Vector3& goal, const ReachProofSettings& settings = {});
 
 }  // namespace sinew::plan

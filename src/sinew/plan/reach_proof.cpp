@@ -44,7 +44,7 @@ struct Interval {
 
 class Search {
  public:
-  Search(const std::shared_ptr<const pcc::Arm>& arm, const Limits& limits, const Vector3& goal,
+  Search(const std::shared_ptr<const pcc::Arm>& arm, const ArmLimits& limits, const Vector3& goal,
          const ReachProofSettings& settings)
       : arm_(arm),
         equations_(arm),
@@ -202,10 +202,10 @@ std::string_view verdict_name(ReachProof::Verdict verdict) {
   return "undecided";
 }
 
-ReachProof prove_out_of_reach(const std::shared_ptr<const pcc::Arm>& arm, const Limits& given,
+ReachProof prove_out_of_reach(const std::shared_ptr<const pcc::Arm>& arm, const ArmLimits& given,
                               const Vector3& goal, const ReachProofSettings& settings) {
   check(*arm, settings);
-  const Limits limits = completed_limits(*arm, given);
+  const ArmLimits limits = completed_limits(*arm, given);
   Search search(arm, limits, goal, settings);
   const VectorX wide = VectorX::Constant(arm->coordinates(), settings.angle);
   struct Box {

@@ -28,10 +28,10 @@ void lower(VectorX& clearances, const pcc::ArmDynamics<double>& dynamics,
 }
 
 /// @param kinks s, increasing, at which the torque is not smooth.
-Replay replay_torque(const std::shared_ptr<const pcc::Arm>& arm, const Task& task_given,
+Replay replay_torque(const std::shared_ptr<const pcc::Arm>& arm, const PlanTask& task_given,
                      const pcc::AdaptiveMotion::Torque& torque_at, const VectorX& kinks,
                      const VectorX& times) {
-  const Task task = completed(*arm, task_given);
+  const PlanTask task = completed(*arm, task_given);
   pcc::AdaptiveMotion motion(arm);
   motion.set_state(task.start.position, task.start.rate);
   Recorder recorder(arm, task, times);
@@ -59,7 +59,7 @@ double Replay::clearance() const {
   return clearances.size() > 0 ? clearances.minCoeff() : std::numeric_limits<double>::infinity();
 }
 
-Recorder::Recorder(const std::shared_ptr<const pcc::Arm>& arm, const Task& task,
+Recorder::Recorder(const std::shared_ptr<const pcc::Arm>& arm, const PlanTask& task,
                    const VectorX& times)
     : dynamics_(arm), task_(task), still_(VectorX::Zero(arm->coordinates())) {
   const Eigen::Index count = times.size();
@@ -94,7 +94,7 @@ Replay Recorder::finish() {
   return std::move(replay_);
 }
 
-Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, const Plan& plan,
+Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const PlanTask& task, const Plan& plan,
               const VectorX& times) {
   // A drive's torque is as smooth as the cubics through its samples, which steps find by the error.
   const VectorX kinks = plan.knots.drive ? VectorX() : plan.knots.times;
@@ -102,12 +102,12 @@ Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, cons
       arm, task, [&](double time) { return plan.torque(time); }, kinks, times);
 }
 
-Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, const Plan& plan,
+Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const PlanTask& task, const Plan& plan,
               double time_step) {
   return replay(arm, task, plan, equal_times(plan.duration(), time_step));
 }
 
-Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, const DriveRun& run,
+Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const PlanTask& task, const DriveRun& run,
               double time_step) {
   check_channels(run.channels, arm->inputs(), run.lead, "drive run");
   return replay_torque(
@@ -115,7 +115,7 @@ Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, cons
       equal_times(run.lead + task.grid.duration, time_step));
 }
 
-VectorX interval_defects(const std::shared_ptr<const pcc::Arm>& arm, const Task& task,
+VectorX interval_defects(const std::shared_ptr<const pcc::Arm>& arm, const PlanTask& task,
                          const Plan& plan) {
   const Knots& knots = plan.knots;
   const double angle = task.goal.tolerance / arm->length(),

@@ -124,8 +124,8 @@ void check_obstacles(std::vector<Obstacle>& obstacles) {
   }
 }
 
-void complete_drive(Task& task) {
-  Drive& drive = *task.drive;
+void complete_drive(PlanTask& task) {
+  DriveTrain& drive = *task.drive;
   double delay = 0.0;
   for (const DriveChannel& channel : drive.channels) {
     delay = std::max(delay, channel.actuator.delay);
@@ -179,12 +179,12 @@ Matrix3 Obstacle::hessian(const Vector3& at) const {
   return (Matrix3::Identity() - away * away.transpose() / (length * length)) / length;
 }
 
-Task completed(const pcc::Arm& arm, Task task) {
+PlanTask completed(const pcc::Arm& arm, PlanTask task) {
   const Eigen::Index n = arm.coordinates(), inputs = arm.inputs();
   fill(task.start.position, n, 0.0, "start.position");
   fill(task.start.rate, n, 0.0, "start.rate");
   fill(task.start.torque, inputs, 0.0, "start.torque");
-  Limits& limits = task.limits;
+  ArmLimits& limits = task.limits;
   fill(limits.torque_lower, inputs, -kNoBound, "limits.torque_lower");
   fill(limits.torque_upper, inputs, kNoBound, "limits.torque_upper");
   fill(limits.angle_lower, n, -kNoBound, "limits.angle_lower");

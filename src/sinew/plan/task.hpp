@@ -29,7 +29,7 @@ struct Goal {
 };
 
 /// Empty: none.
-struct Limits {
+struct ArmLimits {
   VectorX torque_lower, torque_upper;  ///< (inputs,) N m
   VectorX angle_lower, angle_upper;    ///< (coordinates,) rad; extension: m
   VectorX rate;                        ///< (coordinates,) rad/s, >= 0, either way
@@ -63,7 +63,7 @@ struct Objective {
 };
 
 struct Grid {
-  Method method = Method::radau;
+  CollocationMethod method = CollocationMethod::radau;
   double duration = 1.6;  ///< s, > 0; where it is free, the first guess
   int intervals = 50;     ///< >= 2
   VectorX fractions;      ///< (intervals,) of the duration, > 0, that add up to 1; empty: equal
@@ -72,22 +72,22 @@ struct Grid {
 };
 
 /// What the plan is made for, instead of torques that come as told: a plan of commands.
-struct Drive {
+struct DriveTrain {
   std::vector<DriveChannel> channels;  ///< of the inputs
   /// s, by which commands begin before the motion, at least the longest delay; negative: that, in
   /// whole samples.
   double lead = -1.0;
 };
 
-struct Task {
+struct PlanTask {
   Start start;
   Goal goal;
-  Limits limits;
+  ArmLimits limits;
   Objective objective;
   std::vector<Obstacle> obstacles;
   int backbone_points = 4;  ///< a segment, >= 1, that keep clear of obstacles
   Grid grid;
-  std::optional<Drive> drive;  ///< its duration is fixed
+  std::optional<DriveTrain> drive;  ///< its duration is fixed
 };
 
 /// Fills in what is empty, so that every vector has its size. Throws Error(wrong-length |
@@ -95,6 +95,6 @@ struct Task {
 /// cross or that the start breaks, tolerances and grids that make no sense, a goal that is further
 /// from the base than the arm is long, drives that do not fit the arm or each other or that cannot
 /// hold the start.
-Task completed(const pcc::Arm& arm, Task task);
+PlanTask completed(const pcc::Arm& arm, PlanTask task);
 
 }  // namespace sinew::plan

@@ -63,7 +63,7 @@ RiccatiStep riccati_step(const StepLinearisation& step, const MatrixX& state_cos
   return result;
 }
 
-Tracker::Tracker(std::shared_ptr<const pcc::Arm> arm, const Task& task, const Plan& plan,
+Tracker::Tracker(std::shared_ptr<const pcc::Arm> arm, const PlanTask& task, const Plan& plan,
                  const TrackingSettings& settings)
     : task_(completed(*arm, task)) {
   check(settings);
@@ -131,7 +131,7 @@ VectorX Tracker::torque(int k, const VectorX& q, const VectorX& rate) const {
 
 Replay track(std::shared_ptr<const pcc::Arm> arm, const Tracker& tracker,
              const TrackingTrial& trial) {
-  const Task& task = tracker.task();
+  const PlanTask& task = tracker.task();
   const VectorX q = trial.position.size() > 0 ? trial.position : task.start.position;
   const VectorX rate = trial.rate.size() > 0 ? trial.rate : task.start.rate;
   const auto fine =

@@ -50,12 +50,12 @@ class Tracker {
  public:
   /// @param arm planned for. @param task that was planned. @param plan to follow.
   /// @param settings of the regulator. Throws Error(out-of-range): a setting that is not positive.
-  Tracker(std::shared_ptr<const pcc::Arm> arm, const Task& task, const Plan& plan,
+  Tracker(std::shared_ptr<const pcc::Arm> arm, const PlanTask& task, const Plan& plan,
           const TrackingSettings& settings = {});
 
   int steps() const { return static_cast<int>(gains_.size()); }
   double time_step() const { return time_step_; }  ///< s
-  const Task& task() const { return task_; }       ///< completed
+  const PlanTask& task() const { return task_; }   ///< completed
   const MatrixX& gain(int k) const { return gains_[static_cast<std::size_t>(k)]; }
   /// The nominal state (2n,) at the start of step k; k = steps(): at the end.
   VectorX state(int k) const { return states_.row(k); }
@@ -64,7 +64,7 @@ class Tracker {
   VectorX nominal_torque(int k) const { return torques_.row(k); }
 
  private:
-  Task task_;
+  PlanTask task_;
   double time_step_ = 0.0;
   MatrixX states_, torques_;
   std::vector<MatrixX> gains_;

@@ -27,12 +27,12 @@ Weights at_interval(const MatrixX& unit, double h) {
 
 }  // namespace
 
-std::string_view method_name(Method method) {
-  return method == Method::backward_euler ? "backward-euler" : "radau";
+std::string_view method_name(CollocationMethod method) {
+  return method == CollocationMethod::backward_euler ? "backward-euler" : "radau";
 }
 
-Transcription::Transcription(Method method, double h) {
-  if (method == Method::backward_euler) {
+Transcription::Transcription(CollocationMethod method, double h) {
+  if (method == CollocationMethod::backward_euler) {
     set_euler(h);
   } else {
     set_radau(h);

@@ -31,9 +31,9 @@
 
 namespace sinew::plan {
 
-enum class Method { backward_euler, radau };
+enum class CollocationMethod { backward_euler, radau };
 /// "backward-euler", "radau".
-std::string_view method_name(Method method);
+std::string_view method_name(CollocationMethod method);
 
 /// A linear map of what two knots hold, with its derivatives by h. Columns: the blocks of the first
 /// knot, then those of the second.
@@ -41,19 +41,19 @@ struct Weights {
   MatrixX value, slope, bend;  ///< (rows, 2 blocks): itself, d/dh, d2/dh2
 };
 
-struct Stage {
+struct CollocationStage {
   Weights state;          ///< rows: position, rate, acceleration
   double time = 0.0;      ///< where in the interval it is, 0 to 1
   double fraction = 0.0;  ///< of the interval in integrals over it
 };
 
 struct Transcription {
-  int blocks = 0;             ///< a knot holds: q, v and, with 3, a
-  std::vector<Stage> stages;  ///< of an interval
-  Weights defect;             ///< zero; one row or none
+  int blocks = 0;                        ///< a knot holds: q, v and, with 3, a
+  std::vector<CollocationStage> stages;  ///< of an interval
+  Weights defect;                        ///< zero; one row or none
 
   /// @param method which one. @param h interval, s, > 0.
-  Transcription(Method method, double h);
+  Transcription(CollocationMethod method, double h);
   int defects() const { return static_cast<int>(defect.value.rows()); }
 
  private:

@@ -51,7 +51,7 @@ sim::StepSettings step_settings(const SceneDescription& scene) {
   return step;
 }
 
-// Corotational elements alone have a rotated tangent. Rubber's would be its projected one, which
+// Corotational elements alone have a corotated tangent. Rubber's would be its projected one, which
 // takes ten iterations for one of the exact tangent's; the robot takes that.
 std::optional<Notice> replace_tangent(const SceneDescription& scene, sim::StepSettings& step) {
   const auto rubber = std::ranges::find_if(scene.bodies, [](const BodyDescription& body) {
@@ -60,13 +60,15 @@ std::optional<Notice> replace_tangent(const SceneDescription& scene, sim::StepSe
     };
     return !body.arm && (is_rubber(body) || std::ranges::any_of(body.parts, is_rubber));
   });
-  if (scene.solver.tangent != Tangent::rotated || rubber == scene.bodies.end()) return std::nullopt;
+  if (scene.solver.tangent != Tangent::corotated || rubber == scene.bodies.end())
+    return std::nullopt;
   step.tangent = mechanics::Tangent::exact;
-  return Notice{NoticeLevel::warning, NoticeKind::other_tangent, scene.solver.place,
-                fmt::format("the material of body '{}' has no rotated tangent, which corotational "
-                            "elements have: steps take the exact one",
-                            rubber->name),
-                "leave out `tangent`, or write `tangent: exact`"};
+  return Notice{
+      NoticeLevel::warning, NoticeKind::other_tangent, scene.solver.place,
+      fmt::format("the material of body '{}' has no corotated tangent, which corotational "
+                  "elements have: steps take the exact one",
+                  rubber->name),
+      "leave out `tangent`, or write `tangent: exact`"};
 }
 
 linalg::FactorisationSettings factorisation_settings(const SolverDescription& solver) {

@@ -20,8 +20,8 @@ namespace sinew::scene {
 namespace {
 
 // All of the body, of one material.
-fem::Region whole(const BodyDescription& body, const MaterialDescription& material) {
-  fem::Region region;
+fem::MaterialRegion whole(const BodyDescription& body, const MaterialDescription& material) {
+  fem::MaterialRegion region;
   if (material.model == MaterialModel::hyperelastic) {
     region.hyperelastic = material.energy;
   } else {
@@ -68,15 +68,15 @@ std::vector<NodeId> elements_of(const PartDescription& part, const mesh::Mesh& m
 }
 
 // The body's own material for what is in no part, then the parts.
-std::vector<fem::Region> regions_of(const BodyDescription& body, const mesh::Mesh& mesh) {
-  fem::Region rest = whole(body, body.material);
+std::vector<fem::MaterialRegion> regions_of(const BodyDescription& body, const mesh::Mesh& mesh) {
+  fem::MaterialRegion rest = whole(body, body.material);
   rest.density = density_of(body);
   if (body.parts.empty()) return {rest};
-  std::vector<fem::Region> regions;
+  std::vector<fem::MaterialRegion> regions;
   std::vector<const PartDescription*> owner(
       static_cast<std::size_t>(fem::ElementList(mesh).count()), nullptr);
   for (const PartDescription& part : body.parts) {
-    fem::Region& region = regions.emplace_back(whole(body, part.material));
+    fem::MaterialRegion& region = regions.emplace_back(whole(body, part.material));
     region.density = density_of(part, body);
     region.elements = elements_of(part, mesh);
     for (const NodeId e : region.elements) {
@@ -129,7 +129,7 @@ fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescr
   }
   settings.elements.regions = regions_of(body, *settings.mesh);
   settings.elements.total_mass = body.mass;
-  settings.elements.even_mass = body.mass_distribution == MassDistribution::even;
+  settings.elements.equal_nodal_masses = body.mass_distribution == MassDistribution::even;
   settings.elements.mass = body.mass_matrix;
   for (const FixedRegion& fixed : body.fixed) fix(fixed, *settings.mesh, settings.elements);
   for (const MembraneDescription& layer : scene.membranes) {

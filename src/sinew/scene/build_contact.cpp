@@ -48,7 +48,7 @@ void refuse_points(const ContactDescription& contact) {
 }
 
 // Of a plane none.
-double radius_of(const constraint::Surface& surface) {
+double radius_of(const constraint::SmoothSurface& surface) {
   if (const auto* sphere = std::get_if<collision::Sphere>(&surface)) return sphere->radius;
   if (const auto* capsule = std::get_if<collision::Capsule>(&surface)) return capsule->radius;
   return kInfinity;

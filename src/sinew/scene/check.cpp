@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/scene/renamed_words.hpp"
 #include "sinew/scene/values.hpp"
 
 namespace sinew::scene {
@@ -221,6 +222,11 @@ const KeyTable& table_of(const Node& map, const Form& form) {
 
 void throw_unknown_key(const std::string& key, const KeyTable& table, const Location& place) {
   const std::vector<std::string> known = table.key_names();
+  if (const auto word = current_word(key, known)) {
+    throw Error(ErrorKind::unknown_key, place,
+                fmt::format("{} in {} has another name now", show(key), table.name),
+                fmt::format("write {}", *word));
+  }
   throw Error(ErrorKind::unknown_key, place,
               fmt::format("unknown key {} in {}", show(key), table.name),
               fmt::format("{}the keys here are {}", did_you_mean(key, known), join(known)));

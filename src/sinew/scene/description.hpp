@@ -16,7 +16,7 @@
 
 #include "sinew/constraint/joint_type.hpp"
 #include "sinew/constraint/probe.hpp"
-#include "sinew/constraint/surface.hpp"
+#include "sinew/constraint/smooth_surface.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/fem/mass_matrix.hpp"
@@ -335,7 +335,7 @@ struct ContactDescription {
   Location between_place;
   bool all = false;  ///< between all pairs, but:
   std::vector<std::pair<std::string, std::string>> except;
-  constraint::Surface surface;
+  constraint::SmoothSurface surface;
   std::optional<FixedRegion> nodes;  ///< of the outside; none, and no points: all of it
   PointList points;
   mesh::Outside outside = mesh::Outside::error;

@@ -100,9 +100,9 @@ std::shared_ptr<const KeyTable> solver_table() {
                                    {"projected",
                                     "The derivative with each element's part made positive "
                                     "semidefinite: never too soft, slower to converge."},
-                                   {"rotated",
-                                    "Corotational elements: the rotated stiffness of real-time "
-                                    "codes, without stress stiffening. `exact` where a body is "
+                                   {"corotated",
+                                    "Corotational elements: R K0 R^T with the rotations R held "
+                                    "fixed, without stress stiffening. `exact` where a body is "
                                     "hyperelastic."}})},
                  .example = "exact",
                  .default_text = "exact",

@@ -220,7 +220,7 @@ Form actuator_form() {
        {.word = "torque", .description = "On a bend.", .table = torque_table()},
        {.word = "motor", .description = "In a hinge.", .table = motor_table()},
        {.word = "linear-motor", .description = "On a slider.", .table = linear_motor_table()},
-       {.word = "pressure", .description = "A chamber.", .table = pressure_table()},
+       {.word = "chamber", .description = "A chamber under pressure.", .table = chamber_table()},
        {.word = "spring", .description = "A spring.", .table = spring_table()}});
 }
 

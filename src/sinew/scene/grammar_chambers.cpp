@@ -199,9 +199,9 @@ std::shared_ptr<const KeyTable> surface_table() {
   return make_table(std::move(surface));
 }
 
-std::shared_ptr<const KeyTable> pressure_table() {
+std::shared_ptr<const KeyTable> chamber_table() {
   KeyTable chamber{
-      .name = "actuator: type pressure",
+      .name = "actuator: type chamber",
       .description =
           "A chamber: uniform pressure on a closed surface of a body, as a follower load.",
       .keys = {body_key(),
@@ -234,7 +234,7 @@ std::shared_ptr<const KeyTable> pressure_table() {
                 .description = "What fills it."},
                outside_key()},
       .alternatives = {{{"gas", "liquid"}, false}}};
-  DriveWords words{.kind = "chamber", .type = sim::ActuatorType::pressure};
+  DriveWords words{.kind = "chamber", .type = sim::ActuatorType::chamber};
   words.effort_measure = stress();
   words.effort_rate = pressure_rate();
   words.effort_range = any();

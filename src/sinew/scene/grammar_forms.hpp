@@ -128,7 +128,7 @@ std::vector<Key> motion_keys();
 
 // The tables of each part, in the file of that part.
 std::shared_ptr<const KeyTable> surface_table();
-std::shared_ptr<const KeyTable> pressure_table();
+std::shared_ptr<const KeyTable> chamber_table();
 std::shared_ptr<const KeyTable> spring_table();
 std::shared_ptr<const KeyTable> pcc_table();
 std::shared_ptr<const KeyTable> torque_table();

@@ -149,7 +149,7 @@ ChamberDescription read_chamber(const Fields& fields, const ReadContext& context
   fields.read("load_stiffness", settings.load_stiffness);
   read_outside(fields, settings.outside);
   read_filling(fields, settings);
-  read_limits(fields, sim::ActuatorType::pressure, settings.pressure, settings.volume_growth);
+  read_limits(fields, sim::ActuatorType::chamber, settings.pressure, settings.volume_growth);
   return chamber;
 }
 
@@ -231,7 +231,7 @@ decltype(ActuatorDescription::own) read_own(const Fields& fields, sim::ActuatorT
       return read_cable(fields, context);
     case ActuatorType::force:
       return read_force(fields);
-    case ActuatorType::pressure:
+    case ActuatorType::chamber:
       return read_chamber(fields, context);
     case ActuatorType::spring:
       return read_spring(fields, context);

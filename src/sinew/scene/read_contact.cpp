@@ -8,7 +8,7 @@ namespace sinew::scene {
 
 namespace {
 
-constraint::Surface read_solid(const Fields& fields) {
+constraint::SmoothSurface read_solid(const Fields& fields) {
   if (fields.find("plane") != nullptr) {
     const Fields written = fields.below("plane");
     constraint::Plane plane;

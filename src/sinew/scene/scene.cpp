@@ -7,6 +7,7 @@
 
 #include "sinew/scene/check.hpp"
 #include "sinew/scene/readers.hpp"
+#include "sinew/scene/renamed_words.hpp"
 
 namespace sinew::scene {
 
@@ -227,6 +228,12 @@ SceneDescription parse_scene(const std::filesystem::path& path) {
 SceneDescription parse_scene_text(std::string_view text, const std::string& name,
                                   const std::filesystem::path& base_dir, Files files) {
   return parse_scene_tree(parse_yaml(text, name), base_dir, files);
+}
+
+SceneDescription parse_recorded_scene(std::string_view text, const std::string& name) {
+  Node tree = parse_yaml(text, name);
+  replace_renamed_words(tree);
+  return parse_scene_tree(std::move(tree));
 }
 
 SceneDescription parse_scene_tree(Node tree, const std::filesystem::path& base_dir, Files files) {

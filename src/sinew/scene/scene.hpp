@@ -31,6 +31,10 @@ SceneDescription parse_scene_text(std::string_view text, const std::string& name
                                   const std::filesystem::path& base_dir,
                                   Files files = Files::check);
 
+/// The scene that a recording holds. Words that have another name since it was written are replaced
+/// (renamed_words.hpp). @param text,name as for parse_scene_text(). Paths in it are absolute.
+SceneDescription parse_recorded_scene(std::string_view text, const std::string& name);
+
 /// Reads a scene from a tree. Places of the tree are kept; dotted paths are filled in.
 /// @param tree a map, as read_yaml() gives it or made by hand.
 /// @param base_dir where relative paths start.

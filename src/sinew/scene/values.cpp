@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "sinew/scene/check.hpp"
+#include "sinew/scene/renamed_words.hpp"
 
 namespace sinew::scene {
 
@@ -180,6 +181,11 @@ const Choice& read_choice(const Node& node, const Form& form) {
     if (choice.word != node.spelling()) continue;
     if (choice.later) throw_later(show(choice.word), "write one of " + join(words), node.place());
     return choice;
+  }
+  if (const auto word = current_word(node.spelling(), words)) {
+    throw Error(ErrorKind::unknown_choice, node.place(),
+                fmt::format("{} has another name now", show(node.spelling())),
+                fmt::format("write {}", *word));
   }
   throw Error(ErrorKind::unknown_choice, node.place(),
               fmt::format("{} is not a choice here", show(node.spelling())),

@@ -122,7 +122,7 @@ void Actuation::release(const void* owner) {
     ActuatorState& state = states_[i];
     if (state.owner != owner) continue;
     state.owner = nullptr;
-    const bool regulator = model_.actuators()[i].type == ActuatorType::pressure;
+    const bool regulator = model_.actuators()[i].type == ActuatorType::chamber;
     state.command = regulator ? Command{CommandKind::effort, Signal::constant(state.effort)}
                               : Command{CommandKind::motion, Signal::constant(state.motion)};
   }

@@ -15,7 +15,7 @@ constexpr QuantityName kTension{"tension", "N"}, kDisplacement{"displacement", "
 constexpr std::array<ActuatorWords, kActuatorTypes> kWords = {{
     {"cable", kTension, kDisplacement},
     {"force", {"force", "N"}, kDisplacement},
-    {"pressure",
+    {"chamber",
      {"pressure", "Pa"},
      {"volume_growth", "m^3"},
      {GasDrive::kInput, LiquidDrive::kInput}},

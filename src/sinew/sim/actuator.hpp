@@ -28,7 +28,7 @@ struct Limits {
   double rate = std::numeric_limits<double>::infinity();  ///< >= 0, per second
 };
 
-enum class ActuatorType { cable, force, pressure, spring, torque, motor, linear_motor };
+enum class ActuatorType { cable, force, chamber, spring, torque, motor, linear_motor };
 inline constexpr std::size_t kActuatorTypes = 7;
 
 /// What actuators of a type and their quantities are called: in scenes, Python, recordings and the

@@ -62,9 +62,8 @@ int add_chamber(ModelData& data, const ChamberSettings& settings) {
                   "give one of them");
     }
     auto chamber = attach_surface(data, settings);
-    ActuatorModel actuator{
-        settings.name,          ActuatorType::pressure, -1, -1, settings.pressure,
-        settings.volume_growth, settings.command};
+    ActuatorModel actuator{settings.name,          ActuatorType::chamber, -1, -1, settings.pressure,
+                           settings.volume_growth, settings.command};
     actuator.motion_scale = 1.0 / chamber->rest_area();
     actuator.drive = drive_of(settings, chamber->rest_volume());
     const int index = add_actuator(data, std::move(actuator), std::move(chamber), settings.place);

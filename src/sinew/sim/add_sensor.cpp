@@ -172,7 +172,7 @@ SourcePtr MakeSensor::operator()(const SensorDrive& drive) {
                                settings_.place);
   const ActuatorModel& actuator = data_.actuators[static_cast<std::size_t>(index)];
   const auto lines = {ActuatorType::cable, ActuatorType::spring};
-  const auto chambers = {ActuatorType::pressure};
+  const auto chambers = {ActuatorType::chamber};
   const QuantityName& effort = actuator.words().effort;
   const QuantityName& motion = actuator.words().motion;
   switch (drive.what) {
@@ -237,7 +237,7 @@ SourcePtr MakeSensor::operator()(const SensorLine& line) {
 SourcePtr MakeSensor::operator()(const SensorCurvature& curvature) {
   const double length = length_of(curvature.corners);
   const double half = 0.5 * (curvature.gauge > 0.0 ? curvature.gauge : 0.1 * length);
-  std::vector<constraint::CurvatureProbe::Place> places;
+  std::vector<constraint::CurvatureProbe::Triple> places;
   for (const double at : curvature.places) {
     // Files and units round lengths.
     if (at - half < -1e-9 * length || at + half > (1.0 + 1e-9) * length) {
@@ -247,7 +247,7 @@ SourcePtr MakeSensor::operator()(const SensorCurvature& curvature) {
                               2.0 * half, at, length),
                   "choose places further from the ends, or a shorter `gauge`");
     }
-    constraint::CurvatureProbe::Place place;
+    constraint::CurvatureProbe::Triple place;
     for (std::size_t k = 0; k < 3; ++k) {
       const double s = std::max(0.0, at + (static_cast<double>(k) - 1.0) * half);
       place[k] = attacher_.point(curvature.body, point_along(curvature.corners, s));

@@ -49,7 +49,7 @@ void condense(Simulation& simulation, const LinearisationChoice& choice,
   if (world.condense() != linalg::FactorStatus::singular) return;
   throw Error(ErrorKind::singular_matrix, {.item = "response()"},
               "the stiffness matrix is singular at this state",
-              "fix a region of every body, or try tangent='rotated'");
+              "fix a region of every body, or try tangent='corotated'");
 }
 
 // Leaves the simulation's state changed.

@@ -62,7 +62,7 @@ class GeometricStiffness {
   std::vector<mechanics::RowCurvature> curvatures_;
   std::vector<double> effort_;   // (rows,) N, of the chosen
   std::span<const int> chosen_;  // constraints whose curvature add() adds
-  mechanics::Tangent tangent_ = mechanics::Tangent::rotated;
+  mechanics::Tangent tangent_ = mechanics::Tangent::corotated;
   bool majorant_ = false;
   std::size_t anchor_rows_ = 0;  // of problem_.stiffness; behind them those of couplings
 };

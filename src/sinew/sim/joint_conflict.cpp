@@ -120,7 +120,7 @@ struct Lack {
 };
 
 Unit unit_of(ActuatorType type) {
-  if (type == ActuatorType::pressure) return Unit::volume;
+  if (type == ActuatorType::chamber) return Unit::volume;
   const bool turns = type == ActuatorType::motor || type == ActuatorType::torque;
   return turns ? Unit::angle : Unit::length;
 }

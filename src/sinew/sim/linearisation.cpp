@@ -216,7 +216,7 @@ Linearisation linearise_here(Simulation& simulation, const LinearisationChoice& 
   if (world.condense() == linalg::FactorStatus::singular) {
     throw Error(ErrorKind::singular_matrix, {.item = "linearise()"},
                 "the stiffness matrix is singular at this state",
-                "fix a region of every body, or try tangent='rotated'");
+                "fix a region of every body, or try tangent='corotated'");
   }
   FreeRows free = gather(simulation, result);
   if (choice.fields) find_fields(world, free, result);

@@ -180,7 +180,7 @@ std::string StaticSolver::describe_limit_point() {
   for (std::size_t i = 0; i < start_.size(); ++i) {
     const ActuatorModel& model = run_.model->actuators()[i];
     const step::ActuatorBlock& goal = goal_[i];
-    if (model.type != ActuatorType::pressure || goal.kind != CommandKind::effort) continue;
+    if (model.type != ActuatorType::chamber || goal.kind != CommandKind::effort) continue;
     const double reached = run_.effort[static_cast<std::size_t>(model.row)];
     const double grown = run_.world.delta()[model.row];
     const double compliance = run_.world.problem().compliance(model.row, model.row);

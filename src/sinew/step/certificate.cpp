@@ -57,7 +57,7 @@ class Certifier {
     found.stationarity = stationarity();
     found.best_nearby = found.stationarity == Stationarity::strong;
     if (found.best_nearby || found.stationarity == Stationarity::none) return;
-    if (found.between > Certificate::kMostBetween) return;
+    if (found.between > Certificate::kMaxBetween) return;
     found.pieces = 1 << found.between;
     found.best_nearby = no_piece_leads_on();
   }

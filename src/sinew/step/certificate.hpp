@@ -37,11 +37,11 @@ struct Certificate {
   int pieces = 0;   ///< whose optima were compared; 0: there was no need
   Stationarity stationarity = Stationarity::none;
   /// B-stationary: no piece that meets there leads on. By strong stationarity, or because all
-  /// 2^between pieces were compared (up to kMostPieces). With friction, of the pieces at the
+  /// 2^between pieces were compared (up to kMaxBetween). With friction, of the pieces at the
   /// directions of slip that were found.
   bool best_nearby = false;
 
-  static constexpr int kMostBetween = 10;
+  static constexpr int kMaxBetween = 10;
 };
 
 /// @param problem of the step. @param controller whose last choice `effort` is.

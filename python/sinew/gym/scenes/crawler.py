@@ -104,7 +104,7 @@ def scene(folder: Path, friction: float) -> dict[str, Any]:
         "contacts": {name: {"body": "crawler", "surface": {"plane": {}}, "points": at, "friction": friction}
                      for name, at in points.items()},
         "actuators": {name: {
-            "type": "pressure", "body": "crawler", "surface": {"set": f"chamber:{k}"},
+            "type": "chamber", "body": "crawler", "surface": {"set": f"chamber:{k}"},
             "limits": {"pressure": {"min": 0.0, "max": bounds[name][0], "rate": bounds[name][1]}}, "command": {"pressure": 0.0},
         } for k, name in enumerate(CHAMBERS, start=1)},
     }  # fmt: skip

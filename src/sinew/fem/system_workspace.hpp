@@ -12,9 +12,9 @@
 namespace sinew::fem {
 
 /// Assembly, border and factorisation of one FemSystem, as the parts of a body share them.
-struct SystemNumbers {
+struct SystemWorkspace {
   /// @param system_in,pool must outlive this.
-  SystemNumbers(const FemSystem& system_in, ThreadPool& pool)
+  SystemWorkspace(const FemSystem& system_in, ThreadPool& pool)
       : system(system_in),
         factorisation(system.plan->create(pool)),
         assembly(system.elements, pool),

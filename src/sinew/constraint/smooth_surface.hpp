@@ -15,6 +15,6 @@ using collision::Sphere;
 
 /// Shapes without edges: their tangent planes turn gradually with the point that they are chosen
 /// for, which the rounds of a step rely on (see Contact).
-using Surface = std::variant<Plane, Sphere, Capsule>;
+using SmoothSurface = std::variant<Plane, Sphere, Capsule>;
 
 }  // namespace sinew::constraint
