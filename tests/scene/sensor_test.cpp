@@ -273,7 +273,7 @@ TEST(Sensors, WhatIsWrongNamesPlaceValueAndRemedy) {
         Broken{"{type: cable-length, actuator: air}", ErrorKind::wrong_actuator_type,
                "'air' is of type chamber", "cable or spring"},
         Broken{"{type: pressure, actuator: cable}", ErrorKind::wrong_actuator_type,
-               "'cable' is of type cable", "pressure"},
+               "'cable' is of type cable", "chamber"},
         Broken{"{type: marker, body: finger, point: 0 0 65 mm, rate: 30 Hz}",
                ErrorKind::out_of_range, "every 3.33333 steps of 0.01 s", "choose 25 Hz"},
         Broken{"{type: marker, body: finger, point: 0 0 65 mm, rate: 400 Hz}",
