@@ -42,7 +42,7 @@ packages_for() {
     test)     echo $build $demo $render $test ;;
     validate) echo $build $demo $validate ;;
     bench)    echo $build $demo $validate $bench ;;
-    docs)     echo $docs ;;
+    docs)     echo $build $render $sweep $docs ;;
     format)   echo $format ;;
     lint)     echo $build $render $test $bench $format $lint ;;
     fuzz)     echo $build $fuzz ;;

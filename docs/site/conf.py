@@ -2,6 +2,7 @@
 
 import re
 import sys
+from os.path import normpath
 from pathlib import Path
 
 from docutils import nodes
@@ -54,7 +55,7 @@ def add_navigation(app, docname, source):
     """Appends the contents of the site to its first page."""
     if docname == root_doc:
         for caption, pages in SECTIONS.items():
-            pages = [page for page in pages if "*" not in page or list(Path(app.srcdir, "docs").glob(f"{page}.*"))]
+            pages = [page for page in pages if "*" not in page or list(Path(app.srcdir).glob(normpath(f"docs/{page}.*")))]
             source[0] += f"\n```{{toctree}}\n:hidden:\n:glob:\n:maxdepth: 1\n:caption: {caption}\n" + "\n".join(pages) + "\n```\n"
 
 
@@ -71,7 +72,7 @@ def name_anchors(app, doctree):
 
 def as_restructured_text(app, what, name, obj, options, lines):
     """Docstrings are plain text with `names`: other marks of reStructuredText in them mean themselves."""
-    lines[:] = reference.restructured(lines)
+    lines[:] = reference.restructured(reference.with_type_apart(lines) if what in ("attribute", "property") else lines)
 
 
 def setup(app):

@@ -16,6 +16,12 @@ MODULES = [
 ]  # fmt: skip
 
 
+def with_type_apart(lines):
+    """Lines of a property's docstring, "float: length (m).", with the type in a paragraph of its own."""
+    typed = re.match(r"([^:`]{1,40}): +(\S.*)", lines[0]) if lines else None
+    return [f"``{typed.group(1)}``", "", typed.group(2), *lines[1:]] if typed else lines
+
+
 def restructured(lines):
     """Lines of a docstring as reStructuredText: indented code before the first section is a code block, and `*`, `|` and a
     final `_` outside of `names` mean themselves."""
