@@ -29,7 +29,7 @@ for page in docs examples src README.md CHANGELOG.md CONTRIBUTING.md CITATION.cf
   ln -s "$PWD/$page" "$folder/source/$page"
 done
 /usr/bin/python3 docs/site/reference.py "$folder/source/reference" "$folder/cpp.tag"
-PYTHONPATH=build/release/python /usr/bin/python3 -m sphinx -q -W --keep-going -b html \
+PYTHONPATH=build/release/python /usr/bin/python3 -m sphinx -q -E -a -W --keep-going -b html \
   -D "version=$version" -D "release=$version" -d "$folder/doctrees" -c docs/site "$folder/source" "$folder/html"
 printf '<!doctype html><meta http-equiv="refresh" content="0; url=docs/index.html"><a href="docs/index.html">Sinew</a>\n' \
   >"$folder/html/index.html"
