@@ -24,6 +24,7 @@ fi
 
 # Sphinx sees the pages where links between them hold, and the pages made from the code beside them.
 rm -rf "$folder/source"
+find "$folder/html" -mindepth 1 -maxdepth 1 ! -name cpp -exec rm -rf {} +
 mkdir -p "$folder/source"
 for page in docs examples src README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff LICENSE; do
   ln -s "$PWD/$page" "$folder/source/$page"
