@@ -41,7 +41,7 @@ validate:  ## numbers against their references: docs/scorecard.md
 bench:  ## the time of a step, stage by stage, beside other solvers
 	@scripts/bench.sh
 
-docs:  ## API reference in docs/api/html, where a warning is an error
+docs: build  ## the site in build/docs/html: guides, references of scenes, Python and C++
 	@scripts/docs.sh
 
 format:  ## format all C++ sources in place
@@ -66,4 +66,4 @@ install: build  ## install to PREFIX (/usr/local)
 	@cmake --install build/release --prefix $(PREFIX)
 
 clean:  ## remove everything built
-	@rm -rf build docs/api dist
+	@rm -rf build dist

@@ -27,7 +27,7 @@ test="libgtest-dev libgmock-dev gmsh chromium python3-pytest python3-pytest-xdis
   python3-h5py python3-distributed python3-pandas python3-yaml python3-cvxopt python3-jsonschema doxygen"
 validate="calculix-ccx gmsh python3-scipy python3-meshio"
 bench="libbenchmark-dev chromium"
-docs="doxygen graphviz"
+docs="doxygen python3-sphinx python3-myst-parser furo"
 format="git clang-format"
 lint="clang clang-tidy"
 fuzz="clang libclang-rt-dev"
@@ -42,7 +42,7 @@ packages_for() {
     test)     echo $build $demo $render $test ;;
     validate) echo $build $demo $validate ;;
     bench)    echo $build $demo $validate $bench ;;
-    docs)     echo $docs ;;
+    docs)     echo $build $render $sweep $docs ;;
     format)   echo $format ;;
     lint)     echo $build $render $test $bench $format $lint ;;
     fuzz)     echo $build $fuzz ;;

@@ -76,7 +76,11 @@ void add_schema(CommandLine& line) {
           "  sinew schema > scene.schema.json\n\n"
           "An editor with YAML's language server then completes and checks scenes that begin with\n"
           "  # yaml-language-server: $schema=scene.schema.json");
-  add_page(line, "reference", "", scene::reference_page).hide();
+  add_page(line, "reference", "", [] {
+    std::string text;
+    for (const scene::ReferencePage& page : scene::reference_pages()) text += page.text;
+    return text;
+  }).hide();
 }
 
 void add_validate(CommandLine& line) {

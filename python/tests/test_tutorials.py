@@ -77,7 +77,7 @@ def follow(page, folder):
     """Does what a page says, block by block."""
     output = ""
     for language, text in BLOCK.findall((TUTORIALS / f"{page}.md").read_text(encoding="utf-8")):
-        if language in ("yaml", "python", "csv"):
+        if language in ("yaml", "python", "none"):
             name, body = re.match(r"# (\S+)\n(.*)", text, re.DOTALL).groups()
             (folder / name).write_text(body, encoding="utf-8")
         elif language == "sh" and text.startswith("sinew view"):

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -34,15 +35,17 @@ void expect_written(const std::filesystem::path& path, const std::string& text) 
       << "test_scene";
 }
 
-TEST(Reference, PageInDocsIsUpToDate) { expect_written(kDocs / "scene.md", reference_page()); }
+TEST(Reference, PagesInDocsAreUpToDate) {
+  for (const ReferencePage& page : reference_pages()) expect_written(kDocs / page.path, page.text);
+}
 
 TEST(Reference, SchemaInDocsIsUpToDate) {
   expect_written(kDocs / "scene.schema.json", json_schema());
 }
 
-TEST(Reference, EveryLinkHasItsHeading) {
-  const std::string page = reference_page();
-  std::set<std::string> headings;
+// The anchors of a page's headings, as GitHub makes them.
+std::set<std::string> anchors(const std::string& page) {
+  std::set<std::string> found;
   for (std::size_t at = page.find("\n## "); at != std::string::npos;
        at = page.find("\n## ", at + 1)) {
     std::string anchor;
@@ -52,16 +55,50 @@ TEST(Reference, EveryLinkHasItsHeading) {
         anchor += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
       }
     }
-    EXPECT_TRUE(headings.insert(anchor).second) << "twice: " << anchor;
+    EXPECT_TRUE(found.insert(anchor).second) << "twice: " << anchor;
   }
-  EXPECT_GT(headings.size(), 25u);
+  return found;
+}
+
+TEST(Reference, EveryLinkHasItsHeading) {
+  std::map<std::string, std::set<std::string>> headings;
+  std::size_t tables = 0;
+  for (const ReferencePage& page : reference_pages()) {
+    headings[page.path] = anchors(page.text);
+    tables += headings[page.path].size();
+  }
+  EXPECT_GT(headings.size(), 8u);
+  EXPECT_GT(tables, 25u);
   int links = 0;
-  for (std::size_t at = page.find("](#"); at != std::string::npos; at = page.find("](#", at + 1)) {
-    const std::string anchor = page.substr(at + 3, page.find(')', at) - at - 3);
-    EXPECT_TRUE(headings.contains(anchor)) << anchor;
-    ++links;
+  for (const ReferencePage& page : reference_pages()) {
+    for (std::size_t at = page.text.find("]("); at != std::string::npos;
+         at = page.text.find("](", at + 1)) {
+      const std::string target = page.text.substr(at + 2, page.text.find(')', at) - at - 2);
+      const std::size_t hash = target.find('#');
+      if (hash == std::string::npos) continue;
+      const std::filesystem::path folder = std::filesystem::path(page.path).parent_path();
+      const std::string path =
+          hash == 0 ? page.path
+                    : (folder / target.substr(0, hash)).lexically_normal().generic_string();
+      EXPECT_TRUE(headings[path].contains(target.substr(hash + 1))) << page.path << ": " << target;
+      ++links;
+    }
   }
-  EXPECT_GT(links, 25);
+  EXPECT_GT(links, 100);
+}
+
+// What differs in unit alone, or is in many tables, is written once.
+TEST(Reference, SharedTypesAreDescribedOnce) {
+  std::string all;
+  for (const ReferencePage& page : reference_pages()) all += page.text;
+  for (const char* line :
+       {"\n## signal\n", "\n## ramp\n", "\n## sine\n", "\n## keys of all sensors\n",
+        "\n| `dropout` |", "\n| `softening` |", "\n- `outside: nearest`"}) {
+    const std::size_t first = all.find(line);
+    EXPECT_NE(first, std::string::npos) << line;
+    EXPECT_EQ(all.find(line, first + 1), std::string::npos) << line;
+  }
+  EXPECT_EQ(all.find("signal in"), std::string::npos);
 }
 
 // The schema against an independent implementation of JSON Schema.

@@ -330,7 +330,9 @@ class MovingHorizon(ExtendedKalman):
     """Moving horizon estimation (Rao, Rawlings, Mayne, IEEE Trans. Autom. Control 48 (2003) 246-258).
 
     At every instant with readings, minimises over the states of the last `horizon` instants
+
         |x_0 - xbar|^2_(P_0^-1) + sum |x_k+1 - f(x_k)|^2_(Q^-1) + sum |y_k - h(x_k)|^2_(R^-1)
+
     by Gauss-Newton's method, each iteration one Kalman filter and smoother pass over the horizon about the last trajectory
     (the iterated smoother is Gauss-Newton: Bell, SIAM J. Optim. 4 (1994) 626-636). xbar, P_0 are the filter's at the
     beginning of the horizon (its arrival cost). Bounds keep the states where they mean something.

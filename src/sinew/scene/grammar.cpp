@@ -342,7 +342,8 @@ std::string describe(const Form& form) {
     case Shape::list:
       return fmt::format("a list of ({})", describe(form.items));
     case Shape::samples:
-      return fmt::format("a list of [time in s, value in {}]", form.unit);
+      return fmt::format("a list of [time in s, value{}{}]", form.unit.empty() ? "" : " in ",
+                         form.unit);
     case Shape::table:
       return fmt::format("a map ({})", form.table->name);
     case Shape::variants:

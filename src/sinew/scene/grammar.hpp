@@ -93,6 +93,10 @@ struct KeyTable {
   std::string description;
   std::vector<Key> keys{};
   std::vector<Alternatives> alternatives{};
+  /// Reference: the table that is described in place of this one, which differs in dimension alone.
+  std::shared_ptr<const KeyTable> stand_in{};
+  /// Reference: the table under which the keys that both have are described.
+  std::shared_ptr<const KeyTable> shared{};
 
   const Key* find(std::string_view key) const;
   /// The names of all keys, for messages and suggestions; keys of later versions left out.

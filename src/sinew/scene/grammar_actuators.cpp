@@ -5,24 +5,36 @@ namespace sinew::scene::forms {
 
 namespace {
 
+KeyTable limit_keys(const Measure& measure, const Measure& rate, Range range,
+                    const char* min_default, const char* example, const char* rate_example) {
+  return {.name = "limits of one quantity",
+          .description =
+              "Omitted keys mean no limit, except that cables do not push: the "
+              "least tension is 0 N.",
+          .keys = {{.name = "min",
+                    .forms = {quantity(measure, range)},
+                    .example = *measure.unit == '\0' ? "0" : std::string("0 ") + measure.unit,
+                    .default_text = min_default,
+                    .description = "Least value."},
+                   {.name = "max",
+                    .forms = {quantity(measure, range)},
+                    .example = example,
+                    .description = "Greatest value."},
+                   {.name = "rate",
+                    .forms = {quantity(rate, positive())},
+                    .example = rate_example,
+                    .description = "Greatest rate of change."}}};
+}
+
 std::shared_ptr<const KeyTable> limit_table(const Measure& measure, const Measure& rate,
                                             const char* name, Range range, const char* min_default,
                                             const char* example, const char* rate_example) {
-  return make_table({.name = std::string("limits of ") + name,
-                     .description = "Omitted keys mean no limit.",
-                     .keys = {{.name = "min",
-                               .forms = {quantity(measure, range)},
-                               .example = std::string("0 ") + measure.unit,
-                               .default_text = min_default,
-                               .description = "Least value."},
-                              {.name = "max",
-                               .forms = {quantity(measure, range)},
-                               .example = example,
-                               .description = "Greatest value."},
-                              {.name = "rate",
-                               .forms = {quantity(rate, positive())},
-                               .example = rate_example,
-                               .description = "Greatest rate of change."}}});
+  static const auto any_quantity =
+      make_table(limit_keys(plain_number(), plain_number(), any(), "", "20", "100"));
+  KeyTable limits = limit_keys(measure, rate, range, min_default, example, rate_example);
+  limits.name = std::string("limits of ") + name;
+  limits.stand_in = any_quantity;
+  return make_table(std::move(limits));
 }
 
 }  // namespace

@@ -5,33 +5,39 @@ namespace sinew::scene::forms {
 
 namespace {
 
+// "ramp in m"; "ramp" of numbers without a unit.
+std::string with_unit(const char* name, const Measure& measure) {
+  return std::string(name) + (*measure.unit == '\0' ? "" : " in ") + measure.unit;
+}
+
 std::shared_ptr<const KeyTable> ramp_table(const Measure& measure, const char* example) {
-  return make_table({.name = std::string("ramp in ") + measure.unit,
-                     .description = "Linear change from one value to another, then constant.",
-                     .keys = {{.name = "from",
-                               .forms = {quantity(measure)},
-                               .example = std::string("0 ") + measure.unit,
-                               .default_text = "0",
-                               .description = "Initial value."},
-                              {.name = "to",
-                               .forms = {quantity(measure)},
-                               .example = example,
-                               .description = "Final value.",
-                               .required = true},
-                              {.name = "start",
-                               .forms = {quantity(time(), non_negative())},
-                               .example = "0.5 s",
-                               .default_text = "0 s",
-                               .description = "Start time."},
-                              {.name = "duration",
-                               .forms = {quantity(time(), positive())},
-                               .example = "1 s",
-                               .description = "Duration.",
-                               .required = true}}});
+  return make_table(
+      {.name = with_unit("ramp", measure),
+       .description = "Linear change from one value to another, then constant.",
+       .keys = {{.name = "from",
+                 .forms = {quantity(measure)},
+                 .example = *measure.unit == '\0' ? "0" : std::string("0 ") + measure.unit,
+                 .default_text = "0",
+                 .description = "Initial value."},
+                {.name = "to",
+                 .forms = {quantity(measure)},
+                 .example = example,
+                 .description = "Final value.",
+                 .required = true},
+                {.name = "start",
+                 .forms = {quantity(time(), non_negative())},
+                 .example = "0.5 s",
+                 .default_text = "0 s",
+                 .description = "Start time."},
+                {.name = "duration",
+                 .forms = {quantity(time(), positive())},
+                 .example = "1 s",
+                 .description = "Duration.",
+                 .required = true}}});
 }
 
 std::shared_ptr<const KeyTable> sine_table(const Measure& measure, const char* example) {
-  return make_table({.name = std::string("sine in ") + measure.unit,
+  return make_table({.name = with_unit("sine", measure),
                      .description = "mean + amplitude sin(2 pi t / period + phase).",
                      .keys = {{.name = "mean",
                                .forms = {quantity(measure)},
@@ -245,8 +251,10 @@ std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char*
   const std::string value = value_example;
   const bool plain = *measure.unit == '\0';
   KeyTable signal{
-      .name = plain ? "signal" : std::string("signal in ") + measure.unit,
-      .description = "A value over time: exactly one of ramp, sine, steps and file.",
+      .name = with_unit("signal", measure),
+      .description =
+          "A value over time: exactly one of ramp, sine, steps and file. Values have the "
+          "dimension of the key that the signal stands under.",
       .keys = {{.name = "ramp",
                 .forms = {table(ramp_table(measure, value_example))},
                 .example = "{to: " + value + ", duration: 1 s}",
@@ -257,19 +265,25 @@ std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char*
                 .description = "A sine."},
                {.name = "steps",
                 .forms = {samples(measure)},
-                .example = "[[0 s, 0 " + std::string(measure.unit) + "], [1 s, " + value + "]]",
+                .example = "[[0 s, 0" + (plain ? "" : " " + std::string(measure.unit)) +
+                           "], [1 s, " + value + "]]",
                 .description = "Steps: pairs of time and value, the first at 0 s."},
                path_file_key("A CSV table with two columns, time and value, or with `column`; "
                              "linear interpolation."),
                {.name = "column",
                 .forms = {text()},
                 .example = "second",
-                .description = "Which column of a table with headings has the values: a heading, "
-                               "or what stands in it before \" [unit]\", whose unit then holds. "
-                               "Times are in the first column.",
+                .description =
+                    "Which column of a table with headings has the values: a heading, "
+                    "or what stands in it before \" [unit]\", whose unit then holds. "
+                    "Times are in the first column. In place of headings, `unit` gives the unit of "
+                    "the values.",
                 .only_with = "file"}},
       .alternatives = {{{"ramp", "sine", "steps", "file"}, true}}};
-  if (!plain) signal.keys.push_back(path_unit_key(measure, measure.unit));
+  if (!plain) {
+    signal.keys.push_back(path_unit_key(measure, measure.unit));
+    signal.stand_in = signal_table(plain_number(), "1");
+  }
   return make_table(std::move(signal));
 }
 

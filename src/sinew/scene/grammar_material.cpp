@@ -102,6 +102,14 @@ std::vector<Key> history_keys() {
            .description = "The Mullins effect. Without: unloading follows loading."}};
 }
 
+// The keys of all hyperelastic laws, for the reference alone.
+std::shared_ptr<const KeyTable> history_table() {
+  static const auto table = make_table({.name = "keys of all hyperelastic laws",
+                                        .description = "Viscoelasticity and softening.",
+                                        .keys = history_keys()});
+  return table;
+}
+
 /// A hyperelastic law: its own keys, and one of the two that say how little it is compressible.
 Choice energy(const char* word, const char* description, std::vector<Key> keys,
               std::vector<Alternatives> alternatives = {}) {
@@ -115,7 +123,8 @@ Choice energy(const char* word, const char* description, std::vector<Key> keys,
           .table = make_table({.name = std::string("material: model ") + word,
                                .description = description,
                                .keys = std::move(keys),
-                               .alternatives = std::move(alternatives)})};
+                               .alternatives = std::move(alternatives),
+                               .shared = history_table()})};
 }
 
 Choice small_strain(const char* word, const char* description) {
@@ -188,7 +197,8 @@ Form law_form() {
                        "collapses in compression.",
         .table = make_table({.name = "material: model saint-venant-kirchhoff",
                              .description = "Linear in the Green strain.",
-                             .keys = saint_venant_keys()})}});
+                             .keys = saint_venant_keys(),
+                             .shared = history_table()})}});
 }
 
 }  // namespace

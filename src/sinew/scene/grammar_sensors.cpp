@@ -105,14 +105,30 @@ void append(std::vector<Key>& keys, std::vector<Key> more) {
   for (Key& key : more) keys.push_back(std::move(key));
 }
 
+std::vector<Key> channel_keys(const Said& said) {
+  std::vector<Key> keys = error_keys(said);
+  append(keys, transport_keys());
+  append(keys, file_keys(said.measure));
+  return keys;
+}
+
+// The keys of all sensors, for the reference alone.
+std::shared_ptr<const KeyTable> channel_table() {
+  static const auto table = make_table(
+      {.name = "keys of all sensors",
+       .description = "Errors, timing and files. Errors, quantum and range have the unit of what "
+                      "the sensor measures; the table shows them for a length.",
+       .keys = channel_keys({length(), "0.1 mm", "0.01 mm", "-0.5 0.5 m"})});
+  return table;
+}
+
 std::shared_ptr<const KeyTable> sensor_table(const char* type, const char* description,
                                              std::vector<Key> own, const Said& said) {
   KeyTable sensor{.name = std::string("sensor: type ") + type,
                   .description = description,
-                  .keys = std::move(own)};
-  append(sensor.keys, error_keys(said));
-  append(sensor.keys, transport_keys());
-  append(sensor.keys, file_keys(said.measure));
+                  .keys = std::move(own),
+                  .shared = channel_table()};
+  append(sensor.keys, channel_keys(said));
   return make_table(std::move(sensor));
 }
 
@@ -287,7 +303,8 @@ std::vector<Key> contact_keys() {
 std::shared_ptr<const KeyTable> touch_table() {
   KeyTable touch{.name = "sensor: type touch",
                  .description = "Whether something touches, 1 or 0: a switch.",
-                 .keys = contact_keys()};
+                 .keys = contact_keys(),
+                 .shared = channel_table()};
   touch.keys.push_back({.name = "threshold",
                         .forms = {quantity(force(), non_negative())},
                         .example = "0.1 N",

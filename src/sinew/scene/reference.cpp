@@ -1,7 +1,9 @@
 #include "sinew/scene/reference.hpp"
 
-#include <set>
+#include <algorithm>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -12,11 +14,10 @@ namespace sinew::scene {
 
 namespace {
 
-const char* const kIntroduction = R"(# Scene files
+constexpr const char* kFirstPage = "scene.md";
+constexpr const char* kSharedPage = "scene/shared.md";
 
-<!-- Written from the tables in src/sinew/scene/grammar*.cpp by
-     SINEW_WRITE_REFERENCE=1 ctest --test-dir build/release -R scene -->
-
+const char* const kIntroduction = R"(
 A scene file describes a robot and its run in YAML. Every quantity may carry its unit (`450 kPa`,
 `0 0 190 mm`); a number without a unit is SI. Vectors are written `0 0 190 mm` or
 `[0, 0, 190 mm]`. Paths are relative to the scene file. Unknown keys, wrong dimensions, missing
@@ -29,6 +30,40 @@ A key marked *later* is known but not in this version, and is refused.
 
 )";
 
+const char* const kOrigin = R"(
+<!-- Written from the tables in src/sinew/scene/grammar*.cpp by
+     SINEW_WRITE_REFERENCE=1 ctest --test-dir build/release -R scene -->
+)";
+
+// A page and the keys of a scene whose tables it has.
+struct Section {
+  const char* path;
+  const char* title;
+  std::vector<std::string> keys;
+};
+
+const std::vector<Section>& sections() {
+  static const std::vector<Section> all = {
+      {kFirstPage, "Scene files", {}},  // and all keys that no other section names
+      {"scene/bodies.md", "Scene files: bodies", {"bodies", "masses", "membranes"}},
+      {"scene/actuators.md", "Scene files: actuators", {"actuators"}},
+      {"scene/loads.md", "Scene files: loads", {"loads"}},
+      {"scene/effectors.md", "Scene files: effectors and probes", {"effectors", "probes"}},
+      {"scene/sensors.md", "Scene files: sensors", {"sensors"}},
+      {"scene/contacts.md", "Scene files: contacts", {"contacts"}},
+      {"scene/joints.md", "Scene files: joints", {"joints"}},
+      {"scene/controllers.md", "Scene files: controllers", {"controllers"}},
+      {kSharedPage, "Scene files: types used in several sections", {}}};
+  return all;
+}
+
+std::string page_of_key(const std::string& key) {
+  for (const Section& section : sections()) {
+    if (std::ranges::find(section.keys, key) != section.keys.end()) return section.path;
+  }
+  return kFirstPage;
+}
+
 // GitHub's anchor of a heading.
 std::string anchor(const std::string& heading) {
   std::string result;
@@ -40,32 +75,95 @@ std::string anchor(const std::string& heading) {
   return result;
 }
 
-std::string link(const KeyTable& table) {
-  return fmt::format("[{}](#{})", table.name, anchor(table.name));
+// The table that is described in place of one.
+const KeyTable& described(const KeyTable& table) {
+  return table.stand_in == nullptr ? table : *table.stand_in;
 }
 
+// All tables that can be reached, in the order in which they are met, with the page of each.
+class Tables {
+ public:
+  Tables() {
+    add(grammar(), kFirstPage);
+    for (const Key& key : grammar().keys) {
+      const std::size_t first = order_.size();
+      const std::string page = page_of_key(key.name);
+      visit(key.forms, page);
+      // Breadth first, so that a table stands near those that lead to it.
+      for (std::size_t i = first; i < order_.size(); ++i) visit_keys(*order_[i], page);
+      for (std::size_t i = 0; i < again_.size(); ++i) visit_keys(*again_[i], page);
+      again_.clear();
+    }
+  }
+
+  const std::vector<const KeyTable*>& order() const { return order_; }
+  const std::string& page(const std::string& table) const { return pages_.at(table); }
+
+ private:
+  void add(const KeyTable& table, const std::string& page) {
+    const auto [found, added] = pages_.emplace(table.name, page);
+    if (added) {
+      order_.push_back(&table);
+    } else if (found->second != page && found->second != kSharedPage) {
+      found->second = kSharedPage;
+      again_.push_back(&table);  // what it leads to is shared, too
+    }
+  }
+
+  void visit_keys(const KeyTable& table, const std::string& page) {
+    for (const Key& key : table.keys) {
+      if (!key.later) visit(key.forms, page);
+    }
+    if (table.shared != nullptr) add(*table.shared, page);
+  }
+
+  void visit(const std::vector<Form>& forms, const std::string& page) {
+    for (const Form& form : forms) {
+      if (form.table != nullptr) add(described(*form.table), page);
+      for (const Choice& choice : form.choices) {
+        if (choice.table != nullptr) add(described(*choice.table), page);
+      }
+      visit(form.items, page);
+    }
+  }
+
+  std::vector<const KeyTable*> order_;
+  std::vector<const KeyTable*> again_;
+  std::map<std::string, std::string> pages_;
+};
+
+// Writes the tables of one page.
 class Page {
  public:
-  std::string write() {
-    text_ = kIntroduction;
-    queue_ = {&grammar()};
-    // Writing a table puts those that it leads to at the end of the queue.
-    std::size_t next = 0;
-    while (next < queue_.size()) write_table(*queue_[next++]);
+  Page(const Tables& tables, std::string path) : tables_(tables), path_(std::move(path)) {}
+
+  // @param told where the words of a choice are explained already: their list to the table.
+  std::string write(std::map<std::string, const KeyTable*>& told) {
+    for (const KeyTable* table : tables_.order()) {
+      if (tables_.page(table->name) == path_) write_table(*table, told);
+    }
     return text_;
   }
 
- private:
-  void enqueue(const KeyTable& table) {
-    if (seen_.insert(table.name).second) queue_.push_back(&table);
+  std::string link(const KeyTable& table, const std::string& text) const {
+    const KeyTable& target = described(table);
+    const std::string& page = tables_.page(target.name);
+    return fmt::format("[{}]({}#{})", text, page == path_ ? "" : relative(page),
+                       anchor(target.name));
   }
 
+  // The way from this page to another.
+  std::string relative(const std::string& page) const {
+    if (path_ == kFirstPage) return page;
+    return page == kFirstPage ? "../" + page : page.substr(page.find('/') + 1);
+  }
+
+ private:
   // The form with links to the tables it leads to.
-  std::string linked(const Form& form) {
+  std::string linked(const Form& form) const {
     switch (form.shape) {
       case Shape::table:
-        enqueue(*form.table);
-        return "map: " + link(*form.table);
+        return "map: " + link(*form.table, described(*form.table).name);
       case Shape::variants:
         return linked_variants(form);
       case Shape::list:
@@ -82,7 +180,7 @@ class Page {
     }
   }
 
-  std::string linked(const std::vector<Form>& forms) {
+  std::string linked(const std::vector<Form>& forms) const {
     std::string result;
     for (const Form& form : forms) {
       result += (result.empty() ? "" : ", or ") + linked(form);
@@ -91,16 +189,12 @@ class Page {
     return result;
   }
 
-  std::string linked_variants(const Form& form) {
+  std::string linked_variants(const Form& form) const {
     std::string result = fmt::format("map by `{}`: ", form.telltale);
     for (const Choice& choice : form.choices) {
       if (&choice != &form.choices.front()) result += ", ";
-      if (choice.table == nullptr) {
-        result += fmt::format("{} *(later)*", choice.word);
-        continue;
-      }
-      enqueue(*choice.table);
-      result += fmt::format("[{}](#{})", choice.word, anchor(choice.table->name));
+      result += choice.table == nullptr ? fmt::format("{} *(later)*", choice.word)
+                                        : link(*choice.table, choice.word);
     }
     return result;
   }
@@ -114,16 +208,41 @@ class Page {
     return result;
   }
 
-  void write_table(const KeyTable& table) {
+  void write_table(const KeyTable& table, std::map<std::string, const KeyTable*>& told) {
     text_ += fmt::format("## {}\n\n{}\n\n", table.name, table.description);
     text_ += "| key | value | without it | meaning |\n|---|---|---|---|\n";
-    for (const Key& key : table.keys) write_key(table, key);
+    std::string explained;
+    for (const Key& key : table.keys) {
+      if (!is_shared(table, key)) write_key(table, key, explained, told);
+    }
     text_ += '\n';
-    write_words(table);
+    if (!explained.empty()) text_ += explained + '\n';
+    if (table.shared != nullptr) {
+      text_ += shared_keys(table);
+    }
     write_alternatives(table);
   }
 
-  void write_key(const KeyTable& table, const Key& key) {
+  // "And the keys of all sensors", or those of them that the table has.
+  std::string shared_keys(const KeyTable& table) const {
+    std::string some;
+    std::size_t count = 0;
+    for (const Key& key : table.shared->keys) {
+      if (table.find(key.name) == nullptr) continue;
+      some += fmt::format("{}`{}`", some.empty() ? ": " : ", ", key.name);
+      ++count;
+    }
+    const bool all = count == table.shared->keys.size();
+    return fmt::format("And {}the {}{}.\n\n", all ? "" : "of ",
+                       link(*table.shared, table.shared->name), all ? "" : some);
+  }
+
+  static bool is_shared(const KeyTable& table, const Key& key) {
+    return table.shared != nullptr && table.shared->find(key.name) != nullptr;
+  }
+
+  void write_key(const KeyTable& table, const Key& key, std::string& explained,
+                 std::map<std::string, const KeyTable*>& told) {
     const Alternatives* group = table.alternatives_of(key.name);
     std::string without = key.default_text.empty() ? "-" : fmt::format("`{}`", key.default_text);
     if (key.required) without = "**required**";
@@ -132,25 +251,29 @@ class Page {
     std::string meaning = key.description;
     if (!key.only_with.empty()) meaning += fmt::format(" Only with `{}`.", key.only_with);
     if (!key.example.empty()) meaning += fmt::format(" Example: `{}: {}`", key.name, key.example);
+    const std::string list = meanings(key);
+    if (const auto [found, is_new] = told.emplace(list, &table); is_new) {
+      explained += list;
+    } else if (!list.empty() && found->second != &table) {
+      meaning += fmt::format(" The words are explained under {}.",
+                             link(*found->second, found->second->name));
+    }
     text_ += fmt::format("| `{}` | {} | {} | {} |\n", key.name,
                          key.later ? std::string("-") : escaped(linked(key.forms)), without,
                          escaped(meaning));
   }
 
-  // What the words of the table's choices mean.
-  void write_words(const KeyTable& table) {
-    bool any = false;
-    for (const Key& key : table.keys) {
-      for (const Form& form : key.forms) {
-        if (form.shape != Shape::choice) continue;
-        for (const Choice& choice : form.choices) {
-          if (choice.later) continue;
-          text_ += fmt::format("- `{}: {}` - {}\n", key.name, choice.word, choice.description);
-          any = true;
-        }
+  // What the words of a key's choices mean.
+  static std::string meanings(const Key& key) {
+    std::string result;
+    for (const Form& form : key.forms) {
+      if (form.shape != Shape::choice) continue;
+      for (const Choice& choice : form.choices) {
+        if (choice.later) continue;
+        result += fmt::format("- `{}: {}` - {}\n", key.name, choice.word, choice.description);
       }
     }
-    if (any) text_ += '\n';
+    return result;
   }
 
   void write_alternatives(const KeyTable& table) {
@@ -173,13 +296,48 @@ class Page {
     return result;
   }
 
+  const Tables& tables_;
+  std::string path_;
   std::string text_;
-  std::vector<const KeyTable*> queue_;
-  std::set<std::string> seen_ = {"scene"};
 };
+
+// The table of pages, and an index of all tables.
+std::string contents(const Tables& tables) {
+  const Page page(tables, kFirstPage);
+  std::string text = "| page | keys of a scene |\n|---|---|\n";
+  for (const Section& section : sections()) {
+    std::string keys;
+    for (const std::string& key : section.keys) keys += (keys.empty() ? "`" : ", `") + key + "`";
+    if (section.path == std::string(kFirstPage)) keys = "all others";
+    text += fmt::format("| [{}]({}) | {} |\n", section.title, section.path, keys);
+  }
+  std::vector<const KeyTable*> sorted = tables.order();
+  std::ranges::sort(sorted, {}, &KeyTable::name);
+  text += "\n**All tables:** ";
+  for (const KeyTable* table : sorted) {
+    text += (table == sorted.front() ? "" : ",\n") + page.link(*table, table->name);
+  }
+  return text + ".\n\n";
+}
 
 }  // namespace
 
-std::string reference_page() { return Page().write(); }
+std::vector<ReferencePage> reference_pages() {
+  const Tables tables;
+  std::map<std::string, const KeyTable*> told = {{"", nullptr}};
+  std::vector<ReferencePage> pages;
+  for (const Section& section : sections()) {
+    Page page(tables, section.path);
+    std::string text = fmt::format("# {}\n{}", section.title, kOrigin);
+    if (section.path == std::string(kFirstPage)) {
+      text += kIntroduction + contents(tables);
+    } else {
+      text += fmt::format("\nUnits, vectors and paths are described in [scene files]({}).\n\n",
+                          page.relative(kFirstPage));
+    }
+    pages.push_back({section.path, text + page.write(told)});
+  }
+  return pages;
+}
 
 }  // namespace sinew::scene

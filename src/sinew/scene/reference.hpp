@@ -1,13 +1,24 @@
 /// @file
-/// What comes out of the grammar for readers and editors: docs/scene.md and docs/scene.schema.json.
+/// What comes out of the grammar for readers and editors: docs/scene.md, docs/scene/*.md and
+/// docs/scene.schema.json.
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace sinew::scene {
 
-/// The reference of scene files as Markdown: every table, key, form, default and meaning.
-std::string reference_page();
+/// One page of the reference.
+struct ReferencePage {
+  std::string path;  ///< below docs/, such as "scene/sensors.md"
+  std::string text;  ///< Markdown
+};
+
+/// The reference of scene files: every table, key, form, default and meaning. The first page has
+/// the keys of a scene and leads to the others, one for each section of a scene. A table is
+/// described once, on the page of the section that uses it, or on "scene/shared.md" where several
+/// do.
+std::vector<ReferencePage> reference_pages();
 
 /// A JSON Schema (draft 2020-12) of scene files, for completion and checking in editors. It knows
 /// keys, types, words, units' dimensions (by the units' spelling) and alternatives; references
