@@ -139,8 +139,9 @@ TEST(ClosedLoop, APushIsFeltBeforeItIsAnswered) {
   }
 }
 
-// A disturbance of d m/s leaves the error d/gain, and none with an integral. The cables stay taut:
-// where one becomes slack d jumps.
+// A disturbance of d m/s leaves the error d/gain, and with an integral only its change by the
+// second over the integral: the finger stiffens as it bends. The cables stay taut: where one
+// becomes slack d jumps.
 TEST(ClosedLoop, AnIntegralFollowsWhatGrows) {
   const std::string scene =
       with_limits("limits: {tension: {min: 1 N}}, ") + push("{ramp: {to: 1, duration: 4 s}}");
@@ -153,7 +154,7 @@ TEST(ClosedLoop, AnIntegralFollowsWhatGrows) {
   const double slow = left(5.0, 0.0);
   EXPECT_GT(slow, 1e-5);
   EXPECT_NEAR(left(10.0, 0.0) / slow, 0.5, 0.03);
-  EXPECT_LT(left(5.0, 6.25), 0.02 * slow);
+  EXPECT_LT(left(5.0, 6.25), 0.05 * slow);
 }
 
 TEST(ClosedLoop, TurnsWhatAnOrientationMeasures) {
