@@ -26,7 +26,7 @@ class FollowSource final : public LiveSource {
   // The script's side; of one thread.
 
   /// The controller that is to be shown; see RobotState. Before hand_over().
-  void observe(const std::string& name, inverse::InverseController* controller) {
+  void observe(const std::string& name, inverse::TargetController* controller) {
     state().observe(name, controller);
   }
   /// Begins the source's turn.

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sinew/fem/of_elements.hpp"
-#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/inverse/target_controller.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/actuator.hpp"
@@ -58,13 +58,13 @@ sim::Observables RobotState::list_observables() {
   return list;
 }
 
-void RobotState::observe(const std::string& name, inverse::InverseController* controller) {
+void RobotState::observe(const std::string& name, inverse::TargetController* controller) {
   observing_ = true;
   controller_ = controller;
   controller_name_ = controller == nullptr ? "" : name;
 }
 
-std::pair<std::string, std::unique_ptr<inverse::InverseController>> RobotState::take_controller() {
+std::pair<std::string, std::unique_ptr<inverse::TargetController>> RobotState::take_controller() {
   controller_ = nullptr;
   return {controller_name_, std::move(own_)};
 }
@@ -124,7 +124,7 @@ void RobotState::detach() {
 
 void RobotState::attach(const std::string& name, const inverse::InverseSettings& settings) {
   detach();
-  own_ = std::make_unique<inverse::InverseController>(*simulation_, settings);
+  own_ = inverse::make_controller(*simulation_, settings);
   controller_ = own_.get();
   controller_name_ = name;
 }

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "sinew/inverse/controller_observables.hpp"
-#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/inverse/target_controller.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -62,9 +62,9 @@ class RobotState {
   void moved() { ++shape_; }
   /// Shows a controller that others attach and detach: from now on none is attached here.
   /// @param name,controller null: nothing steers.
-  void observe(const std::string& name, inverse::InverseController* controller);
+  void observe(const std::string& name, inverse::TargetController* controller);
   /// The controller that is attached, with its name: it stays attached.
-  std::pair<std::string, std::unique_ptr<inverse::InverseController>> take_controller();
+  std::pair<std::string, std::unique_ptr<inverse::TargetController>> take_controller();
   void reset();
   void settle();
   void command(const SetCommand& command);
@@ -95,8 +95,8 @@ class RobotState {
   Playback playback_;
   FrameMaker frames_;
   double real_time_factor_ = 0.0;
-  std::unique_ptr<inverse::InverseController> own_;
-  inverse::InverseController* controller_ = nullptr;  ///< own_, or one that others look after
+  std::unique_ptr<inverse::TargetController> own_;
+  inverse::TargetController* controller_ = nullptr;  ///< own_, or one that others look after
   std::string controller_name_;
   std::optional<scene::SceneController> first_;
   bool observing_ = false;

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/inverse/target_controller.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -48,7 +48,7 @@ void add_limits(const sim::ActuatorModel& model, const sim::ActuatorState& state
   if (state.slack) list.push_back(trouble("info", "slack", model.name, "the cable is slack"));
 }
 
-void add_controller(const inverse::InverseController& controller, const std::string& name,
+void add_controller(const inverse::TargetController& controller, const std::string& name,
                     Json& list) {
   const std::string kind(inverse::inverse_status_name(controller.status()));
   switch (controller.status()) {
@@ -73,14 +73,22 @@ void add_controller(const inverse::InverseController& controller, const std::str
       list.push_back(trouble("error", "limits-conflict", name,
                              "limits contradict each other: " + controller.conflict()));
       break;
+    case inverse::InverseStatus::at_limits:
+      list.push_back(trouble("warning", "at-limits", name,
+                             fmt::format("limits hold the effectors {:.3g} mm off their targets",
+                                         1e3 * controller.error())));
+      break;
+    case inverse::InverseStatus::holding:
+      list.push_back(
+          trouble("warning", "holding", name, "commands are held, since " + controller.conflict()));
+      break;
   }
 }
 
 }  // namespace
 
 nlohmann::json list_troubles(const sim::Simulation& simulation,
-                             const inverse::InverseController* controller,
-                             const std::string& name) {
+                             const inverse::TargetController* controller, const std::string& name) {
   Json troubles = Json::array();
   const auto& actuators = simulation.model().actuators();
   for (std::size_t i = 0; i < actuators.size(); ++i) {

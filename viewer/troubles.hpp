@@ -7,7 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 namespace sinew::inverse {
-class InverseController;
+class TargetController;
 }
 namespace sinew::sim {
 class Simulation;
@@ -19,6 +19,6 @@ namespace sinew::viewer {
 /// with level, kind, subject and text. @param simulation of the robot, as it is now.
 /// @param controller,name what steers, null: nothing.
 nlohmann::json list_troubles(const sim::Simulation& simulation,
-                             const inverse::InverseController* controller, const std::string& name);
+                             const inverse::TargetController* controller, const std::string& name);
 
 }  // namespace sinew::viewer

@@ -67,7 +67,7 @@ void count(Tally& tally, Session& session) {
     Tally::Flagged& flagged = tally.flagged[report.status];
     if (flagged.steps++ == 0) flagged.first = session.simulation().time();
   }
-  const inverse::InverseController* controller = session.controller();
+  const inverse::TargetController* controller = session.controller();
   const bool told = controller != nullptr && !sim::is_flagged(report.status);
   ++tally.statuses[std::string(told ? inverse_status_name(controller->status())
                                     : sim::step_status_name(report.status))];

@@ -52,7 +52,7 @@ Session::Session(const SceneOptions& options)
   simulation_ = std::make_unique<sim::Simulation>(robot_.model, robot_.threads());
   if (chosen == nullptr) return;
   controller_name_ = chosen->name;
-  controller_ = std::make_unique<inverse::InverseController>(*simulation_, chosen->settings);
+  controller_ = inverse::make_controller(*simulation_, chosen->settings);
 }
 
 double Session::first_turn() const {

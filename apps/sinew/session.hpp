@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/inverse/target_controller.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/watched.hpp"
@@ -49,7 +49,7 @@ class Session {
   const scene::Robot& robot() const { return robot_; }
   sim::Simulation& simulation() { return *simulation_; }
   /// Null when nothing steers.
-  const inverse::InverseController* controller() const { return controller_.get(); }
+  const inverse::TargetController* controller() const { return controller_.get(); }
   const std::string& controller_name() const { return controller_name_; }
   void step() { simulation_->step(); }
 
@@ -65,7 +65,7 @@ class Session {
   std::filesystem::path folder_;
   std::unique_ptr<sim::Simulation> simulation_;
   std::string controller_name_;
-  std::unique_ptr<inverse::InverseController> controller_;
+  std::unique_ptr<inverse::TargetController> controller_;
 };
 
 /// While the result lives, Ctrl-C ends the step in hand (by Interrupted, see terminal.hpp), and

@@ -17,6 +17,7 @@ from sinew import control
 SCENE = Path(__file__).resolve().parents[1] / "trunk" / "trunk.yaml"
 CABLES = [f"{kind}_{k}" for kind in ("long", "short") for k in range(4)]
 GOAL = np.array([0.03, 0.0, 0.18])
+CAMERA = "sensors={camera: {type: marker, body: trunk, point: 0 0 195 mm, noise: 0.1 mm, delay: 20 ms, seed: 1}}"
 DIFFERENT = {"mesh": "{shape: trunk, element_size: 5 mm}", "stiffness": 0.7, "friction": 0.1, "load": "20 g"}
 
 
@@ -33,58 +34,33 @@ def trunk(*, mesh="{shape: trunk}", stiffness=1.0, friction=0.0, load="", more=(
     return sim
 
 
-class Camera:
-    """Sees a point late and with white noise.
-
-    Parameters
-    ----------
-    place : (3,) m
-        Where the point is at first.
-    noise : float
-        m, standard deviation of each coordinate.
-    delay : int
-        Samples.
-    """
-
-    def __init__(self, place, noise=1e-4, delay=2, seed=1):
-        self._past = [np.array(place)] * (delay + 1)
-        self._noise, self._random = noise, np.random.default_rng(seed)
-
-    def see(self):
-        return self._past[0] + self._noise * self._random.normal(size=3)
-
-    def move(self, place):
-        self._past = [*self._past[1:], np.array(place)]
-
-
-def drive(loop, plant, camera, duration, closed=True):
+def drive(loop, plant, duration):
     """Runs a loop with a plant. (steps,) true distances of the tip from its target, m."""
     errors = []
     for _ in range(round(duration / plant.time_step)):
-        commands = loop.step({"tip": camera.see()} if closed else None, plant.time)
-        loop.send(plant, commands)
+        loop.send(plant, loop.step(time=plant.time))
         plant.step()
-        camera.move(plant.effector("tip").position)
         target = loop.targets["tip"]
         target = target.at(plant.time) if isinstance(target, sinew.Target) else target
         errors.append(np.linalg.norm(plant.effector("tip").position - target))
     return np.array(errors)
 
 
-def make(kind, command, **more):
-    """A loop on a model of its own: 'open', 'resolved rate' or 'predictive'."""
-    model = trunk()
+def make(kind, command, plant, **more):
+    """A loop on a model of its own and with the plant's camera: 'open' (without it), 'resolved rate' or 'predictive'."""
+    model, sensors = trunk(), None if kind == "open" else {"tip": plant.sensor("camera")}
     if kind == "predictive":
-        return control.PredictiveController(model, {"tip": GOAL}, CABLES, command=command, delay=0.02, **more)
-    return control.ClosedLoop(model, {"tip": GOAL}, CABLES, gains=6.0, command=command, delay=0.02, hold=0.0, **more)
+        return control.PredictiveController(model, {"tip": GOAL}, CABLES, command=command, sensors=sensors, **more)
+    return control.ClosedLoop(model, {"tip": GOAL}, CABLES, gains=6.0, command=command, sensors=sensors, hold=0.0, **more)
 
 
 def main():
     shown = {}
     print("mean distance of the tip from its target in the last second, tensions commanded (mm)")
     for kind in ("open", "resolved rate", "predictive"):
-        plant, loop = trunk(**DIFFERENT), make(kind, "effort")
-        shown[kind] = errors = drive(loop, plant, Camera(plant.effector("tip").position), 1.6, closed=kind != "open")
+        plant = trunk(**DIFFERENT, more=[CAMERA])
+        loop = make(kind, "effort", plant)
+        shown[kind] = errors = drive(loop, plant, 1.6)
         least = f"{loop.least_eigenvalue:.2f} +- {loop.least_eigenvalue_std:.2f}"  # nan where nothing is measured
         print(f"  {kind:14} {1e3 * errors[-100:].mean():6.3f}  {loop.status}, least eigenvalue {least}")
     if len(sys.argv) > 1:

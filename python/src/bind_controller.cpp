@@ -13,16 +13,16 @@ namespace sinew::python {
 
 namespace {
 
-using inverse::EffectorTask;
-using inverse::InverseController;
 using inverse::InverseSettings;
+using inverse::TargetController;
+using inverse::Task;
 
 // What `controller.targets` returns: a live mapping from effectors to targets.
 struct Targets {
   Controller controller;
 };
 
-const InverseController& law(const Controller& self) { return *self.attached->law; }
+const TargetController& law(const Controller& self) { return *self.attached->law; }
 
 const std::string& effector_name(const Controller& self, const EffectorTask& task) {
   return self.session->model().effectors()[static_cast<std::size_t>(task.effector)].name;
@@ -225,6 +225,29 @@ py::dict errors(const Controller& self) {
   return result;
 }
 
+py::dict measured_errors(const Controller& self) {
+  const Session::Use use(*self.session);
+  py::dict result;
+  if (!law(self).settings().feedback) return result;
+  const auto& tasks = law(self).settings().tasks;
+  for (std::size_t k = 0; k < tasks.size(); ++k) {
+    result[effector_name(self, tasks[k]).c_str()] = law(self).measured_error(static_cast<int>(k));
+  }
+  return result;
+}
+
+py::dict sensors(const Controller& self) {
+  py::dict result;
+  const auto& settings = law(self).settings();
+  if (!settings.feedback) return result;
+  for (std::size_t k = 0; k < settings.tasks.size(); ++k) {
+    const auto sensor = static_cast<std::size_t>(settings.feedback->sensors[k]);
+    result[effector_name(self, settings.tasks[k]).c_str()] =
+        self.session->model().sensors()[sensor].name;
+  }
+  return result;
+}
+
 std::vector<std::string> actuator_names(const Controller& self) {
   std::vector<std::string> names;
   for (const int index : law(self).settings().actuators) {
@@ -357,7 +380,7 @@ auto guarded(Get get) {
 }
 
 void bind_results(py::class_<Controller>& type) {
-  type.def_property_readonly("status", guarded([](const InverseController& law) {
+  type.def_property_readonly("status", guarded([](const TargetController& law) {
                                return std::string(inverse_status_name(law.status()));
                              }),
                              "str: how the last step served the targets: 'not-started'; "
@@ -365,22 +388,32 @@ void bind_results(py::class_<Controller>& type) {
                              "way; 'rate-limited', on the way at the limits on rates; "
                              "'out-of-reach', at rest as near as limits allow; 'local-optimum', at "
                              "rest where no small change of efforts comes nearer, though no limit "
-                             "is in the way; 'limits-conflict', see `conflict`.")
+                             "is in the way; 'limits-conflict', see `conflict`. A closed loop is "
+                             "on target by its samples, 'at-limits' where limits hold effectors "
+                             "back, and 'holding' while a sensor is silent.")
       .def_property_readonly(
-          "conflict", guarded([](const InverseController& law) { return law.conflict(); }),
+          "conflict", guarded([](const TargetController& law) { return law.conflict(); }),
           "str: with 'limits-conflict', which limits of which actuators contradict each other; "
-          "else empty.")
+          "with 'holding', which sensors are silent; else empty.")
       .def_property_readonly(
-          "efforts", guarded([](const InverseController& law) { return copy(law.efforts()); }),
-          "(k,) ndarray: efforts chosen last (N), in the order of `actuators`. A copy.")
+          "efforts", guarded([](const TargetController& law) { return copy(law.efforts()); }),
+          "(k,) ndarray: efforts chosen last (N), of a closed loop those that the actuators have, "
+          "in "
+          "the order of `actuators`. A copy.")
       .def_property_readonly("actuators", &actuator_names, "list of str: what it owns.")
       .def_property_readonly(
-          "error", guarded([](const InverseController& law) { return law.error(); }),
+          "error", guarded([](const TargetController& law) { return law.error(); }),
           "float: distance of the effectors from their targets now, along the directions "
           "whose weight is not zero, the "
           "largest one (m or rad); measured, before the first step too.")
       .def_property_readonly("errors", &errors, "dict: `error` of every effector.")
-      .def_property_readonly("force_errors", guarded([](const InverseController& law) {
+      .def_property_readonly("measured_errors", &measured_errors,
+                             "dict: of a closed loop the same of every effector by the last sample "
+                             "of its sensor, NaN before the first; else empty.")
+      .def_property_readonly(
+          "sensors", &sensors,
+          "dict: of a closed loop effector names to those of their sensors; else empty.")
+      .def_property_readonly("force_errors", guarded([](const TargetController& law) {
                                py::dict errors;
                                const auto& tasks = law.settings().contacts;
                                for (std::size_t k = 0; k < tasks.size(); ++k) {
@@ -393,7 +426,7 @@ void bind_results(py::class_<Controller>& type) {
                              "dict: of every contact in `contacts`, by how much its forces are "
                              "beyond what is asked (N); NaN before a step.")
       .def_property_readonly(
-          "certificate", guarded([](const InverseController& law) -> py::object {
+          "certificate", guarded([](const TargetController& law) -> py::object {
             const auto& found = law.certificate();
             if (!found) return py::none();
             py::dict all;
@@ -413,7 +446,7 @@ void bind_results(py::class_<Controller>& type) {
           "cables or drives are at the limits of two states; `stationarity`, 'S', 'M', 'C', 'W' or "
           "'none', by the multipliers on these; `best_nearby`, whether no piece that meets there "
           "leads on: by 'S', or since all `pieces` (2^between) were compared.")
-      .def_property_readonly("predicted_error", guarded([](const InverseController& law) {
+      .def_property_readonly("predicted_error", guarded([](const TargetController& law) {
                                return law.predicted_error();
                              }),
                              "float: what the last linearisation left (m or rad), all effectors "

@@ -163,7 +163,7 @@ void drive(const std::shared_ptr<Session>& session, const ViewOptions& options) 
     if (first) {
       session->take_back(
           true, name,
-          std::make_unique<inverse::InverseController>(session->simulation(), first->settings));
+          inverse::make_controller(session->simulation(), first->settings));
     }
     throw;
   }

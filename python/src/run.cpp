@@ -35,7 +35,7 @@ struct Recording {
 
 sim::Observables list_observables(Session& session) {
   sim::Observables list(session.simulation());
-  const auto controller = [&session]() -> const inverse::InverseController* {
+  const auto controller = [&session]() -> const inverse::TargetController* {
     return session.controller() ? session.controller()->law.get() : nullptr;
   };
   const auto effectors = inverse::steered_effectors(controller());

@@ -230,7 +230,7 @@ std::shared_ptr<AttachedController> Session::attach(inverse::InverseSettings set
   }
   auto made = std::make_shared<AttachedController>();
   made->name = std::move(name);
-  made->law = std::make_unique<inverse::InverseController>(simulation_, std::move(settings));
+  made->law = inverse::make_controller(simulation_, std::move(settings));
   controller_ = made;
   return made;
 }
@@ -242,7 +242,7 @@ std::optional<inverse::InverseSettings> Session::lend_controller() {
 }
 
 void Session::take_back(bool same, const std::string& name,
-                        std::unique_ptr<inverse::InverseController> law) {
+                        std::unique_ptr<inverse::TargetController> law) {
   if (controller_ && law && same) {
     controller_->law = std::move(law);
     return;

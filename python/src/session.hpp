@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/inverse/target_controller.hpp"
 #include "sinew/mechanics/tangent.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/linearisation.hpp"
@@ -27,7 +27,7 @@ namespace sinew::python {
 /// A controller and the name that it has in the scene; empty for one made from Python.
 struct AttachedController {
   std::string name;
-  std::unique_ptr<inverse::InverseController> law;
+  std::unique_ptr<inverse::TargetController> law;
   bool attached = true;
 };
 
@@ -136,7 +136,7 @@ class Session {
   /// What came of it: null, or the controller that is attached now.
   /// @param same whether it is the one that was lent. @param name of another one.
   void take_back(bool same, const std::string& name,
-                 std::unique_ptr<inverse::InverseController> law);
+                 std::unique_ptr<inverse::TargetController> law);
   /// After others have stepped.
   void count_steps() { steps_ = simulation_.steps(); }
 

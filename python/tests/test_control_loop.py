@@ -16,22 +16,27 @@ STIFFER = ["bodies.finger.material.young_modulus=520 kPa", "bodies.finger.mesh.e
 GRAVITY = "gravity=0 0 9.81 m/s^2"
 
 
-def drive(loop, plant, steps, *, delay=0, noise=0.0, seed=1, lost=lambda k: False, start=0, wires=None):
-    """Steps loop and plant; measurements are `delay` samples old. (steps,) true errors m, and the statuses."""
-    rng = np.random.default_rng(seed)
+def camera(channel="", body="finger", point="0 0 80 mm"):
+    """A setting: a marker at the finger's tip, with a noise, a rate, a delay ..."""
+    return f"sensors={{camera: {{type: marker, body: {body}, point: {point}, {channel}}}}}"
+
+
+def drive(loop, plant, steps, *, lost=lambda k: False, start=0, wires=None):
+    """Steps loop and plant; a loop without sensors sees the effectors as they are. (steps,) true errors m, and the statuses."""
     names = list(loop.targets)
-    past = [{name: np.array(plant.effector(name).value) for name in names}] * (delay + 1)
     errors, statuses = [], []
     for k in range(start, start + steps):
-        measured = {name: value + noise * rng.normal(size=3) for name, value in past[0].items()}
-        commands = loop.step({} if lost(k) else measured, k * plant.time_step)
+        if loop._sensors is not None:
+            commands = loop.step(time=plant.time)
+        else:
+            commands = loop.step({} if lost(k) else {name: plant.effector(name).value for name in names}, k * plant.time_step)
         if wires:
             commands = {wires.get(name, name): value for name, value in commands.items()}
         loop.send(plant, commands)
         plant.step()
-        past = [*past[1:], {name: np.array(plant.effector(name).value) for name in names}]
+        now = {name: np.array(plant.effector(name).value) for name in names}
         errors.append(max(np.linalg.norm(loop._robot.difference(name, loop._target(name, (k + 1) * plant.time_step), value))
-                          for name, value in past[-1].items()))
+                          for name, value in now.items()))
         statuses.append(loop.status)
     return np.array(errors), statuses
 
@@ -52,9 +57,9 @@ LOOPS = {
 @pytest.mark.parametrize("command", ["motion", "effort"])
 def test_feedback_makes_up_for_what_the_model_does_not_know(scene, kind, command):
     """Another mesh, 30 % stiffer, cable friction, payload, 0.1 mm of noise and 20 ms of delay at once."""
-    plant, model = twins(scene, STIFFER)
-    loop = LOOPS[kind](model, command=command, delay=0.02)
-    errors, statuses = drive(loop, plant, 300, delay=2, noise=1e-4)
+    plant, model = twins(scene, [*STIFFER, camera("noise: 0.1 mm, delay: 20 ms")])
+    loop = LOOPS[kind](model, command=command, sensors={"tip": plant.sensor("camera")})
+    errors, statuses = drive(loop, plant, 300)
     assert errors[-100:].mean() < 2e-4
     assert statuses[-1] in ("on-target", "at-limits")
     assert loop.least_eigenvalue > 0.0 and loop.least_eigenvalue_std > 0.0
@@ -84,7 +89,7 @@ def test_without_errors_of_the_model_the_loop_is_first_order(scene):
 
 @pytest.mark.parametrize("delay", [0, 1, 3])
 def test_the_largest_gain_is_that_of_an_integrator_with_a_delay(scene, delay):
-    model = sinew.load(scene)
+    model = sinew.load(scene, set=[camera(f"delay: {10 * delay} ms")])
     for name in CABLES:
         model.actuator(name).tension = 3.0
     model.step(60)
@@ -94,21 +99,20 @@ def test_the_largest_gain_is_that_of_an_integrator_with_a_delay(scene, delay):
     def growth(gain, **more):
         plant = model.clone()
         loop = control.ClosedLoop(model.clone(), {"tip": start + [2e-5, 0.0, 0.0]}, CABLES, gains=gain / model.time_step,
-                                  weights={"tip": [1, 0, 0]}, change=0.0, relaxation=0.0, real_jacobian="model", **more)
+                                  weights={"tip": [1, 0, 0]}, change=0.0, relaxation=0.0, real_jacobian="model",
+                                  sensors={"tip": plant.sensor("camera")}, **more)
         places = []
-        past = [start] * (delay + 1)
-        for k in range(120):
-            loop.send(plant, loop.step({"tip": past[0]}, k * model.time_step))
+        for _ in range(120):
+            loop.send(plant, loop.step(time=plant.time))
             plant.step()
-            past = [*past[1:], np.array(plant.effector("tip").position)]
-            places.append(abs(past[-1][0] - start[0] - 2e-5))
+            places.append(abs(plant.effector("tip").position[0] - start[0] - 2e-5))
         return max(places[60:]) / max(places[20:60])
 
     limit = control.delay_limit(delay)
     assert growth(0.97 * limit) < 1.0 < growth(1.03 * limit)
     if delay:
         # A model that makes up for the delay has the limit of none, 2.
-        assert growth(1.5, compensate=True, delay=delay * model.time_step) < 1.0
+        assert growth(1.5, compensate=True) < 1.0
 
 
 def test_vibrations_limit_the_rate():
@@ -154,7 +158,7 @@ def test_a_plant_that_is_wired_wrongly_violates_the_condition(scene):
             sim.step(60)
         start = np.array(plant.effector("tip").position)
         loop = control.ClosedLoop(
-            model, {"tip": start + [1e-4, 0.0, 0.0]}, CABLES, gains=4.0, tolerance=1e-5, delay=0.0,
+            model, {"tip": start + [1e-4, 0.0, 0.0]}, CABLES, gains=4.0, tolerance=1e-5,
             real_jacobian=real if real == "estimate" else lambda: control.jacobian(plant, ["tip"], CABLES)[:, order],
             estimator={"noise": 1e-6, "spread": 1.0})
         errors, statuses = drive(loop, plant, 60, wires=wires)
@@ -220,28 +224,44 @@ def test_lost_measurements_hold_and_then_open_the_loop(scene):
     assert errors[-1] < 7e-4 < errors[0]
     errors, statuses = drive(loop, plant, 100, start=260)
     assert errors[-1] < 1e-4 and statuses[-1] == "on-target"
-    # NaN, None and old measurements are lost ones.
+    # NaN and None are lost measurements.
     for lost in ({"tip": None}, {"tip": [np.nan, 0.0, 0.0]}, None):
         loop.step(lost, loop.time + 0.01)
         assert loop.status == "holding"
     loop.step({"tip": GOAL}, loop.time + 0.01)
     assert loop.status != "holding"
-    aged = control.ClosedLoop(sinew.load(scene), {"tip": GOAL}, CABLES, max_age=0.05)
-    aged.step({"tip": GOAL}, 1.0, taken=0.94)
-    assert aged.status == "holding"
-    aged.step({"tip": GOAL}, 1.01, taken=0.97)
-    assert aged.status != "holding"
+
+
+def test_samples_that_do_not_come_are_lost_measurements(scene):
+    """A camera of 50 Hz that sees 20 ms late: a sample may be 40 ms old, and no older."""
+    plant, model = twins(scene, [camera("rate: 50 Hz, delay: 20 ms")])
+    tip = plant.sensor("camera")
+    loop = control.ClosedLoop(model, {"tip": GOAL}, CABLES, sensors={"tip": tip})
+    _, statuses = drive(loop, plant, 12)
+    assert statuses[:3] == ["holding", "holding", "moving"] and set(statuses[3:]) == {"moving"}
+    tip.feed(plant.effector("tip").position, time=plant.time)
+    _, statuses = drive(loop, plant, 7)
+    assert statuses == ["moving"] * 5 + ["holding"] * 2
+    tip.feed([np.nan, 0.0, 0.0], time=plant.time)
+    assert drive(loop, plant, 1)[1] == ["holding"]
+    tip.feed(plant.effector("tip").position, time=plant.time)
+    assert drive(loop, plant, 1)[1] == ["moving"]
+    # A sensor may say itself for how long its samples hold.
+    plant, model = twins(scene, [camera("delay: 20 ms, rate: 25 Hz, timeout: 25 ms")])
+    loop = control.ClosedLoop(model, {"tip": GOAL}, CABLES, sensors={"tip": plant.sensor("camera")}, hold=1.0)
+    assert drive(loop, plant, 10)[1][2:] == ["moving", "holding", "holding", "holding"] * 2
 
 
 @pytest.mark.parametrize("kind", LOOPS)
 def test_states_and_clones_go_on_bit_for_bit(scene, kind):
-    plant, model = twins(scene, STIFFER)
-    loop = LOOPS[kind](model)
-    drive(loop, plant, 40, noise=1e-4, delay=1)
-    saved, at, copy, other = loop.state(), plant.state(), loop.clone(), plant.clone()
+    plant, model = twins(scene, [*STIFFER, camera("noise: 0.1 mm, rate: 50 Hz, delay: 10 ms")])
+    loop = LOOPS[kind](model, sensors={"tip": plant.sensor("camera")})
+    drive(loop, plant, 40)
+    other = plant.clone()
+    saved, at, copy = loop.state(), plant.state(), loop.clone(sensors={"tip": other.sensor("camera")})
 
     def go_on(one, sim):
-        drive(one, sim, 25, noise=1e-4, start=40, seed=7)
+        drive(one, sim, 25, start=40)
         return one.commands, sim.state_hash, one.least_eigenvalue, one.model.state_hash
 
     first = go_on(loop, plant)
@@ -319,7 +339,9 @@ def test_arms_of_constant_curvature(tmp_path):
             "actuators": {f"{way}_{k}": {"type": "torque", "body": "arm", "segment": k, "towards": way,
                                          "limits": {"torque": {"min": "-0.5 N m", "max": "0.5 N m"}}}
                           for k in (0, 1) for way in ("side", "across")},
-            "effectors": {"tip": {"body": "arm", "point": "0 0 -280 mm"}, "hand": {"body": "arm", "orientation": "0 0 -280 mm"}}})
+            "effectors": {"tip": {"body": "arm", "point": "0 0 -280 mm"}, "hand": {"body": "arm", "orientation": "0 0 -280 mm"}},
+            "sensors": {"tip": {"type": "marker", "body": "arm", "point": "0 0 -280 mm", "delay": "20 ms"},
+                        "hand": {"type": "orientation", "body": "arm", "at": "0 0 -280 mm", "delay": "20 ms"}}})
 
     goal = arm("0.108 N m", "100 g")
     for name, torque in (("side_0", 0.08), ("across_0", -0.03), ("side_1", 0.03), ("across_1", 0.02)):
@@ -329,8 +351,8 @@ def test_arms_of_constant_curvature(tmp_path):
     for make in (control.ClosedLoop, control.PredictiveController):
         plant, model = arm("0.14 N m", "130 g"), arm("0.108 N m", "100 g")
         # A turn of 1 rad counts as 0.1 m.
-        loop = make(model, target, command="effort", weights={"hand": 0.01}, delay=0.02)
-        errors, _ = drive(loop, plant, 400, delay=2)
+        loop = make(model, target, command="effort", weights={"hand": 0.01}, sensors=[plant.sensor(name) for name in target])
+        errors, _ = drive(loop, plant, 400)
         assert loop.quantities["side_0"] == "torque"
         assert errors[-1] < 1e-3
         assert 0.3 < loop.least_eigenvalue < 1.0
@@ -350,7 +372,7 @@ def test_two_bodies_with_joints_and_pressed_against_a_wall():
         plant.step()
         model.step()
         loop = control.ClosedLoop(model, {"tip": goal}, gains=8.0, weights={"tip": [1, 1, 0]})
-        drive(loop, plant, 150, noise=1e-5)
+        drive(loop, plant, 150)
         assert loop.error < 2e-4, name
         if wall:
             # The tip can go farther than the wall lets the flank: the segment bends over the contact, and slides on it.
@@ -391,8 +413,8 @@ def test_bad_input_has_names(scene, sim):
         (({"tip": GOAL},), {"command": "speed"}, "unknown-choice"), (({"tip": GOAL},), {"command": {"nord": "motion"}}, "unknown-name"),
         (({"tip": GOAL},), {"weights": {"top": 1.0}}, "unknown-name"), (({"tip": GOAL},), {"weights": {"tip": [1, 1]}}, "wrong-shape"),
         (({"tip": GOAL},), {"weights": {"tip": -1.0}}, "out-of-range"), (({"tip": GOAL},), {"weights": {"tip": 0.0}}, "out-of-range"),
-        (({"tip": GOAL},), {"tolerance": 0.0}, "out-of-range"), (({"tip": GOAL},), {"delay": -0.01}, "out-of-range"),
-        (({"tip": GOAL},), {"hold": np.nan}, "out-of-range"), (({"tip": GOAL},), {"max_age": 0.0}, "out-of-range"),
+        (({"tip": GOAL},), {"tolerance": 0.0}, "out-of-range"), (({"tip": GOAL},), {"hold": -0.01}, "out-of-range"),
+        (({"tip": GOAL},), {"hold": np.nan}, "out-of-range"),
         (({"tip": GOAL},), {"real_jacobian": "true"}, "unknown-choice"), (({"tip": GOAL},), {"change": -1.0}, "out-of-range"),
         (({"tip": GOAL},), {"estimator": {"noise": 0.0}}, "out-of-range"),
     ):
@@ -419,7 +441,7 @@ def test_bad_measurements_have_names(sim):
     before = sim.state_hash
     for arguments, kind in (
         ((GOAL, 0.0), "wrong-type"), (({"top": GOAL}, 0.0), "unknown-name"), (({"tip": [0, 0]}, 0.0), "wrong-shape"),
-        (({"tip": "far"}, 0.0), "wrong-type"), (({"tip": GOAL}, np.nan), "not-finite"), (({"tip": GOAL}, 0.0, 0.1), "non-monotonic-time"),
+        (({"tip": "far"}, 0.0), "wrong-type"), (({"tip": GOAL}, np.nan), "not-finite"), (({"tip": GOAL},), "not-finite"),
     ):
         with pytest.raises(sinew.Error) as caught:
             loop.step(*arguments)
@@ -436,6 +458,27 @@ def test_bad_measurements_have_names(sim):
     with pytest.raises(sinew.Error) as caught:
         good.set_target("top", GOAL)
     assert caught.value.kind == "unknown-name"
+
+
+def test_wrong_sensors_have_names(scene):
+    sensors = ("sensors={tip: {type: marker, body: finger, point: 0 0 80 mm}, "
+               "pull: {type: cable-length, actuator: east}}")
+    plant, model = twins(scene, [sensors])
+    tip = plant.sensor("tip")
+    for wrong, kind in (({"top": tip}, "unknown-name"), ({}, "missing-key"), ([plant.sensor("pull")], "unknown-name"),
+                        ({"tip": plant.sensor("pull")}, "wrong-type"), (["tip"], "wrong-type"), ({"tip": 1.0}, "wrong-type")):
+        for make in (control.ClosedLoop, control.PredictiveController):
+            with pytest.raises(sinew.Error) as caught:
+                make(model, {"tip": GOAL}, CABLES, sensors=wrong)
+            assert caught.value.kind == kind and caught.value.remedy, wrong
+    loop = control.ClosedLoop(model, {"tip": GOAL}, CABLES, sensors=[tip])
+    plant.step(3)
+    for arguments, kind in ((({"tip": GOAL}, plant.time), "bad-argument"), ((None, 0.0), "non-monotonic-time")):
+        with pytest.raises(sinew.Error) as caught:
+            loop.step(*arguments)
+        assert caught.value.kind == kind
+    loop.step(time=plant.time)
+    assert loop.errors["tip"] == pytest.approx(np.linalg.norm(tip.value - GOAL))
 
 
 def test_the_guide(monkeypatch):

@@ -268,3 +268,56 @@ def test_rows_that_stay_give_what_differences_give(scene):
     np.testing.assert_allclose(numbers, twin.read(), rtol=1e-12, atol=1e-15)
     reference = twin.sensitivity()
     np.testing.assert_allclose(slope, reference, rtol=1e-6, atol=1e-9 * np.abs(reference).max())
+
+
+def seen_finger(scene):
+    """A plant that something pushes, seen by sensors of other rates and delays, and the twin that does not know the push."""
+    sensing = ("sensors={tip: {type: marker, body: finger, point: 0 0 80 mm, noise: 0.05 mm, rate: 50 Hz, delay: 30 ms}, "
+               "side: {type: marker, body: finger, point: 10 0 50 mm, outside: nearest, noise: 0.05 mm, dropout: 20 %}, "
+               + ", ".join(f"{c}: {{type: cable-tension, actuator: {c}, noise: 5 mN}}, "
+                           f"{c}_length: {{type: cable-length, actuator: {c}, noise: 0.01 mm}}" for c in CABLES) + "}")
+    plant = sinew.load(scene, set=[sensing, *(f"actuators.{c}.command={{displacement: 0 mm}}" for c in CABLES)])
+    watching = list(plant.sensors.values())
+    twin = made(scene, measured=[estimate.Measured.by(sensor) for sensor in watching])
+    return plant, watching, twin
+
+
+def test_readings_come_from_sensors(scene):
+    plant, watching, twin = seen_finger(scene)
+    assert [(m.name, m.std, m.rate, m.delay) for m in twin.measured[:2]] == [
+        ("tip.position", 5e-5, 50.0, 0.03), ("side.position", 5e-5, None, 0.0)]
+    assert [m.name for m in twin.measured[2:4]] == ["east.tension", "east.displacement"]
+    plant.actuator("push").force = 0.3
+    plant.solve_static()
+    found = estimate.solve(twin, estimate.readings_of(watching))
+    assert found.values["hand.x"] == pytest.approx(0.3, abs=4.0 * found.std["hand.x"])
+    assert found.std["hand.x"] < 0.05
+
+
+def test_a_filter_takes_samples_as_they_are_delivered(scene):
+    plant, watching, twin = seen_finger(scene)
+    commands = [sensor for sensor in watching if sensor.kind == "cable-length"]
+    answers = [sensor for sensor in watching if sensor not in commands]
+    model = estimate.TwinModel(twin, lambda time: {sensor.name.removesuffix("_length"): sensor.value for sensor in commands})
+    run = estimate.ExtendedKalman(model, step=0.01)
+    force, taken = 0.2, 0
+    for _ in range(12):
+        plant.actuator("push").force = force
+        plant.step()
+        new = run.delivered(answers)
+        assert all(reading.time <= plant.time for reading in new)
+        taken += sum(reading.sensor == 0 for reading in new)
+        run.update(plant.time, new)
+    assert taken == 5  # of 0 to 80 ms, 30 ms late
+    hand = twin.inputs.index("hand.x")
+    assert run.mean[hand] == pytest.approx(force, abs=4.0 * run.std[hand])
+    assert run.std[hand] < 0.1
+
+
+def test_sensors_that_no_estimate_can_use_are_named(scene):
+    plant = sinew.load(scene, set=["sensors={exact: {type: marker, body: finger, point: 0 0 80 mm}, "
+                                   "skin: {type: stretch, body: finger, line: [0 0 0 mm, 0 0 80 mm], noise: 1e-4}}"])
+    for name, kind in (("exact", "out-of-range"), ("skin", "bad-argument")):
+        with pytest.raises(sinew.Error) as caught:
+            estimate.Measured.by(plant.sensor(name))
+        assert caught.value.kind == kind and caught.value.remedy

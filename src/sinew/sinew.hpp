@@ -20,6 +20,7 @@
 #include "sinew/fem/element_fields.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/fem/has_elements.hpp"
+#include "sinew/inverse/closed_loop.hpp"
 #include "sinew/inverse/controller_observables.hpp"
 #include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/inverse/target.hpp"

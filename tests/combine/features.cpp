@@ -159,7 +159,9 @@ std::vector<Feature> list_features() {
       {"effector", or_none(without(alternatives(effector, "point"), "points"))},
       {"probe", or_none(without(alternatives(probe, "point"), "points"))},
       {"sensor", or_none(words(variants(items("sensors"), "type")))},
-      {"controller", or_none(words(variants(items("controllers"), "type")))},
+      // A closed loop needs a sensor where its effector is.
+      {"controller",
+       or_none(without(words(variants(items("controllers"), "type")), "closed-loop"))},
       {"regularisation", words(map_of(controller, "regularisation"), "of")},
       {"membrane", switched},
       {"contact_zones", switched},

@@ -17,7 +17,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/inverse/controller_observables.hpp"
-#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/inverse/target_controller.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/record/run_file.hpp"
 #include "sinew/record/run_layout.hpp"
@@ -60,7 +60,7 @@ class Run {
       : own_(std::move(begun)), simulation(*own_) {
     for (const auto& controller : robot.controllers) {
       controllers_.push_back(
-          std::make_unique<inverse::InverseController>(simulation, controller.settings));
+          inverse::make_controller(simulation, controller.settings));
     }
   }
 
@@ -95,7 +95,7 @@ class Run {
   bool choice_held = false;
 
  private:
-  std::vector<std::unique_ptr<inverse::InverseController>> controllers_;
+  std::vector<std::unique_ptr<inverse::TargetController>> controllers_;
   std::string error_;
 };
 

@@ -38,6 +38,7 @@ actuators:
     point: 0 0 1
     direction: 1 0 0
     command: {force: {sine: {amplitude: 1, period: 1}}}
+  held: {type: force, body: a, point: 0 0 1, direction: 0 1 0}
 effectors:
   tip: {body: a, point: 0 0 1}
 masses:
@@ -62,6 +63,11 @@ controllers:
     actuators: [sine]
     effectors:
       tip: {target: {polyline: {points: [0 0 0, 0 0 1], period: 1}}}
+  loop:
+    type: closed-loop
+    actuators: [held]
+    sensors: [mark]
+    effectors: {tip: {target: 0 0 1}}
 )";
 
 // The description as text, signals and targets by their values.
@@ -86,6 +92,8 @@ class Dump {
     }
     for (const auto& controller : scene.controllers) {
       add(controller.regularisation, controller.epsilon.value_or(-1));
+      const auto feedback = controller.feedback.value_or(inverse::Feedback{});
+      add(feedback.gain, feedback.integral, feedback.timeout);
       for (const auto& task : controller.tasks) {
         for (const double weight : task.weights) add(weight);
         for (const double time : {0.0, 0.3, 1.7}) add(task.target.at(time));

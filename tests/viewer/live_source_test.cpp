@@ -10,7 +10,7 @@
 
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/fem/has_material.hpp"
-#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/inverse/target_controller.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/actuator.hpp"
@@ -253,7 +253,7 @@ TEST(LiveSource, RecordsEveryStepAndSavesAFile) {
 TEST(LiveSource, StepsASimulationOfOthersAndGivesItsControllerBack) {
   const scene::Robot shown = robot();
   const auto simulation = std::make_shared<sim::Simulation>(shown.model);
-  std::pair<std::string, std::unique_ptr<inverse::InverseController>> left;
+  std::pair<std::string, std::unique_ptr<inverse::TargetController>> left;
   {
     Watcher watcher;
     LiveSource source(shown, simulation,

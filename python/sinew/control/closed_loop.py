@@ -49,36 +49,38 @@ class ClosedLoop(Loop):
         Which it may use; all that take commands by default. The model's others keep their commands.
     gains : Gains, Schedule or float
         A number is the rate, 1/s.
+    sensors : dict or list of Sensor, optional
+        Of each effector the sensor of a plant or of a robot that measures it: a marker, or an orientation
+        (`plant.sensor('camera')`); a list where their names are those of the effectors. step() then takes the
+        samples that have been delivered, with their rate, delay and losses. Without, step() is given measurements
+        that are exact and of now.
     command : 'motion', 'effort' or dict by actuator, optional
         What actuators are commanded: a motion by default (displacement, angle), but chambers their pressure.
     weights : dict, optional
         Effectors to one weight, or one for each of its directions; >= 0.
     compensate : bool
-        Whether the known `delay` is made up for by the model (Smith, Chem. Eng. Prog. 53 (1957) 217): the error is
+        Whether the age of samples is made up for by the model (Smith, Chem. Eng. Prog. 53 (1957) 217): the error is
         that of the model now, corrected by what was measured less what the model had then.
-    delay : float
-        s, from when a measurement is taken until step() gets it. Used by `compensate`, and to pair measured motions
-        with the commands that made them.
     tolerance : float
         m (or rad): an effector measured this near is on target.
     change, relaxation : float
         Weights of the program: of changes of efforts, and of efforts themselves.
     hold : float
-        s, for how long commands are held when measurements stay away.
-    max_age : float, optional
-        s: older measurements count as lost.
+        s, for how long commands are held when measurements stay away: a sample that is not valid, or older than its
+        sensor's delay and period.
     real_jacobian : 'estimate', 'model' or callable
         The J_real of `least_eigenvalue`: estimated from measured motions (JacobianEstimator); that of the model; or a
         function without arguments that returns it, (rows, actuators), as control.jacobian() does for a plant.
     estimator : dict, optional
-        Of JacobianEstimator: `noise` (1e-4 m) and `noise_rotation` (1e-3 rad), standard deviations of measurements;
+        Of JacobianEstimator: `noise` (1e-4 m) and `noise_rotation` (1e-3 rad), standard deviations of measurements
+        where no sensor says its own;
         `spread` (0.3), of the relative error of the model's Jacobian; `forgetting` (0.9); `window` (5), samples from
         one measured difference to the next.
 
     Raises
     ------
     Error
-        wrong-type, no-effectors, no-actuators, unknown-name, unknown-choice, wrong-shape, not-finite, out-of-range,
+        wrong-type, no-effectors, no-actuators, unknown-name, missing-key (a sensor), unknown-choice, wrong-shape, not-finite, out-of-range,
         suspicious-unit, wrong-actuator-type; actuator-owned: a controller is attached to the model.
     """
 
@@ -89,20 +91,18 @@ class ClosedLoop(Loop):
         actuators: Optional[Sequence[str]] = None,
         gains: Union[Gains, Schedule, float] = Gains(),
         *,
+        sensors: Union[Mapping[str, Any], Sequence[Any], None] = None,
         command: Union[str, Mapping[str, str], None] = None,
         weights: Optional[Mapping[str, Any]] = None,
         compensate: bool = False,
-        delay: float = 0.0,
         tolerance: float = 5e-4,
         change: float = 1e-5,
         relaxation: float = 1e-7,
         hold: float = 0.1,
-        max_age: Optional[float] = None,
         real_jacobian: Union[str, Callable[[], np.ndarray]] = "estimate",
         estimator: Optional[Mapping[str, Any]] = None,
     ) -> None:
-        super().__init__(model, effectors, actuators, command, weights, tolerance, delay, hold, max_age, real_jacobian,
-                         estimator)
+        super().__init__(model, effectors, actuators, command, weights, tolerance, sensors, hold, real_jacobian, estimator)
         self.gains = gains
         self._compensate = bool(compensate)
         self._weights = Weights.checked(self._row_weights, change, relaxation, self._place)

@@ -22,11 +22,13 @@ _TINY = np.finfo(float).tiny
 
 
 class Memory(NamedTuple):
-    """One past step: where the model's effectors were, by which commands, and what was measured then."""
+    """One past step: where the model's effectors were, by which commands, what was measured then, and how many steps
+    before that the samples had been taken."""
 
     positions: dict[str, np.ndarray]
     commands: np.ndarray
     measured: Optional[dict[str, np.ndarray]]
+    ages: dict[str, int]
 
 
 def _vector(value: Any, place: str, unit: str) -> np.ndarray:
@@ -53,7 +55,7 @@ class Loop:
 
     def __init__(self, model: Any, effectors: Mapping[str, Any], actuators: Optional[Sequence[str]],
                  command: Union[str, Mapping[str, str], None], weights: Optional[Mapping[str, Any]], tolerance: float,
-                 delay: float, hold: float, max_age: Optional[float],
+                 sensors: Union[Mapping[str, Any], Sequence[Any], None], hold: float,
                  real_jacobian: Union[str, Callable[[], np.ndarray]], estimator: Optional[Mapping[str, Any]]) -> None:
         place = self._place = type(self).__name__
         if not isinstance(effectors, Mapping):
@@ -71,9 +73,9 @@ class Loop:
             self.set_target(name, target)
         self._row_weights = self._to_weights(weights)
         self._tolerance = _positive(tolerance, f"{place}(tolerance)")
-        self._delay = _positive(delay, f"{place}(delay)", zero=True)
+        self._sensors = self._to_sensors(sensors)
+        self._ages = dict.fromkeys(effectors, 0)  # of what is measured, steps
         self._hold = _positive(hold, f"{place}(hold)", zero=True)
-        self._max_age = math.inf if max_age is None else _positive(max_age, f"{place}(max_age)")
         if not callable(real_jacobian) and real_jacobian not in _JACOBIANS:
             raise Error("unknown-choice", f"{place}(real_jacobian)", f"there is no {real_jacobian!r}",
                         "use 'estimate', 'model' or a function that returns it")
@@ -212,19 +214,16 @@ class Loop:
         """
         self._robot.send(sim, commands)
 
-    def step(
-        self, measured: Optional[Mapping[str, Any]], time: float, taken: Optional[float] = None
-    ) -> dict[str, float]:
+    def step(self, measured: Optional[Mapping[str, Any]] = None, time: Optional[float] = None) -> dict[str, float]:
         """One step of the loop, once every time step of the model.
 
         Parameters
         ----------
-        measured : dict
-            Effectors to what was measured: (3,) m, or rotation vector, rad. What stays away is left out, None or NaN.
+        measured : dict, optional
+            Of a loop without sensors, effectors to where they are now: (3,) m, or rotation vector, rad. What stays
+            away is left out, None or NaN.
         time : float
-            s, now; later than that of the step before.
-        taken : float, optional
-            s, when the measurements were taken, for `max_age`; now by default.
+            s, now, on the sensors' clock; later than that of the step before.
 
         Returns
         -------
@@ -234,10 +233,16 @@ class Loop:
         Raises
         ------
         Error
-            wrong-type, wrong-shape, unknown-name; non-monotonic-time: not later than the step before, or taken later
-            than now. RunError: as Simulation.step() of the model, singular-matrix.
+            wrong-type, wrong-shape, unknown-name, not-finite (time); non-monotonic-time: not later than the step before,
+            or than a sample; bad-argument: measurements given to a loop that has sensors. RunError: as
+            Simulation.step() of the model, singular-matrix.
         """
-        found = self._read(measured, time, taken)
+        if time is None or not (isinstance(time, (int, float)) and math.isfinite(time)):
+            raise Error("not-finite", "step(time)", f"it is {time!r}", "give the time in s")
+        if not time > self._time:
+            raise Error("non-monotonic-time", "step(time)", f"{time:g} s comes after {self._time:g} s",
+                        "give times that grow from step to step")
+        found = self._read(measured) if self._sensors is None else self._read_sensors(measured, time)
         self._time = time
         before = self._commands
         lost = [name for name, value in found.items() if value is None]
@@ -278,12 +283,20 @@ class Loop:
         self._estimator.restore(state[10])
         self._restore(state[11])
 
-    def clone(self) -> "Loop":
-        """Another loop on a clone of the model, in the same state. A function given as `real_jacobian` is shared."""
+    def clone(self, sensors: Union[Mapping[str, Any], Sequence[Any], None] = None) -> "Loop":
+        """Another loop on a clone of the model, in the same state. A function given as `real_jacobian` is shared.
+
+        Parameters
+        ----------
+        sensors : dict or list of Sensor, optional
+            Those of another plant, such as a clone; the same by default.
+        """
         other = copy.copy(self)
+        if sensors is not None:
+            other._sensors = self._to_sensors(sensors)
         other.model = self.model.clone()
         other._robot = self._robot.on(other.model)
-        other._targets = dict(self._targets)
+        other._targets, other._ages = dict(self._targets), dict(self._ages)
         other._estimator = self._estimator.clone()
         other.restore(self.state())
         return other
@@ -313,21 +326,59 @@ class Loop:
         if not (isinstance(window, int) and window >= 1):
             raise Error("out-of-range", f"{self._place}(estimator)['window']", f"it is {window!r}",
                         "give 1 sample or more")
-        noises = [noise_rotation if effector.unit == "rad" else noise for effector in self._robot.effectors.values()]
+        noises = []
+        for name, effector in self._robot.effectors.items():
+            own = self._sensors[name].std if self._sensors is not None else 0.0
+            noises.append(own or (noise_rotation if effector.unit == "rad" else noise))
         every = np.repeat(noises, [len(directions) for directions in self._robot.directions])
         scaled = np.sqrt(self._row_weights) * every
         return window, JacobianEstimator(scaled[self._row_weights > 0.0], spread=spread, forgetting=forgetting)
 
-    def _read(self, measured: Optional[Mapping[str, Any]], time: float, taken: Optional[float]) -> dict[str, Any]:
+    def _to_sensors(self, given: Union[Mapping[str, Any], Sequence[Any], None]) -> Optional[dict[str, Any]]:
+        """Of each effector its sensor; None where measurements are given to step()."""
+        if given is None:
+            return None
+        place = f"{self._place}(sensors)"
+        if not isinstance(given, Mapping):
+            try:
+                given = {sensor.name: sensor for sensor in given}
+            except (TypeError, AttributeError):
+                raise Error("wrong-type", place, f"{given!r} are no sensors",
+                            "give a dict such as {'tip': plant.sensor('camera')}, or a list of sensors") from None
+        for name in given:
+            if name not in self._robot.effectors:
+                raise Error("unknown-name", place, f"this loop does not steer '{name}'",
+                            f"it steers {', '.join(self._robot.effectors)}")
+        for name, effector in self._robot.effectors.items():
+            kind = "orientation" if effector.unit == "rad" else "marker"
+            if name not in given:
+                raise Error("missing-key", place, f"no sensor measures the effector '{name}'", f"give a {kind} for it")
+            found = getattr(given[name], "kind", type(given[name]).__name__)
+            if found != kind:
+                raise Error("wrong-type", f"{place}['{name}']", f"it is of type {found}", f"give a sensor of type {kind}")
+        return {name: given[name] for name in self._robot.effectors}
+
+    def _period(self, sensor: Any) -> float:
+        return max(1.0 / sensor.rate if sensor.rate else 0.0, self.model.time_step)
+
+    def _read_sensors(self, measured: Optional[Mapping[str, Any]], time: float) -> dict[str, Any]:
+        """Of each effector the sample that was delivered last, None where the next one should have come."""
+        if measured is not None:
+            raise Error("bad-argument", "step(measured)", "the loop has sensors", "feed them: sensor.feed(value, time)")
+        found: dict[str, Any] = {}
+        for name, sensor in (self._sensors or {}).items():
+            age = time - sensor.time
+            if age < -1e-9:
+                raise Error("non-monotonic-time", "step(time)",
+                            f"'{sensor.name}' has a sample of {sensor.time:g} s, later than now, {time:g} s",
+                            "give the time of the plant: step(time=plant.time)")
+            seen = sensor.valid and age <= sensor.delay + self._period(sensor) + 0.5 * self.model.time_step
+            found[name] = np.array(sensor.value) if seen else None
+            self._ages[name] = round(age / self.model.time_step) if seen else 0
+        return found
+
+    def _read(self, measured: Optional[Mapping[str, Any]]) -> dict[str, Any]:
         """Of each effector the measurement, None where it stays away."""
-        if not (isinstance(time, (int, float)) and math.isfinite(time)):
-            raise Error("not-finite", "step(time)", f"it is {time!r}", "give the time in s")
-        if not time > self._time:
-            raise Error("non-monotonic-time", "step(time)", f"{time:g} s comes after {self._time:g} s",
-                        "give times that grow from step to step")
-        if taken is not None and not taken <= time:
-            raise Error("non-monotonic-time", "step(taken)", f"{taken:g} s is later than now, {time:g} s",
-                        "give the time at which the measurement was taken")
         if measured is not None and not isinstance(measured, Mapping):
             raise Error("wrong-type", "step(measured)", f"{measured!r} is no dict",
                         "give a dict from effectors to (3,) arrays")
@@ -336,13 +387,12 @@ class Loop:
             if name not in self._robot.effectors:
                 raise Error("unknown-name", "step(measured)", f"this loop does not steer '{name}'",
                             f"it steers {', '.join(self._robot.effectors)}")
-        old = taken is not None and time - taken > self._max_age
         found: dict[str, Any] = {}
         for name, effector in self._robot.effectors.items():
             value = measured.get(name)
             if value is not None:
                 value = _vector(value, f"measured['{name}']", effector.unit)
-            found[name] = None if value is None or old or not np.isfinite(value).all() else value
+            found[name] = None if value is None or not np.isfinite(value).all() else value
         return found
 
     def _mode(self, lost: bool, time: float) -> str:
@@ -354,15 +404,23 @@ class Loop:
         # Half a step beside rounding of sums of time steps.
         return _HOLDING if time - self._lost_since < self._hold - 0.5 * self.model.time_step else _OPEN
 
+    def _past(self, name: str, step: int, age: int) -> Optional[np.ndarray]:
+        """Where the model had an effector `age` steps before a step of the memory (its length: now)."""
+        at = step - age
+        if at < 0:
+            return None
+        return self._memory[at].positions[name] if at < len(self._memory) else self._robot.positions()[name]
+
     def _delayed(self) -> dict[str, np.ndarray]:
-        """The model's effectors when what is measured now was so."""
-        samples = self._samples()
-        if samples == 0 or not self._memory:
-            return self._robot.positions()
-        return self._memory[-min(samples, len(self._memory))].positions
+        """The model's effectors when what is measured now was so; at the start, as they were first."""
+        steps = len(self._memory)
+        found = {name: self._past(name, steps, min(age, steps)) for name, age in self._ages.items()}
+        return {name: value for name, value in found.items() if value is not None}
 
     def _samples(self) -> int:
-        return round(self._delay / self.model.time_step)
+        """Steps by which samples are late at most."""
+        late = [(sensor.delay + self._period(sensor)) / self.model.time_step for sensor in (self._sensors or {}).values()]
+        return math.ceil(max(late, default=0.0) + 0.5)
 
     def _observe(self, found: Mapping[str, Any]) -> None:
         """Takes up what is measured less what is modelled, by the part `_observer` of its change."""
@@ -394,19 +452,20 @@ class Loop:
 
     def _learn(self, found: Mapping[str, np.ndarray]) -> None:
         """The estimator learns from measurements a window apart, and from what the model did in the same time."""
-        window, delay = self._window, self._samples()
-        steps = len(self._memory)
-        if self._real_jacobian != "estimate" or steps % window or steps < window + delay:
+        window, steps = self._window, len(self._memory)
+        if self._real_jacobian != "estimate" or steps % window or steps < window:
             return
-        before = self._memory[steps - window].measured
-        if before is None:
+        before = self._memory[steps - window]
+        if before.measured is None:
             return
         robot = self._robot
-        now = self._memory[steps - delay].positions if delay else robot.positions()
-        then = self._memory[steps - window - delay].positions
+        now = {name: self._past(name, steps, age) for name, age in self._ages.items()}
+        then = {name: self._past(name, steps - window, age) for name, age in before.ages.items()}
+        if any(value is None for value in (*now.values(), *then.values())):
+            return
         root = np.sqrt(self._row_weights)
         modelled = robot.rows({name: robot.difference(name, now[name], then[name]) for name in found})
-        measured = robot.rows({name: robot.difference(name, value, before[name]) for name, value in found.items()})
+        measured = robot.rows({name: robot.difference(name, value, before.measured[name]) for name, value in found.items()})
         self._estimator.update((root * modelled)[root > 0.0], (root * measured)[root > 0.0])
 
     def _judge(self, answer: Answer, choice: Choice, mode: str) -> None:
@@ -460,7 +519,7 @@ class Loop:
 
     def _advance(self, measured: Optional[dict[str, np.ndarray]], before: np.ndarray) -> None:
         """Remembers this step, whose effectors follow from the commands `before` it, and moves the model on."""
-        self._memory.append(Memory(self._robot.positions(), before, measured))
+        self._memory.append(Memory(self._robot.positions(), before, measured, dict(self._ages)))
         keep = max(2 * (self._samples() + self._window) + 2, 4)
         if len(self._memory) > 2 * keep:
             # Whole windows go, so that their phase stays.

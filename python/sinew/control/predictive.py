@@ -24,7 +24,7 @@ class PredictiveController(Loop):
     within the limits of efforts, motions and their rates in all steps; z_1 is taken, and the next step begins anew. x
     are the effectors of the model, which obeys the same commands beside the robot, r_j the targets at the ends of the
     steps, so that moving ones are seen coming, and b what is measured less what the model had when it was measured,
-    filtered: b <- b + observer (y - x(t - delay) - b). A robot and a model that differ by a constant leave no error
+    filtered: b <- b + observer (y - x(t - age) - b). A robot and a model that differ by a constant leave no error
     at rest (dynamic matrix control: Cutler & Ramaker, Joint Automatic Control Conf. 1980; offset-free by the
     disturbance b: Muske & Badgwell, J. Process Control 12 (2002) 617-632). Steps are those of equilibrium: inertia
     has no part in them.
@@ -34,7 +34,7 @@ class PredictiveController(Loop):
 
     Parameters
     ----------
-    model, effectors, actuators, command, weights, delay, tolerance, hold, max_age, real_jacobian, estimator
+    model, effectors, actuators, sensors, command, weights, tolerance, hold, real_jacobian, estimator
         See ClosedLoop.
     horizon : int
         N, steps.
@@ -61,17 +61,15 @@ class PredictiveController(Loop):
         change: float = 1e-2,
         relaxation: float = 1e-5,
         observer: float = 0.2,
+        sensors: Union[Mapping[str, Any], Sequence[Any], None] = None,
         command: Union[str, Mapping[str, str], None] = None,
         weights: Optional[Mapping[str, Any]] = None,
-        delay: float = 0.0,
         tolerance: float = 5e-4,
         hold: float = 0.1,
-        max_age: Optional[float] = None,
         real_jacobian: Union[str, Callable[[], np.ndarray]] = "estimate",
         estimator: Optional[Mapping[str, Any]] = None,
     ) -> None:
-        super().__init__(model, effectors, actuators, command, weights, tolerance, delay, hold, max_age, real_jacobian,
-                         estimator)
+        super().__init__(model, effectors, actuators, command, weights, tolerance, sensors, hold, real_jacobian, estimator)
         if not (isinstance(horizon, int) and 1 <= horizon <= 100):
             raise Error("out-of-range", f"{self._place}(horizon)", f"it is {horizon!r}", "give 1 to 100 steps")
         if not 0.0 < observer <= 1.0:

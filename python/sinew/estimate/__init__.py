@@ -15,10 +15,10 @@ from __future__ import annotations
 from .filters import ExtendedKalman, Filter, MovingHorizon, Reading, UnscentedKalman
 from .models import ArmModel, SteppedModel, TwinModel
 from .places import Patch, Search, locate, patches
-from .quantities import Effort, Force, Measured, Motion, NodalForce, Parameter
+from .quantities import Effort, Force, Measured, Motion, NodalForce, Parameter, readings_of
 from .static import Estimate, Observability, observability, shape_std, solve
 from .twin import Twin
 
 __all__ = ["ArmModel", "Effort", "Estimate", "ExtendedKalman", "Filter", "Force", "Measured", "Motion", "MovingHorizon",
            "NodalForce", "Observability", "Parameter", "Patch", "Reading", "Search", "SteppedModel", "Twin", "TwinModel",
-           "UnscentedKalman", "locate", "observability", "patches", "shape_std", "solve"]
+           "UnscentedKalman", "locate", "observability", "patches", "readings_of", "shape_std", "solve"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bisect
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Optional, Protocol
 
@@ -161,6 +161,23 @@ class Filter:
         if name not in names:
             raise Error("unknown-name", "Filter", f"there is no sensor '{name}'", f"there are {', '.join(names)}")
         return names.index(name)
+
+    def delivered(self, sensors: Iterable[Any]) -> list[Reading]:
+        """Samples that sensors have delivered in their last step, for update().
+
+        Parameters
+        ----------
+        sensors : iterable of Sensor
+            Of a simulation or a robot; what they measure (Measured.by()) is among the model's sensors. Readings of commands
+            are none of these: they are inputs of the model.
+
+        Raises
+        ------
+        Error
+            unknown-name; those of Measured.by().
+        """
+        return [Reading(sensor.time, self.sensor(Measured.by(sensor).name), np.atleast_1d(np.asarray(sensor.value, float)))
+                for sensor in sensors if sensor.fresh]
 
     def update(self, time: float, readings: Sequence[Reading] = ()) -> None:
         """Goes to a time with the readings that have arrived since the last call, in any order.

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Optional, Union
+from typing import Any, Optional, Union
 
 import numpy as np
 
 from ..errors import Error
 
-__all__ = ["Effort", "Force", "Measured", "Motion", "NodalForce", "Parameter", "Unknown"]
+__all__ = ["Effort", "Force", "Measured", "Motion", "NodalForce", "Parameter", "Unknown", "readings_of"]
 
 _AXES = "xyz"
 
@@ -57,6 +57,43 @@ class Measured:
             _positive(self.rate, f"{place}.rate", "Hz")
         if not (math.isfinite(self.delay) and self.delay >= 0.0):
             raise Error("out-of-range", f"{place}.delay", f"{self.delay!r} is no delay", "give s, >= 0")
+
+    @classmethod
+    def by(cls, sensor: Any) -> "Measured":
+        """What a sensor of a simulation or a robot measures (Simulation.sensor()), with its noise, rate and delay.
+
+        A marker measures the position of the model's effector that has the sensor's name, an orientation its rotation;
+        any other sensor what it reads (Sensor.observable).
+
+        Parameters
+        ----------
+        sensor : Sensor
+
+        Raises
+        ------
+        Error
+            out-of-range: a sensor without noise and quantum; bad-argument: nothing else observes what it reads.
+        """
+        place = f"Measured.by({sensor.name})"
+        if not sensor.std > 0.0:
+            raise Error("out-of-range", place, "the sensor has no noise, and no estimate weighs an exact reading",
+                        "give the sensor a noise or a quantum")
+        name = {"marker": f"{sensor.name}.position", "orientation": f"{sensor.name}.rotation"}.get(sensor.kind, sensor.observable)
+        if name == f"{sensor.name}.true":
+            raise Error("bad-argument", place, f"a model does not observe what a {sensor.kind} reads",
+                        "measure positions, rotations, or motions and efforts of actuators")
+        return cls(name, sensor.std, sensor.rate, sensor.delay)
+
+
+def readings_of(sensors: Iterable[Any]) -> dict[str, Any]:
+    """Of each sensor the sample that it delivered last, by the name of what it measures: readings for solve().
+
+    Parameters
+    ----------
+    sensors : iterable of Sensor
+        Those that have delivered nothing yet, or nothing valid, are left out.
+    """
+    return {Measured.by(sensor).name: sensor.value for sensor in sensors if sensor.valid}
 
 
 @dataclass(frozen=True)

@@ -105,7 +105,7 @@ void own(StepProblem& problem, const sim::Simulation& simulation, std::span<cons
   for (std::size_t i = 0; i < models.size(); ++i) {
     ActuatorBlock& block = problem.actuators[i];
     const auto row = static_cast<std::size_t>(models[i].row);
-    const bool told = block.row >= 0 && simulation.actuator(static_cast<int>(i)).owner == nullptr;
+    const bool told = block.row >= 0 && !simulation.actuator(static_cast<int>(i)).chosen;
     if (std::ranges::find(actuators, static_cast<int>(i)) != actuators.end()) {
       block = {};
       block.owned = true;

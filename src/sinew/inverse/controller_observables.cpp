@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/effector.hpp"
-#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/inverse/target_controller.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -50,7 +50,7 @@ void add_effector(sim::Observables& list, const AttachedController& controller, 
   error.components = {error.name};
   list.add({std::move(target), std::move(error)},
            [&simulation, controller, effector](std::span<double> to) {
-             const InverseController* present = controller();
+             const TargetController* present = controller();
              const int task = task_of(present, effector);
              std::ranges::fill(to, kNothing);
              if (task < 0) return;
@@ -75,7 +75,7 @@ void add_largest_error(sim::Observables& list, const AttachedController& control
              {"error"},
              {}}},
            [controller](std::span<double> to) {
-             const InverseController* present = controller();
+             const TargetController* present = controller();
              to[0] = present == nullptr ? kNothing : present->error();
            });
 }
@@ -89,13 +89,13 @@ void add_status(sim::Observables& list, AttachedController controller) {
                          "controller",
                          {"controller"},
                          {{kNone, "none"}, {kStart, "start"}}};
-  for (int code = 0; code <= static_cast<int>(InverseStatus::limits_conflict); ++code) {
+  for (int code = 0; code < kInverseStatuses; ++code) {
     status.words.push_back({code, inverse_status_name(static_cast<InverseStatus>(code))});
   }
   const sim::Simulation& simulation = list.simulation();
   list.add({std::move(status)},
            [&simulation, controller = std::move(controller)](std::span<double> to) {
-             const InverseController* present = controller();
+             const TargetController* present = controller();
              to[0] = present == nullptr       ? kNone
                      : simulation.steps() > 0 ? static_cast<int>(present->status())
                                               : kStart;
@@ -104,14 +104,14 @@ void add_status(sim::Observables& list, AttachedController controller) {
 
 }  // namespace
 
-int task_of(const InverseController* controller, int effector) {
+int task_of(const TargetController* controller, int effector) {
   if (controller == nullptr) return -1;
   const auto& tasks = controller->settings().tasks;
   const auto found = std::ranges::find(tasks, effector, &EffectorTask::effector);
   return found == tasks.end() ? -1 : static_cast<int>(found - tasks.begin());
 }
 
-std::vector<int> steered_effectors(const InverseController* controller) {
+std::vector<int> steered_effectors(const TargetController* controller) {
   std::vector<int> effectors;
   if (controller == nullptr) return effectors;
   for (const EffectorTask& task : controller->settings().tasks) {
@@ -129,7 +129,7 @@ void add_controller(sim::Observables& list, AttachedController controller,
   add_status(list, std::move(controller));
 }
 
-void add_controller(sim::Observables& list, const InverseController* controller) {
+void add_controller(sim::Observables& list, const TargetController* controller) {
   add_controller(
       list, [controller] { return controller; }, steered_effectors(controller));
 }

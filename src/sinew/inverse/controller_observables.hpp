@@ -1,5 +1,5 @@
 /// @file
-/// What can be observed of an inverse controller: where effectors are asked to be, and how far off
+/// What can be observed of a controller: where effectors are asked to be, and how far off
 /// they are.
 #pragma once
 
@@ -13,18 +13,18 @@ class Observables;
 
 namespace sinew::inverse {
 
-class InverseController;
+class TargetController;
 
 /// The controller that is attached now; null while none is.
-using AttachedController = std::function<const InverseController*()>;
+using AttachedController = std::function<const TargetController*()>;
 
 /// The task of an effector, as a position in settings().tasks; -1: it has none.
 /// @param controller may be null. @param effector of Model::effectors().
-int task_of(const InverseController* controller, int effector);
+int task_of(const TargetController* controller, int effector);
 
 /// Effectors that a controller steers, in the order of its tasks.
 /// @param controller may be null.
-std::vector<int> steered_effectors(const InverseController* controller);
+std::vector<int> steered_effectors(const TargetController* controller);
 
 /// Adds to the list, of every effector `NAME.target` (3,) and `NAME.error` in m or rad, NaN while
 /// nothing steers it; `error`, the largest of all tasks in m, in rad where all of them turn; and
@@ -36,6 +36,6 @@ void add_controller(sim::Observables& list, AttachedController controller,
 /// The same of a controller that stays as it is, and of the effectors that it steers.
 /// @param list of its simulation. @param controller outlives the list; null: the status alone is
 /// added.
-void add_controller(sim::Observables& list, const InverseController* controller);
+void add_controller(sim::Observables& list, const TargetController* controller);
 
 }  // namespace sinew::inverse

@@ -39,9 +39,8 @@ bool near(double value, double limit) {
 }  // namespace
 
 InverseController::InverseController(sim::Simulation& simulation, InverseSettings settings)
-    : simulation_(simulation), settings_(std::move(settings)) {
+    : TargetController(simulation, std::move(settings)) {
   const sim::Model& model = simulation_.model();
-  check_settings(simulation_, settings_);
   std::vector<double> weights;
   for (const EffectorTask& task : settings_.tasks) {
     const auto& effector = model.effector(task.effector);
@@ -82,11 +81,6 @@ void InverseController::detach() {
 InverseStatus InverseController::step() {
   simulation_.step();
   return status_;
-}
-
-void InverseController::set_target(int task, Target target) {
-  check_target(simulation_, settings_.tasks.at(static_cast<std::size_t>(task)).effector, target);
-  settings_.tasks.at(static_cast<std::size_t>(task)).target = std::move(target);
 }
 
 // Of a step, whose law may be solved several times. First: what became of the step before, and what
@@ -289,27 +283,5 @@ bool InverseController::rate_binds(const StepProblem& problem, const Response& r
 }
 
 void InverseController::begin_step() { program_.reset(); }
-
-// Of the present configuration, which may be a restored one whose rows no step has formed yet.
-double InverseController::error(int task) const {
-  const EffectorTask& asked = settings_.tasks.at(static_cast<std::size_t>(task));
-  const auto& effector = simulation_.model().effector(asked.effector);
-  const auto& configuration = simulation_.configuration();
-  VectorX goal(effector.row_count()), now(effector.row_count());
-  effector.target_delta(configuration, asked.target.at(simulation_.time()), goal);
-  effector.target_delta(configuration, effector.value(configuration), now);
-  for (Eigen::Index k = 0; k < goal.size(); ++k) {
-    if (!(asked.weight(k) > 0.0)) goal[k] = now[k];
-  }
-  return (goal - now).norm();
-}
-
-double InverseController::error() const {
-  double worst = 0.0;
-  for (std::size_t k = 0; k < settings_.tasks.size(); ++k) {
-    worst = std::max(worst, error(static_cast<int>(k)));
-  }
-  return worst;
-}
 
 }  // namespace sinew::inverse

@@ -11,10 +11,8 @@
 
 #include "sinew/core/types.hpp"
 #include "sinew/inverse/effort_program.hpp"
-#include "sinew/inverse/inverse_settings.hpp"
-#include "sinew/inverse/inverse_status.hpp"
 #include "sinew/inverse/step_damping.hpp"
-#include "sinew/step/certificate.hpp"
+#include "sinew/inverse/target_controller.hpp"
 #include "sinew/step/controller.hpp"
 
 namespace sinew::inverse {
@@ -29,43 +27,26 @@ namespace sinew::inverse {
 /// changes evenly. StepDamping adds a term that keeps lambda near the last step's where the robot
 /// did not do what was foreseen. W and delta_free are those of step::Response: actuators that it
 /// does not own obey their commands, springs, gas, contacts and friction their laws.
-class InverseController : public step::Controller {
+class InverseController : public TargetController, public step::Controller {
  public:
   /// @param simulation must outlive the controller. @param settings see there.
   /// Throws Error: no-effectors, no-actuators, actuator-owned, wrong-length (weights),
   /// out-of-range, suspicious-unit.
   InverseController(sim::Simulation& simulation, InverseSettings settings);
   ~InverseController() override;
-  InverseController(const InverseController&) = delete;
-  InverseController& operator=(const InverseController&) = delete;
 
   /// Solves and advances the simulation by one step.
   InverseStatus step();
-  void detach();
+  void detach() override;
 
-  /// Replaces a task's target. @param task position in the settings. @param target (3,) m or rad,
-  ///   or a path over the simulation's time. Throws Error(suspicious-unit), see check_target().
-  void set_target(int task, Target target);
-
-  const InverseSettings& settings() const { return settings_; }
-  const sim::Simulation& simulation() const { return simulation_; }
-  InverseStatus status() const { return status_; }
-  /// Efforts (actuators,) N that the controller chose last, in the order of settings().actuators.
-  const VectorX& efforts() const { return efforts_; }
-  /// Distance of a task's effector from its target now, along the effector's directions whose
-  /// weight is not zero; m or rad.
-  double error(int task) const;
-  /// The largest error() of all tasks.
-  double error() const;
-  /// N: by how much the forces of a contact are beyond what is asked of them, by the last step's
-  /// linearisation; NaN before a step. @param task position in settings().contacts.
-  double force_error(int task) const { return force_errors_.at(static_cast<std::size_t>(task)); }
-  /// With settings().certify, of the last step's linearisation; none before a step.
-  const std::optional<step::Certificate>& certificate() const { return certificate_; }
-  /// What the last step's linearisation left, m or rad, all tasks together; NaN before a step.
-  double predicted_error() const { return predicted_error_; }
-  /// With limits-conflict: which limits of which actuators contradict each other. Else empty.
-  const std::string& conflict() const { return program_.conflict(); }
+  /// Those that it chose last.
+  VectorX efforts() const override { return efforts_; }
+  double force_error(int task) const override {
+    return force_errors_.at(static_cast<std::size_t>(task));
+  }
+  const std::optional<step::Certificate>& certificate() const override { return certificate_; }
+  double predicted_error() const override { return predicted_error_; }
+  std::string conflict() const override { return program_.conflict(); }
 
   void begin_choices(const step::StepProblem& problem, const step::Response& response) override;
   step::LawStatus choose(const step::StepProblem& problem, const step::Response& response,
@@ -110,8 +91,6 @@ class InverseController : public step::Controller {
   InverseStatus judge(const step::StepProblem& problem, const step::Response& response,
                       const VectorX& motion, std::span<const double> effort, double moved) const;
 
-  sim::Simulation& simulation_;
-  InverseSettings settings_;
   bool attached_ = false;
 
   std::vector<int> effector_rows_;  // rows of H, all tasks one after the other
@@ -128,7 +107,6 @@ class InverseController : public step::Controller {
   double predicted_error_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> force_errors_;  // (contacts,)
   std::optional<step::Certificate> certificate_;
-  InverseStatus status_ = InverseStatus::not_started;
 
   double time_ = -std::numeric_limits<double>::infinity();  // the end of the step at hand, s
   std::vector<Vector3> asked_;                              // the targets then

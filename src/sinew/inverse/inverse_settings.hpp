@@ -2,6 +2,7 @@
 /// What an inverse controller is asked, and how it works.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "sinew/inverse/contact_task.hpp"
@@ -38,6 +39,15 @@ struct EffectorTask {
   }
 };
 
+/// What a ClosedLoop goes by.
+struct Feedback {
+  std::vector<int> sensors;  ///< (tasks,) of Model::sensors(): which measures each task's effector
+  double gain = 5.0;         ///< 1/s, > 0: an error without delay falls as exp(-gain t)
+  double integral = 0.0;     ///< 1/s^2, >= 0: of the time integral of the error
+  /// s, > 0: all commands are held while a sample is older than its sensor's delay and this.
+  double timeout = 0.1;
+};
+
 struct InverseSettings {
   std::vector<EffectorTask> tasks;
   std::vector<ContactTask> contacts;
@@ -56,6 +66,9 @@ struct InverseSettings {
   double tolerance = 1e-4;
   /// Whether every choice gets a certificate, which takes longer than the choice.
   bool certify = false;
+  /// None: the simulated effectors are where they are known to be. A closed loop uses tasks,
+  /// actuators and tolerance alone of all else.
+  std::optional<Feedback> feedback = {};
 };
 
 /// Names all actuators that a controller may own where the settings name none, and checks the rest.

@@ -18,6 +18,10 @@ std::string_view inverse_status_name(InverseStatus status) {
       return "local-optimum";
     case InverseStatus::limits_conflict:
       return "limits-conflict";
+    case InverseStatus::at_limits:
+      return "at-limits";
+    case InverseStatus::holding:
+      return "holding";
   }
   return "unknown";
 }

@@ -12,10 +12,14 @@
 #include "sinew/scene/scene.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/sensor_model.hpp"
 
 namespace sinew::scene {
 
 namespace {
+
+// m or rad: an effector of a closed loop that is measured this near is on target.
+constexpr double kMeasuredTolerance = 5e-4;
 
 SceneController controller_of(const ControllerDescription& description, const sim::Model& model) {
   SceneController controller{description.name, {}};
@@ -30,6 +34,14 @@ SceneController controller_of(const ControllerDescription& description, const si
   }
   for (const std::string& name : description.actuators) {
     settings.actuators.push_back(model.actuator_index(name));
+  }
+  if (description.feedback) {
+    settings.tolerance = kMeasuredTolerance;
+    settings.feedback = description.feedback;
+    for (const std::string& name : description.sensors) {
+      const auto found = std::ranges::find(model.sensors(), name, &sim::SensorModel::name);
+      settings.feedback->sensors.push_back(static_cast<int>(found - model.sensors().begin()));
+    }
   }
   settings.regularisation = description.regularisation;
   if (description.epsilon) settings.epsilon = *description.epsilon;

@@ -387,6 +387,8 @@ struct ContactTaskDescription {
 struct ControllerDescription {
   std::string name;
   Location place;
+  std::optional<inverse::Feedback> feedback;  ///< of a closed loop; its sensors have no numbers yet
+  std::vector<std::string> sensors;           ///< (tasks,) of a closed loop, what measures each
   std::vector<std::string> actuators;  ///< empty: all
   std::vector<Location> actuator_places;
   std::vector<TaskDescription> tasks;

@@ -248,7 +248,7 @@ KeyTable scene_table() {
       {.name = "controllers",
        .forms = {names(controller_form())},
        .example = "{follow: {type: inverse, effectors: {tip: ...}}}",
-       .description = "Inverse controllers. A controller owns the actuators it drives."});
+       .description = "Controllers of effectors. A controller owns the actuators it drives."});
   scene.keys.push_back({.name = "record",
                         .forms = {table(record_table())},
                         .example = "{every: 1, states: true}",

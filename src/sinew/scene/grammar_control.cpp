@@ -245,6 +245,50 @@ std::shared_ptr<const KeyTable> regularisation_table() {
                                 "the controller."}}});
 }
 
+Key driven_key() {
+  return {.name = "actuators",
+          .forms = {list({reference("actuators")})},
+          .example = "[long_0, long_1]",
+          .description = "The actuators it drives. Without: all."};
+}
+
+std::shared_ptr<const KeyTable> closed_loop_table() {
+  return make_table(
+      {.name = "controller: type closed-loop",
+       .description = "Feedback on effectors that sensors measure: before each step, commands the "
+                      "actuators motions, and pressures of chambers, that take the effectors to "
+                      "their targets.",
+       .keys = {{.name = "effectors",
+                 .forms = {names(task_form(), 1, "effectors")},
+                 .example = "{tip: {target: 0 0 190 mm}}",
+                 .description = "Target of each effector, by name.",
+                 .required = true},
+                {.name = "sensors",
+                 .forms = {list({reference("sensors")})},
+                 .example = "[tip]",
+                 .description = "What measures the effectors: of each a marker at its point, or an "
+                                "orientation at its places.",
+                 .required = true},
+                driven_key(),
+                {.name = "gain",
+                 .forms = {quantity(frequency(), positive())},
+                 .example = "8 1/s",
+                 .default_text = "5 1/s",
+                 .description = "Speed over error: an error falls as exp(-gain t)."},
+                {.name = "integral",
+                 .forms = {quantity(integral_gain(), non_negative())},
+                 .example = "4 1/s^2",
+                 .default_text = "0 1/s^2",
+                 .description = "Speed over the time integral of the error; gain^2/4 damps "
+                                "critically."},
+                {.name = "timeout",
+                 .forms = {quantity(time(), positive())},
+                 .example = "50 ms",
+                 .default_text = "100 ms",
+                 .description = "All commands are held while the last sample of a sensor is older "
+                                "than the sensor's delay and this."}}});
+}
+
 }  // namespace
 
 std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char* value_example) {
@@ -300,20 +344,18 @@ Form controller_form() {
                             .forms = {names(contact_task_form(), 1, "contacts")},
                             .example = "{grip: {normal_force: {min: 1 N, max: 3 N}}}",
                             .description = "What is asked of the forces of contacts, by name."},
-                           {.name = "actuators",
-                            .forms = {list({reference("actuators")})},
-                            .example = "[long_0, long_1]",
-                            .description = "The actuators it drives. Without: all."},
+                           driven_key(),
                            {.name = "regularisation",
                             .forms = {table(regularisation_table())},
                             .example = "{of: change}",
                             .default_text = "{}",
                             .description = "Choice among equivalent efforts."}}});
   return variants(
-      "type",
-      {{.word = "inverse", .description = "One-step inverse control.", .table = inverse},
-       {.word = "closed-loop", .description = "Inverse control with sensors.", .later = true},
-       {.word = "policy", .description = "A learnt policy.", .later = true}});
+      "type", {{.word = "inverse", .description = "One-step inverse control.", .table = inverse},
+               {.word = "closed-loop",
+                .description = "Feedback on measured effectors.",
+                .table = closed_loop_table()},
+               {.word = "policy", .description = "A learnt policy.", .later = true}});
 }
 
 }  // namespace sinew::scene::forms

@@ -13,6 +13,7 @@ Measure density() { return {dimension::kDensity, "kg/m^3"}; }
 Measure inertia() { return {Dimension{2, 1, 0}, "kg m^2"}; }
 Measure force() { return {dimension::kForce, "N"}; }
 Measure frequency() { return {dimension::kFrequency, "1/s"}; }
+Measure integral_gain() { return {Dimension{0, 0, -2}, "1/s^2"}; }
 Measure speed() { return {dimension::kVelocity, "m/s"}; }
 Measure angular_speed() { return {dimension::kFrequency, "rad/s"}; }
 Measure force_rate() { return {Dimension{1, 1, -3}, "N/s"}; }

@@ -32,6 +32,7 @@ Measure density();
 Measure inertia();
 Measure force();
 Measure frequency();
+Measure integral_gain();
 Measure speed();
 Measure angular_speed();
 Measure force_rate();

@@ -160,13 +160,18 @@ ControllerDescription read_controller(const Node::Entry& entry, const ReadContex
   controller.place = entry.key_place;
   const Form& form = form_of(grammar(), "controllers", Shape::names).items.front();
   const Fields fields(entry.value, form);
+  const bool closed = read_text(*entry.value.find(form.telltale)) == "closed-loop";
   read_driven(fields, controller);
-  read_regularisation(fields, controller);
+  if (!closed) read_regularisation(fields, controller);
   if (const Node* effectors = fields.find("effectors")) {
     const Form& tasks = fields.form("effectors").items.front();
     for (const Node::Entry& task : effectors->entries()) {
       controller.tasks.push_back(read_task(task, tasks, context, scene));
     }
+  }
+  if (closed) {
+    read_feedback(fields, scene, controller);
+    return controller;
   }
   if (const Node* contacts = fields.find("contacts")) {
     const Form& tasks = fields.form("contacts").items.front();

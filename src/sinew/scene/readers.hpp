@@ -65,6 +65,12 @@ Vector3 read_axis(const Node& node, const std::vector<Form>& forms);
 ControllerDescription read_controller(const Node::Entry& entry, const ReadContext& context,
                                       const SceneDescription& scene);
 
+/// The sensors and gains of a closed loop. @param fields of it. @param scene with bodies,
+/// actuators, effectors, sensors, contacts and joints. @param controller read so far: its tasks and
+/// actuators.
+void read_feedback(const Fields& fields, const SceneDescription& scene,
+                   ControllerDescription& controller);
+
 /// The signal under `key`: a value, or a map of the signal table.
 sim::Signal read_signal(const Fields& fields, std::string_view key, const ReadContext& context);
 

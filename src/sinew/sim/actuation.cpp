@@ -13,20 +13,6 @@ namespace sinew::sim {
 
 namespace {
 
-struct Interval {
-  double min, max;
-};
-
-// [limits.min, limits.max] cut to what `rate` allows from `now`. A value that stands outside its
-// limits moves towards them as fast as it may.
-Interval reachable(const Limits& limits, double now, double time_step) {
-  const double reach = std::isinf(limits.rate) ? limits.rate : limits.rate * time_step;
-  Interval interval{std::max(limits.min, now - reach), std::min(limits.max, now + reach)};
-  if (interval.min <= interval.max) return interval;
-  const double nearest = now > limits.max ? interval.min : interval.max;
-  return {nearest, nearest};
-}
-
 // From where a commanded velocity goes on: a motor at its limit has fallen behind and does not
 // catch up; else what it was told last, so that rounding does not add up.
 double setpoint(const ActuatorModel& model, const ActuatorState& state) {
@@ -47,7 +33,7 @@ step::ActuatorBlock actuator_block(const ActuatorModel& model, const ActuatorSta
   block.motion_min = motion.min;
   block.motion_max = motion.max;
   block.kind = state.command.kind;
-  block.owned = state.owner != nullptr;
+  block.owned = state.chosen;
   block.motion_scale = model.motion_scale;
   const double told = state.command.signal.value(time);
   const Interval& own = block.kind == CommandKind::motion ? motion : effort;
@@ -77,6 +63,14 @@ bool is_limited_motor(const ActuatorModel& model, const step::ActuatorBlock& blo
 
 }  // namespace
 
+Interval reachable(const Limits& limits, double now, double time_step) {
+  const double reach = std::isinf(limits.rate) ? limits.rate : limits.rate * time_step;
+  Interval interval{std::max(limits.min, now - reach), std::min(limits.max, now + reach)};
+  if (interval.min <= interval.max) return interval;
+  const double nearest = now > limits.max ? interval.min : interval.max;
+  return {nearest, nearest};
+}
+
 Actuation::Actuation(const Model& model)
     : model_(model),
       states_(model.actuators().size()),
@@ -98,9 +92,9 @@ std::span<double> Actuation::numbers_of(std::size_t actuator) {
       drive_state(static_cast<int>(actuator)).size());
 }
 
-void Actuation::command(int actuator, Command command) {
+void Actuation::command(int actuator, Command command, const void* by) {
   ActuatorState& state = states_.at(static_cast<std::size_t>(actuator));
-  if (state.owner != nullptr) {
+  if (state.owner != by) {
     throw Error(ErrorKind::actuator_owned,
                 {.item = model_.actuators()[static_cast<std::size_t>(actuator)].name},
                 "a controller owns this actuator", "detach the controller first");
@@ -109,11 +103,18 @@ void Actuation::command(int actuator, Command command) {
 }
 
 void Actuation::set_commands(const std::vector<Command>& commands) {
-  for (std::size_t i = 0; i < states_.size(); ++i) states_[i].command = commands[i];
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const bool told = states_[i].owner != nullptr && !states_[i].chosen;
+    if (!told) states_[i].command = commands[i];
+  }
 }
 
-void Actuation::own(const void* owner, std::span<const int> actuators) {
-  for (const int index : actuators) states_.at(static_cast<std::size_t>(index)).owner = owner;
+void Actuation::own(const void* owner, std::span<const int> actuators, bool chosen) {
+  for (const int index : actuators) {
+    ActuatorState& state = states_.at(static_cast<std::size_t>(index));
+    state.owner = owner;
+    state.chosen = chosen;
+  }
 }
 
 // A winch stays by its length, a regulator by its pressure.
@@ -122,7 +123,8 @@ void Actuation::release(const void* owner) {
     ActuatorState& state = states_[i];
     if (state.owner != owner) continue;
     state.owner = nullptr;
-    const bool regulator = model_.actuators()[i].type == ActuatorType::chamber;
+    if (!std::exchange(state.chosen, false)) continue;
+    const bool regulator = model_.actuators()[i].type == ActuatorType::pressure;
     state.command = regulator ? Command{CommandKind::effort, Signal::constant(state.effort)}
                               : Command{CommandKind::motion, Signal::constant(state.motion)};
   }
@@ -164,7 +166,7 @@ void Actuation::advance_drives(std::span<const step::ActuatorBlock> blocks) {
 void Actuation::restart() {
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const ActuatorModel& model = model_.actuators()[i];
-    if (states_[i].owner == nullptr) states_[i].command = model.command;
+    if (!states_[i].chosen) states_[i].command = model.command;
     if (model.drive != nullptr) model.drive->rest(numbers_of(i));
   }
 }

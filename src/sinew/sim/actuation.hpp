@@ -32,14 +32,15 @@ class Actuation {
   std::span<const double> drive_state(int actuator) const;
   std::size_t drive_numbers() const { return drives_.size(); }
 
-  /// Throws Error(actuator-owned) while a controller has it.
-  void command(int actuator, Command command);
-  /// @param commands (actuators,) those of owned ones wait for their release.
+  /// Throws Error(actuator-owned) while a controller other than `by` has it.
+  void command(int actuator, Command command, const void* by = nullptr);
+  /// @param commands (actuators,) those of actuators whose efforts are chosen wait for their
+  /// release; those that an owner commands keep their commands.
   void set_commands(const std::vector<Command>& commands);
-  /// @param owner chooses the efforts of these actuators until release(). @param actuators indices
-  /// of Model::actuators().
-  void own(const void* owner, std::span<const int> actuators);
-  /// They stay where they stand until they are told otherwise.
+  /// @param owner of these actuators until release(). @param actuators indices of
+  /// Model::actuators(). @param chosen whether it chooses their efforts; else it commands them.
+  void own(const void* owner, std::span<const int> actuators, bool chosen = true);
+  /// They stay where they stand, or where they were told to be, until they are told otherwise.
   void release(const void* owner);
 
   /// What each may do in a step, from its state before. @param time s, the end of the step, at
@@ -65,6 +66,14 @@ class Actuation {
   std::vector<double> motions_before_;
   std::vector<double> drives_;  // numbers of all drives, at the start of the step
 };
+
+/// An interval of values.
+struct Interval {
+  double min, max;
+};
+/// [limits.min, limits.max] cut to what `rate` allows from `now`. A value that stands outside its
+/// limits moves towards them as fast as it may. @param time_step s.
+Interval reachable(const Limits& limits, double now, double time_step);
 
 /// Moves commands towards them from where the actuators were.
 /// @param blocks (actuators,) of a step. @param start (actuators,). @param fraction of the way, 1

@@ -83,7 +83,8 @@ struct ActuatorState {
   /// commanded or a controller chooses.
   double setpoint = 0.0;
   bool slack = true;            ///< a cable without tension
-  const void* owner = nullptr;  ///< the controller that has it; null: it obeys its command
+  const void* owner = nullptr;  ///< the controller that has it; null: anyone may command it
+  bool chosen = false;          ///< its owner chooses its effort; else it obeys its command
 };
 
 }  // namespace sinew::sim

@@ -170,7 +170,7 @@ NewtonReport NewtonStep::stay(double time_step) {
   run_.restore(run_.before);
   const std::vector<ActuatorState>& actuators = run_.actuation.states();
   for (std::size_t i = 0; i < actuators.size(); ++i) {
-    if (actuators[i].owner == nullptr) continue;
+    if (!actuators[i].chosen) continue;
     run_.world.problem().actuators[i].hold_effort(actuators[i].effort);
   }
   run_.begin_world(time_step);

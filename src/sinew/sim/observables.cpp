@@ -118,11 +118,10 @@ void Observables::release() {
 
 double commanded(const Simulation& simulation, int actuator, CommandKind kind) {
   const ActuatorState& state = simulation.actuator(actuator);
-  const bool owned = state.owner != nullptr;
-  if (kind != (owned ? CommandKind::effort : state.command.kind)) {
+  if (kind != (state.chosen ? CommandKind::effort : state.command.kind)) {
     return std::numeric_limits<double>::quiet_NaN();
   }
-  return owned ? state.effort : state.command.signal.value(simulation.time());
+  return state.chosen ? state.effort : state.command.signal.value(simulation.time());
 }
 
 std::vector<CommandKind> command_kinds(const ActuatorModel& actuator) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "sinew/sim/commander.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/step/controller.hpp"
 
@@ -59,6 +60,11 @@ NewtonReport Run::newton(step::Controller* chooser, const NewtonSettings& settin
   return solve_newton(world, solver, chooser, effort, settings, clock, watch);
 }
 
+step::WithMemory* Run::attached() const {
+  if (controller != nullptr) return controller;
+  return commander;
+}
+
 void Run::finish_step() {
   actuation.read(world.measure_delta(), effort, world.problem().actuators);
   world.joints().accept(world.delta());
@@ -75,7 +81,7 @@ void Run::restart() {
   last_step = next_step = 0.0;
   steps = 0;
   finish_step();
-  if (controller != nullptr) controller->forget();
+  if (step::WithMemory* one = attached()) one->forget();
   report = {};
   sensors.restart(*this);
 }

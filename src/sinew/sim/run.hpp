@@ -21,6 +21,7 @@
 
 namespace sinew::sim {
 
+class Commander;
 struct Inputs;
 struct NewtonReport;
 struct NewtonSettings;
@@ -44,6 +45,8 @@ struct Run {
   void begin_world(double time_step);
   /// From where the world is. @param chooser,settings see solve_newton().
   NewtonReport newton(step::Controller* chooser, const NewtonSettings& settings);
+  /// Of what is attached; null: nothing is.
+  step::WithMemory* attached() const;
   /// Reads off the state what actuators did.
   void finish_step();
   void restart();
@@ -64,7 +67,8 @@ struct Run {
   World world;
   StepWatch watch;
   step::StepSolver solver;
-  step::Controller* controller = nullptr;  ///< that is attached
+  step::Controller* controller = nullptr;  ///< that is attached, and chooses efforts in steps
+  Commander* commander = nullptr;          ///< that is attached, and commands before steps
   Actuation actuation;
   Surroundings surroundings;
   std::vector<double> effort;  ///< (rows,) N or Pa

@@ -53,8 +53,9 @@ void Run::keep(State& state) const {
   world.contacts().planes().save_frames(state.frames);
   world.contacts().planes().save_points(state.points);
   state.joints = world.joints().values();
-  state.controller.resize(controller != nullptr ? controller->memory_size() : 0);
-  if (controller != nullptr) controller->save_memory(state.controller);
+  const step::WithMemory* remembering = attached();
+  state.controller.resize(remembering != nullptr ? remembering->memory_size() : 0);
+  if (remembering != nullptr) remembering->save_memory(state.controller);
   state.ledger = ledger.sums();
   state.volume_ratio = volume_ratio;
   state.residual = report.relative_residual;
@@ -82,11 +83,12 @@ void Run::restore(const State& state) {
   next_step = state.next_step;
   steps = state.steps;
   if (!sensors.load(state.sensors)) sensors.restart(*this);
-  if (controller == nullptr) return;
-  if (!state.controller.empty() && state.controller.size() == controller->memory_size()) {
-    controller->load_memory(state.controller);
+  step::WithMemory* remembering = attached();
+  if (remembering == nullptr) return;
+  if (!state.controller.empty() && state.controller.size() == remembering->memory_size()) {
+    remembering->load_memory(state.controller);
   } else {
-    controller->forget();
+    remembering->forget();
   }
 }
 

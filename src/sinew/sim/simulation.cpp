@@ -5,6 +5,7 @@
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/probe.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/sim/commander.hpp"
 #include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/inputs.hpp"
 #include "sinew/sim/path_follower.hpp"
@@ -28,9 +29,27 @@ double Simulation::time() const { return run_->time(); }
 std::int64_t Simulation::steps() const { return run_->steps; }
 
 const StepReport& Simulation::step() {
-  stepper_->step();
+  if (run_->commander != nullptr) {
+    step_by_command();
+  } else {
+    stepper_->step();
+  }
   run_->sensors.advance(*run_);
   return run_->report;
+}
+
+// A step that fails leaves the commander as it was, too.
+void Simulation::step_by_command() {
+  Commander& commander = *run_->commander;
+  std::vector<double> memory(commander.memory_size());
+  commander.save_memory(memory);
+  try {
+    commander.command();
+    stepper_->step();
+  } catch (...) {
+    commander.load_memory(memory);
+    throw;
+  }
 }
 
 const StepReport& Simulation::report() const { return run_->report; }
@@ -54,8 +73,8 @@ std::vector<PathPoint> Simulation::follow_path(const PathSettings& settings,
 
 void Simulation::reset() { run_->restart(); }
 
-void Simulation::command(int actuator, Command command) {
-  run_->actuation.command(actuator, std::move(command));
+void Simulation::command(int actuator, Command command, const Commander* by) {
+  run_->actuation.command(actuator, std::move(command), by);
 }
 
 const ActuatorState& Simulation::actuator(int index) const {
@@ -104,6 +123,13 @@ void Simulation::feed_sensor(int index, double time, std::span<const double> val
 
 ContactReader Simulation::contacts() const { return ContactReader(*run_); }
 
+void Simulation::require_free(const step::WithMemory* newcomer) const {
+  const step::WithMemory* present = run_->attached();
+  if (present == nullptr || present == newcomer) return;
+  throw Error(ErrorKind::actuator_owned, {.item = "controller"},
+              "another controller is attached to this simulation", "detach it first");
+}
+
 void Simulation::attach(step::Controller& controller, std::span<const int> actuators,
                         std::span<const int> contacts) {
   if (model().step().event_driven()) {
@@ -112,10 +138,7 @@ void Simulation::attach(step::Controller& controller, std::span<const int> actua
                 "would take for steps",
                 "choose backward-euler or bdf2 for a robot with a controller");
   }
-  if (run_->controller != nullptr && run_->controller != &controller) {
-    throw Error(ErrorKind::actuator_owned, {.item = "controller"},
-                "another controller is attached to this simulation", "detach it first");
-  }
+  require_free(&controller);
   run_->controller = &controller;
   run_->actuation.own(&controller, actuators);
   run_->world.contacts().want(contacts);
@@ -126,6 +149,18 @@ void Simulation::detach(const step::Controller& controller) {
   run_->controller = nullptr;
   run_->actuation.release(&controller);
   run_->world.contacts().want({});
+}
+
+void Simulation::attach(Commander& commander, std::span<const int> actuators) {
+  require_free(&commander);
+  run_->commander = &commander;
+  run_->actuation.own(&commander, actuators, false);
+}
+
+void Simulation::detach(const Commander& commander) {
+  if (run_->commander != &commander) return;
+  run_->commander = nullptr;
+  run_->actuation.release(&commander);
 }
 
 const step::Controller* Simulation::attached_controller() const { return run_->controller; }

@@ -25,6 +25,7 @@ class Body;
 namespace sinew::step {
 struct ActuatorBlock;
 class Controller;
+class WithMemory;
 }  // namespace sinew::step
 
 namespace sinew::sim {
@@ -32,6 +33,7 @@ namespace sinew::sim {
 struct ActuatorState;
 class Channel;
 struct Command;
+class Commander;
 class ContactReader;
 struct EnergyLedger;
 struct Inputs;
@@ -96,8 +98,9 @@ class Simulation {
   /// Back to the start, bit for bit: state, time, commands of the model. Controllers stay attached.
   void reset();
 
-  /// Tells an actuator what to do. Throws Error(actuator-owned) while a controller has it.
-  void command(int actuator, Command command);
+  /// Tells an actuator what to do. Throws Error(actuator-owned) while a controller has it, or a
+  /// commander other than `by`.
+  void command(int actuator, Command command, const Commander* by = nullptr);
   const ActuatorState& actuator(int index) const;
   /// Moves a body's fixed nodes in the next step: turned about `centre` by a rotation vector and
   /// then shifted, from rest. An input, as commands are: where the nodes then are is state.
@@ -139,6 +142,11 @@ class Simulation {
               std::span<const int> contacts = {});
   void detach(const step::Controller& controller);
   const step::Controller* attached_controller() const;
+  /// Gives a commander the actuators that it alone commands until it is detached. One commander or
+  /// controller at a time. Throws Error(actuator-owned).
+  /// @param commander must be detached before it ends. @param actuators of the model.
+  void attach(Commander& commander, std::span<const int> actuators);
+  void detach(const Commander& commander);
 
   World& world();
   const World& world() const;
@@ -173,6 +181,9 @@ class Simulation {
   std::size_t bytes() const;
 
  private:
+  void step_by_command();
+  void require_free(const step::WithMemory* newcomer) const;
+
   std::unique_ptr<Run> run_;
   std::unique_ptr<Stepper> stepper_;
 };

@@ -2,11 +2,11 @@
 /// What chooses the efforts of some actuators in place of their commands.
 #pragma once
 
-#include <cstddef>
 #include <span>
 
 #include "sinew/core/types.hpp"
 #include "sinew/step/law_status.hpp"
+#include "sinew/step/with_memory.hpp"
 
 namespace sinew::step {
 
@@ -21,9 +21,8 @@ enum class Guards {
   tight,  ///< and those that are tight have none
 };
 
-class Controller {
+class Controller : public WithMemory {
  public:
-  virtual ~Controller() = default;
   /// How well efforts serve what the controller wants. First the limits of its actuators count,
   /// then its objective.
   struct Merit {
@@ -63,14 +62,6 @@ class Controller {
   /// Called before each step: what helped to solve the last one is forgotten, so that a step
   /// follows from state and inputs alone.
   virtual void begin_step() = 0;
-
-  /// What it remembers from one step to the next, as numbers: part of the simulation's state.
-  virtual std::size_t memory_size() const { return 0; }
-  /// Into and from (memory_size(),) numbers.
-  virtual void save_memory(std::span<double>) const {}
-  virtual void load_memory(std::span<const double>) {}
-  /// Remembers nothing, as at the start.
-  virtual void forget() {}
 };
 
 }  // namespace sinew::step

@@ -1,0 +1,92 @@
+"""Controllers of type closed-loop: from Python, in runs, with saved states and clones."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import sinew
+
+HOLD = Path(__file__).resolve().parents[2] / "examples" / "finger" / "hold.yaml"
+
+
+@pytest.fixture
+def held():
+    return sinew.load(HOLD)
+
+
+def test_the_example_holds_the_tip_while_something_pushes(held):
+    controller = held.controller
+    assert controller.name == "hold" and controller.sensors == {"tip": "tip"}
+    assert controller.status == "not-started" and np.isnan(held.controller.measured_errors["tip"])
+    held.step()
+    assert controller.status == "holding" and "'tip' has delivered nothing yet" in controller.conflict
+    record = held.run(3.0)
+    assert controller.status == "on-target" and controller.conflict == ""
+    error = np.linalg.norm((record["tip.target"] - record["tip.position"])[:, :2], axis=1)
+    at = lambda time: round(time / held.time_step) - 2  # noqa: E731
+    pushed = error[at(1.0) + 1:at(1.2)].max()
+    assert pushed > 1e-3
+    for time in (0.9, 1.9, 2.9):
+        assert error[at(time) - 10:at(time)].mean() < 1.5e-4
+    # The same push without the loop.
+    free = sinew.load(HOLD)
+    free.detach()
+    free.solve_static()
+    rest = free.effector("tip").position.copy()
+    free.step(105)
+    assert np.linalg.norm(free.effector("tip").position - rest) > 1e-3
+    assert set(record["controller"]) == {"holding", "moving", "on-target"}
+    assert np.isfinite(record["east.displacement_command"][10:]).all()
+    assert controller.measured_errors["tip"] == pytest.approx(
+        np.linalg.norm(held.sensor("tip").value - record["tip.target"][-1]), rel=0.2)
+
+
+def test_clones_and_saved_states_go_on_bit_for_bit(held, tmp_path):
+    held.step(30)
+    held.save_state(tmp_path / "held.state")
+    copy, other = held.clone(), sinew.load(HOLD, threads=2)
+    other.load_state(tmp_path / "held.state")
+    assert copy.controller.status == held.controller.status
+    for sim in (held, copy, other):
+        sim.step(80)
+    assert held.state_hash == copy.state_hash == other.state_hash
+    held.reset()
+    assert held.controller.status == "not-started"
+    held.step(30)
+    again = sinew.load(HOLD)
+    again.step(30)
+    assert held.state_hash == again.state_hash
+
+
+def test_commands_are_the_controllers(held):
+    held.step(10)
+    with pytest.raises(sinew.Error) as caught:
+        held.actuator("east").displacement = 0.0
+    assert caught.value.kind == "actuator-owned"
+    told = held.actuator("east").command
+    held.detach()
+    held.step()
+    assert held.actuator("east").command == told
+    held.actuator("east").displacement = 0.0
+
+
+def test_a_real_camera_may_stop(held):
+    tip = held.sensor("tip")
+    for _ in range(20):
+        tip.feed(held.effector("tip").position, time=held.time)
+        held.step()
+    assert held.controller.status in ("moving", "on-target")
+    held.step(14)
+    assert held.controller.status == "holding" and "silent" in held.controller.conflict
+    place = held.effector("tip").position.copy()
+    held.step(5)
+    np.testing.assert_allclose(held.effector("tip").position, place, atol=1e-9)
+
+
+def test_dynamics_take_the_compliance_of_equilibrium():
+    """With damping the robot follows; its inertia has no part in what is commanded."""
+    sim = sinew.load(HOLD, set=["integrator=bdf2", "bodies.finger.damping={stiffness: 0.02 s}", "sensors.tip.noise=0 mm",
+                                "controllers.hold.gain=3 1/s"])
+    sim.step(95)
+    assert sim.controller.status == "on-target"
+    assert sim.controller.errors["tip"] < 1.5e-3

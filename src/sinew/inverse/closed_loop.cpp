@@ -1,0 +1,354 @@
+#include "sinew/inverse/closed_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sinew/constraint/effector.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/core/rotation.hpp"
+#include "sinew/sim/actuation.hpp"
+#include "sinew/sim/channel.hpp"
+#include "sinew/sim/controlled_response.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/sensor_model.hpp"
+#include "sinew/sim/simulation.hpp"
+
+namespace sinew::inverse {
+
+namespace {
+
+// Limits hold effectors back where they keep this part of the motion that is asked for.
+constexpr double kHeldBack = 1e-2;
+// In place of the age of a sample.
+constexpr double kNever = -1.0;
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+// A marker measures a point, an orientation sensor a rotation.
+void check_kind(const sim::SensorModel& sensor, const constraint::Effector& effector) {
+  const bool turns = effector.kind() == constraint::EffectorKind::orientation;
+  const char* kind = turns ? "orientation" : "marker";
+  if (sensor.kind == kind) return;
+  throw Error(ErrorKind::wrong_type, {.item = "sensor '" + sensor.name + "'"},
+              fmt::format("the effector '{}' is {}, and the sensor is of type {}", effector.name(),
+                          turns ? "an orientation" : "a point", sensor.kind),
+              fmt::format("measure the effector by a sensor of type {}", kind));
+}
+
+// Between two samples that come as they should.
+double period_of(const sim::SensorModel& sensor, double time_step) {
+  return sensor.channel.rate > 0.0 ? std::max(1.0 / sensor.channel.rate, time_step) : time_step;
+}
+
+void check_rate(const sim::SensorModel& sensor, double time_step, double timeout) {
+  const double period = period_of(sensor, time_step);
+  if (period <= timeout + sim::Channel::kSameTime) return;
+  throw Error(ErrorKind::out_of_range, {.item = "sensor '" + sensor.name + "'"},
+              fmt::format("a sample comes every {:g} s, and the closed loop holds its commands "
+                          "when one is {:g} s late",
+                          period, timeout),
+              "give the controller a longer timeout, or the sensor a higher rate");
+}
+
+void check_number(const char* name, double value, bool good, const char* remedy) {
+  if (good && std::isfinite(value)) return;
+  throw Error(ErrorKind::out_of_range, {.item = "closed loop"},
+              fmt::format("{} is {:g}", name, value), remedy);
+}
+
+void check_feedback(const sim::Model& model, const InverseSettings& settings) {
+  const Feedback& feedback = *settings.feedback;
+  check_number("gain", feedback.gain, feedback.gain > 0.0, "give 1/s, above 0");
+  check_number("integral", feedback.integral, feedback.integral >= 0.0, "give 1/s^2, 0 or more");
+  check_number("timeout", feedback.timeout, feedback.timeout > 0.0, "give s, above 0");
+  if (feedback.sensors.size() != settings.tasks.size()) {
+    throw Error(
+        ErrorKind::wrong_length, {.item = "closed loop"},
+        fmt::format("{} sensors for {} effectors", feedback.sensors.size(), settings.tasks.size()),
+        "give one sensor for each effector");
+  }
+  for (std::size_t t = 0; t < settings.tasks.size(); ++t) {
+    const sim::SensorModel& sensor = model.sensors().at(at(feedback.sensors[t]));
+    check_kind(sensor, model.effector(settings.tasks[t].effector));
+    check_rate(sensor, model.step().time_step, feedback.timeout);
+  }
+}
+
+Vector3 value_of(const sim::Channel& sensor) { return Vector3(sensor.value().data()); }
+
+}  // namespace
+
+ClosedLoop::ClosedLoop(sim::Simulation& simulation, InverseSettings settings)
+    : TargetController(simulation, std::move(settings)) {
+  const sim::Model& model = simulation_.model();
+  check_feedback(model, settings_);
+  time_step_ = model.step().time_step;
+  std::vector<double> weights;
+  double longest = 0.0;
+  for (std::size_t t = 0; t < settings_.tasks.size(); ++t) {
+    const Task& task = settings_.tasks[t];
+    first_.push_back(std::ssize(weights));
+    for (int k = 0; k < model.effector(task.effector).row_count(); ++k) {
+      weights.push_back(task.weight(k) * std::pow(Task::kLaterPriority, task.priority - 1));
+    }
+    const sim::ChannelSettings& channel =
+        model.sensors()[at(settings_.feedback->sensors[t])].channel;
+    longest = std::max(longest, channel.delay + settings_.feedback->timeout);
+  }
+  weights_ = Eigen::Map<VectorX>(weights.data(), std::ssize(weights));
+  integral_.setZero(weights_.size());
+  foreseen_.setZero(weights_.size(),
+                    static_cast<Eigen::Index>(std::ceil(longest / time_step_)) + 2);
+  commands_.setZero(std::ssize(settings_.actuators));
+  silent_.setZero(std::ssize(settings_.tasks));
+  simulation_.attach(*this, settings_.actuators);
+  attached_ = true;
+}
+
+ClosedLoop::~ClosedLoop() { ClosedLoop::detach(); }
+
+void ClosedLoop::detach() {
+  if (attached_) simulation_.detach(*this);
+  attached_ = false;
+}
+
+VectorX ClosedLoop::efforts() const {
+  VectorX efforts(std::ssize(settings_.actuators));
+  for (Eigen::Index k = 0; k < efforts.size(); ++k) {
+    efforts[k] = simulation_.actuator(settings_.actuators[static_cast<std::size_t>(k)]).effort;
+  }
+  return efforts;
+}
+
+// Whether any sensor is silent now.
+bool ClosedLoop::note_silence() {
+  const double now = simulation_.time();
+  for (Eigen::Index t = 0; t < silent_.size(); ++t) {
+    const sim::Channel& sensor =
+        simulation_.sensor(settings_.feedback->sensors[static_cast<std::size_t>(t)]);
+    const double age = now - sensor.time();
+    const double oldest =
+        sensor.settings().delay + settings_.feedback->timeout + sim::Channel::kSameTime;
+    const bool good = sensor.valid(now) && age <= oldest;
+    silent_[t] = good ? 0.0 : sensor.has_value() ? age : kNever;
+  }
+  return (silent_.array() != 0.0).any();
+}
+
+// A winch is told lengths and a regulator pressures.
+bool ClosedLoop::is_told_motion(std::size_t actuator) const {
+  const auto& model = simulation_.model().actuators()[at(settings_.actuators[actuator])];
+  return model.type != sim::ActuatorType::pressure;
+}
+
+// What takes the effector from a measured value to its target at a time.
+Vector3 ClosedLoop::difference(int task, double time, const Vector3& from) const {
+  const Task& asked = settings_.tasks[at(task)];
+  const Vector3 to = asked.target.at(time);
+  const auto& effector = simulation_.model().effector(asked.effector);
+  if (effector.kind() == constraint::EffectorKind::point) return to - from;
+  return rotation_vector(rotation_matrix(to) * rotation_matrix(from).transpose());
+}
+
+VectorX ClosedLoop::along(int task, const Vector3& difference) const {
+  const auto& directions =
+      simulation_.model().effector(settings_.tasks[at(task)].effector).directions();
+  VectorX rows(std::ssize(directions));
+  for (Eigen::Index k = 0; k < rows.size(); ++k) {
+    rows[k] = directions[static_cast<std::size_t>(k)].dot(difference);
+  }
+  return rows;
+}
+
+double ClosedLoop::measured_error(int task) const {
+  const sim::Channel& sensor = simulation_.sensor(settings_.feedback->sensors[at(task)]);
+  if (!sensor.has_value()) return std::numeric_limits<double>::quiet_NaN();
+  VectorX rows = along(task, difference(task, simulation_.time(), value_of(sensor)));
+  for (Eigen::Index k = 0; k < rows.size(); ++k) {
+    if (!(settings_.tasks[at(task)].weight(k) > 0.0)) rows[k] = 0.0;
+  }
+  return rows.norm();
+}
+
+// (rows,) from where the effectors must be by now, by their samples and what was commanded since
+// these were taken, to their targets.
+VectorX ClosedLoop::error_now() const {
+  VectorX error(weights_.size());
+  const std::int64_t now = simulation_.steps(), kept = foreseen_.cols();
+  for (std::size_t t = 0; t < settings_.tasks.size(); ++t) {
+    const auto task = static_cast<int>(t);
+    const sim::Channel& sensor = simulation_.sensor(settings_.feedback->sensors[t]);
+    const VectorX rows = along(task, difference(task, simulation_.time(), value_of(sensor)));
+    auto own = error.segment(first_[t], rows.size());
+    own = rows;
+    const auto age = std::llround((simulation_.time() - sensor.time()) / time_step_);
+    for (std::int64_t n = now - std::clamp<std::int64_t>(age, 0, std::min(now, kept)); n < now;
+         ++n) {
+      own -= foreseen_.col(n % kept).segment(first_[t], rows.size());
+    }
+  }
+  return error;
+}
+
+// (rows,) how far targets move in the step.
+VectorX ClosedLoop::lead() const {
+  VectorX rows(weights_.size());
+  const double now = simulation_.time();
+  for (std::size_t t = 0; t < settings_.tasks.size(); ++t) {
+    const auto task = static_cast<int>(t);
+    const VectorX own =
+        along(task, difference(task, now + time_step_, settings_.tasks[t].target.at(now)));
+    rows.segment(first_[t], own.size()) = own;
+  }
+  return rows;
+}
+
+// Limits of motions let every actuator stay where it is, and a slack cable be shorter than its way
+// through the body by any length.
+RateLimits ClosedLoop::limits() const {
+  const auto count = std::ssize(settings_.actuators);
+  RateLimits limits{VectorX(count), VectorX(count), VectorX(count), VectorX(count),
+                    VectorX(count), VectorX(count), VectorX(count)};
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const int index = settings_.actuators[static_cast<std::size_t>(k)];
+    const sim::ActuatorModel& model = simulation_.model().actuators()[at(index)];
+    const sim::ActuatorState& state = simulation_.actuator(index);
+    const sim::Interval effort = sim::reachable(model.effort, state.effort, time_step_);
+    const sim::Interval motion = sim::reachable(model.motion, state.setpoint, time_step_);
+    const bool pulls = model.type == sim::ActuatorType::cable;
+    limits.effort[k] = state.effort;
+    limits.motion[k] = state.motion;
+    limits.effort_min[k] = pulls ? std::max(0.0, effort.min) : effort.min;
+    limits.effort_max[k] = effort.max;
+    limits.motion_min[k] = pulls && state.slack ? -std::numeric_limits<double>::infinity()
+                                                : std::min(motion.min, state.motion);
+    limits.motion_max[k] = std::max(motion.max, state.motion);
+    limits.motion_scale[k] = model.motion_scale / simulation_.model().size();
+  }
+  return limits;
+}
+
+void ClosedLoop::command() {
+  const Eigen::Index slot = simulation_.steps() % foreseen_.cols();
+  if (note_silence()) {
+    foreseen_.col(slot).setZero();
+    status_ = InverseStatus::holding;
+    return;
+  }
+  const sim::ControlledResponse response =
+      sim::controlled_response(simulation_, settings_.actuators);
+  MatrixX w_ea(weights_.size(), commands_.size());
+  for (std::size_t t = 0; t < settings_.tasks.size(); ++t) {
+    const MatrixX& own = response.effectors[at(settings_.tasks[t].effector)];
+    w_ea.middleRows(first_[t], own.rows()) = own;
+  }
+  const Feedback& feedback = *settings_.feedback;
+  const VectorX error = error_now();
+  const VectorX wanted =
+      lead() + time_step_ * (feedback.gain * error + feedback.integral * integral_);
+  const RateChoice choice = choose_change(w_ea, response.actuators, wanted, weights_, limits());
+  const VectorX moved = w_ea * choice.change;
+  if (feedback.integral > 0.0) {
+    integral_ += time_step_ * error - (wanted - moved) / feedback.gain;
+  }
+  foreseen_.col(slot) = moved;
+  tell(choice.change, response.actuators);
+  status_ = judge(choice, wanted, moved);
+}
+
+void ClosedLoop::tell(const VectorX& change, const MatrixX& w_aa) {
+  const VectorX motion = w_aa * change;
+  for (Eigen::Index k = 0; k < commands_.size(); ++k) {
+    const int index = settings_.actuators[static_cast<std::size_t>(k)];
+    const sim::ActuatorModel& model = simulation_.model().actuators()[at(index)];
+    const sim::ActuatorState& state = simulation_.actuator(index);
+    const bool motions = is_told_motion(static_cast<std::size_t>(k));
+    const double wanted = motions ? state.motion + motion[k] : state.effort + change[k];
+    const sim::Interval may = motions ? sim::reachable(model.motion, state.setpoint, time_step_)
+                                      : sim::reachable(model.effort, state.effort, time_step_);
+    commands_[k] = std::clamp(wanted, may.min, may.max);
+  }
+  started_ = true;
+  push_commands();
+}
+
+void ClosedLoop::push_commands() {
+  for (std::size_t k = 0; k < settings_.actuators.size(); ++k) {
+    const int index = settings_.actuators[k];
+    const auto kind = is_told_motion(k) ? sim::CommandKind::motion : sim::CommandKind::effort;
+    const sim::Command command =
+        started_
+            ? sim::Command{kind, sim::Signal::constant(commands_[static_cast<Eigen::Index>(k)])}
+            : simulation_.model().actuators()[at(index)].command;
+    simulation_.command(index, command, this);
+  }
+}
+
+InverseStatus ClosedLoop::judge(const RateChoice& choice, const VectorX& wanted,
+                                const VectorX& moved) const {
+  if (choice.conflict) return InverseStatus::limits_conflict;
+  bool reached = true;
+  for (int t = 0; t < static_cast<int>(settings_.tasks.size()); ++t) {
+    reached = reached && measured_error(t) <= settings_.tolerance;
+  }
+  if (reached) return InverseStatus::on_target;
+  const VectorX root = weights_.cwiseSqrt();
+  const double missed = root.cwiseProduct(wanted - moved).norm();
+  const bool held_back = missed > kHeldBack * root.cwiseProduct(wanted).norm();
+  return choice.limited && held_back ? InverseStatus::at_limits : InverseStatus::moving;
+}
+
+std::string ClosedLoop::conflict() const {
+  std::string text;
+  for (Eigen::Index t = 0; t < silent_.size(); ++t) {
+    if (silent_[t] == 0.0) continue;
+    const int sensor = settings_.feedback->sensors[static_cast<std::size_t>(t)];
+    text += fmt::format("{}'{}' {}", text.empty() ? "" : ", ",
+                        simulation_.model().sensors()[at(sensor)].name,
+                        silent_[t] == kNever ? std::string("has delivered nothing yet")
+                                             : fmt::format("is silent for {:.3g} s", silent_[t]));
+  }
+  return text;
+}
+
+// First come: whether it has commanded, and the status.
+template <class Self, class Visitor>
+void ClosedLoop::visit_memory(Self& self, Visitor&& visitor) {
+  for (auto& number : self.integral_) visitor(number);
+  for (auto& number : self.foreseen_.reshaped()) visitor(number);
+  for (auto& number : self.commands_) visitor(number);
+  for (auto& number : self.silent_) visitor(number);
+}
+
+std::size_t ClosedLoop::memory_size() const {
+  return static_cast<std::size_t>(2 + integral_.size() + foreseen_.size() + commands_.size() +
+                                  silent_.size());
+}
+
+void ClosedLoop::save_memory(std::span<double> memory) const {
+  memory[0] = started_ ? 1.0 : 0.0;
+  memory[1] = static_cast<double>(status_);
+  auto to = memory.begin() + 2;
+  visit_memory(*this, [&](double number) { *to++ = number; });
+}
+
+void ClosedLoop::load_memory(std::span<const double> memory) {
+  started_ = memory[0] != 0.0;
+  status_ = static_cast<InverseStatus>(static_cast<int>(memory[1]));
+  auto from = memory.begin() + 2;
+  visit_memory(*this, [&](double& number) { number = *from++; });
+  push_commands();
+}
+
+// Commands stay: they are the scene's again after a reset, and else hold the robot.
+void ClosedLoop::forget() {
+  started_ = false;
+  status_ = InverseStatus::not_started;
+  visit_memory(*this, [](double& number) { number = 0.0; });
+}
+
+}  // namespace sinew::inverse

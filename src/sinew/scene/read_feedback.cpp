@@ -1,0 +1,209 @@
+// What a closed loop goes by: which sensor measures which effector, and whether that can work.
+#include <algorithm>
+#include <ranges>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "sinew/scene/readers.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+using Kind = EffectorDescription::Kind;
+
+std::string point_text(const Points& points) {
+  std::string text;
+  for (Eigen::Index k = 0; k < points.rows(); ++k) {
+    text += fmt::format("{}{:g} {:g} {:g}", k > 0 ? ", " : "", 1e3 * points(k, 0),
+                        1e3 * points(k, 1), 1e3 * points(k, 2));
+  }
+  return text + " mm";
+}
+
+const char* type_for(const EffectorDescription& effector) {
+  return effector.kind == Kind::orientation ? "orientation" : "marker";
+}
+
+// What would measure an effector, as it is written in a scene.
+std::string sensor_for(const EffectorDescription& effector) {
+  const std::string spot = effector.kind == Kind::set ? "set: " + effector.set
+                           : effector.points.points.rows() == 1
+                               ? (effector.kind == Kind::orientation ? "at: " : "point: ") +
+                                     point_text(effector.points.points)
+                               : (effector.kind == Kind::orientation ? "at: [" : "points: [") +
+                                     point_text(effector.points.points) + "]";
+  return fmt::format("{{type: {}, body: {}, {}}}", type_for(effector), effector.body, spot);
+}
+
+bool measures(const SensorDescription& sensor, const EffectorDescription& effector) {
+  if (sensor.body != effector.body || sensor.type != type_for(effector)) return false;
+  if (effector.kind == Kind::set) {
+    return sensor.region && sensor.region->kind == FixedRegion::Kind::set &&
+           sensor.region->set == effector.set;
+  }
+  const Points &own = sensor.points.points, &other = effector.points.points;
+  return !sensor.region && own.rows() == other.rows() && own == other;
+}
+
+const EffectorDescription& effector_of(const SceneDescription& scene, const TaskDescription& task) {
+  return *std::ranges::find(scene.effectors, task.effector, &EffectorDescription::name);
+}
+
+void check_type(const SensorDescription& sensor, const Location& place) {
+  if (sensor.type == "marker" || sensor.type == "orientation") return;
+  throw Error(ErrorKind::wrong_type, place,
+              fmt::format("'{}' is of type {}, and a closed loop goes by what effectors do",
+                          sensor.name, sensor.type),
+              "name sensors of type marker or orientation");
+}
+
+// A sample that comes once in a period may be that old before the next one.
+void check_rate(const SensorDescription& sensor, double timeout, const Location& timeout_place) {
+  if (!(sensor.channel.rate > 0.0) || 1.0 / sensor.channel.rate <= timeout) return;
+  throw Error(ErrorKind::out_of_range, timeout_place,
+              fmt::format("'{}' takes a sample every {:g} s, and commands are held when one is "
+                          "{:g} s late",
+                          sensor.name, 1.0 / sensor.channel.rate, timeout),
+              "give a longer timeout, or the sensor a higher rate");
+}
+
+// A link of a robot from a file, ROBOT.LINK, is of the body ROBOT.
+std::string body_of(const std::string& name) { return name.substr(0, name.find('.')); }
+
+/// Bodies that actuators move, through joints and contacts, too.
+class Reach {
+ public:
+  Reach(const SceneDescription& scene, const ControllerDescription& controller) : scene_(scene) {
+    for (const ActuatorDescription& actuator : scene.actuators) {
+      const auto& driven = controller.actuators;
+      if (driven.empty() || std::ranges::find(driven, actuator.name) != driven.end()) {
+        add(actuator);
+      }
+    }
+    while (spread()) continue;
+  }
+
+  bool has(const std::string& body) const { return bodies_.contains(body_of(body)); }
+
+ private:
+  void add(const ActuatorDescription& actuator) {
+    if (!actuator.body.empty()) bodies_.insert(body_of(actuator.body));
+    if (const auto* cable = std::get_if<CableDescription>(&actuator.own)) {
+      for (const std::string& body : cable->point_bodies) bodies_.insert(body_of(body));
+    }
+    if (const auto* motor = std::get_if<MotorDescription>(&actuator.own)) {
+      bodies_.insert(body_of(motor->joint));  // of a robot from a file
+      const auto joint = std::ranges::find(scene_.joints, motor->joint, &JointDescription::name);
+      if (joint != scene_.joints.end())
+        bodies_.insert({body_of(joint->first), body_of(joint->second)});
+    }
+  }
+
+  // Whether a further body is reached.
+  bool spread() {
+    const std::size_t before = bodies_.size();
+    for (const JointDescription& joint : scene_.joints) join(joint.first, joint.second);
+    for (const ContactDescription& contact : scene_.contacts) {
+      if (contact.all) return add_all(before);
+      if (!contact.other.empty()) join(contact.body, contact.other);
+    }
+    return bodies_.size() > before;
+  }
+
+  bool add_all(std::size_t before) {
+    for (const BodyDescription& body : scene_.bodies) bodies_.insert(body.name);
+    return bodies_.size() > before;
+  }
+
+  // The world passes nothing on.
+  void join(const std::string& first, const std::string& second) {
+    if (first == kWorldName || second == kWorldName) return;
+    if (!has(first) && !has(second)) return;
+    bodies_.insert({body_of(first), body_of(second)});
+  }
+
+  const SceneDescription& scene_;
+  std::set<std::string> bodies_;
+};
+
+void check_reach(const SceneDescription& scene, const ControllerDescription& controller) {
+  const Reach reach(scene, controller);
+  for (const TaskDescription& task : controller.tasks) {
+    const EffectorDescription& effector = effector_of(scene, task);
+    if (reach.has(effector.body)) continue;
+    throw Error(ErrorKind::no_actuators, task.place,
+                fmt::format("no actuator of '{}' moves the body '{}' of '{}'", controller.name,
+                            effector.body, effector.name),
+                "give the controller an actuator of this body, or leave the effector out");
+  }
+}
+
+/// Gives each task its sensor.
+class Assignment {
+ public:
+  Assignment(const SceneDescription& scene, ControllerDescription& controller)
+      : scene_(scene), controller_(controller) {
+    controller_.sensors.assign(controller.tasks.size(), {});
+  }
+
+  void add(const SensorDescription& sensor, const Location& place) {
+    check_type(sensor, place);
+    for (std::size_t t = 0; t < controller_.tasks.size(); ++t) {
+      if (!measures(sensor, effector_of(scene_, controller_.tasks[t]))) continue;
+      std::string& own = controller_.sensors[t];
+      if (!own.empty()) {
+        throw Error(ErrorKind::duplicate_key, place,
+                    fmt::format("'{}' and '{}' measure the same effector, '{}'", own, sensor.name,
+                                controller_.tasks[t].effector),
+                    "name one of them");
+      }
+      own = sensor.name;
+      return;
+    }
+    const EffectorDescription& first = effector_of(scene_, controller_.tasks.front());
+    throw Error(ErrorKind::conflicting_keys, place,
+                fmt::format("'{}' measures none of the controller's effectors", sensor.name),
+                fmt::format("put it where an effector is; '{}' is measured by {}", first.name,
+                            sensor_for(first)));
+  }
+
+  void check_complete(const Location& place) const {
+    for (std::size_t t = 0; t < controller_.tasks.size(); ++t) {
+      if (!controller_.sensors[t].empty()) continue;
+      const EffectorDescription& effector = effector_of(scene_, controller_.tasks[t]);
+      throw Error(
+          ErrorKind::missing_key, place,
+          fmt::format("no sensor here measures the effector '{}'", effector.name),
+          fmt::format("add one to the scene's sensors and name it here: {}", sensor_for(effector)));
+    }
+  }
+
+ private:
+  const SceneDescription& scene_;
+  ControllerDescription& controller_;
+};
+
+}  // namespace
+
+void read_feedback(const Fields& fields, const SceneDescription& scene,
+                   ControllerDescription& controller) {
+  inverse::Feedback& feedback = controller.feedback.emplace();
+  fields.read("gain", feedback.gain);
+  fields.read("integral", feedback.integral);
+  fields.read("timeout", feedback.timeout);
+  Assignment assignment(scene, controller);
+  const Node& sensors = *fields.find("sensors");
+  for (const Node& name : sensors.items()) {
+    const SensorDescription& sensor =
+        *std::ranges::find(scene.sensors, name.spelling(), &SensorDescription::name);
+    assignment.add(sensor, name.place());
+    check_rate(sensor, feedback.timeout,
+               fields.find("timeout") != nullptr ? fields.place("timeout") : name.place());
+  }
+  assignment.check_complete(sensors.place());
+  check_reach(scene, controller);
+}
+
+}  // namespace sinew::scene
