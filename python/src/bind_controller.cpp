@@ -13,9 +13,9 @@ namespace sinew::python {
 
 namespace {
 
+using inverse::EffectorTask;
 using inverse::InverseSettings;
 using inverse::TargetController;
-using inverse::Task;
 
 // What `controller.targets` returns: a live mapping from effectors to targets.
 struct Targets {

@@ -90,10 +90,10 @@ ClosedLoop::ClosedLoop(sim::Simulation& simulation, InverseSettings settings)
   std::vector<double> weights;
   double longest = 0.0;
   for (std::size_t t = 0; t < settings_.tasks.size(); ++t) {
-    const Task& task = settings_.tasks[t];
+    const EffectorTask& task = settings_.tasks[t];
     first_.push_back(std::ssize(weights));
     for (int k = 0; k < model.effector(task.effector).row_count(); ++k) {
-      weights.push_back(task.weight(k) * std::pow(Task::kLaterPriority, task.priority - 1));
+      weights.push_back(task.weight(k) * std::pow(EffectorTask::kLaterPriority, task.priority - 1));
     }
     const sim::ChannelSettings& channel =
         model.sensors()[at(settings_.feedback->sensors[t])].channel;
@@ -142,12 +142,12 @@ bool ClosedLoop::note_silence() {
 // A winch is told lengths and a regulator pressures.
 bool ClosedLoop::is_told_motion(std::size_t actuator) const {
   const auto& model = simulation_.model().actuators()[at(settings_.actuators[actuator])];
-  return model.type != sim::ActuatorType::pressure;
+  return model.type != sim::ActuatorType::chamber;
 }
 
 // What takes the effector from a measured value to its target at a time.
 Vector3 ClosedLoop::difference(int task, double time, const Vector3& from) const {
-  const Task& asked = settings_.tasks[at(task)];
+  const EffectorTask& asked = settings_.tasks[at(task)];
   const Vector3 to = asked.target.at(time);
   const auto& effector = simulation_.model().effector(asked.effector);
   if (effector.kind() == constraint::EffectorKind::point) return to - from;

@@ -30,7 +30,7 @@ void TargetController::set_target(int task, Target target) {
 
 // Of the present configuration, which may be a restored one whose rows no step has formed yet.
 double TargetController::error(int task) const {
-  const Task& asked = settings_.tasks.at(static_cast<std::size_t>(task));
+  const EffectorTask& asked = settings_.tasks.at(static_cast<std::size_t>(task));
   const auto& effector = simulation_.model().effector(asked.effector);
   const auto& configuration = simulation_.configuration();
   VectorX goal(effector.row_count()), now(effector.row_count());

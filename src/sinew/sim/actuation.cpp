@@ -124,7 +124,7 @@ void Actuation::release(const void* owner) {
     if (state.owner != owner) continue;
     state.owner = nullptr;
     if (!std::exchange(state.chosen, false)) continue;
-    const bool regulator = model_.actuators()[i].type == ActuatorType::pressure;
+    const bool regulator = model_.actuators()[i].type == ActuatorType::chamber;
     state.command = regulator ? Command{CommandKind::effort, Signal::constant(state.effort)}
                               : Command{CommandKind::motion, Signal::constant(state.motion)};
   }
