@@ -303,8 +303,9 @@ def _table(found: Study) -> str:
                   f"  extrapolated                  {_shown(one.extrapolated)} +- {one.uncertainty:.2g}",
                   f"  error of the scene's mesh     {one.error:.3g} ({100.0 * one.relative_error:.2g} %)"]
         if one.order is None:
-            lines.append("  The differences do not shrink with a clear order: refine further before you trust the estimate.")
-    return "\n".join(lines)
+            why = "Two meshes show no order: use more" if len(found.levels) == 2 else "The differences shrink with no clear order: refine further"
+            lines.append(f"  {why} before you trust the estimate.")
+    return "\n".join([*lines, "\nValues in SI units, positions as displacements from the start."])
 
 
 def _shown(value: np.ndarray) -> str:

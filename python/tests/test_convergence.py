@@ -1,6 +1,8 @@
 """What meshes cost: extrapolation against what is known, and refined scenes."""
 
 import json
+import pathlib
+import re
 
 import numpy as np
 import pytest
@@ -115,3 +117,9 @@ def test_the_command(tmp_path, capsys):
     assert len(figures["levels"]) == 2 and len(figures["estimates"]["tip.position"]["extrapolated"]) == 3
     assert convergence.main([str(path), "--static", "--measure=tip.positon"]) == 2
     assert "did you mean" in capsys.readouterr().err
+
+
+def test_the_guide(capsys):
+    text = (pathlib.Path(__file__).parents[2] / "docs" / "convergence.md").read_text()
+    exec(compile(re.search(r"```python\n(.*?)```", text, re.DOTALL)[1], "docs/convergence.md", "exec"), {})
+    assert 0.8 < float(capsys.readouterr().out) < 1.0  # linear tetrahedra of rubber
