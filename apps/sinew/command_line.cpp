@@ -163,6 +163,43 @@ Command CommandLine::add_command(const std::string& name, const std::string& des
   return {command, &actions_[command]};
 }
 
+std::string CommandLine::bash_completion(
+    const std::map<std::string, std::vector<std::string>>& words) const {
+  std::string commands, values;
+  for (const CLI::App* command : app_->get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_group().empty()) continue;
+    commands += fmt::format("    {}) words='{}' ;;\n", command->get_name(),
+                            fmt::join(option_names(*command), " "));
+  }
+  for (const auto& [option, choices] : words) {
+    values += fmt::format("    {}) words='{}' ;;\n", option, fmt::join(choices, " "));
+  }
+  return fmt::format(R"(# Completion of sinew for bash: source <(sinew completion bash)
+_sinew() {{
+  local word=${{COMP_WORDS[COMP_CWORD]}} words=''
+  case ${{COMP_WORDS[COMP_CWORD-1]}} in
+{}  esac
+  if [ -n "$words" ]; then
+    COMPREPLY=($(compgen -W "$words" -- "$word"))
+    return
+  fi
+  if [ "$COMP_CWORD" = 1 ]; then
+    COMPREPLY=($(compgen -W '{} --help --version' -- "$word"))
+    return
+  fi
+  case ${{COMP_WORDS[1]}} in
+{}  esac
+  if [ "${{word#-}}" = "$word" ]; then
+    mapfile -t COMPREPLY < <(compgen -f -- "$word")
+  else
+    COMPREPLY=($(compgen -W "$words" -- "$word"))
+  fi
+}}
+complete -o filenames -F _sinew sinew
+)",
+                     values, fmt::join(command_names(*app_), " "), commands);
+}
+
 int CommandLine::run(int argc, const char* const* argv) {
   require_command(*app_, argc, argv);
   try {

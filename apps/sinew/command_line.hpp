@@ -89,6 +89,10 @@ class CommandLine {
   /// @param name of the command. @param description one line.
   Command add_command(const std::string& name, const std::string& description);
 
+  /// A script for bash that completes commands, options, and file names elsewhere.
+  /// @param words of options that take one of several: {"--shape", {"block", "cone"}}.
+  std::string bash_completion(const std::map<std::string, std::vector<std::string>>& words) const;
+
   /// Reads the arguments of main() and does what the chosen command does; prints help or version
   /// where that is asked for. Returns the exit code. Throws Error for a wrong command line:
   /// unknown commands and options with the nearest known one, missing and superfluous arguments.

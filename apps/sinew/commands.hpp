@@ -25,6 +25,8 @@ void add_identify(CommandLine& line);
 void add_plot(CommandLine& line);
 void add_sweep(CommandLine& line);
 void add_estimate(CommandLine& line);
+void add_completion(CommandLine& line);
+void add_convergence(CommandLine& line);
 /// @}
 
 }  // namespace sinew::cli

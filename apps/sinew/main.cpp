@@ -60,7 +60,9 @@ int run(int argc, const char* const* argv) {
   cli::add_plot(line);
   cli::add_sweep(line);
   cli::add_estimate(line);
+  cli::add_convergence(line);
   cli::add_schema(line);
+  cli::add_completion(line);
   return line.run(argc, argv);
 }
 

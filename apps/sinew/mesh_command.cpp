@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@
 #include "sinew/mesh/tetrahedralise.hpp"
 #include "sinew/mesh/write_mesh.hpp"
 #include "sinew/scene/build.hpp"
+#include "sinew/scene/scene.hpp"
 
 #include "arguments.hpp"
 #include "commands.hpp"
@@ -22,6 +24,7 @@ constexpr int kMaxRefinements = 4;
 
 struct MeshOptions {
   std::string surface, shape, out;
+  std::vector<std::string> measures;  // "radius=15mm"
   std::optional<std::string> size, unit;
   std::string gmsh = "gmsh";
   int refine = 0;
@@ -32,9 +35,7 @@ mesh::Mesh from_shape(const MeshOptions& options) {
     throw Error(ErrorKind::bad_argument, {.item = "--unit"}, "a shape has no unit of its own",
                 "give --unit with a surface file only");
   }
-  scene::MeshDescription description;
-  description.shape = options.shape;
-  description.place = {.item = "--shape"};
+  scene::MeshDescription description = scene::read_shape(options.shape, options.measures);
   if (options.size) {
     description.parameters["element_size"] =
         positive_quantity("--size", *options.size, dimension::kLength);
@@ -43,6 +44,10 @@ mesh::Mesh from_shape(const MeshOptions& options) {
 }
 
 mesh::Mesh from_surface(const MeshOptions& options) {
+  if (!options.measures.empty()) {
+    throw Error(ErrorKind::bad_argument, {.item = "--set"}, "a surface file has no measures to set",
+                "give --set with --shape only");
+  }
   mesh::TetrahedraliseOptions settings;
   settings.program = options.gmsh;
   if (!options.size) {
@@ -62,8 +67,7 @@ int make(const MeshOptions& options) {
     throw Error(
         ErrorKind::bad_argument, {.item = "mesh"},
         options.surface.empty() ? "there is nothing to mesh" : "there are two things to mesh",
-        "give a surface file or --shape block|cylinder|cone|hollow-cylinder|chambered-cylinder|"
-        "trunk");
+        fmt::format("give a surface file or --shape {}", fmt::join(scene::shape_names(), "|")));
   }
   mesh::require_writable_format(options.out);
   require_range("--refine", options.refine, 0, kMaxRefinements);
@@ -81,9 +85,15 @@ void add_mesh(CommandLine& line) {
   Command command = line.add_command("mesh", "Fill a surface with tetrahedra, or make a shape");
   const auto options = std::make_shared<MeshOptions>();
   command.add_option("SURFACE", options->surface, "Closed surface: STL, OBJ or PLY");
-  command.add_option(
-      "--shape", options->shape,
-      "Make block, cylinder, cone, hollow-cylinder, chambered-cylinder or trunk instead");
+  command
+      .add_option("--shape", options->shape,
+                  fmt::format("Make a shape instead: {}", fmt::join(scene::shape_names(), ", ")))
+      .type_name("SHAPE");
+  command
+      .add_option("--set", options->measures,
+                  "Set a measure of the shape, as scenes name it: radius=15mm; may be repeated")
+      .type_name("KEY=VALUE")
+      .allow_extra_args(false);
   command
       .add_option("-o,--out", options->out,
                   "File to write: .vtu, .vtk, or .stl for the surface alone")
@@ -98,7 +108,9 @@ void add_mesh(CommandLine& line) {
   command.footer(
       "Examples:\n"
       "  sinew mesh finger.stl --unit mm --size 5mm -o finger.vtu\n"
-      "  sinew mesh --shape trunk -o trunk.vtu");
+      "  sinew mesh --shape trunk -o trunk.vtu\n"
+      "  sinew mesh --shape ribbed-finger --set length=120mm --set width=20mm --set height=18mm "
+      "--size 3mm -o finger.vtu");
   command.set_action([options] { return make(*options); });
 }
 

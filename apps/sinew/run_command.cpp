@@ -41,7 +41,33 @@ struct RunOptions {
   bool vtk = false;
   bool quiet = false;
   bool keep_going = false;
+  bool check = false;
 };
+
+// What bodies are made of.
+std::vector<std::vector<std::string>> body_rows(const sim::Model& model) {
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& body : model.bodies()) {
+    const auto* material = mechanics::as<const fem::HasElements>(body);
+    if (material == nullptr) continue;
+    rows.push_back({"body " + body.name(), fem::describe_elements(material->elements())});
+  }
+  return rows;
+}
+
+// What would run, without a step of it.
+int print_check(const Session& session, double duration, std::int64_t steps) {
+  const sim::Model& model = *session.robot().model;
+  auto rows = body_rows(model);
+  rows.push_back({"actuators, effectors, contacts",
+                  fmt::format("{}, {}, {}", model.actuators().size(), model.effectors().size(),
+                              model.contacts().size())});
+  rows.push_back(
+      {"controller", session.controller_name().empty() ? "none" : session.controller_name()});
+  rows.push_back({"would run", fmt::format("{:g} s in {} steps", duration, steps)});
+  fmt::print("{}", format_table(rows));
+  return 0;
+}
 
 // What happened, for the table at the end.
 struct Tally {
@@ -109,12 +135,7 @@ std::string error_text(const Session& session, double error) {
 std::vector<std::vector<std::string>> summary(const Tally& tally, Session& session) {
   const double simulated =
       static_cast<double>(tally.steps) * session.robot().model->step().time_step;
-  std::vector<std::vector<std::string>> rows;
-  for (const auto& model : session.robot().model->bodies()) {
-    const auto* material = mechanics::as<const fem::HasElements>(model);
-    if (material == nullptr) continue;
-    rows.push_back({"body " + model.name(), fem::describe_elements(material->elements())});
-  }
+  auto rows = body_rows(*session.robot().model);
   rows.push_back({"steps", fmt::format("{}", tally.steps)});
   rows.push_back({"simulated time", fmt::format("{:.3f} s", simulated)});
   rows.push_back({"wall time", fmt::format("{:.3f} s", tally.wall)});
@@ -189,6 +210,7 @@ int run(const RunOptions& options) {
   if (const int problem = check_video(options, session.robot()); problem != 0) return problem;
   const double duration = run_duration(session.robot());
   const std::int64_t steps = step_count(duration, session.robot().model->step().time_step);
+  if (options.check) return print_check(session, duration, steps);
 
   Tally tally;
   const double turn = session.first_turn();
@@ -258,6 +280,8 @@ void add_run(CommandLine& line) {
   command.add_flag("--keep-going", options->keep_going,
                    "End with 0 although steps were flagged: out of equilibrium, gaining energy, "
                    "cut back, or short of their commands");
+  command.add_flag("--check", options->check,
+                   "Only read the scene and build the robot: no step, no files");
   command.add_flag("--quiet", options->quiet, "No progress bar and no summary");
   command.footer(
       "Writes DIR/run.csv, DIR/run.h5 and DIR/scene.yaml. Ctrl-C ends the run; what was recorded "

@@ -9,6 +9,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/scene/reference.hpp"
+#include "sinew/scene/scene.hpp"
 
 #include "commands.hpp"
 #include "program_folder.hpp"
@@ -81,6 +82,26 @@ void add_schema(CommandLine& line) {
     for (const scene::ReferencePage& page : scene::reference_pages()) text += page.text;
     return text;
   }).hide();
+}
+
+void add_completion(CommandLine& line) {
+  Command command = line.add_command("completion", "Print a script that completes commands");
+  const auto shell = std::make_shared<std::string>();
+  command.add_option("SHELL", *shell, "bash").required();
+  command.footer(
+      "Example:\n"
+      "  sinew completion bash > ~/.local/share/bash-completion/completions/sinew\n\n"
+      "New shells then complete commands, options and file names; so does this one after\n"
+      "source <(sinew completion bash).");
+  command.set_action([&line, shell] {
+    if (*shell != "bash") {
+      throw Error(ErrorKind::unknown_choice, {.item = "completion"},
+                  fmt::format("there is no completion for '{}'", *shell), "write bash");
+    }
+    fmt::print("{}",
+               line.bash_completion({{"--shape", scene::shape_names()}, {"completion", {"bash"}}}));
+    return 0;
+  });
 }
 
 void add_validate(CommandLine& line) {

@@ -177,6 +177,7 @@ class Mesh:
     def volume(self) -> float: ...
     def describe(self) -> str: ...
     def write(self, path: _Path) -> None: ...
+    def refined(self) -> Mesh: ...
 
 class Limits:
     @property
@@ -865,6 +866,34 @@ def mesh_hollow_cylinder(
     through: int = 2,
     around: int = 24,
     layers: int = 12,
+) -> Mesh: ...
+def mesh_chambered_cylinder(
+    *,
+    radius: float = 0.0125,
+    height: float = 0.065,
+    chamber_radius: float = 0.0037,
+    chamber_offset: float = 0.0073,
+    chamber_bottom: float = 0.0,
+    chamber_top: float = 0.06,
+    core: int = 3,
+    through: int = 4,
+    layers: int = 26,
+) -> Mesh: ...
+def mesh_sphere(*, radius: float = 0.015, rings: int = 3) -> Mesh: ...
+def mesh_capsule(
+    *, radius: float = 0.01, length: float = 0.04, rings: int = 2, layers: int = 4
+) -> Mesh: ...
+def mesh_ribbed_finger(
+    size: ArrayLike,
+    *,
+    spine: float = 0.006,
+    gap: float = 0.005,
+    ribs: int = 7,
+    rib_cells: int = 2,
+    gap_cells: int = 1,
+    width_cells: int = 3,
+    spine_cells: int = 1,
+    rib_rise_cells: int = 2,
 ) -> Mesh: ...
 def mesh_trunk(
     *,

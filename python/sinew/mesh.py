@@ -10,7 +10,19 @@ from numpy.typing import ArrayLike
 from . import _core
 from ._core import Mesh
 
-__all__ = ["Mesh", "block", "cone", "cylinder", "hollow_cylinder", "read", "trunk"]
+__all__ = [
+    "Mesh",
+    "block",
+    "capsule",
+    "chambered_cylinder",
+    "cone",
+    "cylinder",
+    "hollow_cylinder",
+    "read",
+    "ribbed_finger",
+    "sphere",
+    "trunk",
+]
 
 
 def read(
@@ -104,6 +116,105 @@ def hollow_cylinder(
         through=through,
         around=around,
         layers=layers,
+    )
+
+
+def chambered_cylinder(
+    *,
+    radius: float = 0.0125,
+    height: float = 0.065,
+    chamber_radius: float = 0.0037,
+    chamber_offset: float = 0.0073,
+    chamber_bottom: float = 0.0,
+    chamber_top: float = 0.06,
+    core: int = 3,
+    through: int = 4,
+    layers: int = 26,
+) -> Mesh:
+    """A cylinder along +z from z = 0 (m) with a cylindrical chamber beside its axis, along +x.
+
+    Node sets bottom, top, side and chamber, the chamber's wall. `core` rings of cells fill the
+    chamber's circle where it is solid, `through` lie between its wall and the outside.
+    """
+    return _core.mesh_chambered_cylinder(
+        radius=radius,
+        height=height,
+        chamber_radius=chamber_radius,
+        chamber_offset=chamber_offset,
+        chamber_bottom=chamber_bottom,
+        chamber_top=chamber_top,
+        core=core,
+        through=through,
+        layers=layers,
+    )
+
+
+def sphere(*, radius: float = 0.015, rings: int = 3) -> Mesh:
+    """A ball about the origin (m) of 12 rings^3 tetrahedra; node sets surface, top, bottom.
+
+    The polyhedron has the volume of the ball: its corners lie a little outside of `radius`.
+    """
+    return _core.mesh_sphere(radius=radius, rings=rings)
+
+
+def capsule(
+    *, radius: float = 0.01, length: float = 0.04, rings: int = 2, layers: int = 4
+) -> Mesh:
+    """A cylinder of `length` along z (m) with half balls at its ends, its centre at the origin.
+
+    Node sets surface, side, top, bottom. The volume is exact, as for sphere().
+    """
+    return _core.mesh_capsule(radius=radius, length=length, rings=rings, layers=layers)
+
+
+def ribbed_finger(
+    size: ArrayLike = (0.1, 0.02, 0.02),
+    *,
+    spine: float = 0.006,
+    gap: float = 0.005,
+    ribs: int = 7,
+    rib_cells: int = 2,
+    gap_cells: int = 1,
+    width_cells: int = 3,
+    spine_cells: int = 1,
+    rib_rise_cells: int = 2,
+) -> Mesh:
+    """A finger for a cable: a spine along +x from the origin with ribs on it, upwards.
+
+    Node sets x_min, x_max, ... z_max.
+
+    Parameters
+    ----------
+    size : (3,) array_like
+        Length, width, height of spine and ribs together, m.
+    spine : float
+        Thickness of the spine, m.
+    gap : float
+        Between two ribs, m; the ribs share the rest of the length.
+    ribs : int
+        2 or more; one at each end.
+    rib_cells, gap_cells, width_cells, spine_cells, rib_rise_cells : int
+        Cells along a rib, along a gap, across, through the spine, from there to the top.
+
+    Returns
+    -------
+    Mesh
+
+    Raises
+    ------
+    Error
+        out-of-range where the gaps leave no ribs or the spine fills the height.
+    """
+    return _core.mesh_ribbed_finger(
+        size,
+        spine=spine,
+        gap=gap,
+        ribs=ribs,
+        rib_cells=rib_cells,
+        gap_cells=gap_cells,
+        width_cells=width_cells,
+        spine_cells=spine_cells,
+        rib_rise_cells=rib_rise_cells,
     )
 
 

@@ -5,6 +5,7 @@
 #include "sinew/core/quantity.hpp"
 #include "sinew/mesh/quality.hpp"
 #include "sinew/mesh/read.hpp"
+#include "sinew/mesh/refine.hpp"
 #include "sinew/mesh/report.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/write_mesh.hpp"
@@ -115,6 +116,27 @@ Raises
 Error
     unknown-format for another ending, file-unwritable.
 )")
+      .def(
+          "refined",
+          [](const Mesh& self) {
+            const py::gil_scoped_release release;
+            return share(mesh::refine(self));
+          },
+          R"(refined($self)
+--
+
+Every tetrahedron cut in eight. Nodes keep their numbers, the middles of edges follow.
+
+Returns
+-------
+Mesh
+    With the same sets.
+
+Raises
+------
+Error
+    unsupported-element for hexahedra.
+)")
       .def("__repr__", [](const Mesh& self) {
         return fmt::format("<sinew.mesh.Mesh '{}', {} nodes, {} elements>", self.name,
                            self.nodes.rows(), self.tetrahedra.size() + self.hexahedra.size());
@@ -154,6 +176,54 @@ void bind_round_shapes(py::module_& module) {
       "around=24, layers=12)\n--\n\nSee sinew.mesh.hollow_cylinder().");
 }
 
+void bind_balls(py::module_& module) {
+  module.def(
+      "mesh_sphere",
+      [](double radius, int rings) { return share(mesh::sphere({radius, rings})); },
+      py::kw_only(), py::arg("radius") = 0.015, py::arg("rings") = 3,
+      "mesh_sphere(*, radius=0.015, rings=3)\n--\n\nSee sinew.mesh.sphere().");
+  module.def(
+      "mesh_capsule",
+      [](double radius, double length, int rings, int layers) {
+        return share(mesh::capsule({radius, length, rings, layers}));
+      },
+      py::kw_only(), py::arg("radius") = 0.01, py::arg("length") = 0.04, py::arg("rings") = 2,
+      py::arg("layers") = 4,
+      "mesh_capsule(*, radius=0.01, length=0.04, rings=2, layers=4)\n--\n\n"
+      "See sinew.mesh.capsule().");
+}
+
+void bind_robots(py::module_& module) {
+  module.def(
+      "mesh_chambered_cylinder",
+      [](double radius, double height, double chamber_radius, double chamber_offset,
+         double chamber_bottom, double chamber_top, int core, int through, int layers) {
+        return share(mesh::chambered_cylinder({radius, height, chamber_radius, chamber_offset,
+                                               chamber_bottom, chamber_top, core, through,
+                                               layers}));
+      },
+      py::kw_only(), py::arg("radius") = 0.0125, py::arg("height") = 0.065,
+      py::arg("chamber_radius") = 0.0037, py::arg("chamber_offset") = 0.0073,
+      py::arg("chamber_bottom") = 0.0, py::arg("chamber_top") = 0.06, py::arg("core") = 3,
+      py::arg("through") = 4, py::arg("layers") = 26,
+      "mesh_chambered_cylinder(*, radius=0.0125, height=0.065, chamber_radius=0.0037, "
+      "chamber_offset=0.0073, chamber_bottom=0.0, chamber_top=0.06, core=3, through=4, "
+      "layers=26)\n--\n\nSee sinew.mesh.chambered_cylinder().");
+  module.def(
+      "mesh_ribbed_finger",
+      [](const py::object& size, double spine, double gap, int ribs, int rib_cells, int gap_cells,
+         int width_cells, int spine_cells, int rib_rise_cells) {
+        return share(mesh::ribbed_finger({to_vector3(size, "ribbed_finger(size)", "m"), spine, gap,
+                                          ribs, rib_cells, gap_cells, width_cells, spine_cells,
+                                          rib_rise_cells}));
+      },
+      py::arg("size"), py::kw_only(), py::arg("spine") = 0.006, py::arg("gap") = 0.005,
+      py::arg("ribs") = 7, py::arg("rib_cells") = 2, py::arg("gap_cells") = 1,
+      py::arg("width_cells") = 3, py::arg("spine_cells") = 1, py::arg("rib_rise_cells") = 2,
+      "mesh_ribbed_finger(size, *, spine=0.006, gap=0.005, ribs=7, rib_cells=2, gap_cells=1, "
+      "width_cells=3, spine_cells=1, rib_rise_cells=2)\n--\n\nSee sinew.mesh.ribbed_finger().");
+}
+
 void bind_other_shapes(py::module_& module) {
   module.def(
       "mesh_block",
@@ -182,6 +252,8 @@ void bind_other_shapes(py::module_& module) {
 void bind_mesh(py::module_& module) {
   bind_type(module);
   bind_round_shapes(module);
+  bind_balls(module);
+  bind_robots(module);
   bind_other_shapes(module);
   module.def("read_mesh", &read, py::arg("path"), py::arg("unit"), py::arg("several_components"),
              "read_mesh(path, unit, several_components)\n--\n\nSee sinew.mesh.read().");

@@ -35,6 +35,38 @@ def test_every_part_stretches_by_its_own_modulus(element):
     assert stretched(sim, 0.02, 0.04) == pytest.approx(200.0 / 400e3, rel=5e-3)
 
 
+def linear(kilopascals):
+    return {"model": "linear", "young_modulus": 1e3 * kilopascals, "poisson_ratio": 0.0}
+
+
+def test_a_bar_of_two_materials_in_series_is_exact():
+    scene = column({"upper": {"region": UPPER, "material": linear(400)}}, "tet4")
+    scene["bodies"]["column"]["material"] = linear(100)
+    sim = sinew.load(scene)
+    sim.solve_static()
+    body = sim.body("column")
+    z = body.rest_positions[:, 2]
+    expected = 200.0 * (np.minimum(z, 0.02) / 100e3 + np.maximum(z - 0.02, 0.0) / 400e3)
+    moved = body.positions - body.rest_positions
+    assert moved[:, 2] == pytest.approx(expected, abs=1e-10 * expected.max())
+    assert np.abs(moved[:, :2]).max() < 1e-10 * expected.max()
+    assert body.strain_energy == pytest.approx(0.5 * 200.0 * 1e-4 * expected.max(), rel=1e-10)
+
+
+def test_a_bar_of_two_materials_in_parallel_is_exact():
+    # Each half bears its modulus times the common strain of 1 %.
+    halves = {"soft": ([-1.0, -1.0, -1.0, 0.005, 1.0, 1.0], 100), "stiff": ([0.005, -1.0, -1.0, 1.0, 1.0, 1.0], 400)}
+    scene = column({"stiff": {"region": {"box": halves["stiff"][0]}, "material": linear(400)}}, "tet4")
+    scene["bodies"]["column"]["material"] = linear(100)
+    scene["loads"] = {name: {"type": "traction", "body": "column", "surface": {"box": [*box[:2], 0.04, *box[3:]]},
+                             "traction": [0.0, 0.0, 10.0 * modulus]} for name, (box, modulus) in halves.items()}  # fmt: skip
+    sim = sinew.load(scene)
+    sim.solve_static()
+    body = sim.body("column")
+    assert (body.positions - body.rest_positions)[:, 2] == pytest.approx(0.01 * body.rest_positions[:, 2], abs=1e-14)
+    assert body.strain_energy == pytest.approx(0.5 * 0.01**2 * 250e3 * 4e-6, rel=1e-10)
+
+
 def test_a_part_has_its_own_density():
     volume = 0.01 * 0.01 * 0.02
     sim = sinew.load(column({"upper": {"region": UPPER, "material": STIFF, "density": 3000.0}}, density=1000.0))

@@ -165,6 +165,22 @@ TEST_P(EveryElement, FieldsAreWhatTheirDefinitionsSay) {
   }
 }
 
+TEST_P(EveryElement, AllFieldsAtOnceAreEachOfThem) {
+  Shown shown(GetParam());
+  shown.deform([](const Vector3& x) -> Vector3 {
+    return {x.x() + 4.0 * x.x() * x.y(), x.y() - 6.0 * x.x() * x.x(), x.z() * (1.0 + 5.0 * x.y())};
+  });
+  const std::vector<double> all = all_element_fields(shown.material());
+  const auto infos = element_fields();
+  for (std::size_t k = 0; k < infos.size(); ++k) {
+    const auto one = element_field(shown.material(), infos[k].field);
+    ASSERT_EQ(all.size(), one.size() * infos.size());
+    for (std::size_t e = 0; e < one.size(); ++e) {
+      ASSERT_EQ(all[infos.size() * e + k], one[e]) << infos[k].name;
+    }
+  }
+}
+
 TEST_P(EveryElement, EnergyDensityAddsUpToTheEnergy) {
   Shown shown(GetParam());
   shown.deform([](const Vector3& x) -> Vector3 {

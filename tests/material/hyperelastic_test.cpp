@@ -10,6 +10,7 @@
 #include "sinew/core/rotation.hpp"
 #include "sinew/linalg/dense_factor.hpp"
 #include "sinew/material/principal.hpp"
+#include "sinew/material/scaled.hpp"
 
 #include "lane_matrices.hpp"
 
@@ -215,6 +216,22 @@ TEST_P(EveryEnergy, ARotationChangesNothing) {
   EXPECT_NEAR(energy(q * f), energy(f), 1e-12 * (1.0 + energy(f)));
   EXPECT_LT((stress(q * f) - q * stress(f)).norm(), 1e-11);
   EXPECT_LT((stress(f * q) - stress(f) * q).norm(), 1e-11) << "isotropic";
+}
+
+TEST_P(EveryEnergy, ScaledHasTheSameShape) {
+  Hyperelastic own = law();
+  own.mullins = MullinsEffect{2.1, 0.4, 0.1};
+  const Hyperelastic other = scaled(own, 1.7);
+  const Stretches stretches = {1.4, 0.9, 0.7};
+  const LogResponse one = respond(own, stretches), more = respond(other, stretches);
+  ASSERT_GT(one.energy, 1e-3);
+  EXPECT_NEAR(more.energy, 1.7 * one.energy, 1e-14 * more.energy);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(more.first[i], 1.7 * one.first[i], 1e-13 * std::abs(one.first[i]));
+  }
+  EXPECT_NEAR(other.poisson_ratio(), own.poisson_ratio(), 1e-15);
+  EXPECT_DOUBLE_EQ(other.mullins->m, 1.7 * 0.4);
+  EXPECT_EQ(other.mullins->beta, 0.1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, EveryEnergy, testing::ValuesIn(laws()),

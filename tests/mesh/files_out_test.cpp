@@ -58,6 +58,18 @@ TEST(WriteVtu, RoundTripsBitForBit) {
   EXPECT_EQ(format_vtu(back), format_vtu(mesh));
 }
 
+TEST(WriteVtu, RawArraysHoldTheSameMesh) {
+  const Mesh mesh = decorated_trunk();
+  VtuFields fields;
+  fields.compressed = false;
+  const Mesh back = parse_mesh(format_vtu(mesh, fields), "trunk.vtu");
+  EXPECT_EQ(back.nodes, mesh.nodes);
+  EXPECT_EQ(back.tetrahedra, mesh.tetrahedra);
+  EXPECT_EQ(back.triangles, mesh.triangles);
+  EXPECT_EQ(back.node_sets, mesh.node_sets);
+  EXPECT_EQ(format_vtu(back), format_vtu(mesh));
+}
+
 TEST(WriteMesh, LegacyFilesRoundTripBitForBit) {
   const ScratchFolder scratch;
   const Mesh mesh = decorated_trunk();

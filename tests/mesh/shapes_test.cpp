@@ -1,6 +1,7 @@
 // Meshes of our own, their refinement, and picking parts of them.
 #include "sinew/mesh/shapes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -14,6 +15,7 @@
 #include "sinew/mesh/quality.hpp"
 #include "sinew/mesh/refine.hpp"
 #include "sinew/mesh/report.hpp"
+#include "sinew/mesh/scale.hpp"
 #include "sinew/mesh/selection.hpp"
 #include "sinew/mesh/solid.hpp"
 #include "sinew/mesh/surface.hpp"
@@ -143,6 +145,126 @@ TEST(Shapes, AreOfGoodQuality) {
   EXPECT_GT(require_sound(hollow_cylinder({})).min_radius_ratio, 0.3);
 }
 
+struct HexahedraMeasures {
+  double volume = 0.0;          // as elements integrate it, m^3
+  double least_jacobian = 1.0;  // over its mean, at the points of integration
+};
+
+HexahedraMeasures measure_hexahedra(const Mesh& mesh) {
+  HexahedraMeasures result;
+  for (const Hexahedron& nodes : mesh.hexahedra) {
+    Eigen::Matrix<double, 8, 3> x;
+    for (int a = 0; a < 8; ++a) x.row(a) = mesh.nodes.row(nodes[static_cast<std::size_t>(a)]);
+    double least = std::numeric_limits<double>::infinity(), sum = 0.0;
+    for (const Vector3& point : hexahedron_points()) {
+      const double j = (x.transpose() * hexahedron_gradients(point)).determinant();
+      least = std::min(least, j);
+      sum += j;
+    }
+    result.volume += sum;
+    result.least_jacobian = std::min(result.least_jacobian, 8.0 * least / sum);
+  }
+  return result;
+}
+
+constexpr double kBall = 4.0 / 3.0 * std::numbers::pi * 1e-6;  // of 10 mm, m^3
+constexpr double kTube = std::numbers::pi * 1e-4 * 0.03;       // 30 mm long, m^3
+
+TEST(Shapes, BallsAndCapsulesHaveTheirVolume) {
+  for (const int rings : {1, 2, 3, 4, 5}) {
+    const MeshReport ball = require_sound(sphere({.radius = 0.01, .rings = rings}));
+    EXPECT_NEAR(ball.volume / kBall, 1.0, 1e-12) << rings;
+    EXPECT_EQ(ball.tetrahedra, 12 * rings * rings * rings);
+    EXPECT_GT(ball.min_radius_ratio, 0.55) << rings;
+    const MeshReport lengthy = require_sound(
+        capsule({.radius = 0.01, .length = 0.03, .rings = rings, .layers = 3 * rings}));
+    EXPECT_NEAR(lengthy.volume / (kBall + kTube), 1.0, 1e-12) << rings;
+    EXPECT_GT(lengthy.min_radius_ratio, 0.4) << rings;
+  }
+}
+
+TEST(Shapes, BallsAndCapsulesOfHexahedraHaveTheirVolume) {
+  for (const int rings : {2, 3, 4, 5}) {
+    Mesh ball = sphere({.radius = 0.01, .rings = rings}, Cells::hexahedra);
+    Mesh lengthy = capsule({.radius = 0.01, .length = 0.03, .rings = rings, .layers = 3 * rings},
+                           Cells::hexahedra);
+    for (Mesh* mesh : {&ball, &lengthy}) {
+      check(*mesh);
+      EXPECT_NO_THROW(require_closed(boundary_surface(*mesh)));
+      EXPECT_TRUE(mesh->tetrahedra.empty());
+      const HexahedraMeasures measures = measure_hexahedra(*mesh);
+      EXPECT_NEAR(measures.volume / (mesh == &ball ? kBall : kBall + kTube), 1.0, 1e-12) << rings;
+      EXPECT_GT(measures.least_jacobian, 0.45) << rings;
+    }
+  }
+}
+
+TEST(Shapes, TheSurfaceOfABallIsOneOfItsSets) {
+  for (const Cells cells : {Cells::tetrahedra, Cells::hexahedra, Cells::quadratic}) {
+    for (const double length : {0.0, 0.03}) {
+      const Mesh mesh =
+          length == 0.0
+              ? sphere({.radius = 0.01, .rings = 3}, cells)
+              : capsule({.radius = 0.01, .length = length, .rings = 3, .layers = 3}, cells);
+      const std::vector<NodeId> nodes = outer_nodes(mesh);
+      EXPECT_EQ(mesh.node_sets.at("surface"), nodes);
+      const double end = 0.5 * length;
+      for (const NodeId node : mesh.node_sets.at("top"))
+        EXPECT_GE(mesh.nodes(node, 2), end - 1e-15);
+      for (const NodeId node : mesh.node_sets.at("bottom")) {
+        EXPECT_LE(mesh.nodes(node, 2), -end + 1e-15);
+      }
+      // Every node of the surface, also in the middle of an edge, has the same distance from the
+      // axis's segment; of quadratic elements the radius.
+      const auto distance = [&](NodeId node) {
+        const Vector3 x = mesh.nodes.row(node).transpose();
+        return (x - Vector3(0.0, 0.0, std::clamp(x.z(), -end, end))).norm();
+      };
+      const double radius = cells == Cells::quadratic ? 0.01 : distance(nodes.front());
+      for (const NodeId node : nodes) EXPECT_NEAR(distance(node), radius, 1e-15);
+      EXPECT_LT(radius, 0.0108);
+    }
+  }
+}
+
+TEST(Shapes, AQuadraticBallIsRound) {
+  const Mesh mesh = sphere({.radius = 0.01, .rings = 3}, Cells::quadratic);
+  const double volume = solid_moments(boundary_surface(mesh)).volume;  // four triangles a face
+  EXPECT_NEAR(volume / kBall, 1.0, 0.03);
+}
+
+TEST(Shapes, ARibbedFingerIsItsBoxWithoutTheGaps) {
+  const RibbedFingerShape shape{
+      .size = {0.1, 0.02, 0.015}, .spine = 0.005, .gap = 0.004, .ribs = 6};
+  for (const Cells cells : {Cells::tetrahedra, Cells::hexahedra}) {
+    const Mesh mesh = ribbed_finger(shape, cells);
+    const MeshReport report = require_sound(mesh);
+    EXPECT_NEAR(report.volume, 0.1 * 0.02 * 0.015 - 5 * 0.004 * 0.02 * 0.010, 1e-15);
+    EXPECT_NEAR(report.low.norm(), 0.0, 1e-15);
+    EXPECT_NEAR((report.high - shape.size).norm(), 0.0, 1e-15);
+    EXPECT_EQ(report.unused_nodes, 0);
+    EXPECT_EQ(mesh.node_sets.at("z_max").size(), 6u * 3u * 4u);
+    EXPECT_EQ(mesh.node_sets.at("x_max").size(), 4u * 4u);
+  }
+}
+
+TEST(Scale, AMirrorImageIsSound) {
+  Mesh mesh = ribbed_finger({}, Cells::quadratic);
+  mesh.triangles = boundary_surface(ribbed_finger({})).triangles;
+  const double before = volume(mesh);
+  scale(mesh, {2.0, 1.0, -0.5});
+  check(mesh);
+  EXPECT_EQ(mesh.notes.reordered_elements, 0);
+  EXPECT_NEAR(volume(mesh), before, 1e-12 * before);
+  EXPECT_NEAR(mesh.nodes.col(2).minCoeff(), -0.01, 1e-15);
+  const Surface outside{.name = "own", .nodes = mesh.nodes, .triangles = mesh.triangles};
+  EXPECT_NEAR(solid_moments(outside).volume, before, 1e-12 * before);
+  Surface surface = boundary_surface(sphere({}));
+  const double ball = solid_moments(surface).volume;
+  scale(surface, {-1.0, 1.0, 3.0});
+  EXPECT_NEAR(solid_moments(surface).volume, 3.0 * ball, 1e-12 * ball);
+}
+
 TEST(Shapes, TrunkHasBellowsAndRoomForCables) {
   const Mesh mesh = trunk();
   const MeshReport report = require_sound(mesh);
@@ -174,6 +296,12 @@ TEST(Shapes, RefuseMeasuresThatMakeNoBody) {
   error_text(ErrorKind::out_of_range, [] { hollow_cylinder({.inner_radius = 0.02}); });
   error_text(ErrorKind::out_of_range, [] { trunk({.groove_depth = 0.9}); });
   error_text(ErrorKind::out_of_range, [] { trunk({.height = std::nan("")}); });
+  error_text(ErrorKind::out_of_range, [] { sphere({.radius = 0.0}); });
+  error_text(ErrorKind::out_of_range, [] { sphere({.rings = 1}, Cells::hexahedra); });
+  error_text(ErrorKind::out_of_range, [] { capsule({.length = -0.01}); });
+  error_text(ErrorKind::out_of_range, [] { ribbed_finger({.spine = 0.02}); });
+  error_text(ErrorKind::out_of_range, [] { ribbed_finger({.gap = 0.02, .ribs = 6}); });
+  error_text(ErrorKind::out_of_range, [] { ribbed_finger({.ribs = 1}); });
 }
 
 TEST(Refine, KeepsVolumeOrientationAndQuality) {

@@ -17,8 +17,15 @@ VALID = {
     "bodies.trunk.mesh": [
         {"file": "a.vtk"},
         {"file": "a.vtk", "unit": "mm"},
+        {"file": "a.vtk", "scale": "1 1 -1"},
         {"shape": "block", "length": "1 m", "width": "2 cm", "height": 0.02},
         {"shape": "trunk", "bellows": 9},
+    ],
+    "bodies.trunk.material": [
+        "dragon-skin-30",
+        "Dragon Skin 30",
+        {"name": "EcoFlex 00-30", "scale": 1.5},
+        {"file": "rubber.yaml", "scale": 0.9},
     ],
     "bodies.trunk.material.young_modulus": ["450 kPa", "0.45 N/mm^2", "4.5e5 kg/m s^2", "4.5 bar"],
     "bodies.trunk.fixed": [

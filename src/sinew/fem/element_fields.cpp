@@ -1,7 +1,9 @@
 #include "sinew/fem/element_fields.hpp"
 
+#include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -86,12 +88,28 @@ Lanes equivalent_strain(const material::Principal& at) {
   return material::square_root(2.0 / 3.0 * deviator_square(logarithms));
 }
 
-Lanes value_at(ElementField field, const PointBatch& point) {
-  const auto& s = point.cauchy;
-  const auto largest = [&] {
-    const material::Principal at = material::principal(point.deformation);
-    return maximum(maximum(at.stretch[0], at.stretch[1]), at.stretch[2]);
-  };
+// Values of a batch of points, whose principal stretches are found once.
+class PointValues {
+ public:
+  explicit PointValues(const PointBatch& point) : point_(point) {}
+  Lanes operator()(ElementField field);
+
+ private:
+  const material::Principal& principal() {
+    if (!principal_) principal_ = material::principal(point_.deformation);
+    return *principal_;
+  }
+  Lanes largest() {
+    const auto& l = principal().stretch;
+    return maximum(maximum(l[0], l[1]), l[2]);
+  }
+
+  const PointBatch& point_;
+  std::optional<material::Principal> principal_;
+};
+
+Lanes PointValues::operator()(ElementField field) {
+  const auto& s = point_.cauchy;
   switch (field) {
     case ElementField::von_mises_stress:
       return von_mises(s);
@@ -102,8 +120,8 @@ Lanes value_at(ElementField field, const PointBatch& point) {
     case ElementField::max_stretch:
       return largest();
     case ElementField::min_stretch: {
-      const material::Principal at = material::principal(point.deformation);
-      return -maximum(maximum(-at.stretch[0], -at.stretch[1]), -at.stretch[2]);
+      const auto& l = principal().stretch;
+      return -maximum(maximum(-l[0], -l[1]), -l[2]);
     }
     case ElementField::green_strain: {
       const Lanes l = largest();
@@ -112,13 +130,35 @@ Lanes value_at(ElementField field, const PointBatch& point) {
     case ElementField::log_strain:
       return material::detail::logarithm(largest());
     case ElementField::equivalent_strain:
-      return equivalent_strain(material::principal(point.deformation));
+      return equivalent_strain(principal());
     case ElementField::volume_ratio:
-      return material::determinant(point.deformation, material::cofactor(point.deformation));
+      return material::determinant(point_.deformation, material::cofactor(point_.deformation));
     case ElementField::energy_density:
-      return point.energy;
+      return point_.energy;
   }
   return lanes(0.0);
+}
+
+// Means of fields over the points of every element, one row an element.
+std::vector<double> means(const HasMaterial& body, std::span<const ElementField> fields) {
+  const auto count =
+      static_cast<std::size_t>(ElementList(body.material().elements().mesh()).count());
+  const std::size_t width = fields.size();
+  std::vector<double> sum(count * width, 0.0), volume(count, 0.0);
+  visit_points(body, [&](const PointBatch& point) {
+    PointValues value_of(point);
+    for (std::size_t k = 0; k < width; ++k) {
+      const Lanes value = value_of(fields[k]);
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        if (point.element[lane] < 0) continue;
+        const auto e = static_cast<std::size_t>(point.element[lane]);
+        sum[width * e + k] += point.weight[lane] * value[lane];
+        if (k == 0) volume[e] += point.weight[lane];
+      }
+    }
+  });
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] /= volume[i / width];
+  return sum;
 }
 
 }  // namespace
@@ -139,20 +179,13 @@ ElementField element_field_of(std::string_view name) {
 }
 
 std::vector<double> element_field(const HasMaterial& body, ElementField field) {
-  const auto count =
-      static_cast<std::size_t>(ElementList(body.material().elements().mesh()).count());
-  std::vector<double> sum(count, 0.0), volume(count, 0.0);
-  visit_points(body, [&](const PointBatch& point) {
-    const Lanes value = value_at(field, point);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      if (point.element[lane] < 0) continue;
-      const auto e = static_cast<std::size_t>(point.element[lane]);
-      sum[e] += point.weight[lane] * value[lane];
-      volume[e] += point.weight[lane];
-    }
-  });
-  for (std::size_t e = 0; e < count; ++e) sum[e] /= volume[e];
-  return sum;
+  return means(body, {&field, 1});
+}
+
+std::vector<double> all_element_fields(const HasMaterial& body) {
+  std::array<ElementField, kFields.size()> all{};
+  std::ranges::transform(kFields, all.begin(), &ElementFieldInfo::field);
+  return means(body, all);
 }
 
 NodalMean::NodalMean(const FemModel& elements)

@@ -63,6 +63,11 @@ ElementField element_field_of(std::string_view name);
 /// @param body at its present state. @param field which.
 std::vector<double> element_field(const HasMaterial& body, ElementField field);
 
+/// (m F,) all fields, in the order of element_fields(), one row an element: as element_field()
+/// gives them, for the cost of little more than one.
+/// @param body at its present state.
+std::vector<double> all_element_fields(const HasMaterial& body);
+
 /// Means at the nodes of what elements have, weighted by their volumes at rest; the smoothing of
 /// Hinton and Campbell, Int. J. Numer. Meth. Engng 8, 1974, in its simplest form.
 class NodalMean {

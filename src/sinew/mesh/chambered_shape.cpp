@@ -10,33 +10,10 @@
 #include "sinew/mesh/shape_cells.hpp"
 #include "sinew/mesh/shape_checks.hpp"
 #include "sinew/mesh/sweep.hpp"
-#include "sinew/mesh/topology.hpp"
 
 namespace sinew::mesh {
 
 namespace {
-
-/// Renumbers so that every node belongs to an element.
-void drop_unused_nodes(Mesh& mesh) {
-  const std::vector<char> used = used_nodes(mesh);
-  std::vector<NodeId> number(used.size(), -1);
-  NodeId next = 0;
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    if (used[i] == 0) continue;
-    mesh.nodes.row(next) = mesh.nodes.row(static_cast<Eigen::Index>(i)).eval();
-    number[i] = next++;
-  }
-  mesh.nodes.conservativeResize(next, 3);
-  const auto renumber = [&](auto& nodes) {
-    for (NodeId& node : nodes) node = number[static_cast<std::size_t>(node)];
-  };
-  for (auto& element : mesh.tetrahedra) renumber(element);
-  for (auto& element : mesh.hexahedra) renumber(element);
-  for (auto& [name, nodes] : mesh.node_sets) {
-    renumber(nodes);
-    std::erase(nodes, -1);
-  }
-}
 
 /// The chamber's circle as an O-grid, and rings from it to the outer circle: circles whose centres
 /// and radii go evenly from one to the other. Radii in m; ring nodes of the chamber's wall and of

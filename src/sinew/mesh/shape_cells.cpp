@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 
 #include "sinew/mesh/quadratic.hpp"
+#include "sinew/mesh/topology.hpp"
 
 namespace sinew::mesh {
 
@@ -52,6 +53,33 @@ void straighten_folded(Mesh& mesh) {
   }
 }
 
+/// Of the radius: how far nodes on a circle may lie from it.
+constexpr double kOn = 1e-9;
+
+/// Moves the middle of an edge from a to b onto the circle when both lie on it.
+void bend_to(const Circle& circle, const Vector3& a, const Vector3& b, Vector3& middle) {
+  const Vector3 axis(circle.x, 0.0, 0.0);
+  const Eigen::Vector2d p = (a - axis).head<2>(), q = (b - axis).head<2>();
+  const double ra = circle.radius(a.z()), rb = circle.radius(b.z());
+  const bool on = std::abs(p.norm() - ra) < kOn * ra && std::abs(q.norm() - rb) < kOn * rb;
+  const Eigen::Vector2d between = p.normalized() + q.normalized();
+  if (!on || between.norm() < 1.0) return;  // a chord across is none along
+  const double z = 0.5 * (a.z() + b.z());
+  const Eigen::Vector2d at = circle.radius(z) * between.normalized();
+  middle = {circle.x + at.x(), at.y(), z};
+}
+
+void bend_to(const Ball& ball, const Vector3& a, const Vector3& b, Vector3& middle) {
+  const Vector3 centre(0.0, 0.0, ball.z), p = a - centre, q = b - centre;
+  const double rounding = kOn * ball.radius;
+  const auto is_on = [&](const Vector3& from) {
+    return std::abs(from.norm() - ball.radius) < rounding && ball.side * from.z() > -rounding;
+  };
+  const Vector3 between = p.normalized() + q.normalized();
+  if (!is_on(p) || !is_on(q) || between.norm() < 1.0) return;
+  middle = centre + ball.radius * between.normalized();
+}
+
 }  // namespace
 
 double rounding(int corners, Cells cells) {
@@ -64,25 +92,39 @@ int outside_corners(const Section& section) {
   return static_cast<int>(std::ranges::count(section.radius, 1.0));
 }
 
-Mesh finished(Mesh mesh, Cells cells, const std::vector<Circle>& circles) {
+void drop_unused_nodes(Mesh& mesh) {
+  const std::vector<char> used = used_nodes(mesh);
+  std::vector<NodeId> number(used.size(), -1);
+  NodeId next = 0;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (used[i] == 0) continue;
+    mesh.nodes.row(next) = mesh.nodes.row(static_cast<Eigen::Index>(i)).eval();
+    number[i] = next++;
+  }
+  mesh.nodes.conservativeResize(next, 3);
+  const auto renumber = [&](auto& nodes) {
+    for (NodeId& node : nodes) node = number[static_cast<std::size_t>(node)];
+  };
+  for (auto& element : mesh.tetrahedra) renumber(element);
+  for (auto& element : mesh.hexahedra) renumber(element);
+  for (auto& [name, nodes] : mesh.node_sets) {
+    renumber(nodes);
+    std::erase(nodes, -1);
+  }
+}
+
+Mesh finished(Mesh mesh, Cells cells, const std::vector<Circle>& circles,
+              const std::vector<Ball>& balls) {
   if (cells != Cells::quadratic) return mesh;
   Mesh result = with_middle_nodes(mesh);
-  constexpr double kOn = 1e-9;
   for (const QuadraticTetrahedron& element : result.quadratic) {
     for (std::size_t e = 0; e < kEdges.size(); ++e) {
       const Vector3 a = result.nodes.row(element[kEdges[e][0]]).transpose();
       const Vector3 b = result.nodes.row(element[kEdges[e][1]]).transpose();
-      for (const Circle& circle : circles) {
-        const Vector3 axis(circle.x, 0.0, 0.0);
-        const Eigen::Vector2d p = (a - axis).head<2>(), q = (b - axis).head<2>();
-        const double ra = circle.radius(a.z()), rb = circle.radius(b.z());
-        const bool on = std::abs(p.norm() - ra) < kOn * ra && std::abs(q.norm() - rb) < kOn * rb;
-        const Eigen::Vector2d middle = p.normalized() + q.normalized();
-        if (!on || middle.norm() < 1.0) continue;  // a chord across is none along
-        const double z = 0.5 * (a.z() + b.z());
-        const Eigen::Vector2d at = circle.radius(z) * middle.normalized();
-        result.nodes.row(element[4 + e]) << circle.x + at.x(), at.y(), z;
-      }
+      Vector3 middle = result.nodes.row(element[4 + e]).transpose();
+      for (const Circle& circle : circles) bend_to(circle, a, b, middle);
+      for (const Ball& ball : balls) bend_to(ball, a, b, middle);
+      result.nodes.row(element[4 + e]) = middle.transpose();
     }
   }
   straighten_folded(result);

@@ -1,7 +1,7 @@
 /// @file
 /// Meshes that Sinew makes itself: structured, conforming, of good quality. Lengths in m. Circles
-/// of cylinders, cones and tubes become polygons of the same area, whose corners lie a little
-/// outside.
+/// of cylinders, cones and tubes become polygons of the same area, balls and capsules polyhedra of
+/// the same volume, whose corners lie a little outside.
 #pragma once
 
 #include <array>
@@ -75,6 +75,34 @@ struct ChamberedCylinderShape {
   int layers = 26;                 ///< about, along the axis
 };
 
+/// A ball about the origin.
+struct SphereShape {
+  double radius = 0.015;  ///< m
+  int rings = 3;          ///< of cells round the centre; of hexahedra at least two
+};
+
+/// A cylinder along z between two half balls, its centre at the origin.
+struct CapsuleShape {
+  double radius = 0.01;  ///< m
+  double length = 0.04;  ///< m, of the cylinder alone
+  int rings = 2;         ///< as for a cylinder
+  int layers = 4;        ///< of the cylinder
+};
+
+/// A finger for a cable: a spine along +x with ribs on it, upwards. A rib at either end, the first
+/// from x = 0; all of the same length, with equal gaps between them.
+struct RibbedFingerShape {
+  Vector3 size{0.1, 0.02, 0.02};  ///< m, along x, y, z
+  double spine = 0.006;           ///< m, its thickness, from z = 0
+  double gap = 0.005;             ///< m, between two ribs
+  int ribs = 7;                   ///< >= 2
+  int rib_cells = 2;              ///< along a rib
+  int gap_cells = 1;              ///< along a gap
+  int width_cells = 3;
+  int spine_cells = 1;     ///< through the spine
+  int rib_rise_cells = 2;  ///< from the spine to the top of the ribs
+};
+
 /// Sets: nodes `x_min`, `x_max`, `y_min`, `y_max`, `z_min`, `z_max`.
 /// @param shape its measures. Throws Error(out-of-range) when one is not positive.
 /// @param cells what it is made of; nodes and sets are the same.
@@ -101,6 +129,22 @@ Mesh hollow_cylinder(const HollowCylinderShape& shape, Cells cells = Cells::tetr
 ///   does not lie inside.
 /// @param cells what it is made of.
 Mesh chambered_cylinder(const ChamberedCylinderShape& shape, Cells cells = Cells::tetrahedra);
+
+/// Sets: nodes `surface`, and of it `top` (z >= 0) and `bottom` (z <= 0).
+/// @param shape its measures. Throws Error(out-of-range) when one is not positive.
+/// @param cells what it is made of.
+Mesh sphere(const SphereShape& shape, Cells cells = Cells::tetrahedra);
+
+/// Sets: nodes `surface`, and of it `side` (the cylinder), `top` and `bottom` (the half balls).
+/// @param shape its measures. Throws Error(out-of-range) when one is not positive.
+/// @param cells what it is made of.
+Mesh capsule(const CapsuleShape& shape, Cells cells = Cells::tetrahedra);
+
+/// Sets: nodes `x_min`, `x_max`, `y_min`, `y_max`, `z_min` and `z_max`, the tops of the ribs.
+/// @param shape its measures. Throws Error(out-of-range) when one is not positive, or the gaps
+///   leave no ribs, or the spine fills the height.
+/// @param cells what it is made of.
+Mesh ribbed_finger(const RibbedFingerShape& shape, Cells cells = Cells::tetrahedra);
 
 /// Sets: nodes `bottom`, `top`, `side`.
 /// @param shape its measures. Throws Error(out-of-range).

@@ -25,11 +25,14 @@ struct VtuFields {
   const Points* positions = nullptr;  ///< (n, 3) m, in place of the mesh's own nodes
   bool sets = true;                   ///< named sets as 8-bit masks, which read_mesh() reads back
   bool triangles = true;              ///< the mesh's surface triangles as cells
+  /// Arrays compressed with zlib, fields in double precision. Else raw arrays, fields in single
+  /// precision: several times as fast, and hardly larger, since such numbers do not compress.
+  bool compressed = true;
 };
 
-/// Writes tetrahedra, hexahedra and triangles, in this order, in m: appended raw data, compressed
-/// with zlib. The file appears whole or not at all. Throws Error(file-unwritable), and
-/// Error(wrong-length) when a field does not fit the mesh.
+/// Writes tetrahedra, hexahedra and triangles, in this order, in m, as appended raw data. The file
+/// appears whole or not at all. Throws Error(file-unwritable), and Error(wrong-length) when a field
+/// does not fit the mesh.
 /// @param path the file.
 /// @param mesh to write.
 /// @param fields values at nodes and elements.

@@ -49,6 +49,8 @@ void append_bytes(std::string& bytes, const Value* values, std::size_t count) {
 /// Gathers the XML and the appended data side by side.
 class VtuBuilder {
  public:
+  explicit VtuBuilder(bool compressed) : compressed_(compressed) {}
+
   template <typename Value>
   void array(const std::string& name, const char* type, int components,
              const std::vector<Value>& values) {
@@ -58,8 +60,12 @@ class VtuBuilder {
     xml_ += fmt::format(
         "        <DataArray type=\"{}\" Name=\"{}\"{} format=\"appended\" offset=\"{}\"/>\n", type,
         escaped(name), width, data_.size());
-    append_compressed(
-        {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)});
+    append({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)});
+  }
+
+  void field(const std::string& name, int components, const std::vector<double>& values) {
+    if (compressed_) return array(name, "Float64", components, values);
+    array(name, "Float32", components, std::vector<float>(values.begin(), values.end()));
   }
 
   void line(std::string_view text) {
@@ -73,6 +79,13 @@ class VtuBuilder {
   }
 
  private:
+  void append(std::string_view bytes) {
+    if (compressed_) return append_compressed(bytes);
+    const std::uint64_t size = bytes.size();
+    append_bytes(data_, &size, 1);
+    data_ += bytes;
+  }
+
   /// Header (blocks, block size, size of a partial last block, packed sizes), then the blocks.
   void append_compressed(std::string_view bytes) {
     std::vector<std::uint64_t> header = {(bytes.size() + kBlockSize - 1) / kBlockSize, kBlockSize,
@@ -87,6 +100,7 @@ class VtuBuilder {
     data_ += packed;
   }
 
+  bool compressed_;
   std::string xml_;
   std::string data_;
 };
@@ -145,7 +159,7 @@ void write_point_data(const Mesh& mesh, const VtuFields& fields, VtuBuilder& out
   out.line("      <PointData>");
   for (const VtuField& field : fields.points) {
     check_field(field, count, "nodes");
-    out.array(field.name, "Float64", field.components, field.values);
+    out.field(field.name, field.components, field.values);
   }
   const SetMasks masks = fields.sets ? node_masks(mesh) : SetMasks{};
   for (const auto& [name, mask] : masks) out.array(name, "UInt8", 1, mask);
@@ -161,7 +175,7 @@ void write_cell_data(const Mesh& mesh, const VtuFields& fields, VtuBuilder& out)
     std::vector<double> values = field.values;
     values.resize((volumes + triangles) * static_cast<std::size_t>(field.components),
                   std::numeric_limits<double>::quiet_NaN());
-    out.array(field.name, "Float64", field.components, values);
+    out.field(field.name, field.components, values);
   }
   const SetMasks masks = fields.sets ? cell_masks(mesh, fields.triangles) : SetMasks{};
   for (const auto& [name, mask] : masks) out.array(name, "UInt8", 1, mask);
@@ -171,13 +185,14 @@ void write_cell_data(const Mesh& mesh, const VtuFields& fields, VtuBuilder& out)
 }  // namespace
 
 std::string format_vtu(const Mesh& mesh, const VtuFields& fields) {
-  VtuBuilder out;
+  VtuBuilder out(fields.compressed);
   constexpr bool kLittle = std::endian::native == std::endian::little;
   out.line("<?xml version=\"1.0\"?>");
   out.line(
       fmt::format("<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"{}\" "
-                  "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">",
-                  kLittle ? "LittleEndian" : "BigEndian"));
+                  "header_type=\"UInt64\"{}>",
+                  kLittle ? "LittleEndian" : "BigEndian",
+                  fields.compressed ? " compressor=\"vtkZLibDataCompressor\"" : ""));
   out.line("  <UnstructuredGrid>");
   out.line(fmt::format(
       "    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">", mesh.node_count(),

@@ -96,8 +96,10 @@ class ParaviewSeries {
       const mesh::Mesh& mesh = body.model().mesh();
       mesh::VtuFields fields;
       fields.positions = &body.positions();
-      const Points moved = body.positions() - mesh.nodes;
-      fields.points.push_back({"displacement", 3, {moved.data(), moved.data() + moved.size()}});
+      fields.compressed = false;
+      // The points are deformed: warped by a displacement, they would move twice as far.
+      fields.points.push_back(
+          {"rest_position", 3, {mesh.nodes.data(), mesh.nodes.data() + mesh.nodes.size()}});
       const Points& speed = body.velocities();
       fields.points.push_back({"velocity", 3, {speed.data(), speed.data() + speed.size()}});
       if (means_[b]) add_fields(static_cast<int>(b), fields);
@@ -113,11 +115,13 @@ class ParaviewSeries {
     const fem::ElementStates states = fem::element_states(body);
     fields.cells.push_back({"deformation_gradient", 9, rows_of(states.deformation)});
     fields.cells.push_back({"cauchy_stress", 9, rows_of(states.cauchy)});
-    for (const fem::ElementFieldInfo& info : fem::element_fields()) {
-      std::vector<double> values = fem::element_field(body, info.field);
-      fields.points.push_back({info.name, 1, mean(values)});
-      if (info.field == fem::ElementField::von_mises_stress) {
-        fields.cells.push_back({info.name, 1, std::move(values)});
+    const auto infos = fem::element_fields();
+    const std::vector<double> values = fem::all_element_fields(body);
+    const std::vector<double> at_nodes = mean(values, infos.size());
+    for (std::size_t k = 0; k < infos.size(); ++k) {
+      fields.points.push_back({infos[k].name, 1, column(at_nodes, k, infos.size())});
+      if (infos[k].field == fem::ElementField::von_mises_stress) {
+        fields.cells.push_back({infos[k].name, 1, column(values, k, infos.size())});
       }
     }
     const Points held =
@@ -131,6 +135,14 @@ class ParaviewSeries {
     Points forces = Points::Zero(body.positions().rows(), 3);
     body.add_row_forces(sim::split_efforts(simulation_).contact, forces);
     fields.points.push_back({"contact_force", 3, {forces.data(), forces.data() + forces.size()}});
+  }
+
+  static std::vector<double> column(const std::vector<double>& rows, std::size_t k,
+                                    std::size_t width) {
+    std::vector<double> result;
+    result.reserve(rows.size() / width);
+    for (std::size_t i = k; i < rows.size(); i += width) result.push_back(rows[i]);
+    return result;
   }
 
   static std::vector<double> rows_of(const std::vector<Matrix3>& tensors) {

@@ -140,7 +140,7 @@ Robot build(SceneDescription description) {
   add_joints(false);
   const JointOf joint_of = [&](const std::string& name) { return joints.at(name); };
   for (const ActuatorDescription& actuator : description.actuators) {
-    add_actuator(builder, actuator, body_of, joint_of);
+    add_actuator(builder, description, actuator, body_of, joint_of);
     if (actuator.type != ActuatorDescription::Type::cable) continue;
     const mechanics::BodyModel& body = builder.added_body(body_of(actuator.body).number);
     if (auto notice = bare_points_notice(actuator, body)) {

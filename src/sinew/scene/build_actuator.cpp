@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <variant>
 
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/mesh/scale.hpp"
 #include "sinew/mesh/surface.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/sim/model_builder.hpp"
@@ -10,12 +12,15 @@ namespace sinew::scene {
 
 namespace {
 
-mesh::Surface read_closed(const SurfaceDescription& surface) {
+// In the frame of the body's mesh file, whose scale, rotation and position it shares.
+mesh::Surface read_closed(const SurfaceDescription& surface, const BodyDescription& body) {
   try {
     mesh::SurfaceOptions options;
     options.unit = surface.unit;
     mesh::Surface read = mesh::read_surface(surface.file, options);
     mesh::require_closed(read);
+    mesh::scale(read, body.mesh.scale);
+    place_in_world(body, read.nodes);
     return read;
   } catch (const Error& error) {
     throw error.at(surface.place);
@@ -25,9 +30,13 @@ mesh::Surface read_closed(const SurfaceDescription& surface) {
 // Adds an actuator by what its type has of its own.
 class Adder {
  public:
-  Adder(sim::ModelBuilder& builder, const ActuatorDescription& actuator, const BodyOf& body_of,
-        const JointOf& joint_of)
-      : builder_(builder), actuator_(actuator), body_of_(body_of), joint_of_(joint_of) {}
+  Adder(sim::ModelBuilder& builder, const SceneDescription& scene,
+        const ActuatorDescription& actuator, const BodyOf& body_of, const JointOf& joint_of)
+      : builder_(builder),
+        scene_(scene),
+        actuator_(actuator),
+        body_of_(body_of),
+        joint_of_(joint_of) {}
 
   void operator()(const CableDescription& cable) const {
     sim::CableSettings settings = on_body(cable.settings);
@@ -42,7 +51,9 @@ class Adder {
   void operator()(const ChamberDescription& chamber) const {
     sim::ChamberSettings settings = on_body(chamber.settings);
     if (chamber.surface.kind == SurfaceDescription::Kind::file) {
-      settings.surface = read_closed(chamber.surface);
+      settings.surface =
+          read_closed(chamber.surface,
+                      *std::ranges::find(scene_.bodies, actuator_.body, &BodyDescription::name));
     } else {
       settings.surface = faces_of(chamber.surface, body_of_(actuator_.body).model->mesh());
     }
@@ -76,6 +87,7 @@ class Adder {
   }
 
   sim::ModelBuilder& builder_;
+  const SceneDescription& scene_;
   const ActuatorDescription& actuator_;
   const BodyOf& body_of_;
   const JointOf& joint_of_;
@@ -83,9 +95,10 @@ class Adder {
 
 }  // namespace
 
-void add_actuator(sim::ModelBuilder& builder, const ActuatorDescription& actuator,
-                  const BodyOf& body_of, const JointOf& joint_of) {
-  std::visit(Adder(builder, actuator, body_of, joint_of), actuator.own);
+void add_actuator(sim::ModelBuilder& builder, const SceneDescription& scene,
+                  const ActuatorDescription& actuator, const BodyOf& body_of,
+                  const JointOf& joint_of) {
+  std::visit(Adder(builder, scene, actuator, body_of, joint_of), actuator.own);
 }
 
 }  // namespace sinew::scene

@@ -105,11 +105,13 @@ mesh::Mesh make_own_mesh(const BodyDescription& body) {
 
 mesh::Mesh make_body_mesh(const BodyDescription& body) {
   mesh::Mesh mesh = make_own_mesh(body);
-  if (!body.rotation.isZero(0.0)) {
-    mesh.nodes = mesh.nodes * rotation_matrix(body.rotation).transpose();
-  }
-  if (!body.position.isZero(0.0)) mesh.nodes.rowwise() += body.position.transpose();
+  place_in_world(body, mesh.nodes);
   return mesh;
+}
+
+void place_in_world(const BodyDescription& body, Points& points) {
+  if (!body.rotation.isZero(0.0)) points = points * rotation_matrix(body.rotation).transpose();
+  if (!body.position.isZero(0.0)) points.rowwise() += body.position.transpose();
 }
 
 void check_element(const BodyDescription& body, const mesh::Mesh& mesh) {

@@ -38,6 +38,10 @@ using JointOf = std::function<int(const std::string&)>;
 /// Throws what make_mesh() does.
 mesh::Mesh make_body_mesh(const BodyDescription& body);
 
+/// Moves points of the frame of a body's mesh file to the world's. @param body whose `rotation` and
+/// `position`. @param points (n, 3) m.
+void place_in_world(const BodyDescription& body, Points& points);
+
 /// Throws Error(unsupported-element) where the mesh is not what the body asks for, or its elements
 /// do not take its material. @param body,mesh the body, and its make_body_mesh().
 void check_element(const BodyDescription& body, const mesh::Mesh& mesh);
@@ -72,10 +76,11 @@ rigid::Solid make_solid(mesh::Surface surface, bool convex);
 std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
                                const BodyDescription& body);
 
-/// @param builder that has the bodies. @param actuator to be added. @param body_of,joint_of find
-/// what it acts on.
-void add_actuator(sim::ModelBuilder& builder, const ActuatorDescription& actuator,
-                  const BodyOf& body_of, const JointOf& joint_of);
+/// @param builder that has the bodies. @param scene of the actuator. @param actuator to be added.
+/// @param body_of,joint_of find what it acts on.
+void add_actuator(sim::ModelBuilder& builder, const SceneDescription& scene,
+                  const ActuatorDescription& actuator, const BodyOf& body_of,
+                  const JointOf& joint_of);
 
 /// @param builder that has the bodies. @param effector to be added. @param body_of finds bodies.
 void add_effector(sim::ModelBuilder& builder, const EffectorDescription& effector,

@@ -74,7 +74,8 @@ struct MeshDescription {
   double unit = 1.0;           ///< m per unit of the file
   bool unit_given = false;     ///< whether the scene says what the unit is
   Location unit_place;
-  std::string shape;  ///< "block", "cylinder", ...; empty for a file
+  Vector3 scale = Vector3::Ones();  ///< of a file's coordinates along x, y, z; none is 0
+  std::string shape;                ///< "block", "cylinder", ...; empty for a file
   std::map<std::string, double>
       parameters;  ///< of the shape, those given only: m, or plain numbers
 };

@@ -66,6 +66,7 @@ struct Form {
   std::string telltale;
   std::shared_ptr<const KeyTable> table;  ///< table
   std::vector<Form> items;                ///< list, names: the forms of an item
+  bool loose = false;                     ///< choice: its letters and digits alone count
   bool later = false;                     ///< belongs to a later version
 };
 

@@ -181,19 +181,23 @@ std::shared_ptr<const KeyTable> surface_table() {
   KeyTable surface{
       .name = "surface",
       .description = "Where the pressure acts: exactly one of these.",
-      .keys = {{.name = "inside",
-                .forms = {vector(length())},
-                .example = "0 0 30 mm",
-                .description = "A point in a void enclosed by the body: selects its whole wall."},
-               {.name = "patch",
-                .forms = {table(patch_table())},
-                .example = "{point: 0 0 30 mm, angle: 40 deg}",
-                .description = "Faces around a point."},
-               {.name = "file",
-                .forms = {file()},
-                .example = "chamber.stl",
-                .description = "A closed surface as STL, OBJ or PLY, embedded in the body."},
-               file_unit_key("file")},
+      .keys =
+          {{.name = "inside",
+            .forms = {vector(length())},
+            .example = "0 0 30 mm",
+            .description = "A point in a void enclosed by the body: selects its whole wall."},
+           {.name = "patch",
+            .forms = {table(patch_table())},
+            .example = "{point: 0 0 30 mm, angle: 40 deg}",
+            .description = "Faces around a point."},
+           {.name = "file",
+            .forms = {file()},
+            .example = "chamber.stl",
+            .description =
+                "A closed surface as STL, OBJ or PLY, embedded in the body. Its coordinates are "
+                "those of the body's mesh file: it shares the body's scale, "
+                "rotation and position."},
+           file_unit_key("file")},
       .alternatives = {{{"inside", "patch", "file", "box", "sphere", "plane", "set"}, true}}};
   for (Key& key : region_keys("Faces with all their nodes")) surface.keys.push_back(std::move(key));
   return make_table(std::move(surface));

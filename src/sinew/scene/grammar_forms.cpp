@@ -183,4 +183,14 @@ Key file_unit_key(const char* only_with) {
           .only_with = only_with};
 }
 
+Key file_scale_key() {
+  return {.name = "scale",
+          .forms = {numbers(1, 3, any())},
+          .example = "1.5",
+          .default_text = "1",
+          .description =
+              "Factor of the file's coordinates, or three factors along its x, y and z; "
+              "a negative factor mirrors."};
+}
+
 }  // namespace sinew::scene::forms

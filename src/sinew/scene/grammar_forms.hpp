@@ -118,6 +118,8 @@ Key outside_key();
 Key mesh_file_key(const char* example);
 /// `unit` of a file's coordinates. @param only_with the key of the file, where that is optional.
 Key file_unit_key(const char* only_with = "");
+/// `scale` of a file's coordinates.
+Key file_scale_key();
 /// x, y, z, which name the world's axes, or a vector.
 std::vector<Form> axis_forms();
 /// box, sphere, plane and set, of which one must stand.

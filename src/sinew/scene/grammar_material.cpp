@@ -201,6 +201,14 @@ Form law_form() {
                              .shared = history_table()})}});
 }
 
+Key stiffness_scale() {
+  return {.name = "scale",
+          .forms = {quantity(plain_number(), material_range(0.0))},
+          .example = "1.5",
+          .default_text = "1",
+          .description = "Factor of all moduli, to match a test of your own batch."};
+}
+
 }  // namespace
 
 std::vector<Form> material_forms() {
@@ -223,9 +231,23 @@ std::vector<Form> material_forms() {
                                          .example = "rubber.yaml",
                                          .description = "Path of the file, relative to the scene "
                                                         "file.",
-                                         .required = true}}});
-  return {law_form(), table(usual, "young_modulus"), table(own, "file"),
-          choice(std::move(library))};
+                                         .required = true},
+                                        stiffness_scale()}});
+  Form word = choice(std::move(library), "name");
+  word.loose = true;
+  Form bare_word = word;  // what the words mean stands at the form without a map
+  for (Choice& choice : bare_word.choices) choice.description.clear();
+  const auto named = make_table({.name = "material: name",
+                                 .description = "A material of the library, scaled.",
+                                 .keys = {{.name = "name",
+                                           .forms = {bare_word},
+                                           .example = "dragon-skin-30",
+                                           .description = "A name of the library; capitals, blanks "
+                                                          "and hyphens do not count.",
+                                           .required = true},
+                                          stiffness_scale()}});
+  return {law_form(), table(usual, "young_modulus"), table(own, "file"), table(named, "name"),
+          std::move(word)};
 }
 
 }  // namespace sinew::scene::forms

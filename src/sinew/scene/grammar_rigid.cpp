@@ -43,6 +43,7 @@ std::shared_ptr<const KeyTable> solid_table() {
                       "file. The body's origin and axes are the file's.",
        .keys = {mesh_file_key("part.stl"),
                 file_unit_key(),
+                file_scale_key(),
                 {.name = "use",
                  .forms = {choice({{"surface", "Its triangles touch."},
                                    {"convex", "Its convex hull touches."}})},

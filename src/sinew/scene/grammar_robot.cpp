@@ -63,6 +63,30 @@ Form mesh_shape() {
                            .description = "Where the chamber begins; at 0 it is open."},
                        optional_length("chamber_top", "60 mm", "",
                                        "Where it ends. Without: at the top, open.")}),
+                shape("sphere",
+                      "A ball about the origin. Node sets `surface` and, of it, `top` (z >= 0) and "
+                      "`bottom` (z <= 0).",
+                      {shape_length("radius", "15 mm", "Its radius.")}),
+                shape("capsule",
+                      "A cylinder about z with half balls at its ends, its centre at the origin. "
+                      "Node sets `surface` and, of it, `side`, `top` and `bottom`.",
+                      {shape_length("radius", "10 mm", "Of the cylinder and the half balls."),
+                       shape_length("length", "40 mm", "Of the cylinder, without its ends.")}),
+                shape("ribbed-finger",
+                      "A finger for a cable: a spine along x from the origin, with ribs on it. A "
+                      "rib at each end, equal gaps between them. Node sets `x_min` to `z_max`.",
+                      {shape_length("length", "100 mm", "Along x."),
+                       shape_length("width", "20 mm", "Along y."),
+                       shape_length("height", "20 mm", "Along z, of spine and ribs together."),
+                       Key{.name = "ribs",
+                           .forms = {integer(2, 1000)},
+                           .example = "8",
+                           .default_text = "7",
+                           .description = "Number of ribs."},
+                       optional_length("gap", "4 mm", "",
+                                       "Between two ribs. Without: half the length of a rib."),
+                       optional_length("spine", "6 mm", "",
+                                       "Thickness of the spine. Without: a third of the height.")}),
                 shape("trunk", "A tapered trunk with bellows about z, its base at the origin.",
                       {optional_length("base_radius", "20 mm", "20 mm", "Outer radius at z = 0."),
                        optional_length("tip_radius", "12 mm", "8.5 mm", "Outer radius at the top."),
@@ -82,7 +106,7 @@ std::shared_ptr<const KeyTable> mesh_file_table() {
       {.name = "mesh: file",
        .description =
            "A mesh file: VTK legacy, VTU, or Gmsh 2.2 and 4.1, recognised by its content.",
-       .keys = {mesh_file_key("trunk.vtk"), file_unit_key()}});
+       .keys = {mesh_file_key("trunk.vtk"), file_unit_key(), file_scale_key()}});
 }
 
 std::shared_ptr<const KeyTable> sphere_table() {

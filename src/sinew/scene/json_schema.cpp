@@ -101,7 +101,22 @@ class Schema {
     for (const Choice& choice : form.choices) {
       if (!choice.later) list.push_back(choice.word);
     }
-    return {{"enum", list}};
+    if (!form.loose) return {{"enum", list}};
+    Json spellings = Json::array({{{"enum", list}}});  // which editors offer
+    for (const Choice& choice : form.choices) spellings.push_back(text(any_spelling(choice.word)));
+    return {{"anyOf", spellings}};
+  }
+
+  // "[dD][rR]...": a word in capitals or not, with anything or nothing for its hyphens.
+  static std::string any_spelling(const std::string& word) {
+    std::string pattern = "^";
+    for (const char c : word) {
+      const bool letter = c >= 'a' && c <= 'z';
+      if (c == '-') pattern += "[^A-Za-z0-9]*";
+      if (letter) pattern += fmt::format("[{}{}]", c, static_cast<char>(c - 'a' + 'A'));
+      if (c != '-' && !letter) pattern += c;
+    }
+    return pattern + "$";
   }
 
   Json form_schema(const Form& form) {

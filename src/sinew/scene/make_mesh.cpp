@@ -2,11 +2,14 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
+#include <string>
 
 #include <fmt/format.h>
 
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/read.hpp"
+#include "sinew/mesh/scale.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/surface.hpp"
 #include "sinew/mesh/topology.hpp"
@@ -121,17 +124,53 @@ mesh::Mesh make_trunk(const Parameters& p, mesh::Cells cells) {
   return mesh::trunk(shape, cells);
 }
 
+mesh::Mesh make_sphere(const Parameters& p, mesh::Cells cells) {
+  mesh::SphereShape shape;
+  shape.radius = p.get("radius", shape.radius);
+  shape.rings = rings(p.cells(shape.radius, shape.rings), cells);
+  return mesh::sphere(shape, cells);
+}
+
+mesh::Mesh make_capsule(const Parameters& p, mesh::Cells cells) {
+  mesh::CapsuleShape shape;
+  shape.radius = p.get("radius", shape.radius);
+  shape.length = p.get("length", shape.length);
+  shape.rings = rings(p.cells(shape.radius, shape.rings), cells);
+  shape.layers = p.cells(shape.length, matching(shape.length, shape.radius, shape.rings));
+  return mesh::capsule(shape, cells);
+}
+
+// Without a gap given, ribs are twice as long as gaps; without a spine, it is a third of the
+// height.
+mesh::Mesh make_finger(const Parameters& p, mesh::Cells cells) {
+  mesh::RibbedFingerShape shape;
+  shape.size = {p.get("length", shape.size.x()), p.get("width", shape.size.y()),
+                p.get("height", shape.size.z())};
+  shape.ribs = static_cast<int>(p.get("ribs", shape.ribs));
+  shape.gap = p.get("gap", shape.size.x() / (3 * shape.ribs - 1));
+  shape.spine = p.get("spine", shape.size.z() / 3.0);
+  const double rib = (shape.size.x() - (shape.ribs - 1) * shape.gap) / shape.ribs;
+  const double rise = shape.size.z() - shape.spine, cell = std::min(shape.spine, shape.gap);
+  shape.rib_cells = p.cells(rib, matching(rib, cell, 1));
+  shape.gap_cells = p.cells(shape.gap, matching(shape.gap, cell, 1));
+  shape.width_cells = p.cells(shape.size.y(), matching(shape.size.y(), cell, 1));
+  shape.spine_cells = p.cells(shape.spine, matching(shape.spine, cell, 1));
+  shape.rib_rise_cells = p.cells(rise, matching(rise, cell, 1));
+  return mesh::ribbed_finger(shape, cells);
+}
+
 mesh::Mesh make_shape(const MeshDescription& description, mesh::Cells cells) {
-  const Parameters parameters(description);
-  if (description.shape == "block") return make_block(parameters, cells);
-  if (description.shape == "cylinder") return make_cylinder(parameters, cells);
-  if (description.shape == "cone") return make_cone(parameters, cells);
-  if (description.shape == "hollow-cylinder") return make_tube(parameters, cells);
-  if (description.shape == "chambered-cylinder") return make_chambered(parameters, cells);
-  if (description.shape == "trunk") return make_trunk(parameters, cells);
-  throw Error(ErrorKind::unknown_choice, description.place,
-              fmt::format("there is no shape '{}'", description.shape),
-              "block, cylinder, cone, hollow-cylinder, chambered-cylinder or trunk");
+  using Maker = mesh::Mesh (*)(const Parameters&, mesh::Cells);
+  static const std::map<std::string, Maker> makers = {{"block", make_block},
+                                                      {"cylinder", make_cylinder},
+                                                      {"cone", make_cone},
+                                                      {"hollow-cylinder", make_tube},
+                                                      {"chambered-cylinder", make_chambered},
+                                                      {"sphere", make_sphere},
+                                                      {"capsule", make_capsule},
+                                                      {"ribbed-finger", make_finger},
+                                                      {"trunk", make_trunk}};
+  return makers.at(description.shape)(Parameters(description), cells);
 }
 
 mesh::Cells cells_of(Element element) {
@@ -146,19 +185,25 @@ bool holds_surface(const std::filesystem::path& file) {
   return ending == ".stl" || ending == ".obj" || ending == ".ply";
 }
 
+mesh::Surface read_surface_of(const MeshDescription& description) {
+  if (holds_surface(description.file)) {
+    return mesh::read_surface(description.file,
+                              {.unit = description.unit, .unit_given = description.unit_given});
+  }
+  const mesh::ReadOptions options{.unit = description.unit, .unit_given = description.unit_given};
+  mesh::Mesh mesh = mesh::read_mesh_unchecked(description.file, options);
+  const bool hollow = mesh.tetrahedra.empty() && mesh.hexahedra.empty();
+  if (!hollow) mesh = mesh::read_mesh(description.file, options);
+  return mesh::boundary_surface(mesh);
+}
+
 }  // namespace
 
 mesh::Surface make_surface(const MeshDescription& description) {
   return at_place(description.place, [&] {
-    if (holds_surface(description.file)) {
-      return mesh::read_surface(description.file,
-                                {.unit = description.unit, .unit_given = description.unit_given});
-    }
-    const mesh::ReadOptions options{.unit = description.unit, .unit_given = description.unit_given};
-    mesh::Mesh mesh = mesh::read_mesh_unchecked(description.file, options);
-    const bool hollow = mesh.tetrahedra.empty() && mesh.hexahedra.empty();
-    if (!hollow) mesh = mesh::read_mesh(description.file, options);
-    return mesh::boundary_surface(mesh);
+    mesh::Surface surface = read_surface_of(description);
+    mesh::scale(surface, description.scale);
+    return surface;
   });
 }
 
@@ -169,6 +214,7 @@ mesh::Mesh make_mesh(const MeshDescription& description, Element element) {
     options.unit = description.unit;
     options.unit_given = description.unit_place.line > 0 || description.unit != 1.0;
     mesh::Mesh mesh = mesh::read_mesh(description.file, options);
+    mesh::scale(mesh, description.scale);
     return element == Element::tet10 ? mesh::with_middle_nodes(mesh) : mesh;
   } catch (const Error& error) {
     throw error.at(description.place);

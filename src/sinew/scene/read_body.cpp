@@ -1,6 +1,12 @@
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "sinew/material/library.hpp"
+#include "sinew/material/scaled.hpp"
 #include "sinew/scene/check.hpp"
 #include "sinew/scene/readers.hpp"
 
@@ -8,13 +14,42 @@ namespace sinew::scene {
 
 namespace {
 
+constexpr const char* kShapeKey = "shape";
+
+// One factor, or one along each axis.
+void read_scale(const Fields& fields, Vector3& scale) {
+  std::vector<double> factors;
+  if (!fields.read_numbers("scale", factors)) return;
+  if (factors.size() == 2) {
+    throw Error(ErrorKind::wrong_length, fields.place("scale"), "there are 2 factors",
+                "write one, or three along x, y and z");
+  }
+  if (factors.size() == 1) factors.resize(3, factors.front());
+  scale = Vector3(factors[0], factors[1], factors[2]);
+  if (scale.prod() != 0.0) return;
+  throw Error(ErrorKind::out_of_range, fields.place("scale"), "a factor of 0 leaves no volume",
+              "write factors other than 0; -1 mirrors");
+}
+
 MeshDescription read_mesh_file(const Fields& fields, const ReadContext& context) {
   MeshDescription mesh;
   mesh.file = context.path(fields, "file");
   mesh.place = fields.place("file");
   mesh.unit_given = fields.read("unit", mesh.unit);
   if (mesh.unit_given) mesh.unit_place = fields.place("unit");
+  read_scale(fields, mesh.scale);
   return mesh;
+}
+
+// Measures of a shape, whichever are given.
+void read_measures(const Fields& fields, MeshDescription& mesh) {
+  for (const Node::Entry& entry : fields.map().entries()) {
+    if (entry.key == kShapeKey) continue;
+    const Form& written = fields.form(entry.key);
+    mesh.parameters[entry.key] = written.shape == Shape::integer
+                                     ? read_integer(entry.value, written)
+                                     : read_numbers(entry.value, written).front();
+  }
 }
 
 MeshDescription read_mesh(const Fields& body, const ReadContext& context) {
@@ -23,14 +58,8 @@ MeshDescription read_mesh(const Fields& body, const ReadContext& context) {
   if (form.shape == Shape::table) return read_mesh_file(fields, context);
   MeshDescription mesh;
   mesh.place = body.place("mesh");
-  mesh.shape = read_text(*fields.map().find(form.telltale));
-  for (const Node::Entry& entry : fields.map().entries()) {
-    if (entry.key == form.telltale) continue;
-    const Form& written = fields.form(entry.key);
-    mesh.parameters[entry.key] = written.shape == Shape::integer
-                                     ? read_integer(entry.value, written)
-                                     : read_numbers(entry.value, written).front();
-  }
+  mesh.shape = read_text(*fields.map().find(kShapeKey));
+  read_measures(fields, mesh);
   return mesh;
 }
 
@@ -117,23 +146,47 @@ bool read_viscosity(const Fields& fields, material::Hyperelastic& energy) {
   return instantaneous;
 }
 
+void use_library(const std::string& name, MaterialDescription& material) {
+  const material::NamedMaterial& named = material::named_material(name);
+  material.model = MaterialModel::hyperelastic;
+  material.energy = named.energy;
+  material.density = named.density;
+}
+
+// By the factor under `scale`.
+void stiffen(const Fields& fields, MaterialDescription& material) {
+  double factor = 1.0;
+  fields.read("scale", factor);
+  material.young_modulus *= factor;
+  material.energy = material::scaled(material.energy, factor);
+}
+
 // A file with what else would stand under `material`; such files do not name further ones.
 MaterialDescription read_material_file(const Fields& body, const ReadContext& context);
 
 MaterialDescription read_material(const Fields& body, const ReadContext& context) {
   MaterialDescription material;
   material.place = body.place("material");
-  if (body.form("material").telltale == "file") return read_material_file(body, context);
-  if (body.form("material").shape == Shape::choice) {
+  const Form& form = body.form("material");
+  if (form.shape == Shape::choice) {
     std::string name;
     body.read_word("material", name);
-    const material::NamedMaterial& named = material::named_material(name);
-    material.model = MaterialModel::hyperelastic;
-    material.energy = named.energy;
-    material.density = named.density;
+    use_library(name, material);
     return material;
   }
   const Fields fields = body.below("material");
+  if (form.telltale == "file") {
+    material = read_material_file(body, context);
+    stiffen(fields, material);
+    return material;
+  }
+  if (form.telltale == "name") {
+    std::string name;
+    fields.read_word("name", name);
+    use_library(name, material);
+    stiffen(fields, material);
+    return material;
+  }
   std::string model = "corotational";
   if (body.form("material").shape == Shape::variants) {
     model = read_text(*fields.map().find(body.form("material").telltale));
@@ -317,6 +370,52 @@ sim::BaseMotion read_motion(const Fields& fields, const ReadContext& context) {
   fields.read_direction("axis", motion.axis);
   fields.read("centre", motion.centre);
   return motion;
+}
+
+namespace {
+
+const Form& shape_form() {
+  const Form& body = form_of(grammar(), "bodies", Shape::names).items.front();
+  const auto fem = std::ranges::find(body.choices, "fem", &Choice::word);
+  return form_of(*fem->table, "mesh", Shape::variants);
+}
+
+}  // namespace
+
+std::vector<std::string> shape_names() {
+  std::vector<std::string> names;
+  for (const Choice& shape : shape_form().choices) names.push_back(shape.word);
+  return names;
+}
+
+MeshDescription read_shape(const std::string& shape, const std::vector<std::string>& measures) {
+  Node written = Node::map();
+  written.set(kShapeKey, Node::text(shape));
+  written.set_place({.item = "shape"});
+  for (const std::string& measure : measures) {
+    const std::size_t equals = measure.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw Error(ErrorKind::bad_argument, {.item = shape},
+                  fmt::format("{} is not an assignment", show(measure)),
+                  "write a measure, '=' and a value: radius=15mm");
+    }
+    const std::string key = measure.substr(0, equals);
+    Node value = parse_yaml(measure.substr(equals + 1), key);
+    value.set_place({.item = key});
+    written.set(key, std::move(value));
+  }
+  const Fields fields(written, shape_form());
+  for (const Node::Entry& entry : written.entries()) {
+    if (entry.key == kShapeKey) continue;
+    const Key* key = fields.table().find(entry.key);
+    if (key == nullptr) throw_unknown_key(entry.key, fields.table(), {.item = shape});
+    check_value(entry.value, key->forms);
+  }
+  MeshDescription mesh;
+  mesh.place = {.item = shape};
+  mesh.shape = shape;
+  read_measures(fields, mesh);
+  return mesh;
 }
 
 BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) {

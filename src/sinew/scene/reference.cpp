@@ -269,7 +269,7 @@ class Page {
     for (const Form& form : key.forms) {
       if (form.shape != Shape::choice) continue;
       for (const Choice& choice : form.choices) {
-        if (choice.later) continue;
+        if (choice.later || choice.description.empty()) continue;
         result += fmt::format("- `{}: {}` - {}\n", key.name, choice.word, choice.description);
       }
     }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sinew/scene/description.hpp"
 #include "sinew/scene/node.hpp"
@@ -51,5 +52,14 @@ void apply_override(Node& tree, const std::string& assignment);
 
 /// Makes every file path of the tree absolute, so that it means the same in another folder.
 void resolve_paths(Node& tree, const std::filesystem::path& base_dir);
+
+/// The words under `shape` of a mesh, in the order of the reference.
+std::vector<std::string> shape_names();
+
+/// The mesh of a shape, whose measures have the defaults of mesh/shapes.hpp where none is given.
+/// Throws Error: unknown-choice (the shape), bad-argument, unknown-key (a measure), and what a
+/// scene throws for its value.
+/// @param shape one of shape_names(). @param measures "radius=15 mm" each.
+MeshDescription read_shape(const std::string& shape, const std::vector<std::string>& measures);
 
 }  // namespace sinew::scene

@@ -186,18 +186,13 @@ mesh::Surface UrdfBodies::surface_of(const UrdfGeometry& geometry) const {
   file.place = geometry.place;
   file.file = resolved(mesh, geometry.place);
   file.unit_given = true;
-  mesh::Surface surface;
+  file.scale = mesh.scale;
   try {
-    surface = make_surface(file);
+    return make_surface(file);
   } catch (const Error& error) {
     throw Error(error.kind(), geometry.place, fmt::format("{}: {}", mesh.file, error.message()),
                 error.remedy());
   }
-  surface.nodes *= mesh.scale.asDiagonal();
-  if (mesh.scale.prod() < 0.0) {  // mirrored
-    for (mesh::Triangle& triangle : surface.triangles) std::swap(triangle[1], triangle[2]);
-  }
-  return surface;
 }
 
 mesh::Surface UrdfBodies::united(const Parts& parts) const {

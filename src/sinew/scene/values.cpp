@@ -34,9 +34,24 @@ bool fits(const Node& node, const Form& form) {
   }
 }
 
+// "Dragon Skin 30" as "dragonskin30".
+std::string letters_and_digits(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte) != 0) result += static_cast<char>(std::tolower(byte));
+  }
+  return result;
+}
+
+bool is_word(const std::string& word, const Node& node, const Form& form) {
+  if (!form.loose) return word == node.spelling();
+  return letters_and_digits(word) == letters_and_digits(node.spelling());
+}
+
 bool has_word(const Node& node, const Form& form) {
   return std::any_of(form.choices.begin(), form.choices.end(),
-                     [&](const Choice& choice) { return choice.word == node.spelling(); });
+                     [&](const Choice& choice) { return is_word(choice.word, node, form); });
 }
 
 [[noreturn]] void throw_wrong_type(const Node& node, const std::vector<Form>& forms,
@@ -178,7 +193,7 @@ const Choice& read_choice(const Node& node, const Form& form) {
     throw_wrong_type(node, {form}, words.front());
   }
   for (const Choice& choice : form.choices) {
-    if (choice.word != node.spelling()) continue;
+    if (!is_word(choice.word, node, form)) continue;
     if (choice.later) throw_later(show(choice.word), "write one of " + join(words), node.place());
     return choice;
   }

@@ -1,0 +1,358 @@
+"""What the meshes of a scene cost in accuracy: the same scene on finer meshes.
+
+    import sinew.convergence
+    study = sinew.convergence.study("beam.yaml", static=True)
+    study["tip.position"].relative_error            # of the scene's own mesh
+
+SI units everywhere. docs/convergence.md is the guide. Needs SciPy and PyYAML.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+import pathlib
+import sys
+import tempfile
+import time
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Optional, Union
+
+import numpy as np
+
+from . import mesh, scene
+from .errors import Error, RunError
+from .sweep.worker import measure as measure_now
+
+__all__ = ["Estimate", "Level", "Study", "study"]
+
+#: Orders of convergence that count as such. Displacements and energies reach 1 even around a crack (Strang and Fix, An Analysis of
+#: the Finite Element Method, 1973, section 8.1); less is seen on meshes that are too coarse for any order to show.
+LEAST_ORDER, LARGEST_ORDER = 1.0, 6.0
+_FAILED, _WRONG_INPUT = 1, 2
+
+
+@dataclass(frozen=True)
+class Level:
+    """One mesh of a study.
+
+    Attributes
+    ----------
+    elements, nodes : int
+        Of all deformable bodies.
+    size : float
+        h = (volume/elements)^(1/3), m.
+    seconds : float
+        Wall time of loading and running.
+    values : dict
+        Of each measure, (k,) or (): positions as displacements from the start, m.
+    """
+
+    elements: int
+    nodes: int
+    size: float
+    seconds: float
+    values: dict[str, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What a study says of one measure.
+
+    With values f_k on meshes of size h_k, the last the finest, and the order p of convergence, Richardson's extrapolation is
+    f = f_n + (f_n - f_(n-1))/((h_(n-1)/h_n)^p - 1) (L. F. Richardson, Phil. Trans. R. Soc. A 210, 1911; P. J. Roache, J. Fluids
+    Eng. 116, 1994, eq. 9 to 11, also for the uncertainty).
+
+    Attributes
+    ----------
+    order : float or None
+        p as seen on the last three meshes; None where there are only two of them, or where the differences do not shrink as h^p
+        with p from 1 to 6 and in one direction. Then p = 1 is taken.
+    extrapolated : ndarray
+        f, the value without error of the mesh.
+    error : float
+        |f_0 - f| of the scene's own mesh.
+    relative_error : float
+        The same over |f|; NaN where f is zero.
+    uncertainty : float
+        Of `extrapolated`: Roache's factor of safety, 1.25 with an observed order and else 3, times |f_n - f|.
+    """
+
+    order: Optional[float]
+    extrapolated: np.ndarray
+    error: float
+    relative_error: float
+    uncertainty: float
+
+
+@dataclass(frozen=True)
+class Study(Mapping[str, Estimate]):
+    """A mapping of measures to their estimates.
+
+    Attributes
+    ----------
+    levels : tuple of Level
+        The scene's own mesh first, then ever finer ones.
+    estimates : dict
+    """
+
+    levels: tuple[Level, ...]
+    estimates: dict[str, Estimate]
+
+    def __getitem__(self, name: str) -> Estimate:
+        return self.estimates[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.estimates)
+
+    def __len__(self) -> int:
+        return len(self.estimates)
+
+
+def study(
+    scene: Union[str, os.PathLike[str], Mapping[str, Any]],  # noqa: A002 - as sinew.load()
+    *,
+    measure: Optional[Sequence[str]] = None,
+    levels: int = 3,
+    duration: Optional[float] = None,
+    static: bool = False,
+    set: scene.Overrides = None,  # noqa: A002
+    progress: bool = False,
+) -> Study:
+    """Runs a scene on its own meshes and on finer ones, and extrapolates what it ends with.
+
+    Shapes are made of cells that are 1.5, 2, 2.5, ... times as small; tetrahedra of mesh files are cut in eight, again and again.
+    The meshes should be fine enough that differences shrink: see `Estimate.order`.
+
+    Parameters
+    ----------
+    scene : path-like or dict
+        As of sinew.load().
+    measure : sequence of str, optional
+        Observables, or strain_energy, mass and the like of a body: "tip.position", "trunk.strain_energy". By default the
+        positions and rotations of all effectors.
+    levels : int
+        Meshes, the scene's own included; 2 or more.
+    duration : float, optional
+        s; by default the scene's.
+    static : bool
+        An equilibrium under the commands and loads of the start in place of a run.
+    set : list of str or dict, optional
+        As of sinew.load().
+    progress : bool
+        Whether each mesh is told of on stderr.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    Error
+        bad-argument where there is nothing to measure or to refine; unsupported-element for hexahedra and quadratic tetrahedra
+        of files; and what sinew.load() and the run raise.
+    """
+    if levels < 2:
+        raise Error("out-of-range", "study(levels)", f"{levels} meshes show no convergence", "give 2 or more")
+    with tempfile.TemporaryDirectory() as folder:
+        refinement = _Refinement(scene, set, pathlib.Path(folder))
+        found: list[Level] = []
+        for k in range(levels):
+            begin = time.perf_counter()
+            sim = refinement.load(k, found[-1] if found else None)
+            names = _measures(sim) if measure is None else list(measure)
+            values = _values(sim, names, duration, static)
+            found.append(_level(sim, values, time.perf_counter() - begin))
+            if progress:
+                one = found[-1]
+                print(f"mesh {k + 1} of {levels}: {one.elements} elements, {one.seconds:.1f} s", file=sys.stderr)
+    sizes = [level.size for level in found]
+    return Study(tuple(found), {name: _estimate(sizes, [level.values[name] for level in found]) for name in names})
+
+
+class _Refinement:
+    """A scene on finer and finer meshes."""
+
+    def __init__(self, given: Any, overrides: scene.Overrides, folder: pathlib.Path) -> None:
+        import yaml
+
+        self._folder = folder
+        self._first = _load(given, overrides)
+        self._tree = yaml.safe_load(self._first.to_yaml())
+        self._files: dict[str, tuple[int, mesh.Mesh]] = {}  # of which level
+        self._bodies = [name for name, body in self._tree["bodies"].items() if body.get("type") == "fem"]
+        if not self._bodies:
+            raise Error("bad-argument", "convergence", "the scene has no body of finite elements", "give one whose meshes can be refined")
+        self._sizes = {name: _edge(self._first.body(name)) for name in self._bodies}
+
+    def load(self, k: int, before: Optional[Level]) -> Any:
+        """The scene on its k-th mesh."""
+        if k == 0:
+            return self._first
+        shrink = 1.0 + 0.5 * k  # two cells become three, then four
+        for _ in range(8):
+            for name in self._bodies:
+                self._refine(name, k, shrink)
+            sim = _load(self._tree, None)
+            if before is None or _count(sim)[0] > 1.2 * before.elements:
+                break
+            shrink *= 1.2  # whole numbers of cells were the same again
+        return sim
+
+    def _refine(self, name: str, k: int, shrink: float) -> None:
+        own = self._tree["bodies"][name]["mesh"]
+        if "shape" in own:
+            own["element_size"] = self._sizes[name] / shrink
+            return
+        if self._files.get(name, (0,))[0] != k:
+            last = self._files[name][1] if name in self._files else mesh.read(own["file"], own.get("unit"))
+            self._files[name] = (k, last.refined())
+            path = self._folder / f"{name}_{k}.vtu"
+            self._files[name][1].write(path)
+            own.update(file=str(path), unit="m")
+
+
+def _load(given: Any, overrides: scene.Overrides) -> Any:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of elements that lock: that is what the study shows
+        return scene.load(given, set=overrides)
+
+
+def _deformable(sim: Any) -> list[Any]:
+    return [body for body in sim.bodies.values() if len(body.tetrahedra) + len(body.hexahedra)]
+
+
+def _count(sim: Any) -> tuple[int, int]:
+    bodies = _deformable(sim)
+    return sum(len(b.tetrahedra) + len(b.hexahedra) for b in bodies), sum(len(b.positions) for b in bodies)
+
+
+def _edge(body: Any) -> float:
+    """About the edge of a body's cells, m: cubes are one hexahedron or six tetrahedra."""
+    count = len(body.hexahedra) or len(body.tetrahedra) / 6
+    return float((body.volume / count) ** (1 / 3))
+
+
+def _measures(sim: Any) -> list[str]:
+    wanted = [f"{name}.{quantity}" for name in sim.effectors for quantity in ("position", "rotation")]
+    names = [name for name in sim.run(0.0) if name in wanted]
+    if not names:
+        raise Error("bad-argument", "convergence", "the scene has no effectors",
+                    "name what to compare: --measure BODY.strain_energy, or an observable of run.csv")
+    return names
+
+
+def _values(sim: Any, names: list[str], duration: Optional[float], static: bool) -> dict[str, np.ndarray]:
+    start = measure_now(sim, names)
+    if static:
+        sim.solve_static()
+    else:
+        sim.run(duration)
+    end = measure_now(sim, names)
+    return {name: end[name] - start[name] if name.endswith(".position") else end[name] for name in names}
+
+
+def _level(sim: Any, values: dict[str, np.ndarray], seconds: float) -> Level:
+    elements, nodes = _count(sim)
+    volume = sum(body.volume for body in _deformable(sim))
+    return Level(elements, nodes, float((volume / elements) ** (1 / 3)), seconds, values)
+
+
+def _order(sizes: Sequence[float], values: Sequence[np.ndarray]) -> Optional[float]:
+    """p of the last three values, from |f_1 - f_0|/|f_2 - f_1| = (h_0^p - h_1^p)/(h_1^p - h_2^p); None as Estimate.order says."""
+    from scipy.optimize import brentq
+
+    if len(values) < 3:
+        return None
+    (h0, h1, h2), (f0, f1, f2) = sizes[-3:], values[-3:]
+    first, second = np.ravel(f1 - f0), np.ravel(f2 - f1)
+    if float(first @ second) <= 0.0:
+        return None
+    ratio = float(np.linalg.norm(first) / np.linalg.norm(second))
+
+    def miss(p: float) -> float:
+        return (h0**p - h1**p) / (h1**p - h2**p) - ratio
+
+    if miss(LEAST_ORDER) * miss(LARGEST_ORDER) > 0.0:
+        return None
+    return float(brentq(miss, LEAST_ORDER, LARGEST_ORDER, xtol=1e-10))
+
+
+def _estimate(sizes: Sequence[float], values: Sequence[np.ndarray]) -> Estimate:
+    order = _order(sizes, values)
+    last = values[-1] - values[-2]
+    beyond = last / ((sizes[-2] / sizes[-1]) ** (order or 1.0) - 1.0)
+    extrapolated = values[-1] + beyond
+    error, size = float(np.linalg.norm(values[0] - extrapolated)), float(np.linalg.norm(extrapolated))
+    return Estimate(order, extrapolated, error, error / size if size > 0.0 else math.nan,
+                    (3.0 if order is None else 1.25) * float(np.linalg.norm(beyond)))
+
+
+def _table(found: Study) -> str:
+    lines = [f"{'elements':>9} {'nodes':>8} {'size (mm)':>10} {'wall (s)':>9}  " + "  ".join(found)]
+    for level in found.levels:
+        row = [f"{level.elements:9d} {level.nodes:8d} {1e3 * level.size:10.3f} {level.seconds:9.2f}"]
+        lines.append("  ".join(row + [_shown(level.values[name]) for name in found]))
+    for name, one in found.items():
+        order = "not seen, 1 taken" if one.order is None else f"{one.order:.2f}"
+        lines += [f"\n{name}", f"  order of convergence          {order}",
+                  f"  extrapolated                  {_shown(one.extrapolated)} +- {one.uncertainty:.2g}",
+                  f"  error of the scene's mesh     {one.error:.3g} ({100.0 * one.relative_error:.2g} %)"]
+        if one.order is None:
+            why = "Two meshes show no order: use more" if len(found.levels) == 2 else "The differences shrink with no clear order: refine further"
+            lines.append(f"  {why} before you trust the estimate.")
+    return "\n".join([*lines, "\nValues in SI units, positions as displacements from the start."])
+
+
+def _shown(value: np.ndarray) -> str:
+    return " ".join(f"{x:.5g}" for x in np.atleast_1d(value))
+
+
+def _options(words: list[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="sinew convergence", allow_abbrev=False)
+    parser.add_argument("scene", metavar="SCENE")
+    for name in ("measure", "set"):
+        parser.add_argument(f"--{name}", action="append", default=[])
+    for name in ("duration", "json"):
+        parser.add_argument(f"--{name}")
+    parser.add_argument("--levels", type=int, default=3)
+    parser.add_argument("--static", action="store_true")
+    return parser.parse_args(words)
+
+
+def _written(found: Study) -> str:
+    def plain(value: Any) -> Any:
+        return value.tolist() if isinstance(value, np.ndarray) else value
+
+    levels = [{key: plain(value) for key, value in asdict(level).items()} for level in found.levels]
+    for level in levels:
+        level["values"] = {name: plain(value) for name, value in level["values"].items()}
+    estimates = {name: {key: plain(value) for key, value in asdict(one).items()} for name, one in found.items()}
+    return json.dumps({"levels": levels, "estimates": estimates}, indent=2)
+
+
+def main(words: list[str]) -> int:
+    """Of the command line; the exit code: 0 done, 1 a run failed, 2 wrong input, 130 after Ctrl-C."""
+    from .sweep.__main__ import _seconds
+
+    options = _options(words)
+    try:
+        found = study(options.scene, measure=options.measure or None, levels=options.levels, static=options.static,
+                      duration=_seconds("--duration", options.duration), set=options.set, progress=True)
+        print(_table(found))
+        if options.json:
+            pathlib.Path(options.json).write_text(_written(found))
+        return 0
+    except Error as error:
+        print(f"sinew: error: {error}", file=sys.stderr)
+        return _FAILED if isinstance(error, RunError) else _WRONG_INPUT
+    except KeyboardInterrupt:
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
