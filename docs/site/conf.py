@@ -45,7 +45,7 @@ SECTIONS = {
     "Model": ["materials", "contact", "collision", "joints", "urdf", "pcc", "bending_actuator", "sensors"],
     "Control and estimate": ["steering", "closed_loop", "high_rate", "estimation", "identification", "planning", "bracing", "learning"],
     "Robots": ["grasping", "locomotion"],
-    "Theory and numbers": ["conventions", "solver", "validation", "scorecard", "scorecard/*", "performance", "errata"],
+    "Theory and numbers": ["conventions", "solver", "convergence", "validation", "scorecard", "scorecard/*", "performance", "errata"],
     "Develop": ["architecture", "view_protocol", "../CONTRIBUTING", "../CHANGELOG", "../README"],
     "Reference": ["../reference/python/*", "../reference/cpp"],
 }

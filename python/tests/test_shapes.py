@@ -103,7 +103,7 @@ def test_a_chamber_in_a_file_goes_with_its_body(tmp_path):
     def inflated(unit, **more):
         scale = more.pop("scale", 1)
         soft = body({"file": str(solid), "unit": unit, "scale": scale}, element="tet4", fixed={"set": "z_min"}, **more)
-        air = {"type": "pressure", "body": "b", "surface": {"file": str(cavity), "unit": unit}, "command": {"pressure": 5e3}}
+        air = {"type": "chamber", "body": "b", "surface": {"file": str(cavity), "unit": unit}, "command": {"pressure": 5e3}}
         sim = sinew.load({**scene(b=soft), "actuators": {"air": air}})
         sim.solve_static()
         return sim.body("b")

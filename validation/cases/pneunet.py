@@ -27,7 +27,7 @@ def moved(mesh, cavity, pressure, paper):
     film = {"paper": {"body": "finger", "surface": {"plane": {"point": [0.0, SIDE, 0.0], "normal": [0.0, 1.0, 0.0], "within": 1e-6}}, **PAPER}}
     sim = sinew.load({
         "sinew": 1, "gravity": [0.0, 0.0, 0.0], "time_step": 0.1, "bodies": {"finger": finger}, **({"membranes": film} if paper else {}),
-        "actuators": {"air": {"type": "pressure", "body": "finger", "surface": {"file": str(cavity), "unit": "mm"},
+        "actuators": {"air": {"type": "chamber", "body": "finger", "surface": {"file": str(cavity), "unit": "mm"},
                               "command": {"pressure": pressure}}}})
     sim.solve_static()
     body = sim.body("finger")
