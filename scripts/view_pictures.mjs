@@ -74,6 +74,12 @@ await draw('docs/images/view_contact.png', [join(root, 'examples/contact/squeeze
   await page.selectOption('[aria-label="Signals to plot"]', 'contact');
   await step(page, 500);
 });
+await draw('docs/images/view_joints.png', [join(root, 'examples/rigid/slider_crank.yaml')], {}, async (page) => {
+  await page.selectOption('[aria-label="Signals to plot"]', 'joint rad');
+  await step(page, 140);
+  await page.waitForFunction(() => window.sinewView.state().step === 140);
+  await page.getByText('knee', {exact: true}).click();
+});
 await draw('docs/images/contact_lift.png', [join(root, 'examples/contact/lift.yaml')], {}, async (page) => {
   await page.selectOption('[aria-label="Signals to plot"]', 'contact');
   await step(page, 300);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -10,6 +12,7 @@
 #include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/chamber.hpp"
 #include "sinew/constraint/effector.hpp"
+#include "sinew/constraint/joint.hpp"
 #include "sinew/constraint/probe.hpp"
 #include "sinew/constraint/shape_contact.hpp"
 #include "sinew/fem/has_material.hpp"
@@ -164,6 +167,8 @@ std::string group_of(const sim::Observable& observable) {
       return unit.empty() ? "sensor" : "sensor " + unit;
     case sim::ObservableKind::contact:
       return unit == "N" ? "contact" : unit == "m" ? "gap" : "touching";
+    case sim::ObservableKind::joint:
+      return "joint " + unit;
     case sim::ObservableKind::energy:
       return "energy";
     case sim::ObservableKind::timing:
@@ -194,6 +199,7 @@ void add_signals(const sim::Observable& observable, std::vector<SignalInfo>& lis
         break;
       case sim::ObservableKind::effector:
       case sim::ObservableKind::contact:
+      case sim::ObservableKind::joint:
         signal.label = component;
         break;
       case sim::ObservableKind::timing:
@@ -206,33 +212,40 @@ void add_signals(const sim::Observable& observable, std::vector<SignalInfo>& lis
   }
 }
 
-// Keys of the signals of one probe or contact.
-Json keys_of(const sim::Observables& observables, sim::ObservableKind kind,
-             const std::string& owner) {
-  std::vector<SignalInfo> signals;
-  for (const sim::Observable& one : observables.list()) {
-    const bool asked = one.kind == kind && one.owner == owner;
-    if (asked && one.quantity != "true") add_signals(one, signals);
+// Keys of the signals of probes, sensors, contacts and joints: there may be thousands.
+class SignalKeys {
+ public:
+  explicit SignalKeys(const sim::Observables& observables) {
+    for (const sim::Observable& one : observables.list()) {
+      if (one.quantity == "true") continue;
+      std::vector<SignalInfo> signals;
+      add_signals(one, signals);
+      for (const SignalInfo& signal : signals) keys_[{one.kind, one.owner}].push_back(signal.key);
+    }
   }
-  Json keys = Json::array();
-  for (const SignalInfo& signal : signals) keys.push_back(signal.key);
-  return keys;
-}
+  Json of(sim::ObservableKind kind, const std::string& owner) const {
+    const auto found = keys_.find({kind, owner});
+    return found == keys_.end() ? Json::array() : found->second;
+  }
 
-Json probe_json(const sim::Observables& observables, const constraint::Probe& probe) {
+ private:
+  std::map<std::pair<sim::ObservableKind, std::string>, Json> keys_;
+};
+
+Json probe_json(const SignalKeys& keys, const constraint::Probe& probe) {
   return {{"name", probe.name()},
           {"kind", probe.kind()},
           {"marks", probe.mark_count()},
-          {"signals", keys_of(observables, sim::ObservableKind::probe, probe.name())}};
+          {"signals", keys.of(sim::ObservableKind::probe, probe.name())}};
 }
 
 // Drawn and listed as probes are.
-Json sensor_json(const sim::Observables& observables, const sim::SensorModel& sensor) {
+Json sensor_json(const SignalKeys& keys, const sim::SensorModel& sensor) {
   const constraint::Probe* probe = sensor.source->probe();
   return {{"name", sensor.name},
           {"kind", sensor.kind},
           {"marks", probe != nullptr ? probe->mark_count() : 0},
-          {"signals", keys_of(observables, sim::ObservableKind::sensor, sensor.name)}};
+          {"signals", keys.of(sim::ObservableKind::sensor, sensor.name)}};
 }
 
 // A rigid body's own surface is drawn with it.
@@ -255,8 +268,7 @@ Json surface_json(const constraint::Contact& contact) {
           {"radius", capsule.radius}};
 }
 
-Json contact_json(const sim::Observables& observables, int index) {
-  const sim::Model& model = observables.simulation().model();
+Json contact_json(const SignalKeys& keys, const sim::Model& model, int index) {
   const constraint::Contact& contact = model.contact(index);
   const int body = contact.body();
   return {{"name", contact.name()},
@@ -264,7 +276,20 @@ Json contact_json(const sim::Observables& observables, int index) {
           {"surface", surface_json(contact)},
           {"friction", contact.friction().sticking},
           {"points", contact.size()},
-          {"signals", keys_of(observables, sim::ObservableKind::contact, contact.name())}};
+          {"signals", keys.of(sim::ObservableKind::contact, contact.name())}};
+}
+
+Json joint_json(const SignalKeys& keys, const sim::Model& model, int index) {
+  const sim::JointModel& joint = model.joints()[static_cast<std::size_t>(index)];
+  const constraint::Joint* rigid = model.joint(index);
+  const auto name_of = [&](int body) {
+    return body == sim::kWorld ? "world" : model.body(body).name();
+  };
+  const auto type = rigid != nullptr ? rigid->type() : constraint::JointType::weld;
+  return {{"name", joint.name},
+          {"type", constraint::joint_type_name(type)},
+          {"bodies", {name_of(joint.first), name_of(joint.second)}},
+          {"signals", keys.of(sim::ObservableKind::joint, joint.name)}};
 }
 
 Json body_json(const mechanics::BodyModel& model, const DisplaySurface& surface) {
@@ -418,13 +443,18 @@ Description describe(const scene::Robot& robot, const sim::Observables& observab
     effectors.push_back(effector_json(model, static_cast<int>(i)));
     result.effectors.push_back(model.effectors()[i].name);
   }
-  for (const auto& probe : model.probes()) probes.push_back(probe_json(observables, probe));
+  const SignalKeys keys(observables);
+  for (const auto& probe : model.probes()) probes.push_back(probe_json(keys, probe));
   for (const sim::SensorModel& sensor : model.sensors()) {
-    probes.push_back(sensor_json(observables, sensor));
+    probes.push_back(sensor_json(keys, sensor));
   }
   Json contacts = Json::array();
   for (std::size_t c = 0; c < model.contacts().size(); ++c) {
-    contacts.push_back(contact_json(observables, static_cast<int>(c)));
+    contacts.push_back(contact_json(keys, model, static_cast<int>(c)));
+  }
+  Json joints = Json::array();
+  for (std::size_t j = 0; j < model.joints().size(); ++j) {
+    joints.push_back(joint_json(keys, model, static_cast<int>(j)));
   }
   for (const sim::Observable& one : observables.list()) add_signals(one, result.signals);
   Json fields = Json::array();
@@ -445,6 +475,7 @@ Description describe(const scene::Robot& robot, const sim::Observables& observab
                       {"effectors", effectors},
                       {"probes", probes},
                       {"contacts", contacts},
+                      {"joints", joints},
                       {"controllers", controllers_json(robot)},
                       {"notices", notices_json(robot.notices)},
                       {"signals", signals_json(result.signals)}};

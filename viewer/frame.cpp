@@ -25,7 +25,8 @@ enum class Section : std::uint16_t {
   targets,
   pull,
   probes,
-  contacts
+  contacts,
+  joints
 };
 
 /// Appends numbers to bytes.
@@ -114,6 +115,7 @@ void encode_frame(const Frame& frame, const FrameChoice& choice, std::vector<std
     for (std::size_t c = 0; c < frame.contacts.size(); ++c) {
       writer.section(Section::contacts, c, frame.contacts[c]);
     }
+    if (!frame.joints.empty()) writer.section(Section::joints, 0, frame.joints);
   }
   writer.section(Section::targets, 0, frame.targets);
   if (frame.pull) {

@@ -73,6 +73,7 @@ struct Frame {
   /// where the scene puts it, then of each point its position, m, the force on the body, N, and its
   /// qp::ContactState.
   std::vector<std::vector<float>> contacts;
+  std::vector<float> joints;  ///< (12 joints,), see joint_marks()
   std::optional<PullFrame> pull;
 };
 

@@ -1,7 +1,9 @@
 #include "frame_maker.hpp"
 
 #include <limits>
+#include <map>
 #include <span>
+#include <string_view>
 
 #include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/effector.hpp"
@@ -11,6 +13,8 @@
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/sensor_source.hpp"
 #include "sinew/sim/state.hpp"
+
+#include "joint_marks.hpp"
 
 namespace sinew::viewer {
 
@@ -24,6 +28,26 @@ FrameMaker::FrameMaker(const sim::Simulation& simulation, sim::Observables& obse
                        const Description& description)
     : simulation_(simulation), observables_(observables), description_(description) {
   for (const auto& body : simulation.model().bodies()) means_.push_back(fem::nodal_mean(body));
+  find_contacts();
+}
+
+// They are listed in the order of the contacts, each with its pose first. There may be thousands,
+// too many to find each by its name.
+void FrameMaker::find_contacts() {
+  static const std::map<std::string_view, std::size_t ContactPlaces::*> members = {
+      {"pose", &ContactPlaces::pose},
+      {"position", &ContactPlaces::position},
+      {"normal", &ContactPlaces::normal},
+      {"normal_force", &ContactPlaces::normal_force},
+      {"friction_force", &ContactPlaces::friction_force},
+      {"state", &ContactPlaces::state}};
+  for (std::size_t k = 0; k < observables_.list().size(); ++k) {
+    const sim::Observable& one = observables_.list()[k];
+    if (one.kind != sim::ObservableKind::contact_point) continue;
+    if (one.quantity == "pose") contacts_.emplace_back();
+    const auto found = members.find(one.quantity);
+    if (found != members.end()) contacts_.back().*(found->second) = k;
+  }
 }
 
 void FrameMaker::fill_signals(Frame& frame) {
@@ -90,23 +114,22 @@ void FrameMaker::fill_points(Frame& frame) {
 }
 
 void FrameMaker::fill_contacts(Frame& frame) {
-  for (const sim::ContactModel& contact : simulation_.model().contacts()) {
+  for (const ContactPlaces& places : contacts_) {
     std::vector<float>& values = frame.contacts.emplace_back();
     const auto put = [&](const auto& numbers) {
       for (Eigen::Index k = 0; k < numbers.size(); ++k) {
         values.push_back(static_cast<float>(numbers[k]));
       }
     };
-    const auto numbers = [&](const char* name) {
-      return observables_.read(observables_.find(contact.name + name));
-    };
     using Pose = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
-    const Eigen::Map<const Pose> pose(numbers(".pose").data());
+    const Eigen::Map<const Pose> pose(observables_.read(places.pose).data());
     put(pose.col(3));
     put(Eigen::Quaterniond(Matrix3(pose.leftCols<3>())).coeffs());  // x, y, z, w
-    const auto position = numbers(".points.position"), normal = numbers(".points.normal"),
-               normal_force = numbers(".points.normal_force"),
-               friction_force = numbers(".points.friction_force"), state = numbers(".points.state");
+    const auto position = observables_.read(places.position),
+               normal = observables_.read(places.normal),
+               normal_force = observables_.read(places.normal_force),
+               friction_force = observables_.read(places.friction_force),
+               state = observables_.read(places.state);
     values.reserve(7 * (1 + state.size()));
     for (std::size_t k = 0; k < state.size(); ++k) {
       using Vector = Eigen::Map<const Vector3>;
@@ -128,6 +151,7 @@ std::shared_ptr<Frame> FrameMaker::make(const FieldChoice& wanted) {
   for (std::size_t b = 0; b < frame->bodies.size(); ++b) fill_body(b, wanted, frame->bodies[b]);
   fill_points(*frame);
   fill_contacts(*frame);
+  frame->joints = joint_marks(simulation_);
   return frame;
 }
 

@@ -30,10 +30,17 @@ class FrameMaker {
   void fill_points(Frame& frame);
   void fill_contacts(Frame& frame);
 
+  /// Where a contact's numbers are among the observables.
+  struct ContactPlaces {
+    std::size_t pose, position, normal, normal_force, friction_force, state;
+  };
+  void find_contacts();
+
   const sim::Simulation& simulation_;
   sim::Observables& observables_;
   const Description& description_;
   std::vector<std::unique_ptr<fem::NodalMean>> means_;  ///< one a body; none of an arm
+  std::vector<ContactPlaces> contacts_;
 };
 
 }  // namespace sinew::viewer

@@ -72,14 +72,14 @@ GallerySource::GallerySource(std::vector<Example> examples) : examples_(std::mov
                      seen ? Json("/download/thumbnail/" + example.name + ".png") : Json(nullptr)}});
   }
   const Json empty = Json::array();
-  description_.scene = Json{
-      {"name", "Examples"},   {"time_step", 0.01},
-      {"gravity", {0, 0, 0}}, {"bounds", {{0, 0, 0}, {1, 1, 1}}},
-      {"bodies", empty},      {"fields", empty},
-      {"actuators", empty},   {"effectors", empty},
-      {"probes", empty},      {"contacts", empty},
-      {"controllers", empty}, {"signals", empty},
-      {"examples", list}}.dump();
+  description_.scene = Json{{"name", "Examples"},   {"time_step", 0.01},
+                            {"gravity", {0, 0, 0}}, {"bounds", {{0, 0, 0}, {1, 1, 1}}},
+                            {"bodies", empty},      {"fields", empty},
+                            {"actuators", empty},   {"effectors", empty},
+                            {"probes", empty},      {"contacts", empty},
+                            {"joints", empty},      {"controllers", empty},
+                            {"signals", empty},     {"examples", list}}
+                           .dump();
 }
 
 void GallerySource::start(Publisher& publisher) {

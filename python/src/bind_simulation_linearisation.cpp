@@ -10,9 +10,9 @@ namespace sinew::python {
 
 namespace {
 
-sim::LinearisationChoice choice(const std::string& tangent, bool geometric_stiffness, bool statics,
-                                bool fields) {
-  return {to_tangent(tangent, "linearise(tangent)"), geometric_stiffness, statics, fields};
+sim::LinearisationChoice choice(const std::string& tangent, bool geometric_stiffness,
+                                bool statics) {
+  return {to_tangent(tangent, "linearise(tangent)"), geometric_stiffness, statics};
 }
 
 }  // namespace
@@ -26,7 +26,9 @@ void bind_simulation_linearisation(SimulationType& type) {
           "linearise",
           [](Session& self, const std::string& tangent, bool geometric_stiffness, bool statics,
              bool fields) {
-            return self.linearise(choice(tangent, geometric_stiffness, statics, fields));
+            auto asked = choice(tangent, geometric_stiffness, statics);
+            asked.fields = fields;
+            return self.linearise(asked);
           },
           py::kw_only(), py::arg("tangent") = "exact", py::arg("geometric_stiffness") = true,
           py::arg("statics") = true, py::arg("fields") = false,
@@ -34,6 +36,10 @@ void bind_simulation_linearisation(SimulationType& type) {
 --
 
 How motions follow from efforts near the present state, which is not changed.
+
+Of contacts, the points that a step from here would begin with have rows: those with a force or near
+what they may touch. Points that share a row (`aggregate`) have the name of one of them and the sum
+of their efforts.
 
 Parameters
 ----------
@@ -81,15 +87,17 @@ Error
       .def(
           "compliance",
           [](Session& self, const std::string& tangent, bool geometric_stiffness, bool statics) {
-            return copy(
-                self.linearise(choice(tangent, geometric_stiffness, statics, false)).compliance);
+            auto asked = choice(tangent, geometric_stiffness, statics);
+            asked.every_point = true;
+            return copy(self.linearise(asked).compliance);
           },
           py::kw_only(), py::arg("tangent") = "exact", py::arg("geometric_stiffness") = true,
           py::arg("statics") = true,
           R"(compliance($self, *, tangent='exact', geometric_stiffness=True, statics=True)
 --
 
-W of linearise(): (rows, rows) ndarray, m/N, rows and columns as `rows`.
+W as linearise() has it, but with every contact point: (rows, rows) ndarray, m/N, rows and columns
+as `rows`. Of surfaces that are searched for points in every step, those found last have rows.
 )");
 }
 

@@ -75,6 +75,39 @@ def test_path_onto_a_floor(friction):
     assert sim.contact("floor").normal_forces == pytest.approx(pressed, abs=1e-6 * pressed.sum())
 
 
+def whole_block(**contact):
+    """All nodes of the surface may touch the floor; those of the lower face do."""
+    sim = block(contacts={"floor": {"body": "block", "friction": 0.5, "surface": {"plane": {}}, **contact}})
+    sim.step(100)
+    return sim, [k for k, z in enumerate(sim.contact("floor").positions[:, 2]) if z < 1e-3]
+
+
+def test_linearisation_has_the_points_that_take_part():
+    sim, lower = whole_block()
+    floor, before, last = sim.contact("floor"), sim.state(), sim.last_linearisation()
+    linear = sim.linearise(statics=False)
+    assert sim.state() == before
+    assert len(lower) == 25 < len(floor.states)
+    assert linear.rows == [f"floor point {k} {way}" for k in lower for way in ("normal", "tangent 1", "tangent 2")]
+    at = [sim.rows.index(row) for row in linear.rows]
+    every = sim.compliance(statics=False)
+    assert every.shape == (len(sim.rows), len(sim.rows))
+    assert linear.W == pytest.approx(every[np.ix_(at, at)], abs=1e-12 * every.max())
+    assert np.array_equal(linear.effort[::3], floor.normal_forces[lower])
+    assert linear.delta[::3] == pytest.approx(floor.gaps[lower], abs=1e-12)
+    assert last.rows == linear.rows
+
+
+def test_linearisation_of_zones_has_their_sums():
+    sim, lower = whole_block(aggregate=0.02)
+    last = sim.last_linearisation()
+    linear = sim.linearise(statics=False)
+    assert 0 < len(linear.rows) < 3 * len(lower)
+    for each in (linear, last):
+        normals = [k for k, row in enumerate(each.rows) if row.endswith("normal")]
+        assert each.effort[normals].sum() == pytest.approx(sim.contact("floor").normal_force, rel=1e-12)
+
+
 @pytest.mark.parametrize("floor", [0.0, -0.05])
 def test_compliance_has_every_point(floor):
     sim = block(floor=floor)

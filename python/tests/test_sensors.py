@@ -101,6 +101,49 @@ def test_a_channel_copies_and_refuses():
         channel.offer(9, [1, 2])
 
 
+def resting(sensors):
+    """A ball on a block on a table."""
+    return sinew.load({
+        "sinew": 1, "time_step": 1e-3, "integrator": "backward-euler", "gravity": [0, 0, -9.81],
+        "bodies": {
+            "block": {"type": "fem", "density": 1000.0, "damping": {"stiffness": "2 ms"},
+                      "material": {"young_modulus": "200 kPa", "poisson_ratio": 0.3},
+                      "mesh": {"shape": "block", "length": 0.04, "width": 0.04, "height": 0.02, "element_size": 0.02}},
+            "ball": {"type": "rigid", "shape": {"sphere": {"radius": "10 mm"}}, "mass": "20 g", "pose": {"position": "20 20 30 mm"}},
+            "table": {"type": "rigid", "shape": {"box": "200 200 20 mm"}, "pose": {"position": "20 20 -10 mm"}, "fixed": True}},
+        "contacts": {"all": {"between": "all", "friction": 0.3, "except": [["block", "block"]]}}, "sensors": sensors})
+
+
+def felt(contact, **more):
+    return {"type": "contact-force", "contact": contact, **more}
+
+
+def test_pairs_of_all_bodies_are_felt():
+    sim = resting({"pair": felt("all-block-table"), "every": felt("all"), "under": felt("all", patch={"body": "block", "set": "z_min"}),
+                   "over": felt("all", patch={"body": "block", "set": "z_max"}), "on": {"type": "touch", "contact": "all", "threshold": "0.3 N"},
+                   "off": {"type": "touch", "contact": "all-ball-table"}})
+    sim.step(60)
+    below, above = (sim.contact(f"all-block-{other}").normal_force for other in ("table", "ball"))
+    assert below > above > 0.1 and list(sim.contacts) == ["all-block-ball", "all-block-table", "all-ball-table"]
+    assert sim.sensor("pair").observable == "all-block-table.normal_force" and sim.sensor("every").observable == "every.true"
+    value = {name: sensor.value for name, sensor in sim.sensors.items()}
+    assert (value["pair"], value["on"], value["off"]) == (below, 1.0, 0.0)
+    assert value["every"] == pytest.approx(below + above, rel=1e-14)
+    assert (value["under"], value["over"]) == pytest.approx((below, above), rel=1e-14)
+
+
+@pytest.mark.parametrize("sensor, kind, part", [
+    (felt("all-block-wall"), "unknown-name", "all-block-table"),
+    (felt("some-block-table"), "unknown-name", "under `contacts` there are all"),
+    (felt("all", patch={"set": "z_min"}), "missing-key", "add body"),
+    (felt("all-block-table", patch={"body": "ball", "sphere": {"centre": "20 20 30 mm", "radius": "20 mm"}}), "unknown-name", "name the body 'block'"),
+])
+def test_pairs_that_cannot_be_felt_are_named(sensor, kind, part):
+    with pytest.raises(sinew.Error) as caught:
+        resting({"s": sensor})
+    assert caught.value.kind == kind and part in str(caught.value)
+
+
 def test_states_clones_and_threads_keep_the_samples():
     def numbers(sim):
         return np.concatenate([np.atleast_1d(s.value) for s in sim.sensors.values()] + [[s.missing for s in sim.sensors.values()]])

@@ -50,6 +50,22 @@ def test_a_block_rests_on_a_softer_one(order):
     assert np.abs(sim.body("top").velocities).max() < 1e-4
 
 
+def test_a_look_at_the_linearisation_moves_nothing():
+    sim = pile()
+    sim.step(30)
+    watched = sim.clone()
+    before = watched.state()
+    linear = watched.linearise(statics=False)
+    assert watched.state() == before
+    normal = [k for k, row in enumerate(linear.rows) if row.endswith("normal")]
+    assert len(normal) > 3
+    # Points that are found anew take the forces on, along normals of their own.
+    assert linear.effort[normal].sum() == pytest.approx(sim.contact("floor").normal_force, rel=1e-6)
+    for each in (sim, watched):
+        each.step(5)
+    assert sim.state() == watched.state()
+
+
 def test_the_order_of_bodies_changes_nothing_to_speak_of():
     one, other = pile(), pile(("top", "low"))
     one.step(40)

@@ -44,6 +44,7 @@ Frame sample() {
   frame.targets = {4, 5, 6};
   frame.probes = {3, 2, 1};
   frame.contacts = {{}, {0, 0, 1, 0, 0, 0, 1, 1, 2, 3, 4, 5, 6, 2}};
+  frame.joints = {1, 2, 3, 4, 5, 6, 0, 0, 1, 0, 0, 0};
   return frame;
 }
 
@@ -75,7 +76,7 @@ TEST(Frame, StandsAsDocumented) {
   EXPECT_EQ(number<std::uint64_t>(bytes, 32), 0xfedcba9876543210ULL);
   EXPECT_EQ(number<double>(bytes, 48), -3.0);
   const auto list = parts(bytes, 2);
-  ASSERT_EQ(list.size(), 8U);
+  ASSERT_EQ(list.size(), 9U);
   EXPECT_EQ(list[0].kind, 1);
   EXPECT_EQ(number<float>(bytes, list[0].at + 8), 3.0F);
   EXPECT_EQ(list[1].kind, 2);
@@ -92,7 +93,10 @@ TEST(Frame, StandsAsDocumented) {
   EXPECT_EQ(list[6].index, 1);
   ASSERT_EQ(list[6].bytes, 4U * 14U);
   EXPECT_EQ(number<float>(bytes, list[6].at + 4 * 13), 2.0F);
-  EXPECT_EQ(list[7].kind, 5);
+  EXPECT_EQ(list[7].kind, 9);
+  ASSERT_EQ(list[7].bytes, 4U * 12U);
+  EXPECT_EQ(number<float>(bytes, list[7].at + 4 * 8), 1.0F);
+  EXPECT_EQ(list[8].kind, 5);
 }
 
 TEST(Frame, LeavesOutWhatHasNotChanged) {

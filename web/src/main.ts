@@ -5,6 +5,7 @@ import './style.css';
 import {gradient, MAPS, read, ticks, told} from './colours';
 import {Connection} from './connection';
 import {button, make} from './dom';
+import {JointList} from './joint_list';
 import {Panel} from './panel';
 import {Plots} from './plots';
 import type {Frame, Scene, Status} from './protocol';
@@ -54,7 +55,8 @@ function cover(): void {
   else if (narrow.matches) robot.cover(0, 0, side('top').bottom, side('panel').height);
   else robot.cover(innerWidth - left - right > 300 ? left : 0, right, side('top').bottom, 0);
 }
-const panel = new Panel(byId('panel'), send, () => connection.client);
+const joints = new JointList(robot.joints);
+const panel = new Panel(byId('panel'), send, () => connection.client, joints);
 const plots = new Plots(byId('plots'));
 new ResizeObserver(cover).observe(byId('panel'));
 
@@ -198,6 +200,7 @@ const KEYS: [string, string, () => void][] = [
   ['r', 'reset', () => panel.reset()], ['f', 'see the whole robot', () => robot.fit()],
   ['w', 'wireframe', () => wire.click()], ['o', 'follow the effector', () => follow.click()],
   ['h', 'drag the robot itself', () => hands.click()], ['c', 'next colouring', nextField], ['d', 'light or dark', () => theme.click()],
+  ['j', 'draw joints or not', () => joints.toggle()],
   ['p', 'save a picture', picture], ['e', 'record, or end the recording', () => panel.record()], ['?', 'this list', help],
 ];
 const dialog = make('dialog', {'aria-label': 'Keyboard shortcuts'});
@@ -214,7 +217,7 @@ function help(): void {
                                               make('td', {textContent: what})));
   const mouse = [['drag', 'turn'], ['right drag', 'move (on the robot: pull)'], ['wheel', 'zoom'],
                  ['Shift drag', 'pull at the robot'], ['drag the arrows', 'move the target'],
-                 ['click a ball', 'its arrows, where there are several']];
+                 ['click a ball', 'its arrows, where there are several'], ['click a joint', 'how far it has moved, and its force']];
   rows.push(...mouse.map(([key, what]) => make('tr', {}, make('td', {}, make('kbd', {textContent: key})), make('td', {textContent: what}))));
   dialog.replaceChildren(make('table', {}, ...rows), button('Close', 'Close', () => dialog.close()));
   dialog.showModal();
@@ -264,6 +267,7 @@ const connection = new Connection({
       frame.cables ??= latest.cables;
       frame.effectors ??= latest.effectors;
       frame.probes ??= latest.probes;
+      frame.joints ??= latest.joints;
       for (const [k, v] of latest.contacts) if (!frame.contacts.has(k)) frame.contacts.set(k, v);
     }
     // One that was under way when another field was chosen.
@@ -345,6 +349,7 @@ const view = {
   colour: chooseField,
   arrows: () => robot.arrows(),
   contacts: () => robot.contacts.told(),
+  joints: () => robot.joints.told(),
   screen: (x: number, y: number, z: number) => robot.screen(new Vector3(x, y, z)),
   plain: () => robot.plain(),
 };

@@ -2,6 +2,7 @@
 import {told} from './colours';
 import {STATES} from './contacts3d';
 import {button, make} from './dom';
+import type {JointList} from './joint_list';
 import type {Actuator, Effector, Quantity, Scene, Status} from './protocol';
 
 const SPEEDS: [number, string][] = [[0.1, '0.1 x'], [0.25, '0.25 x'], [0.5, '0.5 x'], [1, 'real time'],
@@ -31,7 +32,7 @@ export class Panel {
   private status: Status | null = null;
   stiffness = 20;  // N/m, of the hand's spring
 
-  constructor(private root: HTMLElement, private send: Send, private client: () => number) {
+  constructor(private root: HTMLElement, private send: Send, private client: () => number, private joints: JointList) {
     this.speed.append(...SPEEDS.map(([value, text]) => new Option(text, String(value))));
     this.speed.value = '1';
     this.speed.onchange = () => this.send({type: 'speed', factor: Number(this.speed.value)});
@@ -70,7 +71,7 @@ export class Panel {
       heading('Control'),
       ...(scripted ? [] : [make('div', {className: 'line'}, make('label', {}, 'Controller', this.controller))]),
       ...scene.effectors.filter((e) => e.kind === 'point').map((e) => this.target(e)),
-      ...this.measured(scene), ...this.touching(scene), heading('Hand'), this.hand(),
+      ...this.measured(scene), ...this.touching(scene), ...this.joints.rows(scene), heading('Hand'), this.hand(),
     );
   }
 
@@ -96,7 +97,7 @@ export class Panel {
       make('div', {className: 'line'}, make('label', {}, 'Speed', this.speed)), this.time,
       make('div', {className: 'line'}, this.who, this.drive,
            ...this.files()),
-      ...this.measured(scene), ...this.touching(scene));
+      ...this.measured(scene), ...this.touching(scene), ...this.joints.rows(scene));
   }
 
   /** Names of probes and their numbers, which show() keeps up to date. */
@@ -131,6 +132,7 @@ export class Panel {
   }
 
   private show(signals: Float64Array): void {
+    this.joints.show();
     for (const {value, columns} of this.contacts) {
       const [normal, , gap, sticking, slipping] = columns.map((k) => signals[k]);
       const text = sticking + slipping > 0 ? `${told(normal, 'N')}, ${sticking} stick, ${slipping} slip`

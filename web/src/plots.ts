@@ -10,6 +10,7 @@ const COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9
 const TITLES: Record<string, string> = {
   effort: 'Effort', motion: 'Motion', torque: 'Torque', pressure: 'Pressure', volume: 'Volume', effector: 'Effector', error: 'Error', rotation: 'Rotation',
   'rotation error': 'Rotation error', probe: 'Probes', angle: 'Angles', contact: 'Contact forces', gap: 'Gaps', touching: 'Points that touch', energy: 'Energy',
+  'joint N': 'Forces of joints', 'joint N m': 'Moments of joints', 'joint m': 'Gaps and displacements of joints', 'joint rad': 'Angles of joints',
   time: 'Time of a step', solver: 'Solver', 'effort command': 'Commanded effort', 'motion command': 'Commanded motion',
   'torque command': 'Commanded torque', 'angle command': 'Commanded angle', 'pressure command': 'Commanded pressure',
   'volume command': 'Commanded volume',

@@ -15,6 +15,8 @@ export type ContactSurface = {kind: 'plane'; point: number[]; normal: number[]}
 export interface Contact {
   name: string; body: string; surface: ContactSurface; friction: number; points: number; signals: string[];
 }
+/** Signals: keys of its numbers, the joint's name in front. */
+export interface Joint {name: string; type: string; bodies: string[]; signals: string[]}
 export interface Controller {name: string; type: string; effectors: string[]}
 export interface Signal {key: string; label: string; unit: string; group: string}
 export interface FieldInfo {name: string; label: string; unit: string; description: string}
@@ -22,6 +24,7 @@ export interface Scene {
   name: string; time_step: number; gravity: number[]; bounds: number[][];
   bodies: {name: string; vertices: number; triangles: number; nodes: number; elements: number}[];
   fields: FieldInfo[]; actuators: Actuator[]; effectors: Effector[]; probes: Probe[]; contacts: Contact[];
+  joints: Joint[];
   controllers: Controller[];
   signals: Signal[];
   notices?: {level: 'remark' | 'warning'; kind: string; subject: string; text: string; remedy: string}[];
@@ -47,6 +50,8 @@ export interface Frame {
   probes?: Float32Array;
   /** By contact: position (3) and quaternion (4) of the surface, then of each point position (3), force (3), state. */
   contacts: Map<number, Float32Array>;
+  /** Of each joint the points on its bodies (3), (3), its axis (3) and its second axis (3); 0: none. */
+  joints?: Float32Array;
 }
 
 const MAGIC = 0x31574e53;
@@ -97,6 +102,7 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
       if (kind === 6) frame.pull = values;
       if (kind === 7) frame.probes = values;
       if (kind === 8) frame.contacts.set(index, values);
+      if (kind === 9) frame.joints = values;
     }
     at += bytes;
   }

@@ -12,6 +12,7 @@ import {LineGeometry} from 'three/addons/lines/LineGeometry.js';
 import {LineMaterial} from 'three/addons/lines/LineMaterial.js';
 import {linearTable, paint, told} from './colours';
 import {Contacts3d} from './contacts3d';
+import {Joints3d} from './joints3d';
 import {make} from './dom';
 import type {Frame, Scene, Surface} from './protocol';
 
@@ -59,6 +60,7 @@ export class Robot3d {
   private targets: Mesh[] = [];
   private probes: {line: Line; ends: Mesh[]; marks: number}[] = [];
   readonly contacts = new Contacts3d();
+  readonly joints = new Joints3d();
   private spring = new Line(new BufferGeometry(), new LineBasicMaterial({color: STRONG}));
   private size = 0.2;
   private table = linearTable('viridis');
@@ -77,7 +79,7 @@ export class Robot3d {
   constructor(private stage: HTMLElement, private hand: Hand) {
     this.renderer = new WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    stage.append(this.renderer.domElement, this.force);
+    stage.append(this.renderer.domElement, this.force, this.joints.label);
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
     canvas.setAttribute('aria-label', 'The robot; drag to turn, Shift and drag on it to pull');
@@ -184,6 +186,8 @@ export class Robot3d {
     });
     this.contacts.scene(scene, this.size);
     this.robot.add(this.contacts.root);
+    this.joints.scene(scene, this.size);
+    this.robot.add(this.joints.root);
     this.chosen = -1;
     this.camera.near = 1e-3 * this.size;
     this.camera.far = 50 * this.size;
@@ -266,6 +270,7 @@ export class Robot3d {
     if (frame.cables) this.drawCables(frame.cables, frame.signals);
     if (frame.probes) this.drawProbes(frame.probes);
     this.contacts.update(frame.contacts);
+    this.joints.update(frame.joints, frame.signals);
     if (frame.effectors) this.place(this.effectors, frame.effectors);
     if (frame.targets) this.place(this.targets, frame.targets);
     this.steer();
@@ -369,7 +374,7 @@ export class Robot3d {
   }
 
   // Shift and drag, or the right button, on the surface: a spring from there to the pointer. A click on
-  // a target or an effector: its arrows.
+  // a target or an effector: its arrows. On a joint's marker: what it says.
   private press(event: PointerEvent): void {
     if (this.gizmo.axis !== null && event.button === 0 && !event.shiftKey) return;
     const caster = this.ray(event);
@@ -377,7 +382,10 @@ export class Robot3d {
       const mark = caster.intersectObjects(marks.filter((m) => m.visible))[0]?.object;
       if (mark) this.chosen = marks.indexOf(mark as Mesh);
     }
-    if (!this.hands && !event.shiftKey && event.button !== 2) return;
+    if (!this.hands && !event.shiftKey && event.button !== 2) {
+      const box = this.renderer.domElement.getBoundingClientRect();
+      return this.joints.pick(event.clientX - box.left, event.clientY - box.top, (point) => this.screen(point));
+    }
     const hits = caster.intersectObjects(this.bodies.map((b) => b.mesh));
     if (hits.length === 0 || !hits[0].face) return;
     event.stopImmediatePropagation();
@@ -416,6 +424,7 @@ export class Robot3d {
       this.orbit.target.lerp(this.effectors[0].position, 0.1);
     }
     this.orbit.update();
+    this.joints.draw((point) => this.screen(point));
     this.renderer.render(this.world, this.camera);
   }
 }

@@ -11,6 +11,7 @@ import {ask, drawn, newPage, open, PACKAGE, PROGRAM, ROOT, serve, state, stop, u
 const DIRECT = join(ROOT, 'examples/trunk/trunk.yaml');
 const MODULE = join(ROOT, 'examples/finger/module.yaml');
 const SQUEEZE = join(ROOT, 'examples/contact/squeeze.yaml');
+const CRANK = join(ROOT, 'examples/rigid/slider_crank.yaml');
 const STEERED = join(ROOT, 'examples/trunk/circle.yaml');
 
 async function download(page, name) {
@@ -219,6 +220,60 @@ test('probes are told as numbers and plotted', async () => {
   assert.match(await page.locator('#plots .u-legend').first().innerText(), /bending/);
   await page.close();
   await stop(served);
+});
+
+test('joints are drawn, chosen and hidden, live and as they were recorded', async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'sinew-view-'));
+  execFileSync(PROGRAM, ['run', CRANK, '--duration', '0.1s', '--out', folder, '--quiet']);
+  const expected = python(`
+import json, numpy as np, sinew
+sim = sinew.load(${JSON.stringify(CRANK)})
+sim.step(100)
+knee, guide = sim.joint("knee"), sim.joint("guide")
+print(json.dumps({"point": (sim.body("piston").position).tolist(), "angle": knee.angle, "displacement": guide.displacement,
+                  "force": float(np.linalg.norm(guide.force))}))`);
+  const near = (a, b) => a.forEach((x, k) => assert.ok(Math.abs(x - b[k]) < 1e-6, `${a} and ${b}`));
+  const check = async (page) => {
+    const now = await until(page, (s) => s.step === 100);
+    const told = () => drawn(page, () => window.sinewView.joints());
+    const [shaft, knee, pin, guide] = await told();
+    near(shaft.axis, [0, 0, 1]);
+    near(pin.axis, [0, 0, 0]);
+    near(guide.axis, [1, 0, 0]);
+    near(guide.position, [0.2 + expected.displacement, 0, 0]);
+    assert.ok(Math.abs(now.signals['knee.angle'] - expected.angle) < 1e-12);
+    const text = await page.locator('output[aria-label="guide: joint"]').innerText();
+    assert.ok(text.startsWith(`${Number((1e3 * expected.displacement).toPrecision(3))} mm, `), text);
+    assert.ok(text.includes(`, ${Number((1e3 * expected.force).toPrecision(3))} mN, 0 N m`), text);
+    // A click on the marker, and its label.
+    const [x, y] = await page.evaluate((at) => window.sinewView.screen(...at), knee.position);
+    await page.locator('#stage canvas').click({position: {x, y}});
+    assert.deepEqual((await told()).map((joint) => joint.chosen), [false, true, false, false]);
+    assert.ok((await told())[1].arrow, 'its force is drawn');
+    const label = page.locator('#stage .told');
+    assert.match(await label.innerText(), /^knee \(hinge\): -?[\d.]+\u00b0, [\d.]+ m?N, /);
+    await page.keyboard.press('j');
+    assert.ok((await told()).every((joint) => !joint.drawn) && !(await label.isVisible()));
+    await page.keyboard.press('j');
+    assert.ok(await drawn(page, () => window.sinewView.joints()[0].drawn) && await label.isVisible());
+  };
+  const errors = [];
+  const live = await serve(CRANK, 0, '--paused');
+  const page = await open(live.url, errors);
+  await ask(page, {type: 'step', count: 100});
+  await check(page);
+  await page.selectOption('[aria-label="Signals to plot"]', 'joint rad');
+  assert.match(await page.locator('#plots .u-legend').first().innerText(), /knee\.angle/);
+  await page.close();
+  await stop(live);
+  const replayed = await serve(folder, 0, '--paused');
+  const again = await open(replayed.url, errors);
+  await again.locator('[aria-label="Frame of the recorded run"]').fill('100');
+  await check(again);
+  assert.deepEqual(errors, []);
+  await again.close();
+  await stop(replayed);
+  rmSync(folder, {recursive: true});
 });
 
 test('contacts are drawn, live and as they were recorded', async () => {

@@ -1,6 +1,7 @@
 #include "sinew/constraint/configuration.hpp"
 
 #include <cstddef>
+#include <utility>
 
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
@@ -16,13 +17,19 @@ const mechanics::Body& body_of(std::span<const std::unique_ptr<mechanics::Body>>
 
 }  // namespace
 
+Configuration::Configuration(std::span<const std::unique_ptr<mechanics::Body>> bodies)
+    : bodies_(bodies) {
+  for (const auto& body : bodies_) {
+    oriented_.push_back(mechanics::as<const mechanics::HasOrientations>(std::as_const(*body)));
+  }
+}
+
 Vector3 Configuration::position(const mechanics::MaterialPoint& point) const {
   return body_of(bodies_, point).position(point.number);
 }
 
 Matrix3 Configuration::rotation(const mechanics::Orientation& section) const {
-  return mechanics::as<const mechanics::HasOrientations>(body_of(bodies_, section))
-      ->rotation(section.number);
+  return oriented_[static_cast<std::size_t>(section.body)]->rotation(section.number);
 }
 
 double Configuration::coordinate(const mechanics::Coordinate& coordinate) const {

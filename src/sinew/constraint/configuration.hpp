@@ -4,21 +4,23 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "sinew/core/types.hpp"
 #include "sinew/mechanics/site.hpp"
 
 namespace sinew::mechanics {
 class Body;
-}
+class HasOrientations;
+}  // namespace sinew::mechanics
 
 namespace sinew::constraint {
 
 /// Where the sites of all bodies are now.
 class Configuration {
  public:
-  explicit Configuration(std::span<const std::unique_ptr<mechanics::Body>> bodies)
-      : bodies_(bodies) {}
+  /// @param bodies outlive it.
+  explicit Configuration(std::span<const std::unique_ptr<mechanics::Body>> bodies);
   /// (3,) m.
   Vector3 position(const mechanics::MaterialPoint& point) const;
   /// Rotation since rest.
@@ -35,6 +37,7 @@ class Configuration {
 
  private:
   std::span<const std::unique_ptr<mechanics::Body>> bodies_;
+  std::vector<const mechanics::HasOrientations*> oriented_;  // (bodies,) null: without
 };
 
 }  // namespace sinew::constraint

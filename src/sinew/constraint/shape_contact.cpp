@@ -79,13 +79,29 @@ void ShapeContact::find_points(const Configuration& configuration, const Eigen::
   const collision::TouchingPoints found = collision::touching_points(
       collision::moved(own_->shape, own_->pose(configuration)), collision::moved(surface_, start),
       std::numeric_limits<double>::infinity());
-  const Vector3 centre = configuration.position(own_->centre);
-  for (std::size_t k = 0; k < size(); ++k) {
-    const bool used = k < found.size();
-    const Vector3 at = used ? found[k].on_first : centre;
-    const Vector3 normal = used ? Vector3(carry.linear() * found[k].normal) : Vector3::UnitZ();
-    set_frame(k, carry * at, collision::tangent_frame(normal), used ? found[k].gap : kIdle, values);
-    watch(configuration, k, at, values);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const Vector3 normal = carry.linear() * found[k].normal;
+    set_frame(k, carry * found[k].on_first, collision::tangent_frame(normal), found[k].gap, values);
+    watch(configuration, k, found[k].on_first, values);
+  }
+  for (std::size_t k = found.size(); k < size(); ++k) {
+    if (!idle(k, values)) put_away(k, values);
+  }
+}
+
+// It stays as it is for as long as it has no use, without a lever on either body: what a state
+// remembers of its rows does not tell when it was put away.
+void ShapeContact::put_away(std::size_t point, mechanics::RowValues& values) const {
+  set_frame(point, Vector3::Zero(), collision::tangent_frame(Vector3::UnitZ()), kIdle, values);
+  values.delta.segment<3>(row(point)) = values.reference.segment<3>(row(point));
+  const auto clear = [&](std::size_t centre, const Vector3& direction) {
+    values.direction[centre] = direction;
+    values.direction[centre + 1] = values.arm[centre] = values.lever[centre] = Vector3::Zero();
+  };
+  for (int j = 0; j < 3; ++j) {
+    const Vector3 along = values.direction[entry(point, j)];
+    clear(entry(point, j), along);
+    if (carrier_) clear(entry(point, j) + own_entries(), -along);
   }
 }
 
@@ -109,7 +125,7 @@ void ShapeContact::watch(const Configuration& configuration, std::size_t point, 
     }
   };
   if (own_) hold(*own_, own_->shape, 1.0, 0.0, 0);
-  if (carrier_) hold(*carrier_, surface_, -1.0, idle(point, values) ? 0.0 : gap, own_entries());
+  if (carrier_) hold(*carrier_, surface_, -1.0, gap, own_entries());
   write_sides(configuration, point, values);
 }
 
@@ -231,6 +247,7 @@ void ShapeContact::linearise(const Configuration& configuration,
                              mechanics::RowValues& values) const {
   const bool begun = !values.arm.empty();
   for (std::size_t i = 0; i < size(); ++i) {
+    if (idle(i, values)) continue;
     if ((own_ || carrier_) && begun) write_sides(configuration, i, values);
     values.delta.segment<3>(row(i)) =
         row_values(i, position_beside(configuration, i, values), values);
@@ -288,6 +305,7 @@ void ShapeContact::load(const double* from, mechanics::RowValues& values) const 
     if (!own_) continue;
     values.arm[entry(k, 1)] = Eigen::Map<const Vector3>(from);
     from += 3;
+    values.reference[row(k)] = 0.0;  // the next step says whether it has a use
   }
 }
 

@@ -135,6 +135,7 @@ class ShapeContact : public Contact {
   static void prepare(mechanics::RowValues& values);
   void find_points(const Configuration& configuration, const Eigen::Isometry3d& start,
                    const Eigen::Isometry3d& carry, mechanics::RowValues& values) const;
+  void put_away(std::size_t point, mechanics::RowValues& values) const;
   void watch(const Configuration& configuration, std::size_t point, const Vector3& at,
              mechanics::RowValues& values) const;
   void write_sides(const Configuration& configuration, std::size_t point,

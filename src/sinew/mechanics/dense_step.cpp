@@ -84,6 +84,8 @@ void DenseStep::take_lasting_rows(const RowValues& rows) {
     const auto& entry = own_.entries[e];
     const Vector3& direction = rows.direction[static_cast<std::size_t>(entry.entry)];
     memory_.directions[e] = direction;
+    const std::int32_t row = own_.rows[static_cast<std::size_t>(entry.row)];
+    if (rows.active[static_cast<std::size_t>(row)] == 0) continue;  // left out of the step
     site_jacobian(entry.site, jacobian_);
     if (e == 0 || own_.entries[e - 1].row != entry.row) gross_.setZero();
     const double size = direction.norm();

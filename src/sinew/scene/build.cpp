@@ -152,14 +152,15 @@ Robot build(SceneDescription description) {
   }
   for (const LoadDescription& load : description.loads) add_load(builder, load, body_of);
   for (const ProbeDescription& probe : description.probes) add_probe(builder, probe, body_of);
-  for (const ContactDescription& contact : contact_pairs(description)) {
-    if (auto notice = add_contact(builder, contact, body_of)) {
+  const std::vector<SceneContact> contacts = contact_pairs(description);
+  for (const SceneContact& one : contacts) {
+    if (auto notice = add_contact(builder, one.contact, body_of)) {
       robot.notices.push_back(std::move(*notice));
     }
   }
   add_joints(true);
   for (const SensorDescription& sensor : description.sensors) {
-    add_sensor(builder, description, sensor, body_of);
+    add_sensor(builder, {description, contacts, body_of}, sensor);
   }
   robot.model = builder.build(factorisation_settings(description.solver));
   for (const ControllerDescription& controller : description.controllers) {

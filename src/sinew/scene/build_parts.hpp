@@ -89,9 +89,14 @@ void add_effector(sim::ModelBuilder& builder, const EffectorDescription& effecto
 /// @param builder that has the bodies. @param load to be added. @param body_of finds bodies.
 void add_load(sim::ModelBuilder& builder, const LoadDescription& load, const BodyOf& body_of);
 
+/// A contact to be added.
+struct SceneContact {
+  ContactDescription contact;
+  std::string entry;  ///< under `contacts`; of `between: all` many have one
+};
 /// With `between: all` replaced by its pairs. Throws Error: conflicting-keys (a pair twice),
 /// not-in-this-version (pairs of deformable bodies, arms without points).
-std::vector<ContactDescription> contact_pairs(const SceneDescription& scene);
+std::vector<SceneContact> contact_pairs(const SceneDescription& scene);
 /// @param builder that has the bodies. @param contact to be added. @param body_of finds bodies.
 /// @return what nodes of a deformable body may miss.
 std::optional<Notice> add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
@@ -104,9 +109,15 @@ int add_joint(sim::ModelBuilder& builder, const JointDescription& joint, const B
 /// @param builder that has the bodies. @param probe to be added. @param body_of finds bodies.
 void add_probe(sim::ModelBuilder& builder, const ProbeDescription& probe, const BodyOf& body_of);
 
-/// @param builder that has the bodies, actuators and contacts. @param scene of the sensor, for its
-/// gravity. @param sensor to be added. @param body_of finds bodies.
-void add_sensor(sim::ModelBuilder& builder, const SceneDescription& scene,
-                const SensorDescription& sensor, const BodyOf& body_of);
+/// What sensors of a scene refer to.
+struct SensorSurroundings {
+  const SceneDescription& scene;
+  const std::vector<SceneContact>& contacts;  ///< see contact_pairs()
+  const BodyOf& body_of;
+};
+/// @param builder that has the bodies, actuators and contacts. @param surroundings of the sensor.
+/// @param sensor to be added. Throws Error: unknown-name (a contact, or an entry without pairs).
+void add_sensor(sim::ModelBuilder& builder, const SensorSurroundings& surroundings,
+                const SensorDescription& sensor);
 
 }  // namespace sinew::scene

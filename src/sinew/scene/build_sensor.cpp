@@ -19,8 +19,11 @@ using What = decltype(sim::SensorSettings::what);
 /// What one sensor measures, on the bodies of a scene.
 class Measured {
  public:
-  Measured(const SceneDescription& scene, const SensorDescription& sensor, const BodyOf& body_of)
-      : scene_(scene), sensor_(sensor), body_of_(body_of) {}
+  Measured(const SensorSurroundings& surroundings, const SensorDescription& sensor)
+      : scene_(surroundings.scene),
+        contacts_(surroundings.contacts),
+        sensor_(sensor),
+        body_of_(surroundings.body_of) {}
 
   What what() const {
     static const std::map<std::string, What (Measured::*)() const> kinds = {
@@ -106,7 +109,7 @@ class Measured {
   }
 
   What contact() const {
-    sim::SensorContact touch{sensor_.contact, -1, {}, {}};
+    sim::SensorContact touch{contacts(), -1, {}, {}};
     if (sensor_.type == "touch") touch.threshold = sensor_.threshold;
     if (!sensor_.region) return touch;
     const std::string name = sensor_.patch_body.empty() ? first_body() : sensor_.patch_body;
@@ -115,23 +118,35 @@ class Measured {
     return touch;
   }
 
+  // The contact of that name, or all pairs of the entry.
+  std::vector<std::string> contacts() const {
+    std::vector<std::string> names;
+    for (const auto& [contact, entry] : contacts_) {
+      const bool meant = contact.name == sensor_.contact || entry == sensor_.contact;
+      if (meant) names.push_back(contact.name);
+    }
+    if (names.empty()) names.push_back(sensor_.contact);  // which is refused
+    return names;
+  }
+
   std::string first_body() const {
-    const auto found =
-        std::ranges::find(scene_.contacts, sensor_.contact, &ContactDescription::name);
-    if (found != scene_.contacts.end() && !found->body.empty()) return found->body;
+    const auto found = std::ranges::find_if(
+        contacts_, [&](const SceneContact& one) { return one.contact.name == sensor_.contact; });
+    if (found != contacts_.end()) return found->contact.body;
     throw Error(ErrorKind::missing_key, sensor_.region->place, "the patch names no body",
                 "add body: followed by the body that has the patch");
   }
 
   const SceneDescription& scene_;
+  const std::vector<SceneContact>& contacts_;
   const SensorDescription& sensor_;
   const BodyOf& body_of_;
 };
 
 }  // namespace
 
-void add_sensor(sim::ModelBuilder& builder, const SceneDescription& scene,
-                const SensorDescription& sensor, const BodyOf& body_of) {
+void add_sensor(sim::ModelBuilder& builder, const SensorSurroundings& surroundings,
+                const SensorDescription& sensor) {
   sim::SensorSettings settings;
   settings.name = sensor.name;
   settings.place = sensor.place;
@@ -140,7 +155,7 @@ void add_sensor(sim::ModelBuilder& builder, const SceneDescription& scene,
   settings.outside = sensor.outside;
   settings.channel = sensor.channel;
   settings.record = sensor.record;
-  settings.what = Measured(scene, sensor, body_of).what();
+  settings.what = Measured(surroundings, sensor).what();
   builder.add_sensor(settings);
 }
 

@@ -164,6 +164,7 @@ class Checker {
         found->second.insert(std::move(known));
     }
     if (found->second.contains(name) || is_part_of_robot(name, section)) return;
+    if (section == "contacts" && is_pair_of_all(name)) return;
     throw_unknown_name(name, section, names_under(scene_, section), place);
   }
 
@@ -175,6 +176,17 @@ class Checker {
     const Node* robot = bodies != nullptr ? bodies->find(name.substr(0, dot)) : nullptr;
     const Node* type = robot != nullptr && robot->is_map() ? robot->find("type") : nullptr;
     return type != nullptr && type->spelling() == "urdf";
+  }
+
+  // ENTRY-FIRST-SECOND, of an entry between all; contact_pairs() knows which there are.
+  bool is_pair_of_all(const std::string& name) const {
+    const Node* contacts = scene_.find("contacts");
+    if (contacts == nullptr) return false;
+    return std::ranges::any_of(contacts->entries(), [&](const Node::Entry& entry) {
+      const Node* between = entry.value.is_map() ? entry.value.find("between") : nullptr;
+      return between != nullptr && between->spelling() == "all" &&
+             name.starts_with(entry.key + "-");
+    });
   }
 
   const Node& scene_;

@@ -51,11 +51,11 @@ void refuse_pairs(const std::vector<Pair>& pairs, const Location& place) {
 
 // The pairs that an entry between all stands for. @param settled pairs that are none of them, which
 // these join.
-std::vector<ContactDescription> pairs_of(const ContactDescription& contact,
-                                         const SceneDescription& scene, std::set<Pair>& settled) {
+std::vector<SceneContact> pairs_of(const ContactDescription& contact, const SceneDescription& scene,
+                                   std::set<Pair>& settled) {
   std::set<Pair> excepted;
   for (const auto& [one, other] : contact.except) excepted.insert(ordered(one, other));
-  std::vector<ContactDescription> contacts;
+  std::vector<SceneContact> contacts;
   std::vector<Pair> refused;
   for (auto one = scene.bodies.begin(); one != scene.bodies.end(); ++one) {
     for (auto other = one; other != scene.bodies.end(); ++other) {
@@ -66,7 +66,8 @@ std::vector<ContactDescription> pairs_of(const ContactDescription& contact,
         refused.emplace_back(one->name, other->name);
         continue;
       }
-      ContactDescription& added = contacts.emplace_back(contact);
+      ContactDescription& added =
+          contacts.emplace_back(SceneContact{contact, contact.name}).contact;
       added.name = fmt::format("{}-{}-{}", contact.name, one->name, other->name);
       added.body = one->name;
       added.other = other->name;
@@ -80,17 +81,17 @@ std::vector<ContactDescription> pairs_of(const ContactDescription& contact,
 
 }  // namespace
 
-std::vector<ContactDescription> contact_pairs(const SceneDescription& scene) {
+std::vector<SceneContact> contact_pairs(const SceneDescription& scene) {
   std::set<Pair> settled = named_pairs(scene);
   for (const JointDescription& joint : scene.joints) {
     settled.insert(ordered(joint.first, joint.second));
   }
-  std::vector<ContactDescription> contacts;
+  std::vector<SceneContact> contacts;
   for (const ContactDescription& contact : scene.contacts) {
     if (contact.all) {
       std::ranges::move(pairs_of(contact, scene, settled), std::back_inserter(contacts));
     } else {
-      contacts.push_back(contact);
+      contacts.push_back({contact, contact.name});
     }
   }
   return contacts;

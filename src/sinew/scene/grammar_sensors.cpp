@@ -282,12 +282,15 @@ std::vector<Key> contact_keys() {
   std::vector<Key> patch = region_keys("Nodes");
   Key body = body_key();
   body.required = false;
-  body.description = "The body that has the patch. Without: the first of the contact.";
+  body.description =
+      "The body that has the patch. Without: the first of the contact; required of an "
+      "entry `between: all`.";
   patch.push_back(std::move(body));
   return {{.name = "contact",
            .forms = {reference("contacts")},
            .example = "floor",
-           .description = "The contact that it feels.",
+           .description = "The contact that it feels, one of the pairs of an entry "
+                          "`between: all`, as `all-finger-box`, or the entry: all its pairs.",
            .required = true},
           {.name = "patch",
            .forms = {table(make_table(

@@ -91,6 +91,8 @@ class MakeSensor {
                     const char* measures) const;
   double current_factor(const ActuatorModel& actuator, const SensorDrive& drive) const;
   double length_of(const Points& corners) const;
+  const constraint::Contact& contact_of(int index) const;
+  std::vector<int> contacts_of(int body, const std::vector<int>& contacts) const;
 
   ModelData& data_;
   const SensorSettings& settings_;
@@ -266,19 +268,39 @@ SourcePtr MakeSensor::operator()(const SensorCapacitance& capacitance) {
       settings_.name, std::move(electrodes), capacitance.relative_permittivity * kFreeSpace));
 }
 
+// Of the numbers of contacts those in which a body takes part.
+std::vector<int> MakeSensor::contacts_of(int body, const std::vector<int>& contacts) const {
+  std::vector<int> own;
+  for (const int index : contacts) {
+    const constraint::Contact& contact = contact_of(index);
+    if (contact.body() == body || contact.other_body() == body) own.push_back(index);
+  }
+  return own;
+}
+
+const constraint::Contact& MakeSensor::contact_of(int index) const {
+  const ContactModel& contact = data_.contacts[static_cast<std::size_t>(index)];
+  return dynamic_cast<const constraint::Contact&>(data_.constraint(contact.constraint));
+}
+
 SourcePtr MakeSensor::operator()(const SensorContact& touch) {
-  const int index =
-      named_part(data_.contacts, touch.contact, "contact", &ContactModel::name, settings_.place);
+  std::vector<int> contacts;
+  for (const std::string& name : touch.contacts) {
+    contacts.push_back(
+        named_part(data_.contacts, name, "contact", &ContactModel::name, settings_.place));
+  }
   TouchSource::Patch patch;
   if (!touch.patch.empty()) {
-    const auto& contact = dynamic_cast<const constraint::Contact&>(
-        data_.constraint(data_.contacts[static_cast<std::size_t>(index)].constraint));
-    patch.body = touch.body < 0 ? contact.body() : touch.body;
-    if (patch.body != contact.body() && patch.body != contact.other_body()) {
+    const int first = contact_of(contacts.front()).body();
+    patch.body = touch.body < 0 ? first : touch.body;
+    contacts = contacts_of(patch.body, contacts);
+    if (contacts.empty()) {
       throw Error(ErrorKind::unknown_name, settings_.place,
-                  fmt::format("body '{}' does not take part in contact '{}'",
-                              attacher_.on(patch.body).name(), touch.contact),
-                  fmt::format("name the body '{}'", attacher_.on(contact.body()).name()));
+                  fmt::format("body '{}' does not take part in {}", attacher_.on(patch.body).name(),
+                              touch.contacts.size() == 1
+                                  ? fmt::format("contact '{}'", touch.contacts.front())
+                                  : fmt::format("any of {} contacts", touch.contacts.size())),
+                  fmt::format("name the body '{}'", attacher_.on(first).name()));
     }
     patch.outer = mesh::outer_nodes(attacher_.on(patch.body).mesh());
     for (const NodeId node : patch.outer) {
@@ -288,10 +310,10 @@ SourcePtr MakeSensor::operator()(const SensorContact& touch) {
       throw Error(ErrorKind::empty_region, settings_.place,
                   "no node of the surface is in the patch", "choose a region that holds some");
     }
-  } else if (!touch.threshold) {
-    observable = touch.contact + ".normal_force";
+  } else if (!touch.threshold && contacts.size() == 1) {
+    observable = touch.contacts.front() + ".normal_force";
   }
-  return std::make_unique<TouchSource>(index, std::move(patch), touch.threshold);
+  return std::make_unique<TouchSource>(std::move(contacts), std::move(patch), touch.threshold);
 }
 
 // A rate takes every k-th step.

@@ -42,8 +42,7 @@ void condense(Simulation& simulation, const LinearisationChoice& choice,
       choice.of_statics ? mechanics::StepWeights{}
                         : mechanics::step_weights(model.step().integrator, model.step().time_step);
   World& world = simulation.world();
-  world.begin_step(simulation.time(), simulation.time(), effort);
-  world.bodies().begin_query();  // no base moves
+  world.begin_query(simulation.time(), effort);
   world.linearise({weights, choice.tangent, !geometric.empty(), false});
   world.form_rows(effort, geometric);
   if (world.condense() != linalg::FactorStatus::singular) return;

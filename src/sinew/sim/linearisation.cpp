@@ -2,6 +2,8 @@
 
 #include <limits>
 #include <numeric>
+#include <span>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -10,6 +12,7 @@
 #include "sinew/constraint/effector.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/linalg/dense_factor.hpp"
+#include "sinew/linalg/scratch.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/row_numbering.hpp"
@@ -123,7 +126,8 @@ std::vector<std::string> row_names(const Model& model) {
 namespace {
 
 // Rows, delta and effort as they are now; W and delta_free as the world has them.
-FreeRows gather(Simulation& simulation, Linearisation& result) {
+// @param effort (rows,) N.
+FreeRows gather(Simulation& simulation, std::span<const double> effort, Linearisation& result) {
   const Model& model = simulation.model();
   World& world = simulation.world();
   const step::StepProblem& problem = world.problem();
@@ -132,12 +136,12 @@ FreeRows gather(Simulation& simulation, Linearisation& result) {
   const RowNumbering& numbering = world.numbering();
   const std::vector<std::string> names = all_names(model);
   const auto count = result.delta_free.size();
-  result.delta.resize(count);
-  result.effort.resize(count);
+  numbering.gather_motions(world.delta(), result.delta);
+  linalg::AlignedNumbers own;
+  numbering.gather_efforts(effort, own);
+  result.effort = Eigen::Map<const VectorX, Eigen::AlignedMax>(own.data(), count);
   for (Eigen::Index k = 0; k < count; ++k) {
     const auto row = static_cast<std::size_t>(numbering.model_row_of(static_cast<int>(k)));
-    result.delta[k] = world.delta()[static_cast<Eigen::Index>(row)];
-    result.effort[k] = simulation.efforts()[row];
     if (!names[row].empty()) result.rows.push_back(names[row]);
   }
   result.negative_pivots = world.inertia().negative_pivots;
@@ -208,17 +212,22 @@ Linearisation linearise_here(Simulation& simulation, const LinearisationChoice& 
       choice.of_statics ? mechanics::StepWeights{}
                         : mechanics::step_weights(model.step().integrator, model.step().time_step);
   World& world = simulation.world();
-  world.begin_query(simulation.time());
+  std::vector<double> effort(simulation.efforts().begin(), simulation.efforts().end());
+  if (choice.every_point) {
+    world.begin_query(simulation.time());
+  } else {
+    world.begin_query(simulation.time(), effort);
+  }
   world.linearise({weights, choice.tangent, !geometric.empty(), false});
-  world.form_rows(simulation.efforts(), geometric);
+  world.form_rows(effort, geometric);
   Linearisation result;
-  result.residual = world.bodies().residual(simulation.efforts());
+  result.residual = world.bodies().residual(effort);
   if (world.condense() == linalg::FactorStatus::singular) {
     throw Error(ErrorKind::singular_matrix, {.item = "linearise()"},
                 "the stiffness matrix is singular at this state",
                 "fix a region of every body, or try tangent='corotated'");
   }
-  FreeRows free = gather(simulation, result);
+  FreeRows free = gather(simulation, effort, result);
   if (choice.fields) find_fields(world, free, result);
   return result;
 }
@@ -245,7 +254,7 @@ Linearisation last_linearisation(Simulation& simulation) {
   }
   Linearisation result;
   result.residual = std::numeric_limits<double>::quiet_NaN();
-  gather(simulation, result);
+  gather(simulation, simulation.efforts(), result);
   return result;
 }
 

@@ -20,9 +20,11 @@ std::vector<std::string> row_names(const Model& model);
 /// W and what belongs to it, at one state, of the robot as its joints hold it together: their rows
 /// are taken out.
 struct Linearisation {
-  std::vector<std::string> rows;  ///< see row_names(); surfaces that touch nowhere have none
-  MatrixX compliance;             ///< W (rows, rows), m/N
-  VectorX delta;                  ///< (rows,) m, now
+  /// See row_names(): of contacts those points that take part. Points that share a row
+  /// (ContactZones) have the name of one of them.
+  std::vector<std::string> rows;
+  MatrixX compliance;       ///< W (rows, rows), m/N
+  VectorX delta;            ///< (rows,) m, now
   VectorX delta_free;       ///< (rows,) m, with all efforts zero, as the linearisation sees it
   VectorX effort;           ///< (rows,) N, now
   double residual = 0.0;    ///< N, |p - f + H^T lambda|
@@ -39,10 +41,13 @@ struct LinearisationChoice {
   bool geometric_stiffness = true;  ///< of all loaded cables
   bool of_statics = true;           ///< false: of the scene's integrator and time step
   bool fields = false;              ///< whether Linearisation::fields are computed
+  /// Whether contact points take part that have no force and are not near: single ones, also where
+  /// a step puts them together.
+  bool every_point = false;
 };
 
-/// Of the present state, which stays as it is bit for bit; every point of a contact takes part.
-/// Throws Error(singular-matrix).
+/// Of the present state, which stays as it is bit for bit, with the contact points that a step from
+/// here would begin with. Throws Error(singular-matrix).
 Linearisation linearise(Simulation& simulation, const LinearisationChoice& choice = {});
 
 /// W and delta_free as the last step (its last substep's last linearisation) or solve had them,

@@ -67,12 +67,12 @@ struct SensorCapacitance {
   double relative_permittivity = 1.0;
 };
 
-/// Normal force of a contact.
+/// Normal force of contacts.
 struct SensorContact {
-  std::string contact;
-  int body = -1;                    ///< of the patch; -1: the first of the contact
-  std::vector<NodeId> patch;        ///< of its mesh; empty: all
-  std::optional<double> threshold;  ///< N, of a switch
+  std::vector<std::string> contacts;  ///< one or more
+  int body = -1;                      ///< of the patch; -1: the first of the first contact
+  std::vector<NodeId> patch;          ///< of its mesh; empty: all
+  std::optional<double> threshold;    ///< N, of a switch
 };
 
 struct SensorSettings {

@@ -133,9 +133,10 @@ void FlowSource::read(const Run& /*run*/, std::span<const double> memory,
   values[0] = memory[1];
 }
 
-TouchSource::TouchSource(int contact, Patch patch, const std::optional<double>& threshold)
+TouchSource::TouchSource(std::vector<int> contacts, Patch patch,
+                         const std::optional<double>& threshold)
     : SensorSource({{"", threshold ? "" : "N"}}),
-      contact_(contact),
+      contacts_(std::move(contacts)),
       patch_(std::move(patch)),
       threshold_(threshold) {}
 
@@ -157,12 +158,14 @@ bool TouchSource::counts(const Run& run, const Vector3& position) const {
 void TouchSource::read(const Run& run, std::span<const double> /*memory*/,
                        std::span<double> values) const {
   const ContactReader reader(run);
-  const constraint::Contact& contact = run.model->contact(contact_);
-  const Eigen::Isometry3d pose = reader.pose(contact_);
   double sum = 0.0;
-  for (std::size_t k = 0; k < contact.size(); ++k) {
-    const double force = run.effort[static_cast<std::size_t>(contact.row(k))];
-    if (force > 0.0 && counts(run, reader.point(contact_, k, pose).position)) sum += force;
+  for (const int index : contacts_) {
+    const constraint::Contact& contact = run.model->contact(index);
+    const Eigen::Isometry3d pose = reader.pose(index);
+    for (std::size_t k = 0; k < contact.size(); ++k) {
+      const double force = run.effort[static_cast<std::size_t>(contact.row(k))];
+      if (force > 0.0 && counts(run, reader.point(index, k, pose).position)) sum += force;
+    }
   }
   values[0] = !threshold_ ? sum : sum > *threshold_ ? 1.0 : 0.0;
 }

@@ -150,25 +150,25 @@ class FlowSource : public SensorSource {
   int actuator_;
 };
 
-/// The sum of the normal forces of a contact, N, or whether it exceeds a threshold, 1 or 0. With a
+/// The sum of the normal forces of contacts, N, or whether it exceeds a threshold, 1 or 0. With a
 /// patch, of the points whose nearest node of a body's mesh belongs to it.
 class TouchSource : public SensorSource {
  public:
   struct Patch {
-    int body = -1;              ///< of the contact; -1: everywhere
+    int body = -1;              ///< of all contacts; -1: everywhere
     std::vector<NodeId> outer;  ///< nodes of the body's surface
     std::vector<char> within;   ///< (outer,) whether they belong to the patch
   };
-  /// @param contact its number. @param patch see there. @param threshold N, of a switch; none: it
-  /// measures.
-  TouchSource(int contact, Patch patch, const std::optional<double>& threshold);
+  /// @param contacts their numbers. @param patch see there. @param threshold N, of a switch; none:
+  /// it measures.
+  TouchSource(std::vector<int> contacts, Patch patch, const std::optional<double>& threshold);
   void read(const Run& run, std::span<const double> memory,
             std::span<double> values) const override;
 
  private:
   bool counts(const Run& run, const Vector3& position) const;
 
-  int contact_;
+  std::vector<int> contacts_;
   Patch patch_;
   std::optional<double> threshold_;
 };

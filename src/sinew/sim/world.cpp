@@ -45,6 +45,11 @@ void World::begin_step(double from, double to, std::span<double> effort, double 
   bodies_.begin_step();
 }
 
+void World::begin_query(double at, std::span<double> effort) {
+  begin_step(at, at, effort);
+  bodies_.begin_query();
+}
+
 void World::begin_query(double at) {
   if (!contacts_.empty()) {
     place_contacts(at, at);

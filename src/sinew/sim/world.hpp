@@ -41,8 +41,11 @@ class World {
   ///   and those that are found anew take it to other rows.
   /// @param reach m: points that are nearer than this to their surface are near, too.
   void begin_step(double from, double to, std::span<double> effort, double reach = 0.0);
-  /// For a look at the present state: every contact point takes part, and no base moves.
-  /// @param at s, when surfaces are looked at.
+  /// For a look at the present state, which moves no base: those contact points take part that a
+  /// step from here would begin with. @param at s, when surfaces are looked at.
+  /// @param effort (rows,) N, see begin_step().
+  void begin_query(double at, std::span<double> effort);
+  /// The same with every contact point that a step could have a use for.
   void begin_query(double at);
   /// For an impact at the present state, after begin_query(): the closed points of contacts that
   /// strike, and no others, are in the problem.
