@@ -117,7 +117,17 @@ void FrameMaker::fill_contacts(Frame& frame) {
   }
 }
 
-std::shared_ptr<Frame> FrameMaker::make(const FieldChoice& wanted) {
+PickFrame FrameMaker::picked(const SurfaceVertex& at) const {
+  const Surface& surface = description_.surfaces[static_cast<std::size_t>(at.body)];
+  PickFrame pick{at, surface.nodes[static_cast<std::size_t>(at.vertex)], {}};
+  for (const double value : fields_at(simulation_.body(at.body), simulation_, pick.node)) {
+    pick.fields.push_back(static_cast<float>(value));
+  }
+  return pick;
+}
+
+std::shared_ptr<Frame> FrameMaker::make(const FieldChoice& wanted,
+                                        const std::vector<SurfaceVertex>& picks) {
   observables_.refresh();
   auto frame = std::make_shared<Frame>();
   frame->step = static_cast<std::uint64_t>(simulation_.steps());
@@ -128,6 +138,7 @@ std::shared_ptr<Frame> FrameMaker::make(const FieldChoice& wanted) {
   for (std::size_t b = 0; b < frame->bodies.size(); ++b) fill_body(b, wanted, frame->bodies[b]);
   fill_points(*frame);
   fill_contacts(*frame);
+  for (const SurfaceVertex& at : picks) frame->picks.push_back(picked(at));
   return frame;
 }
 

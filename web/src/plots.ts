@@ -15,8 +15,25 @@ const TITLES: Record<string, string> = {
   'volume command': 'Commanded volume',
 };
 
+const SAME = 4e-3;  // of the plot's height: curves that are nowhere farther apart are drawn as one
+const DASH = 8;     // px
 const MOST = 3;  // plots at once
 const HEIGHT = 170, LOW = 120;  // px of a plot: alone, and among others
+
+/** Groups of two or more columns that look equal, (m, n) numbers each. */
+export function equalCurves(columns: number[][]): number[][] {
+  const all = columns.flat().filter(Number.isFinite);
+  const range = all.reduce((most, x) => Math.max(most, x), -Infinity) - all.reduce((least, x) => Math.min(least, x), Infinity);
+  const same = (a: number[], b: number[]) => a.every((x, k) => Math.abs(x - b[k]) <= SAME * range || (!Number.isFinite(x) && !Number.isFinite(b[k])));
+  const left = columns.map((_, k) => k).filter((k) => columns[k].some(Number.isFinite));
+  const groups: number[][] = [];
+  while (left.length > 0) {
+    const group = left.filter((k) => same(columns[left[0]], columns[k]));
+    group.forEach((k) => left.splice(left.indexOf(k), 1));
+    if (group.length > 1) groups.push(group);
+  }
+  return groups;
+}
 
 /** The signals of one group; a click on a name in the legend hides or shows it. */
 class Plot {
@@ -31,6 +48,8 @@ class Plot {
   private box = make('div', {className: 'plot'});
   private scene: Scene | null = null;
   private last = -1;
+  private marker = NaN;  // s: the moment that was gone back to
+  private equal: number[][] = [];
 
   constructor(...buttons: HTMLElement[]) {
     this.select.onchange = () => this.choose(this.select.value);
@@ -51,6 +70,7 @@ class Plot {
     this.scene?.signals.forEach((s, k) => { if (s.group === group) this.columns.push(k); });
     this.data = [[], ...this.columns.map(() => [] as number[])];
     this.last = -1;
+    this.marker = NaN;
     this.plot?.destroy();
     const signals = this.columns.map((k) => this.scene!.signals[k]);
     this.unit = signals[0]?.unit ?? '';
@@ -63,8 +83,9 @@ class Plot {
       scales: {x: {time: false}},
       axes: [{...axis, label: 'time (s)', labelSize: 16, size: 30},
              {...axis, size: 76, values: (_, ticks) => ticks.map((v) => told(v / this.scale, this.unit))}],
-      series: [{}, ...signals.map((s, k) => ({label: s.label, stroke: COLOURS[k % COLOURS.length],
-                                               width: 1.5, dash: k >= COLOURS.length ? [5, 4] : undefined}))],
+      hooks: {draw: [(plot) => this.drawMarker(plot, ink)]},
+      series: [{}, ...signals.map((s, k) => ({label: s.label, stroke: COLOURS[k % COLOURS.length], points: {show: false},
+                                               width: 1.5, dash: this.ownDash(k)}))],
     }, this.data as uPlot.AlignedData, this.box);
   }
 
@@ -73,9 +94,30 @@ class Plot {
     this.element.remove();
   }
 
+  private ownDash(k: number): number[] | undefined { return k >= COLOURS.length ? [5, 4] : undefined; }
+
+  private drawMarker(plot: uPlot, ink: string): void {
+    if (!(this.marker >= plot.scales.x.min! && this.marker <= plot.scales.x.max!)) return;
+    const {ctx, bbox} = plot, x = plot.valToPos(this.marker, 'x', true);
+    ctx.save();
+    ctx.strokeStyle = ink;
+    ctx.lineWidth = devicePixelRatio;
+    ctx.beginPath();
+    ctx.moveTo(x, bbox.top);
+    ctx.lineTo(x, bbox.top + bbox.height);
+    ctx.stroke();
+    ctx.restore();
+  }
+
+  // A run that went on from an earlier moment has no longer what came after it.
   add(frame: Frame): void {
-    if (frame.time < this.last) this.data.forEach((column) => { column.length = 0; });
-    if (frame.time === this.last) return;
+    const past = frame.timeline !== undefined && frame.timeline.shown < frame.timeline.latest;
+    this.marker = past ? frame.time : NaN;
+    if (past || frame.time === this.last) return;
+    if (frame.time < this.last) {
+      const first = this.data[0].findIndex((t) => t >= frame.time);
+      if (first >= 0) this.data.forEach((column) => { column.length = first; });
+    }
     this.last = frame.time;
     this.data[0].push(frame.time);
     this.columns.forEach((k, c) => this.data[c + 1].push(this.scale * frame.signals[k]));
@@ -87,7 +129,25 @@ class Plot {
     }
   }
 
-  draw(): void { this.plot?.setData(this.data as uPlot.AlignedData); }
+  /** Curves that are equal take turns: each is drawn in its own dashes. */
+  draw(): void {
+    if (!this.plot) return;
+    this.equal = equalCurves(this.data.slice(1));
+    this.columns.forEach((_, k) => { this.plot!.series[k + 1].dash = this.ownDash(k); });
+    for (const group of this.equal) {
+      group.forEach((k, turn) => {
+        this.plot!.series[k + 1].dash = [0, DASH * turn, DASH, DASH * (group.length - 1 - turn)];
+      });
+    }
+    this.plot.setData(this.data as uPlot.AlignedData);
+  }
+
+  /** For tests: labels of curves drawn as one, the samples' first and last time, and the marker. */
+  told() {
+    const label = (k: number) => this.scene!.signals[this.columns[k]].label;
+    return {group: this.group, equal: this.equal.map((g) => g.map(label)), from: this.data[0][0], to: this.data[0][this.data[0].length - 1],
+            samples: this.data[0].length, marker: this.marker};
+  }
 
   resize(width: number, height: number): void { this.plot?.setSize({width: Math.max(width, 120), height}); }
 }
@@ -126,6 +186,8 @@ export class Plots {
     this.insert(plot);
     this.resize();
   }
+
+  told() { return this.plots.map((plot) => plot.told()); }
 
   add(frame: Frame): void { for (const plot of this.plots) plot.add(frame); }
 

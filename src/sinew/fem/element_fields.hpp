@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "sinew/core/types.hpp"
+
 namespace sinew::mechanics {
 class Body;
 class BodyModel;
@@ -62,6 +64,11 @@ ElementField element_field_of(std::string_view name);
 /// their volume at rest. Not finite where an element has no volume.
 /// @param body at its present state. @param field which.
 std::vector<double> element_field(const HasMaterial& body, ElementField field);
+
+/// (fields,) all element_fields() at a node, from the elements round it: what NodalMean makes of
+/// element_field() there, to rounding. NaN at a node of no element.
+/// @param body at its present state. @param node of its mesh.
+std::vector<double> node_fields(const HasMaterial& body, NodeId node);
 
 /// Means at the nodes of what elements have, weighted by their volumes at rest; the smoothing of
 /// Hinton and Campbell, Int. J. Numer. Meth. Engng 8, 1974, in its simplest form.
