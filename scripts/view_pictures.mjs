@@ -32,19 +32,25 @@ async function draw(file, scene, {width = 1280, height = 800} = {}, act = async 
     if (found) resolve(found[0]);
   }));
   const page = await browser.newPage({viewport: {width, height}});
+  page.setDefaultTimeout(300e3);  // without a GPU, beside other work
   await page.goto(url);
   await page.waitForFunction(() => window.sinewView?.state().connected && window.sinewView.scene());
   await act(page);
   await page.waitForTimeout(600);
+  await drawn(page);
   await page.screenshot({path: join(root, file)});
   await page.close();
   child.kill('SIGINT');
 }
 
+/** Until what has come is in the picture. */
+const drawn = (page) => page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
 const ask = (page, message) => page.evaluate((m) => window.sinewView.request(m), message);
 
 async function step(page, count) {
   for (let done = 0; done < count; done += 20) await ask(page, {type: 'step', count: 20});
+  await page.waitForFunction((least) => window.sinewView.state().step >= least, count);
+  await drawn(page);
 }
 
 async function colour(page, field) {

@@ -79,12 +79,16 @@ export class Panel {
       make('div', {className: 'line'}, this.recorder, this.recorded),
       make('div', {className: 'line'}, this.who, this.drive, ...(scene.gallery ? [
            button('Examples', 'Back to the examples', () => this.send({type: 'gallery'}))] : [])),
-      ...(told.length ? [heading('Actuators: reached, and command'), ...told.map((a) => this.actuator(a))] : []),
+      ...(told.length ? [heading('Actuators'), this.actuatorHead(), ...told.map((a) => this.actuator(a))] : []),
       heading('Control'),
       ...(scripted ? [] : [make('div', {className: 'line'}, make('label', {}, 'Controller', this.controller))]),
       ...this.aims(scene),
       ...this.measured(scene), ...this.touching(scene), heading('Hand'), this.hand(),
     );
+  }
+
+  private actuatorHead(): HTMLElement {
+    return make('div', {className: 'row head'}, ...['reached', '', 'command', ''].map((text) => make('span', {textContent: text})));
   }
 
   private gallery(scene: Scene): void {

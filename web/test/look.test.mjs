@@ -63,7 +63,7 @@ test('controls say what was reached, in what unit, and which cables are equal', 
   // Cables that nobody pulls are slack, which is no news; their curves are one line in several colours.
   assert.equal(await page.getByText('slack:').count(), 0);
   const [plot] = await page.evaluate(() => window.sinewView.plots());
-  assert.deepEqual(plot.equal, [['long_1', 'long_2', 'long_3', 'short_0', 'short_2', 'short_3']]);
+  assert.deepEqual(plot.equal, [['long_1', 'long_2', 'long_3', 'short_0', 'short_1', 'short_2', 'short_3']]);
   // One coordinate alone: the others are the tip's.
   const before = await state(page);
   await page.fill('[aria-label="tip: target x in mm"]', '-12.25');
@@ -122,12 +122,12 @@ test('fitted views hide nothing behind panels, from every side, in both projecti
 test('a node tells its values, live and in a recorded run', async (t) => {
   const folder = mkdtempSync(join(tmpdir(), 'sinew-view-'));
   t.after(() => rmSync(folder, {recursive: true}));
-  execFileSync(PROGRAM, ['run', MODULE, '--duration', '0.3s', '--out', folder, '--quiet']);
+  execFileSync(PROGRAM, ['run', MODULE, '--duration', '0.1s', '--out', folder, '--quiet']);
   for (const scene of [MODULE, folder]) {
     const page = await shown(t, scene, '--paused');
-    if (scene === MODULE) await ask(page, {type: 'step', count: 25});
-    else await ask(page, {type: 'seek', frame: 25});
-    await until(page, (s) => s.step === 25);
+    if (scene === MODULE) await ask(page, {type: 'step', count: 10});
+    else await ask(page, {type: 'seek', frame: 10});
+    await until(page, (s) => s.step === 10);
     await page.keyboard.press('y');
     const [x, y] = await drawn(page, () => {
       const {min, max} = window.sinewView.box();
@@ -139,7 +139,7 @@ test('a node tells its values, live and in a recorded run', async (t) => {
     const there = python(`
 import json, sinew
 sim = sinew.load(${JSON.stringify(MODULE)})
-sim.step(25)
+sim.step(10)
 body = next(iter(sim.bodies.values()))
 node = ${picked.node}
 print(json.dumps({"position": body.positions[node].tolist(), "rest": body.rest_positions[node].tolist(),
