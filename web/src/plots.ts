@@ -35,23 +35,48 @@ export function equalCurves(columns: number[][]): number[][] {
   return groups;
 }
 
+/** All signals of the last seconds, whichever are plotted. */
+class History {
+  times: number[] = [];         // s
+  rows: Float64Array[] = [];    // as many
+  marker = NaN;                 // s: the moment that was gone back to
+
+  clear(): void {
+    this.times = [];
+    this.rows = [];
+    this.marker = NaN;
+  }
+
+  // A run that went on from an earlier moment has no longer what came after it.
+  add(frame: Frame): void {
+    const past = frame.timeline !== undefined && frame.timeline.shown < frame.timeline.latest;
+    this.marker = past ? frame.time : NaN;
+    const {times, rows} = this;
+    if (past) return;
+    while (times[times.length - 1] >= frame.time) times.length = rows.length = times.length - 1;
+    times.push(frame.time);
+    rows.push(frame.signals.slice());
+    if (times.length <= SAMPLES && times[0] >= frame.time - 1.2 * WINDOW) return;
+    const drop = Math.max(times.findIndex((t) => t >= frame.time - WINDOW), times.length - SAMPLES + 100, 0);
+    times.splice(0, drop);
+    rows.splice(0, drop);
+  }
+}
+
 /** The signals of one group; a click on a name in the legend hides or shows it. */
 class Plot {
   readonly element = make('div', {});
   group = '';
   private plot: uPlot | null = null;
   private columns: number[] = [];
-  private data: number[][] = [];
   private unit = '';
   private scale = 1;  // angles are drawn in degrees, so that their ticks are round
   private select = make('select', {'aria-label': 'Signals to plot'});
   private box = make('div', {className: 'plot'});
   private scene: Scene | null = null;
-  private last = -1;
-  private marker = NaN;  // s: the moment that was gone back to
   private equal: number[][] = [];
 
-  constructor(...buttons: HTMLElement[]) {
+  constructor(private history: History, ...buttons: HTMLElement[]) {
     this.select.onchange = () => this.choose(this.select.value);
     this.element.append(make('div', {className: 'line'}, this.select, ...buttons), this.box);
   }
@@ -68,9 +93,6 @@ class Plot {
     this.group = this.select.value = group;
     this.columns = [];
     this.scene?.signals.forEach((s, k) => { if (s.group === group) this.columns.push(k); });
-    this.data = [[], ...this.columns.map(() => [] as number[])];
-    this.last = -1;
-    this.marker = NaN;
     this.plot?.destroy();
     const signals = this.columns.map((k) => this.scene!.signals[k]);
     this.unit = signals[0]?.unit ?? '';
@@ -86,7 +108,7 @@ class Plot {
       hooks: {draw: [(plot) => this.drawMarker(plot, ink)]},
       series: [{}, ...signals.map((s, k) => ({label: s.label, stroke: COLOURS[k % COLOURS.length], points: {show: false},
                                                width: 1.5, dash: this.ownDash(k)}))],
-    }, this.data as uPlot.AlignedData, this.box);
+    }, this.data(), this.box);
   }
 
   end(): void {
@@ -96,9 +118,15 @@ class Plot {
 
   private ownDash(k: number): number[] | undefined { return k >= COLOURS.length ? [5, 4] : undefined; }
 
+  private data(): uPlot.AlignedData {
+    const {times, rows} = this.history;
+    return [times, ...this.columns.map((k) => rows.map((signals) => this.scale * signals[k]))];
+  }
+
   private drawMarker(plot: uPlot, ink: string): void {
-    if (!(this.marker >= plot.scales.x.min! && this.marker <= plot.scales.x.max!)) return;
-    const {ctx, bbox} = plot, x = plot.valToPos(this.marker, 'x', true);
+    const {marker} = this.history;
+    if (!(marker >= plot.scales.x.min! && marker <= plot.scales.x.max!)) return;
+    const {ctx, bbox} = plot, x = plot.valToPos(marker, 'x', true);
     ctx.save();
     ctx.strokeStyle = ink;
     ctx.lineWidth = devicePixelRatio;
@@ -109,44 +137,25 @@ class Plot {
     ctx.restore();
   }
 
-  // A run that went on from an earlier moment has no longer what came after it.
-  add(frame: Frame): void {
-    const past = frame.timeline !== undefined && frame.timeline.shown < frame.timeline.latest;
-    this.marker = past ? frame.time : NaN;
-    if (past || frame.time === this.last) return;
-    if (frame.time < this.last) {
-      const first = this.data[0].findIndex((t) => t >= frame.time);
-      if (first >= 0) this.data.forEach((column) => { column.length = first; });
-    }
-    this.last = frame.time;
-    this.data[0].push(frame.time);
-    this.columns.forEach((k, c) => this.data[c + 1].push(this.scale * frame.signals[k]));
-    const times = this.data[0];
-    if (times.length > SAMPLES || times[0] < frame.time - 1.2 * WINDOW) {
-      const first = times.findIndex((t) => t >= frame.time - WINDOW);
-      const drop = Math.max(first, times.length - SAMPLES + 100, 0);
-      this.data.forEach((column) => column.splice(0, drop));
-    }
-  }
-
   /** Curves that are equal take turns: each is drawn in its own dashes. */
   draw(): void {
     if (!this.plot) return;
-    this.equal = equalCurves(this.data.slice(1));
+    const data = this.data();
+    this.equal = equalCurves(data.slice(1) as number[][]);
     this.columns.forEach((_, k) => { this.plot!.series[k + 1].dash = this.ownDash(k); });
     for (const group of this.equal) {
       group.forEach((k, turn) => {
         this.plot!.series[k + 1].dash = [0, DASH * turn, DASH, DASH * (group.length - 1 - turn)];
       });
     }
-    this.plot.setData(this.data as uPlot.AlignedData);
+    this.plot.setData(data);
   }
 
   /** For tests: labels of curves drawn as one, the samples' first and last time, and the marker. */
   told() {
     const label = (k: number) => this.scene!.signals[this.columns[k]].label;
-    return {group: this.group, equal: this.equal.map((g) => g.map(label)), from: this.data[0][0], to: this.data[0][this.data[0].length - 1],
-            samples: this.data[0].length, marker: this.marker};
+    const {times, marker} = this.history;
+    return {group: this.group, equal: this.equal.map((g) => g.map(label)), from: times[0], to: times[times.length - 1], samples: times.length, marker};
   }
 
   resize(width: number, height: number): void { this.plot?.setSize({width: Math.max(width, 120), height}); }
@@ -157,13 +166,15 @@ export class Plots {
   private plots: Plot[] = [];
   private scene: Scene | null = null;
   private drawn = 0;
+  private history = new History();
 
   constructor(private section: HTMLElement) {
-    this.insert(new Plot(button('+', 'Another plot', () => this.another())));
+    this.insert(new Plot(this.history, button('+', 'Another plot', () => this.another())));
     new ResizeObserver(() => this.resize()).observe(section);
   }
 
   setScene(scene: Scene): void {
+    if (scene !== this.scene) this.history.clear();
     this.scene = scene;
     for (const plot of this.plots) plot.setScene(scene, plot.group);
     this.resize();
@@ -176,7 +187,7 @@ export class Plots {
 
   private another(): void {
     if (this.plots.length >= MOST || !this.scene) return;
-    const plot: Plot = new Plot(button('-', 'No longer this plot', () => {
+    const plot: Plot = new Plot(this.history, button('-', 'No longer this plot', () => {
       plot.end();
       this.plots = this.plots.filter((p) => p !== plot);
       this.resize();
@@ -189,7 +200,7 @@ export class Plots {
 
   told() { return this.plots.map((plot) => plot.told()); }
 
-  add(frame: Frame): void { for (const plot of this.plots) plot.add(frame); }
+  add(frame: Frame): void { this.history.add(frame); }
 
   draw(now: number): void {
     if (now - this.drawn < 100) return;  // ten times a second is enough to read
