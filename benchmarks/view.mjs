@@ -32,7 +32,9 @@ const wire = await bare.evaluate(async ({seconds, slides}) => {
   socket.onmessage = ({data}) => {
     if (typeof data === 'string') {
       const message = JSON.parse(data);
-      if (message.type === 'scene') scene = message.scene;
+      if (message.type !== 'scene') return;
+      scene = message.scene;
+      socket.send(JSON.stringify({type: 'ready', generation: message.generation}));
       return;
     }
     const view = new DataView(data);
@@ -77,7 +79,7 @@ await bare.close();
 const page = await browser.newPage({viewport: {width: 1280, height: 800}});
 await page.goto(url);
 await page.waitForFunction(() => window.sinewView?.state().sequence > 0);
-await page.selectOption('[aria-label="Colour by"]', 'stress');
+await page.selectOption('[aria-label="Colour by"]', 'von_mises_stress');
 await page.waitForTimeout(1000 * SECONDS);
 const state = await page.evaluate(() => window.sinewView.state());
 await browser.close();

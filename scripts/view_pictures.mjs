@@ -1,6 +1,6 @@
 #!/usr/bin/env node
-// Draws the pictures of docs/view.md (docs/images/view*.png) and the examples' thumbnails:
-// node scripts/view_pictures.mjs, after `make build`.
+// Draws the pictures of docs/view.md (docs/images/view*.png) and the examples' thumbnails, or those whose files have
+// one of the words in their names: node scripts/view_pictures.mjs [WORD ...], after `make build`.
 import {execFileSync, spawn} from 'node:child_process';
 import {mkdtempSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
@@ -11,34 +11,46 @@ import {chromium} from '../web/node_modules/playwright-core/index.mjs';
 const root = join(dirname(fileURLToPath(import.meta.url)), '..');
 const program = process.env.SINEW_PROGRAM ?? join(root, 'build/release/bin/sinew');
 const circle = join(root, 'examples/trunk/circle.yaml');
-// Scene, the step at which it is drawn.
+// Scene, the step at which it is drawn, and whether it is coloured by stress.
 const EXAMPLES = [['trunk/circle', 320], ['trunk/trunk', 250], ['arm/square', 420], ['beam/swing', 60], ['arm/conical', 25],
-                  ['finger/module', 190], ['ring/sma', 300], ['roll/roll', 60], ['arm/curl', 540]];
+                  ['finger/module', 190], ['ring/sma', 300], ['roll/roll', 60], ['arm/curl', 540], ['arm/underwater', 400],
+                  ['contact/incline', 120], ['contact/lift', 300], ['contact/soft_lift', 300], ['contact/squeeze', 500],
+                  ['finger/sensors', 150], ['fluidic_arm/arm', 500, false], ['fluidic_arm/brace', 0, false], ['joints/two_segments', 120],
+                  ['rigid/bounce', 60, false], ['rigid/hand', 100], ['rigid/slider_crank', 120, false],
+                  ['rigid/urdf_arm', 300, false]];
+const words = process.argv.slice(2);
 const browser = await chromium.launch({executablePath: '/usr/bin/chromium', args: [
   '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
   '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run']});
 
-/** A page of `sinew view WORDS...`; `act` does what is to be seen. */
-async function draw(file, words, {width = 1280, height = 800} = {}, act = async () => undefined) {
-  const child = spawn(program, ['view', ...words, '--no-open', '--port', '0', '--paused']);
+/** A page of `sinew view SCENE`; `act` does what is to be seen. */
+async function draw(file, scene, {width = 1280, height = 800} = {}, act = async () => undefined) {
+  if (words.length > 0 && !words.some((word) => file.includes(word))) return;
+  const child = spawn(program, ['view', ...scene, '--no-open', '--port', '0', '--paused']);
   const url = await new Promise((resolve) => child.stdout.on('data', (data) => {
     const found = /http:\S+/.exec(String(data));
     if (found) resolve(found[0]);
   }));
   const page = await browser.newPage({viewport: {width, height}});
+  page.setDefaultTimeout(300e3);  // without a GPU, beside other work
   await page.goto(url);
   await page.waitForFunction(() => window.sinewView?.state().connected && window.sinewView.scene());
   await act(page);
   await page.waitForTimeout(600);
+  await drawn(page);
   await page.screenshot({path: join(root, file)});
   await page.close();
   child.kill('SIGINT');
 }
 
+/** Until what has come is in the picture. */
+const drawn = (page) => page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
 const ask = (page, message) => page.evaluate((m) => window.sinewView.request(m), message);
 
 async function step(page, count) {
   for (let done = 0; done < count; done += 20) await ask(page, {type: 'step', count: 20});
+  await page.waitForFunction((least) => window.sinewView.state().step >= least, count);
+  await drawn(page);
 }
 
 async function colour(page, field) {
@@ -100,11 +112,11 @@ await draw('docs/images/view_tablet.png', [circle], {width: 820, height: 1100}, 
   await colour(page, 'von_mises_stress');
   await step(page, 300);
 });
-for (const [scene, count] of EXAMPLES) {
+for (const [scene, count, coloured = true] of EXAMPLES) {
   await draw(`examples/${scene}.png`, [join(root, 'examples', `${scene}.yaml`)], {width: 600, height: 400}, async (page) => {
-    await colour(page, 'von_mises_stress');
+    if (coloured) await colour(page, 'von_mises_stress');
     await step(page, count);
-    await page.addStyleTag({content: '#top, #panel, #plots, #legend, #alerts, #scale { display: none !important; }'});
+    await page.addStyleTag({content: '#top, #panel, #plots, #side, #scale { display: none !important; }'});
     await page.evaluate(() => window.sinewView.plain());
   });
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <utility>
@@ -235,15 +236,17 @@ class SignalKeys {
 Json probe_json(const SignalKeys& keys, const constraint::Probe& probe) {
   return {{"name", probe.name()},
           {"kind", probe.kind()},
+          {"sensor", false},
           {"marks", probe.mark_count()},
           {"signals", keys.of(sim::ObservableKind::probe, probe.name())}};
 }
 
-// Drawn and listed as probes are.
+// Drawn as probes are.
 Json sensor_json(const SignalKeys& keys, const sim::SensorModel& sensor) {
   const constraint::Probe* probe = sensor.source->probe();
   return {{"name", sensor.name},
           {"kind", sensor.kind},
+          {"sensor", true},
           {"marks", probe != nullptr ? probe->mark_count() : 0},
           {"signals", keys.of(sim::ObservableKind::sensor, sensor.name)}};
 }
@@ -403,6 +406,21 @@ const std::vector<FieldInfo>& list_fields() {
     return all;
   }();
   return list;
+}
+
+std::vector<double> fields_at(const mechanics::Body& body, const sim::Simulation& simulation,
+                              NodeId node) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const Points moved = body.positions().row(node) - body.model().mesh().nodes.row(node);
+  std::vector<double> values = {moved.norm()};
+  if (const auto* own = mechanics::as<const fem::HasMaterial>(body)) {
+    std::ranges::copy(fem::node_fields(*own, node), std::back_inserter(values));
+    const std::vector<double> forces =
+        fem::row_force_field(*own, sim::split_efforts(simulation).actuation);
+    values.push_back(forces[static_cast<std::size_t>(node)]);
+  }
+  values.resize(list_fields().size(), kNone);
+  return values;
 }
 
 DisplaySurface surface_of(const mesh::Mesh& mesh) {

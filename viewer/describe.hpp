@@ -32,6 +32,10 @@ struct FieldInfo {
 const std::vector<FieldInfo>& list_fields();
 /// Which of list_fields() are wanted.
 using FieldChoice = std::vector<bool>;
+/// (fields,) values of list_fields() at a node, from the elements round it alone; NaN where the
+/// body has no such field. @param body,simulation one of its bodies. @param node of its mesh.
+std::vector<double> fields_at(const mechanics::Body& body, const sim::Simulation& simulation,
+                              NodeId node);
 
 /// Whether the numbers of an observable are among Frame::signals. Signals have the order of the
 /// list.

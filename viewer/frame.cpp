@@ -1,5 +1,6 @@
 #include "frame.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <limits>
@@ -26,7 +27,9 @@ enum class Section : std::uint16_t {
   pull,
   probes,
   contacts,
-  joints
+  joints,
+  pick,
+  timeline
 };
 
 /// Appends numbers to bytes.
@@ -74,6 +77,25 @@ void put_bodies(const Frame& frame, const FrameChoice& choice, Writer& writer) {
     writer.put(static_cast<std::uint32_t>(choice.field));
     writer.put(std::span<const float>(field));
   }
+}
+
+void put_pick(const Frame& frame, const SurfaceVertex& wanted, Writer& writer) {
+  const auto pick = std::ranges::find(frame.picks, wanted, &PickFrame::at);
+  if (pick == frame.picks.end()) return;
+  writer.section(Section::pick, 0, 3 * sizeof(std::uint32_t) + pick->fields.size() * sizeof(float));
+  writer.put(static_cast<std::uint32_t>(wanted.body));
+  writer.put(static_cast<std::uint32_t>(wanted.vertex));
+  writer.put(static_cast<std::uint32_t>(pick->node));
+  writer.put(std::span<const float>(pick->fields));
+}
+
+void put_timeline(const TimelineFrame& timeline, Writer& writer) {
+  writer.section(Section::timeline, 0, 3 * sizeof(std::uint32_t) + 2 * sizeof(float));
+  for (const std::int64_t number : {timeline.oldest, timeline.latest, timeline.shown}) {
+    writer.put(static_cast<std::uint32_t>(number));
+  }
+  writer.put(static_cast<float>(timeline.oldest_time));
+  writer.put(static_cast<float>(timeline.latest_time));
 }
 
 }  // namespace
@@ -127,6 +149,8 @@ void encode_frame(const Frame& frame, const FrameChoice& choice, std::vector<std
     values.push_back(single(frame.pull->force));
     writer.section(Section::pull, 0, values);
   }
+  if (choice.pick) put_pick(frame, *choice.pick, writer);
+  if (frame.timeline) put_timeline(*frame.timeline, writer);
 }
 
 }  // namespace sinew::viewer

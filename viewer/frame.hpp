@@ -3,6 +3,7 @@
 /// docs/view_protocol.md.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -57,6 +58,26 @@ struct PullFrame {
   double force = 0.0;                ///< N
 };
 
+/// A vertex of a body's surface.
+struct SurfaceVertex {
+  int body = 0, vertex = 0;  ///< positions in Description::surfaces and in Surface::nodes
+  auto operator<=>(const SurfaceVertex&) const = default;
+};
+
+/// What was asked of a node.
+struct PickFrame {
+  SurfaceVertex at;
+  NodeId node = 0;            ///< of the mesh
+  std::vector<float> fields;  ///< (fields,) there; NaN where the body has no such field
+};
+
+/// The moments that a run can go back to; see Timeline.
+struct TimelineFrame {
+  std::int64_t oldest = 0, latest = 0;          ///< numbers of moments
+  std::int64_t shown = 0;                       ///< latest: the present
+  double oldest_time = 0.0, latest_time = 0.0;  ///< s
+};
+
 /// One moment of a robot. Immutable once published.
 struct Frame {
   std::uint64_t step = 0;
@@ -75,6 +96,8 @@ struct Frame {
   std::vector<std::vector<float>> contacts;
   std::vector<float> joints;  ///< (12 joints,), see joint_marks()
   std::optional<PullFrame> pull;
+  std::vector<PickFrame> picks;           ///< those that connections asked for
+  std::optional<TimelineFrame> timeline;  ///< none where a run cannot go back
 };
 
 /// Bytes of a surface: message kind 1. Throws Error(size-limit) beyond 2^32 bytes.
@@ -89,6 +112,7 @@ struct FrameChoice {
   std::uint32_t sequence = 0;  ///< counts the frames sent to this connection
   bool shape = true;           ///< false: positions have not changed since the last frame sent
   int field = -1;              ///< in Description::fields; -1: none
+  std::optional<SurfaceVertex> pick;
 };
 
 /// Bytes of a frame: message kind 2.

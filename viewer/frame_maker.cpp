@@ -140,7 +140,17 @@ void FrameMaker::fill_contacts(Frame& frame) {
   }
 }
 
-std::shared_ptr<Frame> FrameMaker::make(const FieldChoice& wanted) {
+PickFrame FrameMaker::picked(const SurfaceVertex& at) const {
+  const Surface& surface = description_.surfaces[static_cast<std::size_t>(at.body)];
+  PickFrame pick{at, surface.nodes[static_cast<std::size_t>(at.vertex)], {}};
+  for (const double value : fields_at(simulation_.body(at.body), simulation_, pick.node)) {
+    pick.fields.push_back(static_cast<float>(value));
+  }
+  return pick;
+}
+
+std::shared_ptr<Frame> FrameMaker::make(const FieldChoice& wanted,
+                                        const std::vector<SurfaceVertex>& picks) {
   observables_.refresh();
   auto frame = std::make_shared<Frame>();
   frame->step = static_cast<std::uint64_t>(simulation_.steps());
@@ -152,6 +162,7 @@ std::shared_ptr<Frame> FrameMaker::make(const FieldChoice& wanted) {
   fill_points(*frame);
   fill_contacts(*frame);
   frame->joints = joint_marks(simulation_);
+  for (const SurfaceVertex& at : picks) frame->picks.push_back(picked(at));
   return frame;
 }
 

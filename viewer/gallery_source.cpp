@@ -16,14 +16,17 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-// "# A soft trunk ...": what a scene says of itself in its first line.
-std::string first_comment(const fs::path& path) {
+// "# A soft trunk ...": what a scene says of itself in the first sentence of its first comment,
+// which may go on over several lines.
+std::string first_sentence(const fs::path& path) {
   std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  if (!line.starts_with("#")) return {};
-  line.erase(0, line.find_first_not_of("# "));
-  return line;
+  std::string text;
+  for (std::string line; std::getline(file, line) && line.starts_with("#");) {
+    const std::size_t begin = line.find_first_not_of("# ");
+    if (begin == std::string::npos) break;
+    text += (text.empty() ? "" : " ") + line.substr(begin);
+  }
+  return text.substr(0, text.find(". ") == std::string::npos ? text.size() : text.find(". ") + 1);
 }
 
 std::string read_all(const fs::path& path) {
@@ -36,7 +39,9 @@ std::unique_ptr<Source> open_example(const fs::path& path, const std::vector<Exa
   LiveSettings settings;
   settings.gallery = [examples] { return std::make_unique<GallerySource>(examples); };
   if (const auto* first = robot.first_controller()) settings.controller = first->name;
-  return std::make_unique<LiveSource>(std::move(robot), settings);
+  auto source = std::make_unique<LiveSource>(std::move(robot), settings);
+  source->await_page();
+  return source;
 }
 
 }  // namespace
@@ -50,7 +55,7 @@ std::vector<Example> find_examples(const fs::path& folder) {
     example.scene = entry.path();
     example.thumbnail = fs::path(entry.path()).replace_extension(".png");
     example.name = fs::relative(entry.path(), folder).replace_extension().generic_string();
-    example.title = first_comment(entry.path());
+    example.title = first_sentence(entry.path());
     result.push_back(std::move(example));
   }
   std::ranges::sort(result, {}, &Example::name);
@@ -105,7 +110,8 @@ void GallerySource::submit(const Request& request, std::function<void(Outcome)> 
       const fs::path path = find(open->name).scene;
       publisher_->replace([path, examples = examples_] { return open_example(path, examples); });
     } else if (!std::holds_alternative<Release>(request) &&
-               !std::holds_alternative<ChooseField>(request)) {
+               !std::holds_alternative<ChooseField>(request) &&
+               !std::holds_alternative<Pick>(request) && !std::holds_alternative<Ready>(request)) {
       throw Error(ErrorKind::not_in_this_version, {}, "the gallery cannot do this",
                   "open an example first");
     }

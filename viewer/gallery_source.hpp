@@ -13,7 +13,7 @@ namespace sinew::viewer {
 /// A scene that the gallery offers.
 struct Example {
   std::string name;   ///< "trunk/circle": folder and file without extension
-  std::string title;  ///< the scene's first comment
+  std::string title;  ///< the first sentence of the scene's first comment
   std::filesystem::path scene, thumbnail;
 };
 

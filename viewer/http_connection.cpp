@@ -104,9 +104,13 @@ void HttpConnection::answer_asset(std::string_view path) {
   Response response(http::status::ok, parser_->get().version());
   response.set(http::field::content_type,
                beast::string_view(asset->content_type.data(), asset->content_type.size()));
-  response.set(http::field::content_encoding, "gzip");
+  const bool packed = accepts_gzip(text(parser_->get()[http::field::accept_encoding]));
+  if (packed) response.set(http::field::content_encoding, "gzip");
+  response.set(http::field::vary, "Accept-Encoding");
   response.set(http::field::cache_control, "no-cache");
-  if (parser_->get().method() == http::verb::get) response.body() = std::string(asset->bytes);
+  if (parser_->get().method() == http::verb::get) {
+    response.body() = packed ? std::string(asset->bytes) : unpack(*asset);
+  }
   send(std::move(response));
 }
 

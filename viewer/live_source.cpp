@@ -44,9 +44,32 @@ bool LiveSource::complete(void (RobotState::*work)()) {
 }
 
 bool LiveSource::advance() {
+  timeline_.go_on();
   if (!complete(&RobotState::step) || state_.stopped()) return false;
+  if (timeline_.due(time())) timeline_.keep(state_.moment());
   record();
   return true;
+}
+
+std::shared_ptr<const Frame> LiveSource::frame(const FieldChoice& wanted, double real_time_factor,
+                                               const std::vector<SurfaceVertex>& picks) {
+  std::shared_ptr<Frame> frame = state_.frame(wanted, real_time_factor, picks);
+  if (!timeline_.empty()) frame->timeline = timeline_.describe(time());
+  return frame;
+}
+
+// The present becomes the latest moment, so that one can return to it.
+void LiveSource::go_back(std::int64_t number) {
+  if (timeline_.empty()) {
+    throw Error(ErrorKind::not_in_this_version, {}, "a script steps this robot",
+                "load a saved state in the script");
+  }
+  if (!timeline_.in_past()) timeline_.keep(state_.moment());
+  const Moment& moment = timeline_.go_back(number);
+  record(false);
+  pause();
+  state_.go_back(moment);
+  restart_clock();
 }
 
 void LiveSource::require_ready() const {
@@ -103,12 +126,17 @@ void LiveSource::handle(const Request& request) {
   if (std::holds_alternative<Reset>(request)) {
     record(false);
     state_.reset();
+    timeline_.clear();
+    timeline_.keep(state_.moment());
     restart_clock();
   } else if (std::holds_alternative<Settle>(request)) {
     if (!complete(&RobotState::settle)) {
       throw Error(ErrorKind::not_converged, {}, "the view ended before an equilibrium was found",
                   "open it again");
     }
+    timeline_.keep(state_.moment());
+  } else if (const auto* seek = std::get_if<Seek>(&request)) {
+    go_back(seek->frame);
   } else if (const auto* command = std::get_if<SetCommand>(&request)) {
     state_.command(*command);
   } else if (const auto* controller = std::get_if<ChooseController>(&request)) {

@@ -14,6 +14,7 @@
 #include "recording.hpp"
 #include "robot_state.hpp"
 #include "source_thread.hpp"
+#include "timeline.hpp"
 
 namespace sinew::viewer {
 
@@ -53,9 +54,9 @@ class LiveSource : public SourceThread {
   bool advance() override;
   void handle(const Request& request) override;
   void require_ready() const override;
-  std::shared_ptr<const Frame> frame(const FieldChoice& wanted, double real_time_factor) override {
-    return state_.frame(wanted, real_time_factor);
-  }
+  void begin() override { timeline_.keep(state_.moment()); }
+  std::shared_ptr<const Frame> frame(const FieldChoice& wanted, double real_time_factor,
+                                     const std::vector<SurfaceVertex>& picks) override;
   std::string status_members() const override;
 
   RobotState& state() { return state_; }
@@ -67,8 +68,10 @@ class LiveSource : public SourceThread {
   /// state is then that before it.
   bool complete(void (RobotState::*work)());
   void record(bool on);
+  void go_back(std::int64_t number);
 
   RobotState state_;
+  Timeline timeline_;  ///< empty where a script steps
   Description description_;
   std::function<std::unique_ptr<Source>()> gallery_;
   std::shared_ptr<Recording> recording_;  ///< under way, or ended

@@ -22,7 +22,7 @@ using Json = nlohmann::json;
 constexpr int kDeepest = 2;  // an object of numbers, texts and lists
 constexpr std::size_t kLongestName = 256;
 constexpr double kFarthest = 1e4;  // m or rad; of anything that a browser names
-constexpr double kLargestId = 9007199254740992.0;
+constexpr double kLargestId = 9007199254740992.0, kLargestIndex = 2147483647.0;
 
 [[noreturn]] void fail(ErrorKind kind, const std::string& item, const std::string& message,
                        const std::string& remedy = "see docs/view_protocol.md") {
@@ -153,7 +153,7 @@ class Fields {
 Pull read_pull(Fields& fields) {
   Pull pull;
   pull.body = fields.text("body");
-  const Vector3 vertices = fields.vector("vertices", 2147483647.0);
+  const Vector3 vertices = fields.vector("vertices", kLargestIndex);
   for (int k = 0; k < 3; ++k) {
     if (vertices[k] < 0 || vertices[k] != std::floor(vertices[k])) {
       fail(ErrorKind::wrong_type, "vertices", "these are no vertex numbers");
@@ -167,6 +167,13 @@ Pull read_pull(Fields& fields) {
   pull.anchor = fields.vector("anchor");
   pull.stiffness = fields.number("stiffness", 1e-9, 1e9);
   return pull;
+}
+
+Pick read_pick(Fields& fields) {
+  const std::optional<std::string> body = fields.text_or_null("body");
+  const auto vertex = static_cast<int>(fields.whole("vertex", 0, kLargestIndex));
+  if (!body) return {};
+  return {PickedVertex{*body, vertex}};
 }
 
 SetCommand read_command(Fields& fields) {
@@ -213,6 +220,8 @@ Request read_request(const std::string& type, Fields& fields) {
   if (type == "open") return Open{fields.text("name")};
   if (type == "gallery") return ShowGallery{};
   if (type == "field") return ChooseField{fields.text_or_null("name")};
+  if (type == "pick") return read_pick(fields);
+  if (type == "ready") return Ready{static_cast<int>(fields.whole("generation", 0, 65535))};
   if (type == "drive") return DriveRequest{fields.truth("on")};
   if (type == "ping") return Ping{};
   fail(ErrorKind::unknown_choice, "type", fmt::format("there is no message '{}'", type));

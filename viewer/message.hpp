@@ -63,11 +63,25 @@ struct Pull {
   double stiffness = 0.0;             ///< N/m, > 0
 };
 struct Release {};
+/// The page has drawn its first frame of a robot: what waits for it may begin.
+struct Ready {
+  int generation = 0;  ///< of the robot that it shows, as in the scene message
+};
+/// A vertex of a body's surface.
+struct PickedVertex {
+  std::string body;
+  int vertex = 0;
+};
+/// The node whose values this connection wants with every frame. None: no more.
+struct Pick {
+  std::optional<PickedVertex> vertex;
+};
 /// Begins a recording anew, or ends it.
 struct Record {
   bool on = false;
 };
-/// Replay: shows a frame.
+/// Replay: shows a frame. Live: goes back to a moment of the timeline, which the run then goes on
+/// from.
 struct Seek {
   std::int64_t frame = 0;
 };
@@ -89,7 +103,7 @@ struct Ping {};
 
 using Request = std::variant<Hello, Play, Pause, Step, Reset, Settle, Speed, SetCommand,
                              ChooseController, SetTarget, Pull, Release, Record, Seek, Open,
-                             ShowGallery, ChooseField, DriveRequest, Ping>;
+                             ShowGallery, ChooseField, Pick, Ready, DriveRequest, Ping>;
 
 /// A request and the number by which its reply is told from others.
 struct Message {

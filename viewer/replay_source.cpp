@@ -146,9 +146,9 @@ void ReplaySource::show() {
   state_.show(recorded);
 }
 
-std::shared_ptr<const Frame> ReplaySource::frame(const FieldChoice& wanted,
-                                                 double real_time_factor) {
-  return state_.frame(wanted, real_time_factor);
+std::shared_ptr<const Frame> ReplaySource::frame(const FieldChoice& wanted, double real_time_factor,
+                                                 const std::vector<SurfaceVertex>& picks) {
+  return state_.frame(wanted, real_time_factor, picks);
 }
 
 std::string ReplaySource::status_members() const {

@@ -114,9 +114,11 @@ void RobotState::command(const SetCommand& command) {
                 "stay within the limits of the scene");
   }
   simulation_->command(index, {*kind, sim::Signal::constant(command.value)});
+  acting_.reset();
 }
 
 void RobotState::detach() {
+  acting_.reset();
   controller_ = nullptr;
   own_.reset();
   controller_name_.clear();
@@ -141,6 +143,7 @@ void RobotState::choose_controller(const std::optional<std::string>& name) {
 }
 
 void RobotState::set_target(const SetTarget& target) {
+  acting_.reset();
   const int effector = simulation_->model().effector_index(target.effector);
   if (!target.position) {
     targets_.erase(target.effector);
@@ -202,9 +205,35 @@ void RobotState::release() {
   pulled_.reset();
 }
 
-std::shared_ptr<const Frame> RobotState::frame(const FieldChoice& wanted, double real_time_factor) {
+std::shared_ptr<const Acting> RobotState::acting() {
+  if (acting_) return acting_;
+  Acting now{simulation_->inputs(), controller_name_, {}, targets_};
+  for (sim::BodyInputs& body : now.inputs.bodies) body.tether.reset();
+  if (own_) now.settings = own_->settings();
+  return acting_ = std::make_shared<const Acting>(std::move(now));
+}
+
+Moment RobotState::moment() { return {simulation_->state(), acting(), simulation_->time()}; }
+
+void RobotState::go_back(const Moment& moment) {
+  release();
+  const std::shared_ptr<const Acting> then = moment.acting;
+  if (then != acting_) {
+    detach();
+    simulation_->set_inputs(then->inputs);
+    if (then->settings) attach(then->controller, *then->settings);
+    targets_ = then->targets;
+    acting_ = then;
+  }
+  simulation_->restore(moment.state);
+  stopped_.reset();
+  ++shape_;
+}
+
+std::shared_ptr<Frame> RobotState::frame(const FieldChoice& wanted, double real_time_factor,
+                                         const std::vector<SurfaceVertex>& picks) {
   real_time_factor_ = real_time_factor;
-  std::shared_ptr<Frame> frame = frames_.make(wanted);
+  std::shared_ptr<Frame> frame = frames_.make(wanted, picks);
   frame->shape = shape_;
   if (pulled_) {
     const auto& body = *mechanics::as<mechanics::TakesForces>(simulation_->body(*pulled_));

@@ -22,6 +22,7 @@
 #include "frame_maker.hpp"
 #include "message.hpp"
 #include "playback.hpp"
+#include "timeline.hpp"
 
 namespace sinew::viewer {
 
@@ -74,10 +75,17 @@ class RobotState {
   void show(const RecordedState& recorded);
   void pull(const Pull& pull);
   void release();
+  /// The present moment, to come back to.
+  Moment moment();
+  /// Back to a moment: its state, commands, controller and targets, after which the run goes on bit
+  /// for bit as it did. The hand lets go.
+  void go_back(const Moment& moment);
 
   /// Everything that is to be seen now.
-  /// @param wanted which fields are. @param real_time_factor is among the signals.
-  std::shared_ptr<const Frame> frame(const FieldChoice& wanted, double real_time_factor);
+  /// @param wanted which fields are. @param real_time_factor is among the signals; NaN: none.
+  /// @param picks nodes whose values are.
+  std::shared_ptr<Frame> frame(const FieldChoice& wanted, double real_time_factor,
+                               const std::vector<SurfaceVertex>& picks = {});
   /// JSON of the status message without what the source itself knows: controller, commands,
   /// targets, troubles, stopped.
   std::string status_members() const;
@@ -85,6 +93,7 @@ class RobotState {
  private:
   void attach(const std::string& name, const inverse::InverseSettings& settings);
   void detach();
+  std::shared_ptr<const Acting> acting();
   int task_of(int effector) const { return inverse::task_of(controller_, effector); }
   sim::Observables list_observables();
 
@@ -101,7 +110,8 @@ class RobotState {
   std::optional<scene::SceneController> first_;
   bool observing_ = false;
   std::map<std::string, Vector3> targets_;
-  std::optional<int> pulled_;  ///< body
+  std::optional<int> pulled_;             ///< body
+  std::shared_ptr<const Acting> acting_;  ///< null: changed since it was last asked for
   std::optional<StoppedRun> stopped_;
   std::uint64_t shape_ = 0;
 };

@@ -1,9 +1,11 @@
 #include "server.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <map>
 #include <mutex>
 #include <random>
+#include <set>
 #include <thread>
 
 #include <boost/asio/io_context.hpp>
@@ -122,6 +124,12 @@ class Server::Hub final : public Publisher,
   bool wants_field(int field) const override {
     return field >= 0 && field < kMaxFields && wishes_[static_cast<std::size_t>(field)] > 0;
   }
+  std::vector<SurfaceVertex> picks() const override {
+    const std::lock_guard lock(mutex_);
+    std::set<SurfaceVertex> wanted;
+    for (const auto& [number, pick] : picks_) wanted.insert(pick);
+    return {wanted.begin(), wanted.end()};
+  }
   void replace(std::function<std::unique_ptr<Source>()> next) override {
     asio::post(*io_, [self = weak_from_this(), next = std::move(next)] {
       if (auto hub = self.lock()) hub->change_source(next);
@@ -145,6 +153,7 @@ class Server::Hub final : public Publisher,
   }
   void lose(ViewConnection& view) override {
     wish(view.field(), -1);
+    choose_pick(view, {});
     const bool drove = driver_ == view.number();
     views_.erase(view.number());
     if (drove) {
@@ -195,6 +204,7 @@ class Server::Hub final : public Publisher,
   void tell_status();
   void change_source(const std::function<std::unique_ptr<Source>()>& next);
   void choose_field(ViewConnection& view, const std::optional<std::string>& name);
+  void choose_pick(ViewConnection& view, const Pick& pick);
   void wish(int field, int change) {
     if (field >= 0 && field < kMaxFields) wishes_[static_cast<std::size_t>(field)] += change;
   }
@@ -221,6 +231,7 @@ class Server::Hub final : public Publisher,
   mutable std::mutex mutex_;  // of what follows
   std::shared_ptr<const Frame> latest_;
   std::string status_ = "{}";
+  std::map<int, SurfaceVertex> picks_;  ///< by the connections' numbers
   bool delivery_posted_ = false;
 };
 
@@ -334,10 +345,12 @@ void Server::Hub::change_source(const std::function<std::unique_ptr<Source>()>& 
     const std::lock_guard lock(mutex_);
     latest_.reset();
     status_ = "{}";
+    picks_.clear();
   }
   for (const auto& [number, view] : std::map(views_)) {
     view->forget_frames();
     view->choose_field(-1);
+    view->choose_pick({});
     if (view->greeted()) introduce(*view);
   }
   source_->start(*this);
@@ -360,6 +373,29 @@ void Server::Hub::choose_field(ViewConnection& view, const std::optional<std::st
   view.choose_field(chosen);
 }
 
+void Server::Hub::choose_pick(ViewConnection& view, const Pick& pick) {
+  std::optional<SurfaceVertex> chosen;
+  if (pick.vertex) {
+    const std::vector<Surface>& surfaces = source_->description().surfaces;
+    const auto found = std::ranges::find(surfaces, pick.vertex->body, &Surface::body);
+    if (found == surfaces.end()) {
+      throw Error(ErrorKind::unknown_name, {.item = "body"},
+                  fmt::format("there is no body '{}'", pick.vertex->body),
+                  "name one of the scene's bodies");
+    }
+    if (static_cast<std::size_t>(pick.vertex->vertex) >= found->nodes.size()) {
+      throw Error(ErrorKind::index_out_of_range, {.item = "vertex"},
+                  fmt::format("vertex {} of {}", pick.vertex->vertex, found->nodes.size()),
+                  "name a vertex of the surface");
+    }
+    chosen = SurfaceVertex{static_cast<int>(found - surfaces.begin()), pick.vertex->vertex};
+  }
+  view.choose_pick(chosen);
+  const std::lock_guard lock(mutex_);
+  picks_.erase(view.number());
+  if (chosen) picks_.emplace(view.number(), *chosen);
+}
+
 void Server::Hub::receive(ViewConnection& view, const Message& message) {
   const auto answer = [&view, &message](const Outcome& outcome) {
     if (message.id) view.send(reply(message.id, outcome));
@@ -368,6 +404,15 @@ void Server::Hub::receive(ViewConnection& view, const Message& message) {
     if (const auto* field = std::get_if<ChooseField>(&message.request)) {
       choose_field(view, field->name);
       source_->submit(message.request, [](const Outcome&) {});  // a robot at rest is shown anew
+      return answer({});
+    }
+    if (const auto* pick = std::get_if<Pick>(&message.request)) {
+      choose_pick(view, *pick);
+      source_->submit(message.request, [](const Outcome&) {});
+      return answer({});
+    }
+    if (const auto* ready = std::get_if<Ready>(&message.request)) {
+      if (ready->generation == generation_) source_->submit(*ready, [](const Outcome&) {});
       return answer({});
     }
     if (std::holds_alternative<Ping>(message.request)) return answer({});

@@ -27,6 +27,8 @@ class Publisher {
   virtual void publish_status(std::string status) = 0;
   /// Whether any connection wants this field of Description::fields now.
   virtual bool wants_field(int field) const = 0;
+  /// The nodes whose values some connection wants now; none twice.
+  virtual std::vector<SurfaceVertex> picks() const { return {}; }
   /// The source asks to be replaced (the gallery, when an example was chosen).
   /// @param next makes the new source; called on a thread of the server's. What it throws is told
   ///   to the connection that asked, and the old source goes on.

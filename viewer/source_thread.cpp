@@ -1,6 +1,7 @@
 #include "source_thread.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,8 +14,6 @@ using Seconds = std::chrono::duration<double>;
 constexpr Seconds kFrameTime{1.0 / 60.0};
 /// A run that is this far behind the clock lets the clock go.
 constexpr Seconds kLargestLag{0.1};
-/// The real-time factor is measured over at least this long.
-constexpr Seconds kFactorTime{0.5};
 constexpr double kSlow = 0.9;
 
 std::chrono::steady_clock::duration ticks(Seconds seconds) {
@@ -62,11 +61,15 @@ void SourceThread::fetch(std::string_view name, std::function<void(std::optional
   enqueue([this, name = std::string(name), done = std::move(done)] { done(download(name)); });
 }
 
-void SourceThread::restart_clock() {
+void SourceThread::align_clock() {
   clock_start_ = Clock::now();
   time_start_ = time();
-  factor_start_ = clock_start_;
-  factor_time_ = time_start_;
+}
+
+void SourceThread::restart_clock() {
+  align_clock();
+  factor_.restart();
+  factor_.add(clock_start_, time_start_);
 }
 
 void SourceThread::run() {
@@ -77,10 +80,10 @@ void SourceThread::run() {
     std::deque<Item> items;
     {
       std::unique_lock lock(mutex_);
-      const bool free_running = playing_ && speed_ == 0.0;
+      const bool free_running = runs() && speed_ == 0.0;
       if (!free_running && queue_.empty() && !stopping_ && !dirty_) {
         const auto called = [&] { return stopping_ || !queue_.empty(); };
-        if (playing_) {
+        if (runs()) {
           const double next = time() + time_step() - time_start_;
           wake_.wait_until(lock, clock_start_ + ticks(Seconds(next / speed_)), called);
         } else {
@@ -91,7 +94,7 @@ void SourceThread::run() {
       items.swap(queue_);
     }
     for (const Item& item : items) item.work();
-    if (playing_) catch_up();
+    if (runs()) catch_up();
     measure_factor();
     if (!dirty_) continue;
     if (!playing_ || Clock::now() >= frame_due_) {
@@ -117,7 +120,7 @@ void SourceThread::catch_up() {
       const double due = time_start_ + speed_ * Seconds(Clock::now() - clock_start_).count();
       const double next = time() + time_step();
       if (next > due + 1e-9) break;
-      if (Seconds((due - next) / speed_) > kLargestLag) restart_clock();
+      if (Seconds((due - next) / speed_) > kLargestLag) align_clock();
     }
     if (!advance()) playing_ = false;
     dirty_ = true;
@@ -126,16 +129,11 @@ void SourceThread::catch_up() {
 }
 
 void SourceThread::measure_factor() {
-  if (!playing_) {
-    factor_ = 0.0;
-    return;
+  if (runs()) {
+    factor_.add(Clock::now(), time());
+  } else {
+    factor_.restart();
   }
-  const auto now = Clock::now();
-  const Seconds since = now - factor_start_;
-  if (since < kFactorTime) return;
-  factor_ = (time() - factor_time_) / since.count();
-  factor_start_ = now;
-  factor_time_ = time();
 }
 
 void SourceThread::carry_out(const Request& request, const std::function<void(Outcome)>& done) {
@@ -155,7 +153,10 @@ void SourceThread::do_request(const Request& request) {
   if (std::holds_alternative<Play>(request)) {
     require_ready();
     playing_ = true;
+    awaits_page_ = false;
     restart_clock();
+  } else if (std::holds_alternative<Ready>(request)) {
+    if (std::exchange(awaits_page_, false)) restart_clock();
   } else if (std::holds_alternative<Pause>(request)) {
     playing_ = false;
   } else if (const auto* step = std::get_if<Step>(&request)) {
@@ -169,7 +170,8 @@ void SourceThread::do_request(const Request& request) {
   } else if (const auto* speed = std::get_if<Speed>(&request)) {
     speed_ = speed->factor;
     restart_clock();
-  } else if (!std::holds_alternative<ChooseField>(request)) {  // which wants_field() tells
+  } else if (!std::holds_alternative<ChooseField>(request) &&
+             !std::holds_alternative<Pick>(request)) {  // which the publisher tells
     handle(request);
   }
 }
@@ -179,7 +181,8 @@ void SourceThread::publish() {
   for (std::size_t f = 0; f < wanted.size(); ++f) {
     wanted[f] = publisher_->wants_field(static_cast<int>(f));
   }
-  const bool slow = playing_ && speed_ > 0.0 && factor_ > 0.0 && factor_ < kSlow * speed_;
+  const double factor = factor_.value();
+  const bool slow = playing_ && speed_ > 0.0 && factor < kSlow * speed_;
   std::string status = fmt::format(R"({{"playing":{},"speed":{},"slow":{},{})", playing_, speed_,
                                    slow, status_members().substr(1));
   // The status first: whoever has a frame has the status that goes with it.
@@ -187,7 +190,7 @@ void SourceThread::publish() {
     last_status_ = status;
     publisher_->publish_status(std::move(status));
   }
-  publisher_->publish(frame(wanted, factor_));
+  publisher_->publish(frame(wanted, factor, publisher_->picks()));
   // Sixty a second on average, however late one of them is.
   frame_due_ = std::max(frame_due_, Clock::now() - ticks(kFrameTime)) + ticks(kFrameTime);
   dirty_ = false;

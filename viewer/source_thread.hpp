@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "describe.hpp"
+#include "real_time_factor.hpp"
 #include "source.hpp"
 
 namespace sinew::viewer {
@@ -23,6 +24,9 @@ class SourceThread : public Source {
   void start(Publisher& publisher) override;
   void stop() override;
   void submit(const Request& request, std::function<void(Outcome)> done) override;
+  /// Does not play until a page has drawn its first frame, so that it sees the run from its start,
+  /// or until it is asked to. Before start().
+  void await_page() { awaits_page_ = true; }
   void fetch(std::string_view name, std::function<void(std::optional<Download>)> done) override;
 
  protected:
@@ -39,8 +43,9 @@ class SourceThread : public Source {
   virtual void handle(const Request& request) = 0;
   /// Throws Error when play and step are refused.
   virtual void require_ready() const {}
-  virtual std::shared_ptr<const Frame> frame(const FieldChoice& wanted,
-                                             double real_time_factor) = 0;
+  /// @param real_time_factor NaN: not measured. @param picks nodes whose values are wanted.
+  virtual std::shared_ptr<const Frame> frame(const FieldChoice& wanted, double real_time_factor,
+                                             const std::vector<SurfaceVertex>& picks) = 0;
   /// JSON object of the status message without playing, speed and slow.
   virtual std::string status_members() const = 0;
   /// "run.csv" and the like; none unless overridden.
@@ -66,6 +71,8 @@ class SourceThread : public Source {
   void do_request(const Request& request);
   void catch_up();
   void measure_factor();
+  void align_clock();
+  bool runs() const { return playing_ && !awaits_page_; }
   void publish();
   bool asked();
   void enqueue(std::function<void()> work);
@@ -81,9 +88,10 @@ class SourceThread : public Source {
   bool playing_;
   double speed_;
   bool dirty_ = true;  ///< something has changed since the last frame
-  Clock::time_point clock_start_, factor_start_, frame_due_;
-  double time_start_ = 0.0, factor_time_ = 0.0;  ///< s, simulated
-  double factor_ = 0.0;
+  bool awaits_page_ = false;
+  Clock::time_point clock_start_, frame_due_;
+  double time_start_ = 0.0;  ///< s, simulated
+  RealTimeFactor factor_;
   std::string last_status_;
 };
 

@@ -9,6 +9,7 @@
 #include "sinew/inverse/target_controller.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::viewer {
@@ -30,7 +31,8 @@ Json trouble(const char* level, const char* kind, const std::string& subject,
   return {{"level", level}, {"kind", kind}, {"subject", subject}, {"text", text}};
 }
 
-void add_limits(const sim::ActuatorModel& model, const sim::ActuatorState& state, Json& list) {
+void add_limits(const sim::ActuatorModel& model, const sim::ActuatorState& state, double time,
+                Json& list) {
   const bool most = state.effort > 0.0 && at(state.effort, model.effort.max, 1e-3);
   if (most) {
     list.push_back(trouble("warning", "effort-limit", model.name,
@@ -45,7 +47,10 @@ void add_limits(const sim::ActuatorModel& model, const sim::ActuatorState& state
                            fmt::format("{} is at its limit, {:.3g} {}", model.words().motion.name,
                                        state.motion, model.words().motion.unit)));
   }
-  if (state.slack) list.push_back(trouble("info", "slack", model.name, "the cable is slack"));
+  // A cable that nobody pulls, and the antagonist of one that is pulled, may well be slack.
+  if (state.slack && state.command.signal.value(time) != 0.0) {
+    list.push_back(trouble("info", "slack", model.name, "the cable is slack"));
+  }
 }
 
 void add_controller(const inverse::TargetController& controller, const std::string& name,
@@ -92,7 +97,7 @@ nlohmann::json list_troubles(const sim::Simulation& simulation,
   Json troubles = Json::array();
   const auto& actuators = simulation.model().actuators();
   for (std::size_t i = 0; i < actuators.size(); ++i) {
-    add_limits(actuators[i], simulation.actuator(static_cast<int>(i)), troubles);
+    add_limits(actuators[i], simulation.actuator(static_cast<int>(i)), simulation.time(), troubles);
   }
   if (controller != nullptr) add_controller(*controller, name, troubles);
   if (const sim::StepStatus step = simulation.report().status; sim::is_flagged(step)) {

@@ -142,7 +142,7 @@ void ViewConnection::pump() {
     last_frame_ = std::move(frame_);
     frame_.reset();
     const FrameChoice choice{owner_->generation(), ++sequence_, last_frame_->shape != last_shape_,
-                             field_};
+                             field_, pick_};
     last_shape_ = last_frame_->shape;
     encode_frame(*last_frame_, choice, bytes_);
     socket_.binary(true);

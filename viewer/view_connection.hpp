@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -60,6 +61,7 @@ class ViewConnection : public std::enable_shared_from_this<ViewConnection> {
   bool greeted() const { return greeted_; }
   int field() const { return field_; }
   void choose_field(int field);
+  void choose_pick(const std::optional<SurfaceVertex>& pick) { pick_ = pick; }
   int pending = 0;  ///< requests not yet answered
 
  private:
@@ -87,6 +89,7 @@ class ViewConnection : public std::enable_shared_from_this<ViewConnection> {
   std::uint64_t last_shape_ = kNoShape;
   std::uint32_t sequence_ = 0;
   int field_ = -1;
+  std::optional<SurfaceVertex> pick_;
   bool open_ = false, writing_ = false, sending_frame_ = false, closing_ = false, greeted_ = false,
        lost_ = false;
   double allowance_;

@@ -61,11 +61,14 @@ std::unique_ptr<viewer::Source> source_of(const ViewOptions& options) {
       fmt::print(stderr, "sinew: remark: {}: this run was {}\n", options.scene.file.string(),
                  replay->lacks());
     }
+    replay->await_page();
     return replay;
   }
   const LoadedScene scene = load_scene(options.scene);
-  return std::make_unique<viewer::LiveSource>(
+  auto live = std::make_unique<viewer::LiveSource>(
       scene.robot, viewer::LiveSettings{scene.controller, !options.paused, options.speed, {}});
+  live->await_page();
+  return live;
 }
 
 int view(const ViewOptions& options) {

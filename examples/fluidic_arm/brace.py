@@ -65,7 +65,7 @@ def main():
         right.semilogy(run.times[shown] - run.disturbed_from, error[shown], label=label)
     right.set(xlabel="time since the disturbance began (s)", ylabel="tip from goal (mm)")
     right.legend(frameon=False)
-    figure.savefig(folder / "brace.png", dpi=100)
+    figure.savefig(folder / "bracing.png", dpi=100)
 
 
 if __name__ == "__main__":

@@ -145,6 +145,7 @@ void drive(const std::shared_ptr<Session>& session, const ViewOptions& options) 
     auto source = std::make_unique<viewer::LiveSource>(session->robot().robot,
                                                        simulation_of(session), first, settings);
     viewer::LiveSource* live = source.get();
+    if (options.open_browser) live->await_page();
     viewer::Server server(where, std::move(source));
     server.start();
     const auto notebook = py::module_::import("sinew.notebook");

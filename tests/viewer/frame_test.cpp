@@ -45,6 +45,7 @@ Frame sample() {
   frame.probes = {3, 2, 1};
   frame.contacts = {{}, {0, 0, 1, 0, 0, 0, 1, 1, 2, 3, 4, 5, 6, 2}};
   frame.joints = {1, 2, 3, 4, 5, 6, 0, 0, 1, 0, 0, 0};
+  frame.picks = {{{0, 4}, 9, {1.0F}}, {{0, 5}, 11, {2.0F, 3.0F}}};
   return frame;
 }
 
@@ -109,6 +110,30 @@ TEST(Frame, LeavesOutWhatHasNotChanged) {
   EXPECT_EQ(list[0].kind, 5);
   EXPECT_EQ(list[1].kind, 6);
   EXPECT_EQ(number<float>(bytes, list[1].at + 24), 0.5F);
+}
+
+TEST(Frame, HasTheNodeAndTheTimelineThatWereAskedFor) {
+  std::vector<std::byte> bytes;
+  Frame frame = sample();
+  frame.timeline = TimelineFrame{2, 40, 7, 0.5, 4.25};
+  encode_frame(frame, {.shape = false, .pick = SurfaceVertex{0, 5}}, bytes);
+  auto list = parts(bytes, 2);
+  ASSERT_EQ(list.size(), 3U);
+  EXPECT_EQ(list[1].kind, 9);
+  ASSERT_EQ(list[1].bytes, 20U);
+  EXPECT_EQ(number<std::uint32_t>(bytes, list[1].at), 0U);
+  EXPECT_EQ(number<std::uint32_t>(bytes, list[1].at + 4), 5U);
+  EXPECT_EQ(number<std::uint32_t>(bytes, list[1].at + 8), 11U);
+  EXPECT_EQ(number<float>(bytes, list[1].at + 16), 3.0F);
+  EXPECT_EQ(list[2].kind, 10);
+  ASSERT_EQ(list[2].bytes, 20U);
+  EXPECT_EQ(number<std::uint32_t>(bytes, list[2].at + 4), 40U);
+  EXPECT_EQ(number<std::uint32_t>(bytes, list[2].at + 8), 7U);
+  EXPECT_EQ(number<float>(bytes, list[2].at + 16), 4.25F);
+  encode_frame(frame, {.shape = false, .pick = SurfaceVertex{1, 5}}, bytes);
+  list = parts(bytes, 2);
+  ASSERT_EQ(list.size(), 2U) << "a node that no frame has";
+  EXPECT_EQ(list[1].kind, 10);
 }
 
 }  // namespace

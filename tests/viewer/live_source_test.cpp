@@ -123,6 +123,63 @@ TEST(LiveSource, ShowsFieldsAndProbesAsTheyAreMeasured) {
   EXPECT_EQ(frame->probes[3 * 5 + 2], static_cast<float>(state.simulation().effector_value(0).z()));
 }
 
+TEST(LiveSource, TellsTheValuesOfANode) {
+  const scene::Robot same = robot();
+  RobotState state(same);
+  state.command({"up", "tension", 2.0});
+  for (int k = 0; k < 5; ++k) state.step();
+  const Description& description = state.description();
+  const std::size_t fields = list_fields().size();
+  const auto count = static_cast<int>(description.surfaces[0].nodes.size());
+  std::vector<SurfaceVertex> picks;
+  for (int vertex = 0; vertex < count; vertex += 7) picks.push_back({0, vertex});
+  const auto frame = state.frame(FieldChoice(fields, true), 1.0, picks);
+  ASSERT_EQ(frame->picks.size(), picks.size());
+  for (const PickFrame& pick : frame->picks) {
+    const auto vertex = static_cast<std::size_t>(pick.at.vertex);
+    EXPECT_EQ(pick.node, description.surfaces[0].nodes[vertex]);
+    ASSERT_EQ(pick.fields.size(), fields);
+    for (std::size_t f = 0; f < fields; ++f) {
+      const float painted = frame->bodies[0].fields[f][vertex];
+      EXPECT_NEAR(pick.fields[f], painted, 1e-5F * std::abs(painted) + 1e-12F)
+          << description.fields[f];
+    }
+  }
+  EXPECT_GT(frame->picks[0].fields[1], 1.0F) << "stressed where it is held";
+}
+
+TEST(LiveSource, WaitsForAPageWhenToldTo) {
+  Watcher watcher;
+  LiveSource source(robot(), {.controller = "", .playing = true, .speed = 0.0, .gallery = {}});
+  source.await_page();
+  source.start(watcher);
+  std::this_thread::sleep_for(200ms);
+  EXPECT_EQ(watcher.frame()->step, 0U);
+  EXPECT_EQ(watcher.status()["playing"], true);
+  source.submit(Ready{}, [](const Outcome&) {});
+  for (int k = 0; k < 1000 && watcher.frame()->step == 0; ++k) std::this_thread::sleep_for(10ms);
+  EXPECT_GT(watcher.frame()->step, 0U);
+  source.stop();
+}
+
+TEST(LiveSource, TellsOfSlackInCablesThatAreCommanded) {
+  const scene::Robot same = robot();
+  RobotState state(same);
+  const auto slack = [&] {
+    const Json status = Json::parse(state.status_members());
+    return std::ranges::count_if(status["troubles"],
+                                 [](const Json& t) { return t["kind"] == "slack"; });
+  };
+  state.command({"push", "force", -0.5});
+  for (int k = 0; k < 5; ++k) state.step();
+  ASSERT_TRUE(state.simulation().actuator(0).slack);
+  EXPECT_EQ(slack(), 0) << "nobody pulls it";
+  state.command({"up", "displacement", -1e-3});
+  for (int k = 0; k < 5; ++k) state.step();
+  ASSERT_TRUE(state.simulation().actuator(0).slack);
+  EXPECT_EQ(slack(), 1);
+}
+
 TEST(LiveSource, ShowsSensorsBesideProbes) {
   std::string text = kScene;
   text.insert(text.find("controllers:"), R"(sensors:
@@ -134,6 +191,8 @@ TEST(LiveSource, ShowsSensorsBesideProbes) {
   const Description& description = state.description();
   const Json probes = Json::parse(description.scene)["probes"];
   ASSERT_EQ(probes.size(), 4u);
+  EXPECT_EQ(probes[1]["sensor"], false);
+  EXPECT_EQ(probes[2]["sensor"], true);
   EXPECT_EQ(probes[2]["kind"], "marker");
   EXPECT_EQ(probes[2]["marks"], 1);
   EXPECT_EQ(probes[2]["signals"].size(), 3u);
@@ -194,7 +253,7 @@ TEST(LiveSource, RefusesWithAReason) {
   EXPECT_EQ(kind(live.ask(SetTarget{"top", Vector3::Zero()})), "unknown-name");
   EXPECT_EQ(kind(live.ask(Pull{"beam", {0, 1, 999999}, Vector3(1, 0, 0), Vector3::Zero(), 1.0})),
             "index-out-of-range");
-  EXPECT_EQ(kind(live.ask(Seek{1})), "not-in-this-version");
+  EXPECT_EQ(kind(live.ask(Open{"trunk/trunk"})), "not-in-this-version");
   EXPECT_EQ(live.watcher.frame()->step, 0U);
 }
 

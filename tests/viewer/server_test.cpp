@@ -19,6 +19,8 @@
 
 #include "sinew/core/error.hpp"
 
+#include "viewer/assets.hpp"
+
 namespace sinew::viewer {
 namespace {
 
@@ -35,6 +37,8 @@ class FakeSource final : public Source {
   explicit FakeSource(std::size_t vertices = 30) {
     description_.scene = R"({"name": "fake"})";
     DisplaySurface surface;
+    surface.body = "ball";
+    surface.nodes.assign(vertices, 0);
     surface.rest.assign(3 * vertices, 0.5F);
     surface.triangles = {0, 1, 2};
     description_.surfaces = {surface};
@@ -51,6 +55,7 @@ class FakeSource final : public Source {
         auto frame = std::make_shared<Frame>();
         frame->step = frame->shape = static_cast<std::uint64_t>(++steps);
         frame->bodies = {{std::vector<float>(3 * vertices_, static_cast<float>(steps)), {}}};
+        for (const SurfaceVertex& at : publisher.picks()) frame->picks.push_back({at, 42, {1.5F}});
         publisher.publish(frame);
         std::this_thread::sleep_for(1ms);
       }
@@ -163,8 +168,31 @@ class Client {
   std::string host_;
 };
 
-/// The status line of an answer to raw bytes.
-std::string raw_request(std::uint16_t port, const std::string& text) {
+/// The vertex of a frame's pick section; -1: it has none. Frames of the fake have no signals.
+int picked_vertex(const std::string& bytes) {
+  for (std::size_t at = 1 + 40; at + 8 <= bytes.size();) {
+    std::uint16_t kind = 0;
+    std::uint32_t length = 0, vertex = 0;
+    std::memcpy(&kind, bytes.data() + at, sizeof kind);
+    std::memcpy(&length, bytes.data() + at + 4, sizeof length);
+    if (kind == 9) std::memcpy(&vertex, bytes.data() + at + 12, sizeof vertex);
+    if (kind == 9) return static_cast<int>(vertex);
+    at += 8 + length;
+  }
+  return -1;
+}
+
+/// Whether a client soon gets frames with this picked vertex.
+bool shows(Client& client, int vertex) {
+  for (int k = 0; k < 1000; ++k) {
+    const std::string bytes = client.next();
+    if (bytes.front() == '#' && bytes[5] == 2 && picked_vertex(bytes) == vertex) return true;
+  }
+  return false;
+}
+
+/// The answer to raw bytes.
+std::string whole_answer(std::uint16_t port, const std::string& text) {
   asio::io_context io;
   Tcp::socket socket(io);
   socket.connect(Tcp::endpoint(asio::ip::make_address("127.0.0.1"), port));
@@ -173,6 +201,12 @@ std::string raw_request(std::uint16_t port, const std::string& text) {
   std::string answer;
   beast::error_code error;
   asio::read(socket, asio::dynamic_buffer(answer), error);
+  return answer;
+}
+
+/// Its status line.
+std::string raw_request(std::uint16_t port, const std::string& text) {
+  const std::string answer = whole_answer(port, text);
   return answer.substr(0, answer.find("\r\n"));
 }
 
@@ -208,6 +242,50 @@ TEST(Server, ServesThePageAndNothingElse) {
         "/view", "/viewer/server.cpp", "/.git/config", "http://127.0.0.1/etc/passwd"}) {
     EXPECT_EQ(get(port, path), "HTTP/1.1 404 Not Found") << path;
   }
+}
+
+TEST(Server, CompressesForThoseWhoTakeIt) {
+  const Shown shown;
+  const auto page = [&](const std::string& accepted) {
+    return whole_answer(shown.server->port(), "GET / HTTP/1.1\r\nHost: 127.0.0.1:" +
+                                                  std::to_string(shown.server->port()) +
+                                                  "\r\nConnection: close\r\n" + accepted + "\r\n");
+  };
+  const std::string plain = page({});
+  EXPECT_EQ(plain.find("Content-Encoding"), std::string::npos);
+  EXPECT_NE(plain.find("<title>Sinew</title>"), std::string::npos);
+  EXPECT_NE(plain.find("</html>"), std::string::npos) << "to its end";
+  const std::string packed = page("Accept-Encoding: br, gzip\r\n");
+  EXPECT_NE(packed.find("Content-Encoding: gzip"), std::string::npos);
+  EXPECT_LT(packed.size(), plain.size());
+  for (const char* yes : {"gzip", "GZIP;q=0.5", "deflate , gzip;q=1.0", "*", "x-gzip"}) {
+    EXPECT_TRUE(accepts_gzip(yes)) << yes;
+  }
+  for (const char* no : {"", "identity", "gzip;q=0", "gzip; q=0.0, br", "gzipped", ",;=,"}) {
+    EXPECT_FALSE(accepts_gzip(no)) << no;
+  }
+}
+
+TEST(Server, TellsEachConnectionOfItsOwnNode) {
+  const Shown shown;
+  Client first(shown.server->port()), second(shown.server->port());
+  first.greet();
+  second.greet();
+  second.next_json("status");
+  second.say(R"({"type": "pick", "body": "ball", "vertex": 3, "id": 1})");
+  EXPECT_FALSE(second.next_json("reply").contains("error")) << "a looker-on may";
+  EXPECT_TRUE(shows(second, 3));
+  first.say(R"({"type": "pick", "body": "ball", "vertex": 7, "id": 1})");
+  EXPECT_FALSE(first.next_json("reply").contains("error"));
+  EXPECT_TRUE(shows(first, 7));
+  EXPECT_TRUE(shows(second, 3));
+  second.say(R"({"type": "pick", "body": "bell", "vertex": 3, "id": 2})");
+  EXPECT_EQ(second.next_json("reply")["error"]["kind"], "unknown-name");
+  second.say(R"({"type": "pick", "body": "ball", "vertex": 30, "id": 3})");
+  EXPECT_EQ(second.next_json("reply")["error"]["kind"], "index-out-of-range");
+  second.say(R"({"type": "pick", "body": null, "vertex": 0, "id": 4})");
+  EXPECT_FALSE(second.next_json("reply").contains("error"));
+  EXPECT_TRUE(shows(second, -1));
 }
 
 TEST(Server, RefusesOtherHostsAndOrigins) {

@@ -45,14 +45,15 @@ export function gradient(map: string): string {
   return `linear-gradient(to top, ${SAMPLES[map].map((c) => `rgb(${c.join(',')})`).join(', ')})`;
 }
 
-const PREFIXES: [number, string][] = [[1e9, 'G'], [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, 'u'],
-                                      [1e-9, 'n']];
+const PREFIXES: [number, string][] = [[1e9, 'G'], [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, '\u00b5'],
+                                      [1e-9, 'n'], [1e-12, 'p']];
 
 /** The number that told() wrote: "12.3 mm" is 0.0123; NaN when it is none. */
 export function read(text: string): number {
-  const found = /^\s*([-+\d.eE]+)\s*([GMkmun]?)/.exec(text);
+  const found = /^\s*([-+\d.eE]+)\s*([GMkm\u00b5unp]?)/.exec(text);
   if (!found) return NaN;
-  return Number(found[1]) * (PREFIXES.find(([, prefix]) => prefix === found[2])?.[0] ?? 1);
+  const named = found[2] === 'u' ? '\u00b5' : found[2];
+  return Number(found[1]) * (PREFIXES.find(([, prefix]) => prefix === named)?.[0] ?? 1);
 }
 
 function prefix(size: number): [number, string] {
@@ -71,8 +72,8 @@ export function ticks(low: number, high: number, count: number, unit: string): s
 /** A number of a unit as people write it: 0.0123 m is "12.3 mm". */
 export function told(value: number, unit: string, digits = 3): string {
   if (!Number.isFinite(value)) return '-';
-  if (unit === 'm^3') return told(1e3 * value, 'l', digits);  // a prefix would be cubed, too
-  if (unit === 'rad') return `${Number((value * 180 / Math.PI).toPrecision(digits))}\u00b0`;
+  if (unit.startsWith('m^3')) return told(1e3 * value, unit.replace('m^3', 'l'), digits);  // a prefix would be cubed, too
+  if (unit.startsWith('rad')) return `${Number((value * 180 / Math.PI).toPrecision(digits))}\u00b0${unit.slice(3)}`;
   if (unit === '' || value === 0) return `${Number(value.toPrecision(digits))}${unit ? ' ' + unit : ''}`;
   const [scale, name] = prefix(Math.abs(value));
   return `${Number((value / scale).toPrecision(digits))} ${name}${unit.replace('^3', '\u00b3')}`;

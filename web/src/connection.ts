@@ -26,7 +26,7 @@ export class Connection {
   private socket: WebSocket | null = null;
   private tries = 0;
   private lastId = 0;
-  private generation = -1;
+  generation = -1;  // of the robot that is shown
   private waiting = new Map<number, {resolve: () => void; reject: (e: Error) => void}>();
 
   constructor(private listener: Listener) { this.connect(); }

@@ -18,6 +18,7 @@ const LEAST = 0.01;       // forces under this part of the largest are not drawn
 const HEAD = 0.02;        // of the robot's size
 const CELLS = 12;         // along a side of a plane's patch
 const Z = new Vector3(0, 0, 1), Y = new Vector3(0, 1, 0);
+const SAME = 1e-6;        // of the robot's size: nodes closer than this are one
 const STRIDE = 7;         // numbers of the surface, and of a point, in a frame
 
 const vector = (p: number[]) => new Vector3(p[0], p[1], p[2]);
@@ -25,6 +26,7 @@ const vector = (p: number[]) => new Vector3(p[0], p[1], p[2]);
 /** One surface in the frame of the scene at rest, and how a plane's patch goes along with the points. */
 class Drawn {
   readonly pose = new Group();
+  private latest = new Float32Array(0);
   private patch: Group | null = null;
   private cell = 0;
   private beads: InstancedMesh;
@@ -32,7 +34,7 @@ class Drawn {
   private arrows: LineSegments2;
   private heads: InstancedMesh;
 
-  constructor(contact: Contact, private size: number) {
+  constructor(readonly contact: Contact, private size: number) {
     this.pose.add(this.shape(contact.surface));
     this.states = new Int8Array(contact.points).fill(-1);
     this.beads = new InstancedMesh(new SphereGeometry(1, 12, 8), new MeshBasicMaterial({transparent: true, opacity: 0.9, depthTest: false}),
@@ -85,6 +87,7 @@ class Drawn {
 
   /** Takes a contact of a frame, arrows of so many m a N. */
   update(values: Float32Array, scale: number): void {
+    this.latest = values;
     this.pose.position.fromArray(values, 0);
     this.pose.quaternion.fromArray(values, 3);
     this.pose.updateMatrixWorld();
@@ -124,6 +127,15 @@ class Drawn {
     if (this.patch) this.follow(middle);
   }
 
+  /** The force on the body at a point of it; null where it has none. */
+  force(at: Vector3): Vector3 | null {
+    const point = new Vector3();
+    for (let from = STRIDE; from < this.latest.length; from += STRIDE) {
+      if (point.fromArray(this.latest, from).distanceTo(at) <= SAME * this.size) return new Vector3().fromArray(this.latest, from + 3);
+    }
+    return null;
+  }
+
   told(): {position: number[]; arrows: number; points: number[]} {
     return {position: this.pose.position.toArray(), arrows: this.heads.count,
             points: STATES.map((_, state) => this.states.filter((s) => s === state).length)};
@@ -140,6 +152,7 @@ class Drawn {
 export class Contacts3d {
   readonly root = new Group();
   private drawn: Drawn[] = [];
+  private bodies: string[] = [];
   private size = 1;
   private largest = 0;  // N, so far: arrows keep their scale while the robot moves
 
@@ -147,6 +160,7 @@ export class Contacts3d {
     this.root.clear();
     this.size = size;
     this.largest = 0;
+    this.bodies = scene.bodies.map((body) => body.name);
     this.drawn = scene.contacts.map((contact) => new Drawn(contact, size));
     for (const one of this.drawn) this.root.add(...one.parts());
   }
@@ -159,6 +173,12 @@ export class Contacts3d {
     }
     const scale = this.largest > 0 ? ARROW * this.size / this.largest : 0;
     for (const [index, values] of contacts) this.drawn[index]?.update(values, scale);
+  }
+
+  /** The sum of the forces of all contacts on a node; null where no contact has it among its points. */
+  force(body: number, at: Vector3): Vector3 | null {
+    const forces = this.drawn.filter((one) => one.contact.body === this.bodies[body]).map((one) => one.force(at));
+    return forces.reduce((sum, force) => sum && force ? sum.add(force) : sum ?? force, null);
   }
 
   /** For tests: of each contact where its surface is, how many arrows, and how many points of each state. */

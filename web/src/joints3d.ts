@@ -124,8 +124,8 @@ export class Joints3d {
   }
 
   /** Chooses the joint whose marker is seen at a click, CSS pixels. */
-  pick(x: number, y: number, screen: Screen): void {
-    if (!this.visible) return;
+  pick(x: number, y: number, screen: Screen): boolean {
+    if (!this.visible) return false;
     let nearest = NEAR, found = -1;
     this.markers.forEach(({at}, k) => {
       const [u, v] = screen(at);
@@ -133,6 +133,7 @@ export class Joints3d {
       if (distance < nearest) [nearest, found] = [distance, k];
     });
     if (found >= 0) this.choose(found);
+    return found >= 0;
   }
 
   update(marks: Float32Array | undefined, signals: Float64Array): void {

@@ -7,9 +7,11 @@ import {Connection} from './connection';
 import {button, make} from './dom';
 import {JointList} from './joint_list';
 import {Panel} from './panel';
+import {Picked} from './picked';
 import {Plots} from './plots';
 import type {Frame, Scene, Status} from './protocol';
 import {Robot3d} from './robot3d';
+import {Viewbar} from './viewbar';
 
 const SMALLEST: Record<string, number> = {m: 1e-9, Pa: 1e-3, N: 1e-9, 'J/m^3': 1e-6, '': 1e-6};  // told from zero
 const FROZEN = 2000;  // ms without a frame while playing
@@ -29,6 +31,8 @@ const costs: number[] = [];  // ms of script a frame of the program
 let cost = 0;
 let pulled: {at: number; message: Record<string, unknown>} | null = null;
 let aimed: Record<string, unknown> | null = null;
+let drawn = -1;  // generation of the robot whose first frame has been drawn
+let stepTimes: number[] = [];  // s, of steps since they were last told
 
 const notices = new Map<string, string>();
 
@@ -46,10 +50,22 @@ const robot = new Robot3d(byId('stage'), {
   target: (effector, position) => {
     aimed = {type: 'target', effector: scene!.effectors[effector].name, position};
   },
+  pick,
 });
+const picked = new Picked(() => pick(null));
+const viewbar = new Viewbar(robot);
+
+function pick(at: {body: number; vertex: number} | null): void {
+  if (at === null && picked.at === null) return;
+  picked.choose(at);
+  robot.pick(at);
+  send({type: 'pick', body: at ? scene!.bodies[at.body].name : null, vertex: at?.vertex ?? 0});
+}
+
 const narrow = matchMedia('(max-width: 900px)');
 function cover(): void {
   const side = (id: string) => byId(id).getBoundingClientRect();
+  byId('side').style.top = `${side('top').bottom + 8}px`;
   const right = side('panel').width, left = side('plots').width;
   if (mode === 'gallery') robot.cover(0, 0, 0, 0);
   else if (narrow.matches) robot.cover(0, 0, side('top').bottom, side('panel').height);
@@ -58,7 +74,8 @@ function cover(): void {
 const joints = new JointList(robot.joints);
 const panel = new Panel(byId('panel'), send, () => connection.client, joints);
 const plots = new Plots(byId('plots'));
-new ResizeObserver(cover).observe(byId('panel'));
+for (const id of ['panel', 'top']) new ResizeObserver(cover).observe(byId(id));
+byId('side').append(picked.element);
 
 // ------------------------------------------------------------------------------------------ top bar
 
@@ -75,7 +92,7 @@ maps.onchange = () => { map = maps.value; robot.map(map); legend(); };
 byId('top').append(title, make('label', {}, 'Colour ', fields), maps, wire, follow, hands,
                    button('Fit', 'See the whole robot (f)', () => robot.fit()),
                    button('Picture', 'Save a picture (p)', picture), theme,
-                   button('?', 'Keyboard shortcuts (?)', help), numbers);
+                   button('?', 'Keyboard shortcuts (?)', help), make('span', {className: 'line'}, ...viewbar.parts()), numbers);
 
 function setTheme(dark: boolean): void {
   document.documentElement.dataset.theme = dark ? 'dark' : 'light';
@@ -201,6 +218,9 @@ const KEYS: [string, string, () => void][] = [
   ['w', 'wireframe', () => wire.click()], ['o', 'follow the effector', () => follow.click()],
   ['h', 'drag the robot itself', () => hands.click()], ['c', 'next colouring', nextField], ['d', 'light or dark', () => theme.click()],
   ['j', 'draw joints or not', () => joints.toggle()],
+  ['x', 'look along the x axis', () => robot.look('x')], ['y', 'look along the y axis', () => robot.look('y')],
+  ['z', 'look down along the z axis', () => robot.look('z')], ['i', 'look from the front, the right and above', () => robot.look('iso')],
+  ['q', 'parallel projection', () => viewbar.parallel.click()],
   ['p', 'save a picture', picture], ['e', 'record, or end the recording', () => panel.record()], ['?', 'this list', help],
 ];
 const dialog = make('dialog', {'aria-label': 'Keyboard shortcuts'});
@@ -215,7 +235,7 @@ function help(): void {
   if (dialog.open) return dialog.close();
   const rows = KEYS.map(([key, what]) => make('tr', {}, make('td', {}, make('kbd', {textContent: key === ' ' ? 'space' : key})),
                                               make('td', {textContent: what})));
-  const mouse = [['drag', 'turn'], ['right drag', 'move (on the robot: pull)'], ['wheel', 'zoom'],
+  const mouse = [['click on the robot', 'the values of a node'], ['drag', 'turn'], ['right drag', 'move (on the robot: pull)'], ['wheel', 'zoom'],
                  ['Shift drag', 'pull at the robot'], ['drag the arrows', 'move the target'],
                  ['click a ball', 'its arrows, where there are several'], ['click a joint', 'how far it has moved, and its force']];
   rows.push(...mouse.map(([key, what]) => make('tr', {}, make('td', {}, make('kbd', {textContent: key})), make('td', {textContent: what}))));
@@ -249,6 +269,10 @@ const connection = new Connection({
       return option;
     }));
     document.body.classList.toggle('gallery', what === 'gallery');
+    drawn = -1;
+    stepTimes = [];
+    picked.choose(null);
+    viewbar.scene();
     robot.scene(next);
     panel.scene(next, what);
     cover();
@@ -274,6 +298,7 @@ const connection = new Connection({
     for (const [body, {field: shown}] of frame.fields) {
       if (scene?.fields[shown]?.name !== field) frame.fields.delete(body);
     }
+    if (frame.step !== latest?.step) stepTimes.push(signal('time.step', frame));
     latest = frame;
     fresh = true;
     plots.add(frame);
@@ -300,7 +325,9 @@ function tick(now: number): void {
     fresh = false;
     measure(latest);
     robot.update(latest, ...(range ?? seen));
-    panel.follow(scene, latest.signals);
+    panel.follow(scene, latest);
+    const place = robot.pickedPlace();
+    if (place) picked.show(scene, latest, place);
     legend();
   }
   plots.draw(now);
@@ -317,18 +344,27 @@ function tick(now: number): void {
   cost = 0;
   if (costs.length > 600) costs.splice(0, 300);
   robot.draw();
+  if (latest && drawn !== connection.generation) {
+    drawn = connection.generation;
+    connection.request({type: 'ready', generation: drawn}).catch(() => undefined);
+  }
 }
 
-function signal(key: string): number {
+function signal(key: string, frame: Frame): number {
   const k = scene?.signals.findIndex((s) => s.key === key) ?? -1;
-  return k >= 0 && latest ? latest.signals[k] : NaN;
+  return k >= 0 ? frame.signals[k] : NaN;
 }
 
+// Times are means over the last half second. A recorded run does not say how long its steps took.
 function show(): void {
-  if (!latest) return;
-  numbers.textContent = `t = ${latest.time.toFixed(2)} s, step ${latest.step}, `
-    + `${signal('real_time_factor').toFixed(2)} x real time, ${told(signal('time.step'), 's')} a step, `
-    + `${framesPerSecond.toFixed(0)} frames/s`;
+  if (!latest || !scene) return;
+  const factor = signal('real_time_factor', latest);
+  const parts = [`t = ${latest.time.toFixed(2)} s`, `step ${latest.step}`];
+  if (Number.isFinite(factor)) parts.push(`${factor.toFixed(2)} x real time`);
+  if (mode === 'replay') parts.push(`steps of ${told(scene.time_step, 's')}`);
+  else if (stepTimes.length > 0) parts.push(`${told(stepTimes.reduce((a, b) => a + b) / stepTimes.length, 's')} a step`);
+  if (status?.source.playing) stepTimes = [];
+  numbers.textContent = [...parts, `${framesPerSecond.toFixed(0)} frames/s`].join(', ');
 }
 
 requestAnimationFrame(tick);
@@ -350,6 +386,12 @@ const view = {
   arrows: () => robot.arrows(),
   contacts: () => robot.contacts.told(),
   joints: () => robot.joints.told(),
+  plots: () => plots.told(),
+  timeline: () => latest?.timeline ?? null,
+  box: () => robot.box(),
+  targets: () => robot.targetsShown(),
+  picked: () => ({...latest?.pick, fields: [...latest?.pick?.fields ?? []], ...robot.pickedPlace()}),
+  force: (body: number, vertex: number) => robot.pressing(body, vertex)?.length() ?? 0,
   screen: (x: number, y: number, z: number) => robot.screen(new Vector3(x, y, z)),
   plain: () => robot.plain(),
 };

@@ -3,7 +3,7 @@ import {told} from './colours';
 import {STATES} from './contacts3d';
 import {button, make} from './dom';
 import type {JointList} from './joint_list';
-import type {Actuator, Effector, Quantity, Scene, Status} from './protocol';
+import type {Actuator, Effector, Frame, Quantity, Scene, Status, Timeline} from './protocol';
 
 const SPEEDS: [number, string][] = [[0.1, '0.1 x'], [0.25, '0.25 x'], [0.5, '0.5 x'], [1, 'real time'],
                                     [2, '2 x'], [5, '5 x'], [0, 'as fast as it can']];
@@ -12,7 +12,9 @@ const SHOWN: Record<string, [number, string]> = {m: [1e3, 'mm'], Pa: [1e-3, 'kPa
 
 export type Send = (message: Record<string, unknown>) => void;
 
-interface Row {box: HTMLElement; slider: HTMLInputElement; number: HTMLInputElement; quantity: Quantity}
+interface Row {
+  box: HTMLElement; slider: HTMLInputElement; number: HTMLInputElement; reached: HTMLElement; quantity: Quantity;
+}
 
 export class Panel {
   private rows = new Map<string, Row>();
@@ -25,6 +27,12 @@ export class Panel {
   private who = make('span', {});
   private time = make('input', {type: 'range', min: '0', step: '1', value: '0', className: 'time',
                                 'aria-label': 'Frame of the recorded run'});
+  private moments = make('input', {type: 'range', min: '0', step: '1', value: '0', className: 'time',
+                                   'aria-label': 'Moment of the run', title: 'Go back; Play goes on from there'});
+  private back = make('span', {className: 'recorded'});
+  private held = false;  // the pointer has the moments' slider
+  private signals: Record<string, number> = {};
+  private latest: [Scene, Frame] | null = null;
   private recorder = button('Record', 'Record the run from now on', () => this.record());
   private probes: {value: HTMLElement; columns: number[]; unit: string}[] = [];
   private contacts: {value: HTMLElement; columns: number[]}[] = [];
@@ -39,6 +47,9 @@ export class Panel {
     this.controller.onchange = () =>
       this.send({type: 'controller', name: this.controller.value === '' ? null : this.controller.value});
     this.steps.style.width = '72px';
+    this.moments.oninput = () => this.send({type: 'seek', frame: Number(this.moments.value)});
+    this.moments.onpointerdown = () => { this.held = true; };
+    addEventListener('pointerup', () => { this.held = false; });
   }
 
   toggle(): void { this.send({type: this.status?.source.playing ? 'pause' : 'play'}); }
@@ -51,6 +62,7 @@ export class Panel {
     this.targets.clear();
     this.probes = [];
     this.contacts = [];
+    this.latest = null;
     if (mode === 'gallery') return this.gallery(scene);
     if (mode === 'replay') return this.replay(scene);
     this.controller.replaceChildren(new Option('none (by hand)', ''),
@@ -64,15 +76,20 @@ export class Panel {
            this.steps, ...(scripted ? [] : [button('Reset', 'Back to the start (r)', () => this.reset())])),
       make('div', {className: 'line'}, make('label', {}, 'Speed', this.speed), ...(scripted ? [] : [
            button('Settle', 'Static equilibrium at the present inputs', () => this.send({type: 'settle'}))])),
+      ...(scripted ? [] : [this.moments, this.back]),
       make('div', {className: 'line'}, this.recorder, this.recorded),
       make('div', {className: 'line'}, this.who, this.drive, ...(scene.gallery ? [
            button('Examples', 'Back to the examples', () => this.send({type: 'gallery'}))] : [])),
-      ...(told.length ? [heading('Actuators'), ...told.map((a) => this.actuator(a))] : []),
+      ...(told.length ? [heading('Actuators'), this.actuatorHead(), ...told.map((a) => this.actuator(a))] : []),
       heading('Control'),
       ...(scripted ? [] : [make('div', {className: 'line'}, make('label', {}, 'Controller', this.controller))]),
-      ...scene.effectors.filter((e) => e.kind === 'point').map((e) => this.target(e)),
+      ...this.aims(scene),
       ...this.measured(scene), ...this.touching(scene), ...this.joints.rows(scene), heading('Hand'), this.hand(),
     );
+  }
+
+  private actuatorHead(): HTMLElement {
+    return make('div', {className: 'row head'}, ...['reached', '', 'command', ''].map((text) => make('span', {textContent: text})));
   }
 
   private gallery(scene: Scene): void {
@@ -107,10 +124,13 @@ export class Panel {
       return {value: make('output', {'aria-label': `${probe.name}: ${probe.kind}`}), columns,
               unit: scene.signals[columns[0]].unit};
     });
-    if (scene.probes.length === 0) return [];
     const rows = scene.probes.map((probe, k) => make('div', {className: 'measured', title: probe.kind},
       make('span', {className: 'name', textContent: probe.name}), this.probes[k].value));
-    return [make('h2', {textContent: 'Probes'}), ...rows];
+    const list = (title: string, sensor: boolean) => {
+      const own = rows.filter((_, k) => scene.probes[k].sensor === sensor);
+      return own.length === 0 ? [] : [make('h2', {textContent: title}), ...own];
+    };
+    return [...list('Probes', false), ...list('Sensors', true)];
   }
 
   /** Names of contacts, their forces and states, and what the points' colours mean. */
@@ -162,7 +182,7 @@ export class Panel {
     this.recorded.replaceChildren(...(recording && !recording.on ? this.files() : []), ' ', text);
   }
 
-  // The unit is a button where there are two ways to command an actuator.
+  // The unit is to be chosen where there are several ways to command an actuator.
   private actuator(actuator: Actuator, way = 0): HTMLElement {
     const quantity = actuator.quantities[way];
     const [scale, unit] = SHOWN[quantity.unit] ?? [1, quantity.unit];
@@ -178,25 +198,39 @@ export class Panel {
     slider.oninput = () => change(slider);
     number.onchange = () => change(number);
     const limits = `${label}, ${range.min} to ${range.max}`;
-    const other = (way + 1) % actuator.quantities.length;
-    const mode = button(unit, `${actuator.name}: command by ${actuator.quantities[other].name}`, () => {
-      box.replaceWith(this.actuator(actuator, other));
+    const mode = make('select', {className: 'unit', title: `what ${actuator.name} is commanded by`, 'aria-label': `${actuator.name}: commanded quantity`},
+      ...actuator.quantities.map((q, k) => make('option', {value: String(k), title: q.name, textContent: SHOWN[q.unit]?.[1] ?? q.unit, selected: k === way})));
+    mode.onchange = () => {
+      box.replaceWith(this.actuator(actuator, Number(mode.value)));
       if (this.status) this.update(this.status);
-    });
-    mode.className = 'unit';
+      if (this.latest) this.follow(...this.latest);
+    };
     slider.title = number.title = limits;
-    const name = make('span', {className: 'name', title: limits, textContent: actuator.name});
-    const box = make('div', {className: 'row'}, name, mode, slider, number);
-    this.rows.set(actuator.name, {box, slider, number, quantity});
+    const reached = make('output', {title: `${quantity.name} reached`, 'aria-label': `${actuator.name}: ${quantity.name} reached`});
+    const name = make('span', {className: 'name', title: limits}, make('span', {textContent: actuator.name}), reached);
+    const box = make('div', {className: 'row'}, name, slider, number,
+                     actuator.quantities.length > 1 ? mode : make('span', {className: 'unit', textContent: unit}));
+    this.rows.set(actuator.name, {box, slider, number, reached, quantity});
     return box;
+  }
+
+  private aims(scene: Scene): HTMLElement[] {
+    const points = scene.effectors.filter((e) => e.kind === 'point');
+    if (points.length === 0) return [];
+    const head = ['x (mm)', 'y (mm)', 'z (mm)'].map((text) => make('span', {textContent: text}));
+    return [make('div', {className: 'xyz head'}, make('span', {textContent: 'Target'}), ...head), ...points.map((e) => this.target(e))];
   }
 
   private target(effector: Effector): HTMLElement {
     const inputs = ['x', 'y', 'z'].map((axis) =>
       make('input', {type: 'number', step: 'any', 'aria-label': `${effector.name}: target ${axis} in mm`,
                      placeholder: axis}));
+    // A coordinate that was not typed is the effector's own.
     const send = () => {
-      if (inputs.some((input) => input.value === '')) return;
+      if (inputs.every((input) => input.value === '')) return;
+      inputs.forEach((input, k) => {
+        if (input.value === '') input.value = (1e3 * this.signals[`${effector.name}.${'xyz'[k]}`]).toFixed(2);
+      });
       this.send({type: 'target', effector: effector.name, position: inputs.map((i) => Number(i.value) / 1e3)});
     };
     inputs.forEach((input) => { input.onchange = send; });
@@ -252,20 +286,35 @@ export class Panel {
     }
   }
 
-  /** Shows what the actuators do where a controller drives them, or what they are told. */
-  follow(scene: Scene, signals: Float64Array): void {
-    this.show(signals);
+  /** Shows what the actuators have reached, and what they are told or a controller makes them do. */
+  follow(scene: Scene, frame: Frame): void {
+    this.latest = [scene, frame];
+    this.show(frame.signals);
+    scene.signals.forEach((s, k) => { this.signals[s.key] = frame.signals[k]; });
+    if (frame.timeline) this.followTime(frame.timeline, frame.time);
     scene.actuators.forEach((actuator) => {
       const row = this.rows.get(actuator.name);
       const command = this.status?.source.commands?.[actuator.name];
-      if (!row || !command || document.activeElement === row.slider || document.activeElement === row.number) return;
-      const done = scene.signals.findIndex((s) => s.key === `${actuator.name}.${row.quantity.name}`);
-      const told = command.quantity === row.quantity.name && !command.owned;
-      if (done < 0 && !told) return;  // no signal tells what a drive was fed
+      if (!row || !command) return;
+      const done = this.signals[`${actuator.name}.${row.quantity.name}`];  // no signal tells what a drive was fed
+      const reached = done === undefined ? '' : told(done, row.quantity.unit);
+      if (row.reached.textContent !== reached) row.reached.textContent = reached;
+      if (document.activeElement === row.slider || document.activeElement === row.number) return;
+      const own = command.quantity === row.quantity.name && !command.owned;
+      if (done === undefined && !own) return;
       const [scale] = SHOWN[row.quantity.unit] ?? [1];
-      const text = String(Number((scale * (told ? command.value : signals[done])).toPrecision(4)));
+      const text = String(Number((scale * (own ? command.value : done)).toPrecision(4)));
       if (row.number.value !== text) row.number.value = row.slider.value = text;
     });
+  }
+
+  private followTime({oldest, latest, shown, oldestTime, latestTime}: Timeline, time: number): void {
+    this.moments.min = String(oldest);
+    this.moments.max = String(latest);
+    if (!this.held) this.moments.value = String(shown);
+    const text = shown < latest ? `${told(latestTime - time, 's')} back; Play goes on from here`
+      : `the last ${told(latestTime - oldestTime, 's')}`;
+    if (this.back.textContent !== text) this.back.textContent = text;
   }
 
   /** A scene's number for people. */

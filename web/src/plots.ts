@@ -16,8 +16,53 @@ const TITLES: Record<string, string> = {
   'volume command': 'Commanded volume',
 };
 
+const SAME = 4e-3;  // of the plot's height: curves that are nowhere farther apart are drawn as one
+const DASH = 8;     // px
 const MOST = 3;  // plots at once
 const HEIGHT = 170, LOW = 120;  // px of a plot: alone, and among others
+
+/** Groups of two or more columns that look equal, (m, n) numbers each. */
+export function equalCurves(columns: number[][]): number[][] {
+  const all = columns.flat().filter(Number.isFinite);
+  const range = all.reduce((most, x) => Math.max(most, x), -Infinity) - all.reduce((least, x) => Math.min(least, x), Infinity);
+  const same = (a: number[], b: number[]) => a.every((x, k) => Math.abs(x - b[k]) <= SAME * range || (!Number.isFinite(x) && !Number.isFinite(b[k])));
+  const left = columns.map((_, k) => k).filter((k) => columns[k].some(Number.isFinite));
+  const groups: number[][] = [];
+  while (left.length > 0) {
+    const group = left.filter((k) => same(columns[left[0]], columns[k]));
+    group.forEach((k) => left.splice(left.indexOf(k), 1));
+    if (group.length > 1) groups.push(group);
+  }
+  return groups;
+}
+
+/** All signals of the last seconds, whichever are plotted. */
+class History {
+  times: number[] = [];         // s
+  rows: Float64Array[] = [];    // as many
+  marker = NaN;                 // s: the moment that was gone back to
+
+  clear(): void {
+    this.times = [];
+    this.rows = [];
+    this.marker = NaN;
+  }
+
+  // A run that went on from an earlier moment has no longer what came after it.
+  add(frame: Frame): void {
+    const past = frame.timeline !== undefined && frame.timeline.shown < frame.timeline.latest;
+    this.marker = past ? frame.time : NaN;
+    const {times, rows} = this;
+    if (past) return;
+    while (times[times.length - 1] >= frame.time) times.length = rows.length = times.length - 1;
+    times.push(frame.time);
+    rows.push(frame.signals.slice());
+    if (times.length <= SAMPLES && times[0] >= frame.time - 1.2 * WINDOW) return;
+    const drop = Math.max(times.findIndex((t) => t >= frame.time - WINDOW), times.length - SAMPLES + 100, 0);
+    times.splice(0, drop);
+    rows.splice(0, drop);
+  }
+}
 
 /** The signals of one group; a click on a name in the legend hides or shows it. */
 class Plot {
@@ -25,15 +70,14 @@ class Plot {
   group = '';
   private plot: uPlot | null = null;
   private columns: number[] = [];
-  private data: number[][] = [];
   private unit = '';
   private scale = 1;  // angles are drawn in degrees, so that their ticks are round
   private select = make('select', {'aria-label': 'Signals to plot'});
   private box = make('div', {className: 'plot'});
   private scene: Scene | null = null;
-  private last = -1;
+  private equal: number[][] = [];
 
-  constructor(...buttons: HTMLElement[]) {
+  constructor(private history: History, ...buttons: HTMLElement[]) {
     this.select.onchange = () => this.choose(this.select.value);
     this.element.append(make('div', {className: 'line'}, this.select, ...buttons), this.box);
   }
@@ -50,8 +94,6 @@ class Plot {
     this.group = this.select.value = group;
     this.columns = [];
     this.scene?.signals.forEach((s, k) => { if (s.group === group) this.columns.push(k); });
-    this.data = [[], ...this.columns.map(() => [] as number[])];
-    this.last = -1;
     this.plot?.destroy();
     const signals = this.columns.map((k) => this.scene!.signals[k]);
     this.unit = signals[0]?.unit ?? '';
@@ -64,9 +106,10 @@ class Plot {
       scales: {x: {time: false}},
       axes: [{...axis, label: 'time (s)', labelSize: 16, size: 30},
              {...axis, size: 76, values: (_, ticks) => ticks.map((v) => told(v / this.scale, this.unit))}],
-      series: [{}, ...signals.map((s, k) => ({label: s.label, stroke: COLOURS[k % COLOURS.length],
-                                               width: 1.5, dash: k >= COLOURS.length ? [5, 4] : undefined}))],
-    }, this.data as uPlot.AlignedData, this.box);
+      hooks: {draw: [(plot) => this.drawMarker(plot, ink)]},
+      series: [{}, ...signals.map((s, k) => ({label: s.label, stroke: COLOURS[k % COLOURS.length], points: {show: false},
+                                               width: 1.5, dash: this.ownDash(k)}))],
+    }, this.data(), this.box);
   }
 
   end(): void {
@@ -74,21 +117,47 @@ class Plot {
     this.element.remove();
   }
 
-  add(frame: Frame): void {
-    if (frame.time < this.last) this.data.forEach((column) => { column.length = 0; });
-    if (frame.time === this.last) return;
-    this.last = frame.time;
-    this.data[0].push(frame.time);
-    this.columns.forEach((k, c) => this.data[c + 1].push(this.scale * frame.signals[k]));
-    const times = this.data[0];
-    if (times.length > SAMPLES || times[0] < frame.time - 1.2 * WINDOW) {
-      const first = times.findIndex((t) => t >= frame.time - WINDOW);
-      const drop = Math.max(first, times.length - SAMPLES + 100, 0);
-      this.data.forEach((column) => column.splice(0, drop));
-    }
+  private ownDash(k: number): number[] | undefined { return k >= COLOURS.length ? [5, 4] : undefined; }
+
+  private data(): uPlot.AlignedData {
+    const {times, rows} = this.history;
+    return [times, ...this.columns.map((k) => rows.map((signals) => this.scale * signals[k]))];
   }
 
-  draw(): void { this.plot?.setData(this.data as uPlot.AlignedData); }
+  private drawMarker(plot: uPlot, ink: string): void {
+    const {marker} = this.history;
+    if (!(marker >= plot.scales.x.min! && marker <= plot.scales.x.max!)) return;
+    const {ctx, bbox} = plot, x = plot.valToPos(marker, 'x', true);
+    ctx.save();
+    ctx.strokeStyle = ink;
+    ctx.lineWidth = devicePixelRatio;
+    ctx.beginPath();
+    ctx.moveTo(x, bbox.top);
+    ctx.lineTo(x, bbox.top + bbox.height);
+    ctx.stroke();
+    ctx.restore();
+  }
+
+  /** Curves that are equal take turns: each is drawn in its own dashes. */
+  draw(): void {
+    if (!this.plot) return;
+    const data = this.data();
+    this.equal = equalCurves(data.slice(1) as number[][]);
+    this.columns.forEach((_, k) => { this.plot!.series[k + 1].dash = this.ownDash(k); });
+    for (const group of this.equal) {
+      group.forEach((k, turn) => {
+        this.plot!.series[k + 1].dash = [0, DASH * turn, DASH, DASH * (group.length - 1 - turn)];
+      });
+    }
+    this.plot.setData(data);
+  }
+
+  /** For tests: labels of curves drawn as one, the samples' first and last time, and the marker. */
+  told() {
+    const label = (k: number) => this.scene!.signals[this.columns[k]].label;
+    const {times, marker} = this.history;
+    return {group: this.group, equal: this.equal.map((g) => g.map(label)), from: times[0], to: times[times.length - 1], samples: times.length, marker};
+  }
 
   resize(width: number, height: number): void { this.plot?.setSize({width: Math.max(width, 120), height}); }
 }
@@ -98,13 +167,15 @@ export class Plots {
   private plots: Plot[] = [];
   private scene: Scene | null = null;
   private drawn = 0;
+  private history = new History();
 
   constructor(private section: HTMLElement) {
-    this.insert(new Plot(button('+', 'Another plot', () => this.another())));
+    this.insert(new Plot(this.history, button('+', 'Another plot', () => this.another())));
     new ResizeObserver(() => this.resize()).observe(section);
   }
 
   setScene(scene: Scene): void {
+    if (scene !== this.scene) this.history.clear();
     this.scene = scene;
     for (const plot of this.plots) plot.setScene(scene, plot.group);
     this.resize();
@@ -117,7 +188,7 @@ export class Plots {
 
   private another(): void {
     if (this.plots.length >= MOST || !this.scene) return;
-    const plot: Plot = new Plot(button('-', 'No longer this plot', () => {
+    const plot: Plot = new Plot(this.history, button('-', 'No longer this plot', () => {
       plot.end();
       this.plots = this.plots.filter((p) => p !== plot);
       this.resize();
@@ -128,7 +199,9 @@ export class Plots {
     this.resize();
   }
 
-  add(frame: Frame): void { for (const plot of this.plots) plot.add(frame); }
+  told() { return this.plots.map((plot) => plot.told()); }
+
+  add(frame: Frame): void { this.history.add(frame); }
 
   draw(now: number): void {
     if (now - this.drawn < 100) return;  // ten times a second is enough to read

@@ -7,7 +7,7 @@ export interface Quantity {
 export interface Actuator {name: string; type: string; body: string; quantities: Quantity[]; points: number}
 export interface Effector {name: string; kind: 'point' | 'orientation'; directions: number[][]}
 /** `marks`: its points in the frame's `probes`; `signals`: keys of its numbers. */
-export interface Probe {name: string; kind: string; marks: number; signals: string[]}
+export interface Probe {name: string; kind: string; sensor: boolean; marks: number; signals: string[]}
 export type ContactSurface = {kind: 'plane'; point: number[]; normal: number[]}
   | {kind: 'sphere'; centre: number[]; radius: number} | {kind: 'capsule'; ends: number[][]; radius: number}
   | {kind: 'body'};  // drawn with the body that it is of
@@ -43,11 +43,15 @@ export interface SourceStatus {
 export interface Status {clients: number; driver: number | null; source: SourceStatus}
 
 export interface Surface {body: number; rest: Float32Array; triangles: Uint32Array}
+/** Moments of a live run: their numbers and times, s. `shown` is the latest in the present. */
+export interface Timeline {oldest: number; latest: number; shown: number; oldestTime: number; latestTime: number}
+/** A value of each of the scene's fields at a node; NaN where the body has no such field. */
+export interface Pick {body: number; vertex: number; node: number; fields: Float32Array}
 export interface Frame {
   sequence: number; step: number; time: number; hash: string; signals: Float64Array;
   positions: Map<number, Float32Array>; fields: Map<number, {field: number; values: Float32Array}>;
   cables?: Float32Array; effectors?: Float32Array; targets?: Float32Array; pull?: Float32Array;
-  probes?: Float32Array;
+  probes?: Float32Array; pick?: Pick; timeline?: Timeline;
   /** By contact: position (3) and quaternion (4) of the surface, then of each point position (3), force (3), state. */
   contacts: Map<number, Float32Array>;
   /** Of each joint the points on its bodies (3), (3), its axis (3) and its second axis (3); 0: none. */
@@ -93,6 +97,13 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
     if (kind === 2) {
       frame.fields.set(index, {field: view.getUint32(at, true),
                                values: new Float32Array(buffer, at + 4, bytes / 4 - 1)});
+    } else if (kind === 10) {
+      const [body, vertex, node] = new Uint32Array(buffer, at, 3);
+      frame.pick = {body, vertex, node, fields: new Float32Array(buffer, at + 12, bytes / 4 - 3)};
+    } else if (kind === 11) {
+      const [oldest, latest, shown] = new Uint32Array(buffer, at, 3);
+      const [oldestTime, latestTime] = new Float32Array(buffer, at + 12, 2);
+      frame.timeline = {oldest, latest, shown, oldestTime, latestTime};
     } else {
       const values = new Float32Array(buffer, at, bytes / 4);
       if (kind === 1) frame.positions.set(index, values);

@@ -2,53 +2,66 @@
 import {
   AmbientLight, AxesHelper, Box3, BufferAttribute, BufferGeometry, CanvasTexture, Color, DirectionalLight,
   DoubleSide, GridHelper, HemisphereLight, Line, LineBasicMaterial, Mesh, MeshBasicMaterial,
-  MeshStandardMaterial, Object3D, PerspectiveCamera, Plane, Raycaster, Scene as World, SphereGeometry,
+  MeshStandardMaterial, Object3D, Plane, Raycaster, Scene as World, SphereGeometry,
   Sprite, SpriteMaterial, Vector2, Vector3, WebGLRenderer,
 } from 'three';
-import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 import {TransformControls} from 'three/addons/controls/TransformControls.js';
 import {Line2} from 'three/addons/lines/Line2.js';
 import {LineGeometry} from 'three/addons/lines/LineGeometry.js';
 import {LineMaterial} from 'three/addons/lines/LineMaterial.js';
+import {Camera3d, View} from './camera3d';
 import {linearTable, paint, told} from './colours';
 import {Contacts3d} from './contacts3d';
 import {Joints3d} from './joints3d';
 import {make} from './dom';
+import type {Place} from './picked';
 import type {Frame, Scene, Surface} from './protocol';
+import {Section3d} from './section3d';
 
 const BODY_COLOURS = [0xd9a066, 0x7fa6c9, 0x9cb380];  // told apart by lightness too
 const GIZMO = 0.6;  // size of the target's arrows
 const PROBE = 0x009e73;
 const OPACITY = 0.82;  // of a body without colours
+const PICKED = 0xcc79a7;
+const CLICK = 4;  // px that a click may move
 const SLACK = 0x8a8f98, TAUT = 0x0072b2, STRONG = 0xd55e00;  // Okabe and Ito 2008
 
 export interface Hand {
   pull(body: number, vertices: number[], weights: number[], anchor: number[]): void;
   release(): void;
   target(effector: number, position: number[]): void;
+  /** A click on a body, at one of its vertices; null: beside. */
+  pick(at: {body: number; vertex: number} | null): void;
 }
 
-/** A text that always faces the camera, of the same size on the screen however far. */
+/** A text that always faces the camera and is never hidden, of the same size on the screen however far. */
 function caption(text: string): Sprite {
   const canvas = make('canvas', {width: 256, height: 64});
   const context = canvas.getContext('2d')!;
-  context.font = '40px system-ui, sans-serif';
+  context.font = '600 38px system-ui, sans-serif';
   context.textAlign = 'center';
   context.textBaseline = 'middle';
-  context.fillStyle = '#7d8894';
+  context.lineWidth = 8;
+  context.lineJoin = 'round';
+  context.strokeStyle = '#ffffffcc';  // to be read on light and dark
+  context.strokeText(text, 128, 34);
+  context.fillStyle = '#1d232b';
   context.fillText(text, 128, 34);
-  const sprite = new Sprite(new SpriteMaterial({map: new CanvasTexture(canvas), sizeAttenuation: false, transparent: true}));
-  sprite.scale.set(0.1, 0.025, 1);
+  const sprite = new Sprite(new SpriteMaterial({map: new CanvasTexture(canvas), sizeAttenuation: false, transparent: true, depthTest: false}));
+  sprite.renderOrder = 4;
   return sprite;
 }
 
-interface Body {mesh: Mesh<BufferGeometry, MeshStandardMaterial>; wire: Mesh; colours: Float32Array}
+interface Body {
+  mesh: Mesh<BufferGeometry, MeshStandardMaterial>; wire: Mesh<BufferGeometry, MeshBasicMaterial>; colours: Float32Array; rest: Float32Array;
+}
 
 export class Robot3d {
   readonly renderer: WebGLRenderer;
   private world = new World();
-  private camera = new PerspectiveCamera(40, 1, 1e-4, 100);
-  private orbit: OrbitControls;
+  private camera: Camera3d;
+  private section = new Section3d();
+  private captions: Sprite[] = [];
   private gizmo: TransformControls;
   private handle = new Object3D();
   private robot = new Object3D();
@@ -67,39 +80,41 @@ export class Robot3d {
   private grabbed: {plane: Plane; body: number; vertices: number[]; weights: number[]} | null = null;
   private dragging = false;
   private steered = -1;
-  private covered = [0, 0, 0, 0];  // px; see cover()
   private chosen = -1;  // effector whose target was clicked
   private force = make('div', {id: 'force', hidden: true});
   private bounds = new Box3();
+  private picked = new Mesh(new SphereGeometry(1, 20, 14), new MeshBasicMaterial({color: PICKED, depthTest: false, transparent: true}));
+  private pickedAt: {body: number; vertex: number} | null = null;
+  private pressed: [number, number] | null = null;  // px, where a click may begin
   follow = false;
   wireframe = false;
   coloured = false;
   hands = false;  // a plain drag on the robot pulls, as on a screen without keys
 
   constructor(private stage: HTMLElement, private hand: Hand) {
-    this.renderer = new WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
+    this.renderer = new WebGLRenderer({antialias: true, preserveDrawingBuffer: true, stencil: true});
+    this.renderer.localClippingEnabled = true;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     stage.append(this.renderer.domElement, this.force, this.joints.label);
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
-    canvas.setAttribute('aria-label', 'The robot; drag to turn, Shift and drag on it to pull');
-    this.camera.up.set(0, 0, 1);
-    this.orbit = new OrbitControls(this.camera, canvas);
-    this.orbit.enableDamping = true;
-    this.orbit.dampingFactor = 0.2;
-    this.gizmo = new TransformControls(this.camera, canvas);
+    canvas.setAttribute('aria-label', 'The robot; drag to turn, Shift and drag on it to pull, click for the values of a node');
+    this.camera = new Camera3d(canvas);
+    this.gizmo = new TransformControls(this.camera.now, canvas);
     this.gizmo.setSize(GIZMO);
     this.gizmo.attach(this.handle);
     this.gizmo.addEventListener('dragging-changed', (event) => {
       this.dragging = event.value as boolean;
-      this.orbit.enabled = !this.dragging;
+      this.camera.orbit.enabled = !this.dragging;
     });
     this.gizmo.addEventListener('objectChange', () => {
       if (this.steered >= 0) this.hand.target(this.steered, this.handle.position.toArray());
     });
     const helper = this.gizmo.getHelper();
     helper.visible = false;
-    this.world.add(this.robot, this.handle, helper, this.spring);
+    this.picked.renderOrder = 4;
+    this.picked.visible = false;
+    this.world.add(this.robot, this.section.root, this.handle, helper, this.spring, this.picked);
     this.world.add(new AmbientLight(0xffffff, 0.5), new HemisphereLight(0xffffff, 0x8090a0, 1.2));
     const sun = new DirectionalLight(0xffffff, 1.8);
     sun.position.set(1, -2, 3);
@@ -107,7 +122,7 @@ export class Robot3d {
     this.spring.frustumCulled = false;
     canvas.addEventListener('pointerdown', (event) => this.press(event), true);
     canvas.addEventListener('pointermove', (event) => this.move(event));
-    addEventListener('pointerup', () => this.letGo());
+    addEventListener('pointerup', (event) => this.letGo(event));
     new ResizeObserver(() => this.resize()).observe(stage);
     this.theme();
   }
@@ -120,29 +135,20 @@ export class Robot3d {
   private resize(): void {
     const {clientWidth: w, clientHeight: h} = this.stage;
     this.renderer.setSize(w, h);
-    this.camera.aspect = w / Math.max(h, 1);
-    this.camera.updateProjectionMatrix();
-    this.makeRoom();
+    this.camera.resize(w, h);
   }
 
-  /** What lies over the picture, px at each side: the middle of the rest is the picture's middle. */
+  /** What lies over the picture, px at each side; the robot is shown beside it. */
   cover(left: number, right: number, top: number, bottom: number): void {
-    const next = [left, right, top, bottom];
-    if (next.every((side, k) => side === this.covered[k])) return;
-    this.covered = next;
-    this.makeRoom();
-    this.fit();
-  }
-
-  private makeRoom(): void {
-    const {clientWidth: w, clientHeight: h} = this.stage;
-    const [left, right, top, bottom] = this.covered;
-    this.camera.setViewOffset(w, h, (right - left) / 2, (bottom - top) / 2, w, h);
+    if (this.camera.cover([left, right, top, bottom])) this.fit();
   }
 
   scene(scene: Scene): void {
     this.robot.clear();
+    this.section.clear();
     this.bodies = [];
+    this.captions = [];
+    this.pick(null);
     const [low, high] = scene.bounds.map((p) => new Vector3(...(p as [number, number, number])));
     this.size = low.distanceTo(high);
     this.bounds.set(low, high);
@@ -189,9 +195,10 @@ export class Robot3d {
     this.joints.scene(scene, this.size);
     this.robot.add(this.joints.root);
     this.chosen = -1;
-    this.camera.near = 1e-3 * this.size;
-    this.camera.far = 50 * this.size;
-    this.fit();
+    this.effectors.concat(this.targets).forEach((mark) => { mark.visible = false; });
+    this.camera.setSize(this.size);
+    this.picked.scale.setScalar(0.006 * this.size);
+    this.look('iso');
   }
 
   private ground(low: Vector3, high: Vector3): void {
@@ -211,6 +218,7 @@ export class Robot3d {
     ['x', 'y', 'z'].forEach((axis, k) => {
       const text = caption(`${axis} ${told(length, 'm')}`);
       text.position.setComponent(k, 1.15 * length);
+      this.captions.push(text);
       this.robot.add(text);
     });
     this.stage.dataset.cell = told(cell, 'm');
@@ -227,11 +235,12 @@ export class Robot3d {
     const material = new MeshStandardMaterial({color, roughness: 0.65, side: DoubleSide,
                                                transparent: true, opacity: OPACITY});
     const mesh = new Mesh(geometry, material);
+    this.section.add(geometry, color, this.size);
     const wire = new Mesh(geometry, new MeshBasicMaterial({color: 0x222222, wireframe: true, transparent: true,
                                                            opacity: 0.25}));
     mesh.frustumCulled = wire.frustumCulled = false;
     wire.visible = this.wireframe;
-    this.bodies[surface.body] = {mesh, wire, colours};
+    this.bodies[surface.body] = {mesh, wire, colours, rest: surface.rest};
     this.robot.add(mesh, wire);
   }
 
@@ -275,6 +284,43 @@ export class Robot3d {
     if (frame.targets) this.place(this.targets, frame.targets);
     this.steer();
     this.drawSpring(frame.pull);
+    if (this.pickedAt) this.picked.position.copy(this.vertex(this.pickedAt.body, this.pickedAt.vertex));
+  }
+
+  private vertex(body: number, vertex: number): Vector3 {
+    return new Vector3().fromBufferAttribute(this.bodies[body].mesh.geometry.getAttribute('position') as BufferAttribute, vertex);
+  }
+
+  /** Marks a vertex of a body; null: none. */
+  pick(at: {body: number; vertex: number} | null): void {
+    this.pickedAt = at;
+    this.picked.visible = at !== null;
+    if (at) this.picked.position.copy(this.vertex(at.body, at.vertex));
+  }
+
+  /** Where the marked vertex is, and what presses on it. */
+  pickedPlace(): Place | null {
+    if (!this.pickedAt) return null;
+    const {body, vertex} = this.pickedAt;
+    const position = this.vertex(body, vertex);
+    return {position, rest: new Vector3().fromArray(this.bodies[body].rest, 3 * vertex), force: this.pressing(body, vertex)};
+  }
+
+  /** The contact force on a vertex of a body; null where no contact has it among its points. */
+  pressing(body: number, vertex: number): Vector3 | null { return this.contacts.force(body, this.vertex(body, vertex)); }
+
+  /** Cuts bodies open: see Section3d. */
+  cut(axis: number | null, at: number, before: boolean): void {
+    this.section.set(axis, at, before, this.bounds.getCenter(new Vector3()));
+    for (const {mesh, wire} of this.bodies) for (const {material} of [mesh, wire]) this.section.cut(material);
+  }
+
+  /** For tests: which effectors' targets are drawn. */
+  targetsShown(): boolean[] { return this.targets.map((mark) => mark.visible); }
+
+  setOrthographic(yes: boolean): void {
+    this.camera.setOrthographic(yes);
+    this.gizmo.camera = this.camera.now;
   }
 
   private drawCables(points: Float32Array, signals: Float64Array): void {
@@ -334,7 +380,7 @@ export class Robot3d {
 
   /** Where a point is seen, CSS pixels of the stage. */
   screen(point: Vector3): [number, number] {
-    const seen = point.clone().project(this.camera);
+    const seen = point.clone().project(this.camera.now);
     return [(1 + seen.x) / 2 * this.stage.clientWidth, (1 - seen.y) / 2 * this.stage.clientHeight];
   }
 
@@ -349,60 +395,80 @@ export class Robot3d {
   /** For tests: where the arrows of the target are seen, on their middle. */
   arrows(): [number, number][] {
     const at = this.handle.position;
-    const half = Math.tan(Math.PI * this.camera.fov / 360);
-    const reach = 0.3 * at.distanceTo(this.camera.position) * Math.min(1.9 * half, 7) * GIZMO / 4;
+    const {now} = this.camera;
+    const factor = 'fov' in now ? at.distanceTo(now.position) * Math.min(1.9 * Math.tan(Math.PI * now.fov / 360), 7)
+      : (now.top - now.bottom) / now.zoom;  // as TransformControls has it
+    const reach = 0.3 * factor * GIZMO / 4;
     return [0, 1, 2].map((k) => this.screen(at.clone().setComponent(k, at.getComponent(k) + reach)));
   }
 
-  fit(): void {
-    const {clientWidth: w, clientHeight: h} = this.stage;
-    const [left, right, top, bottom] = this.covered;
-    const free = Math.min(w - left - right, h - top - bottom) / Math.max(h, 1);
-    const distance = 0.6 * this.size / Math.tan(Math.PI * this.camera.fov / 360) / Math.max(free, 0.2);
-    const middle = this.bounds.getCenter(new Vector3());
-    this.orbit.target.copy(middle);
-    this.camera.position.copy(middle).add(new Vector3(0.9, -1.5, 0.5).setLength(distance));
-    this.orbit.update();
+  /** What there is to see now: bodies, effectors and targets. */
+  box(): Box3 {
+    if (this.bodies.length === 0) return this.bounds.clone();
+    const box = new Box3();
+    for (const {mesh} of this.bodies) {
+      box.union(new Box3().setFromBufferAttribute(mesh.geometry.getAttribute('position') as BufferAttribute));
+    }
+    for (const mark of [...this.effectors, ...this.targets]) if (mark.visible) box.expandByPoint(mark.position);
+    return box;
   }
+
+  /** Shows all of the robot, beside the panels. */
+  fit(): void { this.camera.fit(this.box()); }
+
+  /** Shows all of the robot from one side. */
+  look(view: View): void { this.camera.fit(this.box(), view); }
 
   private ray(event: PointerEvent): Raycaster {
     const box = this.renderer.domElement.getBoundingClientRect();
     const caster = new Raycaster();
     caster.setFromCamera(new Vector2(2 * (event.clientX - box.left) / box.width - 1,
-                                     1 - 2 * (event.clientY - box.top) / box.height), this.camera);
+                                     1 - 2 * (event.clientY - box.top) / box.height), this.camera.now);
     return caster;
   }
 
+  /** The first triangle of a body that a ray meets, of what is not cut off. */
+  private hit(caster: Raycaster): {body: number; vertices: number[]; point: Vector3} | null {
+    const hits = caster.intersectObjects(this.bodies.map((b) => b.mesh));
+    const first = hits.find(({face, point}) => face && this.section.shows(point));
+    if (!first?.face) return null;
+    return {body: this.bodies.findIndex((b) => b.mesh === first.object), point: first.point,
+            vertices: [first.face.a, first.face.b, first.face.c]};
+  }
+
   // Shift and drag, or the right button, on the surface: a spring from there to the pointer. A click on
-  // a target or an effector: its arrows. On a joint's marker: what it says.
+  // a target or an effector: its arrows; on a joint's marker: what it says; on the surface: the nearest node.
   private press(event: PointerEvent): void {
+    this.pressed = null;
     if (this.gizmo.axis !== null && event.button === 0 && !event.shiftKey) return;
     const caster = this.ray(event);
+    let marked = false;
     for (const marks of [this.targets, this.effectors]) {
       const mark = caster.intersectObjects(marks.filter((m) => m.visible))[0]?.object;
       if (mark) this.chosen = marks.indexOf(mark as Mesh);
+      marked ||= mark !== undefined;
     }
     if (!this.hands && !event.shiftKey && event.button !== 2) {
       const box = this.renderer.domElement.getBoundingClientRect();
-      return this.joints.pick(event.clientX - box.left, event.clientY - box.top, (point) => this.screen(point));
+      marked ||= this.joints.pick(event.clientX - box.left, event.clientY - box.top, (point) => this.screen(point));
+      if (!marked && event.button === 0) this.pressed = [event.clientX, event.clientY];
+      return;
     }
-    const hits = caster.intersectObjects(this.bodies.map((b) => b.mesh));
-    if (hits.length === 0 || !hits[0].face) return;
+    const found = this.hit(caster);
+    if (!found) return;
     event.stopImmediatePropagation();
-    const {face, point, object} = hits[0];
-    const body = this.bodies.findIndex((b) => b.mesh === object);
-    const positions = this.bodies[body].mesh.geometry.getAttribute('position') as BufferAttribute;
-    const [a, b, c] = [face.a, face.b, face.c].map((v) => new Vector3().fromBufferAttribute(positions, v));
+    const {body, point, vertices} = found;
+    const [a, b, c] = vertices.map((v) => this.vertex(body, v));
     const area = (p: Vector3, q: Vector3, r: Vector3) =>
       new Vector3().crossVectors(q.clone().sub(p), r.clone().sub(p)).length();
     const parts = [area(point, b, c), area(a, point, c), area(a, b, point)];
     const sum = parts[0] + parts[1] + parts[2];
-    const normal = this.camera.getWorldDirection(new Vector3());
+    const normal = this.camera.now.getWorldDirection(new Vector3());
     this.grabbed = {
       plane: new Plane().setFromNormalAndCoplanarPoint(normal, point), body,
-      vertices: [face.a, face.b, face.c], weights: parts.map((p) => p / sum),
+      vertices, weights: parts.map((p) => p / sum),
     };
-    this.orbit.enabled = false;
+    this.camera.orbit.enabled = false;
   }
 
   private move(event: PointerEvent): void {
@@ -412,19 +478,32 @@ export class Robot3d {
     if (anchor) this.hand.pull(body, vertices, weights, anchor.toArray());
   }
 
-  private letGo(): void {
+  private letGo(event: PointerEvent): void {
+    const from = this.pressed;
+    this.pressed = null;
+    if (from && Math.hypot(event.clientX - from[0], event.clientY - from[1]) <= CLICK) this.click(event);
     if (!this.grabbed) return;
     this.grabbed = null;
-    this.orbit.enabled = true;
+    this.camera.orbit.enabled = true;
     this.hand.release();
+  }
+
+  private click(event: PointerEvent): void {
+    const found = this.hit(this.ray(event));
+    if (!found) return this.hand.pick(null);
+    const {body, point} = found;
+    const away = (vertex: number) => this.vertex(body, vertex).distanceTo(point);
+    const [vertex] = found.vertices.sort((a, b) => away(a) - away(b));
+    this.hand.pick({body, vertex});
   }
 
   draw(): void {
     if (this.follow && this.effectors[0]?.visible) {
-      this.orbit.target.lerp(this.effectors[0].position, 0.1);
+      this.camera.orbit.target.lerp(this.effectors[0].position, 0.1);
     }
-    this.orbit.update();
+    this.camera.orbit.update();
     this.joints.draw((point) => this.screen(point));
-    this.renderer.render(this.world, this.camera);
+    for (const text of this.captions) text.scale.set(0.1, 0.025, 1).multiplyScalar(this.camera.captionScale);
+    this.renderer.render(this.world, this.camera.now);
   }
 }

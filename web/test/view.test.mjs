@@ -423,6 +423,8 @@ test('a recorded run is played again, and sought', async () => {
   await page.keyboard.press(' ');
   await until(page, (s) => s.status.frame === 100 && !s.status.playing);
   await assert.rejects(ask(page, {type: 'settle'}), /cannot be changed/);
+  assert.match(await page.locator('#top .numbers').last().innerText(), /steps of 10 ms/);
+  assert.ok((await page.evaluate(() => window.sinewView.targets()))[0], 'its target is shown');
   const csv = await page.evaluate(() => fetch('download/run.csv').then((r) => r.text()));
   assert.equal(csv.trim().split('\n').length, 102);
   const motion = await download(page, 'motion.glb');
@@ -442,9 +444,15 @@ test('the gallery shows the examples and opens one', async () => {
   const page = await newPage();
   await page.goto(url);
   await page.getByRole('button', {name: 'Open arm/square'}).waitFor();
-  const pictures = await page.evaluate(() => [...document.querySelectorAll('.example img')]
-    .filter((image) => image.complete && image.naturalWidth > 100).length);
-  assert.ok(pictures >= 4, `${pictures} thumbnails`);
+  const cards = await page.evaluate(async () => {
+    const list = [...document.querySelectorAll('.example')];
+    await Promise.all(list.map((card) => card.querySelector('img')?.decode()));
+    return list.map((card) => ({name: card.innerText, width: card.querySelector('img')?.naturalWidth ?? 0}));
+  });
+  for (const {name, width} of cards) {
+    assert.ok(width > 100, `no picture: ${name}`);
+    assert.match(name, /[.?!]$/, 'whole sentences');
+  }
   await assert.rejects(ask(page, {type: 'open', name: '../../etc/passwd'}), /no example/);
   await page.getByRole('button', {name: 'Open arm/square'}).click();
   const opened = await until(page, (s) => s.mode === 'live' && s.step > 20);
@@ -498,7 +506,7 @@ bodies:
     density: 1070 kg/m^3
     fixed: [{set: x_min}]
 actuators:
-  up: {type: cable, body: beam, points: [0 10 16 mm, 30 10 16 mm, 58 10 16 mm]}
+  up: {type: cable, body: beam, points: [0 10 16 mm, 30 10 16 mm, 58 10 16 mm], command: {displacement: -1 mm}}
   push: {type: force, body: beam, point: 60 10 10 mm, direction: 1 0 0}
 effectors:
   tip: {body: beam, point: 60 10 10 mm}

@@ -31,7 +31,11 @@ export function watched(program) {
   return program;
 }
 
-export const newPage = () => browser.newPage({viewport: {width: 1280, height: 800}});
+export async function newPage() {
+  const page = await browser.newPage({viewport: {width: 1280, height: 800}});
+  page.setDefaultTimeout(120e3);  // without a GPU, beside other work
+  return page;
+}
 
 /** Starts the program; resolves with it and its URL. */
 export async function serve(scene, port = 0, ...more) {

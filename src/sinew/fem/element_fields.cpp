@@ -188,6 +188,30 @@ std::vector<double> all_element_fields(const HasMaterial& body) {
   return means(body, all);
 }
 
+std::vector<double> node_fields(const HasMaterial& body, NodeId node) {
+  std::vector<double> sums(kFields.size(), 0.0);
+  double volume = 0.0;
+  visit_points(body, [&](const PointBatch& point) {
+    Lanes weight = lanes(0.0);  // of the elements round the node
+    for (std::size_t k = 0; k < point.nodes * kLanes; ++k) {
+      const std::size_t lane = k % kLanes;
+      if (point.element[lane] >= 0 && point.node[k] == node) weight[lane] = point.weight[lane];
+    }
+    double share = 0.0;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) share += weight[lane];
+    if (share == 0.0) return;
+    volume += share;
+    for (std::size_t f = 0; f < kFields.size(); ++f) {
+      const Lanes value = value_at(kFields[f].field, point);
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        if (weight[lane] > 0.0) sums[f] += weight[lane] * value[lane];
+      }
+    }
+  });
+  for (double& sum : sums) sum /= volume;
+  return sums;
+}
+
 NodalMean::NodalMean(const FemModel& elements)
     : elements_(elements), around_(static_cast<std::size_t>(elements.mesh().nodes.rows()), 0.0) {
   const ElementList list(elements.mesh());

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "sinew/core/types.hpp"
+
 namespace sinew::mechanics {
 class Body;
 class BodyModel;
@@ -67,6 +69,10 @@ std::vector<double> element_field(const HasMaterial& body, ElementField field);
 /// gives them, for the cost of little more than one.
 /// @param body at its present state.
 std::vector<double> all_element_fields(const HasMaterial& body);
+/// (fields,) all element_fields() at a node, from the elements round it: what NodalMean makes of
+/// element_field() there, to rounding. NaN at a node of no element.
+/// @param body at its present state. @param node of its mesh.
+std::vector<double> node_fields(const HasMaterial& body, NodeId node);
 
 /// Means at the nodes of what elements have, weighted by their volumes at rest; the smoothing of
 /// Hinton and Campbell, Int. J. Numer. Meth. Engng 8, 1974, in its simplest form.
