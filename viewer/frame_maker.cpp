@@ -141,7 +141,7 @@ void FrameMaker::fill_contacts(Frame& frame) {
 }
 
 PickFrame FrameMaker::picked(const SurfaceVertex& at) const {
-  const Surface& surface = description_.surfaces[static_cast<std::size_t>(at.body)];
+  const DisplaySurface& surface = description_.surfaces[static_cast<std::size_t>(at.body)];
   PickFrame pick{at, surface.nodes[static_cast<std::size_t>(at.vertex)], {}};
   for (const double value : fields_at(simulation_.body(at.body), simulation_, pick.node)) {
     pick.fields.push_back(static_cast<float>(value));

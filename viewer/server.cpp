@@ -376,7 +376,7 @@ void Server::Hub::choose_field(ViewConnection& view, const std::optional<std::st
 void Server::Hub::choose_pick(ViewConnection& view, const Pick& pick) {
   std::optional<SurfaceVertex> chosen;
   if (pick.vertex) {
-    const std::vector<Surface>& surfaces = source_->description().surfaces;
+    const std::vector<DisplaySurface>& surfaces = source_->description().surfaces;
     const auto found = std::ranges::find(surfaces, pick.vertex->body, &Surface::body);
     if (found == surfaces.end()) {
       throw Error(ErrorKind::unknown_name, {.item = "body"},
