@@ -44,8 +44,10 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
   std::vector<double> weights;
   for (const EffectorTask& task : settings_.tasks) {
     const auto& effector = model.effector(task.effector);
+    const bool turns = effector.kind() == constraint::EffectorKind::orientation;
     for (int k = 0; k < effector.row_count(); ++k) {
       effector_rows_.push_back(effector.first_row() + k);
+      row_turns_.push_back(turns);
       weights.push_back(task.weight(k) * std::pow(EffectorTask::kLaterPriority, task.priority - 1));
     }
   }
@@ -142,12 +144,13 @@ double InverseController::negligible_objective() const {
 }
 
 // However often the step is linearised, its goal stays: the part of the gap at its start that one
-// step may close.
+// step may close. An angle counts as its arc at a distance of the robot's size.
 void InverseController::form_residual(const StepProblem& problem, const Response& response) {
   measure_gap(problem);
   double to_go = 0.0;
   for (Eigen::Index k = 0; k < gap_.size(); ++k) {
-    if (row_weights_[k] > 0.0) to_go = std::hypot(to_go, gap_before_[k]);
+    const double arm = row_turns_[static_cast<std::size_t>(k)] ? problem.size : 1.0;
+    if (row_weights_[k] > 0.0) to_go = std::hypot(to_go, arm * gap_before_[k]);
   }
   const double most = largest_step(problem);
   for_later_ = (1.0 - (to_go > most ? most / to_go : 1.0)) * gap_before_;

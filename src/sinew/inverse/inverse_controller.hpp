@@ -94,6 +94,7 @@ class InverseController : public TargetController, public step::Controller {
   bool attached_ = false;
 
   std::vector<int> effector_rows_;  // rows of H, all tasks one after the other
+  std::vector<char> row_turns_;     // whether a row is an angle
   VectorX row_weights_;             // Q, as many
   VectorX residual_;                // delta_free_e - target, shortened to largest_step
   VectorX gap_;                     // of the tasks' rows: what delta should be, less delta

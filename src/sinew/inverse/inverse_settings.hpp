@@ -60,7 +60,7 @@ struct InverseSettings {
   /// pull against each other let go in time.
   double relaxation = 1e-2;
   /// A target farther away than this part of the robot's size is approached by steps of that
-  /// length, since beyond it the linearisation is worth nothing.
+  /// length, since beyond it the linearisation is worth nothing; a rotation by as many rad a step.
   double largest_step = 0.02;
   /// m (or rad): an effector this near to its target is on target.
   double tolerance = 1e-4;
