@@ -149,7 +149,7 @@ SCENES = [
     scene("misspelt-nested-key", "unknown-key", "scene.yaml:9:37", ["yung_modulus", "young_modulus"], ("young_modulus", "yung_modulus")),
     scene("key-twice", "duplicate-key", "scene.yaml:5:1", ["duration"], ("duration: 0.05 s", "duration: 0.05 s\nduration: 1 s")),
     scene("no-material", "missing-key", "scene.yaml:7:5", ["material"], ("    material: {model: corotational, young_modulus: 200 kPa, poisson_ratio: 0.4}\n", "")),
-    scene("misspelt-silicone", "unknown-choice", "scene.yaml:9:15", ["ecoflex-00-30"], (LAW, "ecoflex-0030")),
+    scene("misspelt-silicone", "unknown-choice", "scene.yaml:9:15", ["ecoflex-00-30"], (LAW, "ecoflx-00-30")),
     scene("ogden-without-convention", "missing-key", "scene.yaml:9:15", ["mu-over-alpha"],
           (LAW, "{model: ogden, mu: 24 kPa, alpha: 1.7, poisson_ratio: 0.49}")),
     scene("softer-than-nothing", "invalid-material", "scene.yaml:9:15", ["-2000 Pa"],

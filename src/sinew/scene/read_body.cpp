@@ -389,30 +389,31 @@ std::vector<std::string> shape_names() {
 }
 
 MeshDescription read_shape(const std::string& shape, const std::vector<std::string>& measures) {
-  Node written = Node::map();
-  written.set(kShapeKey, Node::text(shape));
-  written.set_place({.item = "shape"});
+  const Location place = {.item = "--shape"}, setting = {.item = "--set"};
+  Node written = Node::map(), word = Node::text(shape);
+  word.set_place(place);
+  written.set(kShapeKey, std::move(word));
   for (const std::string& measure : measures) {
     const std::size_t equals = measure.find('=');
     if (equals == std::string::npos || equals == 0) {
-      throw Error(ErrorKind::bad_argument, {.item = shape},
+      throw Error(ErrorKind::bad_argument, setting,
                   fmt::format("{} is not an assignment", show(measure)),
                   "write a measure, '=' and a value: radius=15mm");
     }
     const std::string key = measure.substr(0, equals);
     Node value = parse_yaml(measure.substr(equals + 1), key);
-    value.set_place({.item = key});
+    value.set_place({.file = "--set", .item = key});
     written.set(key, std::move(value));
   }
   const Fields fields(written, shape_form());
   for (const Node::Entry& entry : written.entries()) {
     if (entry.key == kShapeKey) continue;
     const Key* key = fields.table().find(entry.key);
-    if (key == nullptr) throw_unknown_key(entry.key, fields.table(), {.item = shape});
+    if (key == nullptr) throw_unknown_key(entry.key, fields.table(), setting);
     check_value(entry.value, key->forms);
   }
   MeshDescription mesh;
-  mesh.place = {.item = shape};
+  mesh.place = place;
   mesh.shape = shape;
   read_measures(fields, mesh);
   return mesh;
