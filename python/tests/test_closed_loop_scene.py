@@ -35,7 +35,8 @@ def test_the_example_holds_the_tip_while_something_pushes(held):
     rest = free.effector("tip").position.copy()
     free.step(105)
     assert np.linalg.norm(free.effector("tip").position - rest) > 1e-3
-    assert set(record["controller"]) == {"holding", "moving", "on-target"}
+    # On the way cables are slack, which cannot push.
+    assert set(record["controller"]) == {"holding", "moving", "at-limits", "on-target"}
     assert np.isfinite(record["east.displacement_command"][10:]).all()
     assert controller.measured_errors["tip"] == pytest.approx(
         np.linalg.norm(held.sensor("tip").value - record["tip.target"][-1]), rel=0.2)
@@ -75,7 +76,7 @@ def test_a_real_camera_may_stop(held):
     for _ in range(20):
         tip.feed(held.effector("tip").position, time=held.time)
         held.step()
-    assert held.controller.status in ("moving", "on-target")
+    assert held.controller.status in ("moving", "at-limits", "on-target")
     held.step(14)
     assert held.controller.status == "holding" and "silent" in held.controller.conflict
     place = held.effector("tip").position.copy()
