@@ -377,7 +377,7 @@ void Server::Hub::choose_pick(ViewConnection& view, const Pick& pick) {
   std::optional<SurfaceVertex> chosen;
   if (pick.vertex) {
     const std::vector<DisplaySurface>& surfaces = source_->description().surfaces;
-    const auto found = std::ranges::find(surfaces, pick.vertex->body, &Surface::body);
+    const auto found = std::ranges::find(surfaces, pick.vertex->body, &DisplaySurface::body);
     if (found == surfaces.end()) {
       throw Error(ErrorKind::unknown_name, {.item = "body"},
                   fmt::format("there is no body '{}'", pick.vertex->body),

@@ -262,8 +262,9 @@ class HighRateLoop:
             "hands": self._hand_table(hands),
             "sensors": np.array([[row, _number(sensors[name], f"HighRateLoop(sensors['{name}'])", "m or rad")]
                                  for name, rows in self._sensors.items() for row in rows]).reshape(-1, 2),
-            "tasks": np.array([[row, name in self._hands, _number(tasks[name], f"HighRateLoop(tasks['{name}'])", "no unit")]
-                               for name, rows in self._tasks.items() for row in rows], dtype=float).reshape(-1, 3),
+            "tasks": np.array([[row, name in self._hands, _number(tasks[name], f"HighRateLoop(tasks['{name}'])", "no unit"),
+                                self._turns(name)] for name, rows in self._tasks.items() for row in rows],
+                              dtype=float).reshape(-1, 4),
             "observed": sum(sizes),
             "max_contacts": int(max_contacts),
             "passivity": bool(passivity),
@@ -295,6 +296,14 @@ class HighRateLoop:
             self._sim.effector(name)  # raises unknown-name
         prefixes = {name: (f"{name}.", f"{name}[") for name in self._effectors}
         return [sum(row.startswith(prefixes[name]) for row in self._sim.rows) for name in self._effectors]
+
+    def _turns(self, name):
+        """Whether the rows of an effector or actuator are angles; not where only their number is known."""
+        if self._sim is None or name in self._hands:
+            return False
+        if name in self._effectors:
+            return self._sim.effector(name).unit == "rad"
+        return "angle" in self._sim.actuator(name).limits
 
     def _number_rows(self, sizes):
         rows, count = {}, 0

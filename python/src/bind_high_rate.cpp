@@ -61,7 +61,7 @@ HighRateSettings to_settings(const py::dict& given) {
   });
   settings.tasks = to_rows<TaskRow>(table("tasks"), [](const auto& at) {
     return TaskRow{static_cast<int>(at(0)), at(1) != 0.0 ? TaskKind::effort : TaskKind::motion,
-                   at(2)};
+                   at(2), at(3) != 0.0};
   });
   settings.observed = given["observed"].cast<int>();
   settings.max_contacts = given["max_contacts"].cast<int>();

@@ -179,7 +179,9 @@ void bind_round_shapes(py::module_& module) {
 void bind_balls(py::module_& module) {
   module.def(
       "mesh_sphere",
-      [](double radius, int rings) { return share(mesh::sphere({radius, rings})); },
+      [](double radius, int rings) {
+        return share(mesh::sphere({radius, rings}));
+      },
       py::kw_only(), py::arg("radius") = 0.015, py::arg("rings") = 3,
       "mesh_sphere(*, radius=0.015, rings=3)\n--\n\nSee sinew.mesh.sphere().");
   module.def(
@@ -198,9 +200,9 @@ void bind_robots(py::module_& module) {
       "mesh_chambered_cylinder",
       [](double radius, double height, double chamber_radius, double chamber_offset,
          double chamber_bottom, double chamber_top, int core, int through, int layers) {
-        return share(mesh::chambered_cylinder({radius, height, chamber_radius, chamber_offset,
-                                               chamber_bottom, chamber_top, core, through,
-                                               layers}));
+        return share(
+            mesh::chambered_cylinder({radius, height, chamber_radius, chamber_offset,
+                                      chamber_bottom, chamber_top, core, through, layers}));
       },
       py::kw_only(), py::arg("radius") = 0.0125, py::arg("height") = 0.065,
       py::arg("chamber_radius") = 0.0037, py::arg("chamber_offset") = 0.0073,
@@ -213,9 +215,9 @@ void bind_robots(py::module_& module) {
       "mesh_ribbed_finger",
       [](const py::object& size, double spine, double gap, int ribs, int rib_cells, int gap_cells,
          int width_cells, int spine_cells, int rib_rise_cells) {
-        return share(mesh::ribbed_finger({to_vector3(size, "ribbed_finger(size)", "m"), spine, gap,
-                                          ribs, rib_cells, gap_cells, width_cells, spine_cells,
-                                          rib_rise_cells}));
+        return share(
+            mesh::ribbed_finger({to_vector3(size, "ribbed_finger(size)", "m"), spine, gap, ribs,
+                                 rib_cells, gap_cells, width_cells, spine_cells, rib_rise_cells}));
       },
       py::arg("size"), py::kw_only(), py::arg("spine") = 0.006, py::arg("gap") = 0.005,
       py::arg("ribs") = 7, py::arg("rib_cells") = 2, py::arg("gap_cells") = 1,

@@ -162,9 +162,8 @@ void drive(const std::shared_ptr<Session>& session, const ViewOptions& options) 
     session->count_steps();
   } catch (...) {
     if (first) {
-      session->take_back(
-          true, name,
-          inverse::make_controller(session->simulation(), first->settings));
+      session->take_back(true, name,
+                         inverse::make_controller(session->simulation(), first->settings));
     }
     throw;
   }

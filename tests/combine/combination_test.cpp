@@ -15,7 +15,7 @@ namespace {
 
 // Scenes are tried in blocks, which run side by side.
 constexpr std::uint64_t kBlock = 15;
-constexpr int kRandomBlocks = 20;
+constexpr int kRandomBlocks = 12;
 constexpr std::uint64_t kChangedScenes = 30;
 
 // A scene is refused exactly where its features cannot stand together.

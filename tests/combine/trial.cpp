@@ -59,8 +59,7 @@ class Run {
   Run(const scene::Robot& robot, std::unique_ptr<sim::Simulation> begun)
       : own_(std::move(begun)), simulation(*own_) {
     for (const auto& controller : robot.controllers) {
-      controllers_.push_back(
-          inverse::make_controller(simulation, controller.settings));
+      controllers_.push_back(inverse::make_controller(simulation, controller.settings));
     }
   }
 

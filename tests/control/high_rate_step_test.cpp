@@ -133,6 +133,27 @@ TEST(HighRateStep, DrivesTasksToTheirTargetsWithinLimits) {
   EXPECT_LT((output.driven_motion - motion).norm(), 1e-12);
 }
 
+TEST(HighRateStep, ARotationIsShortenedByItsAngleWhateverTheRobotsSize) {
+  for (const double size : {0.1, 10.0}) {
+    HighRateSettings settings = free_settings();
+    for (TaskRow& task : settings.tasks) task.turns = true;
+    Random random(4);
+    Snapshot given = random_snapshot(settings, random);
+    given.size = size;
+    const VectorX start =
+        given.free.segment(11, 3) + given.compliance.middleRows(11, 3) * given.effort;
+    const VectorX goal =
+        given.free.segment(11, 3) + given.compliance.block(11, 0, 3, 8) * VectorX::Constant(8, 5.0);
+    settings.largest_step = 0.5 * (goal - start).norm();  // half way
+    HighRateStep step(settings);
+    HighRateInput input = HighRateInput::none(settings);
+    input.targets = goal;
+    step.step(&given, input, {});
+    for (int k = 0; k < 20; ++k) step.step(nullptr, input, {});
+    EXPECT_LT((step.output().tasks - 0.5 * (start + goal)).norm(), 1e-3 * (goal - start).norm());
+  }
+}
+
 TEST(HighRateStep, KeepsRatesAndMotionsWithinLimits) {
   HighRateSettings settings = free_settings();
   settings.largest_step = 1.0;

@@ -77,7 +77,8 @@ double DriveProgram::missed(const Asked& asked, const VectorX& driven) const {
   return sum;
 }
 
-// Targets of motions that are too far away for the linearisation, from where it was made.
+// Targets of motions that are too far away for the linearisation, from where it was made. An angle
+// counts as its arc at a distance of the robot's size.
 void DriveProgram::shorten(const Asked& asked) {
   const Snapshot& snapshot = asked.snapshot;
   goal_ = asked.targets;
@@ -89,7 +90,10 @@ void DriveProgram::shorten(const Asked& asked) {
     return target - snapshot.free[task.row] - row.dot(snapshot.effort);
   };
   double square = 0.0;
-  for (std::size_t t = 0; t < settings_.tasks.size(); ++t) square += way(t) * way(t);
+  for (std::size_t t = 0; t < settings_.tasks.size(); ++t) {
+    const double arc = (settings_.tasks[t].turns ? snapshot.size : 1.0) * way(t);
+    square += arc * arc;
+  }
   const double most = settings_.largest_step * snapshot.size;
   if (square <= most * most) return;
   const double rest = 1.0 - most / std::sqrt(square);

@@ -44,6 +44,7 @@ struct TaskRow {
   int row = 0;
   TaskKind kind = TaskKind::motion;
   double weight = 1.0;  ///< >= 0, of the squared error in m, rad or N
+  bool turns = false;   ///< whether the row is an angle, rad: of largest_step
 };
 
 /// Control of the energy that hands get (PassivityController).

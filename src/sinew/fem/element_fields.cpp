@@ -201,8 +201,9 @@ std::vector<double> node_fields(const HasMaterial& body, NodeId node) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) share += weight[lane];
     if (share == 0.0) return;
     volume += share;
+    PointValues value_of(point);
     for (std::size_t f = 0; f < kFields.size(); ++f) {
-      const Lanes value = value_at(kFields[f].field, point);
+      const Lanes value = value_of(kFields[f].field);
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         if (weight[lane] > 0.0) sums[f] += weight[lane] * value[lane];
       }

@@ -69,6 +69,7 @@ std::vector<double> element_field(const HasMaterial& body, ElementField field);
 /// gives them, for the cost of little more than one.
 /// @param body at its present state.
 std::vector<double> all_element_fields(const HasMaterial& body);
+
 /// (fields,) all element_fields() at a node, from the elements round it: what NodalMean makes of
 /// element_field() there, to rounding. NaN at a node of no element.
 /// @param body at its present state. @param node of its mesh.

@@ -390,7 +390,7 @@ struct ControllerDescription {
   Location place;
   std::optional<inverse::Feedback> feedback;  ///< of a closed loop; its sensors have no numbers yet
   std::vector<std::string> sensors;           ///< (tasks,) of a closed loop, what measures each
-  std::vector<std::string> actuators;  ///< empty: all
+  std::vector<std::string> actuators;         ///< empty: all
   std::vector<Location> actuator_places;
   std::vector<TaskDescription> tasks;
   std::vector<ContactTaskDescription> contacts;
