@@ -43,7 +43,8 @@ class SourceThread : public Source {
   virtual void handle(const Request& request) = 0;
   /// Throws Error when play and step are refused.
   virtual void require_ready() const {}
-  /// @param real_time_factor NaN: not measured. @param picks nodes whose values are wanted.
+  /// @param wanted field that colours the bodies. @param real_time_factor NaN: not measured. @param
+  /// picks nodes whose values are wanted.
   virtual std::shared_ptr<const Frame> frame(const FieldChoice& wanted, double real_time_factor,
                                              const std::vector<SurfaceVertex>& picks) = 0;
   /// JSON object of the status message without playing, speed and slow.

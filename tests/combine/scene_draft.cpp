@@ -63,15 +63,26 @@ BodyShape block_shape() {
           {30.0, 10.0, 5.0}};
 }
 
+// A spine of 6 mm along x, and ribs on it with gaps where nothing is attached.
+BodyShape ribbed_shape() {
+  BodyShape shape = block_shape();
+  shape.mesh =
+      "{shape: ribbed-finger, length: 60 mm, width: 20 mm, height: 10 mm, ribs: 3, gap: 2 mm, "
+      "spine: 6 mm, element_size: 10 mm}";
+  return shape;
+}
+
 BodyShape round_shape(const std::string& mesh) {
   return {mesh, "bottom", "top", "side", 2, {}, {10.0, 10.0, 30.0}};
 }
 
 BodyShape fem_shape(const std::string& name) {
   if (name == "block") return block_shape();
+  if (name == "ribbed-finger") return ribbed_shape();
   BodyShape shape = round_shape(look_up(
       "mesh", name,
       {{"cylinder", "{shape: cylinder, radius: 10 mm, height: 60 mm, element_size: 15 mm}"},
+       {"capsule", "{shape: capsule, radius: 10 mm, length: 40 mm, element_size: 15 mm}"},
        {"cone",
         "{shape: cone, base_radius: 12 mm, tip_radius: 9 mm, height: 60 mm, element_size: 15 mm}"},
        {"hollow-cylinder",
@@ -81,6 +92,7 @@ BodyShape fem_shape(const std::string& name) {
         "{shape: chambered-cylinder, radius: 12 mm, height: 60 mm, chamber_radius: 5 mm, "
         "chamber_offset: 4 mm, chamber_bottom: 10 mm, chamber_top: 50 mm, element_size: 30 mm}"}}));
   if (name == "hollow-cylinder") shape.side = "outer";
+  if (name == "capsule") shape.origin[2] = -30.0;  // its middle is the origin of its mesh
   return shape;
 }
 

@@ -119,13 +119,13 @@ TEST(Frame, HasTheNodeAndTheTimelineThatWereAskedFor) {
   encode_frame(frame, {.shape = false, .pick = SurfaceVertex{0, 5}}, bytes);
   auto list = parts(bytes, 2);
   ASSERT_EQ(list.size(), 3U);
-  EXPECT_EQ(list[1].kind, 9);
+  EXPECT_EQ(list[1].kind, 10);
   ASSERT_EQ(list[1].bytes, 20U);
   EXPECT_EQ(number<std::uint32_t>(bytes, list[1].at), 0U);
   EXPECT_EQ(number<std::uint32_t>(bytes, list[1].at + 4), 5U);
   EXPECT_EQ(number<std::uint32_t>(bytes, list[1].at + 8), 11U);
   EXPECT_EQ(number<float>(bytes, list[1].at + 16), 3.0F);
-  EXPECT_EQ(list[2].kind, 10);
+  EXPECT_EQ(list[2].kind, 11);
   ASSERT_EQ(list[2].bytes, 20U);
   EXPECT_EQ(number<std::uint32_t>(bytes, list[2].at + 4), 40U);
   EXPECT_EQ(number<std::uint32_t>(bytes, list[2].at + 8), 7U);
@@ -133,7 +133,7 @@ TEST(Frame, HasTheNodeAndTheTimelineThatWereAskedFor) {
   encode_frame(frame, {.shape = false, .pick = SurfaceVertex{1, 5}}, bytes);
   list = parts(bytes, 2);
   ASSERT_EQ(list.size(), 2U) << "a node that no frame has";
-  EXPECT_EQ(list[1].kind, 10);
+  EXPECT_EQ(list[1].kind, 11);
 }
 
 }  // namespace

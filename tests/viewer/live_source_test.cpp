@@ -18,6 +18,7 @@
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
+#include "sinew/step/controller.hpp"
 
 #include "robot_fixture.hpp"
 #include "viewer/robot_state.hpp"
@@ -332,7 +333,8 @@ TEST(LiveSource, StepsASimulationOfOthersAndGivesItsControllerBack) {
   const auto before = simulation->steps();
   simulation->step();
   EXPECT_EQ(simulation->steps(), before + 1);
-  EXPECT_EQ(simulation->actuator(0).owner, left.second.get());
+  EXPECT_EQ(simulation->actuator(0).owner,
+            dynamic_cast<const step::Controller*>(left.second.get()));
 }
 
 }  // namespace

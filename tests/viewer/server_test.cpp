@@ -175,8 +175,8 @@ int picked_vertex(const std::string& bytes) {
     std::uint32_t length = 0, vertex = 0;
     std::memcpy(&kind, bytes.data() + at, sizeof kind);
     std::memcpy(&length, bytes.data() + at + 4, sizeof length);
-    if (kind == 9) std::memcpy(&vertex, bytes.data() + at + 12, sizeof vertex);
-    if (kind == 9) return static_cast<int>(vertex);
+    if (kind == 10) std::memcpy(&vertex, bytes.data() + at + 12, sizeof vertex);
+    if (kind == 10) return static_cast<int>(vertex);
     at += 8 + length;
   }
   return -1;

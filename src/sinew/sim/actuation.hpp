@@ -72,7 +72,8 @@ struct Interval {
   double min, max;
 };
 /// [limits.min, limits.max] cut to what `rate` allows from `now`. A value that stands outside its
-/// limits moves towards them as fast as it may. @param time_step s.
+/// limits moves towards them as fast as it may.
+/// @param limits of the value, and its rate. @param now where it is. @param time_step s.
 Interval reachable(const Limits& limits, double now, double time_step);
 
 /// Moves commands towards them from where the actuators were.
