@@ -111,6 +111,16 @@ def test_what_is_not_held_is_named():
         sinew.load(apart)
 
 
+def test_points_of_a_weld_may_lie_beside_both_bodies():
+    beside = {"type": "weld", "bodies": ["b", "a"], "points": [[0.04, 0.01, 0.0205], [0.04, 0.005, 0.0205], [0.04, 0.01, -0.0005]]}
+    with pytest.raises(sinew.Error, match="lies 0.0005 m outside.*`outside: nearest`"):
+        sinew.load(scene(joints={"seam": beside}))
+    sim = sinew.load(scene(joints={"seam": beside | {"outside": "nearest"}}))
+    sim.solve_static()
+    assert sim.joint("seam").gap < 1e-12
+    assert sim.joint("seam").force == pytest.approx([0, 0, -0.04 * 0.02 * 0.02 * 1000.0 * 9.81], abs=1e-9)
+
+
 def test_a_light_bracket_under_great_forces_takes_few_iterations():
     # A stone of 20 g hits a link that a bracket of 0.6 g holds on a finger of rubber, at 1 m/s in steps of 5 ms.
     sim = sinew.load({

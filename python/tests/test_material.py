@@ -82,7 +82,7 @@ def test_where_a_published_law_is_unstable():
 @pytest.mark.parametrize(
     ("call", "kind"),
     [
-        (lambda: sinew.material("ecoflex-0030"), "unknown-choice"),
+        (lambda: sinew.material("ecoflex-3000"), "unknown-choice"),
         (lambda: sinew.material({"model": "neo-hookean"}), "missing-key"),
         (lambda: sinew.material({"young_modulus": 1e5, "poisson_ratio": 0.4}), "wrong-type"),
         (lambda: sinew.material("ecoflex-00-30").nominal_stress(-1.0), "out-of-range"),

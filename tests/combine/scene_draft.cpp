@@ -82,7 +82,7 @@ BodyShape fem_shape(const std::string& name) {
   BodyShape shape = round_shape(look_up(
       "mesh", name,
       {{"cylinder", "{shape: cylinder, radius: 10 mm, height: 60 mm, element_size: 15 mm}"},
-       {"capsule", "{shape: capsule, radius: 10 mm, length: 40 mm, element_size: 15 mm}"},
+       {"capsule", "{shape: capsule, radius: 12 mm, length: 36 mm, element_size: 15 mm}"},
        {"cone",
         "{shape: cone, base_radius: 12 mm, tip_radius: 9 mm, height: 60 mm, element_size: 15 mm}"},
        {"hollow-cylinder",

@@ -27,7 +27,7 @@ std::vector<constraint::Tie::Pair> attach_pairs(ModelData& data, const WeldSetti
   }
   for (const NodeId node : settings.nodes) points.push_back(attach_node(first, node));
   for (Eigen::Index i = 0; i < settings.points.rows(); ++i) {
-    points.push_back(first.attach(settings.points.row(i), mesh::Outside::error,
+    points.push_back(first.attach(settings.points.row(i), settings.outside,
                                   fmt::format("point {} of weld '{}'", i, settings.name)));
   }
   if (points.empty()) {

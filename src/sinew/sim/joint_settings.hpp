@@ -21,7 +21,7 @@ struct WeldSettings {
   int first = 0, second = 1;  ///< bodies
   std::vector<NodeId> nodes;  ///< of the first's mesh
   Points points;              ///< (n, 3) m, at rest; beside the nodes
-  /// For points that lie in no element of the second; those of the first must be in it.
+  /// For points that lie in no element of a body.
   mesh::Outside outside = mesh::Outside::error;
 };
 
