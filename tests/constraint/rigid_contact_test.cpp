@@ -114,7 +114,9 @@ TEST(RigidContact, ForcesCancel) {
     contact.begin_step(configuration, pose, pose, 0.0, values);
     const Vector3 centre[] = {configuration.position(contact.own()->centre),
                               configuration.position(contact.carrier()->centre)};
+    ASSERT_FALSE(contact.idle(0, values));
     for (std::size_t k = 0; k < contact.size(); ++k) {
+      if (contact.idle(k, values)) continue;  // has no force
       for (int j = 0; j < 3; ++j) {
         const Vector3* direction = &values.direction[contact.entry(k, j)];
         EXPECT_EQ(direction[0], -direction[2]);
