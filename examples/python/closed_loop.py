@@ -18,7 +18,7 @@ SCENE = Path(__file__).resolve().parents[1] / "trunk" / "trunk.yaml"
 CABLES = [f"{kind}_{k}" for kind in ("long", "short") for k in range(4)]
 GOAL = np.array([0.03, 0.0, 0.18])
 CAMERA = "sensors={camera: {type: marker, body: trunk, point: 0 0 195 mm, noise: 0.1 mm, delay: 20 ms, seed: 1}}"
-DIFFERENT = {"mesh": "{shape: trunk, element_size: 5 mm}", "stiffness": 0.7, "friction": 0.1, "load": "20 g"}
+DIFFERENT = {"mesh": "{shape: trunk, element_size: 6 mm}", "stiffness": 0.7, "friction": 0.1, "load": "20 g"}
 
 
 def trunk(*, mesh="{shape: trunk}", stiffness=1.0, friction=0.0, load="", more=()):
