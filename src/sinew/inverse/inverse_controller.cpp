@@ -73,7 +73,7 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
   attached_ = true;
 }
 
-InverseController::~InverseController() { detach(); }
+InverseController::~InverseController() { InverseController::detach(); }
 
 void InverseController::detach() {
   if (attached_) simulation_.detach(*this);
