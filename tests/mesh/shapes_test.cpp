@@ -109,42 +109,6 @@ TEST(Shapes, TheChamberIsAVoidOfItsVolume) {
   EXPECT_THROW(chambered_cylinder(wide), Error);
 }
 
-TEST(Shapes, RoundSolidsOfHexahedraHaveTheirVolume) {
-  // Rings 2, 3, 4, 5: a square of 2, 4, 4, 6 cells a side.
-  for (const auto& [rings, around] : {std::pair(2, 8), {3, 16}, {4, 16}, {5, 24}}) {
-    const Mesh mesh =
-        cylinder({.radius = 0.01, .height = 0.1, .rings = rings, .layers = 5}, Cells::hexahedra);
-    const MeshReport report = require_sound(mesh);
-    EXPECT_NEAR(report.volume, std::numbers::pi * 1e-4 * 0.1, 1e-15) << rings;
-    EXPECT_EQ(report.tetrahedra, 0);
-    EXPECT_EQ(mesh.node_sets.at("side").size(), static_cast<std::size_t>(6 * around)) << rings;
-    // Nothing is flat: each cell's smallest Jacobian is a good part of its mean.
-    for (const Hexahedron& nodes : mesh.hexahedra) {
-      Eigen::Matrix<double, 8, 3> x;
-      for (int a = 0; a < 8; ++a) x.row(a) = mesh.nodes.row(nodes[static_cast<std::size_t>(a)]);
-      double least = std::numeric_limits<double>::infinity(), sum = 0.0;
-      for (const Vector3& point : hexahedron_points()) {
-        const double j = (x.transpose() * hexahedron_gradients(point)).determinant();
-        least = std::min(least, j);
-        sum += j / 8;
-      }
-      EXPECT_GT(least / sum, 0.5);
-    }
-  }
-  EXPECT_NEAR(require_sound(hollow_cylinder({.around = 30}, Cells::hexahedra)).volume,
-              std::numbers::pi * (1.44e-4 - 0.64e-4) * 0.05, 1e-15);
-  const double taper = std::numbers::pi * 0.1 / 3 * (4e-4 + 2e-4 + 1e-4);
-  EXPECT_NEAR(require_sound(cone({}, Cells::hexahedra)).volume / taper, 1.0, 2e-3);
-  EXPECT_EQ(require_sound(trunk({}, Cells::hexahedra)).tetrahedra, 0);
-  error_text(ErrorKind::out_of_range, [] { cylinder({.rings = 1}, Cells::hexahedra); });
-}
-
-TEST(Shapes, AreOfGoodQuality) {
-  EXPECT_GT(require_sound(cylinder({})).min_radius_ratio, 0.3);
-  EXPECT_GT(require_sound(cone({})).min_radius_ratio, 0.3);
-  EXPECT_GT(require_sound(hollow_cylinder({})).min_radius_ratio, 0.3);
-}
-
 struct HexahedraMeasures {
   double volume = 0.0;          // as elements integrate it, m^3
   double least_jacobian = 1.0;  // over its mean, at the points of integration
@@ -165,6 +129,32 @@ HexahedraMeasures measure_hexahedra(const Mesh& mesh) {
     result.least_jacobian = std::min(result.least_jacobian, 8.0 * least / sum);
   }
   return result;
+}
+
+TEST(Shapes, RoundSolidsOfHexahedraHaveTheirVolume) {
+  // Rings 2, 3, 4, 5: a square of 2, 4, 4, 6 cells a side.
+  for (const auto& [rings, around] : {std::pair(2, 8), {3, 16}, {4, 16}, {5, 24}}) {
+    const Mesh mesh =
+        cylinder({.radius = 0.01, .height = 0.1, .rings = rings, .layers = 5}, Cells::hexahedra);
+    const MeshReport report = require_sound(mesh);
+    EXPECT_NEAR(report.volume, std::numbers::pi * 1e-4 * 0.1, 1e-15) << rings;
+    EXPECT_EQ(report.tetrahedra, 0);
+    EXPECT_EQ(mesh.node_sets.at("side").size(), static_cast<std::size_t>(6 * around)) << rings;
+    // Nothing is flat: each cell's smallest Jacobian is a good part of its mean.
+    EXPECT_GT(measure_hexahedra(mesh).least_jacobian, 0.5);
+  }
+  EXPECT_NEAR(require_sound(hollow_cylinder({.around = 30}, Cells::hexahedra)).volume,
+              std::numbers::pi * (1.44e-4 - 0.64e-4) * 0.05, 1e-15);
+  const double taper = std::numbers::pi * 0.1 / 3 * (4e-4 + 2e-4 + 1e-4);
+  EXPECT_NEAR(require_sound(cone({}, Cells::hexahedra)).volume / taper, 1.0, 2e-3);
+  EXPECT_EQ(require_sound(trunk({}, Cells::hexahedra)).tetrahedra, 0);
+  error_text(ErrorKind::out_of_range, [] { cylinder({.rings = 1}, Cells::hexahedra); });
+}
+
+TEST(Shapes, AreOfGoodQuality) {
+  EXPECT_GT(require_sound(cylinder({})).min_radius_ratio, 0.3);
+  EXPECT_GT(require_sound(cone({})).min_radius_ratio, 0.3);
+  EXPECT_GT(require_sound(hollow_cylinder({})).min_radius_ratio, 0.3);
 }
 
 constexpr double kBall = 4.0 / 3.0 * std::numbers::pi * 1e-6;  // of 10 mm, m^3
