@@ -93,7 +93,7 @@ ClosedLoop::ClosedLoop(sim::Simulation& simulation, InverseSettings settings)
     const EffectorTask& task = settings_.tasks[t];
     first_.push_back(std::ssize(weights));
     for (int k = 0; k < model.effector(task.effector).row_count(); ++k) {
-      weights.push_back(task.weight(k) * std::pow(EffectorTask::kLaterPriority, task.priority - 1));
+      weights.push_back(task.weight_by_priority(k));
     }
     const sim::ChannelSettings& channel =
         model.sensors()[at(settings_.feedback->sensors[t])].channel;

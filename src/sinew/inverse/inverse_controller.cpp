@@ -48,7 +48,7 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
     for (int k = 0; k < effector.row_count(); ++k) {
       effector_rows_.push_back(effector.first_row() + k);
       row_turns_.push_back(turns);
-      weights.push_back(task.weight(k) * std::pow(EffectorTask::kLaterPriority, task.priority - 1));
+      weights.push_back(task.weight_by_priority(k));
     }
   }
   const auto rows = static_cast<Eigen::Index>(effector_rows_.size());

@@ -2,6 +2,7 @@
 /// What an inverse controller is asked, and how it works.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -36,6 +37,10 @@ struct EffectorTask {
   /// Of a row of the effector, within its priority.
   double weight(Eigen::Index row) const {
     return weights[weights.size() == 1 ? 0 : static_cast<std::size_t>(row)];
+  }
+  /// Of a row among those of all tasks.
+  double weight_by_priority(Eigen::Index row) const {
+    return weight(row) * std::pow(kLaterPriority, priority - 1);
   }
 };
 
