@@ -59,17 +59,17 @@ endfunction()
 
 # sinew_build_library(<target> <level>), sinew_build_test(<target>): a level, and the precompiled header for it.
 function(sinew_build_library target level)
-  _sinew_build(${target} ${level} 5 sinew_precompiled_${level})
+  _sinew_build(${target} ${level} 10 sinew_precompiled_${level})
 endfunction()
 
 function(sinew_build_test target)
-  _sinew_build(${target} 1 3 sinew_precompiled_test)
+  _sinew_build(${target} 1 6 sinew_precompiled_test)
 endfunction()
 
 # sinew_build_consumer(<target> <header>...): level 2, and a precompiled header of its own.
 function(sinew_build_consumer target)
   sinew_optimise(${target} 2)
-  sinew_unite(${target} 3)
+  sinew_unite(${target} 6)
   if(SINEW_PCH)
     target_precompile_headers(${target} PRIVATE ${sinew_standard_headers} <Eigen/Dense> <fmt/format.h> ${ARGN})
   endif()

@@ -35,8 +35,8 @@ Choice to_choice(const py::object& value, const std::string& place, std::size_t 
   return choice;
 }
 
-void command(Batch& self, const std::string& quantity, const py::object& values,
-             const py::object& which) {
+void command_rows(Batch& self, const std::string& quantity, const py::object& values,
+                  const py::object& which) {
   const Array array = to_array(values, "Batch.command(values)", "(simulations, actuators)");
   if (array.ndim() != 2 || array.shape(0) != static_cast<py::ssize_t>(self.size())) {
     throw Error(ErrorKind::wrong_shape, {.item = "Batch.command(values)"},
@@ -62,7 +62,7 @@ py::list step(Batch& self, const py::object& n, const py::object& which) {
   return failures;
 }
 
-Array read(Batch& self, const std::vector<std::string>& names) {
+Array read_rows(Batch& self, const std::vector<std::string>& names) {
   const Rows rows = self.read(names);
   return Array({rows.rows(), rows.cols()}, rows.data());
 }
@@ -97,7 +97,7 @@ Error
       .def("__len__", &Batch::size)
       .def("__getitem__", &Batch::at, py::arg("index"))
       .def_property_readonly("threads", &Batch::threads, "int: as given.")
-      .def("command", &command, py::arg("quantity"), py::arg("values"),
+      .def("command", &command_rows, py::arg("quantity"), py::arg("values"),
            py::arg("which") = py::none(),
            R"(command($self, quantity, values, which=None)
 --
@@ -140,7 +140,7 @@ Raises
 ------
 Error
     out-of-range, wrong-shape; not-finite for external forces that are not; simulation-busy.)")
-      .def("read", &read, py::arg("names"),
+      .def("read", &read_rows, py::arg("names"),
            R"(read($self, names)
 --
 

@@ -32,26 +32,26 @@ constexpr double kShear = 4e4, kBulk = 3e5;  // Pa
 const double kYoung = 9.0 * kBulk * kShear / (3.0 * kBulk + kShear);
 const double kPoisson = kYoung / (2.0 * kShear) - 1.0;
 
-enum class Kind { linear, corotational, rubber, quadratic, hexahedra };
+enum class FieldKind { linear, corotational, rubber, quadratic, hexahedra };
 
-std::shared_ptr<const mesh::Mesh> mesh_of(Kind kind) {
-  if (kind == Kind::hexahedra) {
+std::shared_ptr<const mesh::Mesh> mesh_of(FieldKind kind) {
+  if (kind == FieldKind::hexahedra) {
     return std::make_shared<mesh::Mesh>(
         mesh::block({.size = {0.03, 0.02, 0.02}, .cells = {3, 2, 2}}, mesh::Cells::hexahedra));
   }
   auto tetrahedra = block_mesh(3, 2, 2, 0.01, 0.12);
-  if (kind != Kind::quadratic) return tetrahedra;
+  if (kind != FieldKind::quadratic) return tetrahedra;
   return std::make_shared<mesh::Mesh>(mesh::with_middle_nodes(*tetrahedra));
 }
 
 /// A body that is put into any shape by hand.
 struct Shown {
-  explicit Shown(Kind kind, std::shared_ptr<const mesh::Mesh> mesh = nullptr) {
+  explicit Shown(FieldKind kind, std::shared_ptr<const mesh::Mesh> mesh = nullptr) {
     FemBodySettings settings;
     settings.mesh = mesh ? std::move(mesh) : mesh_of(kind);
     MaterialRegion region{.constants = {kYoung, kPoisson}, .density = 1000.0, .hyperelastic = {}};
-    region.law = kind == Kind::linear ? material::Law::linear : material::Law::corotational;
-    if (kind != Kind::linear && kind != Kind::corotational) {
+    region.law = kind == FieldKind::linear ? material::Law::linear : material::Law::corotational;
+    if (kind != FieldKind::linear && kind != FieldKind::corotational) {
       region.hyperelastic = material::neo_hookean(kShear);
       region.hyperelastic->bulk_modulus = kBulk;
     }
@@ -89,18 +89,18 @@ Matrix3 strong_deformation() {
 }
 
 /// Every field at F from its definition, by Eigen's decompositions.
-double expected(ElementField field, const Matrix3& f, Kind kind) {
+double expected(ElementField field, const Matrix3& f, FieldKind kind) {
   const Eigen::JacobiSVD<Matrix3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vector3& l = svd.singularValues();
   const Matrix3 rotation = svd.matrixU() * svd.matrixV().transpose();
   const double j = f.determinant(), lambda = kBulk - 2.0 / 3.0 * kShear;
   Matrix3 cauchy;
   double energy = 0.0;
-  if (kind == Kind::linear) {
+  if (kind == FieldKind::linear) {
     const Matrix3 e = 0.5 * (f + f.transpose()) - Matrix3::Identity();
     cauchy = 2.0 * kShear * e + lambda * e.trace() * Matrix3::Identity();
     energy = 0.5 * cauchy.cwiseProduct(e).sum();
-  } else if (kind == Kind::corotational) {
+  } else if (kind == FieldKind::corotational) {
     const double growth = l.sum() - 3.0;
     const Matrix3 piola = 2.0 * kShear * (f - rotation) + lambda * growth * rotation;
     cauchy = piola * f.transpose() / j;
@@ -142,15 +142,16 @@ double expected(ElementField field, const Matrix3& f, Kind kind) {
   return 0.0;
 }
 
-class EveryElement : public testing::TestWithParam<Kind> {};
+class EveryElement : public testing::TestWithParam<FieldKind> {};
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryElement,
-                         testing::Values(Kind::linear, Kind::corotational, Kind::rubber,
-                                         Kind::quadratic, Kind::hexahedra));
+                         testing::Values(FieldKind::linear, FieldKind::corotational,
+                                         FieldKind::rubber, FieldKind::quadratic,
+                                         FieldKind::hexahedra));
 
 TEST_P(EveryElement, FieldsAreWhatTheirDefinitionsSay) {
   Shown shown(GetParam());
   Matrix3 f = strong_deformation();
-  if (GetParam() == Kind::linear) f = Matrix3::Identity() + 0.02 * (f - Matrix3::Identity());
+  if (GetParam() == FieldKind::linear) f = Matrix3::Identity() + 0.02 * (f - Matrix3::Identity());
   shown.deform([&](const Vector3& x) -> Vector3 { return f * x + Vector3(0.1, -0.2, 0.3); });
   const NodalMean mean(shown.model->elements());
   for (const ElementFieldInfo& info : element_fields()) {
@@ -219,7 +220,7 @@ TEST(ElementFields, ANodeWithoutElementsHasNone) {
   auto mesh = block_mesh(1, 1, 1, 0.01);
   mesh->nodes.conservativeResize(mesh->nodes.rows() + 1, 3);
   mesh->nodes.bottomRows(1).setConstant(1.0);
-  Shown shown(Kind::corotational, mesh);
+  Shown shown(FieldKind::corotational, mesh);
   const auto means = NodalMean(shown.model->elements())(
       element_field(shown.material(), ElementField::volume_ratio));
   EXPECT_TRUE(std::isnan(means.back()));

@@ -22,15 +22,15 @@
 namespace sinew::fem {
 namespace {
 
-enum class Kind { tetrahedra, patches, quadratic, hexahedra };
+enum class ViscousKind { tetrahedra, patches, quadratic, hexahedra };
 
-std::shared_ptr<const mesh::Mesh> box(Kind kind, int n) {
-  if (kind == Kind::hexahedra) {
+std::shared_ptr<const mesh::Mesh> box(ViscousKind kind, int n) {
+  if (kind == ViscousKind::hexahedra) {
     return std::make_shared<mesh::Mesh>(mesh::block(
         {.size = {n * kEdge, n * kEdge, n * kEdge}, .cells = {n, n, n}}, mesh::Cells::hexahedra));
   }
   auto linear = block_mesh(n, n, n, kEdge, 0.1);
-  if (kind != Kind::quadratic) return linear;
+  if (kind != ViscousKind::quadratic) return linear;
   return std::make_shared<mesh::Mesh>(mesh::with_middle_nodes(*linear));
 }
 
@@ -57,19 +57,19 @@ material::Hyperelastic saint_venant() {
 
 /// A body without fixed nodes, and its history.
 struct Body {
-  Body(Kind kind, const material::Hyperelastic& law, int n = 2, int threads = 1)
+  Body(ViscousKind kind, const material::Hyperelastic& law, int n = 2, int threads = 1)
       : model(std::make_shared<const FemModel>(box(kind, n), settings(kind, law))),
         pool(threads),
         assembly(model, pool),
         history(model->solids()) {
     assembly.set_history(&history);
   }
-  static FemModelSettings settings(Kind kind, const material::Hyperelastic& law) {
+  static FemModelSettings settings(ViscousKind kind, const material::Hyperelastic& law) {
     FemModelSettings result;
     result.regions.push_back({.constants = {},
                               .density = 1000.0,
                               .hyperelastic = law,
-                              .patches = kind == Kind::patches});
+                              .patches = kind == ViscousKind::patches});
     return result;
   }
   void step(const Points& x, double time_step) {
@@ -97,12 +97,12 @@ struct Body {
   ElementHistory history;
 };
 
-class EveryViscousKind : public testing::TestWithParam<Kind> {};
+class EveryViscousKind : public testing::TestWithParam<ViscousKind> {};
 INSTANTIATE_TEST_SUITE_P(Viscous, EveryViscousKind,
-                         testing::Values(Kind::tetrahedra, Kind::patches, Kind::quadratic,
-                                         Kind::hexahedra));
+                         testing::Values(ViscousKind::tetrahedra, ViscousKind::patches,
+                                         ViscousKind::quadratic, ViscousKind::hexahedra));
 
-void expect_derivatives(Kind kind, const material::Hyperelastic& law) {
+void expect_derivatives(ViscousKind kind, const material::Hyperelastic& law) {
   Body body(kind, law);
   const mesh::Mesh& mesh = body.model->mesh();
   body.step(moved(mesh, kEdge, 0.07, 1), 0.02);
@@ -133,15 +133,16 @@ TEST_P(EveryViscousKind, ForcesAndMatrixAreDerivativesOfTheIncrementalEnergy) {
 }
 
 TEST(Viscous, SaintVenantKirchhoffLikewise) {
-  expect_derivatives(Kind::hexahedra, saint_venant());
-  expect_derivatives(Kind::tetrahedra, saint_venant());
+  expect_derivatives(ViscousKind::hexahedra, saint_venant());
+  expect_derivatives(ViscousKind::tetrahedra, saint_venant());
 }
 
 // Shear keeps the volume, so that all of the stress relaxes: f(t) = f_law (1 + sum beta
 // exp(-t/tau)) after a sudden strain, whatever the steps.
 TEST_P(EveryViscousKind, ASuddenStrainRelaxesAsTheSeriesSays) {
   for (const material::Hyperelastic& law : {rubber(), saint_venant()}) {
-    if (GetParam() == Kind::patches && law.saint_venant_shear > 0.0) continue;  // are refused
+    if (GetParam() == ViscousKind::patches && law.saint_venant_shear > 0.0)
+      continue;  // are refused
     material::Hyperelastic elastic = law;
     elastic.prony.clear();
     Body body(GetParam(), law), slow(GetParam(), elastic);
@@ -170,9 +171,9 @@ TEST_P(EveryViscousKind, ASuddenStrainRelaxesAsTheSeriesSays) {
 /// sinusoidal shear.
 std::complex<double> complex_modulus(double omega, int steps) {
   material::Hyperelastic law = rubber();
-  Body body(Kind::hexahedra, law, 1);
+  Body body(ViscousKind::hexahedra, law, 1);
   law.prony.clear();
-  Body slow(Kind::hexahedra, law, 1);
+  Body slow(ViscousKind::hexahedra, law, 1);
   constexpr double kAmplitude = 1e-4;
   const VectorX unit = slow.forces(slow.sheared(kAmplitude));
   const double h = 2.0 * std::numbers::pi / omega / steps;

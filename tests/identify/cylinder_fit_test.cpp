@@ -32,17 +32,18 @@ DriveRecord record_of(const DriveCylinder& cylinder, double noise, std::uint64_t
   return record;
 }
 
-const DriveCylinder kTruth = DriveCylinder::second_order(0.9, 15.0, 0.6, 0.01);
+const DriveCylinder kTrueCylinder = DriveCylinder::second_order(0.9, 15.0, 0.6, 0.01);
 
 double a1(const DriveCylinder& c) { return -c.a.trace(); }
 double a2(const DriveCylinder& c) { return c.a.determinant(); }
 
 TEST(CylinderFit, SubspaceIsExactWithoutNoise) {
-  const std::vector<DriveRecord> records = {record_of(kTruth, 0.0, 1), record_of(kTruth, 0.0, 2)};
+  const std::vector<DriveRecord> records = {record_of(kTrueCylinder, 0.0, 1),
+                                            record_of(kTrueCylinder, 0.0, 2)};
   const CylinderFit fit = fit_cylinder(records);
   for (const DriveCylinder* found : {&fit.start, &fit.cylinder}) {
-    EXPECT_NEAR(a1(*found), a1(kTruth), 1e-6);
-    EXPECT_NEAR(a2(*found), a2(kTruth), 1e-6);
+    EXPECT_NEAR(a1(*found), a1(kTrueCylinder), 1e-6);
+    EXPECT_NEAR(a2(*found), a2(kTrueCylinder), 1e-6);
     EXPECT_NEAR(found->gain(), 0.9, 1e-6);
   }
   EXPECT_LT(fit.trials[1].nrmse, 1e-6);
@@ -50,12 +51,13 @@ TEST(CylinderFit, SubspaceIsExactWithoutNoise) {
 
 TEST(CylinderFit, OutputErrorHoldsTheTruthAndPredictsOtherRecords) {
   constexpr double kNoise = 1e-6;
-  const std::vector<DriveRecord> records = {record_of(kTruth, kNoise, 1),
-                                            record_of(kTruth, kNoise, 2)};
+  const std::vector<DriveRecord> records = {record_of(kTrueCylinder, kNoise, 1),
+                                            record_of(kTrueCylinder, kNoise, 2)};
   const CylinderFit fit = fit_cylinder(records);
-  const Eigen::Matrix2d shifted = kTruth.a + a1(kTruth) * Eigen::Matrix2d::Identity();
-  const double truth[] = {a1(kTruth), a2(kTruth), kTruth.c.dot(kTruth.b),
-                          kTruth.c.dot(shifted * kTruth.b)};
+  const Eigen::Matrix2d shifted = kTrueCylinder.a + a1(kTrueCylinder) * Eigen::Matrix2d::Identity();
+  const double truth[] = {a1(kTrueCylinder), a2(kTrueCylinder),
+                          kTrueCylinder.c.dot(kTrueCylinder.b),
+                          kTrueCylinder.c.dot(shifted * kTrueCylinder.b)};
   for (std::size_t k = 0; k < 4; ++k) {
     const FittedParameter& p = fit.fit.parameters[k];
     // Four standard errors: one run of one seed.
@@ -69,7 +71,7 @@ TEST(CylinderFit, OutputErrorHoldsTheTruthAndPredictsOtherRecords) {
   EXPECT_LE(fit.fit.cost, fit.fit.start_cost);
   std::vector<DriveRecord> others;
   for (std::uint64_t seed = 11; seed <= 14; ++seed)
-    others.push_back(record_of(kTruth, kNoise, seed));
+    others.push_back(record_of(kTrueCylinder, kNoise, seed));
   for (const CylinderTrial& trial : validate_cylinder(fit.cylinder, others)) {
     // Noise alone makes 1e-6 of a standard deviation near 1.4e-5.
     EXPECT_LT(trial.nrmse, 0.1) << trial.name;
@@ -78,19 +80,19 @@ TEST(CylinderFit, OutputErrorHoldsTheTruthAndPredictsOtherRecords) {
 }
 
 TEST(CylinderFit, FindsAFeedthrough) {
-  DriveCylinder truth = kTruth;
+  DriveCylinder truth = kTrueCylinder;
   truth.d = 0.2;
   const std::vector<DriveRecord> records = {record_of(truth, 0.0, 3)};
   const CylinderFit fit = fit_cylinder(records, {.feedthrough = true});
   EXPECT_NEAR(fit.cylinder.d, 0.2, 1e-6);
-  EXPECT_NEAR(a1(fit.cylinder), a1(kTruth), 1e-6);
+  EXPECT_NEAR(a1(fit.cylinder), a1(kTrueCylinder), 1e-6);
 }
 
 TEST(CylinderFit, RefusesWhatItCannotUse) {
   const auto fit = [](DriveRecord record) { fit_cylinder(std::vector<DriveRecord>{record}); };
-  const DriveRecord good = record_of(kTruth, 0.0, 1);
+  const DriveRecord good = record_of(kTrueCylinder, 0.0, 1);
   EXPECT_EQ(kind_of([] { fit_cylinder({}); }), ErrorKind::empty_list);
-  EXPECT_EQ(kind_of([&] { fit(record_of(kTruth, 0.0, 1, 30)); }), ErrorKind::too_few_points);
+  EXPECT_EQ(kind_of([&] { fit(record_of(kTrueCylinder, 0.0, 1, 30)); }), ErrorKind::too_few_points);
   DriveRecord bad = good;
   bad.output.conservativeResize(500);
   EXPECT_EQ(kind_of([&] { fit(bad); }), ErrorKind::wrong_length);

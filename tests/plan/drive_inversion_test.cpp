@@ -20,7 +20,7 @@ using sinew::testing::kind_of;
 
 constexpr double kStep = 0.01;
 
-DriveCylinder drive(double frequency = 40.0) {
+DriveCylinder cylinder_of(double frequency = 40.0) {
   return DriveCylinder::second_order(1.1, frequency, 0.8, kStep);
 }
 
@@ -48,7 +48,7 @@ Plan swing(double size = 0.15) {
 
 TEST(CylinderInversion, FindsCommandsBackWhereNoLimitBinds) {
   for (const double feedthrough : {0.0, 0.2}) {
-    DriveCylinder cylinder = drive();
+    DriveCylinder cylinder = cylinder_of();
     cylinder.d = feedthrough;
     const Eigen::Vector2d start(1e-5, -5e-6);
     const VectorX u = commands(150);
@@ -64,7 +64,7 @@ TEST(CylinderInversion, FindsCommandsBackWhereNoLimitBinds) {
 }
 
 TEST(CylinderInversion, KeepsLimits) {
-  DriveCylinder cylinder = drive();
+  DriveCylinder cylinder = cylinder_of();
   cylinder.lowest_input = -5e-5;
   cylinder.highest_input = 4e-5;
   cylinder.lowest_volume = -2.5e-5;
@@ -88,7 +88,7 @@ TEST(CylinderInversion, KeepsLimits) {
 
 /// No small change of the commands within their limits brings the volumes nearer.
 TEST(CylinderInversion, IsLeast) {
-  DriveCylinder cylinder = drive();
+  DriveCylinder cylinder = cylinder_of();
   cylinder.lowest_input = -4e-5;
   cylinder.highest_input = 4e-5;
   const double smoothing = 1e-4;
@@ -114,7 +114,7 @@ TEST(CylinderInversion, IsLeast) {
 }
 
 TEST(CylinderInversion, SaysWhereNoCommandKeepsTheLimits) {
-  DriveCylinder cylinder = drive();
+  DriveCylinder cylinder = cylinder_of();
   cylinder.lowest_volume = -1e-5;
   cylinder.highest_volume = 1e-5;
   cylinder.lowest_input = -1e-5;
@@ -127,7 +127,7 @@ TEST(CylinderInversion, SaysWhereNoCommandKeepsTheLimits) {
 TEST(DriveInversion, TorqueActsFromTheLeadOn) {
   const Plan plan = swing();
   const double lead = 0.3, delay = 0.077;
-  const DriveChannel channel{{800.0, 4e12, delay}, drive(200.0)};
+  const DriveChannel channel{{800.0, 4e12, delay}, cylinder_of(200.0)};
   const DriveInversion found = invert_drive(plan, {channel}, lead, {.smoothing = 1e-9});
   ASSERT_TRUE(found.found);
   EXPECT_DOUBLE_EQ(found.times[found.times.size() - 1], 1.9);
@@ -144,16 +144,16 @@ TEST(DriveInversion, TorqueActsFromTheLeadOn) {
 
 TEST(DriveInversion, RefusesWhatCannotBe) {
   const Plan plan = swing();
-  const DriveChannel channel{{0.0, 4e12, 0.1}, drive()};
+  const DriveChannel channel{{0.0, 4e12, 0.1}, cylinder_of()};
   DriveChannel other = channel;
   other.cylinder.sample_time = 0.02;
   EXPECT_EQ(kind_of([&] { invert_drive(plan, {}, 0.2); }), ErrorKind::wrong_length);
   EXPECT_EQ(kind_of([&] { invert_drive(plan, {channel}, 0.05); }), ErrorKind::out_of_range);
   EXPECT_EQ(kind_of([&] { invert_drive(plan, {channel}, 0.2, {.smoothing = 0.0}); }),
             ErrorKind::out_of_range);
-  EXPECT_EQ(kind_of([&] { invert_cylinder(drive(), VectorX::Zero(1)); }),
+  EXPECT_EQ(kind_of([&] { invert_cylinder(cylinder_of(), VectorX::Zero(1)); }),
             ErrorKind::too_few_points);
-  EXPECT_EQ(kind_of([&] { invert_cylinder(drive(), VectorX::Constant(9, NAN)); }),
+  EXPECT_EQ(kind_of([&] { invert_cylinder(cylinder_of(), VectorX::Constant(9, NAN)); }),
             ErrorKind::not_finite);
   Plan two = plan;
   two.knots.torque = MatrixX::Zero(51, 2);

@@ -16,7 +16,7 @@ using sinew::testing::kind_of;
 using testing::grab;
 using testing::make;
 
-constexpr double kStep = 0.01;
+constexpr double kDriveStep = 0.01;
 
 /// Of the published arm's four inputs, of which the first has no torque.
 PlanTask driven(double lead = -1.0) {
@@ -25,7 +25,7 @@ PlanTask driven(double lead = -1.0) {
   drive.lead = lead;
   for (const double delay : {0.0, 0.033, 0.05, 0.0771}) {
     DriveChannel channel{{10.0, 4e12, delay},
-                         pcc::DriveCylinder::second_order(1.1, 40.0, 0.8, kStep)};
+                         pcc::DriveCylinder::second_order(1.1, 40.0, 0.8, kDriveStep)};
     channel.cylinder.lowest_input = -8e-5;
     channel.cylinder.highest_input = 8e-5;
     channel.cylinder.lowest_volume = -3.2e-5;
@@ -44,8 +44,8 @@ DriveRun commands(const PlanTask& task) {
   for (Eigen::Index k = 0; k < count; ++k) {
     for (Eigen::Index i = 1; i < 4; ++i) {
       const double delay = task.drive->channels[static_cast<std::size_t>(i)].actuator.delay;
-      const double time =
-          std::max(0.0, static_cast<double>(k) * kStep - task.drive->lead + delay - 1.01 * kStep);
+      const double time = std::max(
+          0.0, static_cast<double>(k) * kDriveStep - task.drive->lead + delay - 1.01 * kDriveStep);
       command(k, i) = 2e-5 * std::sin((5.0 + static_cast<double>(i)) * time);
     }
   }
@@ -108,7 +108,7 @@ TEST(DriveTranscription, VolumesActAfterTheDelay) {
   }
   // The cylinder's volume of that moment, the delay ago.
   const double at = 0.8 + 0.25 - 0.05;
-  const auto sample = static_cast<Eigen::Index>(std::lround(at / kStep));
+  const auto sample = static_cast<Eigen::Index>(std::lround(at / kDriveStep));
   EXPECT_NEAR(run.torque(0.8)[2], task.drive->channels[2].actuator.torque(run.volume(sample, 2)),
               1e-15);
   // And back, as far as commands act within the plan.

@@ -131,15 +131,15 @@ double largest_gap(const std::vector<Vector3>& a, const std::vector<Vector3>& b)
   return gap;
 }
 
-using Case = std::tuple<Integrator, fem::MassMatrix, double, bool>;
-std::string case_name(const ::testing::TestParamInfo<Case>& test) {
+using ShakenCase = std::tuple<Integrator, fem::MassMatrix, double, bool>;
+std::string case_name(const ::testing::TestParamInfo<ShakenCase>& test) {
   const auto& [integrator, mass, damping, hung] = test.param;
   return std::string(integrator == Integrator::bdf2 ? "bdf2" : "alpha") +
          (mass == fem::MassMatrix::consistent ? "_consistent" : "_lumped") +
          (damping > 0.0 ? "_damped" : "") + (hung ? "_hung" : "");
 }
 
-class ShakenBases : public ::testing::TestWithParam<Case> {};
+class ShakenBases : public ::testing::TestWithParam<ShakenCase> {};
 
 // In the frame of a base that is shifted, the motion is that above a resting base under -y'', which
 // knows neither the inertia nor the damping forces of moving nodes: the two runs converge to each
@@ -169,12 +169,13 @@ TEST_P(ShakenBases, ConvergesToTheMotionInItsFrame) {
 
 INSTANTIATE_TEST_SUITE_P(
     Kinds, ShakenBases,
-    ::testing::Values(Case{Integrator::bdf2, fem::MassMatrix::consistent, 0.0, false},
-                      Case{Integrator::generalized_alpha, fem::MassMatrix::consistent, 0.0, false},
-                      Case{Integrator::bdf2, fem::MassMatrix::lumped, 2e-3, false},
-                      Case{Integrator::generalized_alpha, fem::MassMatrix::lumped, 2e-3, false},
-                      Case{Integrator::generalized_alpha, fem::MassMatrix::consistent, 2e-3, true},
-                      Case{Integrator::bdf2, fem::MassMatrix::lumped, 2e-3, true}),
+    ::testing::Values(
+        ShakenCase{Integrator::bdf2, fem::MassMatrix::consistent, 0.0, false},
+        ShakenCase{Integrator::generalized_alpha, fem::MassMatrix::consistent, 0.0, false},
+        ShakenCase{Integrator::bdf2, fem::MassMatrix::lumped, 2e-3, false},
+        ShakenCase{Integrator::generalized_alpha, fem::MassMatrix::lumped, 2e-3, false},
+        ShakenCase{Integrator::generalized_alpha, fem::MassMatrix::consistent, 2e-3, true},
+        ShakenCase{Integrator::bdf2, fem::MassMatrix::lumped, 2e-3, true}),
     case_name);
 
 // A base that turns, with damping: against a run of much smaller steps.

@@ -18,8 +18,8 @@ namespace sinew::sim {
 namespace {
 
 using sinew::testing::beam;
+using sinew::testing::tension;
 
-Command tension(double newtons) { return {CommandKind::effort, Signal::constant(newtons)}; }
 Command length(double metres) { return {CommandKind::motion, Signal::constant(metres)}; }
 
 // Two cables are controlled; the others have tensions, which stay.

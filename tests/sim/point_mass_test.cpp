@@ -28,26 +28,27 @@ namespace {
 
 using mechanics::Integrator;
 
-enum class Kind { tet4, patches, tet10, hex8 };
+enum class PointMassKind { tet4, patches, tet10, hex8 };
 
 constexpr double kGravity = 9.81;
 const Vector3 kPoint(0.057, 0.004, 0.013);
 
 /// A cantilever of rubber along x, 60 x 20 x 20 mm.
-fem::FemBodySettings cantilever(Kind kind, std::vector<fem::PointMassSettings> masses = {}) {
+fem::FemBodySettings cantilever(PointMassKind kind,
+                                std::vector<fem::PointMassSettings> masses = {}) {
   fem::FemBodySettings body;
   body.name = "beam";
-  const auto mesh = std::make_shared<const mesh::Mesh>(mesh::block(
-      {.size = {0.06, 0.02, 0.02}, .cells = {6, 2, 2}}, kind == Kind::tet10 ? mesh::Cells::quadratic
-                                                        : kind == Kind::hex8
-                                                            ? mesh::Cells::hexahedra
-                                                            : mesh::Cells::tetrahedra));
+  const auto mesh = std::make_shared<const mesh::Mesh>(
+      mesh::block({.size = {0.06, 0.02, 0.02}, .cells = {6, 2, 2}},
+                  kind == PointMassKind::tet10  ? mesh::Cells::quadratic
+                  : kind == PointMassKind::hex8 ? mesh::Cells::hexahedra
+                                                : mesh::Cells::tetrahedra));
   body.mesh = mesh;
   fem::MaterialRegion region;
   region.hyperelastic = material::neo_hookean(4e4);
   region.hyperelastic->bulk_modulus = 2e5;
   region.density = 1000.0;
-  region.patches = kind == Kind::patches;
+  region.patches = kind == PointMassKind::patches;
   body.elements.regions = {region};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
   body.gravity = {0.0, 0.0, -kGravity};
@@ -59,7 +60,7 @@ fem::PointMassSettings hung(double mass, const Vector3& point = kPoint) {
   return {"hung", {}, point, mass, mesh::Outside::error};
 }
 
-class HungMass : public ::testing::TestWithParam<Kind> {};
+class HungMass : public ::testing::TestWithParam<PointMassKind> {};
 
 TEST_P(HungMass, SagsTheBeamAsItsWeightDoes) {
   ModelBuilder weighed, pulled;
@@ -119,7 +120,8 @@ TEST_P(HungMass, HasTheInertiaOfItsPoint) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, HungMass,
-                         ::testing::Values(Kind::tet4, Kind::patches, Kind::tet10, Kind::hex8));
+                         ::testing::Values(PointMassKind::tet4, PointMassKind::patches,
+                                           PointMassKind::tet10, PointMassKind::hex8));
 
 // A light beam with a mass at its end: sqrt(3 E I / (L^3 (m + 33/140 m_beam))) (Rayleigh, Theory of
 // Sound, 1877, art. 182).
@@ -180,8 +182,8 @@ TEST(PointMass, KeepsEnergyAndMomentum) {
   step.time_step = 1e-3;
   step.tolerance = 1e-11;
   ModelBuilder builder(step);
-  builder.add_fem_body(cantilever(Kind::tet4, {hung(0.05)}));
-  fem::FemBodySettings thrown = cantilever(Kind::hex8, {hung(0.03)});
+  builder.add_fem_body(cantilever(PointMassKind::tet4, {hung(0.05)}));
+  fem::FemBodySettings thrown = cantilever(PointMassKind::hex8, {hung(0.03)});
   thrown.name = "thrown";
   thrown.masses[0].name = "ballast";
   thrown.elements.fixed_nodes.clear();
@@ -216,7 +218,7 @@ TEST(PointMass, KeepsEnergyAndMomentum) {
 TEST(PointMass, IsPartOfTheRobot) {
   const auto fingerprint = [](std::vector<fem::PointMassSettings> masses) {
     ModelBuilder builder;
-    builder.add_fem_body(cantilever(Kind::tet4, std::move(masses)));
+    builder.add_fem_body(cantilever(PointMassKind::tet4, std::move(masses)));
     return builder.build()->fingerprint();
   };
   const auto with = fingerprint({hung(0.02)});
@@ -230,7 +232,7 @@ TEST(PointMass, BadOnesAreErrors) {
   const auto kind_of = [](std::vector<fem::PointMassSettings> masses) {
     for (fem::PointMassSettings& mass : masses) mass.place.line = 7;
     try {
-      ModelBuilder().add_fem_body(cantilever(Kind::tet4, std::move(masses)));
+      ModelBuilder().add_fem_body(cantilever(PointMassKind::tet4, std::move(masses)));
     } catch (const Error& error) {
       EXPECT_FALSE(error.remedy().empty());
       return error.kind();
@@ -242,7 +244,7 @@ TEST(PointMass, BadOnesAreErrors) {
   EXPECT_EQ(kind_of({hung(NAN)}), ErrorKind::out_of_range);
   EXPECT_EQ(kind_of({hung(0.01, {1.0, 0.0, 0.0})}), ErrorKind::point_outside_mesh);
   EXPECT_EQ(kind_of({hung(0.01), hung(0.02)}), ErrorKind::duplicate_key);
-  fem::FemBodySettings far = cantilever(Kind::tet4);
+  fem::FemBodySettings far = cantilever(PointMassKind::tet4);
   far.elements.point_masses = {
       {{0, static_cast<NodeId>(far.mesh->nodes.rows()) - 1}, {0.5, 0.5}, 1.0}};
   far.elements.fixed_nodes = {1, 2, 3};

@@ -32,10 +32,6 @@ std::vector<NodeId> nodes_of(const ContactDescription& contact, const mesh::Mesh
   return nodes;
 }
 
-bool is_rigid(const BuiltBody& body) {
-  return mechanics::as<const mechanics::HasShape>(*body.model) != nullptr;
-}
-
 bool names_points(const ContactDescription& contact) {
   return contact.nodes || contact.points.points.rows() > 0;
 }

@@ -40,10 +40,6 @@ std::vector<NodeId> nodes_on(const mesh::Mesh& first, const BuiltBody& second,
               "name a region and `outside: nearest`, or put the bodies together");
 }
 
-bool is_rigid(const BuiltBody& body) {
-  return body.model == nullptr || mechanics::as<const mechanics::HasShape>(*body.model) != nullptr;
-}
-
 // Parts that stay rigid.
 int add_rigid_joint(sim::ModelBuilder& builder, const JointDescription& joint,
                     const BuiltBody& first, const BuiltBody& second) {
@@ -90,6 +86,10 @@ int add_weld(sim::ModelBuilder& builder, const JointDescription& joint, const Bu
 }
 
 }  // namespace
+
+bool is_rigid(const BuiltBody& body) {
+  return body.model == nullptr || mechanics::as<const mechanics::HasShape>(*body.model) != nullptr;
+}
 
 int add_joint(sim::ModelBuilder& builder, const JointDescription& joint, const BodyOf& body_of) {
   BuiltBody first = body_of(joint.first), second = body_of(joint.second);

@@ -31,6 +31,9 @@ using BodyOf = std::function<BuiltBody(const std::string&)>;
 /// The number of a joint, by its name.
 using JointOf = std::function<int(const std::string&)>;
 
+/// Whether all points of a body move as one: of rigid bodies and of the world.
+bool is_rigid(const BuiltBody& body);
+
 /// The mesh of a body of finite elements, in the element that it names. Without a name: what the
 /// file holds, tetrahedra for shapes; but quadratic tetrahedra in place of linear ones that would
 /// lock, where the material is hyperelastic with a Poisson's ratio above 0.4. A file's nodes keep
