@@ -277,7 +277,7 @@ def test_cables_that_move_nothing_do_not_disturb_contacts(command, tension):
 
 def test_a_motion_that_nothing_can_bring_about_is_named():
     sim = sinew.load(resting_link({"command": {"displacement": "1 mm"}}))
-    with pytest.raises(sinew.RunError, match="idle moves nothing, so that the motion commanded of it is out of its reach"):
+    with pytest.raises(sinew.RunError, match="idle moves nothing, so it cannot reach its commanded motion"):
         sim.step()
 
 

@@ -214,10 +214,10 @@ function isFrozen(): boolean {
 
 const KEYS: [string, string, () => void][] = [
   [' ', 'play or pause', () => panel.toggle()], ['s', 'step', () => panel.step()],
-  ['r', 'reset', () => panel.reset()], ['f', 'see the whole robot', () => robot.fit()],
+  ['r', 'reset', () => panel.reset()], ['f', 'fit the robot to the window', () => robot.fit()],
   ['w', 'wireframe', () => wire.click()], ['o', 'follow the effector', () => follow.click()],
-  ['h', 'drag the robot itself', () => hands.click()], ['c', 'next colouring', nextField], ['d', 'light or dark', () => theme.click()],
-  ['j', 'draw joints or not', () => joints.toggle()],
+  ['h', 'drag the robot itself', () => hands.click()], ['c', 'next field', nextField], ['d', 'light or dark', () => theme.click()],
+  ['j', 'show or hide joints', () => joints.toggle()],
   ['x', 'look along the x axis', () => robot.look('x')], ['y', 'look along the y axis', () => robot.look('y')],
   ['z', 'look down along the z axis', () => robot.look('z')], ['i', 'look from the front, the right and above', () => robot.look('iso')],
   ['q', 'parallel projection', () => viewbar.parallel.click()],
@@ -235,9 +235,9 @@ function help(): void {
   if (dialog.open) return dialog.close();
   const rows = KEYS.map(([key, what]) => make('tr', {}, make('td', {}, make('kbd', {textContent: key === ' ' ? 'space' : key})),
                                               make('td', {textContent: what})));
-  const mouse = [['click on the robot', 'the values of a node'], ['drag', 'turn'], ['right drag', 'move (on the robot: pull)'], ['wheel', 'zoom'],
-                 ['Shift drag', 'pull at the robot'], ['drag the arrows', 'move the target'],
-                 ['click a ball', 'its arrows, where there are several'], ['click a joint', 'how far it has moved, and its force']];
+  const mouse = [['click on the robot', 'the values of a node'], ['drag', 'rotate'], ['right drag', 'pan (on the robot: pull)'], ['wheel', 'zoom'],
+                 ['Shift drag', 'pull the robot'], ['drag the arrows', 'move the target'],
+                 ['click a ball', 'move the arrows to this target'], ['click a joint', 'its displacement, force and moment']];
   rows.push(...mouse.map(([key, what]) => make('tr', {}, make('td', {}, make('kbd', {textContent: key})), make('td', {textContent: what}))));
   dialog.replaceChildren(make('table', {}, ...rows), button('Close', 'Close', () => dialog.close()));
   dialog.showModal();

@@ -65,17 +65,17 @@ export class Panel {
     this.latest = null;
     if (mode === 'gallery') return this.gallery(scene);
     if (mode === 'replay') return this.replay(scene);
-    this.controller.replaceChildren(new Option('none (by hand)', ''),
+    this.controller.replaceChildren(new Option('none (manual)', ''),
                                     ...scene.controllers.map((c) => new Option(c.name, c.name)));
     const heading = (text: string) => make('h2', {textContent: text});
     const told = scene.actuators.filter((a) => a.quantities.length > 0);  // springs are not told
     const scripted = mode === 'follow';  // a script steps, resets and chooses the controller
     this.root.replaceChildren(
       heading('Run'),
-      make('div', {className: 'line'}, this.play, button('Step', 'Advance by so many steps (s)', () => this.step()),
+      make('div', {className: 'line'}, this.play, button('Step', 'Advance by this number of steps (s)', () => this.step()),
            this.steps, ...(scripted ? [] : [button('Reset', 'Back to the start (r)', () => this.reset())])),
       make('div', {className: 'line'}, make('label', {}, 'Speed', this.speed), ...(scripted ? [] : [
-           button('Settle', 'Static equilibrium at the present inputs', () => this.send({type: 'settle'}))])),
+           button('Settle', 'Static equilibrium under the current commands and loads', () => this.send({type: 'settle'}))])),
       ...(scripted ? [] : [this.moments, this.back]),
       make('div', {className: 'line'}, this.recorder, this.recorded),
       make('div', {className: 'line'}, this.who, this.drive, ...(scene.gallery ? [
@@ -109,7 +109,7 @@ export class Panel {
     this.time.oninput = () => this.send({type: 'seek', frame: Number(this.time.value)});
     this.root.replaceChildren(
       make('h2', {textContent: 'Recorded run'}),
-      make('div', {className: 'line'}, this.play, button('Step', 'Advance by so many frames (s)', () => this.step()),
+      make('div', {className: 'line'}, this.play, button('Step', 'Advance by this number of frames (s)', () => this.step()),
            this.steps, button('Reset', 'Back to the start (r)', () => this.reset())),
       make('div', {className: 'line'}, make('label', {}, 'Speed', this.speed)), this.time,
       make('div', {className: 'line'}, this.who, this.drive,

@@ -24,10 +24,9 @@ std::string tensile_source(const char* rms, double density) {
       rms, 1e-3 * density);
 }
 constexpr const char* kTensileRemark =
-    "Strain there is crosshead travel over 33 mm, so that the law is too soft, most of all at "
-    "small strain: Dragon Skin 10 gives E = 148 kPa so, and 264 kPa on a measured beam. Scale it"
-    " to a test of your own. Fitted to one tensile test, nothing says how it does in other "
-    "modes.";
+    "Strain is crosshead travel over 33 mm, so the law is too soft, most of all at small strain: "
+    "the fit gives E = 148 kPa for Dragon Skin 10, a measured beam 264 kPa. Scale it to your own "
+    "test. It was fitted to one tensile test and not checked in other modes.";
 
 /// As published, or fitted; the bulk modulus is added.
 struct Entry {
@@ -62,17 +61,17 @@ void add_ecoflex(std::vector<NamedMaterial>& list) {
                          {{1563.90, 3.48450}, {10069.3, 0.938401}}, "0.31 kPa (0.5 %)", 1040.0));
   list.push_back(finish(
       {"ecoflex-00-20", "Ecoflex 00-20", "neo-hookean", neo_hookean(31.5e3), kDensity, 1.0, 2.0,
-       "From the maker's 100 % modulus alone, 8 psi (55.2 kPa) = mu (2 - 1/4); Smooth-On, "
+       "From the manufacturer's 100 % modulus only, 8 psi (55.2 kPa) = mu (2 - 1/4); Smooth-On, "
        "technical bulletin of the Ecoflex series, also density (1.07 g/cm^3)",
-       "A secant between 0 and 100 %, of the maker's own test: stiffer at small strain than "
-       "tests of its neighbours 00-10 and 00-30 (7 and 15 to 24 kPa)."}));
-  list.push_back(finish(
-      {"ecoflex-00-30", "Ecoflex 00-30", "ogden",
-       ogden({{24.361e3, 1.7138}, {66.703, 7.0679}, {-453.81, -3.3659}},
-             OgdenConvention::mu_over_alpha),
-       kDensity, 0.0, 0.0, kEcoflex30Source,
-       "The source gives mu_3 = 453.81 Pa and also uses -453.81 Pa, which is taken here: with the "
-       "first, mu_3 alpha_3 < 0 and the law is unstable below a stretch of 0.31 and above 3.68."}));
+       "A secant modulus between 0 and 100 % in the manufacturer's own test: stiffer at small "
+       "strain than tests of Ecoflex 00-10 and 00-30 (7 and 15 to 24 kPa)."}));
+  list.push_back(finish({"ecoflex-00-30", "Ecoflex 00-30", "ogden",
+                         ogden({{24.361e3, 1.7138}, {66.703, 7.0679}, {-453.81, -3.3659}},
+                               OgdenConvention::mu_over_alpha),
+                         kDensity, 0.0, 0.0, kEcoflex30Source,
+                         "The source gives mu_3 = 453.81 Pa and also uses -453.81 Pa. The negative "
+                         "value is used here: with the positive one, mu_3 alpha_3 < 0 and the law "
+                         "is unstable below a stretch of 0.31 and above 3.68."}));
   list.push_back(finish({"ecoflex-00-30-published", "Ecoflex 00-30", "ogden",
                          ogden({{24.361e3, 1.7138}, {66.703, 7.0679}, {453.81, -3.3659}},
                                OgdenConvention::mu_over_alpha),
@@ -95,11 +94,11 @@ void add_ecoflex(std::vector<NamedMaterial>& list) {
        kDensity, 0.0, 0.0,
        "Coefficients as published with the simulation of a pneumatic bending module; density: "
        "Smooth-On, as Ecoflex 00-30",
-       "The source does not say which convention: only sum 2 mu/alpha^2 (...) gives the "
-       "material's initial shear modulus, 20.8 kPa; sum mu/alpha (...) would give 167 kPa. So "
-       "read, the law is unstable after Drucker beyond a uniaxial stretch of 1.13 or below "
-       "0.885, an equibiaxial one of 1.06: walls of it invert under little load. Fit your own "
-       "where strains are large, or take ecoflex-00-50-tensile."}));
+       "The source does not say which convention: only sum 2 mu/alpha^2 (...) gives the material's "
+       "initial shear modulus, 20.8 kPa; sum mu/alpha (...) would give 167 kPa. In this convention "
+       "the law is Drucker-unstable beyond a uniaxial stretch of 1.13 or below 0.885, and beyond "
+       "an equibiaxial stretch of 1.06; thin walls invert under small loads. For large strains use "
+       "ecoflex-00-50-tensile, or fit your own."}));
   list.push_back(tensile("ecoflex-00-50-tensile", "Ecoflex 00-50",
                          {{9.08724, 5.94580}, {16581.7, 2.41648}}, "0.40 kPa (0.3 %)", kDensity));
 }
@@ -112,22 +111,22 @@ void add_dragon_skin(std::vector<NamedMaterial>& list) {
                          "Young's modulus 263.8 kPa (incompressible: mu = E/3) as fitted to a "
                          "clamped beam by Dubied, Michelis, Spielberg, Katzschmann, IEEE Robot. "
                          "Autom. Lett. 7 (2022) 5015-5022, also density",
-                         "For bending at small strain; the same authors' later fits are 283 to "
-                         "294 kPa. Our own simulation of that beam wants 271 kPa."}));
+                         "For bending at small strain; the same authors' later fits are 283 to 294 "
+                         "kPa. Our simulation of that beam agrees best with 271 kPa."}));
   list.push_back(
       tensile("dragon-skin-20", "Dragon Skin 20", {{95909.4, 2.83335}}, "9.8 kPa (0.8 %)", 1080.0));
   list.push_back(tensile("dragon-skin-30", "Dragon Skin 30", {{144776.9, 2.71607}},
                          "13.7 kPa (0.9 %)", 1080.0));
   list.push_back(tensile(
       "dragon-skin-fx-pro", "Dragon Skin FX-Pro", {{19813.7, 2.73843}}, "0.4 kPa (0.2 %)", 1060.0,
-      " The curve of this one bears nothing up to 4.5 % (slack), and 26 of its rows were fitted. "
-      "Weigh yours: its density could not be checked against the sheet."));
+      " This curve has no stress up to 4.5 % strain (slack); 26 of its rows were fitted. Measure "
+      "the density: it could not be checked against the data sheet."));
 }
 
 void add_others(std::vector<NamedMaterial>& list) {
   list.push_back(tensile("sorta-clear-40", "SORTA-Clear 40", {{176661.4, 2.76681}},
                          "6.8 kPa (0.3 %)", 1080.0,
-                         " Weigh yours: its density could not be checked against the sheet."));
+                         " Measure the density: it could not be checked against the data sheet."));
   list.push_back(finish(
       {"elastosil-m4601", "Elastosil M4601", "yeoh", yeoh({0.11e6, 0.02e6}), 1130.0, 0.0, 0.0,
        "C10 = 0.11 MPa, C20 = 0.02 MPa and density as in the Soft Robotics Toolkit "
@@ -139,21 +138,22 @@ void add_others(std::vector<NamedMaterial>& list) {
               "C10 = 0.12 MPa as in the Soft Robotics Toolkit (softroboticstoolkit.com), fiber-"
               "reinforced actuators, finite element modeling; density: as elastosil-m4601",
               "The source does not say up to which strain it holds."}));
-  list.push_back(finish(
-      {"smooth-sil-950", "Smooth-Sil 950", "neo-hookean", neo_hookean(1.875e6 / 1.75), 1240.0, 1.0,
-       2.0,
-       "From the maker's 100 % modulus alone, 272 psi (1.875 MPa) = mu (2 - 1/4), as commonly "
-       "quoted of Smooth-On's bulletin, also density (1.24 g/cm^3)",
-       "Neither figure could be checked against the bulletin itself. A secant between 0 and 100 %: "
-       "test yours before you trust it."}));
+  list.push_back(
+      finish({"smooth-sil-950", "Smooth-Sil 950", "neo-hookean", neo_hookean(1.875e6 / 1.75),
+              1240.0, 1.0, 2.0,
+              "From the manufacturer's 100 % modulus only, 272 psi (1.875 MPa) = mu (2 - 1/4), as "
+              "commonly quoted from Smooth-On's bulletin, also density (1.24 g/cm^3)",
+              "Neither figure could be checked against the bulletin itself. The modulus is a "
+              "secant between 0 and 100 %: test your own material before you rely on it."}));
   list.push_back(finish(
       {"sylgard-184", "Sylgard 184 (10:1)", "neo-hookean", neo_hookean(1.32e6 / 3.0), 1030.0, 1.0,
        1.4,
        "Young's modulus 1.32 MPa (incompressible: mu = E/3) of samples cured at 25 C, to 40 % "
        "strain: Johnston, McCluskey, Tan, Tracey, J. Micromech. Microeng. 24 (2014) 035017; "
        "density: Dow, technical data sheet (1.03)",
-       "Curing decides: 1.32 MPa at 25 C to 2.97 MPa at 200 C in that source; others differ more"
-       " (Varner, Cohen, Soft Matter 2024). Weigh yours: its density could not be checked."}));
+       "The modulus depends on curing: 1.32 MPa at 25 C to 2.97 MPa at 200 C in this source; other "
+       "sources differ more (Varner, Cohen, Soft Matter 2024). Measure the density: it could not "
+       "be checked."}));
 }
 
 std::vector<NamedMaterial> make_library() {

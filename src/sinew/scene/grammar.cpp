@@ -21,21 +21,20 @@ Form method_choice(const char* short_for = "") {
                   "Iterates until the step's equation holds to `tolerance`; one iteration if "
                   "little changes."},
                  {"one-linearisation",
-                  "One linear solve per step, in predictable time. The status reports a step with "
-                  "unbalanced forces or energy gain; the step is not corrected."}},
+                  "One linear solve per step, in predictable time. The status reports unbalanced "
+                  "forces and energy gain, but the step is not repeated."}},
                 short_for);
 }
 
 Form integrator_choice(const char* short_for = "") {
-  return choice(
-      {{"quasi-static", "Always in equilibrium; no inertia."},
-       {"backward-euler", "Dynamics; first order, damps."},
-       {"bdf2", "Dynamics; second order, damps fast modes."},
-       {"generalized-alpha", "Dynamics; second order, adjustable damping."},
-       {"event-driven",
-        "Dynamics; second order, undamped. Impacts of rigid bodies at their moments, with "
-        "restitution."}},
-      short_for);
+  return choice({{"quasi-static", "Equilibrium in every step; no inertia."},
+                 {"backward-euler", "Dynamics; first order, damps motion."},
+                 {"bdf2", "Dynamics; second order, damps fast modes."},
+                 {"generalized-alpha", "Dynamics; second order, adjustable damping."},
+                 {"event-driven",
+                  "Dynamics; second order, undamped. Finds the instants of impacts between rigid "
+                  "bodies and applies restitution."}},
+                short_for);
 }
 
 std::shared_ptr<const KeyTable> integrator_table() {
@@ -52,8 +51,9 @@ std::shared_ptr<const KeyTable> integrator_table() {
             .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
             .example = "0.8",
             .default_text = "0.8",
-            .description = "Generalized-alpha: factor by which a step damps the fastest "
-                           "motion. 1 conserves energy, 0 damps most."},
+            .description =
+                "Generalized-alpha: spectral radius at infinite frequency, by which a step "
+                "multiplies the fastest motions. 1 conserves energy, 0 damps most."},
            {.name = "restitution",
             .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
             .example = "0.6",
@@ -67,84 +67,87 @@ std::shared_ptr<const KeyTable> adaptive_table() {
       {.name = "adaptive",
        .description = "Substeps within each time step: smaller where the integration error "
                       "requires it or a step fails.",
-       .keys = {{.name = "tolerance",
-                 .forms = {quantity(plain_number(), positive())},
-                 .example = "1e-4",
-                 .default_text = "1e-4",
-                 .description =
-                     "Largest error of a substep in any coordinate, relative to the robot's size."},
-                {.name = "smallest",
-                 .forms = {quantity(time(), positive())},
-                 .example = "0.1 ms",
-                 .description = "Smallest substep; if it is not small enough, the run stops.",
-                 .required = true}}});
+       .keys = {
+           {.name = "tolerance",
+            .forms = {quantity(plain_number(), positive())},
+            .example = "1e-4",
+            .default_text = "1e-4",
+            .description =
+                "Largest error of a substep in any coordinate, relative to the robot's size."},
+           {.name = "smallest",
+            .forms = {quantity(time(), positive())},
+            .example = "0.1 ms",
+            .description = "Smallest substep. The run stops if a step would need a smaller one.",
+            .required = true}}});
 }
 
 std::shared_ptr<const KeyTable> solver_table() {
   return make_table(
       {.name = "solver",
        .description = "How each step is solved.",
-       .keys = {{.name = "method",
-                 .forms = {method_choice()},
-                 .example = "newton",
-                 .default_text = "newton",
-                 .description = "Solution method of a step."},
-                {.name = "adaptive",
-                 .forms = {table(adaptive_table())},
-                 .example = "{tolerance: 1e-4, smallest: 0.1 ms}",
-                 .description = "Substeps. Without: one step of `time_step` each."},
-                {.name = "tangent",
-                 .forms = {choice({{"exact",
-                                    "The derivative of the forces; projected where it is "
-                                    "indefinite for the constrained robot."},
-                                   {"projected",
-                                    "The derivative with each element's part made positive "
-                                    "semidefinite: never too soft, slower to converge."},
-                                   {"corotated",
-                                    "Corotational elements: R K0 R^T with the rotations R held "
-                                    "fixed, without stress stiffening. `exact` where a body is "
-                                    "hyperelastic."}})},
-                 .example = "exact",
-                 .default_text = "exact",
-                 .description = "The matrix of a step's linear equations. It affects how fast a "
-                                "step converges, not the solution."},
-                {.name = "tolerance",
-                 .forms = {quantity(plain_number(), Range{0.0, 1.0, true, true})},
-                 .example = "1e-8",
-                 .description = "Newton: residual force relative to the sum of internal and "
-                                "external forces, kept by every step. Without: 1e-4 in "
-                                "quasi-static steps, which may leave more to the next step; 1e-8 "
-                                "in dynamics and for materials with viscosity or softening."},
-                {.name = "max_iterations",
-                 .forms = {integer(1, 100000)},
-                 .example = "50",
-                 .default_text = "50",
-                 .description = "Newton: maximum number of iterations per step."},
-                {.name = "contact_tolerance",
-                 .forms = {quantity(plain_number(), Range{0.0, 1.0, true, true})},
-                 .example = "1e-8",
-                 .default_text = "1e-10",
-                 .description = "Contacts: largest residual of the contact laws at any point, "
-                                "relative to the largest force."},
-                {.name = "threads",
-                 .forms = {integer(1, 256)},
-                 .example = "4",
-                 .default_text = "1",
-                 .description = "Threads per step; results do not depend on it."},
-                {.name = "factorisation",
-                 .forms = {choice({{"block", "Sinew's supernodal factorisation in 3x3 blocks."},
-                                   {"eigen-ldlt", "Eigen's SimplicialLDLT, for reference."},
-                                   {"eigen-llt", "Eigen's SimplicialLLT, for reference."}})},
-                 .example = "block",
-                 .default_text = "block",
-                 .description = "Factorisation of the matrix."},
-                {.name = "ordering",
-                 .forms = {choice({{"fastest", "The faster of both, timed at the start."},
-                                   {"amd", "Approximate minimum degree."},
-                                   {"metis", "Nested dissection."}})},
-                 .example = "metis",
-                 .default_text = "fastest",
-                 .description = "Elimination order of the unknowns."}}});
+       .keys = {
+           {.name = "method",
+            .forms = {method_choice()},
+            .example = "newton",
+            .default_text = "newton",
+            .description = "Solution method of a step."},
+           {.name = "adaptive",
+            .forms = {table(adaptive_table())},
+            .example = "{tolerance: 1e-4, smallest: 0.1 ms}",
+            .description =
+                "Substeps with error control. Default: each step is one step of `time_step`."},
+           {.name = "tangent",
+            .forms = {choice(
+                {{"exact",
+                  "The derivative of the forces; projected where it is "
+                  "indefinite for the constrained robot."},
+                 {"projected",
+                  "The derivative with each element's part made positive semidefinite: slower to "
+                  "converge."},
+                 {"corotated",
+                  "Corotational elements: R K0 R^T with the rotations R held fixed, without stress "
+                  "stiffening. A robot with a hyperelastic body uses `exact` instead."}})},
+            .example = "exact",
+            .default_text = "exact",
+            .description = "The matrix of a step's linear equations. It affects how fast a "
+                           "step converges, not the solution."},
+           {.name = "tolerance",
+            .forms = {quantity(plain_number(), Range{0.0, 1.0, true, true})},
+            .example = "1e-8",
+            .description = "Newton: largest residual force, relative to the sum of internal and "
+                           "external forces. Default: 1e-4 in quasi-static steps, which may end "
+                           "early while the robot moves; 1e-8 in dynamics and for materials with "
+                           "viscosity or softening. A tolerance that you set holds in every step."},
+           {.name = "max_iterations",
+            .forms = {integer(1, 100000)},
+            .example = "50",
+            .default_text = "50",
+            .description = "Newton: maximum number of iterations per step."},
+           {.name = "contact_tolerance",
+            .forms = {quantity(plain_number(), Range{0.0, 1.0, true, true})},
+            .example = "1e-8",
+            .default_text = "1e-10",
+            .description = "Contacts: largest residual of the contact laws at any point, "
+                           "relative to the largest force."},
+           {.name = "threads",
+            .forms = {integer(1, 256)},
+            .example = "4",
+            .default_text = "1",
+            .description = "Threads per step; results do not depend on it."},
+           {.name = "factorisation",
+            .forms = {choice({{"block", "Sinew's supernodal factorisation in 3x3 blocks."},
+                              {"eigen-ldlt", "Eigen's SimplicialLDLT, for reference."},
+                              {"eigen-llt", "Eigen's SimplicialLLT, for reference."}})},
+            .example = "block",
+            .default_text = "block",
+            .description = "Factorisation of the matrix."},
+           {.name = "ordering",
+            .forms = {choice({{"fastest", "The faster of `amd` and `metis`, timed at the start."},
+                              {"amd", "Approximate minimum degree."},
+                              {"metis", "Nested dissection."}})},
+            .example = "metis",
+            .default_text = "fastest",
+            .description = "Elimination order of the unknowns."}}});
 }
 
 std::shared_ptr<const KeyTable> record_table() {
@@ -159,7 +162,7 @@ std::shared_ptr<const KeyTable> record_table() {
                                .forms = {boolean()},
                                .example = "false",
                                .default_text = "true",
-                               .description = "Records the positions of all nodes, too."}}});
+                               .description = "Also records the positions of all nodes."}}});
 }
 
 std::vector<Key> world_keys() {
@@ -173,7 +176,7 @@ std::vector<Key> world_keys() {
        .forms = {vector(acceleration())},
        .example = "0 0 -9.81 m/s^2",
        .default_text = "0 0 0 m/s^2",
-       .description = "Gravitational acceleration. Without: none."},
+       .description = "Gravitational acceleration."},
       {.name = "time_step",
        .forms = {quantity(time(), positive())},
        .example = "10 ms",
@@ -182,7 +185,7 @@ std::vector<Key> world_keys() {
       {.name = "duration",
        .forms = {quantity(time(), positive())},
        .example = "5 s",
-       .description = "Duration of a run. Without: the duration of the longest signal or target."},
+       .description = "Duration of a run. Default: the duration of the longest signal or target."},
       {.name = "integrator",
        .forms = {integrator_choice("type"), table(integrator_table())},
        .example = "quasi-static",
@@ -213,7 +216,7 @@ KeyTable scene_table() {
                         .description = "External loads."});
   scene.keys.push_back({.name = "masses",
                         .forms = {names(mass_form())},
-                        .example = "{hung: {body: trunk, point: 0 0 195 mm, mass: 52 g}}",
+                        .example = "{camera: {body: trunk, point: 0 0 195 mm, mass: 52 g}}",
                         .description = "Point masses on finite-element bodies."});
   scene.keys.push_back({.name = "membranes",
                         .forms = {names(membrane_form())},
@@ -234,12 +237,13 @@ KeyTable scene_table() {
       {.name = "sensors",
        .forms = {names(sensor_form())},
        .example = "{tip: {type: marker, body: trunk, point: 0 0 195 mm, noise: 0.1 mm}}",
-       .description = "What the robot or cameras measure, with the errors of real sensors; they do "
-                      "not affect the robot."});
-  scene.keys.push_back({.name = "contacts",
-                        .forms = {names(contact_form())},
-                        .example = "{floor: {body: block, surface: {plane: {}}, friction: 0.5}}",
-                        .description = "Contact surfaces with friction."});
+       .description =
+           "Simulated sensors with the errors of real ones. They do not affect the robot."});
+  scene.keys.push_back(
+      {.name = "contacts",
+       .forms = {names(contact_form())},
+       .example = "{floor: {body: block, surface: {plane: {}}, friction: 0.5}}",
+       .description = "Contacts between bodies, and with surfaces of the world, with friction."});
   scene.keys.push_back({.name = "joints",
                         .forms = {names(joint_form())},
                         .example = "{seam: {type: weld, bodies: [upper, lower]}}",
@@ -255,8 +259,8 @@ KeyTable scene_table() {
                         .default_text = "{}",
                         .description = "What a run writes."});
   scene.keys.push_back(later_key("materials", "Materials by name."));
-  scene.keys.push_back(later_key("obstacles", "What surrounds the robot."));
-  scene.keys.push_back(later_key("estimators", "What is concluded from sensors."));
+  scene.keys.push_back(later_key("obstacles", "Obstacles around the robot."));
+  scene.keys.push_back(later_key("estimators", "State estimators that use the sensors."));
   return scene;
 }
 

@@ -9,21 +9,21 @@ KeyTable limit_keys(const Measure& measure, const Measure& rate, Range range,
                     const char* min_default, const char* example, const char* rate_example) {
   return {.name = "limits of one quantity",
           .description =
-              "Omitted keys mean no limit, except that cables do not push: the "
-              "least tension is 0 N.",
+              "A key that is left out means no limit. Cables cannot push: their smallest tension "
+              "is 0 N.",
           .keys = {{.name = "min",
                     .forms = {quantity(measure, range)},
                     .example = *measure.unit == '\0' ? "0" : std::string("0 ") + measure.unit,
                     .default_text = min_default,
-                    .description = "Least value."},
+                    .description = "Smallest value."},
                    {.name = "max",
                     .forms = {quantity(measure, range)},
                     .example = example,
-                    .description = "Greatest value."},
+                    .description = "Largest value."},
                    {.name = "rate",
                     .forms = {quantity(rate, positive())},
                     .example = rate_example,
-                    .description = "Greatest rate of change."}}};
+                    .description = "Largest rate of change."}}};
 }
 
 std::shared_ptr<const KeyTable> limit_table(const Measure& measure, const Measure& rate,
@@ -99,12 +99,12 @@ Key body_key() {
 Key outside_key() {
   return {.name = "outside",
           .forms = {choice({{"error",
-                             "A point outside the mesh is an error. A point within 1e-5 of the "
-                             "mesh's size of the surface counts as on it."},
-                            {"nearest", "The nearest element carries it."}})},
+                             "A point outside the mesh is an error. A point counts as on the "
+                             "surface if its distance from it is below 1e-5 of the mesh's size."},
+                            {"nearest", "The point is attached to the nearest element."}})},
           .example = "nearest",
           .default_text = "error",
-          .description = "What to do with points that lie outside the mesh."};
+          .description = "Treatment of points outside the mesh."};
 }
 
 namespace {
@@ -143,14 +143,14 @@ std::shared_ptr<const KeyTable> cable_table() {
                      list({vector(length()), table(body_point_table())}, 2)},
            .example = "[0 10 0 mm, 0 10 60 mm, 0 10 120 mm]",
            .description =
-               "Routing points in the mesh at rest. The first is the pull point, the last the "
-               "fixed end. A point in another body: {body: upper, point: 0 10 80 mm}.",
+               "Routing points in the mesh at rest. The first is the pull point and the last is "
+               "the fixed end. A point in another body: {body: upper, point: 0 10 80 mm}.",
            .required = true},
           {.name = "pull",
            .forms = {choice({{"world", "Does not move."}, {"body", "Moves with the body."}})},
            .example = "world",
            .default_text = "world",
-           .description = "What the pull point is fixed to."},
+           .description = "Attachment of the pull point."},
           outside_key(),
           {.name = "friction",
            .forms = {quantity(plain_number(), non_negative())},
@@ -170,17 +170,17 @@ std::shared_ptr<const KeyTable> cable_table() {
            .example = "10 mm",
            .default_text = "0 m",
            .description = "Adds evenly spaced guides between the points, at most this far apart, "
-                          "as in a conduit. 0: the points alone."},
+                          "as in a conduit. 0: only the points."},
           {.name = "geometric_stiffness",
            .forms = {boolean()},
            .example = "false",
            .default_text = "true",
            .description =
-               "Adds the cable's geometric stiffness (from tension) to every step. Without it, "
-               "steps with highly loaded cables converge slowly or not at all."}}};
+               "Adds the cable's geometric stiffness (from tension) to every step. If false, steps "
+               "with highly loaded cables converge slowly or not at all."}}};
   const DriveWords words = line_words(sim::ActuatorType::cable, non_negative(), "0 N",
                                       "Length of cable pulled in at the pull point.",
-                                      "Command. Without: slack until commanded.");
+                                      "Command. Default: slack until commanded.");
   for (Key& key : drive_keys(words)) cable.keys.push_back(std::move(key));
   return make_table(std::move(cable));
 }
@@ -192,7 +192,7 @@ std::shared_ptr<const KeyTable> force_table() {
                          {.name = "point",
                           .forms = {vector(length())},
                           .example = "0 0 195 mm",
-                          .description = "Where it acts, in the mesh at rest.",
+                          .description = "Point of application, in the mesh at rest.",
                           .required = true},
                          {.name = "direction",
                           .forms = {vector(plain_number())},
@@ -202,7 +202,7 @@ std::shared_ptr<const KeyTable> force_table() {
                          outside_key()}};
   const DriveWords words =
       line_words(sim::ActuatorType::force, any(), "", "Motion of the point along the direction.",
-                 "Command. Without: no force until commanded.");
+                 "Command. Default: no force until commanded.");
   for (Key& key : drive_keys(words)) push.keys.push_back(std::move(key));
   return make_table(std::move(push));
 }
@@ -211,7 +211,7 @@ std::shared_ptr<const KeyTable> force_table() {
 
 std::shared_ptr<const KeyTable> point_file_table() {
   return make_table({.name = "points: file",
-                     .description = "A CSV table with three columns, x y z, one point a line.",
+                     .description = "A CSV table with three columns, x y z, one point per line.",
                      .keys = {{.name = "file",
                                .forms = {file()},
                                .example = "long_0.csv",
@@ -221,7 +221,7 @@ std::shared_ptr<const KeyTable> point_file_table() {
                                .forms = {unit(length())},
                                .example = "mm",
                                .default_text = "m",
-                               .description = "The unit of its numbers."}}});
+                               .description = "Unit of the numbers."}}});
 }
 
 Form actuator_form() {
@@ -253,13 +253,12 @@ Form effector_form() {
       .keys = spot_keys(),
       .alternatives = {{{"point", "points", "set", "orientation"}, true}}};
   effector.keys.insert(effector.keys.begin(), body_key());
-  effector.keys.push_back({.name = "orientation",
-                           .forms = {list({vector(length())}, 3, 3), vector(length())},
-                           .example = "[0 0 190 mm, 10 0 190 mm, 0 10 190 mm]",
-                           .description =
-                               "The rotation of the frame through three points, or of the section "
-                               "of an arm that one point lies in, as a rotation vector from "
-                               "rest."});
+  effector.keys.push_back(
+      {.name = "orientation",
+       .forms = {list({vector(length())}, 3, 3), vector(length())},
+       .example = "[0 0 190 mm, 10 0 190 mm, 0 10 190 mm]",
+       .description = "Rotation vector from rest of the frame through three points, or of the "
+                      "arm's section that contains one point."});
   effector.keys.push_back(
       {.name = "directions",
        .forms = {axis, list(axis_forms(), 1, 3)},

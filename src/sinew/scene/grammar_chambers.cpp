@@ -10,7 +10,7 @@ namespace {
 std::shared_ptr<const KeyTable> patch_table() {
   return make_table(
       {.name = "surface: patch",
-       .description = "The surface face nearest to a point, and all faces connected to it over "
+       .description = "The surface face nearest to a point, and all faces connected to it across "
                       "edges with less than the given angle.",
        .keys = {{.name = "point",
                  .forms = {vector(length())},
@@ -42,7 +42,7 @@ std::shared_ptr<const KeyTable> supply_table(bool gas) {
                 .forms = {quantity(conductance(), non_negative())},
                 .example = "1e-11 m^3/(s Pa)",
                 .default_text = "0 m^3/(s Pa)",
-                .description = "The same for the outlet from the chamber to ambient."}}};
+                .description = "Conductance of the outlet from the chamber to ambient."}}};
   if (gas) {
     supply.keys.push_back(
         {.name = "critical_ratio",
@@ -81,7 +81,8 @@ std::shared_ptr<const KeyTable> gas_table() {
                 {.name = "supply",
                  .forms = {table(supply_table(true))},
                  .example = "{conductance: 2e-9 m^3/(s Pa), critical_ratio: 0.3}",
-                 .description = "Without: a commanded pressure acts at once."}}});
+                 .description =
+                     "Supply through a valve. Default: a commanded pressure acts at once."}}});
 }
 
 std::shared_ptr<const KeyTable> liquid_table() {
@@ -92,7 +93,7 @@ std::shared_ptr<const KeyTable> liquid_table() {
                  .forms = {quantity(stress(), positive())},
                  .example = "2.2 GPa",
                  .default_text = "2.2 GPa",
-                 .description = "Of the liquid; water's, when left out."},
+                 .description = "Bulk modulus of the liquid; water by default."},
                 {.name = "density",
                  .forms = {quantity(density(), non_negative())},
                  .example = "1000 kg/m^3",
@@ -102,7 +103,8 @@ std::shared_ptr<const KeyTable> liquid_table() {
                 {.name = "supply",
                  .forms = {table(supply_table(false))},
                  .example = "{conductance: 2e-9 m^3/(s Pa)}",
-                 .description = "Without: a commanded pressure acts at once."}}});
+                 .description =
+                     "Supply through a valve. Default: a commanded pressure acts at once."}}});
 }
 
 Key input(const char* name, const Measure& measure, const char* example, const char* description,
@@ -122,9 +124,10 @@ Key coil(const char* name, const Measure& measure, const char* example, const ch
 }
 
 std::vector<Key> coil_keys() {
-  return {coil("wire_diameter", length(), "0.5 mm", "Of the wire."),
-          coil("mean_diameter", length(), "2.4 mm", "Of the coil, from wire to wire."),
-          coil("coils", plain_number(), "10", "Number of active coils.")};
+  return {
+      coil("wire_diameter", length(), "0.5 mm", "Diameter of the wire."),
+      coil("mean_diameter", length(), "2.4 mm", "Mean diameter of the coil, between wire centres."),
+      coil("coils", plain_number(), "10", "Number of active coils.")};
 }
 
 std::shared_ptr<const KeyTable> helical_table() {
@@ -133,7 +136,7 @@ std::shared_ptr<const KeyTable> helical_table() {
                        "A helical spring: stiffness G d^4/(8 n D^3) with wire diameter d, mean "
                        "diameter D and n coils.",
                    .keys = coil_keys()};
-  helical.keys.push_back(coil("shear_modulus", stress(), "79 GPa", "Of the wire."));
+  helical.keys.push_back(coil("shear_modulus", stress(), "79 GPa", "Shear modulus of the wire."));
   return make_table(std::move(helical));
 }
 
@@ -152,24 +155,25 @@ std::shared_ptr<const KeyTable> wire_table() {
                     "A helical spring whose shear modulus depends on its phase, which follows the "
                     "temperature with hysteresis.",
                 .keys = coil_keys()};
-  for (Key& key : std::vector<Key>{
-           positive_key("martensite_modulus", stress(), "14.1 GPa", "14.1 GPa",
-                        "Shear modulus when cold."),
-           positive_key("austenite_modulus", stress(), "24.7 GPa", "24.7 GPa",
-                        "Shear modulus when hot."),
-           positive_key("heat_capacity", heat_capacity(), "0.1 J/K", "0.1 J/K", "Of the wire."),
-           positive_key("heat_loss", heat_loss(), "0.01 W/K", "0.01 W/K",
-                        "Heat loss to the surroundings per kelvin."),
-           positive_key("ambient", temperature(), "293.15 K", "293.15 K",
-                        "Temperature of the surroundings and at rest."),
-           positive_key("austenite_start", temperature(), "341 K", "341 K",
-                        "Austenite start temperature, on heating."),
-           positive_key("austenite_end", temperature(), "351 K", "351 K",
-                        "Austenite finish temperature."),
-           positive_key("martensite_start", temperature(), "325 K", "325 K",
-                        "Martensite start temperature, on cooling."),
-           positive_key("martensite_end", temperature(), "315 K", "315 K",
-                        "Martensite finish temperature.")}) {
+  for (Key& key :
+       std::vector<Key>{positive_key("martensite_modulus", stress(), "14.1 GPa", "14.1 GPa",
+                                     "Shear modulus when cold."),
+                        positive_key("austenite_modulus", stress(), "24.7 GPa", "24.7 GPa",
+                                     "Shear modulus when hot."),
+                        positive_key("heat_capacity", heat_capacity(), "0.1 J/K", "0.1 J/K",
+                                     "Heat capacity of the wire."),
+                        positive_key("heat_loss", heat_loss(), "0.01 W/K", "0.01 W/K",
+                                     "Heat loss to the surroundings per kelvin."),
+                        positive_key("ambient", temperature(), "293.15 K", "293.15 K",
+                                     "Temperature of the surroundings, and of the wire at rest."),
+                        positive_key("austenite_start", temperature(), "341 K", "341 K",
+                                     "Austenite start temperature, on heating."),
+                        positive_key("austenite_end", temperature(), "351 K", "351 K",
+                                     "Austenite finish temperature."),
+                        positive_key("martensite_start", temperature(), "325 K", "325 K",
+                                     "Martensite start temperature, on cooling."),
+                        positive_key("martensite_end", temperature(), "315 K", "315 K",
+                                     "Martensite finish temperature.")}) {
     wire.keys.push_back(std::move(key));
   }
   return make_table(std::move(wire));
@@ -180,7 +184,7 @@ std::shared_ptr<const KeyTable> wire_table() {
 std::shared_ptr<const KeyTable> surface_table() {
   KeyTable surface{
       .name = "surface",
-      .description = "Where the pressure acts: exactly one of these.",
+      .description = "Faces of a body, or a closed surface in it: exactly one of these.",
       .keys =
           {{.name = "inside",
             .forms = {vector(length())},
@@ -194,9 +198,8 @@ std::shared_ptr<const KeyTable> surface_table() {
             .forms = {file()},
             .example = "chamber.stl",
             .description =
-                "A closed surface as STL, OBJ or PLY, embedded in the body. Its coordinates are "
-                "those of the body's mesh file: it shares the body's scale, "
-                "rotation and position."},
+                "A closed surface as STL, OBJ or PLY, embedded in the body. It has the coordinates "
+                "of the body's mesh file and shares the body's scale, rotation and position."},
            file_unit_key("file")},
       .alternatives = {{{"inside", "patch", "file", "box", "sphere", "plane", "set"}, true}}};
   for (Key& key : region_keys("Faces with all their nodes")) surface.keys.push_back(std::move(key));
@@ -220,7 +223,7 @@ std::shared_ptr<const KeyTable> chamber_table() {
                 .default_text = "false",
                 .description =
                     "Closes openings of the surface with lids of zero stiffness that transfer "
-                    "their force to the rim. Without: an open surface is an error."},
+                    "their force to the rim. If false, an open surface is an error."},
                {.name = "load_stiffness",
                 .forms = {boolean()},
                 .example = "false",
@@ -230,12 +233,12 @@ std::shared_ptr<const KeyTable> chamber_table() {
                {.name = "gas",
                 .forms = {table(gas_table())},
                 .example = "{dead_volume: 5 ml}",
-                .description = "Filling. Without gas or liquid, the pressure or volume follows its "
-                               "command directly."},
+                .description = "Gas in the chamber. Without gas or liquid, the pressure or volume "
+                               "follows its command directly."},
                {.name = "liquid",
                 .forms = {table(liquid_table())},
                 .example = "{bulk_modulus: 2.2 GPa}",
-                .description = "What fills it."},
+                .description = "Liquid in the chamber."},
                outside_key()},
       .alternatives = {{{"gas", "liquid"}, false}}};
   DriveWords words{.kind = "chamber", .type = sim::ActuatorType::chamber};
@@ -252,10 +255,10 @@ std::shared_ptr<const KeyTable> chamber_table() {
   words.motion_value = "2 ml";
   words.motion_text = "Volume gained by the chamber.";
   words.inputs = {input(sim::GasDrive::kInput.name, volume(), "5 ml",
-                        "Gas added, as volume at ambient pressure. Chambers with `gas`."),
+                        "Gas added, as volume at ambient pressure. Only for chambers with `gas`."),
                   input(sim::LiquidDrive::kInput.name, volume(), "5 ml",
-                        "Liquid added. Chambers with `liquid`.")};
-  words.undriven = "Command. Without: no pressure until commanded.";
+                        "Liquid added. Only for chambers with `liquid`.")};
+  words.undriven = "Command. Default: no pressure until commanded.";
   for (Key& key : drive_keys(words)) chamber.keys.push_back(std::move(key));
   return make_table(std::move(chamber));
 }
@@ -285,26 +288,26 @@ std::shared_ptr<const KeyTable> spring_table() {
                  .forms = {choice({{"world", "Does not move."}, {"body", "Moves with the body."}})},
                  .example = "world",
                  .default_text = "body",
-                 .description = "What the first point is fixed to."},
+                 .description = "Attachment of the first point."},
                 outside_key(),
                 {.name = "stiffness",
                  .forms = {quantity(stiffness(), positive()),
                            table(helical_table(), "wire_diameter")},
                  .example = "200 N/m",
-                 .description = "Force over stretch."},
+                 .description = "Force per stretch."},
                 {.name = "shape_memory",
                  .forms = {table(wire_table())},
                  .example = "{wire_diameter: 0.5 mm, mean_diameter: 2.4 mm, coils: 10}",
-                 .description = "In place of stiffness."},
+                 .description = "A shape-memory spring, in place of `stiffness`."},
                 {.name = "free_length",
                  .forms = {quantity(length(), non_negative())},
                  .example = "30 mm",
-                 .description = "Free length. Without: the length at rest."},
+                 .description = "Free length. Default: the length at rest."},
                 {.name = "damping",
                  .forms = {quantity(damper(), non_negative())},
                  .example = "0.5 N s/m",
                  .default_text = "0 N s/m",
-                 .description = "Force over rate of stretch."},
+                 .description = "Force per rate of stretch."},
                 {.name = "tension_only",
                  .forms = {boolean()},
                  .example = "true",

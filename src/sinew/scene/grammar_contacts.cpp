@@ -14,18 +14,19 @@ Key radius_key(const char* example) {
 }
 
 std::shared_ptr<const KeyTable> solid_plane() {
-  return make_table({.name = "solid plane",
-                     .description = "A half space that is solid below a plane.",
-                     .keys = {{.name = "point",
-                               .forms = {vector(length())},
-                               .example = "0 0 0 mm",
-                               .default_text = "0 0 0 mm",
-                               .description = "A point of the plane."},
-                              {.name = "normal",
-                               .forms = {vector(plain_number())},
-                               .example = "0 0 1",
-                               .default_text = "0 0 1",
-                               .description = "Outward from the solid; any non-zero length."}}});
+  return make_table(
+      {.name = "solid plane",
+       .description = "A half space that is solid below a plane.",
+       .keys = {{.name = "point",
+                 .forms = {vector(length())},
+                 .example = "0 0 0 mm",
+                 .default_text = "0 0 0 mm",
+                 .description = "A point of the plane."},
+                {.name = "normal",
+                 .forms = {vector(plain_number())},
+                 .example = "0 0 1",
+                 .default_text = "0 0 1",
+                 .description = "Normal, outward from the solid; any non-zero length."}}});
 }
 
 std::shared_ptr<const KeyTable> solid_sphere() {
@@ -91,13 +92,12 @@ Form contact_form() {
        .forms = {list({reference("bodies")}, 2, 2), choice({{"all", "All pairs of bodies."}})},
        .example = "[finger, box]",
        .description =
-           "Two bodies, in place of body and surface. They touch with their surfaces, and one "
-           "named "
-           "twice touches itself; spheres, boxes, capsules and cylinders touch each other with "
-           "their shapes. Nodes or points of a body with elements or of an arm, where they are "
-           "named, touch a rigid body's shape or hull. `all`: every pair "
-           "but those that joints connect, those of two fixed bodies, and those that have an entry "
-           "of their own; the contacts are called NAME-FIRST-SECOND."});
+           "Two bodies, in place of body and surface. Their surfaces touch. A body named twice "
+           "touches itself. Spheres, boxes, capsules and cylinders touch each other with their "
+           "exact shapes. If you name nodes or points of a body with elements or of an arm, these "
+           "touch a rigid body's shape or hull. `all`: every pair, except pairs that joints "
+           "connect, pairs of fixed bodies, and pairs with an entry of their own; the contacts are "
+           "called NAME-FIRST-SECOND."});
   contact.keys.push_back({.name = "except",
                           .forms = {list({list({reference("bodies")}, 2, 2)})},
                           .example = "[[palm, finger]]",
@@ -107,45 +107,46 @@ Form contact_form() {
                           .forms = {table(solid_table())},
                           .example = "{plane: {point: 0 0 0 mm, normal: 0 0 1}}",
                           .description = "The surface; fixed in the world, or moved by `motion`."});
-  contact.keys.push_back({.name = "nodes",
-                          .forms = {table(nodes_table())},
-                          .example = "{set: z_min}",
-                          .description = "Surface nodes that may make contact. Without, and "
-                                         "without points: all that are not fixed; of a rigid "
-                                         "body its whole shape."});
+  contact.keys.push_back(
+      {.name = "nodes",
+       .forms = {table(nodes_table())},
+       .example = "{set: z_min}",
+       .description =
+           "Surface nodes that may make contact. Default, if there are no `points` either: all "
+           "surface nodes that are not fixed; for a rigid body, its whole shape."});
   contact.keys.push_back({.name = "points",
                           .forms = {table(point_file_table()), list({vector(length())})},
                           .example = "[0 0 195 mm]",
                           .description = "Points in the mesh at rest, in place of nodes."});
   contact.keys.push_back(outside_key());
-  contact.keys.push_back({.name = "friction",
-                          .forms = {quantity(plain_number(), non_negative())},
-                          .example = "0.5",
-                          .default_text = "0",
-                          .description = "Coulomb friction coefficient. Coated against rigid 0.05 "
-                                         "to 0.2, silicone on steel 0.6 to 0.9."});
-  contact.keys.push_back({.name = "kinetic_friction",
-                          .forms = {quantity(plain_number(), positive())},
-                          .example = "0.4",
-                          .description = "Coefficient of points that slide, no greater than "
-                                         "`friction`, which then is that of points at rest. A "
-                                         "point counts as sliding where it slid in the step "
-                                         "before. Without: the same."});
-  contact.keys.push_back({.name = "restitution",
-                          .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
-                          .example = "0.8",
-                          .description =
-                              "Coefficient of restitution of impacts, for integrator: "
-                              "event-driven. Only between rigid bodies; deformable ones "
-                              "rebound by their elasticity. Without: the integrator's."});
+  contact.keys.push_back(
+      {.name = "friction",
+       .forms = {quantity(plain_number(), non_negative())},
+       .example = "0.5",
+       .default_text = "0",
+       .description = "Coulomb friction coefficient. Typical values are 0.05 to 0.2 for coated "
+                      "surfaces on rigid ones and 0.6 to 0.9 for silicone on steel."});
+  contact.keys.push_back(
+      {.name = "kinetic_friction",
+       .forms = {quantity(plain_number(), positive())},
+       .example = "0.4",
+       .description = "Friction coefficient of sliding points, at most `friction`, which then "
+                      "applies to points at rest. A point counts as sliding if it slid in the "
+                      "previous step. Default: the value of `friction`."});
+  contact.keys.push_back(
+      {.name = "restitution",
+       .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
+       .example = "0.8",
+       .description = "Coefficient of restitution of impacts, for `integrator: event-driven`. It "
+                      "applies only between rigid bodies; deformable bodies rebound by their "
+                      "elasticity. Default: the integrator's value."});
   contact.keys.push_back(
       {.name = "aggregate",
        .forms = {quantity(length(), positive())},
        .example = "5 mm",
-       .description =
-           "Size of zones whose points act as one: fewer unknowns, the same total force. "
-           "Some edges of the mesh; for deformable bodies. Without: every point by "
-           "itself."});
+       .description = "Size of zones whose points act as one: fewer unknowns and the same total "
+                      "force. Choose a few edge lengths of the mesh. Only for deformable bodies. "
+                      "Default: every point acts by itself."});
   contact.keys.push_back(
       {.name = "motion",
        .forms = {table(make_table({.name = "motion of a surface",
@@ -153,7 +154,7 @@ Form contact_form() {
                                                   "rotation about an axis, then a translation.",
                                    .keys = motion_keys()}))},
        .example = "{z: {ramp: {to: -4 mm, duration: 1 s}}}",
-       .description = "Motion of the surface. Without: at rest."});
+       .description = "Motion of the surface. Default: at rest."});
   return table(make_table(std::move(contact)));
 }
 

@@ -74,7 +74,7 @@ Key path_unit_key(const Measure& measure, const char* example) {
           .forms = {unit(measure)},
           .example = example,
           .default_text = measure.unit,
-          .description = "The unit of the file's values; its times are in s.",
+          .description = "Unit of the file's values. Times are in s.",
           .only_with = "file"};
 }
 
@@ -82,7 +82,7 @@ std::shared_ptr<const KeyTable> circle_table() {
   return make_table(
       {.name = "circle",
        .description = "A circle at constant speed, counter-clockwise about its normal. It starts "
-                      "on the side of the x axis (of y, where the normal is near x).",
+                      "in the direction of the x axis (of the y axis if the normal is close to x).",
        .keys = {{.name = "centre",
                  .forms = {vector(length())},
                  .example = "0 0 190 mm",
@@ -97,7 +97,7 @@ std::shared_ptr<const KeyTable> circle_table() {
                  .forms = {vector(plain_number())},
                  .example = "0 0 1",
                  .default_text = "0 0 1",
-                 .description = "Its normal; any length but zero."},
+                 .description = "Normal of the circle; any non-zero length."},
                 {.name = "period",
                  .forms = {quantity(time(), positive())},
                  .example = "10 s",
@@ -107,7 +107,7 @@ std::shared_ptr<const KeyTable> circle_table() {
                  .forms = {quantity(angle())},
                  .example = "90 deg",
                  .default_text = "0",
-                 .description = "Where on the circle it starts."}}});
+                 .description = "Angle on the circle at which it starts."}}});
 }
 
 std::shared_ptr<const KeyTable> polyline_table() {
@@ -116,12 +116,12 @@ std::shared_ptr<const KeyTable> polyline_table() {
                      .keys = {{.name = "points",
                                .forms = {table(point_file_table()), list({vector(length())}, 2)},
                                .example = "[0 0 190 mm, 20 0 185 mm]",
-                               .description = "Its corners.",
+                               .description = "Corners of the path.",
                                .required = true},
                               {.name = "speed",
                                .forms = {quantity(speed(), positive())},
                                .example = "10 mm/s",
-                               .description = "Speed along it."},
+                               .description = "Speed along the path."},
                               {.name = "period",
                                .forms = {quantity(time(), positive())},
                                .example = "5 s",
@@ -167,7 +167,8 @@ std::shared_ptr<const KeyTable> rotation_table() {
 Form task_form() {
   return table(make_table(
       {.name = "task",
-       .description = "Target of one effector: target, or rotation for an orientation.",
+       .description =
+           "Target of one effector: `target` for a position, or `rotation` for an orientation.",
        .keys = {{.name = "target",
                  .forms = {vector(length()), table(target_table())},
                  .example = "0 0 190 mm",
@@ -182,34 +183,36 @@ Form task_form() {
                  .example = "1 1 0.1",
                  .default_text = "1",
                  .description =
-                     "Weight of its error: one number, or one for each of its directions."},
+                     "Weight of the effector's error: one number, or one per direction."},
                 {.name = "priority",
                  .forms = {integer(1, 3)},
                  .example = "2",
                  .default_text = "1",
-                 .description = "1 comes first. What an effector lacks moves one of the priority "
-                                "before by about 1e-4 of it."}},
+                 .description = "1 is the highest priority. An effector's error moves an effector "
+                                "of the next higher priority by about 1e-4 of that error."}},
        .alternatives = {{{"target", "rotation"}, true}}}));
 }
 
 std::shared_ptr<const KeyTable> normal_force_table() {
-  return make_table({.name = "normal force of a contact",
-                     .description = "Limits of the sum over the contact's points.",
-                     .keys = {{.name = "min",
-                               .forms = {quantity(force(), non_negative())},
-                               .example = "1 N",
-                               .default_text = "0 N",
-                               .description = "The least."},
-                              {.name = "max",
-                               .forms = {quantity(force(), positive())},
-                               .example = "3 N",
-                               .description = "The largest. Without: none."}}});
+  return make_table(
+      {.name = "normal force of a contact",
+       .description = "Limits of the sum of the normal forces at the contact's points.",
+       .keys = {{.name = "min",
+                 .forms = {quantity(force(), non_negative())},
+                 .example = "1 N",
+                 .default_text = "0 N",
+                 .description = "Smallest normal force."},
+                {.name = "max",
+                 .forms = {quantity(force(), positive())},
+                 .example = "3 N",
+                 .description = "Largest normal force. Default: no limit."}}});
 }
 
 Form contact_task_form() {
   return table(make_table(
-      {.name = "forces asked of a contact",
-       .description = "Forces of all points of one contact together. They come before targets.",
+      {.name = "contact goal",
+       .description =
+           "Goals for the resultant force of one contact. They have priority over targets.",
        .keys = {{.name = "normal_force",
                  .forms = {quantity(force(), positive()), table(normal_force_table())},
                  .example = "{min: 1 N, max: 3 N}",
@@ -218,46 +221,47 @@ Form contact_task_form() {
                  .forms = {boolean()},
                  .example = "false",
                  .default_text = "true",
-                 .description =
-                     "Whether the contact may slip. If not, its resultant stays in its cone."},
+                 .description = "Whether the contact may slip. If false, the controller keeps the "
+                                "resultant inside the friction cone."},
                 {.name = "reserve",
                  .forms = {quantity(plain_number(), non_negative())},
                  .example = "0.2",
                  .default_text = "0",
-                 .description = "Part of the friction cone that is left: |F_t| <= (1 - reserve) "
-                                "mu F_n. Less than 1."}}}));
+                 .description = "Fraction of the friction cone to keep in reserve: |F_t| <= (1 - "
+                                "reserve) mu F_n. Less than 1."}}}));
 }
 
 std::shared_ptr<const KeyTable> regularisation_table() {
   return make_table(
       {.name = "regularisation",
        .description = "Choice among efforts that serve the targets equally well.",
-       .keys = {{.name = "of",
-                 .forms = {choice({{"change", "The change from the last efforts; no bias at rest."},
-                                   {"effort", "The efforts; biases the effector."}})},
-                 .example = "change",
-                 .default_text = "change",
-                 .description = "Quantity to minimise."},
-                {.name = "epsilon",
-                 .forms = {quantity(plain_number(), positive())},
-                 .example = "1e-5",
-                 .description = "Its weight relative to the tracking error. Without: chosen by "
-                                "the controller."}}});
+       .keys = {
+           {.name = "of",
+            .forms = {choice({{"change", "The change from the last efforts; no bias at rest."},
+                              {"effort", "The efforts; biases the effector."}})},
+            .example = "change",
+            .default_text = "change",
+            .description = "Quantity to minimise."},
+           {.name = "epsilon",
+            .forms = {quantity(plain_number(), positive())},
+            .example = "1e-5",
+            .description =
+                "Its weight relative to the tracking error. Default: chosen by the controller."}}});
 }
 
 Key driven_key() {
   return {.name = "actuators",
           .forms = {list({reference("actuators")})},
           .example = "[long_0, long_1]",
-          .description = "The actuators it drives. Without: all."};
+          .description = "The actuators it drives. Default: all."};
 }
 
 std::shared_ptr<const KeyTable> closed_loop_table() {
   return make_table(
       {.name = "controller: type closed-loop",
-       .description = "Feedback on effectors that sensors measure: before each step, commands the "
-                      "actuators motions, and pressures of chambers, that take the effectors to "
-                      "their targets.",
+       .description =
+           "Feedback on effectors that sensors measure: before each step, it commands motions of "
+           "actuators, and pressures of chambers, that move the effectors to their targets.",
        .keys = {{.name = "effectors",
                  .forms = {names(task_form(), 1, "effectors")},
                  .example = "{tip: {target: 0 0 190 mm}}",
@@ -266,27 +270,27 @@ std::shared_ptr<const KeyTable> closed_loop_table() {
                 {.name = "sensors",
                  .forms = {list({reference("sensors")})},
                  .example = "[tip]",
-                 .description = "What measures the effectors: of each a marker at its point, or an "
-                                "orientation at its places.",
+                 .description = "Sensors that measure the effectors: for each effector, a marker "
+                                "at its point or an orientation at its points.",
                  .required = true},
                 driven_key(),
                 {.name = "gain",
                  .forms = {quantity(frequency(), positive())},
                  .example = "8 1/s",
                  .default_text = "5 1/s",
-                 .description = "Speed over error: an error falls as exp(-gain t)."},
+                 .description = "Velocity per error: an error decays as exp(-gain t)."},
                 {.name = "integral",
                  .forms = {quantity(integral_gain(), non_negative())},
                  .example = "4 1/s^2",
                  .default_text = "0 1/s^2",
-                 .description = "Speed over the time integral of the error; gain^2/4 damps "
-                                "critically."},
+                 .description =
+                     "Velocity per time integral of the error; gain^2/4 gives critical damping."},
                 {.name = "timeout",
                  .forms = {quantity(time(), positive())},
                  .example = "50 ms",
                  .default_text = "100 ms",
                  .description = "All commands are held while the last sample of a sensor is older "
-                                "than the sensor's delay and this."}}});
+                                "than the sensor's delay plus this time."}}});
 }
 
 }  // namespace
@@ -297,8 +301,8 @@ std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char*
   KeyTable signal{
       .name = with_unit("signal", measure),
       .description =
-          "A value over time: exactly one of ramp, sine, steps and file. Values have the "
-          "dimension of the key that the signal stands under.",
+          "A value over time: exactly one of ramp, sine, steps and file. Values have the dimension "
+          "of the key to which the signal belongs.",
       .keys = {{.name = "ramp",
                 .forms = {table(ramp_table(measure, value_example))},
                 .example = "{to: " + value + ", duration: 1 s}",
@@ -312,16 +316,14 @@ std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char*
                 .example = "[[0 s, 0" + (plain ? "" : " " + std::string(measure.unit)) +
                            "], [1 s, " + value + "]]",
                 .description = "Steps: pairs of time and value, the first at 0 s."},
-               path_file_key("A CSV table with two columns, time and value, or with `column`; "
-                             "linear interpolation."),
+               path_file_key("A CSV table with two columns, time and value, or with headings and "
+                             "`column`. Values between the times are interpolated linearly."),
                {.name = "column",
                 .forms = {text()},
                 .example = "second",
-                .description =
-                    "Which column of a table with headings has the values: a heading, "
-                    "or what stands in it before \" [unit]\", whose unit then holds. "
-                    "Times are in the first column. In place of headings, `unit` gives the unit of "
-                    "the values.",
+                .description = "Heading of the column with the values, with or without its \" "
+                               "[unit]\". Values have the unit in the heading, or `unit` if it is "
+                               "given. Times are in the first column.",
                 .only_with = "file"}},
       .alternatives = {{{"ramp", "sine", "steps", "file"}, true}}};
   if (!plain) {
@@ -343,7 +345,7 @@ Form controller_form() {
                            {.name = "contacts",
                             .forms = {names(contact_task_form(), 1, "contacts")},
                             .example = "{grip: {normal_force: {min: 1 N, max: 3 N}}}",
-                            .description = "What is asked of the forces of contacts, by name."},
+                            .description = "Goals for contact forces, by name of the contact."},
                            driven_key(),
                            {.name = "regularisation",
                             .forms = {table(regularisation_table())},

@@ -16,7 +16,7 @@ std::shared_ptr<const KeyTable> weld_region_table() {
 
 Key bodies_key(const char* example, const char* description) {
   return {.name = "bodies",
-          .forms = {list({reference("bodies", {{"world", "What does not move."}})}, 2, 2)},
+          .forms = {list({reference("bodies", {{"world", "The fixed world."}})}, 2, 2)},
           .example = example,
           .description = description,
           .required = true};
@@ -27,15 +27,15 @@ std::shared_ptr<const KeyTable> weld_table() {
       {.name = "joint: type weld",
        .description = "Bonds two bodies: nodes of the first keep their position in the material of "
                       "the second. Meshes need not match; name the body with the finer mesh first. "
-                      "In statics a body may be held by its joints alone. Without region and "
-                      "points: all surface nodes of the first body that lie in or on the second. "
-                      "Two rigid bodies, or one and the world, become one.",
+                      "In statics a body may be held by its joints alone. By default, the weld "
+                      "takes all surface nodes of the first body that lie in or on the second. Two "
+                      "rigid bodies, or one and the world, become one.",
        .keys = {bodies_key("[upper, lower]",
-                           "The two bodies; a rigid one or `world` may be either."),
+                           "The two bodies. Either may be a rigid body or `world`."),
                 {.name = "region",
                  .forms = {table(weld_region_table())},
                  .example = "{set: z_min}",
-                 .description = "Which nodes of the first body are welded."},
+                 .description = "Nodes of the first body that are welded."},
                 {.name = "points",
                  .forms = {table(point_file_table()), list({vector(length())})},
                  .example = "[0 0 60 mm, 10 0 60 mm, 0 10 60 mm]",
@@ -54,11 +54,12 @@ Key motion_limits(const char* name, const Measure& measure, const char* example)
   return {.name = name,
           .forms = {table(make_table(
               {.name = std::string("limits of a joint's ") + name,
-               .description = "Stops, from where the scene puts the bodies; 0 lies between them.",
+               .description =
+                   "Stops, measured from the initial pose of the scene; 0 lies between them.",
                .keys = {bound("min", measure.unit == std::string_view("m") ? "-10 mm" : "-45 deg",
-                              "Least value."),
+                              "Smallest value."),
                         bound("max", measure.unit == std::string_view("m") ? "40 mm" : "90 deg",
-                              "Greatest value.")}}))},
+                              "Largest value.")}}))},
           .example = example,
           .default_text = "{}",
           .description = std::string("Limits of the ") + name + "."};
@@ -77,20 +78,20 @@ std::shared_ptr<const KeyTable> joint_table(const JointWords& words) {
   KeyTable joint{.name = "joint: type " + type,
                  .description = words.description,
                  .keys = {bodies_key("[box, cover]",
-                                     "The two bodies, rigid or sections of an arm; or one and "
-                                     "`world`."),
+                                     "Two bodies, each rigid or an arm of constant curvature; or "
+                                     "one of them and `world`."),
                           {.name = "point",
                            .forms = {vector(length())},
                            .example = "0 0 40 mm",
-                           .description = "Where the joint is, with the bodies as the scene puts "
-                                          "them.",
+                           .description = "Position of the joint in the initial pose of the scene.",
                            .required = true}}};
   if (words.axes == 1) {
-    joint.keys.push_back({.name = "axis",
-                          .forms = axis_forms(),
-                          .example = "1 0 0",
-                          .description = "Direction of the axis then; any non-zero length.",
-                          .required = true});
+    joint.keys.push_back(
+        {.name = "axis",
+         .forms = axis_forms(),
+         .example = "1 0 0",
+         .description = "Direction of the axis in the initial pose; any non-zero length.",
+         .required = true});
   }
   if (words.axes == 2) {
     joint.keys.push_back({.name = "axes",
@@ -111,14 +112,15 @@ std::shared_ptr<const KeyTable> joint_table(const JointWords& words) {
                           .example = turns ? "{angle: {min: 0 deg, max: 90 deg}}"
                                            : "{displacement: {min: 0 mm, max: 40 mm}}",
                           .default_text = "{}",
-                          .description = "How far it moves. Without: as far as it is moved."});
+                          .description = "Limits of the joint's motion; no limits by default."});
   }
   if (turns != slides) {
-    joint.keys.push_back({.name = "friction",
-                          .forms = {quantity(turns ? torque() : force(), non_negative())},
-                          .example = turns ? "1 mN m" : "0.1 N",
-                          .default_text = turns ? "0 N m" : "0 N",
-                          .description = "Coulomb friction: what it takes to move the joint."});
+    joint.keys.push_back(
+        {.name = "friction",
+         .forms = {quantity(turns ? torque() : force(), non_negative())},
+         .example = turns ? "1 mN m" : "0.1 N",
+         .default_text = turns ? "0 N m" : "0 N",
+         .description = "Coulomb friction: the force or moment needed to move the joint."});
   }
   return make_table(std::move(joint));
 }
@@ -133,19 +135,19 @@ Choice joint(const JointWords& words) {
 
 std::shared_ptr<const KeyTable> body_point_table() {
   return make_table({.name = "point of a body",
-                     .description = "A point in the material of another body than the cable's.",
+                     .description = "A point in the material of a body other than the cable's.",
                      .keys = {body_key(),
                               {.name = "point",
                                .forms = {vector(length())},
                                .example = "0 10 80 mm",
-                               .description = "Where it is at rest.",
+                               .description = "Position at rest.",
                                .required = true}}});
 }
 
 Form joint_form() {
   return variants(
-      "type", {{.word = "weld", .description = "One body.", .table = weld_table()},
-               joint({JointType::ball, "Two points are one.", 0}),
+      "type", {{.word = "weld", .description = "Bonds two bodies.", .table = weld_table()},
+               joint({JointType::ball, "Two points coincide.", 0}),
                joint({JointType::hinge, "Turns about an axis.", 1}),
                joint({JointType::slider, "Slides along an axis.", 1}),
                joint({JointType::cylindrical, "Turns about an axis and slides along it.", 1}),

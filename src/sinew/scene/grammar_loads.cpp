@@ -49,7 +49,7 @@ Key coefficient(const char* name, const char* value, const char* description) {
 std::shared_ptr<const KeyTable> force_load_table() {
   return load_table(
       "force", "A force of fixed direction on a point of the body.",
-      {vector_key("point", length(), "0 0 195 mm", "Where, in the mesh at rest."),
+      {vector_key("point", length(), "0 0 195 mm", "Position in the mesh at rest."),
        vector_key("force", force(), "0 0 -1 N", "The force."), outside_key(), factor_key()});
 }
 
@@ -61,7 +61,7 @@ std::shared_ptr<const KeyTable> line_table() {
         .example = "[0 0 0 mm, 0 0 100 mm]",
         .description = "The line, in the mesh at rest.",
         .required = true},
-       vector_key("force_per_length", stiffness(), "0 0 -2 N/m", "By length at rest."),
+       vector_key("force_per_length", stiffness(), "0 0 -2 N/m", "Force per length at rest."),
        outside_key(),
        factor_key()});
 }
@@ -70,7 +70,7 @@ std::shared_ptr<const KeyTable> traction_table() {
   return load_table(
       "traction", "A force of fixed direction spread evenly over faces.",
       {surface_key("The faces.", true),
-       vector_key("traction", stress(), "0 0 -100 Pa", "By area at rest."), factor_key()});
+       vector_key("traction", stress(), "0 0 -100 Pa", "Force per area at rest."), factor_key()});
 }
 
 std::shared_ptr<const KeyTable> acceleration_table() {
@@ -88,7 +88,7 @@ std::shared_ptr<const KeyTable> pressure_load_table() {
                      {.name = "pressure",
                       .forms = {quantity(stress()), table(signal_table(stress(), "1 kPa"))},
                       .example = "1 kPa",
-                      .description = "Over time.",
+                      .description = "Pressure, constant or over time.",
                       .required = true}});
 }
 
@@ -96,25 +96,25 @@ std::shared_ptr<const KeyTable> water_table() {
   return load_table(
       "water",
       "Surrounding water: buoyancy under the scene's gravity, drag on every face, and added mass.",
-      {surface_key("The wet faces. Without: the whole outer surface of the body.", false),
+      {surface_key("The wet faces. Default: the whole outer surface of the body.", false),
        {.name = "density",
         .forms = {quantity(density(), non_negative())},
         .example = "1000 kg/m^3",
         .default_text = "1000 kg/m^3",
-        .description = "Of the water."},
+        .description = "Density of the water."},
        {.name = "level",
         .forms = {quantity(length())},
         .example = "100 mm",
-        .description = "Height of the water's surface above the origin, against gravity. "
-                       "Without: far above the body."},
+        .description = "Height of the water's surface above the origin, against gravity. Default: "
+                       "far above the body."},
        {.name = "velocity",
         .forms = {vector(speed())},
         .example = "0.1 0 0 m/s",
         .default_text = "0 0 0 m/s",
-        .description = "Of the water far from the body."},
+        .description = "Velocity of the water far from the body."},
        coefficient("normal_drag", "0.9",
                    "Drag coefficient of a face moving along its normal. A cylinder in cross flow "
-                   "gets 4/3 of it on its width, a sphere the same value."),
+                   "then has 4/3 of this coefficient by its width, a sphere the same coefficient."),
        coefficient("tangential_drag", "0.01", "Drag coefficient of a face moving tangentially."),
        coefficient("added_mass", "1",
                    "Added mass as a fraction of the displaced water: 1 for a cylinder in cross "
@@ -141,11 +141,11 @@ Form mass_form() {
        .description = "A point mass on a body, such as a suspended weight or a camera, with weight "
                       "and inertia but no size. It is added to the body's own mass.",
        .keys = {body_key(),
-                vector_key("point", length(), "0 0 195 mm", "Where, in the mesh at rest."),
+                vector_key("point", length(), "0 0 195 mm", "Position in the mesh at rest."),
                 {.name = "mass",
                  .forms = {quantity(mass(), positive())},
                  .example = "52 g",
-                 .description = "How much.",
+                 .description = "Mass.",
                  .required = true},
                 outside_key()}}));
 }
@@ -156,7 +156,7 @@ Form membrane_form() {
        .description = "A thin layer on faces of a body, such as the paper in a bending actuator or "
                       "fabric on silicone. It resists stretch in its plane, does not resist "
                       "bending, and has no mass. Its law is linear in the Green strain (plane "
-                      "stress): for layers that stretch by a few per cent.",
+                      "stress) and suits layers that stretch by a few per cent.",
        .keys = {body_key(),
                 surface_key("The faces: a patch or a region of the body's surface.", true),
                 {.name = "thickness",

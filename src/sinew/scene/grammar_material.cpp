@@ -79,7 +79,7 @@ std::shared_ptr<const KeyTable> softening_table() {
                  .forms = {quantity(plain_number(), non_negative())},
                  .example = "0.1",
                  .default_text = "0",
-                 .description = "The same, as a fraction of Wm."}}});
+                 .description = "Energy scale as a fraction of Wm, added to m."}}});
 }
 
 /// Keys of all hyperelastic laws: viscoelasticity and softening.
@@ -88,7 +88,7 @@ std::vector<Key> history_keys() {
   return {{.name = "viscosity",
            .forms = {series},
            .example = "[{relative_modulus: 0.1, relaxation_time: 50 ms}]",
-           .description = "Prony series of a viscoelastic material. Without: it is elastic."},
+           .description = "Prony series of a viscoelastic material. Default: elastic."},
           {.name = "moduli",
            .forms = {choice({{"long-term", "Long-term: moduli for slow motion and statics."},
                              {"instantaneous", "Instantaneous: moduli for a sudden strain."}})},
@@ -99,7 +99,7 @@ std::vector<Key> history_keys() {
           {.name = "softening",
            .forms = {table(softening_table())},
            .example = "{r: 2.1, m: 500 Pa, beta: 0.1}",
-           .description = "The Mullins effect. Without: unloading follows loading."}};
+           .description = "The Mullins effect. Default: unloading follows loading."}};
 }
 
 // The keys of all hyperelastic laws, for the reference alone.
@@ -115,7 +115,8 @@ Choice energy(const char* word, const char* description, std::vector<Key> keys,
               std::vector<Alternatives> alternatives = {}) {
   keys.push_back(poisson_ratio(
       false, "Initial Poisson's ratio, below 0.5: 0.49 to 0.4999 for rubbers on hexahedra."));
-  keys.push_back(modulus("bulk_modulus", "1 MPa", "In place of poisson_ratio.", false));
+  keys.push_back(
+      modulus("bulk_modulus", "1 MPa", "Bulk modulus, in place of `poisson_ratio`.", false));
   for (Key& key : history_keys()) keys.push_back(std::move(key));
   alternatives.push_back({{"poisson_ratio", "bulk_modulus"}, true});
   return {.word = word,
@@ -148,14 +149,15 @@ std::vector<Key> ogden_keys() {
       {.name = "alpha",
        .forms = {numbers(1, kMaxTerms, any())},
        .example = "1.7138 7.0679 -3.3659",
-       .description = "Exponents, as many.",
+       .description = "Exponents, one per modulus.",
        .required = true},
       {.name = "convention",
-       .forms = {choice({{"mu-over-alpha", "sum mu/alpha (...), Ogden's own."},
+       .forms = {choice({{"mu-over-alpha", "sum mu/alpha (...), Ogden's own form."},
                          {"two-mu-over-alpha-squared",
                           "sum 2 mu/alpha^2 (...): mu adds up to the initial shear modulus."}})},
        .example = "mu-over-alpha",
-       .description = "Convention of the moduli. Sources differ, and so does the stiffness.",
+       .description = "Convention of the moduli. Sources differ, and the wrong convention gives a "
+                      "wrong stiffness.",
        .required = true}};
 }
 
@@ -168,8 +170,8 @@ std::vector<Key> saint_venant_keys() {
 /// Laws by name, told by `model`.
 Form law_form() {
   const Key shear = modulus("shear_modulus", "24.4 kPa", "Initial shear modulus.", false);
-  Key c20 = modulus("c20", "-0.2 kPa", "Of (I - 3)^2.", false, true);
-  Key c30 = modulus("c30", "0.03 kPa", "Of (I - 3)^3.", false, true);
+  Key c20 = modulus("c20", "-0.2 kPa", "Coefficient of (I - 3)^2.", false, true);
+  Key c30 = modulus("c30", "0.03 kPa", "Coefficient of (I - 3)^3.", false, true);
   c20.default_text = c30.default_text = "0 Pa";
   return variants(
       "model",
@@ -177,16 +179,18 @@ Form law_form() {
                     "Corotational linear elasticity: large rotation, small strain."),
        small_strain("linear", "Small displacements and strains."),
        energy("neo-hookean", "mu/2 (I - 3) and kappa/2 (J - 1)^2.",
-              {shear, modulus("young_modulus", "72 kPa", "In place of shear_modulus.", false)},
+              {shear, modulus("young_modulus", "72 kPa",
+                              "Initial Young's modulus, in place of `shear_modulus`.", false)},
               {{{"shear_modulus", "young_modulus"}, true}}),
        energy("mooney-rivlin", "C10 (I - 3) + C01 (II - 3).",
-              {modulus("c10", "12.18 kPa", "Of I - 3.", true, true),
-               modulus("c01", "1 kPa", "Of II - 3.", true, true)}),
+              {modulus("c10", "12.18 kPa", "Coefficient of I - 3.", true, true),
+               modulus("c01", "1 kPa", "Coefficient of II - 3.", true, true)}),
        energy("yeoh", "C10 (I - 3) + C20 (I - 3)^2 + C30 (I - 3)^3.",
-              {modulus("c10", "12 kPa", "Of I - 3; half the initial shear modulus."), c20, c30}),
+              {modulus("c10", "12 kPa", "Coefficient of I - 3; half the initial shear modulus."),
+               c20, c30}),
        energy("ogden", "A sum of powers of the principal stretches.", ogden_keys()),
        energy("arruda-boyce", "Eight-chain model, five terms of its series.",
-              {modulus("shear_modulus", "20 kPa", "mu of the series."),
+              {modulus("shear_modulus", "20 kPa", "Modulus mu of the series."),
                {.name = "locking_stretch",
                 .forms = {quantity(plain_number(), material_range(1.0))},
                 .example = "3.5",
@@ -212,9 +216,10 @@ Key stiffness_scale() {
 }  // namespace
 
 std::vector<Form> material_forms() {
-  const auto usual = make_table({.name = "material",
-                                 .description = "The corotational law, when `model` is left out.",
-                                 .keys = small_strain_keys()});
+  const auto usual =
+      make_table({.name = "material",
+                  .description = "The corotational law, which applies if `model` is left out.",
+                  .keys = small_strain_keys()});
   std::vector<Choice> library;
   for (const material::NamedMaterial& named : material::material_library()) {
     std::string description =
@@ -237,15 +242,15 @@ std::vector<Form> material_forms() {
   word.loose = true;
   Form bare_word = word;  // what the words mean stands at the form without a map
   for (Choice& choice : bare_word.choices) choice.description.clear();
-  const auto named = make_table({.name = "material: name",
-                                 .description = "A material of the library, scaled.",
-                                 .keys = {{.name = "name",
-                                           .forms = {bare_word},
-                                           .example = "dragon-skin-30",
-                                           .description = "A name of the library; capitals, blanks "
-                                                          "and hyphens do not count.",
-                                           .required = true},
-                                          stiffness_scale()}});
+  const auto named = make_table(
+      {.name = "material: name",
+       .description = "A material of the library, scaled.",
+       .keys = {{.name = "name",
+                 .forms = {bare_word},
+                 .example = "dragon-skin-30",
+                 .description = "A name of the library; capitals, spaces and hyphens are ignored.",
+                 .required = true},
+                stiffness_scale()}});
   return {law_form(), table(usual, "young_modulus"), table(own, "file"), table(named, "name"),
           std::move(word)};
 }

@@ -8,17 +8,18 @@ namespace {
 std::shared_ptr<const KeyTable> segment_table() {
   return make_table(
       {.name = "segments of type pcc",
-       .description = "A segment of constant curvature, from the base on.",
+       .description =
+           "A segment of constant curvature. Segments are listed from the base to the tip.",
        .keys = {
            {.name = "length",
             .forms = {quantity(length(), positive())},
             .example = "140 mm",
-            .description = "Of the part that bends.",
+            .description = "Length of the part that bends.",
             .required = true},
            {.name = "mass",
             .forms = {quantity(mass(), positive())},
             .example = "146 g",
-            .description = "Of the segment.",
+            .description = "Mass of the segment.",
             .required = true},
            {.name = "stiffness",
             .forms = {quantity(torque(), non_negative())},
@@ -35,7 +36,7 @@ std::shared_ptr<const KeyTable> segment_table() {
                               {"spatial", "Two angles, about any axis of the section."}})},
             .example = "spatial",
             .default_text = "planar",
-            .description = "How it bends."},
+            .description = "Directions in which the segment bends."},
            {.name = "gamma",
             .forms = {quantity(angle())},
             .example = "90 deg",
@@ -49,7 +50,7 @@ std::shared_ptr<const KeyTable> segment_table() {
            {.name = "axial_stiffness",
             .forms = {quantity(stiffness(), positive())},
             .example = "200 N/m",
-            .description = "Makes a spatial segment extensible. Without: its length stays."},
+            .description = "Makes a spatial segment extensible. Default: its length is constant."},
            {.name = "axial_damping",
             .forms = {quantity(damper(), non_negative())},
             .example = "0.5 N s/m",
@@ -69,7 +70,7 @@ std::shared_ptr<const KeyTable> pcc_table() {
                          {.name = "segments",
                           .forms = {list({table(segment_table())})},
                           .example = "[{length: 140 mm, mass: 146 g, stiffness: 0.108 N m}]",
-                          .description = "From the base on.",
+                          .description = "Segments from the base to the tip.",
                           .required = true},
                          {.name = "centre",
                           .forms = {choice({{"arc", "At the midpoint of the arc."},
@@ -88,7 +89,7 @@ std::shared_ptr<const KeyTable> pcc_table() {
                           .forms = {vector(length())},
                           .example = "0 0 0.5 m",
                           .default_text = "0 0 0 m",
-                          .description = "Where the base is."},
+                          .description = "Position of the base."},
                          {.name = "direction",
                           .forms = {vector(plain_number())},
                           .example = "0 0 1",
@@ -118,7 +119,7 @@ std::shared_ptr<const KeyTable> torque_table() {
                                   {"across", "Towards a section's y; spatial segments only."}})},
                 .example = "across",
                 .default_text = "side",
-                .description = "Where a positive torque bends it."}}};
+                .description = "Direction in which a positive torque bends the segment."}}};
   DriveWords words{.kind = "torque", .type = sim::ActuatorType::torque};
   words.effort_measure = torque();
   words.effort_rate = torque_rate();
@@ -132,7 +133,7 @@ std::shared_ptr<const KeyTable> torque_table() {
   words.motion_rate_example = "1 1/s";
   words.motion_value = "20 deg";
   words.motion_text = "Bending angle of the segment.";
-  words.undriven = "Command. Without: no torque until commanded.";
+  words.undriven = "Command. Default: no torque until commanded.";
   for (Key& key : drive_keys(words)) table.keys.push_back(std::move(key));
   return make_table(std::move(table));
 }

@@ -8,7 +8,7 @@ namespace {
 Key optional_body_key() {
   Key key = body_key();
   key.required = false;
-  key.description = "The body it belongs to. Without: the probe's.";
+  key.description = "The body it belongs to. Default: the probe's body.";
   return key;
 }
 
@@ -25,8 +25,8 @@ std::shared_ptr<const KeyTable> face_table() {
   KeyTable face{.name = "face of a bend",
                 .description =
                     "Nodes of a face or a cross-section at rest: exactly one of box, sphere, plane "
-                    "and set. Its normal is that of the plane, or of the plane that fits best, and "
-                    "turns with the nodes.",
+                    "and set. Its normal is the normal of `plane`, or else of the best-fitting "
+                    "plane. It turns with the nodes.",
                 .keys = region_keys("Nodes"),
                 .alternatives = {{{"box", "sphere", "plane", "set"}, true}}};
   face.keys.push_back(optional_body_key());
@@ -37,8 +37,8 @@ std::shared_ptr<const KeyTable> extent_table() {
   KeyTable extent{
       .name = "extent",
       .description =
-          "How far nodes reach. Of box, sphere, plane and set at most one says which "
-          "nodes of the mesh at rest; without, all of the body.",
+          "Extent of a set of nodes. At most one of box, sphere, plane and set selects nodes in "
+          "the mesh at rest. Default: all nodes of the body.",
       .keys = region_keys("Nodes"),
       .alternatives = {{{"box", "sphere", "plane", "set"}, false}, {{"along", "across"}, true}}};
   extent.keys.push_back({.name = "along",
@@ -56,7 +56,7 @@ std::shared_ptr<const KeyTable> extent_table() {
                          {"smallest", "In the direction of the smallest extent."}})},
        .example = "smallest",
        .default_text = "largest",
-       .description = "Which of the directions normal to the axis.",
+       .description = "Direction normal to the axis in which the extent is taken.",
        .only_with = "across"});
   return make_table(std::move(extent));
 }

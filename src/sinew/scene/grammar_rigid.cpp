@@ -22,14 +22,16 @@ std::shared_ptr<const KeyTable> shape_table() {
        .keys = {{.name = "box",
                  .forms = {vector(length())},
                  .example = "40 30 20 mm",
-                 .description = "A box along the body's axes: its whole edges."},
+                 .description =
+                     "A box along the body's axes, given by the full lengths of its edges."},
                 shape_form("sphere", "{radius: 15 mm}", "A ball.",
                            {shape_length("radius", "15 mm", "Its radius.")}),
                 shape_form(
                     "capsule", "{radius: 10 mm, length: 40 mm}",
-                    "A cylinder about z with half spheres at its ends.",
-                    {shape_length("radius", "10 mm", "Of the cylinder and the half spheres."),
-                     shape_length("length", "40 mm", "Of the cylinder, without its ends.")}),
+                    "A cylinder about z with hemispherical ends.",
+                    {shape_length("radius", "10 mm",
+                                  "Radius of the cylinder and of its hemispherical ends."),
+                     shape_length("length", "40 mm", "Length of the cylinder, without its ends.")}),
                 shape_form("cylinder", "{radius: 10 mm, height: 40 mm}", "A cylinder about z.",
                            {shape_length("radius", "10 mm", "Its radius."),
                             shape_length("height", "40 mm", "Along z.")})},
@@ -39,18 +41,18 @@ std::shared_ptr<const KeyTable> shape_table() {
 std::shared_ptr<const KeyTable> solid_table() {
   return make_table(
       {.name = "mesh of a rigid body",
-       .description = "A closed surface: STL, OBJ or PLY, or that of a VTK legacy, VTU or Gmsh "
-                      "file. The body's origin and axes are the file's.",
+       .description = "A closed surface: an STL, OBJ or PLY file, or the surface of a mesh in a "
+                      "VTK legacy, VTU or Gmsh file. The body has the origin and axes of the file.",
        .keys = {mesh_file_key("part.stl"),
                 file_unit_key(),
                 file_scale_key(),
                 {.name = "use",
-                 .forms = {choice({{"surface", "Its triangles touch."},
-                                   {"convex", "Its convex hull touches."}})},
+                 .forms = {choice({{"surface", "Its triangles make contact."},
+                                   {"convex", "Its convex hull makes contact."}})},
                  .example = "convex",
                  .default_text = "surface",
-                 .description = "What of it touches in contacts. Mass, drawing and attached points "
-                                "are of the surface."}}});
+                 .description = "Geometry used in contacts. Mass, drawing and attached points "
+                                "always use the surface."}}});
 }
 
 std::shared_ptr<const KeyTable> pose_rotation_table() {
@@ -64,24 +66,24 @@ std::shared_ptr<const KeyTable> pose_rotation_table() {
                               {.name = "angle",
                                .forms = {quantity(angle())},
                                .example = "20 deg",
-                               .description = "Right-handed about it.",
+                               .description = "Angle, right-handed about the axis.",
                                .required = true}}});
 }
 
 std::shared_ptr<const KeyTable> pose_table() {
   return make_table({.name = "pose",
-                     .description = "Where a rigid body is at the start.",
+                     .description = "Pose of a rigid body at the start.",
                      .keys = {{.name = "position",
                                .forms = {vector(length())},
                                .example = "0 0 30 mm",
                                .default_text = "0 0 0 m",
-                               .description = "Of its origin."},
+                               .description = "Position of the body's origin."},
                               {.name = "rotation",
                                .forms = {vector(angle()), table(pose_rotation_table())},
                                .example = "{axis: 0 0 1, angle: 20 deg}",
                                .default_text = "0 0 0 rad",
-                               .description = "Of its axes, about its origin: an axis and an "
-                                              "angle, or a rotation vector."}}});
+                               .description = "Rotation of the body's axes about its origin: an "
+                                              "axis and an angle, or a rotation vector."}}});
 }
 
 std::shared_ptr<const KeyTable> velocity_table() {
@@ -91,12 +93,12 @@ std::shared_ptr<const KeyTable> velocity_table() {
                                .forms = {vector(speed())},
                                .example = "0 0 -1 m/s",
                                .default_text = "0 0 0 m/s",
-                               .description = "Of its centre of mass."},
+                               .description = "Velocity of the centre of mass."},
                               {.name = "angular",
                                .forms = {vector(angular_speed())},
                                .example = "0 0 20 rad/s",
                                .default_text = "0 0 0 rad/s",
-                               .description = "About the world's axes."}}});
+                               .description = "Angular velocity in world axes."}}});
 }
 
 KeyTable motor_table(const char* word, const char* description, const char* joint_text,
@@ -109,7 +111,7 @@ KeyTable motor_table(const char* word, const char* description, const char* join
                            .description = joint_text,
                            .required = true}}};
   words.kind = word;
-  words.undriven = "Command. Without: no effort until commanded.";
+  words.undriven = "Command. Default: no effort until commanded.";
   for (Key& key : drive_keys(words)) table.keys.push_back(std::move(key));
   return table;
 }
@@ -134,7 +136,7 @@ std::shared_ptr<const KeyTable> rigid_table() {
                 {.name = "mesh",
                  .forms = {table(solid_table())},
                  .example = "{file: part.stl, unit: mm}",
-                 .description = "A solid that a surface encloses, in place of a shape."},
+                 .description = "A solid enclosed by a surface, in place of a shape."},
                 {.name = "density",
                  .forms = {quantity(density(), positive())},
                  .example = "1200 kg/m^3",
@@ -147,12 +149,13 @@ std::shared_ptr<const KeyTable> rigid_table() {
                  .forms = {vector(inertia())},
                  .example = "1e-5 2e-5 2.5e-5 kg m^2",
                  .description = "Moments of inertia about the body's axes through the centre of "
-                                "mass. Without: of the shape.",
+                                "mass. Default: computed from the shape.",
                  .only_with = "mass"},
                 {.name = "centre_of_mass",
                  .forms = {vector(length())},
                  .example = "0 0 5 mm",
-                 .description = "In the body's frame. Without: of the shape.",
+                 .description =
+                     "Centre of mass in the body's frame. Default: computed from the shape.",
                  .only_with = "inertia"},
                 {.name = "pose",
                  .forms = {table(pose_table())},
@@ -163,29 +166,30 @@ std::shared_ptr<const KeyTable> rigid_table() {
                  .forms = {table(velocity_table())},
                  .example = "{linear: 0 0 -1 m/s}",
                  .default_text = "{}",
-                 .description = "Initial motion. Without: at rest."},
+                 .description = "Initial motion; at rest by default."},
                 {.name = "fixed",
                  .forms = {boolean()},
                  .example = "true",
                  .default_text = "false",
-                 .description = "Whether the body stays where it is; it then needs no mass."},
+                 .description = "Whether the body is fixed in the world; it then needs no mass."},
                 {.name = "motion",
-                 .forms = {table(make_table(
-                     {.name = "motion of a rigid body",
-                      .description = "A rotation about an axis, then a translation, from where the "
-                                     "body is at the start.",
-                      .keys = motion_keys()}))},
+                 .forms = {table(
+                     make_table({.name = "motion of a rigid body",
+                                 .description = "A rotation about an axis, then a translation, "
+                                                "from the body's pose at the start.",
+                                 .keys = motion_keys()}))},
                  .example = "{z: {ramp: {to: 10 mm, duration: 1 s}}}",
-                 .description = "The body goes where this says, whatever acts on it; it then needs "
-                                "no mass. Without: it moves freely, or is fixed."}},
+                 .description = "Prescribed motion of the body, regardless of the forces on it; it "
+                                "then needs no mass. Default: it moves freely, or is fixed."}},
        .alternatives = {{{"shape", "mesh"}, true}, {{"density", "mass"}, false}}});
 }
 
 std::shared_ptr<const KeyTable> urdf_table() {
   return make_table(
       {.name = "body: type urdf",
-       .description = "The links and joints of a robot in a URDF file: rigid bodies ROBOT.LINK and "
-                      "joints ROBOT.JOINT, which the scene names as it names others.",
+       .description =
+           "The links and joints of a robot in a URDF file. They become rigid bodies ROBOT.LINK "
+           "and joints ROBOT.JOINT, which other parts of the scene can refer to.",
        .keys = {{.name = "file",
                  .forms = {file()},
                  .example = "arm.urdf",
@@ -205,23 +209,25 @@ std::shared_ptr<const KeyTable> urdf_table() {
                  .forms = {boolean()},
                  .example = "false",
                  .default_text = "true",
-                 .description = "Whether the root link stays where it is."},
+                 .description = "Whether the root link is fixed in the world."},
                 {.name = "angles",
                  .forms = {names(quantity(angle()))},
                  .example = "{elbow: -90 deg}",
                  .default_text = "{}",
-                 .description = "Of revolute and continuous joints at the start, by the file's "
-                                "names. Without: 0. The joint's `angle` counts from there."},
+                 .description =
+                     "Angles of revolute and continuous joints at the start, by their names in the "
+                     "file; 0 by default. The joint's `angle` is measured from there."},
                 {.name = "displacements",
                  .forms = {names(quantity(length()))},
                  .example = "{finger: 10 mm}",
                  .default_text = "{}",
-                 .description = "The same of prismatic joints."},
+                 .description = "Displacements of prismatic joints at the start, by their names in "
+                                "the file; 0 by default."},
                 {.name = "density",
                  .forms = {quantity(density(), positive())},
                  .example = "1200 kg/m^3",
-                 .description = "Of the collision geometry of moving links that have no "
-                                "`<inertial>`. Without: an error names them."}}});
+                 .description = "Density of the collision geometry of moving links without "
+                                "`<inertial>`. Default: such links are an error."}}});
 }
 
 std::shared_ptr<const KeyTable> motor_table() {
@@ -239,8 +245,9 @@ std::shared_ptr<const KeyTable> motor_table() {
   words.motion_rate_example = "1 1/s";
   words.motion_value = "30 deg";
   words.motion_text = "Angle of the hinge, 0 at rest.";
-  words.inputs = {velocity_key(angular_speed(), "60 deg/s",
-                               "Angular velocity: each step advances the hinge from where it is.")};
+  words.inputs = {
+      velocity_key(angular_speed(), "60 deg/s",
+                   "Angular velocity: each step advances the hinge from its present angle.")};
   return make_table(motor_table("motor", "A motor in a hinge.", "The hinge.", words));
 }
 
@@ -259,8 +266,8 @@ std::shared_ptr<const KeyTable> linear_motor_table() {
   words.motion_rate_example = "50 mm/s";
   words.motion_value = "10 mm";
   words.motion_text = "Displacement of the slider, 0 at rest.";
-  words.inputs = {
-      velocity_key(speed(), "5 mm/s", "Velocity: each step advances the slider from where it is.")};
+  words.inputs = {velocity_key(
+      speed(), "5 mm/s", "Velocity: each step advances the slider from its present position.")};
   return make_table(motor_table("linear-motor", "A motor on a slider.", "The slider.", words));
 }
 

@@ -16,7 +16,7 @@ Key optional_length(const char* name, const char* example, const char* default_t
 Key element_size() {
   return optional_length(
       "element_size", "5 mm", "",
-      "Target edge length of the elements. Without: a few elements through the thinnest part.");
+      "Target edge length of the elements. Default: a few elements through the thinnest part.");
 }
 
 Choice shape(const char* word, const char* description, std::vector<Key> keys) {
@@ -30,75 +30,78 @@ Choice shape(const char* word, const char* description, std::vector<Key> keys) {
 
 Form mesh_shape() {
   return variants(
-      "shape", {shape("block", "A box from the origin along the axes, z upwards.",
-                      {shape_length("length", "100 mm", "Along x."),
-                       shape_length("width", "20 mm", "Along y."),
-                       shape_length("height", "20 mm", "Along z.")}),
-                shape("cylinder", "A solid cylinder about z, its base at the origin.",
-                      {shape_length("radius", "15 mm", "Outer radius."),
-                       shape_length("height", "195 mm", "Along z.")}),
-                shape("cone", "A solid truncated cone about z, its base at the origin.",
-                      {shape_length("base_radius", "20 mm", "Radius at z = 0."),
-                       shape_length("tip_radius", "8 mm", "Radius at the top."),
-                       shape_length("height", "195 mm", "Along z.")}),
-                shape("hollow-cylinder", "A tube about z, its base at the origin.",
-                      {shape_length("inner_radius", "8 mm", "Radius of the bore."),
-                       shape_length("outer_radius", "15 mm", "Outer radius."),
-                       shape_length("height", "195 mm", "Along z.")}),
-                shape("chambered-cylinder",
-                      "A solid cylinder about z, its base at the origin, with a cylindrical "
-                      "chamber beside its axis. Node set `chamber`: the chamber's wall.",
-                      {shape_length("radius", "12.5 mm", "Outer radius."),
-                       shape_length("height", "65 mm", "Along z."),
-                       shape_length("chamber_radius", "3.7 mm", "Radius of the chamber."),
-                       Key{.name = "chamber_offset",
-                           .forms = {quantity(length(), non_negative())},
-                           .example = "7.3 mm",
-                           .default_text = "0 mm",
-                           .description = "Distance of the chamber's axis from z, along x."},
-                       Key{.name = "chamber_bottom",
-                           .forms = {quantity(length(), non_negative())},
-                           .example = "5 mm",
-                           .default_text = "0 mm",
-                           .description = "Where the chamber begins; at 0 it is open."},
-                       optional_length("chamber_top", "60 mm", "",
-                                       "Where it ends. Without: at the top, open.")}),
-                shape("sphere",
-                      "A ball about the origin. Node sets `surface` and, of it, `top` (z >= 0) and "
-                      "`bottom` (z <= 0).",
-                      {shape_length("radius", "15 mm", "Its radius.")}),
-                shape("capsule",
-                      "A cylinder about z with half balls at its ends, its centre at the origin. "
-                      "Node sets `surface` and, of it, `side`, `top` and `bottom`.",
-                      {shape_length("radius", "10 mm", "Of the cylinder and the half balls."),
-                       shape_length("length", "40 mm", "Of the cylinder, without its ends.")}),
-                shape("ribbed-finger",
-                      "A finger for a cable: a spine along x from the origin, with ribs on it. A "
-                      "rib at each end, equal gaps between them. Node sets `x_min` to `z_max`.",
-                      {shape_length("length", "100 mm", "Along x."),
-                       shape_length("width", "20 mm", "Along y."),
-                       shape_length("height", "20 mm", "Along z, of spine and ribs together."),
-                       Key{.name = "ribs",
-                           .forms = {integer(2, 1000)},
-                           .example = "8",
-                           .default_text = "7",
-                           .description = "Number of ribs."},
-                       optional_length("gap", "4 mm", "",
-                                       "Between two ribs. Without: half the length of a rib."),
-                       optional_length("spine", "6 mm", "",
-                                       "Thickness of the spine. Without: a third of the height.")}),
-                shape("trunk", "A tapered trunk with bellows about z, its base at the origin.",
-                      {optional_length("base_radius", "20 mm", "20 mm", "Outer radius at z = 0."),
-                       optional_length("tip_radius", "12 mm", "8.5 mm", "Outer radius at the top."),
-                       optional_length("height", "195 mm", "195 mm", "Along z."),
-                       Key{.name = "bellows",
-                           .forms = {integer(1, 1000)},
-                           .example = "10",
-                           .default_text = "9",
-                           .description = "Number of bellows."},
-                       optional_length("bellow_depth", "4 mm", "",
-                                       "Depth of the grooves at z = 0; less towards the tip, as "
-                                       "the radius. Without: a quarter of base_radius.")})});
+      "shape",
+      {shape("block", "A box from the origin along the axes, z upwards.",
+             {shape_length("length", "100 mm", "Along x."),
+              shape_length("width", "20 mm", "Along y."),
+              shape_length("height", "20 mm", "Along z.")}),
+       shape("cylinder", "A solid cylinder about z with its base at the origin.",
+             {shape_length("radius", "15 mm", "Outer radius."),
+              shape_length("height", "195 mm", "Along z.")}),
+       shape("cone", "A solid truncated cone about z with its base at the origin.",
+             {shape_length("base_radius", "20 mm", "Radius at z = 0."),
+              shape_length("tip_radius", "8 mm", "Radius at the top."),
+              shape_length("height", "195 mm", "Along z.")}),
+       shape("hollow-cylinder", "A tube about z with its base at the origin.",
+             {shape_length("inner_radius", "8 mm", "Radius of the bore."),
+              shape_length("outer_radius", "15 mm", "Outer radius."),
+              shape_length("height", "195 mm", "Along z.")}),
+       shape("chambered-cylinder",
+             "A solid cylinder about z with its base at the origin and a cylindrical chamber "
+             "beside its axis. The node set `chamber` is the chamber's wall.",
+             {shape_length("radius", "12.5 mm", "Outer radius."),
+              shape_length("height", "65 mm", "Along z."),
+              shape_length("chamber_radius", "3.7 mm", "Radius of the chamber."),
+              Key{.name = "chamber_offset",
+                  .forms = {quantity(length(), non_negative())},
+                  .example = "7.3 mm",
+                  .default_text = "0 mm",
+                  .description = "Distance of the chamber's axis from z, along x."},
+              Key{.name = "chamber_bottom",
+                  .forms = {quantity(length(), non_negative())},
+                  .example = "5 mm",
+                  .default_text = "0 mm",
+                  .description = "Height at which the chamber begins; at 0 it is open."},
+              optional_length(
+                  "chamber_top", "60 mm", "",
+                  "Height at which the chamber ends. Default: at the top, where it is open.")}),
+       shape("sphere",
+             "A ball centred at the origin. Node sets: `surface`, and its parts `top` (z >= 0) and "
+             "`bottom` (z <= 0).",
+             {shape_length("radius", "15 mm", "Its radius.")}),
+       shape("capsule",
+             "A cylinder about z with hemispherical ends, centred at the origin. Node sets: "
+             "`surface`, and its parts `side`, `top` and `bottom`.",
+             {shape_length("radius", "10 mm",
+                           "Radius of the cylinder and of its hemispherical ends."),
+              shape_length("length", "40 mm", "Length of the cylinder, without its ends.")}),
+       shape("ribbed-finger",
+             "A finger for a cable: a spine along x from the origin, with ribs on it. There is a "
+             "rib at each end, and all gaps are equal. Node sets: `x_min` to `z_max`.",
+             {shape_length("length", "100 mm", "Along x."),
+              shape_length("width", "20 mm", "Along y."),
+              shape_length("height", "20 mm", "Along z, spine and ribs together."),
+              Key{.name = "ribs",
+                  .forms = {integer(2, 1000)},
+                  .example = "8",
+                  .default_text = "7",
+                  .description = "Number of ribs."},
+              optional_length("gap", "4 mm", "",
+                              "Gap between two ribs. Default: half the length of a rib."),
+              optional_length("spine", "6 mm", "",
+                              "Thickness of the spine. Default: a third of the height.")}),
+       shape("trunk", "A tapered trunk along z with bellows and its base at the origin.",
+             {optional_length("base_radius", "20 mm", "20 mm", "Outer radius at z = 0."),
+              optional_length("tip_radius", "12 mm", "8.5 mm", "Outer radius at the top."),
+              optional_length("height", "195 mm", "195 mm", "Along z."),
+              Key{.name = "bellows",
+                  .forms = {integer(1, 1000)},
+                  .example = "10",
+                  .default_text = "9",
+                  .description = "Number of bellows."},
+              optional_length("bellow_depth", "4 mm", "",
+                              "Depth of the grooves at z = 0; it decreases towards the tip with "
+                              "the radius. Default: a quarter of base_radius.")})});
 }
 
 std::shared_ptr<const KeyTable> mesh_file_table() {
@@ -125,24 +128,25 @@ std::shared_ptr<const KeyTable> sphere_table() {
 }
 
 std::shared_ptr<const KeyTable> plane_table() {
-  return make_table({.name = "plane",
-                     .description = "A plane, and how far from it nodes still count.",
-                     .keys = {{.name = "point",
-                               .forms = {vector(length())},
-                               .example = "0 0 0 mm",
-                               .description = "A point of the plane.",
-                               .required = true},
-                              {.name = "normal",
-                               .forms = {vector(plain_number())},
-                               .example = "0 0 1",
-                               .default_text = "0 0 1",
-                               .description = "Its normal; any length but zero."},
-                              {.name = "within",
-                               .forms = {quantity(length(), non_negative())},
-                               .example = "0.1 mm",
-                               .default_text = "0.001 mm",
-                               .description = "Nodes at most this far from the plane, on either "
-                                              "side, are fixed."}}});
+  return make_table(
+      {.name = "plane",
+       .description = "A plane, and the distance within which nodes belong to it.",
+       .keys = {{.name = "point",
+                 .forms = {vector(length())},
+                 .example = "0 0 0 mm",
+                 .description = "A point of the plane.",
+                 .required = true},
+                {.name = "normal",
+                 .forms = {vector(plain_number())},
+                 .example = "0 0 1",
+                 .default_text = "0 0 1",
+                 .description = "Normal of the plane; any non-zero length."},
+                {.name = "within",
+                 .forms = {quantity(length(), non_negative())},
+                 .example = "0.1 mm",
+                 .default_text = "0.001 mm",
+                 .description =
+                     "Nodes within this distance of the plane, on either side, are selected."}}});
 }
 
 }  // namespace
@@ -152,7 +156,8 @@ std::vector<Key> region_keys(const char* whose) {
   return {{.name = "box",
            .forms = {vector(length(), 6)},
            .example = "-20 -20 0 20 20 20 mm",
-           .description = what + " inside the box: x y z of its lowest, then its highest corner."},
+           .description =
+               what + " inside the box, given by x y z of its lowest and of its highest corner."},
           {.name = "sphere",
            .forms = {table(sphere_table())},
            .example = "{centre: 0 0 0 mm, radius: 10 mm}",
@@ -228,17 +233,17 @@ std::vector<Key> motion_keys() {
            .forms = {quantity(angle()), table(signal_table(angle(), "90 deg"))},
            .example = "{ramp: {to: 90 deg, duration: 2 s}}",
            .default_text = "0 rad",
-           .description = "Of the turn, from rest."},
+           .description = "Angle of the rotation from rest."},
           {.name = "axis",
            .forms = {vector(plain_number())},
            .example = "0 1 0",
            .default_text = "0 0 1",
-           .description = "Of the turn; any length but zero."},
+           .description = "Direction of the rotation axis; any non-zero length."},
           {.name = "centre",
            .forms = {vector(length())},
            .example = "0 0 0 mm",
            .default_text = "0 0 0 mm",
-           .description = "A point of the axis, at rest."}};
+           .description = "A point on the rotation axis, at rest."}};
 }
 
 namespace {
@@ -258,12 +263,12 @@ std::shared_ptr<const KeyTable> initial_velocity_table() {
                  .forms = {vector(speed())},
                  .example = "0 0 -1 m/s",
                  .default_text = "0 0 0 m/s",
-                 .description = "Of the centre of mass."},
+                 .description = "Velocity of the centre of mass."},
                 {.name = "angular",
                  .forms = {vector(angular_speed())},
                  .example = "0 0 20 rad/s",
                  .default_text = "0 0 0 rad/s",
-                 .description = "About the centre of mass."}}});
+                 .description = "Angular velocity about the centre of mass."}}});
 }
 
 std::vector<Key> mass_keys() {
@@ -293,23 +298,25 @@ std::vector<Key> mass_keys() {
 std::shared_ptr<const KeyTable> part_table() {
   return make_table(
       {.name = "part",
-       .description = "Elements of a body that are of another material.",
-       .keys = {{.name = "region",
-                 .forms = {table(region_table(
-                     "region of a part", "Elements with all of their nodes there: one of these."))},
-                 .example = "{box: -20 -20 80 20 20 100 mm}",
-                 .description = "Where the part is, in the mesh at rest.",
-                 .required = true},
-                {.name = "material",
-                 .forms = material_forms(),
-                 .example = "smooth-sil-950",
-                 .description = "Its material, as of a body.",
-                 .required = true},
-                {.name = "density",
-                 .forms = {quantity(density(), positive())},
-                 .example = "1200 kg/m^3",
-                 .description = "Without: that of the library's material, or of the body. Not "
-                                "together with the body's `mass`."}}});
+       .description = "Elements of a body that have another material.",
+       .keys = {
+           {.name = "region",
+            .forms = {table(region_table("region of a part",
+                                         "Elements with all their nodes in the region. Exactly one "
+                                         "of box, sphere, plane and set."))},
+            .example = "{box: -20 -20 80 20 20 100 mm}",
+            .description = "Region of the part, in the mesh at rest.",
+            .required = true},
+           {.name = "material",
+            .forms = material_forms(),
+            .example = "smooth-sil-950",
+            .description = "Material of the part, given as for a body.",
+            .required = true},
+           {.name = "density",
+            .forms = {quantity(density(), positive())},
+            .example = "1200 kg/m^3",
+            .description = "Density of the part. Default: the density of the library's material, "
+                           "or else of the body. It cannot be combined with the body's `mass`."}}});
 }
 
 std::shared_ptr<const KeyTable> fem_table() {
@@ -336,21 +343,21 @@ std::shared_ptr<const KeyTable> fem_table() {
            "Rotation of the mesh about its origin: a rotation vector (axis times angle)."},
       {.name = "element",
        .forms = {choice(
-           {{"tet4", "Linear tetrahedra; above nu = 0.4 they lock, and much more near 0.5."},
+           {{"tet4", "Linear tetrahedra; they lock above nu = 0.4, most of all near 0.5."},
             {"tet4-patch",
              "Linear tetrahedra that share the dilatation of about eight neighbours: no volumetric "
              "locking. For hyperelastic materials."},
             {"tet10",
              "Quadratic tetrahedra: no locking. A linear mesh gets mid-edge nodes, numbered after "
-             "its own. For hyperelastic materials."},
+             "its own nodes. For hyperelastic materials."},
             {"hex8",
              "Trilinear hexahedra with the pressure of their mean dilatation: no volumetric "
              "locking. For hyperelastic materials."}})},
        .example = "hex8",
-       .description = "The finite element. Without: what a mesh file holds, and tetrahedra for "
-                      "shapes. Linear tetrahedra that lock are then made quadratic (tet10): those "
-                      "of a hyperelastic material, such as the library's silicones, with a "
-                      "Poisson's ratio above 0.4."},
+       .description = "The finite element. Default: the elements of the mesh file, and tetrahedra "
+                      "for shapes. By default, linear tetrahedra that would lock become quadratic "
+                      "(tet10): this applies to hyperelastic materials, such as the library's "
+                      "silicones, with a Poisson's ratio above 0.4."},
       {.name = "material",
        .forms = material_forms(),
        .example = "{young_modulus: 450 kPa, poisson_ratio: 0.45}",
@@ -359,7 +366,8 @@ std::shared_ptr<const KeyTable> fem_table() {
       {.name = "parts",
        .forms = {names(table(part_table()))},
        .example = "{tip: {region: {box: -20 -20 80 20 20 100 mm}, material: smooth-sil-950}}",
-       .description = "Parts of other materials. All other elements are of `material`."}};
+       .description =
+           "Parts made of other materials. All other elements have the body's `material`."}};
   for (Key& key : mass_keys()) fem.keys.push_back(std::move(key));
   fem.keys.push_back({.name = "damping",
                       .forms = {table(damping_table())},
@@ -370,11 +378,11 @@ std::shared_ptr<const KeyTable> fem_table() {
                       .forms = {table(initial_velocity_table())},
                       .example = "{linear: 0 0 -1 m/s}",
                       .default_text = "{}",
-                      .description = "Initial motion. Without: at rest."});
+                      .description = "Initial motion; at rest by default."});
   fem.keys.push_back({.name = "base",
                       .forms = {table(base_table())},
                       .example = "{x: {sine: {amplitude: 10 mm, period: 2 s}}}",
-                      .description = "Motion of the fixed nodes. Without: at rest.",
+                      .description = "Motion of the fixed nodes. Default: at rest.",
                       .only_with = "fixed"});
   fem.keys.push_back({.name = "fixed",
                       .forms = {fixed_region(), list({fixed_region()})},

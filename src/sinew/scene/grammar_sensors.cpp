@@ -17,26 +17,28 @@ std::vector<Key> transport_keys() {
   return {{.name = "rate",
            .forms = {quantity(frequency(), positive())},
            .example = "100 Hz",
-           .description = "Samples per second, every k-th time step. Without: one every step."},
+           .description = "Samples per second: a sample every k-th time step, with integer k. "
+                          "Default: one sample per step."},
           {.name = "delay",
            .forms = {quantity(time(), non_negative())},
            .example = "20 ms",
            .default_text = "0 s",
-           .description = "From taking a sample to its delivery, at the first step after it."},
+           .description = "Time from taking a sample to its delivery. It arrives at the first step "
+                          "after that time."},
           {.name = "dropout",
            .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
            .example = "1 %",
            .default_text = "0",
-           .description = "Probability that a sample is lost; the one before then stays."},
+           .description = "Probability that a sample is lost; the previous one then remains."},
           {.name = "timeout",
            .forms = {quantity(time(), positive())},
            .example = "100 ms",
-           .description = "Age from which a sample is no longer valid. Without: none."},
+           .description = "Age from which a sample is no longer valid. Default: no limit."},
           {.name = "seed",
            .forms = {integer(0, 2'000'000'000)},
            .example = "1",
            .default_text = "0",
-           .description = "Of its random numbers, which depend on its name, too."}};
+           .description = "Seed of the random numbers, which also depend on the sensor's name."}};
 }
 
 std::vector<Key> file_keys(const Measure& measure) {
@@ -45,60 +47,62 @@ std::vector<Key> file_keys(const Measure& measure) {
        .forms = {file()},
        .example = "measured.csv",
        .description =
-           "A CSV of a real sensor's samples, which replace the simulated ones: times in "
-           "s in the first column, then values; or with headings, as in sensors.csv. "
-           "`delay` is added to the times; `noise` then tells how exact it is."},
+           "CSV file with samples of a real sensor, which replace the simulated ones: times in s "
+           "in the first column, then values; or with headings, as in sensors.csv. `delay` is "
+           "added to the times. `noise` then states the accuracy of the sensor."},
       {.name = "columns",
        .forms = {list({text()})},
        .example = "[marker_x, marker_y, marker_z]",
-       .description = "Headings of the columns with its values. Without: those that sensors.csv "
-                      "has, or else all behind the time.",
+       .description = "Headings of the columns with the values. Default: the headings of "
+                      "sensors.csv, or else all columns after the time.",
        .only_with = "file"},
       {.name = "missing",
        .forms = {choice({{"error", "Cells that are empty or nan, and gaps in time, are errors."},
-                         {"lost", "They are lost samples."}})},
+                         {"lost", "They count as lost samples."}})},
        .example = "lost",
        .default_text = "error",
-       .description = "What samples that are missing from the file mean. With `rate`, times more "
+       .description = "Meaning of samples that are missing from the file. With `rate`, times more "
                       "than one and a half periods apart are a gap.",
        .only_with = "file"}};
   if (*measure.unit != '\0') {
-    keys.push_back({.name = "unit",
-                    .forms = {unit(measure)},
-                    .example = measure.unit,
-                    .description = "Unit of the file's values. Without: that of the headings, SI "
-                                   "where they have none.",
-                    .only_with = "file"});
+    keys.push_back(
+        {.name = "unit",
+         .forms = {unit(measure)},
+         .example = measure.unit,
+         .description = "Unit of the file's values. Default: the unit in the headings, or else SI.",
+         .only_with = "file"});
   }
   return keys;
 }
 
 std::vector<Key> error_keys(const Said& said) {
   const std::string zero = std::string("0 ") + said.measure.unit;
-  return {{.name = "noise",
-           .forms = {quantity(said.measure, non_negative())},
-           .example = said.error,
-           .default_text = zero,
-           .description = "Standard deviation of white noise, of each number of each sample."},
-          {.name = "bias",
-           .forms = {quantity(said.measure)},
-           .example = said.error,
-           .default_text = zero,
-           .description = "Constant error."},
-          {.name = "drift",
-           .forms = {quantity(said.measure, non_negative())},
-           .example = said.error,
-           .default_text = zero,
-           .description = "Random walk: its standard deviation after 1 s, which grows with the "
-                          "square root of time."},
-          {.name = "quantum",
-           .forms = {quantity(said.measure, positive())},
-           .example = said.quantum,
-           .description = "Step to which values are rounded. Without: none."},
-          {.name = "range",
-           .forms = {vector(said.measure, 2)},
-           .example = said.range,
-           .description = "Least and greatest value; it saturates there. Without: none."}};
+  return {
+      {.name = "noise",
+       .forms = {quantity(said.measure, non_negative())},
+       .example = said.error,
+       .default_text = zero,
+       .description = "Standard deviation of the white noise on each component of each sample."},
+      {.name = "bias",
+       .forms = {quantity(said.measure)},
+       .example = said.error,
+       .default_text = zero,
+       .description = "Constant error."},
+      {.name = "drift",
+       .forms = {quantity(said.measure, non_negative())},
+       .example = said.error,
+       .default_text = zero,
+       .description =
+           "Standard deviation of a random walk after 1 s; it grows with the square root of time."},
+      {.name = "quantum",
+       .forms = {quantity(said.measure, positive())},
+       .example = said.quantum,
+       .description = "Step to which values are rounded. Default: no rounding."},
+      {.name = "range",
+       .forms = {vector(said.measure, 2)},
+       .example = said.range,
+       .description =
+           "Smallest and largest value, at which the sensor saturates. Default: no limits."}};
 }
 
 void append(std::vector<Key>& keys, std::vector<Key> more) {
@@ -116,8 +120,8 @@ std::vector<Key> channel_keys(const Said& said) {
 std::shared_ptr<const KeyTable> channel_table() {
   static const auto table = make_table(
       {.name = "keys of all sensors",
-       .description = "Errors, timing and files. Errors, quantum and range have the unit of what "
-                      "the sensor measures; the table shows them for a length.",
+       .description = "Errors, timing and files. Errors, quantum and range have the unit of the "
+                      "measured quantity; the table shows them for a length.",
        .keys = channel_keys({length(), "0.1 mm", "0.01 mm", "-0.5 0.5 m"})});
   return table;
 }
@@ -139,42 +143,40 @@ std::shared_ptr<const KeyTable> marker_table() {
   keys.insert(keys.begin(), body_key());
   keys.push_back(outside_key());
   KeyTable marker =
-      *sensor_table("marker",
-                    "Where a point is, (3,) m: a marker that cameras follow. Exactly one of point, "
-                    "points and set.",
+      *sensor_table("marker", "Position of a point, (3,) m, as a motion-capture marker.",
                     std::move(keys), position());
   marker.alternatives = {{{"point", "points", "set"}, true}};
   return make_table(std::move(marker));
 }
 
 std::vector<Key> frame_keys() {
-  return {body_key(),
-          {.name = "at",
-           .forms = {list({vector(length())}, 3, 3), vector(length())},
-           .example = "[0 0 190 mm, 10 0 190 mm, 0 10 190 mm]",
-           .description = "Three points that turn it, or one point in a section of an arm or in a "
-                          "rigid body, in the mesh at rest.",
-           .required = true},
-          outside_key()};
+  return {
+      body_key(),
+      {.name = "at",
+       .forms = {list({vector(length())}, 3, 3), vector(length())},
+       .example = "[0 0 190 mm, 10 0 190 mm, 0 10 190 mm]",
+       .description = "Three points of a deformable body that define the orientation, or one point "
+                      "of a rigid body or of an arm's section. Positions are in the mesh at rest.",
+       .required = true},
+      outside_key()};
 }
 
 std::vector<Key> actuator_keys(const char* example) {
   return {{.name = "actuator",
            .forms = {reference("actuators")},
            .example = example,
-           .description = "The actuator that it is on.",
+           .description = "The actuator that it measures.",
            .required = true}};
 }
 
 std::vector<Key> line_keys(bool sampled) {
-  std::vector<Key> keys = {
-      body_key(),
-      {.name = "line",
-       .forms = {table(point_file_table()), list({vector(length())}, 2)},
-       .example = "[0 0 0 mm, 0 0 195 mm]",
-       .description = "The corners of the line along which it lies, in the mesh at rest.",
-       .required = true},
-      outside_key()};
+  std::vector<Key> keys = {body_key(),
+                           {.name = "line",
+                            .forms = {table(point_file_table()), list({vector(length())}, 2)},
+                            .example = "[0 0 0 mm, 0 0 195 mm]",
+                            .description = "Corners of the sensor's line, in the mesh at rest.",
+                            .required = true},
+                           outside_key()};
   if (!sampled) return keys;
   keys.push_back({.name = "samples",
                   .forms = {integer(2, 10000)},
@@ -205,25 +207,28 @@ std::shared_ptr<const KeyTable> resistance_table() {
 
 std::shared_ptr<const KeyTable> curvature_table() {
   std::vector<Key> keys = line_keys(false);
-  keys.push_back({.name = "places",
-                  .forms = {list({quantity(length(), non_negative())})},
-                  .example = "[50 mm, 100 mm, 150 mm]",
-                  .description = "Lengths along the line at rest at which it is measured.",
-                  .required = true});
+  keys.push_back(
+      {.name = "places",
+       .forms = {list({quantity(length(), non_negative())})},
+       .example = "[50 mm, 100 mm, 150 mm]",
+       .description = "Arc lengths along the line at rest where the curvature is measured.",
+       .required = true});
   keys.push_back({.name = "gauge",
                   .forms = {quantity(length(), positive())},
                   .example = "20 mm",
-                  .description = "Length over which each is measured; more than an element of the "
-                                 "mesh. Without: a tenth of the line."});
+                  .description = "Gauge length; choose it longer than an element of the mesh. "
+                                 "Default: a tenth of the line."});
   keys.push_back({.name = "about",
                   .forms = axis_forms(),
                   .example = "y",
-                  .description = "An axis: the curvature about it, positive by the right-hand rule "
-                                 "along the line. Without: its magnitude."});
-  return sensor_table("curvature",
-                      "Curvature at places along a line, (places,) 1/m: gratings in an optical "
-                      "fibre. Of the circle through the ends and the middle of each length.",
-                      std::move(keys), {curvature(), "0.1 1/m", "0.01 1/m", "-100 100 1/m"});
+                  .description =
+                      "Axis about which the curvature is taken, positive by the right-hand rule "
+                      "along the line. Default: the magnitude of the curvature."});
+  return sensor_table(
+      "curvature",
+      "Curvature at positions along a line, (places,) 1/m, as measured by gratings in an optical "
+      "fibre. Each value belongs to the circle through the ends and the middle of a gauge length.",
+      std::move(keys), {curvature(), "0.1 1/m", "0.01 1/m", "-100 100 1/m"});
 }
 
 std::shared_ptr<const KeyTable> attenuation_table() {
@@ -236,12 +241,13 @@ std::shared_ptr<const KeyTable> attenuation_table() {
                .default_text = "0",
                .description = description};
   };
-  keys.push_back(loss("loss_per_length", curvature(), "20 dB/m", "a."));
-  keys.push_back(loss("loss_per_turn", plain_number(), "1.5 dB", "b, in dB/rad."));
+  keys.push_back(
+      loss("loss_per_length", curvature(), "20 dB/m", "Coefficient a, loss per length."));
+  keys.push_back(loss("loss_per_turn", plain_number(), "1.5 dB",
+                      "Coefficient b, loss per turning angle, dB/rad."));
   return sensor_table("attenuation",
-                      "What light loses in a waveguide along a line, dB: a L + b times the angle "
-                      "by which it turns, whatever its direction (the integral of the curvature's "
-                      "magnitude).",
+                      "Loss of light in a waveguide along a line, dB: a L + b times the total "
+                      "turning angle (the integral of the curvature's magnitude).",
                       std::move(keys), {plain_number(), "0.01 dB", "0.01 dB", "0 40 dB"});
 }
 
@@ -254,7 +260,7 @@ std::shared_ptr<const KeyTable> electrode_table() {
   append(electrode.keys, region_keys("Faces with all their nodes"));
   Key body = body_key();
   body.required = false;
-  body.description = "The body that has the faces. Without: the sensor's.";
+  body.description = "The body that has the faces. Default: the sensor's body.";
   electrode.keys.push_back(std::move(body));
   return make_table(std::move(electrode));
 }
@@ -262,19 +268,19 @@ std::shared_ptr<const KeyTable> electrode_table() {
 std::shared_ptr<const KeyTable> capacitance_table() {
   return sensor_table(
       "capacitance",
-      "Two electrodes that follow the body, F: permittivity times area over distance, face by "
-      "face, as for parallel plates without fringes.",
+      "Capacitance of two electrodes that follow the body, F: permittivity times area over "
+      "distance, summed over faces, as for parallel plates without fringe fields.",
       {body_key(),
        {.name = "electrodes",
         .forms = {list({table(electrode_table())}, 2, 2)},
         .example = "[{set: bottom}, {set: top}]",
-        .description = "Both.",
+        .description = "The two electrodes.",
         .required = true},
        {.name = "permittivity",
         .forms = {quantity(plain_number(), {.min = 1.0})},
         .example = "2.8",
         .default_text = "1",
-        .description = "Relative permittivity of what lies between them."}},
+        .description = "Relative permittivity of the material between them."}},
       {capacitance(), "0.01 pF", "0.001 pF", "0 100 pF"});
 }
 
@@ -283,36 +289,37 @@ std::vector<Key> contact_keys() {
   Key body = body_key();
   body.required = false;
   body.description =
-      "The body that has the patch. Without: the first of the contact; required of an "
-      "entry `between: all`.";
+      "The body that has the patch. Default: the first body of the contact. Required for an entry "
+      "`between: all`.";
   patch.push_back(std::move(body));
-  return {{.name = "contact",
-           .forms = {reference("contacts")},
-           .example = "floor",
-           .description = "The contact that it feels, one of the pairs of an entry "
-                          "`between: all`, as `all-finger-box`, or the entry: all its pairs.",
-           .required = true},
-          {.name = "patch",
-           .forms = {table(make_table(
-               {.name = "patch of a contact",
-                .description = "Nodes of the mesh at rest: exactly one of box, sphere, plane and "
-                               "set. Points count whose nearest node of the surface is among them.",
-                .keys = std::move(patch),
-                .alternatives = {{{"box", "sphere", "plane", "set"}, true}}}))},
-           .example = "{set: pad}",
-           .description = "Where it feels. Without: everywhere."}};
+  return {
+      {.name = "contact",
+       .forms = {reference("contacts")},
+       .example = "floor",
+       .description = "The contact to measure: a contact, one pair of a `between: all` entry (such "
+                      "as `all-finger-box`), or the entry itself for all its pairs.",
+       .required = true},
+      {.name = "patch",
+       .forms = {table(make_table(
+           {.name = "patch of a contact",
+            .description = "Nodes of the mesh at rest: exactly one of box, sphere, plane and set. "
+                           "A contact point belongs to the patch if its nearest surface node does.",
+            .keys = std::move(patch),
+            .alternatives = {{{"box", "sphere", "plane", "set"}, true}}}))},
+       .example = "{set: pad}",
+       .description = "Region that it measures. Default: the whole contact."}};
 }
 
 std::shared_ptr<const KeyTable> touch_table() {
   KeyTable touch{.name = "sensor: type touch",
-                 .description = "Whether something touches, 1 or 0: a switch.",
+                 .description = "Contact switch: 1 if something touches, otherwise 0.",
                  .keys = contact_keys(),
                  .shared = channel_table()};
   touch.keys.push_back({.name = "threshold",
                         .forms = {quantity(force(), non_negative())},
                         .example = "0.1 N",
                         .default_text = "0 N",
-                        .description = "Normal force above which it is on."});
+                        .description = "Normal force above which the sensor reads 1."});
   append(touch.keys, transport_keys());
   append(touch.keys, file_keys(plain_number()));
   return make_table(std::move(touch));
@@ -320,23 +327,24 @@ std::shared_ptr<const KeyTable> touch_table() {
 
 std::shared_ptr<const KeyTable> current_table() {
   std::vector<Key> keys = actuator_keys("drive");
-  keys.push_back({.name = "torque_constant",
-                  .forms = {quantity(torque_constant(), positive())},
-                  .example = "0.05 N m/A",
-                  .description = "Torque over current, of a motor or of one that winds a cable."});
+  keys.push_back(
+      {.name = "torque_constant",
+       .forms = {quantity(torque_constant(), positive())},
+       .example = "0.05 N m/A",
+       .description = "Torque per current of a rotary motor, including one that winds a cable."});
   keys.push_back({.name = "force_constant",
                   .forms = {quantity(force_constant(), positive())},
                   .example = "10 N/A",
-                  .description = "Force over current, of a linear motor."});
+                  .description = "Force per current of a linear motor."});
   keys.push_back({.name = "radius",
                   .forms = {quantity(length(), positive())},
                   .example = "8 mm",
-                  .description = "Of the drum that winds a cable; of cables alone."});
-  KeyTable current_sensor = *sensor_table(
-      "motor-current",
-      "Current of a motor, A: its torque, tension times the drum's radius, or force over its "
-      "constant.",
-      std::move(keys), {current(), "10 mA", "1 mA", "-5 5 A"});
+                  .description = "Radius of the drum that winds the cable. Only for cables."});
+  KeyTable current_sensor =
+      *sensor_table("motor-current",
+                    "Current of a motor, A: its torque, or tension times drum radius, divided by "
+                    "`torque_constant`; or its force divided by `force_constant`.",
+                    std::move(keys), {current(), "10 mA", "1 mA", "-5 5 A"});
   current_sensor.alternatives = {{{"torque_constant", "force_constant"}, true}};
   return make_table(std::move(current_sensor));
 }
@@ -350,50 +358,51 @@ Form sensor_form() {
       "type",
       {{.word = "marker", .description = "Position of a point.", .table = marker_table()},
        {.word = "orientation",
-        .description = "Rotation since rest.",
+        .description = "Rotation from rest.",
         .table = sensor_table("orientation",
-                              "How something has turned since rest, (3,) rad: a rotation vector "
-                              "about the world's axes. Errors are added to its components.",
+                              "Rotation from rest, (3,) rad: a rotation vector in world axes. "
+                              "Errors are added to its components.",
                               frame_keys(), {angle(), "0.5 deg", "0.01 deg", "-180 180 deg"})},
        {.word = "gyroscope",
         .description = "Angular velocity.",
         .table = sensor_table("gyroscope",
-                              "Angular velocity in its own axes, (3,) rad/s: those of the world at "
-                              "rest, turned with it. The mean over a time step.",
+                              "Angular velocity in the sensor's axes, (3,) rad/s, mean over a time "
+                              "step. The axes are the world axes at rest and turn with the body.",
                               frame_keys(),
                               {angular_speed(), "0.01 rad/s", "1e-3 rad/s", "-35 35 rad/s"})},
        {.word = "accelerometer",
         .description = "Specific force.",
-        .table = sensor_table("accelerometer",
-                              "Acceleration less gravity in its own axes, (3,) m/s^2; at rest it "
-                              "points upwards. The mean over a time step; quasi-static robots do "
-                              "not accelerate.",
-                              frame_keys(),
-                              {acceleration(), "0.05 m/s^2", "0.01 m/s^2", "-80 80 m/s^2"})},
+        .table = sensor_table(
+            "accelerometer",
+            "Acceleration less gravity in the sensor's axes, (3,) m/s^2, mean over a time step. At "
+            "rest it points upwards. A quasi-static robot has no acceleration.",
+            frame_keys(), {acceleration(), "0.05 m/s^2", "0.01 m/s^2", "-80 80 m/s^2"})},
        {.word = "cable-length",
         .description = "Length of cable pulled out.",
-        .table = sensor_table("cable-length",
-                              "Length of a cable or spring pulled out since rest, m: an encoder.",
-                              actuator_keys("long_0"), position())},
+        .table = sensor_table(
+            "cable-length",
+            "Length of a cable or spring pulled out from rest, m, as measured by an encoder.",
+            actuator_keys("long_0"), position())},
        {.word = "cable-tension",
         .description = "Tension of a cable.",
-        .table = sensor_table("cable-tension",
-                              "Tension of a cable or spring at its pull point, N: a load cell.",
-                              actuator_keys("long_0"), {force(), "0.05 N", "0.01 N", "0 50 N"})},
+        .table = sensor_table(
+            "cable-tension",
+            "Tension of a cable or spring at its pull point, N, as measured by a load cell.",
+            actuator_keys("long_0"), {force(), "0.05 N", "0.01 N", "0 50 N"})},
        {.word = "pressure",
         .description = "Pressure of a chamber.",
         .table = sensor_table("pressure", "Pressure of a chamber above ambient, Pa.",
                               actuator_keys("air"), stress_said)},
        {.word = "volume",
         .description = "Volume gained by a chamber.",
-        .table = sensor_table("volume", "Volume that a chamber has gained since rest, m^3.",
+        .table = sensor_table("volume", "Volume gained by a chamber from rest, m^3.",
                               actuator_keys("air"), volume_said)},
        {.word = "flow",
         .description = "Flow into a chamber.",
         .table = sensor_table("flow",
-                              "Flow into a chamber, m^3/s, the mean over a time step: of its gas, "
-                              "as volume at ambient pressure, or its liquid; without either the "
-                              "growth of its volume.",
+                              "Flow into a chamber, m^3/s, mean over a time step: volume of its "
+                              "gas at ambient pressure, or of its liquid; the rate of change of "
+                              "the chamber's volume if it has neither.",
                               actuator_keys("air"),
                               {volume_rate(), "0.1 ml/s", "0.01 ml/s", "-100 100 ml/s"})},
        {.word = "motor-current", .description = "Current of a motor.", .table = current_table()},
@@ -405,7 +414,7 @@ Form sensor_form() {
         .description = "Resistive strain gauge along a line.",
         .table = resistance_table()},
        {.word = "curvature",
-        .description = "Curvature at places along a line.",
+        .description = "Curvature at positions along a line.",
         .table = curvature_table()},
        {.word = "attenuation",
         .description = "Loss of light along a line.",

@@ -18,15 +18,19 @@ constexpr const char* kFirstPage = "scene.md";
 constexpr const char* kSharedPage = "scene/shared.md";
 
 const char* const kIntroduction = R"(
-A scene file describes a robot and its run in YAML. Every quantity may carry its unit (`450 kPa`,
-`0 0 190 mm`); a number without a unit is SI. Vectors are written `0 0 190 mm` or
+A scene file describes a robot and its run in YAML. Every quantity can carry a unit (`450 kPa`,
+`0 0 190 mm`); a number without a unit is in SI units. Vectors are written `0 0 190 mm` or
 `[0, 0, 190 mm]`. Paths are relative to the scene file. Unknown keys, wrong dimensions, missing
-files and contradictions are errors that name file, line and column and say what to write instead.
+files and contradictions are errors. The message gives file, line and column, and what to write
+instead. [The first tutorial](tutorials/bending_finger.md) builds a whole scene step by step.
 
-Editors that know JSON Schema complete and check scenes with [scene.schema.json](scene.schema.json):
-put `# yaml-language-server: $schema=PATH/scene.schema.json` on the first line.
+Editors that support JSON Schema can complete and check scenes. Put
+`# yaml-language-server: $schema=PATH/scene.schema.json` on the first line of the scene
+([schema](scene.schema.json)).
 
-A key marked *later* is known but not in this version, and is refused.
+A key marked *later* is reserved for a later version; this version rejects it.
+
+The keys are on these pages; [all tables](#all-tables) are listed at the end of this page.
 
 )";
 
@@ -210,7 +214,7 @@ class Page {
 
   void write_table(const KeyTable& table, std::map<std::string, const KeyTable*>& told) {
     text_ += fmt::format("## {}\n\n{}\n\n", table.name, table.description);
-    text_ += "| key | value | without it | meaning |\n|---|---|---|---|\n";
+    text_ += "| key | value | default | meaning |\n|---|---|---|---|\n";
     std::string explained;
     for (const Key& key : table.keys) {
       if (!is_shared(table, key)) write_key(table, key, explained, told);
@@ -223,7 +227,7 @@ class Page {
     write_alternatives(table);
   }
 
-  // "And the keys of all sensors", or those of them that the table has.
+  // "Also the keys of all sensors", or those of them that the table has.
   std::string shared_keys(const KeyTable& table) const {
     std::string some;
     std::size_t count = 0;
@@ -233,7 +237,7 @@ class Page {
       ++count;
     }
     const bool all = count == table.shared->keys.size();
-    return fmt::format("And {}the {}{}.\n\n", all ? "" : "of ",
+    return fmt::format("Also {}the {}{}.\n\n", all ? "" : "these of ",
                        link(*table.shared, table.shared->name), all ? "" : some);
   }
 
@@ -255,8 +259,7 @@ class Page {
     if (const auto [found, is_new] = told.emplace(list, &table); is_new) {
       explained += list;
     } else if (!list.empty() && found->second != &table) {
-      meaning += fmt::format(" The words are explained under {}.",
-                             link(*found->second, found->second->name));
+      meaning += fmt::format(" See {} for the choices.", link(*found->second, found->second->name));
     }
     text_ += fmt::format("| `{}` | {} | {} | {} |\n", key.name,
                          key.later ? std::string("-") : escaped(linked(key.forms)), without,
@@ -301,23 +304,33 @@ class Page {
   std::string text_;
 };
 
-// The table of pages, and an index of all tables.
-std::string contents(const Tables& tables) {
-  const Page page(tables, kFirstPage);
+// The table of pages.
+std::string contents() {
   std::string text = "| page | keys of a scene |\n|---|---|\n";
   for (const Section& section : sections()) {
+    if (section.path == std::string(kFirstPage)) continue;
     std::string keys;
     for (const std::string& key : section.keys) keys += (keys.empty() ? "`" : ", `") + key + "`";
-    if (section.path == std::string(kFirstPage)) keys = "all others";
     text += fmt::format("| [{}]({}) | {} |\n", section.title, section.path, keys);
   }
+  return text + "| this page | all other keys |\n\n";
+}
+
+// An index of all tables, by page.
+std::string table_index(const Tables& tables) {
+  const Page page(tables, kFirstPage);
   std::vector<const KeyTable*> sorted = tables.order();
   std::ranges::sort(sorted, {}, &KeyTable::name);
-  text += "\n**All tables:** ";
-  for (const KeyTable* table : sorted) {
-    text += (table == sorted.front() ? "" : ",\n") + page.link(*table, table->name);
+  std::string text = "## All tables\n\n";
+  for (const Section& section : sections()) {
+    std::string links;
+    for (const KeyTable* table : sorted) {
+      if (tables.page(table->name) != section.path) continue;
+      links += (links.empty() ? "" : ",\n  ") + page.link(*table, table->name);
+    }
+    text += fmt::format("- {}:\n  {}\n", section.title, links);
   }
-  return text + ".\n\n";
+  return text;
 }
 
 }  // namespace
@@ -330,12 +343,14 @@ std::vector<ReferencePage> reference_pages() {
     Page page(tables, section.path);
     std::string text = fmt::format("# {}\n{}", section.title, kOrigin);
     if (section.path == std::string(kFirstPage)) {
-      text += kIntroduction + contents(tables);
+      text += kIntroduction + contents();
     } else {
       text += fmt::format("\nUnits, vectors and paths are described in [scene files]({}).\n\n",
                           page.relative(kFirstPage));
     }
-    pages.push_back({section.path, text + page.write(told)});
+    text += page.write(told);
+    if (section.path == std::string(kFirstPage)) text += table_index(tables);
+    pages.push_back({section.path, text});
   }
   return pages;
 }

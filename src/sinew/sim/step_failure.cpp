@@ -69,19 +69,18 @@ void fail(Run& run, ErrorKind kind, const std::string& message, const std::strin
 }
 
 void fail_joints(Run& run, const JointConflict& conflict) {
-  fail(
-      run, ErrorKind::not_converged,
-      fmt::format("joints, limits and given motions contradict each other: {}, wherever the bodies "
-                  "go",
-                  conflict.text),
-      "let a joint leave what the others hold (a ball or cylindrical one in place of a hinge), or "
-      "change the commands, limits and motions of bodies that they cannot follow");
+  fail(run, ErrorKind::not_converged,
+       fmt::format("joints, limits and prescribed motions contradict each other: {}, in any "
+                   "position of the bodies",
+                   conflict.text),
+       "let a joint leave what the others hold (a ball or cylindrical one in place of a hinge), or "
+       "change the commands, limits and motions of bodies that they cannot follow");
 }
 
 void fail_law(Run& run) {
   if (const int idle = run.solver.direct().unreachable(); idle >= 0) {
     fail(run, ErrorKind::not_converged,
-         fmt::format("{} moves nothing, so that the motion commanded of it is out of its reach",
+         fmt::format("{} moves nothing, so it cannot reach its commanded motion",
                      run.model->actuators()[static_cast<std::size_t>(idle)].name),
          "let it act between parts that move against each other, or command its effort");
   }
@@ -93,12 +92,12 @@ void fail_law(Run& run) {
   const std::size_t points = result.states.size();
   if (result.status == qp::ConeStatus::not_convex) {
     fail(run, ErrorKind::not_converged,
-         "the robot gives way against a force on it: it is beyond a stable equilibrium, where one "
-         "linearisation leads nowhere",
+         "the robot is beyond a stable equilibrium: it moves against a force on it, and one "
+         "linearisation is not enough",
          "use solver: newton with tangent: exact, smaller time steps, or inertia");
   }
   if (result.status == qp::ConeStatus::not_finite) {
-    fail(run, ErrorKind::not_converged, "the motion of this step has no end: it is not a number",
+    fail(run, ErrorKind::not_converged, "the motion of this step is not a number",
          "take a smaller time step");
   }
   if (result.status == qp::ConeStatus::solved) {
@@ -111,9 +110,8 @@ void fail_law(Run& run) {
                    "points near their surfaces{}",
                    result.residual, result.sweeps, points, describe_worst(run)),
        points > kManyPoints
-           ? fmt::format("let points share their rows (`aggregate` of the contact), or let fewer "
-                         "touch (`nodes` or `points`): up to {} are solved best; or take a smaller "
-                         "time step",
+           ? fmt::format("use `aggregate` of the contact, or fewer `nodes` or `points`: up to {} "
+                         "points are solved reliably; or take a smaller time step",
                          kManyPoints)
            : "take a smaller time step, or look for a body that is squeezed where it cannot give "
              "way");
