@@ -33,6 +33,9 @@ __all__ = ["Estimate", "Level", "Study", "study"]
 #: Orders of convergence that count as such. Displacements and energies reach 1 even around a crack (Strang and Fix, An Analysis of
 #: the Finite Element Method, 1973, section 8.1); less is seen on meshes that are too coarse for any order to show.
 LEAST_ORDER, LARGEST_ORDER = 1.0, 6.0
+#: Displacements relative to the largest coordinate, rotations in rad, and values of a robot that does not move, in SI units, are
+#: rounding below this: the errors of sums over some thousand nodes.
+_ROUNDING = 1e3 * float(np.finfo(float).eps)
 _FAILED, _WRONG_INPUT = 1, 2
 
 
@@ -153,7 +156,8 @@ def study(
     Raises
     ------
     Error
-        bad-argument where there is nothing to measure or to refine; unsupported-element for hexahedra and quadratic tetrahedra
+        bad-argument if there is nothing to measure or to refine, or if a measure is zero to rounding on every mesh, such as the
+        displacement of a robot without load; unsupported-element for hexahedra and quadratic tetrahedra
         of files; and what sinew.load() and the run raise.
     """
     if levels < 2:
@@ -161,15 +165,18 @@ def study(
     with tempfile.TemporaryDirectory() as folder:
         refinement = _Refinement(scene, set, pathlib.Path(folder))
         found: list[Level] = []
+        idle: list[frozenset[str]] = []  # of each mesh, the measures that are rounding
         for k in range(levels):
             begin = time.perf_counter()
             sim = refinement.load(k, found[-1] if found else None)
             names = _measures(sim) if measure is None else list(measure)
-            values = _values(sim, names, duration, static)
+            values, rounding = _values(sim, names, duration, static)
+            idle.append(rounding)
             found.append(_level(sim, values, time.perf_counter() - begin))
             if progress:
                 one = found[-1]
                 print(f"mesh {k + 1} of {levels}: {one.elements} elements, {one.seconds:.1f} s", file=sys.stderr)
+    _refuse_rounding(names, frozenset.intersection(*idle), found)
     sizes = [level.size for level in found]
     return Study(tuple(found), {name: _estimate(sizes, [level.values[name] for level in found]) for name in names})
 
@@ -246,14 +253,35 @@ def _measures(sim: Any) -> list[str]:
     return names
 
 
-def _values(sim: Any, names: list[str], duration: Optional[float], static: bool) -> dict[str, np.ndarray]:
-    start = measure_now(sim, names)
+def _values(sim: Any, names: list[str], duration: Optional[float], static: bool) -> tuple[dict[str, np.ndarray], frozenset[str]]:
+    """The values of measures at the end, and the names of those that are rounding."""
+    start, before = measure_now(sim, names), [np.array(body.positions) for body in _deformable(sim)]
     if static:
         sim.solve_static()
     else:
         sim.run(duration)
-    end = measure_now(sim, names)
-    return {name: end[name] - start[name] if name.endswith(".position") else end[name] for name in names}
+    end, after = measure_now(sim, names), [np.array(body.positions) for body in _deformable(sim)]
+    values = {name: end[name] - start[name] if name.endswith(".position") else end[name] for name in names}
+    reach = max(float(np.abs(x).max()) for x in before)
+    moves = any(float(np.abs(y - x).max()) > _ROUNDING * reach for x, y in zip(before, after))
+    return values, frozenset(name for name in names if _is_rounding(name, values[name], reach, moves))
+
+
+def _is_rounding(name: str, value: np.ndarray, reach: float, moves: bool) -> bool:
+    size = float(np.abs(value).max(initial=0.0))
+    if name.endswith(".position"):
+        return size <= _ROUNDING * reach
+    return size <= _ROUNDING and (not moves or name.endswith(".rotation"))
+
+
+def _refuse_rounding(names: Sequence[str], idle: frozenset[str], found: Sequence[Level]) -> None:
+    for name in names:
+        if name in idle:
+            largest = max(float(np.abs(level.values[name]).max(initial=0.0)) for level in found)
+            what = "displacement" if name.endswith(".position") else "value"
+            raise Error("bad-argument", name,
+                        f"its {what} is zero to rounding on every mesh, at most {largest:.2g}, so there is no error to estimate",
+                        "give the scene a load or a command (without the key `gravity` there is no weight), or name another measure")
 
 
 def _level(sim: Any, values: dict[str, np.ndarray], seconds: float) -> Level:

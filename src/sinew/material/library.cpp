@@ -78,13 +78,12 @@ void add_ecoflex(std::vector<NamedMaterial>& list) {
                          kDensity, 0.0, 0.0, kEcoflex30Source,
                          "mu_3 as first published: unstable in uniaxial compression below 0.31 "
                          "and in tension above 3.68. For comparison."}));
-  list.push_back(
-      finish({"ecoflex-00-30-mooney-rivlin", "Ecoflex 00-30", "mooney-rivlin",
-              mooney_rivlin(12.18e3, -33.3515), kDensity, 0.0, 0.0, kEcoflex30Source,
-              "Not a fit of its own: C10 = mu_1/2 and C01 = -mu_2/2 of the Ogden law."}));
+  list.push_back(finish({"ecoflex-00-30-mooney-rivlin", "Ecoflex 00-30", "mooney-rivlin",
+                         mooney_rivlin(12.18e3, -33.3515), kDensity, 0.0, 0.0, kEcoflex30Source,
+                         "Not a separate fit: C10 = mu_1/2 and C01 = -mu_2/2 of the Ogden law."}));
   list.push_back(finish({"ecoflex-00-30-neo-hookean", "Ecoflex 00-30", "neo-hookean",
                          neo_hookean(2.0 * 12.18e3), kDensity, 0.0, 0.0, kEcoflex30Source,
-                         "Not a fit of its own: C10 = mu_1/2 of the Ogden law."}));
+                         "Not a separate fit: C10 = mu_1/2 of the Ogden law."}));
   list.push_back(tensile("ecoflex-00-30-tensile", "Ecoflex 00-30",
                          {{8.57318, 5.81546}, {13564.1, 2.22708}}, "0.34 kPa (0.4 %)", kDensity));
   list.push_back(finish(
@@ -94,7 +93,7 @@ void add_ecoflex(std::vector<NamedMaterial>& list) {
        kDensity, 0.0, 0.0,
        "Coefficients as published with the simulation of a pneumatic bending module; density: "
        "Smooth-On, as Ecoflex 00-30",
-       "The source does not say which convention: only sum 2 mu/alpha^2 (...) gives the material's "
+       "The source does not state the convention: only sum 2 mu/alpha^2 (...) gives the material's "
        "initial shear modulus, 20.8 kPa; sum mu/alpha (...) would give 167 kPa. In this convention "
        "the law is Drucker-unstable beyond a uniaxial stretch of 1.13 or below 0.885, and beyond "
        "an equibiaxial stretch of 1.06; thin walls invert under small loads. For large strains use "
@@ -131,13 +130,13 @@ void add_others(std::vector<NamedMaterial>& list) {
       {"elastosil-m4601", "Elastosil M4601", "yeoh", yeoh({0.11e6, 0.02e6}), 1130.0, 0.0, 0.0,
        "C10 = 0.11 MPa, C20 = 0.02 MPa and density as in the Soft Robotics Toolkit "
        "(softroboticstoolkit.com), PneuNets bending actuators, modeling",
-       "The source does not say up to which strain they hold."}));
+       "The source does not state the strain up to which they hold."}));
   list.push_back(
       finish({"elastosil-m4601-neo-hookean", "Elastosil M4601", "neo-hookean",
               neo_hookean(2.0 * 0.12e6), 1130.0, 0.0, 0.0,
               "C10 = 0.12 MPa as in the Soft Robotics Toolkit (softroboticstoolkit.com), fiber-"
               "reinforced actuators, finite element modeling; density: as elastosil-m4601",
-              "The source does not say up to which strain it holds."}));
+              "The source does not state the strain up to which it holds."}));
   list.push_back(
       finish({"smooth-sil-950", "Smooth-Sil 950", "neo-hookean", neo_hookean(1.875e6 / 1.75),
               1240.0, 1.0, 2.0,

@@ -152,7 +152,7 @@ std::shared_ptr<const KeyTable> solver_table() {
 
 std::shared_ptr<const KeyTable> record_table() {
   return make_table({.name = "record",
-                     .description = "What a run writes.",
+                     .description = "Output of a run.",
                      .keys = {{.name = "every",
                                .forms = {integer(1, 1'000'000'000)},
                                .example = "10",
@@ -257,7 +257,7 @@ KeyTable scene_table() {
                         .forms = {table(record_table())},
                         .example = "{every: 1, states: true}",
                         .default_text = "{}",
-                        .description = "What a run writes."});
+                        .description = "Output of a run."});
   scene.keys.push_back(later_key("materials", "Materials by name."));
   scene.keys.push_back(later_key("obstacles", "Obstacles around the robot."));
   scene.keys.push_back(later_key("estimators", "State estimators that use the sensors."));

@@ -257,8 +257,8 @@ Form effector_form() {
       {.name = "orientation",
        .forms = {list({vector(length())}, 3, 3), vector(length())},
        .example = "[0 0 190 mm, 10 0 190 mm, 0 10 190 mm]",
-       .description = "Rotation vector from rest of the frame through three points, or of the "
-                      "arm's section that contains one point."});
+       .description = "Rotation vector from rest, of the frame through three points of a "
+                      "deformable body, or of a rigid body or an arm's section at one point."});
   effector.keys.push_back(
       {.name = "directions",
        .forms = {axis, list(axis_forms(), 1, 3)},

@@ -27,10 +27,10 @@ std::shared_ptr<const KeyTable> patch_table() {
 std::shared_ptr<const KeyTable> supply_table(bool gas) {
   KeyTable supply{
       .name = gas ? "supply of gas" : "supply of liquid",
-      .description = gas ? "A regulator holds the commanded pressure before a valve; flow by ISO "
-                           "6358."
-                         : "A pump holds the commanded pressure before a valve; flow = conductance "
-                           "times the difference of pressures.",
+      .description = gas ? "A regulator holds the commanded pressure before a valve. The flow "
+                           "follows ISO 6358."
+                         : "A pump holds the commanded pressure before a valve. The flow is the "
+                           "conductance times the pressure difference.",
       .keys = {{.name = "conductance",
                 .forms = {quantity(conductance(), positive())},
                 .example = "2e-9 m^3/(s Pa)",
@@ -189,7 +189,8 @@ std::shared_ptr<const KeyTable> surface_table() {
           {{.name = "inside",
             .forms = {vector(length())},
             .example = "0 0 30 mm",
-            .description = "A point in a void enclosed by the body: selects its whole wall."},
+            .description =
+                "A point in a void enclosed by the body. It selects the whole wall of the void."},
            {.name = "patch",
             .forms = {table(patch_table())},
             .example = "{point: 0 0 30 mm, angle: 40 deg}",
@@ -215,7 +216,7 @@ std::shared_ptr<const KeyTable> chamber_table() {
                {.name = "surface",
                 .forms = {table(surface_table())},
                 .example = "{inside: 0 0 30 mm}",
-                .description = "Where the pressure acts.",
+                .description = "Surface on which the pressure acts.",
                 .required = true},
                {.name = "cap",
                 .forms = {boolean()},

@@ -106,7 +106,7 @@ Form contact_form() {
   contact.keys.push_back({.name = "surface",
                           .forms = {table(solid_table())},
                           .example = "{plane: {point: 0 0 0 mm, normal: 0 0 1}}",
-                          .description = "The surface; fixed in the world, or moved by `motion`."});
+                          .description = "The surface, fixed in the world or moved by `motion`."});
   contact.keys.push_back(
       {.name = "nodes",
        .forms = {table(nodes_table())},

@@ -113,8 +113,9 @@ std::shared_ptr<const KeyTable> water_table() {
         .default_text = "0 0 0 m/s",
         .description = "Velocity of the water far from the body."},
        coefficient("normal_drag", "0.9",
-                   "Drag coefficient of a face moving along its normal. A cylinder in cross flow "
-                   "then has 4/3 of this coefficient by its width, a sphere the same coefficient."),
+                   "Drag coefficient of a face moving along its normal. Referred to the width, a "
+                   "cylinder in cross flow then has a drag coefficient of 4/3 of this value, and a "
+                   "sphere of this value."),
        coefficient("tangential_drag", "0.01", "Drag coefficient of a face moving tangentially."),
        coefficient("added_mass", "1",
                    "Added mass as a fraction of the displaced water: 1 for a cylinder in cross "

@@ -244,7 +244,7 @@ std::vector<Form> material_forms() {
   for (Choice& choice : bare_word.choices) choice.description.clear();
   const auto named = make_table(
       {.name = "material: name",
-       .description = "A material of the library, scaled.",
+       .description = "A library material with scaled moduli.",
        .keys = {{.name = "name",
                  .forms = {bare_word},
                  .example = "dragon-skin-30",

@@ -41,15 +41,17 @@ std::shared_ptr<const KeyTable> extent_table() {
           "the mesh at rest. Default: all nodes of the body.",
       .keys = region_keys("Nodes"),
       .alternatives = {{{"box", "sphere", "plane", "set"}, false}, {{"along", "across"}, true}}};
-  extent.keys.push_back({.name = "along",
-                         .forms = axis_forms(),
-                         .example = "z",
-                         .description = "An axis: the largest coordinate minus the smallest."});
+  extent.keys.push_back(
+      {.name = "along",
+       .forms = axis_forms(),
+       .example = "z",
+       .description =
+           "Axis along which the extent is taken: the largest coordinate minus the smallest."});
   extent.keys.push_back({.name = "across",
                          .forms = axis_forms(),
                          .example = "z",
-                         .description = "An axis: the extent in the directions normal to it, the "
-                                        "diameter of a ring around this axis."});
+                         .description = "Axis to which the extent is normal, such as the axis of a "
+                                        "ring whose diameter is measured."});
   extent.keys.push_back(
       {.name = "size",
        .forms = {choice({{"largest", "In the direction of the largest extent."},
@@ -91,8 +93,8 @@ Form probe_form() {
   probe.keys.push_back({.name = "line",
                         .forms = {table(point_file_table()), list({vector(length())}, 2)},
                         .example = "[0 0 0 mm, 0 0 195 mm]",
-                        .description = "The corners of a line in the mesh at rest: its length now "
-                                       "and the points along it."});
+                        .description = "Corners of a line in the mesh at rest. The probe measures "
+                                       "its present length and the points along it."});
   probe.keys.push_back({.name = "samples",
                         .forms = {integer(2, 10000)},
                         .example = "21",
@@ -116,10 +118,11 @@ Form probe_form() {
                         .forms = {list({vector(length()), table(end_table())}, 2, 2)},
                         .example = "[-10 0 50 mm, 10 0 50 mm]",
                         .description = "The distance between two points in the mesh at rest."});
-  probe.keys.push_back({.name = "extent",
-                        .forms = {table(extent_table())},
-                        .example = "{set: side, along: x}",
-                        .description = "Extent of a set of nodes: a height, a diameter."});
+  probe.keys.push_back(
+      {.name = "extent",
+       .forms = {table(extent_table())},
+       .example = "{set: side, along: x}",
+       .description = "Extent of a set of nodes, such as a height or a diameter."});
   probe.keys.push_back(outside_key());
   return table(make_table(std::move(probe)));
 }

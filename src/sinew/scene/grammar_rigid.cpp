@@ -18,7 +18,7 @@ Key shape_form(const char* name, const char* example, const char* description,
 std::shared_ptr<const KeyTable> shape_table() {
   return make_table(
       {.name = "shape of a rigid body",
-       .description = "Centred on the body's origin.",
+       .description = "A shape centred on the body's origin.",
        .keys = {{.name = "box",
                  .forms = {vector(length())},
                  .example = "40 30 20 mm",

@@ -201,9 +201,8 @@ Form fixed_region() {
 std::shared_ptr<const KeyTable> damping_table() {
   return make_table(
       {.name = "damping",
-       .description =
-           "Rayleigh damping: mass times M plus stiffness times K. Acts in dynamics. Stiffness "
-           "damping resists strain, not rotation.",
+       .description = "Rayleigh damping: mass times M plus stiffness times K. It acts in dynamics "
+                      "only. Stiffness damping resists strain, not rotation.",
        .keys = {{.name = "mass",
                  .forms = {quantity(frequency(), non_negative())},
                  .example = "0.1 1/s",
@@ -258,7 +257,8 @@ std::shared_ptr<const KeyTable> base_table() {
 std::shared_ptr<const KeyTable> initial_velocity_table() {
   return make_table(
       {.name = "initial velocity",
-       .description = "Initial rigid-body motion; fixed nodes stay at rest. Acts in dynamics.",
+       .description =
+           "Initial rigid-body motion; fixed nodes stay at rest. It acts in dynamics only.",
        .keys = {{.name = "linear",
                  .forms = {vector(speed())},
                  .example = "0 0 -1 m/s",
@@ -286,7 +286,7 @@ std::vector<Key> mass_keys() {
            {{"volume", "By the volume of the elements."}, {"even", "The same for every node."}})},
        .example = "even",
        .default_text = "volume",
-       .description = "How `mass` is distributed over the nodes.",
+       .description = "Distribution of `mass` over the nodes.",
        .only_with = "mass"},
       {.name = "mass_matrix",
        .forms = {choice({{"lumped", "Diagonal."}, {"consistent", "From the shape functions."}})},

@@ -254,13 +254,13 @@ class Page {
     if (key.later) without = "*later*";
     std::string meaning = key.description;
     if (!key.only_with.empty()) meaning += fmt::format(" Only with `{}`.", key.only_with);
-    if (!key.example.empty()) meaning += fmt::format(" Example: `{}: {}`", key.name, key.example);
     const std::string list = meanings(key);
     if (const auto [found, is_new] = told.emplace(list, &table); is_new) {
       explained += list;
     } else if (!list.empty() && found->second != &table) {
       meaning += fmt::format(" See {} for the choices.", link(*found->second, found->second->name));
     }
+    if (!key.example.empty()) meaning += fmt::format(" Example: `{}: {}`", key.name, key.example);
     text_ += fmt::format("| `{}` | {} | {} | {} |\n", key.name,
                          key.later ? std::string("-") : escaped(linked(key.forms)), without,
                          escaped(meaning));
