@@ -73,7 +73,8 @@ W and delta_free as the last step had them, without a factorisation: for filters
 
 Those of the last substep's last linearisation, of the scene's integrator and time step; after
 solve_static() those of the equilibrium. `delta` and `effort` are those of now, `residual` is NaN and
-there are no fields. It is no part of the state: restore() leaves it as it was.
+there are no fields. linearise(), compliance() and response() leave it as it was. It is no part of the
+state.
 
 Returns
 -------
@@ -82,7 +83,9 @@ Linearisation
 Raises
 ------
 Error
-    bad-argument before the first step.
+    bad-argument where no step or solve led to the present state: before the first one, after
+    restore(), load_state(), reset() and a step that failed, and after an event-driven step that
+    ended with an impact or a look at contacts that strike. linearise() works there.
 )")
       .def(
           "compliance",

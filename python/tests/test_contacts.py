@@ -98,6 +98,44 @@ def test_linearisation_has_the_points_that_take_part():
     assert last.rows == linear.rows
 
 
+def same(one, other):
+    return one.rows == other.rows and all(
+        np.array_equal(getattr(one, name), getattr(other, name)) for name in ("W", "delta", "delta_free", "effort"))
+
+
+def test_queries_leave_the_last_linearisation_as_it_was():
+    sim, _ = whole_block()
+    last = sim.last_linearisation()
+    assert not same(last, sim.linearise(statics=False))
+    for ask in (sim.linearise, sim.compliance):
+        ask(statics=False)
+        assert same(sim.last_linearisation(), last)
+    with pytest.raises(sinew.RunError, match="singular"):
+        sim.linearise()  # of statics: nothing holds the block
+    assert same(sim.last_linearisation(), last)
+    sim.step()
+    after = sim.last_linearisation()
+    other, _ = whole_block()
+    other.step()
+    assert same(after, other.last_linearisation())
+
+
+def test_states_have_no_last_linearisation(tmp_path):
+    sim, _ = whole_block()
+    state = sim.state()
+    sim.save_state(tmp_path / "state")
+    for take_up in (lambda: sim.restore(state), lambda: sim.load_state(tmp_path / "state"), sim.reset):
+        sim.step()
+        sim.last_linearisation()
+        take_up()
+        with pytest.raises(sinew.Error, match="no step led to this state.*linearise") as error:
+            sim.last_linearisation()
+        assert error.value.kind == "bad-argument"
+        sim.linearise(statics=False)  # a query is no step
+        with pytest.raises(sinew.Error, match="no step led"):
+            sim.last_linearisation()
+
+
 def test_linearisation_of_zones_has_their_sums():
     sim, lower = whole_block(aggregate=0.02)
     last = sim.last_linearisation()

@@ -139,3 +139,11 @@ def test_a_robot_with_a_limited_cable_goes_on_from_a_state_bit_for_bit():
         sim.step()
         other.step()
         assert sim.state() == other.state()
+
+
+def test_a_step_that_looks_at_contacts_leaves_no_linearisation():
+    sim = ball_on_floor()
+    sim.step()
+    with pytest.raises(sinew.Error, match="event-driven integration ended it"):
+        sim.last_linearisation()
+    assert sim.linearise(statics=False).rows == []

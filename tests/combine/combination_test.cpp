@@ -50,17 +50,6 @@ TEST(Combination, TheCoverHasEveryPairOfLevels) {
   EXPECT_EQ(missing, refused);
 }
 
-// Of the cover. Joint friction and a motor that is told to stand still both hold the joint of this
-// scene, and a cable is just taut, when event-driven integration begins with an impact: in another
-// order of bodies its impulses are others, and nodes go 2.4e-6 m elsewhere.
-constexpr std::uint64_t kOrderMatters = 174;
-
-TEST(Combination, OrderMattersWhereManyHoldOneJointAtAnImpact) {
-  const Outcome outcome = try_scene(pairwise_cover().at(kOrderMatters), kOrderMatters);
-  EXPECT_EQ(outcome.kind, Outcome::Kind::wrong) << "cured: take it out of the exceptions";
-  EXPECT_NE(outcome.cause.find("another order moves nodes"), std::string::npos) << outcome.cause;
-}
-
 class CombinationBlock : public ::testing::TestWithParam<int> {
  protected:
   const std::uint64_t first = kBlock * static_cast<std::uint64_t>(GetParam());
@@ -71,7 +60,7 @@ TEST_P(PairsOfFeatures, RunAndReproduce) {
   const auto cover = pairwise_cover();
   for (std::uint64_t seed = first; seed < std::min<std::uint64_t>(first + kBlock, cover.size());
        ++seed) {
-    if (seed != kOrderMatters) expect_sound(cover[seed], seed);
+    expect_sound(cover[seed], seed);
   }
 }
 INSTANTIATE_TEST_SUITE_P(
@@ -85,6 +74,14 @@ TEST_P(RandomScenes, RunAndReproduce) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenes, ::testing::Range(0, kRandomBlocks));
+
+// Of the cover. A motor, a brake and a limit repeat each other in one hinge, whose body hangs on a
+// weld. In one order of actuators rounding made their matrix indefinite; the step then failed and
+// was made in halves, which moved nodes by 1e-5 m.
+TEST(Combination, OrderDoesNotMatterWhereManyHoldOneJoint) {
+  constexpr std::uint64_t kManyHold = 174;
+  expect_sound(pairwise_cover().at(kManyHold), kManyHold);
+}
 
 // Of thousands that were tried: controllers beside a contact that stops a point under
 // generalized-alpha, which crashed, and a limited cable under event-driven integration, which went

@@ -2,6 +2,7 @@
 #include "sinew/sim/linearisation.hpp"
 
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -9,7 +10,9 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/controlled_response.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 
 #include "cut_beam.hpp"
 
@@ -70,6 +73,50 @@ TEST(LastLinearisation, IsThatOfTheStepAndNeedsOne) {
   EXPECT_TRUE(std::isnan(last.residual));
   EXPECT_LT((last.compliance - here.compliance).norm(), 1e-6 * here.compliance.norm());
   EXPECT_LT((last.delta - here.delta).norm(), 1e-12 * here.delta.norm());
+}
+
+void expect_same(const Linearisation& one, const Linearisation& other) {
+  EXPECT_EQ(one.rows, other.rows);
+  EXPECT_EQ(one.compliance, other.compliance);
+  EXPECT_EQ(one.delta, other.delta);
+  EXPECT_EQ(one.delta_free, other.delta_free);
+  EXPECT_EQ(one.effort, other.effort);
+  EXPECT_EQ(one.negative_pivots, other.negative_pivots);
+}
+
+// W of statics is far from that of a step, so that a query's would be seen.
+TEST(LastLinearisation, StaysThatOfTheStepAfterQueries) {
+  Simulation simulation(cut_beam({.gravity = {0.0, 0.0, -2.0}, .cables = 1, .push = true}));
+  simulation.command(0, {CommandKind::effort, Signal::constant(2.0)});
+  simulation.step();
+  const Linearisation last = last_linearisation(simulation);
+  const Linearisation statics = linearise(simulation);
+  EXPECT_GT((statics.compliance - last.compliance).norm(), 0.01 * last.compliance.norm());
+  expect_same(last_linearisation(simulation), last);
+  linearise(simulation, {.every_point = true});
+  expect_same(last_linearisation(simulation), last);
+  controlled_response(simulation, std::vector<int>{0});
+  expect_same(last_linearisation(simulation), last);
+}
+
+TEST(LastLinearisation, IsRefusedWhereNoStepLedToTheState) {
+  Simulation simulation(cut_beam({.gravity = {0.0, 0.0, -2.0}, .cables = 1, .push = true}));
+  const auto expect_refused = [&] {
+    EXPECT_THROW(last_linearisation(simulation), Error);
+    linearise(simulation);
+    EXPECT_THROW(last_linearisation(simulation), Error) << "a query is no step";
+  };
+  expect_refused();
+  simulation.step();
+  const State state = simulation.state();
+  simulation.step();
+  EXPECT_NO_THROW(last_linearisation(simulation));
+  simulation.restore(state);
+  expect_refused();
+  simulation.step();
+  EXPECT_NO_THROW(last_linearisation(simulation));
+  simulation.reset();
+  expect_refused();
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include "sinew/step/direct_solver.hpp"
 
 #include <algorithm>
+#include <span>
+#include <vector>
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
@@ -152,6 +154,91 @@ TEST(DirectSolver, TwinHeldRowsShareTheEffort) {
   ASSERT_EQ(solver.solve(problem, effort), LawStatus::solved);
   EXPECT_NEAR(effort[0], 1.0, 1e-12);
   EXPECT_NEAR(effort[1], 1.0, 1e-12);
+}
+
+// Rows whose motions are asked for within limits, of a body that welds hold. W = c U U^T + (left,
+// 0; 0, 0) of `apart` motions is an anchor's, c = -1e5, and the welds' rows leave `left` of it.
+// @param rows (n,) which of `left` each row is.
+StepProblem behind_welds(const MatrixX& left, const VectorX& free, std::span<const int> rows,
+                         Random& random) {
+  constexpr double kAnchor = -1e5;
+  constexpr int kWelds = 3;
+  const Eigen::Index apart = left.rows(), all = apart + kWelds;
+  MatrixX ways(all, kWelds);
+  for (double& way : ways.topRows(apart).reshaped()) way = random.uniform(-1.0, 1.0);
+  ways.bottomRows(kWelds).setIdentity();
+  MatrixX whole = kAnchor * ways * ways.transpose();
+  whole.topLeftCorner(apart, apart) += left;
+  whole = (0.5 * (whole + whole.transpose())).eval();
+  std::vector<Eigen::Index> of(rows.begin(), rows.end());
+  for (Eigen::Index weld = apart; weld < all; ++weld) of.push_back(weld);
+  StepProblem problem;
+  problem.compliance = whole(of, of);
+  problem.delta_free = VectorX::Zero(static_cast<Eigen::Index>(of.size()));
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    problem.delta_free[static_cast<Eigen::Index>(k)] = free[rows[k]];
+    ActuatorBlock& block = problem.actuators.emplace_back();
+    block.row = static_cast<int>(k);
+    block.kind = CommandKind::motion;
+    block.motion_min = -kInfinity;
+    block.motion_max = kInfinity;
+    block.effort_min = -1e3;
+    block.effort_max = 1e3;
+  }
+  for (std::size_t k = rows.size(); k < of.size(); ++k) {
+    problem.bilaterals.push_back({static_cast<int>(k), 0.0, 1.0});
+  }
+  problem.delta = problem.delta_free;
+  return problem;
+}
+
+VectorX solve_and_obey(StepProblem& problem) {
+  std::vector<double> effort(static_cast<std::size_t>(problem.delta.size()), 0.0);
+  DirectSolver solver;
+  solver.begin_step();
+  EXPECT_EQ(solver.solve(problem, effort), LawStatus::solved);
+  const Eigen::Map<const VectorX> x(effort.data(), problem.delta.size());
+  problem.delta = problem.delta_free + problem.compliance * x;
+  EXPECT_LT(violation(problem, effort, LawStatus::solved), 1e-8);
+  return x;
+}
+
+// A motor and a brake in one hinge, and three cables, in two orders. What is left of the twins
+// would be indefinite, since each has its own rounding.
+TEST(DirectSolver, TwinsBehindWeldsShareInAnyOrder) {
+  Random random(23);
+  for (int trial = 0; trial < 200; ++trial) {
+    SCOPED_TRACE(trial);
+    MatrixX half(4, 6);
+    for (double& entry : half.reshaped()) entry = random.uniform(-1.0, 1.0);
+    const MatrixX left = half * half.transpose();
+    const VectorX free = Eigen::Vector4d(-0.7, 0.2, -0.1, 0.3);
+    const std::vector<int> one{0, 1, 2, 3, 0}, other{2, 0, 0, 3, 1};
+    StepProblem first = behind_welds(left, free, one, random);
+    StepProblem second = behind_welds(left, free, other, random);
+    first.actuators[0].effort_max = second.actuators[2].effort_max = 1e-3;
+    first.actuators[0].effort_min = second.actuators[2].effort_min = -1e-3;
+    const VectorX a = solve_and_obey(first), b = solve_and_obey(second);
+    EXPECT_EQ(std::abs(a[0]), 1e-3);
+    EXPECT_EQ(a[0], b[2]);
+    EXPECT_NEAR(a[4], b[1], 1e-7 * b.norm());
+    EXPECT_NEAR(a[2], b[0], 1e-7 * b.norm());
+  }
+}
+
+// Three cables on two motions: no two are twins, and of what is left of their W rounding makes an
+// indefinite matrix.
+TEST(DirectSolver, RedundantRowsBehindWeldsAreSolved) {
+  Random random(24);
+  const std::vector<int> rows{0, 1, 2};
+  for (int trial = 0; trial < 200; ++trial) {
+    SCOPED_TRACE(trial);
+    MatrixX ways(3, 2);
+    for (double& way : ways.reshaped()) way = random.uniform(-1.0, 1.0);
+    const VectorX free = ways * Eigen::Vector2d(random.uniform(-1.0, 1.0), 0.3);
+    StepProblem problem = behind_welds(ways * ways.transpose(), free, rows, random);
+    solve_and_obey(problem);
+  }
 }
 
 // A brake and a motor in one hinge, W with the row twice: the motor moves it as it is told, and the

@@ -8,9 +8,9 @@
 #include "sinew/control/snapshot.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/query.hpp"
 #include "sinew/sim/row_numbering.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 #include "sinew/sim/world.hpp"
 #include "sinew/step/response.hpp"
 
@@ -171,18 +171,11 @@ Snapshot take_here(sim::Simulation& simulation, const SnapshotRows& names, int m
 
 }  // namespace
 
-// No destructor puts the state back: restore() may throw.
 Snapshot take_snapshot(sim::Simulation& simulation, const SnapshotRows& rows, int max_contacts,
                        bool statics) {
-  const sim::State state = simulation.state();
-  try {
-    Snapshot snapshot = take_here(simulation, rows, max_contacts, statics);
-    simulation.restore(state);
-    return snapshot;
-  } catch (...) {
-    simulation.restore(state);
-    throw;
-  }
+  return sim::query(simulation, [&](const sim::State&) {
+    return take_here(simulation, rows, max_contacts, statics);
+  });
 }
 
 }  // namespace sinew::control

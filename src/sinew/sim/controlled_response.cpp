@@ -10,6 +10,7 @@
 #include "sinew/sim/actuation.hpp"
 #include "sinew/sim/inputs.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/query.hpp"
 #include "sinew/sim/row_numbering.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
@@ -84,18 +85,10 @@ ControlledResponse respond(Simulation& simulation, const State& state,
 
 }  // namespace
 
-// No destructor puts the state back: restore() may throw.
 ControlledResponse controlled_response(Simulation& simulation, std::span<const int> controlled,
                                        const LinearisationChoice& choice) {
-  const State state = simulation.state();
-  try {
-    ControlledResponse result = respond(simulation, state, controlled, choice);
-    simulation.restore(state);
-    return result;
-  } catch (...) {
-    simulation.restore(state);
-    throw;
-  }
+  return query(simulation,
+               [&](const State& state) { return respond(simulation, state, controlled, choice); });
 }
 
 }  // namespace sinew::sim

@@ -127,6 +127,7 @@ void Impact::apply() {
   change_ /= kInstant * kInstant;
   bodies.add_velocity(change_);
   bodies.residual(run_.effort);  // which bodies remember
+  run_.world.forget_solved();
   run_.ledger.count_impact(-gained_);
 }
 

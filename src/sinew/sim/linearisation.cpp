@@ -15,6 +15,7 @@
 #include "sinew/linalg/scratch.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/query.hpp"
 #include "sinew/sim/row_numbering.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
@@ -234,23 +235,16 @@ Linearisation linearise_here(Simulation& simulation, const LinearisationChoice& 
 
 }  // namespace
 
-// No destructor puts the state back: restore() may throw.
 Linearisation linearise(Simulation& simulation, const LinearisationChoice& choice) {
-  const State state = simulation.state();
-  try {
-    Linearisation result = linearise_here(simulation, choice);
-    simulation.restore(state);
-    return result;
-  } catch (...) {
-    simulation.restore(state);
-    throw;
-  }
+  return query(simulation, [&](const State&) { return linearise_here(simulation, choice); });
 }
 
 Linearisation last_linearisation(Simulation& simulation) {
-  if (simulation.world().problem().compliance.size() == 0) {
+  if (!simulation.world().has_solved()) {
     throw Error(ErrorKind::bad_argument, {.item = "last_linearisation()"},
-                "no step has been solved yet", "call it after step() or solve_static()");
+                "no step led to this state: none was made since it was built, restored or reset, "
+                "the last one failed, or event-driven integration ended it with a look at contacts",
+                "call it after step() or solve_static(), or linearise() at any time");
   }
   Linearisation result;
   result.residual = std::numeric_limits<double>::quiet_NaN();

@@ -51,9 +51,11 @@ struct LinearisationChoice {
 Linearisation linearise(Simulation& simulation, const LinearisationChoice& choice = {});
 
 /// W and delta_free as the last step (its last substep's last linearisation) or solve had them,
-/// delta and effort as they are now: what a filter needs of a step, without a factorisation. No
-/// part of the state. Has no fields, and NaN for the residual. Throws Error(bad-argument) before
-/// the first step.
+/// delta and effort as they are now: what a filter needs of a step, without a factorisation.
+/// Queries (linearise(), controlled_response()) leave it as it is. It is no part of the state. Has
+/// no fields, and NaN for the residual. Throws Error(bad-argument) where no step or solve led to
+/// the present state: before the first one, after restore(), reset() and a step that failed, and
+/// after an event-driven step that ended with an impact or a look at contacts that strike.
 Linearisation last_linearisation(Simulation& simulation);
 
 }  // namespace sinew::sim

@@ -67,6 +67,7 @@ void Run::keep(State& state) const {
 
 void Run::restore(const State& state) {
   check_state(*this, state);
+  world.forget_solved();
   for (std::size_t i = 0; i < state.bodies.size(); ++i) {
     world.bodies().all()[i]->load_state(state.bodies[i]);
   }

@@ -46,11 +46,13 @@ void World::begin_step(double from, double to, std::span<double> effort, double 
 }
 
 void World::begin_query(double at, std::span<double> effort) {
+  has_solved_ = false;
   begin_step(at, at, effort);
   bodies_.begin_query();
 }
 
 void World::begin_query(double at) {
+  has_solved_ = false;
   if (!contacts_.empty()) {
     place_contacts(at, at);
     contacts_.take_all();
@@ -105,6 +107,7 @@ linalg::FactorStatus World::condense() {
   stiffness_.add();
   inertia_ = bodies_.condense();
   if (inertia_.status != linalg::FactorStatus::singular) form_compliance();
+  has_solved_ = true;
   return inertia_.status;
 }
 
@@ -152,12 +155,21 @@ void World::form_compliance() {
   bodies_.add_compliance(numbering_.problem_rows(), problem_.compliance, problem_.delta_free);
 }
 
+void World::put_back(Solved solved) {
+  problem_ = std::move(solved.problem);
+  numbering_ = std::move(solved.numbering);
+  rows_.delta = std::move(solved.delta);
+  inertia_ = solved.inertia;
+  has_solved_ = solved.is_present;
+}
+
 double World::violation(std::span<const double> effort, step::LawStatus law) {
   numbering_.gather_efforts(effort, scratch_);
   return std::max(step::violation(problem_, scratch_, law), contacts_.max_penetration_left_out());
 }
 
 void World::restart() {
+  has_solved_ = false;
   joints_.restart();
   bodies_.restart();
   contacts_.planes().forget_points();

@@ -81,6 +81,22 @@ class World {
   /// capstans' grip, joints, contacts and all numbers of rows are the world's.
   step::StepProblem& problem() { return problem_; }
   const step::StepProblem& problem() const { return problem_; }
+  /// What last_linearisation() reads.
+  struct Solved {
+    step::StepProblem problem;
+    RowNumbering numbering;
+    VectorX delta;  // (rows,) m
+    mechanics::Inertia inertia;
+    bool is_present = false;
+  };
+  /// Whether problem(), numbering() and inertia() are those that led to the present state: not of
+  /// a query or an impact, nor of another state that was left since.
+  bool has_solved() const { return has_solved_; }
+  void forget_solved() { has_solved_ = false; }
+  /// For a query, which puts it back when it has put back the state.
+  Solved keep_solved() const { return {problem_, numbering_, rows_.delta, inertia_, has_solved_}; }
+  void put_back(Solved solved);
+
   /// Of the step that was solved last, see ContactRows. @param time_step s.
   bool turns_back(double time_step) const {
     return contacts_.turns_back(problem_, numbering_, problem_effort_, time_step);
@@ -124,6 +140,7 @@ class World {
   ContactRows contacts_;
   GeometricStiffness stiffness_;
   mechanics::Inertia inertia_;
+  bool has_solved_ = false;
   std::vector<double> effort_before_;      // (rows,) N, of the last step or iteration
   linalg::AlignedNumbers problem_effort_;  // (rows of the problem,) N, of the last solution
   linalg::AlignedNumbers scratch_;         // (rows of the problem,)

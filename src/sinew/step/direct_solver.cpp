@@ -11,6 +11,8 @@ namespace {
 
 // Relative size of the term that shares tension among redundant cables.
 constexpr double kRedundancy = 1e-12;
+// Of a row's own compliance: the rounding that what held rows leave of it may have.
+constexpr double kCancelled = 1e-14;
 // Motions that agree within this (m) agree.
 constexpr double kMotionTolerance = 1e-12;
 // A solution of contacts that misses the tolerance by rounding or slow convergence is one up to
@@ -173,6 +175,7 @@ LawStatus DirectSolver::solve_with_drives(const StepProblem& problem, std::span<
   const bool curves = followers_.has_curves();
   for (int round = 0; round < kMaxDriveRounds; ++round) {
     followers_.take_out(problem, free_, unknown_, compliance, motion.col(0));
+    unite_twins(problem, compliance, motion);
     settle_decided(problem, compliance, motion);
     const LawStatus status = solve_blocks(problem);
     if (status == LawStatus::failed) return status;
@@ -185,6 +188,27 @@ LawStatus DirectSolver::solve_with_drives(const StepProblem& problem, std::span<
   return LawStatus::solved;
 }
 
+// Rows that repeat each other (a hinge's motor, brake and limit) do so in what held rows leave,
+// where each has its own rounding: of a bracket that hangs on a weld 1e-5 of W is left, and a motor
+// and a brake would be an indefinite matrix.
+void DirectSolver::unite_twins(const StepProblem& problem, Eigen::Map<MatrixX> compliance,
+                               Eigen::Map<MatrixX> motion) {
+  const VectorX& free = problem.delta_free;
+  for (std::size_t i = 1; i < boxes_.size(); ++i) {
+    const int row = boxes_[i].row;
+    const auto repeats = [&](const Box& other) {
+      return free[row] == free[other.row] &&
+             problem.compliance.col(row) == problem.compliance.col(other.row);
+    };
+    const auto twin = std::find_if(boxes_.begin(), boxes_.begin() + static_cast<int>(i), repeats);
+    if (twin == boxes_.begin() + static_cast<int>(i)) continue;
+    const auto own = static_cast<Eigen::Index>(i), first = twin - boxes_.begin();
+    compliance.row(own) = compliance.row(first);
+    compliance.col(own) = compliance.col(first);
+    motion(own, 0) = motion(first, 0);
+  }
+}
+
 // Where held rows move a row by themselves (a brake beside a motor that holds the same hinge), of
 // its compliance rounding is left. Its effort then moves nothing, and follows from where it is: at
 // a limit on either side of its motion, the least there.
@@ -193,7 +217,9 @@ void DirectSolver::settle_decided(const StepProblem& problem, Eigen::Map<MatrixX
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
     Box& box = boxes_[i];
     const auto k = static_cast<Eigen::Index>(i);
-    const double alone = problem.compliance(box.row, box.row);
+    // Negative where an anchor stands for what only joints hold.
+    const double alone = std::abs(problem.compliance(box.row, box.row));
+    box.rounding = kCancelled * alone;
     box.decided = compliance(k, k) <= kDecided * alone;
     if (!box.decided) continue;
     const double gap = motion(k, 0) - box.motion;
@@ -258,8 +284,7 @@ LawStatus DirectSolver::solve_program(const Eigen::Map<const MatrixX>& complianc
   }
   const auto motion = motion_.view();
   const auto is_given = [&](Eigen::Index k) {
-    const Box& box = boxes_[static_cast<std::size_t>(k)];
-    return box.lower == box.upper || box.waits;
+    return boxes_[static_cast<std::size_t>(k)].is_given();
   };
   const auto given = [&](const Box& box) { return box.stop < 0 ? box.lower : box.upper; };
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -280,6 +305,7 @@ LawStatus DirectSolver::solve_program(const Eigen::Map<const MatrixX>& complianc
     program_.upper[j] = (is_given(j) ? given(box) : box.upper) / scale_[j];
   }
   const qp::QpResult& result = qp_solver_.solve(program_);
+  if (result.status == qp::QpStatus::not_convex) solve_rounded_program();
   if (result.status != qp::QpStatus::optimal) return LawStatus::failed;
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
@@ -294,6 +320,26 @@ LawStatus DirectSolver::solve_program(const Eigen::Map<const MatrixX>& complianc
     }
   }
   return LawStatus::solved;
+}
+
+// Rounding has made the Hessian indefinite. What makes it definite again moves what is held, and
+// one proximal step (Rockafellar, SIAM J. Control Optim. 14 (1976) 877) squares the error.
+void DirectSolver::solve_rounded_program() {
+  const auto weight = [&](std::size_t i) {
+    const double scale = scale_[static_cast<Eigen::Index>(i)];
+    return boxes_[i].is_given() ? 0.0 : boxes_[i].rounding * scale * scale;
+  };
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    program_.hessian(k, k) += weight(i);
+  }
+  const qp::QpResult& result = qp_solver_.solve(program_);
+  if (result.status != qp::QpStatus::optimal) return;
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    program_.gradient[k] -= weight(i) * result.x[k];
+  }
+  qp_solver_.solve(program_);
 }
 
 LawStatus DirectSolver::solve_cones(const Eigen::Map<const MatrixX>& compliance) {

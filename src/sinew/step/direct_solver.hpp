@@ -63,8 +63,11 @@ class DirectSolver {
     // Of a commanded effort: the motion may not go beyond `motion` upwards (1: the command is
     // `upper`) or downwards (-1: it is `lower`).
     int stop = 0;
-    bool decided = false;  // by what is held, see settle_decided()
-    bool waits = false;    // it has its command, since its stop is not reached
+    double rounding = 0.0;  // m/N, of what held rows leave of its compliance
+    bool decided = false;   // by what is held, see settle_decided()
+    bool waits = false;     // it has its command, since its stop is not reached
+
+    bool is_given() const { return lower == upper || waits; }
   };
   enum class Branch : char { pull, hold };  // an effort at or below its command, or above it
 
@@ -75,11 +78,14 @@ class DirectSolver {
   LawStatus solve_with_friction(const StepProblem& problem, std::span<double> effort);
   bool follow_tensions(const StepProblem& problem, std::span<const double> effort, double share);
   LawStatus solve_with_drives(const StepProblem& problem, std::span<double> effort);
+  void unite_twins(const StepProblem& problem, Eigen::Map<MatrixX> compliance,
+                   Eigen::Map<MatrixX> motion);
   void settle_decided(const StepProblem& problem, Eigen::Map<MatrixX> compliance,
                       Eigen::Map<MatrixX> motion);
   LawStatus solve_blocks(const StepProblem& problem);
   LawStatus solve_boxes(const Eigen::Map<const MatrixX>& compliance);
   LawStatus solve_program(const Eigen::Map<const MatrixX>& compliance);
+  void solve_rounded_program();
   LawStatus solve_cones(const Eigen::Map<const MatrixX>& compliance);
   bool switch_branches(const StepProblem& problem, const Eigen::Map<const MatrixX>& compliance);
 
