@@ -171,10 +171,11 @@ bool ConeIsland::newton_step(const ConePart& part, double proximal) {
   return true;
 }
 
-// Puts blocks with a given x there; the others' rows are the unknowns.
+// Puts blocks with a given x there; the others' rows are the unknowns, those of slips the last.
 int ConeIsland::choose_unknowns(const ConePart& part) {
   const ConeProblem& problem = part.problem;
   int count = 0;
+  last_.clear();
   for (std::size_t k = 0; k < problem.boxes.size(); ++k) {
     const BoxBlock& box = problem.boxes[k];
     box_at_[k] = -1;
@@ -191,18 +192,29 @@ int ConeIsland::choose_unknowns(const ConePart& part) {
   for (std::size_t k = 0; k < problem.cones.size(); ++k) {
     const int row = problem.cones[k].row;
     cone_at_[k] = -1;
-    if (!usable(k) || x_[row] - motion_[row] / scale_[k] <= 0.0) continue;
-    cone_at_[k] = count;
+    if (!usable(k) || x_[row] - motion_[row] / scale_[k] <= 0.0) {
+      x_.segment<3>(row).setZero();
+      continue;
+    }
     branches_[k] = branch(part, k);
-    const int own = branches_[k].unknowns();
-    if (own == 1) x_.segment<2>(row + 1) = x_[row] * branches_[k].along();
-    row_scale_.segment(count, own).setConstant(1.0 / std::sqrt(scale_[k]));
-    for (int c = 0; c < own; ++c) unknown_row_[static_cast<std::size_t>(count++)] = row + c;
+    if (branches_[k].symmetric()) {
+      count = add_unknowns(problem, k, count);
+    } else {
+      last_.push_back(k);
+    }
   }
-  for (std::size_t k = 0; k < problem.cones.size(); ++k) {
-    if (cone_at_[k] < 0) x_.segment<3>(problem.cones[k].row).setZero();
-  }
+  symmetric_ = count;
+  for (const std::size_t k : last_) count = add_unknowns(problem, k, count);
   return count;
+}
+
+int ConeIsland::add_unknowns(const ConeProblem& problem, std::size_t number, int count) {
+  const int row = problem.cones[number].row, own = branches_[number].unknowns();
+  cone_at_[number] = count;
+  if (own == 1) x_.segment<2>(row + 1) = x_[row] * branches_[number].along();
+  row_scale_.segment(count, own).setConstant(1.0 / std::sqrt(scale_[number]));
+  for (int c = 0; c < own; ++c) unknown_row_[static_cast<std::size_t>(count + c)] = row + c;
+  return count + own;
 }
 
 // d(r_t - mu s_n e) = dr_t - mu e ds_n - (mu s_n/|s_t|)(I - e e^T) ds_t, e = s_t/|s_t|,
