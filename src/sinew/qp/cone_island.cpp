@@ -38,6 +38,7 @@ void ConeIsland::reserve(const ConeProblem& problem) {
   grow(branches_, cones);
   grow(cone_at_, cones);
   last_.reserve(cones);
+  factored_row_.reserve(most);
   grow(box_at_, boxes);
   grow(unknown_row_, most);
   if (right_.size() < static_cast<Eigen::Index>(most)) {

@@ -100,6 +100,7 @@ class ConeIsland {
 
   // Its linear systems (cone_linear.cpp).
   bool solve_dense(const ConePart& part, int count, double proximal);
+  bool has_factors(int count) const;
   bool factorise_dense(const ConePart& part, int count, double proximal);
   void fill_dense(const ConePart& part, int symmetric, int count, double proximal);
   void turn_slips(const ConePart& part, int count);
@@ -139,6 +140,9 @@ class ConeIsland {
   double rounding_ = 0.0;
 
   BorderedFactor factor_;
+  bool keeps_factors_ = false;
+  std::vector<int> factored_row_;  // of the unknowns of factor_
+  int factored_symmetric_ = 0;
   linalg::Gmres gmres_{kMaxTurnSteps, kTurnTolerance};
   double held_share_ = 0.0;        // up to which slips hold their directions
   std::vector<int> turning_;       // cones that hold them

@@ -4,9 +4,11 @@
 //   du_n = -u_n,   r_t = mu r_n e + g p,   g = -share/(1 - share) p.(r_t + du_t/w)
 // with r_t before the step. The normal effort is its one unknown of the dense system, and the turns
 // g solve (I - K) g = g_0, K of the size of the shares, by a few products with W.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
+#include "sinew/linalg/index.hpp"
 #include "sinew/qp/cone_island.hpp"
 
 namespace sinew::qp {
@@ -32,10 +34,16 @@ double ConeIsland::proximal_term(double own, double row_scale, double proximal) 
 }
 
 bool ConeIsland::solve_dense(const ConePart& part, int count, double proximal) {
-  if (!factorise_dense(part, count, proximal)) return false;
+  if (!has_factors(count) && !factorise_dense(part, count, proximal)) return false;
   turn_slips(part, count);
   factor_.solve(right_.head(count));
   return true;
+}
+
+// Whether the factors of the step before serve again, see kMuchGained.
+bool ConeIsland::has_factors(int count) const {
+  return keeps_factors_ && factored_symmetric_ == symmetric_ &&
+         std::ranges::equal(factored_row_, std::span(unknown_row_).first(linalg::at(count)));
 }
 
 bool ConeIsland::factorise_dense(const ConePart& part, int count, double proximal) {
@@ -46,6 +54,8 @@ bool ConeIsland::factorise_dense(const ConePart& part, int count, double proxima
     fill_dense(part, 0, count, proximal);
     if (!factor_.factorise()) return false;
   }
+  factored_symmetric_ = symmetric_;
+  factored_row_.assign(unknown_row_.begin(), unknown_row_.begin() + count);
   return true;
 }
 

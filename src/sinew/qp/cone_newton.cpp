@@ -28,6 +28,9 @@ struct Proximal {
   double share, least, most;
   double operator()(double residual) const { return std::clamp(share * residual, least, most); }
 };
+// After a step that left no more than this of the residual, the next one takes its factors, if it
+// has the same unknowns: only the proximal term and the directions of slips differ.
+constexpr double kMuchGained = 0.1;
 constexpr double kMinSmoothing = 1e-9;
 constexpr Proximal kProximal[] = {
     {0.1, 1e-6, 1e-2}, {1.0, 1e-6, 0.1}, {10.0, 1e-6, 0.1}, {1.0, kMinSmoothing, 0.1}};  // in turn
@@ -128,11 +131,14 @@ bool ConeIsland::newton_steps(const ConePart& part, Patience patience, double to
   keep();
   double least = result_.residual;
   bool usable = is_usable(part);
+  keeps_factors_ = false;
   for (int step = 0, vain = 0; step < patience.steps && vain < patience.vain; ++step, ++vain) {
     poll();
     const double relative = miss_.distance / std::max(miss_.effort, 1e-300);
+    const double before = result_.residual;
     if (!newton_step(part, proximal(relative))) break;
     const double residual = judge(part);
+    keeps_factors_ = residual <= kMuchGained * before;
     if (residual < least) {
       least = residual;
       usable = is_usable(part);
