@@ -14,7 +14,7 @@ constexpr double kSymmetricCost = 0.6;     // of unknowns whose matrix is symmet
 constexpr double kOffsetRounding = 1e-14;  // of the largest offset
 // Unknowns up to which sweeps find the solution soon.
 constexpr double kFew = 96;
-constexpr double kHeldShare = 0.3;      // up to which slips of large problems hold their directions
+constexpr double kHeldShare = 0.3;      // up to which slips hold their directions, above kFew rows
 constexpr std::size_t kEnoughWays = 2;  // of Newton's, see ConeSettings::usable
 constexpr double kNearStart = 0.1;      // residual of a start that Newton may go on from
 constexpr Eigen::Index kLarge = 600;    // rows, see ConeSettings::usable
@@ -37,6 +37,8 @@ void ConeIsland::reserve(const ConeProblem& problem) {
   grow(equations_, cones);
   grow(branches_, cones);
   grow(cone_at_, cones);
+  last_.reserve(cones);
+  factored_row_.reserve(most);
   grow(box_at_, boxes);
   grow(unknown_row_, most);
   if (right_.size() < static_cast<Eigen::Index>(most)) {
@@ -53,7 +55,7 @@ ConeStatus ConeIsland::solve(const ConePart& part, std::span<double> start) {
   result_.sweeps = result_.newton_steps = 0;
   newton_tries_ = 0;
   shift_ = 0.0;
-  held_share_ = x_.size() > kLarge ? kHeldShare : 0.0;
+  held_share_ = static_cast<double>(x_.size()) > kFew ? kHeldShare : 0.0;
   result_.states.assign(part.problem.cones.size(), ContactState::open);
   x_ = Eigen::Map<const VectorX>(start.data(), x_.size());
   if (!x_.allFinite()) x_.setZero();

@@ -10,8 +10,8 @@
 #include "sinew/linalg/scratch.hpp"
 #include "sinew/qp/block_lu.hpp"
 #include "sinew/qp/block_matrix.hpp"
+#include "sinew/qp/bordered_factor.hpp"
 #include "sinew/qp/cone_solver.hpp"
-#include "sinew/qp/dense_lu.hpp"
 
 namespace sinew::qp {
 
@@ -94,12 +94,15 @@ class ConeIsland {
   bool follow_regularised(const ConePart& part);
   void add_shifted(const ConePart& part);
   int choose_unknowns(const ConePart& part);
+  int add_unknowns(const ConeProblem& problem, std::size_t number, int count);
   void form_right(const ConePart& part);
   void move_unknowns(const ConePart& part, int count);
 
   // Its linear systems (cone_linear.cpp).
   bool solve_dense(const ConePart& part, int count, double proximal);
-  bool fill_dense(const ConePart& part, int count, double proximal);
+  bool has_factors(int count) const;
+  bool factorise_dense(const ConePart& part, int count, double proximal);
+  void fill_dense(const ConePart& part, int symmetric, int count, double proximal);
   void turn_slips(const ConePart& part, int count);
   bool solve_sparse(const ConePart& part, int count, double proximal);
   // What is added to a diagonal entry. @param row_scale 1/sqrt(w).
@@ -118,6 +121,7 @@ class ConeIsland {
     Vector3 right, motion;   // motion: u, where it is linearised
     bool slips = false;      // else A = 1, B = 0
     bool holds = false;      // its direction: the normal effort is all that is unknown
+    bool symmetric() const { return !slips || (holds && friction == 0.0); }
     int unknowns() const { return holds ? 1 : 3; }
     Eigen::Vector2d along() const { return friction * direction; }  // tangential by normal effort
     Vector3 act(const Vector3& du) const;                           // A du
@@ -135,10 +139,14 @@ class ConeIsland {
   double largest_ = 0.0, floor_ = 0.0, asked_ = 0.0;  // of the blocks judged so far
   double rounding_ = 0.0;
 
-  DenseLu lu_{0};
+  BorderedFactor factor_;
+  bool keeps_factors_ = false;
+  std::vector<int> factored_row_;  // of the unknowns of factor_
+  int factored_symmetric_ = 0;
   linalg::Gmres gmres_{kMaxTurnSteps, kTurnTolerance};
-  double held_share_ = 0.0;   // up to which slips hold their directions
-  std::vector<int> turning_;  // cones that hold them
+  double held_share_ = 0.0;        // up to which slips hold their directions
+  std::vector<int> turning_;       // cones that hold them
+  std::vector<std::size_t> last_;  // cones whose equations are not symmetric
   linalg::ScratchMatrix effort_, moved_, answer_, turns_;
   std::vector<Branch> branches_;  // (cones,)
   std::size_t newton_tries_ = 0;
@@ -149,6 +157,7 @@ class ConeIsland {
   VectorX step_, dual_;           // (n,) of a sparse matrix
   VectorX row_scale_;             // (unknowns,) 1/sqrt(w), by which rows and columns are scaled
   std::vector<int> unknown_row_;  // (count,) row of every unknown
+  int symmetric_ = 0;             // the first of them, whose equations are symmetric
   std::vector<int> box_at_, cone_at_;  // position among the unknowns, or -1
 };
 

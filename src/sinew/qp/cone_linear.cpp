@@ -4,11 +4,11 @@
 //   du_n = -u_n,   r_t = mu r_n e + g p,   g = -share/(1 - share) p.(r_t + du_t/w)
 // with r_t before the step. The normal effort is its one unknown of the dense system, and the turns
 // g solve (I - K) g = g_0, K of the size of the shares, by a few products with W.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
-#include <Eigen/Cholesky>
-
+#include "sinew/linalg/index.hpp"
 #include "sinew/qp/cone_island.hpp"
 
 namespace sinew::qp {
@@ -34,65 +34,81 @@ double ConeIsland::proximal_term(double own, double row_scale, double proximal) 
 }
 
 bool ConeIsland::solve_dense(const ConePart& part, int count, double proximal) {
-  lu_.reserve(count);
-  const bool symmetric = fill_dense(part, count, proximal);
-  bool solved = false;
-  if (symmetric && count > kFewUnknowns) {
-    auto system = lu_.matrix(count);
-    Eigen::Ref<MatrixX> own(system);
-    const Eigen::LLT<Eigen::Ref<MatrixX>> factor(own);
-    solved = factor.info() == Eigen::Success;
-    if (solved) factor.solveInPlace(right_.head(count));
-    if (!solved) fill_dense(part, count, proximal);
-  }
-  if (solved) return true;
-  if (!lu_.factorise(count)) return false;
+  if (!has_factors(count) && !factorise_dense(part, count, proximal)) return false;
   turn_slips(part, count);
-  lu_.solve(right_.head(count));
+  factor_.solve(right_.head(count));
   return true;
 }
 
-// Returns whether the matrix is symmetric: no cone slides, but for those without friction.
-bool ConeIsland::fill_dense(const ConePart& part, int count, double proximal) {
-  auto system = lu_.matrix(count);
-  for (int j = 0; j < count; ++j) {
-    const auto column = part.problem.matrix.col(unknown_row_[static_cast<std::size_t>(j)]);
-    for (int i = 0; i < count; ++i) {
-      system(i, j) = column[unknown_row_[static_cast<std::size_t>(i)]];
-    }
-    system(j, j) += proximal_term(system(j, j), row_scale_[j], proximal);
+// Whether the factors of the step before serve again, see kMuchGained.
+bool ConeIsland::has_factors(int count) const {
+  return keeps_factors_ && factored_symmetric_ == symmetric_ &&
+         std::ranges::equal(factored_row_, std::span(unknown_row_).first(linalg::at(count)));
+}
+
+bool ConeIsland::factorise_dense(const ConePart& part, int count, double proximal) {
+  const int symmetric = count > kFewUnknowns ? symmetric_ : 0;
+  fill_dense(part, symmetric, count, proximal);
+  if (!factor_.factorise()) {
+    if (symmetric == 0) return false;
+    fill_dense(part, 0, count, proximal);
+    if (!factor_.factorise()) return false;
   }
-  bool symmetric = true;
+  factored_symmetric_ = symmetric_;
+  factored_row_.assign(unknown_row_.begin(), unknown_row_.begin() + count);
+  return true;
+}
+
+// @param symmetric how many of the unknowns, the first, have symmetric equations.
+void ConeIsland::fill_dense(const ConePart& part, int symmetric, int count, double proximal) {
+  const int rest = count - symmetric;
+  factor_.reshape(symmetric, rest);
+  auto leading = factor_.leading(), left = factor_.left(), right = factor_.right();
+  auto corner = factor_.corner();
+  const int* const rows = unknown_row_.data();
+  const auto column = [&](int j) { return part.problem.matrix.col(rows[j]); };
+  for (int j = 0; j < symmetric; ++j) {
+    const auto from = column(j);
+    for (int i = j; i < symmetric; ++i) leading(i, j) = from[rows[i]];
+    for (int i = 0; i < rest; ++i) left(i, j) = from[rows[symmetric + i]];
+    leading(j, j) += proximal_term(leading(j, j), row_scale_[j], proximal);
+  }
+  right = left;
+  for (int j = 0; j < rest; ++j) {
+    const auto from = column(symmetric + j);
+    for (int i = 0; i < rest; ++i) corner(i, j) = from[rows[symmetric + i]];
+    corner(j, j) += proximal_term(corner(j, j), row_scale_[symmetric + j], proximal);
+  }
   turning_.clear();
   for (std::size_t k = 0; k < part.problem.cones.size(); ++k) {
-    const int at = cone_at_[k], row = part.problem.cones[k].row;
-    if (at < 0 || !branches_[k].slips) continue;
-    if (!branches_[k].holds) {
-      symmetric = false;
-      continue;
-    }
+    if (cone_at_[k] < 0 || !branches_[k].holds) continue;
     const Eigen::Vector2d along = branches_[k].along();
     if (along.isZero(0.0)) continue;
-    symmetric = false;
     turning_.push_back(static_cast<int>(k));
+    const int at = cone_at_[k] - symmetric, row = part.problem.cones[k].row;
     const auto first = part.problem.matrix.col(row + 1), second = part.problem.matrix.col(row + 2);
-    for (int i = 0; i < count; ++i) {
-      const int other = unknown_row_[static_cast<std::size_t>(i)];
-      system(i, at) += along[0] * first[other] + along[1] * second[other];
-    }
+    const auto moved = [&](int i) {
+      return along[0] * first[rows[i]] + along[1] * second[rows[i]];
+    };
+    for (int i = 0; i < symmetric; ++i) right(at, i) += moved(i);
+    for (int i = 0; i < rest; ++i) corner(i, at) += moved(symmetric + i);
   }
   for (std::size_t k = 0; k < part.problem.cones.size(); ++k) {
-    const int at = cone_at_[k];
-    if (at < 0 || !branches_[k].slips || branches_[k].holds) continue;
-    for (int j = 0; j < count; ++j) {
-      system.block<3, 1>(at, j) = branches_[k].act(system.block<3, 1>(at, j));
-    }
-    system.block<3, 3>(at, at) += branches_[k].own();
+    if (cone_at_[k] < 0 || !branches_[k].slips || branches_[k].holds) continue;
+    const int at = cone_at_[k] - symmetric;
+    const auto act = [&](auto&& block) { block = branches_[k].act(block); };
+    for (int j = 0; j < symmetric; ++j) act(left.block<3, 1>(at, j));
+    for (int j = 0; j < rest; ++j) act(corner.block<3, 1>(at, j));
+    corner.block<3, 3>(at, at) += branches_[k].own();
   }
-  for (int j = 0; j < count; ++j) {
-    system.col(j).array() *= row_scale_[j] * row_scale_.head(count).array();
+  const auto scale = row_scale_.head(symmetric).array(),
+             rest_scale = row_scale_.segment(symmetric, rest).array();
+  for (int j = 0; j < symmetric; ++j) {
+    leading.col(j).tail(symmetric - j).array() *= scale[j] * scale.tail(symmetric - j);
+    left.col(j).array() *= scale[j] * rest_scale;
+    right.col(j).array() *= scale[j] * rest_scale;
   }
-  return symmetric;
+  for (int j = 0; j < rest; ++j) corner.col(j).array() *= rest_scale[j] * rest_scale;
 }
 
 // The turns of the cones that hold their directions: x takes their efforts, and the right side
@@ -127,7 +143,7 @@ void ConeIsland::turn_slips(const ConePart& part, int count) {
   };
   // The motion of the answer and of the turns that it belongs to.
   const auto answer_them = [&] {
-    lu_.solve(answer);
+    factor_.solve(answer);
     for (int j = 0; j < count; ++j) {
       effort[unknown_row_[static_cast<std::size_t>(j)]] = row_scale_[j] * answer[j];
     }

@@ -28,6 +28,9 @@ struct Proximal {
   double share, least, most;
   double operator()(double residual) const { return std::clamp(share * residual, least, most); }
 };
+// After a step that left no more than this of the residual, the next one takes its factors, if it
+// has the same unknowns: only the proximal term and the directions of slips differ.
+constexpr double kMuchGained = 0.1;
 constexpr double kMinSmoothing = 1e-9;
 constexpr Proximal kProximal[] = {
     {0.1, 1e-6, 1e-2}, {1.0, 1e-6, 0.1}, {10.0, 1e-6, 0.1}, {1.0, kMinSmoothing, 0.1}};  // in turn
@@ -128,11 +131,14 @@ bool ConeIsland::newton_steps(const ConePart& part, Patience patience, double to
   keep();
   double least = result_.residual;
   bool usable = is_usable(part);
+  keeps_factors_ = false;
   for (int step = 0, vain = 0; step < patience.steps && vain < patience.vain; ++step, ++vain) {
     poll();
     const double relative = miss_.distance / std::max(miss_.effort, 1e-300);
+    const double before = result_.residual;
     if (!newton_step(part, proximal(relative))) break;
     const double residual = judge(part);
+    keeps_factors_ = residual <= kMuchGained * before;
     if (residual < least) {
       least = residual;
       usable = is_usable(part);
@@ -171,10 +177,11 @@ bool ConeIsland::newton_step(const ConePart& part, double proximal) {
   return true;
 }
 
-// Puts blocks with a given x there; the others' rows are the unknowns.
+// Puts blocks with a given x there; the others' rows are the unknowns, those of slips the last.
 int ConeIsland::choose_unknowns(const ConePart& part) {
   const ConeProblem& problem = part.problem;
   int count = 0;
+  last_.clear();
   for (std::size_t k = 0; k < problem.boxes.size(); ++k) {
     const BoxBlock& box = problem.boxes[k];
     box_at_[k] = -1;
@@ -191,18 +198,29 @@ int ConeIsland::choose_unknowns(const ConePart& part) {
   for (std::size_t k = 0; k < problem.cones.size(); ++k) {
     const int row = problem.cones[k].row;
     cone_at_[k] = -1;
-    if (!usable(k) || x_[row] - motion_[row] / scale_[k] <= 0.0) continue;
-    cone_at_[k] = count;
+    if (!usable(k) || x_[row] - motion_[row] / scale_[k] <= 0.0) {
+      x_.segment<3>(row).setZero();
+      continue;
+    }
     branches_[k] = branch(part, k);
-    const int own = branches_[k].unknowns();
-    if (own == 1) x_.segment<2>(row + 1) = x_[row] * branches_[k].along();
-    row_scale_.segment(count, own).setConstant(1.0 / std::sqrt(scale_[k]));
-    for (int c = 0; c < own; ++c) unknown_row_[static_cast<std::size_t>(count++)] = row + c;
+    if (branches_[k].symmetric()) {
+      count = add_unknowns(problem, k, count);
+    } else {
+      last_.push_back(k);
+    }
   }
-  for (std::size_t k = 0; k < problem.cones.size(); ++k) {
-    if (cone_at_[k] < 0) x_.segment<3>(problem.cones[k].row).setZero();
-  }
+  symmetric_ = count;
+  for (const std::size_t k : last_) count = add_unknowns(problem, k, count);
   return count;
+}
+
+int ConeIsland::add_unknowns(const ConeProblem& problem, std::size_t number, int count) {
+  const int row = problem.cones[number].row, own = branches_[number].unknowns();
+  cone_at_[number] = count;
+  if (own == 1) x_.segment<2>(row + 1) = x_[row] * branches_[number].along();
+  row_scale_.segment(count, own).setConstant(1.0 / std::sqrt(scale_[number]));
+  for (int c = 0; c < own; ++c) unknown_row_[static_cast<std::size_t>(count + c)] = row + c;
+  return count + own;
 }
 
 // d(r_t - mu s_n e) = dr_t - mu e ds_n - (mu s_n/|s_t|)(I - e e^T) ds_t, e = s_t/|s_t|,

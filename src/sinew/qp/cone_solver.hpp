@@ -113,7 +113,7 @@ struct ConeResult {
 ///
 /// **Many contacts.** With more than 96 unknowns Newton's method is tried at once where x is near
 /// (a residual of 0.1), and gives up as soon as a few steps gain nothing. In a dense matrix of more
-/// than 600 rows a contact that slides far has one unknown instead of three, see cone_linear.cpp.
+/// than 96 rows a contact that slides far has one unknown instead of three, see cone_linear.cpp.
 ///
 /// **Sparse matrices.** From 96 rows on, what has no block of W in common is solved apart, and a
 /// part with few blocks by sparse factorisations (BlockLu), first for a few iterations by
@@ -125,9 +125,8 @@ class ConeSolver {
   ConeSolver(ConeSolver&&) noexcept;
   ConeSolver& operator=(ConeSolver&&) noexcept;
 
-  /// Allocates only where a problem, or a part of it, is larger than all before, for a sparse part
-  /// whose pattern is not that of the last solve, and in Cholesky's method of more than some 500
-  /// unknowns, whose buffers Eigen gives back. @param problem see there. @param x (n,) in:
+  /// Allocates only where a problem, or a part of it, is larger than all before, and for a sparse
+  /// part whose pattern is not that of the last solve. @param problem see there. @param x (n,) in:
   /// where to start from; out: the solution, each block inside its cone or box exactly. Throws
   /// Error(wrong-shape), and what settings.poll throws: x is then of no use.
   const ConeResult& solve(const ConeProblem& problem, std::span<double> x);

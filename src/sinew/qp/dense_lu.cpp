@@ -174,18 +174,24 @@ bool DenseLu::factorise(int size) {
   return eliminate(matrix(size), std::span(pivot_).first(static_cast<std::size_t>(size)));
 }
 
+void substitute(const Eigen::Ref<const MatrixX>& lu, std::span<const int> pivot,
+                Eigen::Ref<VectorX> right) {
+  const int size = static_cast<int>(pivot.size());
+  for (int k = 0; k < size; ++k) {
+    std::swap(right[k], right[pivot[static_cast<std::size_t>(k)]]);
+  }
+  for (int k = 0; k + 1 < size; ++k) {
+    right.tail(size - k - 1) -= right[k] * lu.col(k).tail(size - k - 1);
+  }
+  for (int k = size; k-- > 0;) {
+    right[k] /= lu(k, k);
+    if (k > 0) right.head(k) -= right[k] * lu.col(k).head(k);
+  }
+}
+
 void DenseLu::solve(Eigen::Ref<VectorX> right) const {
-  const Eigen::Map<const MatrixX> a(storage_.data(), size_, size_);
-  for (int k = 0; k < size_; ++k) {
-    std::swap(right[k], right[pivot_[static_cast<std::size_t>(k)]]);
-  }
-  for (int k = 0; k + 1 < size_; ++k) {
-    right.tail(size_ - k - 1) -= right[k] * a.col(k).tail(size_ - k - 1);
-  }
-  for (int k = size_; k-- > 0;) {
-    right[k] /= a(k, k);
-    if (k > 0) right.head(k) -= right[k] * a.col(k).head(k);
-  }
+  substitute(Eigen::Map<const MatrixX>(storage_.data(), size_, size_),
+             std::span(pivot_).first(static_cast<std::size_t>(size_)), right);
 }
 
 }  // namespace sinew::qp

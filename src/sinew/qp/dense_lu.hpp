@@ -16,6 +16,11 @@ namespace sinew::qp {
 /// the row that row i was swapped with. @return false where a pivot vanishes.
 bool eliminate(const Eigen::Map<MatrixX>& a, std::span<int> pivot);
 
+/// right <- A^-1 right, with the factors of a whole matrix. @param lu (n, n) and @param pivot (n,)
+/// of eliminate(). @param right (n,).
+void substitute(const Eigen::Ref<const MatrixX>& lu, std::span<const int> pivot,
+                Eigen::Ref<VectorX> right);
+
 /// The factors of a whole matrix.
 class DenseLu {
  public:
