@@ -27,7 +27,7 @@ grasp.ABOVE = 0.2  # m: the fingers reach farther down than around the cup
 
 ACROSS, TALL, WALL = 26e-3, 34e-3, 2e-3  # m: half axes of the shell and its thickness
 FLAT, CELLS = -0.8, 6  # where its lower end is cut, of the half axis; cells along a side of each of the six parts
-LIFTS, LIFTED, SWUNG, END = 2.0, 3.0, 4.0, 5.0  # s
+LIFTS, LIFTED, SWUNG, END = 2.0, 3.0, 4.0, 6.0  # s
 ASIDE = 40e-3  # m
 
 
@@ -88,7 +88,7 @@ def scene(folder):
                 "x": smooth(folder / "aside.csv", LIFTED, SWUNG, ASIDE),
             }
     for cable in made["actuators"].values():
-        cable["limits"] = {"tension": {"min": 0.0, "max": 20.0}, "displacement": {"rate": "10 mm/s"}}
+        cable["limits"] = {"tension": {"min": 0.0, "max": 20.0}, "displacement": {"rate": "40 mm/s"}}
         cable["command"] = {"displacement": {"ramp": {"to": 16e-3, "duration": 2.0}}}
     made["duration"] = END
     return made

@@ -91,3 +91,42 @@ def test_dynamics_take_the_compliance_of_equilibrium():
     sim.step(95)
     assert sim.controller.status == "on-target"
     assert sim.controller.errors["tip"] < 1.5e-3
+
+
+JOINT_THAT_RUBS = """
+sinew: 1
+time_step: 10 ms
+bodies:
+  arm:
+    type: pcc
+    segments:
+    - {length: 30 mm, mass: 10 g, stiffness: 0.02 N m, bending: spatial}
+    - {length: 30 mm, mass: 10 g, stiffness: 0.02 N m}
+  link: {type: rigid, shape: {cylinder: {radius: 8 mm, height: 60 mm}}, density: 1000 kg/m^3,
+         pose: {position: 30 8 -48 mm, rotation: {axis: y, angle: 90 deg}}}
+joints:
+  seam: {type: hinge, bodies: [arm, link], point: 0 8 -48 mm, axis: 0 1 0, friction: 0.1 mN m}
+actuators:
+  motor: {type: motor, joint: seam, command: {angle: 2.251 deg}}
+  twist: {type: torque, body: arm, segment: 1, command: {torque: 3.818 N mm}, limits: {torque: {min: -0.1 N m, max: 0.1 N m}}}
+effectors:
+  tip: {body: arm, point: 0 0 -60 mm}
+sensors:
+  tip: {type: marker, body: arm, point: 0 0 -60 mm, delay: 5 ms}
+controllers:
+  follow: {type: closed-loop, effectors: {tip: {target: 0.815649 0.0150398 -59.8814 mm}}, sensors: [tip], actuators: [twist],
+           gain: 10 1/s, integral: 4 1/s^2}
+"""
+
+
+def test_friction_of_joints_is_held_where_the_response_is_taken(tmp_path):
+    """The response of a clone once took friction from a place of another step, that of the run from the last."""
+    path = tmp_path / "scene.yaml"
+    path.write_text(JOINT_THAT_RUBS)
+    sim = sinew.load(path)
+    sim.step(3)
+    copy = sim.clone()
+    for _ in range(3):
+        sim.step()
+        copy.step()
+        assert sim.state_hash == copy.state_hash

@@ -185,3 +185,57 @@ def test_every_choice_has_a_certificate(beside_a_wall, friction):
     plain = sinew.load(beside_a_wall)
     sinew.InverseController(plain, targets={"tip": [0.0035, 0.0005, 0.079]}).step(60)
     assert plain.state_hash == sim.state_hash
+
+
+def between_pads(motor):
+    """A block of 100 g slides between a wall and a pad that a motor presses on it with 0.5 N; 1.09 N would hold it."""
+    motor = {"type": "linear-motor", "joint": "press", "command": {"force": 0.5}, "limits": {"force": {"min": 0.0, **motor}}}
+    sim = sinew.load(
+        {
+            "sinew": 1, "gravity": "0 0 -9.81 m/s^2", "integrator": "backward-euler", "time_step": "5 ms",
+            "bodies": {
+                "block": {"type": "rigid", "shape": {"box": [0.02, 0.02, 0.04]}, "mass": "100 g"},
+                "wall": {"type": "rigid", "shape": {"box": [0.01, 0.02, 0.6]}, "mass": "50 g",
+                         "pose": {"position": [-0.015, 0.0, 0.0]}},
+                "pad": {"type": "rigid", "shape": {"box": [0.01, 0.02, 0.6]}, "mass": "50 g",
+                        "pose": {"position": [0.015, 0.0, 0.0]}},
+            },
+            "joints": {
+                "held": {"type": "weld", "bodies": ["world", "wall"]},
+                "press": {"type": "slider", "bodies": ["world", "pad"], "point": [0.015, 0.0, 0.0], "axis": [-1.0, 0.0, 0.0]},
+            },
+            "actuators": {"press": motor},
+            "contacts": {name: {"between": [name, "block"], "friction": 0.5} for name in ("wall", "pad")},
+            "effectors": {"block": {"body": "block", "point": [0.0, 0.0, 0.0]}},
+        }
+    )  # fmt: skip
+    sim.step(20)
+    return sim, sinew.InverseController(sim, contacts={name: {"slip": False, "reserve": 0.1} for name in ("wall", "pad")})
+
+
+@pytest.mark.parametrize("motor, steps", [({"max": 5.0}, 5), ({"max": 5.0, "rate": 10.0}, 40)])
+def test_a_grip_that_slides_is_pressed_until_it_sticks(motor, steps):
+    sim, ik = between_pads(motor)
+    assert {"slip"} == set(sim.contact("pad").states) - {"open"}
+    before = sim.effector("block").position[2]
+    sim.step()
+    assert sim.effector("block").position[2] - before < -1e-3  # m: as fast as it was
+    assert ik.efforts[0] > 0.5 and max(ik.force_errors.values()) > 0.1
+    assert ik.status in ("moving", "rate-limited")
+    sim.step(steps)
+    caught = sim.effector("block").position.copy()
+    sim.step(50)
+    assert np.linalg.norm(sim.effector("block").position - caught) < 2e-4
+    assert sim.contact("pad").normal_force > 0.981 / (2 * 0.5)  # N: less would slide
+    assert max(ik.force_errors.values()) < 0.1
+
+
+def test_a_grip_too_weak_to_stop_the_slide_is_pressed_and_not_let_go():
+    sim, ik = between_pads({"max": 0.8})
+    sim.step()
+    for _ in range(40):
+        sim.step()
+        assert sim.contact("pad").normal_force == pytest.approx(0.8, abs=1e-6)
+        assert ik.status == "out-of-reach"
+        # 0.981 N of weight less 0.8 N of friction stay for both contacts.
+        assert min(ik.force_errors.values()) > 0.09

@@ -5,6 +5,7 @@ import gc
 import numpy as np
 import pytest
 import sinew
+import yaml
 
 TARGET = [0.004, 0.003, 0.0788]
 
@@ -271,3 +272,34 @@ def test_a_rotation_goes_as_far_in_a_step_whatever_the_robots_size(size):
     sinew.InverseController(sim, targets={"turn": [0.0, 0.0, 1.0]}, largest_step=0.03).step()
     # Less the thousandth by which the regularisation holds it back.
     assert sim.effector("turn").value[2] == pytest.approx(0.03, rel=2e-3)
+
+
+@pytest.mark.parametrize("solver", ["newton", "one-linearisation"])
+@pytest.mark.parametrize("asked", [0.045, 0.1])
+def test_one_cable_settles_at_the_fold_of_what_it_reaches(scene, solver, asked):
+    """Pulled farther, the tip goes back: x over the pull has its largest value in the middle of the cable's range."""
+    tree = yaml.safe_load(scene.read_text())
+    limits = {"tension": {"max": "80 N"}, "displacement": {"min": 0.0, "max": "60 mm", "rate": "100 mm/s"}}
+    tree["actuators"] = {"east": {**tree["actuators"]["east"], "limits": limits}}
+    tree["effectors"]["tip"]["directions"] = ["x"]
+    del tree["duration"]
+    scan = sinew.load(tree)
+    pulled = scan.actuator("east")
+    reached = []
+    for pull in np.arange(0.5e-3, 36e-3, 0.5e-3):
+        pulled.displacement = pull
+        scan.step(2)
+        reached.append(scan.effector("tip").position[0])
+    best = np.argmax(reached)
+    assert reached[-1] < 0.995 * reached[best]
+    sim = sinew.load({**tree, "solver": solver})
+    ik = sinew.InverseController(sim, targets={"tip": [asked, 0.0, 0.0]})
+    ik.step(100)
+    found, pulls = [], []
+    for _ in range(200):
+        ik.step()
+        found.append(sim.effector("tip").position[0])
+        pulls.append(sim.actuator("east").displacement)
+    assert abs(found[-1] - reached[best]) < 1e-3 * reached[best]
+    assert np.ptp(found) < 1e-7 and np.ptp(pulls) < 1e-5  # m
+    assert ik.status == "local-optimum"

@@ -160,7 +160,7 @@ std::vector<Feature> list_features() {
       {"effector", or_none(without(alternatives(effector, "point"), "points"))},
       {"probe", or_none(without(alternatives(probe, "point"), "points"))},
       {"sensor", or_none(words(variants(items("sensors"), "type")))},
-      // A closed loop needs a sensor where its effector is.
+      // A closed loop stands in its place where there is feedback.
       {"controller",
        or_none(without(words(variants(items("controllers"), "type")), "closed-loop"))},
       {"regularisation", words(map_of(controller, "regularisation"), "of")},
@@ -168,6 +168,7 @@ std::vector<Feature> list_features() {
       {"contact_zones", switched},
       {"kinetic_friction", switched},
       {"force_task", {"none", "force", "limits", "reserve"}},
+      {"feedback", switched},
   };
 }
 

@@ -358,7 +358,7 @@ class Drafter {
     if (dynamic()) {
       text += turns ? ", limits: {torque: {min: -0.1 N m, max: 0.1 N m}}"
                     : ", limits: {force: {min: -5 N, max: 5 N}}";
-      steerable_.push_back("motor");
+      steerable_.push_back({"motor", "link"});
     }
     add("actuators", "motor", "{" + text + "}");
   }
@@ -399,7 +399,7 @@ class Drafter {
     }
     if (!has("cable_stiffness")) text += ", geometric_stiffness: false";
     add("actuators", id, "{" + text + "}");
-    steerable_.push_back(id);
+    steerable_.push_back({id, body.id});
   }
 
   void add_cables() {
@@ -432,7 +432,7 @@ class Drafter {
          {"gas", ", command: {gas: " + signal(draw(0.02, 0.1), "ml") + "}"},
          {"liquid", ", command: {liquid: " + signal(draw(0.02, 0.1), "ml") + "}"}});
     add("actuators", "chamber", "{" + text + "}");
-    steerable_.push_back("chamber");
+    steerable_.push_back({"chamber", on->id});
   }
 
   void add_spring() {
@@ -462,7 +462,7 @@ class Drafter {
         fmt::format("{{type: force, body: <{}>, point: {}, direction: 1 1 0, outside: nearest, "
                     "command: {{{}}}, limits: {{force: {{min: -2 N, max: 2 N}}}}}}",
                     on.id, vector_text(on.shape.at(0.9, 0.0, 0.0)), told));
-    steerable_.push_back("push");
+    steerable_.push_back({"push", on.id});
   }
 
   void add_torque() {
@@ -475,7 +475,7 @@ class Drafter {
         fmt::format("{{type: torque, body: <{}>, segment: 1, command: {{{}}}, limits: {{torque: "
                     "{{min: -0.1 N m, max: 0.1 N m}}}}}}",
                     on->id, told));
-    steerable_.push_back("twist");
+    steerable_.push_back({"twist", on->id});
   }
 
   void add_load() {
@@ -606,7 +606,10 @@ class Drafter {
     std::string kind = of("effector");
     if (kind == "none" && has("controller")) kind = "point";
     if (kind == "none") return;
-    const Body& on = some_body();
+    const Body* chosen = &some_body();
+    // A closed loop is refused where none of its actuators moves its effector.
+    if (has_loop()) chosen = &*std::ranges::find(bodies_, steerable_.front().body, &Body::id);
+    const Body& on = *chosen;
     if (kind == "set" && !on.fem) kind = "point";
     const BodyShape& shape = on.shape;
     tip_ = shape.at(1.0, 0.0, 0.0);
@@ -621,7 +624,16 @@ class Drafter {
                                              vector_text(shape.at(1.0, 0.5, 0.0)),
                                              vector_text(shape.at(0.9, 0.0, 0.5)))}});
     add("effectors", "tip", fmt::format("{{body: <{}>, outside: nearest, {}}}", on.id, what));
+    if (!has_loop()) return;
+    // The sensor that measures it has the same place, in its own words.
+    const bool turns = kind == "orientation" || kind == "section";
+    const std::string place = turns ? "at" + what.substr(what.find(':')) : what;
+    add("sensors", "measured",
+        fmt::format("{{type: {}, body: <{}>, outside: nearest, {}, delay: 5 ms}}",
+                    turns ? "orientation" : "marker", on.id, place));
   }
+
+  bool has_loop() const { return has("controller") && has("feedback") && !steerable_.empty(); }
 
   void add_probe() {
     if (!has("probe")) return;
@@ -711,9 +723,16 @@ class Drafter {
     const std::string task =
         orientation_ ? "rotation: 0.02 0.03 0 rad" : "target: " + vector_text(target);
     std::string actuators;
-    for (const std::string& id : steerable_) {
-      actuators += (actuators.empty() ? "" : ", ") + ("<" + id + ">");
+    for (const Steerable& one : steerable_) {
+      actuators += (actuators.empty() ? "" : ", ") + ("<" + one.id + ">");
       if (random_.below(3) == 0) break;  // others obey their commands
+    }
+    if (has_loop()) {
+      add("controllers", "follow",
+          fmt::format("{{type: closed-loop, effectors: {{<tip>: {{{}}}}}, sensors: [<measured>], "
+                      "actuators: [{}], gain: 10 1/s, integral: 4 1/s^2}}",
+                      task, actuators));
+      return;
     }
     add("controllers", "follow",
         fmt::format("{{type: inverse, effectors: {{<tip>: {{{}}}}}, actuators: [{}], {}"
@@ -737,7 +756,10 @@ class Drafter {
   std::string settings_;
   std::map<std::string, std::vector<Item>> sections_;
   std::vector<Body> bodies_;
-  std::vector<std::string> steerable_;
+  struct Steerable {
+    std::string id, body;
+  };
+  std::vector<Steerable> steerable_;
   std::array<double, 3> tip_{};
   bool orientation_ = false;
 };

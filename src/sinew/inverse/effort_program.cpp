@@ -136,8 +136,13 @@ void EffortProgram::regularise(const StepProblem& problem, const Response& respo
   const bool compares = asked > 0.0 && forces_.count() > 0;
   slack_scale_ = compares ? std::sqrt(asked / forces_.weight()) : problem.size;
   const double eps = pull.epsilon * (asked > 0.0 ? asked : norm) / norm;
-  const double keep = pull.damping - pull.to_zero;
-  const double stay = pull.damping_within - 1.0;
+  // Where an effector is as far as an actuator takes it, W_ea goes to zero. What was the largest so
+  // far keeps to be the measure of how far a step may go (More 1978, see StepDamping, section 6).
+  largest_asked_ = std::max(largest_asked_, asked);
+  const double stiffer = asked > 0.0 ? largest_asked_ / asked : 1.0;
+  const double damps = stiffer * (pull.damping - 1.0);
+  const double keep = damps + 1.0 - pull.to_zero;
+  const double stay = stiffer * (pull.damping_within - 1.0);
   pull_gradient_.setZero();
   for (Eigen::Index j = 0; j < count; ++j) {
     const int row = controlled_block(problem, response, j).row;
@@ -147,7 +152,7 @@ void EffortProgram::regularise(const StepProblem& problem, const Response& respo
       // What moves nothing is held by others: a drive, or the clamp.
       if (i == j) weight = weight > 0.0 ? (1.0 + kEvenly) * weight : eps * norm;
       if (i != j && response.is_unsymmetric()) weight = 0.0;
-      pull_hessian_(i, j) = (pull.damping + stay) * weight;
+      pull_hessian_(i, j) = (1.0 + damps + stay) * weight;
       pull_gradient_[i] -= weight * (keep * before + stay * pull.last_choice[j] / scale_[j]);
     }
   }
@@ -283,6 +288,7 @@ void EffortProgram::reset() {
 
 void EffortProgram::forget() {
   reset();
+  largest_asked_ = 0.0;
   conflict_.clear();
 }
 

@@ -34,7 +34,7 @@ const step::ActuatorBlock& controlled_block(const step::StepProblem& problem,
 ///          + (c - 1) (lambda - lambda_1)^T R (lambda - lambda_1)),
 /// with lambda_0 the efforts of the step before and lambda_1 the step's last choice. At lambda =
 /// lambda_0 and lambda = lambda_1 the derivative is that of p eps/2 lambda^T R lambda: neither d
-/// nor c moves a fixed point.
+/// nor c moves a fixed point. Damping, d - 1 and c - 1, is of the size of the largest W_ea so far.
 struct EffortPull {
   double epsilon = 0.0;         ///< InverseSettings::epsilon
   double to_zero = 1.0;         ///< p
@@ -83,6 +83,10 @@ class EffortProgram {
                 std::span<const double> effort) const;
 
   const ForceRows& forces() const { return forces_; }
+  /// Since forget(): the largest |W_ea^T Q W_ea|, in scaled efforts, J.
+  double largest_asked() const { return largest_asked_; }
+  /// @param value as largest_asked().
+  void set_largest_asked(double value) { largest_asked_ = value; }
 
   /// Which limits of which actuators contradict each other in the last solve(); else empty.
   const std::string& conflict() const { return conflict_; }
@@ -116,9 +120,10 @@ class EffortProgram {
   std::vector<int> controlled_;   // of the response
   ForceRows forces_;
   double slack_scale_ = 1.0;  // m, of what rows of forces lack
-  MatrixX pull_hessian_;      // (controlled, controlled)
-  VectorX pull_gradient_;     // (controlled,)
-  double left_ = 0.0;         // the objective without efforts
+  double largest_asked_ = 0.0;
+  MatrixX pull_hessian_;   // (controlled, controlled)
+  VectorX pull_gradient_;  // (controlled,)
+  double left_ = 0.0;      // the objective without efforts
   double foreseen_ = 0.0;
   qp::QuadraticProgram program_;
   qp::QpSolver solver_;

@@ -20,6 +20,9 @@ using step::StepProblem;
 // point by 0.1 um.
 constexpr double kForceWeight = 1e4;
 constexpr int kSides = 8;  // of the polygon in a friction cone
+// Of what would hold a point that is free of all others. Joints and other contacts make it stiffer:
+// pressing is to serve where it lessens the slip by more than a tenth of (mu - grip)/mu of that.
+constexpr double kSlip = 10.0;
 
 double beyond(double value, double lower, double upper) {
   return std::max({0.0, lower - value, value - upper});
@@ -43,16 +46,18 @@ ForceRows::ForceRows(std::vector<ContactTask> tasks, double weight)
 void ForceRows::choose_reference(const StepProblem& problem, std::size_t task) {
   Reference& reference = references_[task];
   reference = {};
-  double best = -kInfinity;
+  double best = -kInfinity, carried = 0.0;
   for (const ContactBlock& block : problem.contacts) {
     const double own = problem.compliance(block.row, block.row);
     if (block.contact != tasks_[task].contact || !(own > 0.0)) continue;
     const double force = problem.effort_before[static_cast<std::size_t>(block.row)];
+    carried += std::max(0.0, force);
     const double pressed = force > 0.0 ? force : -std::max(0.0, problem.delta[block.row]) / own;
     if (reference.row >= 0 && pressed <= best) continue;
     best = pressed;
-    reference = {block.row, own, block.friction, block.frame};
+    reference = {block.row, own, block.friction, 0.0, block.frame};
   }
+  reference.carried = carried;
 }
 
 void ForceRows::begin(const StepProblem& problem, double largest) {
@@ -92,18 +97,11 @@ void ForceRows::form(const StepProblem& problem, const Response& response) {
     const Eigen::Index first = first_[task];
     bool closed = false;
     for (const ContactBlock& block : problem.contacts) {
-      if (block.contact != tasks_[task].contact || !response.follows(block.row)) continue;
+      if (block.contact != tasks_[task].contact) continue;
+      if (tasks_[task].reserve) form_friction(problem, response, task, block);
+      if (!response.follows(block.row)) continue;
       closed = true;
       response.add_effort(block.row, reference.compliance, offset_[first], slope_.row(first));
-      if (!tasks_[task].reserve) continue;
-      for (int side = 0; side < kSides; ++side) {
-        const Vector3 along =
-            reference.compliance * block.frame.transpose() * cone_side(task, side);
-        for (int k = 0; k < 3; ++k) {
-          response.add_effort(block.row + k, along[k], offset_[first + 1 + side],
-                              slope_.row(first + 1 + side));
-        }
-      }
     }
     if (closed) {
       clear_rounding(problem, response, task);
@@ -111,7 +109,51 @@ void ForceRows::form(const StepProblem& problem, const Response& response) {
     }
     offset_[first] = -response.free()[reference.row];
     slope_.row(first) = -response.compliance().row(reference.row);
+    if (!tasks_[task].reserve || !(reference.carried > 0.0)) continue;
+    for (int side = 0; side < kSides; ++side) {
+      const double along = cone_side(task, side).dot(reference.frame.col(0));
+      offset_[first + 1 + side] += along * offset_[first];
+      slope_.row(first + 1 + side) += along * slope_.row(first);
+    }
   }
+}
+
+// What a point adds to the sides of the cone: its force where it has one, and its slip.
+void ForceRows::form_friction(const StepProblem& problem, const Response& response,
+                              std::size_t task, const ContactBlock& block) {
+  const bool closed = response.follows(block.row);
+  const double counts = kSlip * carries(task, problem, block);
+  for (int side = 0; side < kSides; ++side) {
+    const Eigen::Index at = first_[task] + 1 + side;
+    const Vector3 along = block.frame.transpose() * cone_side(task, side);
+    for (int k = 0; k < 3; ++k) {
+      const int row = block.row + k;
+      const double force = references_[task].compliance * along[k];
+      if (closed) response.add_effort(row, force, offset_[at], slope_.row(at));
+      if (k == 0 || counts == 0.0) continue;
+      offset_[at] -= counts * along[k] * response.free()[row];
+      slope_.row(at) -= counts * along[k] * response.compliance().row(row);
+    }
+  }
+}
+
+// The part of a contact's normal force that a point carried before.
+double ForceRows::carries(std::size_t task, const StepProblem& problem,
+                          const ContactBlock& block) const {
+  const double all = references_[task].carried;
+  const double own = problem.effort_before[static_cast<std::size_t>(block.row)];
+  return all > 0.0 ? std::max(0.0, own) / all : 0.0;
+}
+
+// d of the class, m, in the world's axes.
+Vector3 ForceRows::slip(std::size_t task, const StepProblem& problem, const VectorX& motion) const {
+  Vector3 mean = Vector3::Zero();
+  for (const ContactBlock& block : problem.contacts) {
+    if (block.contact != tasks_[task].contact) continue;
+    const double part = carries(task, problem, block);
+    mean += part * (block.frame.rightCols<2>() * motion.segment<2>(block.row + 1));
+  }
+  return mean;
 }
 
 // An effort that does not reach the contact must not be chosen by rounding, see step::Response.
@@ -140,12 +182,17 @@ double ForceRows::normal_force(std::size_t task, const StepProblem& problem, con
   return sum > 0.0 || reference.row < 0 ? sum : -motion[reference.row] / reference.compliance;
 }
 
-Vector3 ForceRows::resultant(std::size_t task, const StepProblem& problem,
+// Of an open contact that carried force before, the normal force that normal_force() gives it.
+Vector3 ForceRows::resultant(std::size_t task, const StepProblem& problem, const VectorX& motion,
                              std::span<const double> effort) const {
   Vector3 sum = Vector3::Zero();
   for (const ContactBlock& block : problem.contacts) {
     if (block.contact != tasks_[task].contact) continue;
     sum += block.frame * Eigen::Map<const Vector3>(&effort[static_cast<std::size_t>(block.row)]);
+  }
+  const Reference& reference = references_[task];
+  if (sum.isZero(0.0) && reference.carried > 0.0) {
+    sum = normal_force(task, problem, motion, effort) * reference.frame.col(0);
   }
   return sum;
 }
@@ -157,13 +204,14 @@ double ForceRows::cost(const StepProblem& problem, const VectorX& motion,
     const double yields = references_[task].compliance;
     if (references_[task].row < 0) continue;
     const Eigen::Index first = first_[task];
-    const double normal = yields * normal_force(task, problem, motion, effort);
-    const double off = beyond(normal, lower_[first], upper_[first]);
+    const double normal = normal_force(task, problem, motion, effort);
+    const double off = beyond(yields * normal, lower_[first], upper_[first]);
     sum += off * off;
     if (!tasks_[task].reserve) continue;
-    const Vector3 force = resultant(task, problem, effort);
+    const Vector3 held =
+        yields * resultant(task, problem, motion, effort) - kSlip * slip(task, problem, motion);
     for (int side = 0; side < kSides; ++side) {
-      const double over = std::max(0.0, yields * cone_side(task, side).dot(force));
+      const double over = std::max(0.0, cone_side(task, side).dot(held));
       sum += over * over;
     }
   }
@@ -177,9 +225,11 @@ double ForceRows::miss(std::size_t task, const StepProblem& problem, const Vecto
   double off = beyond(normal, asked.normal_min, asked.normal_max);
   if (!asked.reserve || references_[task].row < 0) return off;
   const Reference& reference = references_[task];
-  const Vector3 force = reference.frame.transpose() * resultant(task, problem, effort);
-  return std::max(off,
-                  force.tail<2>().norm() - (1.0 - *asked.reserve) * reference.friction * force[0]);
+  const Vector3 held =
+      resultant(task, problem, motion, effort) - slip(task, problem, motion) / reference.compliance;
+  const Vector3 force = reference.frame.transpose() * held;
+  const double grip = (1.0 - *asked.reserve) * reference.friction * force[0];
+  return std::max(off, force.tail<2>().norm() - grip);
 }
 
 }  // namespace sinew::inverse

@@ -11,6 +11,7 @@
 
 namespace sinew::step {
 class Response;
+struct ContactBlock;
 struct StepProblem;
 }  // namespace sinew::step
 
@@ -24,6 +25,13 @@ namespace sinew::inverse {
 /// contact that is open has the normal force -gap/W_nn of that point: it is less than any that is
 /// asked for by what closes the gap. A contact without points near the surface has no rows, and
 /// only targets bring it there.
+///
+/// A contact that slips has friction at its limit whatever its normal force is, and letting go
+/// would meet the reserve. With d the motion along the surface in the step, the mean over the
+/// points that carried force before, by their forces, the rows of a reserve hold therefore
+///   F_t - kSlip d/W_nn
+/// in place of F_t, the force that would hold the contact: more pull serves where it lessens the
+/// slip, and letting go does not. Where all points stick, it is F_t.
 ///
 /// What lies beyond the limits by v costs kForceWeight w v^2/2, w the largest weight of a target.
 class ForceRows {
@@ -62,14 +70,20 @@ class ForceRows {
     int row = -1;             // of the normal; none: no point is near
     double compliance = 0.0;  // W_nn, m/N
     double friction = 0.0;
+    double carried = 0.0;                 // N, by all points of the contact before
     Matrix3 frame = Matrix3::Identity();  // normal, two tangents
   };
 
   void choose_reference(const step::StepProblem& problem, std::size_t task);
   double normal_force(std::size_t task, const step::StepProblem& problem, const VectorX& motion,
                       std::span<const double> effort) const;
-  Vector3 resultant(std::size_t task, const step::StepProblem& problem,
+  Vector3 resultant(std::size_t task, const step::StepProblem& problem, const VectorX& motion,
                     std::span<const double> effort) const;
+  double carries(std::size_t task, const step::StepProblem& problem,
+                 const step::ContactBlock& block) const;
+  Vector3 slip(std::size_t task, const step::StepProblem& problem, const VectorX& motion) const;
+  void form_friction(const step::StepProblem& problem, const step::Response& response,
+                     std::size_t task, const step::ContactBlock& block);
   void clear_rounding(const step::StepProblem& problem, const step::Response& response,
                       std::size_t task);
   Vector3 cone_side(std::size_t task, int side) const;

@@ -67,6 +67,8 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
   efforts_.setZero(count);
   last_choice_.setZero(count);
   gap_linearised_.setZero(rows);
+  change_.setZero(count);
+  expected_.setZero(rows);
   std::vector<int> contacts;
   for (const ContactTask& task : settings_.contacts) contacts.push_back(task.contact);
   simulation_.attach(*this, settings_.actuators, contacts);
@@ -88,8 +90,8 @@ InverseStatus InverseController::step() {
 // Of a step, whose law may be solved several times. First: what became of the step before, and what
 // is asked in this one. Later: what became of the last choice, where the robot has been linearised
 // anew since.
-void InverseController::look_back(const StepProblem& problem) {
-  if (!(problem.time > time_)) return review_choice(problem);
+void InverseController::look_back(const StepProblem& problem, const Response& response) {
+  if (!(problem.time > time_)) return review_choice(problem, response);
   inner_damping_.set(1.0);
   tried_ = false;
   if (std::isfinite(time_)) {
@@ -98,8 +100,7 @@ void InverseController::look_back(const StepProblem& problem) {
     for (Eigen::Index k = 0; k < gap_.size(); ++k) {
       if (row_weights_[k] > 0.0) surprise_ = std::hypot(surprise_, gap_[k] - foreseen_[k]);
     }
-    damping_.review(objective(gap_before_), objective(foreseen_), objective(gap_),
-                    negligible_objective());
+    review(damping_, response, gap_before_);
   }
   time_ = problem.time;
   for (std::size_t t = 0; t < asked_.size(); ++t) asked_[t] = settings_.tasks[t].target.at(time_);
@@ -109,15 +110,35 @@ void InverseController::look_back(const StepProblem& problem) {
 }
 
 // Within a step the damping only grows: choices that go back and forth come to rest.
-void InverseController::review_choice(const StepProblem& problem) {
+void InverseController::review_choice(const StepProblem& problem, const Response& response) {
   if (!tried_) return;
   measure_gap(problem);
   const double least = inner_damping_.value();
-  inner_damping_.review(objective(gap_linearised_), objective(foreseen_), objective(gap_),
-                        negligible_objective());
+  review(inner_damping_, response, gap_linearised_);
   inner_damping_.set(std::max(least, inner_damping_.value()));
   gap_linearised_ = gap_;
   tried_ = false;
+}
+
+// A quasi-static step moves effectors as foreseen, since it is linear. That they go another way
+// from there on shows by W_ea: by the trapezoidal rule the step's change d of efforts gains
+//   1/2 (W_ea d - W_ea' d)^T Q gap
+// less than foreseen. It is the second derivatives' part that least squares leave out, as J. E.
+// Dennis, D. M. Gay & R. E. Welsch, ACM Trans. Math. Software 7 (1981) 348-368, section 3, find it.
+void InverseController::review(StepDamping& damping, const Response& response,
+                               const VectorX& before) const {
+  const double foreseen = objective(foreseen_);
+  double found = objective(gap_);
+  if (!simulation_.model().step().dynamic()) {
+    double bend = 0.0;
+    for (Eigen::Index k = 0; k < before.size(); ++k) {
+      const int row = effector_rows_[static_cast<std::size_t>(k)];
+      const double leads = response.compliance().row(row).dot(change_);
+      bend += 0.5 * row_weights_[k] * (expected_[k] - leads) * before[k];
+    }
+    found = std::max(found, foreseen + bend);
+  }
+  damping.review(objective(before), foreseen, found, negligible_objective());
 }
 
 void InverseController::measure_gap(const StepProblem& problem) {
@@ -161,7 +182,7 @@ void InverseController::form_residual(const StepProblem& problem, const Response
 }
 
 void InverseController::begin_choices(const StepProblem& problem, const Response& response) {
-  look_back(problem);
+  look_back(problem, response);
   form_residual(problem, response);
   const bool change = settings_.regularisation == Regularisation::change;
   program_.begin(problem, response,
@@ -208,6 +229,13 @@ void InverseController::accept(const StepProblem& problem, const Response& respo
   for (std::size_t k = 0; k < own.size(); ++k) {
     const auto place = std::ranges::find(settings_.actuators, response.controlled()[k]);
     efforts_[place - settings_.actuators.begin()] = own[k];
+    const int row = controlled_block(problem, response, static_cast<Eigen::Index>(k)).row;
+    change_[static_cast<Eigen::Index>(k)] =
+        own[k] - problem.effort_before[static_cast<std::size_t>(row)];
+  }
+  for (Eigen::Index k = 0; k < expected_.size(); ++k) {
+    const int row = effector_rows_[static_cast<std::size_t>(k)];
+    expected_[k] = response.compliance().row(row).dot(change_);
   }
   measure_forces(problem, motion, effort);
   const double moved = foresee(problem, response, motion);

@@ -72,8 +72,9 @@ class InverseController : public TargetController, public step::Controller {
   void forget() override;
 
  private:
-  void look_back(const step::StepProblem& problem);
-  void review_choice(const step::StepProblem& problem);
+  void look_back(const step::StepProblem& problem, const step::Response& response);
+  void review_choice(const step::StepProblem& problem, const step::Response& response);
+  void review(StepDamping& damping, const step::Response& response, const VectorX& before) const;
   template <class Self, class Visitor>
   static void visit_memory(Self& self, Visitor&& visitor);
   void measure_gap(const step::StepProblem& problem);
@@ -103,6 +104,8 @@ class InverseController : public TargetController, public step::Controller {
   VectorX last_choice_;        // (controlled,) efforts
   bool tried_ = false;         // whether the robot has followed it
   VectorX gap_linearised_;     // where it was linearised for that choice
+  VectorX change_;             // (controlled,) of efforts by that choice
+  VectorX expected_;           // (effector rows,) m, how the change was to move the effectors
   EffortProgram program_;
   VectorX efforts_;
   double predicted_error_ = std::numeric_limits<double>::quiet_NaN();

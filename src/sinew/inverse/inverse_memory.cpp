@@ -9,8 +9,9 @@ namespace sinew::inverse {
 
 namespace {
 
-// First come: steps known (0, 1, or 2 for more), time, surprise, prediction, damping, status.
-constexpr std::size_t kKnown = 6;
+// First come: steps known (0, 1, or 2 for more), time, surprise, prediction, damping, status,
+// the largest of what efforts do to effectors.
+constexpr std::size_t kKnown = 7;
 
 }  // namespace
 
@@ -22,6 +23,8 @@ void InverseController::visit_memory(Self& self, Visitor&& visitor) {
   }
   for (auto& gap : self.gap_before_) visitor(gap);
   for (auto& gap : self.foreseen_) visitor(gap);
+  for (auto& change : self.change_) visitor(change);
+  for (auto& motion : self.expected_) visitor(motion);
   for (auto& effort : self.efforts_) visitor(effort);
 }
 
@@ -49,7 +52,8 @@ void InverseController::save_memory(std::span<double> memory) const {
                                 judged ? surprise_ : 0.0,
                                 started ? predicted_error_ : 0.0,
                                 damping_.value(),
-                                static_cast<double>(status_)};
+                                static_cast<double>(status_),
+                                program_.largest_asked()};
   std::ranges::copy(known, memory.begin());
   auto to = memory.begin() + kKnown;
   visit_memory(*this, [&](double number) { *to++ = number; });
@@ -64,6 +68,7 @@ void InverseController::load_memory(std::span<const double> memory) {
   if (memory[0] >= 2.0) surprise_ = memory[2];
   damping_.set(memory[4]);
   status_ = static_cast<InverseStatus>(static_cast<int>(memory[5]));
+  program_.set_largest_asked(memory[6]);
   auto from = memory.begin() + kKnown;
   visit_memory(*this, [&](double& number) { number = *from++; });
 }

@@ -8,7 +8,10 @@ namespace sinew::inverse {
 /// curved: then second derivatives, which they leave out, matter as much as the first. The weight
 /// on changes of effort is multiplied by value(): four times larger after a step whose outcome is
 /// farther from what was foreseen than three quarters of the foreseen change, half as large after
-/// one within a quarter. A fixed point of the steps does not depend on it.
+/// one within a quarter. A fixed point of the steps does not depend on it. Where the effector is as
+/// far as an effort takes it and W_ea is zero, as at the largest x over the pull of one cable, the
+/// second derivatives are all that counts; see InverseController for how the outcome shows there,
+/// and EffortPull for the weight.
 /// Source: J. J. More, The Levenberg-Marquardt algorithm, Lecture Notes in Mathematics 630 (1978)
 /// 105-116, section 4; J. Nocedal and S. J. Wright, Numerical Optimization (2006), algorithm 4.1.
 class StepDamping {

@@ -48,8 +48,10 @@ void condense(Simulation& simulation, const LinearisationChoice& choice,
   world.form_rows(effort, geometric);
   if (world.condense() != linalg::FactorStatus::singular) return;
   throw Error(ErrorKind::singular_matrix, {.item = "response()"},
-              "the stiffness matrix is singular at this state",
-              "fix a region of every body, or try tangent='corotated'");
+              "the stiffness matrix is singular at this state: without inertia, something moves "
+              "freely",
+              "fix a region of every body, brace a link that swings freely about its joint by a "
+              "spring or a motor that is told an angle, or try tangent='corotated'");
 }
 
 // Leaves the simulation's state changed.
@@ -60,6 +62,7 @@ ControlledResponse respond(Simulation& simulation, const State& state,
   std::vector<double> all(simulation.efforts().begin(), simulation.efforts().end());
   condense(simulation, choice, all);
   write_blocks(simulation, state, controlled);
+  world.hold_friction();
   linalg::AlignedNumbers effort;
   world.numbering().gather_efforts(all, effort);
   step::Response response;
