@@ -96,15 +96,15 @@ def wrong(kind: str, place: str, message: str, remedy: str) -> NoReturn:
 
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("cases", nargs="*", metavar="CASE", help="all by default")
-    parser.add_argument("--list", action="store_true", help="names the cases and ends")
-    parser.add_argument("--fast", action="store_true", help="only the cases that take seconds")
+    parser.add_argument("cases", nargs="*", metavar="CASE", help="cases to run (default: all)")
+    parser.add_argument("--list", action="store_true", help="list the cases and exit")
+    parser.add_argument("--fast", action="store_true", help="run only the cases that take seconds")
     parser.add_argument("--resume", action="store_true",
-                        help="runs only the cases that have not ended with this build")
+                        help="continue an interrupted run: skip cases already finished with this build")
     parser.add_argument("--out", type=pathlib.Path, default=HERE.parent / "docs",
                         help="folder for scorecard.md and images/validation (default: docs)")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)),
-                        help="cases at once (default: one a core)")
+                        help="cases to run in parallel (default: one per core)")
     chosen = parser.parse_args()
     unknown = sorted(set(chosen.cases) - set(case_names()))
     if unknown:

@@ -74,11 +74,11 @@ sim::Watched watch_steps(sim::Simulation& simulation, ProgressBar& bar, const st
   return {simulation, [&simulation, &bar, &done](const sim::StepProgress& step) {
             Interrupt::check();
             if (step.seconds < kSlowStep || !bar.slow_due()) return;
-            bar.update_slow(done,
-                            fmt::format("t = {:g} s: this step has taken {:.0f} s: iteration {}, "
-                                        "residual {:.1e}, {}",
-                                        simulation.time(), step.seconds, step.iterations,
-                                        step.relative_residual, search_stage_text(step.stage)));
+            bar.update_slow(
+                done, fmt::format("t = {:g} s: this step has taken {:.0f} s: iteration {}, "
+                                  "residual {:.1e}, {}",
+                                  simulation.time(), step.seconds, step.iterations,
+                                  step.relative_residual, search_stage_text(step.stage)));
           }};
 }
 
@@ -86,15 +86,17 @@ void add_scene_options(Command& command, SceneOptions& options, bool optional) {
   command.add_option("SCENE", options.file, "Scene file (YAML)").required(!optional);
   command
       .add_option("--set", options.overrides,
-                  "Set a value of the scene: actuators.long_0.command.displacement=10mm; may be "
-                  "repeated")
+                  "Override a scene value, e.g. actuators.long_0.command.displacement=10mm "
+                  "(repeatable)")
       .type_name("PATH=VALUE")
       .allow_extra_args(false);
-  command.add_option("--threads", options.threads, "Threads inside a step (default: the scene's)")
+  command
+      .add_option("--threads", options.threads,
+                  "Threads per step (default: the scene's solver.threads, else 1)")
       .type_name("N");
   command
       .add_option("--controller", options.controller,
-                  "Controller to attach, or none (default: the scene's first)")
+                  "Controller of the scene to use, or 'none' (default: the first)")
       .type_name("NAME");
 }
 

@@ -1,4 +1,4 @@
-"""What the meshes of a scene cost in accuracy: the same scene on finer meshes.
+"""Mesh convergence studies: estimate the discretisation error of a scene from runs on finer meshes.
 
     import sinew.convergence
     study = sinew.convergence.study("beam.yaml", static=True)
@@ -24,8 +24,8 @@ from typing import Any, Optional, Union
 
 import numpy as np
 
-from . import mesh, scene
-from .errors import Error, RunError
+from . import command, mesh, scene
+from .errors import Error
 from .sweep.worker import measure as measure_now
 
 __all__ = ["Estimate", "Level", "Study", "study"]
@@ -33,7 +33,6 @@ __all__ = ["Estimate", "Level", "Study", "study"]
 #: Orders of convergence that count as such. Displacements and energies reach 1 even around a crack (Strang and Fix, An Analysis of
 #: the Finite Element Method, 1973, section 8.1); less is seen on meshes that are too coarse for any order to show.
 LEAST_ORDER, LARGEST_ORDER = 1.0, 6.0
-_FAILED, _WRONG_INPUT = 1, 2
 
 
 @dataclass(frozen=True)
@@ -313,8 +312,7 @@ def _shown(value: np.ndarray) -> str:
 
 
 def _options(words: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="sinew convergence", allow_abbrev=False)
-    parser.add_argument("scene", metavar="SCENE")
+    parser = command.parser("convergence")
     for name in ("measure", "set"):
         parser.add_argument(f"--{name}", action="append", default=[])
     for name in ("duration", "json"):
@@ -336,22 +334,18 @@ def _written(found: Study) -> str:
 
 
 def main(words: list[str]) -> int:
-    """Of the command line; the exit code: 0 done, 1 a run failed, 2 wrong input, 130 after Ctrl-C."""
-    from .sweep.__main__ import _seconds
-
+    """Runs `sinew convergence`; returns the exit code, see command.exit_code()."""
     options = _options(words)
-    try:
-        found = study(options.scene, measure=options.measure or None, levels=options.levels, static=options.static,
-                      duration=_seconds("--duration", options.duration), set=options.set, progress=True)
-        print(_table(found))
-        if options.json:
-            pathlib.Path(options.json).write_text(_written(found))
-        return 0
-    except Error as error:
-        print(f"sinew: error: {error}", file=sys.stderr)
-        return _FAILED if isinstance(error, RunError) else _WRONG_INPUT
-    except KeyboardInterrupt:
-        return 130
+    return command.exit_code(lambda: _converge(options))
+
+
+def _converge(options: argparse.Namespace) -> int:
+    found = study(options.scene, measure=options.measure or None, levels=options.levels, static=options.static,
+                  duration=command.seconds("--duration", options.duration), set=options.set, progress=True)
+    print(_table(found))
+    if options.json:
+        pathlib.Path(options.json).write_text(_written(found))
+    return 0
 
 
 if __name__ == "__main__":

@@ -679,7 +679,7 @@ def test_the_command_ends_cleanly_on_an_interrupt(scene, tmp_path):
     finally:
         watch.cancel()
     assert process.returncode == 130
-    assert told == "sinew: stopped; the samples that were done are in the table, and --resume does the others\n"
+    assert told == "sinew: interrupted; the finished samples are in the table, continue with --resume\n"
     assert 0 < len(sinew.sweep.load(tmp_path / "out")) < 5000
 
 
