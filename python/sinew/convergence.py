@@ -37,18 +37,18 @@ LEAST_ORDER, LARGEST_ORDER = 1.0, 6.0
 
 @dataclass(frozen=True)
 class Level:
-    """One mesh of a study.
+    """Result on one mesh of a study.
 
     Attributes
     ----------
     elements, nodes : int
-        Of all deformable bodies.
+        Totals of all deformable bodies.
     size : float
         h = (volume/elements)^(1/3), m.
     seconds : float
-        Wall time of loading and running.
+        Wall time of loading and simulating.
     values : dict
-        Of each measure, (k,) or (): positions as displacements from the start, m.
+        Value of each measure, (k,) or (). Positions are displacements from the start, m.
     """
 
     elements: int
@@ -60,25 +60,25 @@ class Level:
 
 @dataclass(frozen=True)
 class Estimate:
-    """What a study says of one measure.
+    """Convergence of one measure.
 
-    With values f_k on meshes of size h_k, the last the finest, and the order p of convergence, Richardson's extrapolation is
+    With values f_k on meshes of size h_k, the last being the finest, and the order p of convergence, Richardson's extrapolation is
     f = f_n + (f_n - f_(n-1))/((h_(n-1)/h_n)^p - 1) (L. F. Richardson, Phil. Trans. R. Soc. A 210, 1911; P. J. Roache, J. Fluids
     Eng. 116, 1994, eq. 9 to 11, also for the uncertainty).
 
     Attributes
     ----------
     order : float or None
-        p as seen on the last three meshes; None where there are only two of them, or where the differences do not shrink as h^p
-        with p from 1 to 6 and in one direction. Then p = 1 is taken.
+        Observed order p on the last three meshes. None, and p = 1 is used, for two meshes, or if the differences do not
+        shrink in one direction as h^p with p from 1 to 6.
     extrapolated : ndarray
-        f, the value without error of the mesh.
+        f, the estimate without discretisation error.
     error : float
-        |f_0 - f| of the scene's own mesh.
+        |f_0 - f|, the error of the scene's own mesh.
     relative_error : float
-        The same over |f|; NaN where f is zero.
+        The same divided by |f|; NaN if f is zero.
     uncertainty : float
-        Of `extrapolated`: Roache's factor of safety, 1.25 with an observed order and else 3, times |f_n - f|.
+        Uncertainty of `extrapolated`: |f_n - f| times Roache's safety factor, 1.25 with an observed order, else 3.
     """
 
     order: Optional[float]
@@ -90,12 +90,12 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Study(Mapping[str, Estimate]):
-    """A mapping of measures to their estimates.
+    """Result of a convergence study: a mapping from measures to estimates.
 
     Attributes
     ----------
     levels : tuple of Level
-        The scene's own mesh first, then ever finer ones.
+        The scene's own mesh, then the finer ones.
     estimates : dict
     """
 
@@ -122,28 +122,28 @@ def study(
     set: scene.Overrides = None,  # noqa: A002
     progress: bool = False,
 ) -> Study:
-    """Runs a scene on its own meshes and on finer ones, and extrapolates what it ends with.
+    """Runs a scene on its own meshes and on finer ones, and extrapolates the final values to zero element size.
 
-    Shapes are made of cells that are 1.5, 2, 2.5, ... times as small; tetrahedra of mesh files are cut in eight, again and again.
-    The meshes should be fine enough that differences shrink: see `Estimate.order`.
+    The cells of primitive shapes become smaller by factors of 1.5, 2, 2.5, ...; tetrahedra of mesh files are split into eight
+    per level. The estimate needs meshes on which the differences shrink: see `Estimate.order`.
 
     Parameters
     ----------
     scene : path-like or dict
-        As of sinew.load().
+        As in sinew.load().
     measure : sequence of str, optional
-        Observables, or strain_energy, mass and the like of a body: "tip.position", "trunk.strain_energy". By default the
-        positions and rotations of all effectors.
+        Observables such as "tip.position", or body quantities such as "trunk.strain_energy". By default the positions and
+        rotations of all effectors.
     levels : int
-        Meshes, the scene's own included; 2 or more.
+        Number of meshes, including the scene's own; 2 or more.
     duration : float, optional
-        s; by default the scene's.
+        Simulated time, s; by default the scene's.
     static : bool
-        An equilibrium under the commands and loads of the start in place of a run.
+        Solve for static equilibrium under the initial commands and loads instead of simulating.
     set : list of str or dict, optional
-        As of sinew.load().
+        As in sinew.load().
     progress : bool
-        Whether each mesh is told of on stderr.
+        Whether to report each mesh on standard error.
 
     Returns
     -------
@@ -152,8 +152,8 @@ def study(
     Raises
     ------
     Error
-        bad-argument where there is nothing to measure or to refine; unsupported-element for hexahedra and quadratic tetrahedra
-        of files; and what sinew.load() and the run raise.
+        bad-argument if there is nothing to measure or to refine; unsupported-element for hexahedra and quadratic tetrahedra of
+        mesh files; and the errors of sinew.load() and Simulation.run().
     """
     if levels < 2:
         raise Error("out-of-range", "study(levels)", f"{levels} meshes show no convergence", "give 2 or more")
@@ -185,7 +185,7 @@ class _Refinement:
         self._files: dict[str, tuple[int, mesh.Mesh]] = {}  # of which level
         self._bodies = [name for name, body in self._tree["bodies"].items() if body.get("type") == "fem"]
         if not self._bodies:
-            raise Error("bad-argument", "convergence", "the scene has no body of finite elements", "give one whose meshes can be refined")
+            raise Error("bad-argument", "convergence", "the scene has no body of finite elements", "use a scene with a mesh to refine")
         self._sizes = {name: _edge(self._first.body(name)) for name in self._bodies}
 
     def load(self, k: int, before: Optional[Level]) -> Any:
@@ -241,7 +241,7 @@ def _measures(sim: Any) -> list[str]:
     names = [name for name in sim.run(0.0) if name in wanted]
     if not names:
         raise Error("bad-argument", "convergence", "the scene has no effectors",
-                    "name what to compare: --measure BODY.strain_energy, or an observable of run.csv")
+                    "name a quantity to compare, for example --measure BODY.strain_energy")
     return names
 
 

@@ -1,4 +1,4 @@
-"""Pictures of runs, sweeps and fits, by matplotlib: `python3 -m sinew.plot run DIR OUT.png`."""
+"""Plots of runs, sweeps and fits with matplotlib: `python3 -m sinew.plot run DIR OUT.png`."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ SHOWN = {"m": ("mm", 1e3), "Pa": ("kPa", 1e-3), "m^3": ("ml", 1e6), "J": ("mJ", 
 
 
 def read_run(folder, table="run.csv") -> dict[str, list[float]]:
-    """The numeric columns of a run's table, by their headings.
+    """Reads the numeric columns of a recorded run, by heading.
 
-    Warns where a run.csv of an older version lacks commands.
+    Warns if a run.csv of an older version lacks commands.
 
     Parameters
     ----------
     folder : path-like
-        As `sinew run` wrote it.
+        Output folder of `sinew run`.
     table : str
-        Or "probes.csv", "sensors.csv".
+        "run.csv", "probes.csv" or "sensors.csv".
     """
     with open(pathlib.Path(folder) / table, newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
@@ -104,15 +104,15 @@ def _sensor(heading: str) -> tuple[str, str] | None:
 
 
 def run(folder, out) -> pathlib.Path:
-    """Draws efforts, motions, effectors, contacts, probes, sensors, errors and energies of a recorded run over time.
+    """Plots efforts, motions, effectors, contacts, probes, sensors, errors and energies of a recorded run over time.
 
-    What is commanded is drawn as a thin dashed line of its actuator's colour, what is true so beside what a sensor
-    measured, and targets so in grey; of a line that is probed, its length.
+    Thin dashed lines show the commands of actuators and the true values of sensors, in the same colour, and the
+    targets of effectors, in grey. A line probe is shown by its length.
 
     Parameters
     ----------
     folder : path-like
-        As `sinew run` wrote it.
+        Output folder of `sinew run`.
     out : path-like
         PNG file.
     """
@@ -154,7 +154,7 @@ def run(folder, out) -> pathlib.Path:
 
 
 def fit(data, out) -> pathlib.Path:
-    """Draws tests of rubber, fitted laws, and what is left between them.
+    """Plots material tests, fitted models and residuals.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def fit(data, out) -> pathlib.Path:
 
 
 def reach(data, out) -> pathlib.Path:
-    """Draws where an arm's tip can rest, and goals with what comes nearest to each.
+    """Plots the static workspace of an arm's tip, the goals, and the equilibrium nearest to each goal.
 
     Parameters
     ----------
@@ -219,7 +219,7 @@ def reach(data, out) -> pathlib.Path:
 
 
 def plan(data, out) -> pathlib.Path:
-    """Draws a plan's torques, the tip's path with the goal, and its distance and speed over time.
+    """Plots the torques of a plan, the path of the tip with the goal, and distance and speed of the tip over time.
 
     Parameters
     ----------
@@ -271,7 +271,7 @@ def _draw_object(axis, shape, aside):
 
 
 def brace(data, out) -> pathlib.Path:
-    """Draws a braced arm's poses, the forces of the braced point, and the tip's error with and without the brace.
+    """Plots the poses of a braced arm, the forces at the bracing point, and the tip error with and without the brace.
 
     Parameters
     ----------
@@ -310,7 +310,7 @@ def brace(data, out) -> pathlib.Path:
 
 
 def identify(data, out) -> pathlib.Path:
-    """Draws measured and predicted ends of an arm's segments, and their distances.
+    """Plots measured and predicted positions of the ends of an arm's segments, and their distances.
 
     Parameters
     ----------
@@ -348,7 +348,7 @@ def identify(data, out) -> pathlib.Path:
 
 
 def sweep(folder, out=None, kind=None) -> list[pathlib.Path]:
-    """Draws a sweep's table: see sinew.sweep.plots.draw()."""
+    """Plots the table of a sweep: see sinew.sweep.plots.draw()."""
     from sinew.sweep import plots
 
     return plots.draw(folder, out, kind)

@@ -247,6 +247,7 @@ def test_a_long_step_tells_of_itself_and_can_be_ended(tmp_path, how):
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         line = process.stderr.readline()
         assert re.match(r"sinew: t = \S+ s: this step has taken \d+ s: iteration \d+, residual \S+, ", line), line
+        assert line.endswith("; the contacts have 1681 points: use fewer, or `aggregate`\n"), line
         sent = time.monotonic()
         process.send_signal(how)
         _, errors = process.communicate(timeout=60)

@@ -50,15 +50,15 @@ def run(
     resume: bool = False,
     progress: Union[bool, Callable[[int, int], object], None] = None,
 ) -> pandas.DataFrame:
-    """Runs a scene, or a function, for many values of its parameters, on the processes of a Dask cluster.
+    """Runs a scene, or a function, over a range of parameter values on a Dask cluster.
 
-    Each sample loads the scene with its values, runs it, and measures the state at the end. A sample that fails is a row
-    of the table. The table grows while the sweep runs and outlives whatever ends it.
+    Each sample loads the scene with its parameter values, simulates it, and measures the final state. A failed sample is also a
+    row of the table. Rows are written as samples finish: an aborted sweep leaves a valid table.
 
     Parameters
     ----------
     scene : path-like or dict, optional
-        As of sinew.load(). Files that it names must be where the workers can read them.
+        As in sinew.load(). The workers must be able to read the files that it names.
     vary : dict
         For each key of the scene, as in `set`: text as on the command line, "300kPa:600kPa:7" (grid, both ends
         included), "300kPa:600kPa" (range) or "1mm,2mm,5mm"; a list or array of numbers in SI or of text; a tuple
@@ -167,7 +167,7 @@ def _job(scene: Any, samples: Design, measure: list[str], function: Any, duratio
     if function is None and scene is None:
         raise Error("bad-argument", "sweep.run()", "there is neither a scene nor a function", "give one of them")
     if function is None and not measure:
-        raise Error("bad-argument", "sweep(measure)", "nothing is measured", "name observables such as 'tip.position' (--measure)")
+        raise Error("bad-argument", "sweep(measure)", "no quantity to measure", "name observables such as 'tip.position' (--measure)")
     if len({*measure}) != len(measure):
         raise Error("duplicate-key", "sweep(measure)", f"a name comes twice in {measure}", "measure each once")
     if static and duration is not None:
