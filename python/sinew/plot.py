@@ -12,6 +12,8 @@ import warnings
 
 OURS, DATA, SECOND, QUIET = "#1f5fa8", "#222222", "#c8501e", "#999999"
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5195", "#5c5c5c")
+LEGEND_ROWS = 11  # as many as a panel is high
+DASHES = ("-", "-.", ":")  # of the first lines, of the next as many, and so on
 
 
 def _pyplot():
@@ -93,6 +95,11 @@ def _owner(name: str) -> str:
     return name.removesuffix(" command").removesuffix(" true")
 
 
+def _style(line: int) -> tuple[int, str]:
+    """How often the colours were used up before this line, and its colour."""
+    return line // len(COLOURS), COLOURS[line % len(COLOURS)]
+
+
 def _sensor(heading: str) -> tuple[str, str] | None:
     """The panel that a column of sensors.csv belongs to, and its name there; None: in none."""
     name, unit = _split(heading)
@@ -142,11 +149,13 @@ def run(folder, out) -> pathlib.Path:
             shown, scale = SHOWN.get(unit, (unit, 1.0))
             owner = _owner(name)
             target, asked = ".target_" in name, ".target_" in name or name != owner
-            axis.plot(time, [scale * v for v in values], "--" if asked else "-", lw=1.0 if asked else 1.5,
-                      color=QUIET if target else COLOURS[owners.index(owner) % len(COLOURS)],
+            lap, colour = (0, QUIET) if target else _style(owners.index(owner))
+            axis.plot(time, [scale * v for v in values], "--" if asked else DASHES[lap % len(DASHES)], lw=1.0 if asked else 1.5,
+                      color=colour,
                       label=None if target or (asked and owner in names) else name.replace("_", " "))
             axis.set_ylabel(f"{group.split(' (')[0]} ({shown})" if shown else group)
-        axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02))
+        labels = axis.get_legend_handles_labels()[1]
+        axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02), ncol=1 + (len(labels) - 1) // LEGEND_ROWS)
     axes[-1, 0].set_xlabel("time (s)")
     figure.savefig(out, dpi=110)
     plt.close(figure)
