@@ -32,7 +32,7 @@ if importlib.util.find_spec("sinew") is None:
     sys.path.append(str(HERE.parent / "build" / "release" / "python"))
 
 from suite import kept, scorecard  # noqa: E402
-from suite.case import MISSED, Case, Result  # noqa: E402
+from suite.case import KNOWN, MISSED, Case, Result  # noqa: E402
 
 
 def case_names() -> list[str]:
@@ -57,13 +57,13 @@ def run_case(name: str, images: pathlib.Path) -> Result:
     return result
 
 
-def run_all(names: list[str], images: pathlib.Path, jobs: int, resume: bool) -> list[Result]:
-    """Side by side in processes, the longest first; says what has ended. Resumed: without the cases that have."""
+def run_all(names: list[str], images: pathlib.Path, jobs: int, resume: bool, every_check: bool) -> list[Result]:
+    """Runs cases in parallel, the longest first, and reports each at its end. Resumed: without finished cases."""
     cost = {name: getattr(importlib.import_module(f"cases.{name}"), "COST", 1) for name in names}
     ended = {name: kept.find(name, images) for name in names} if resume else {}
     results = {name: result for name, result in ended.items() if result is not None}
     if resume:
-        print(f"{len(results)} of {len(names)} cases have ended before", flush=True)
+        print(f"{len(results)} of {len(names)} cases were finished before", flush=True)
     context = multiprocessing.get_context("spawn")
     with concurrent.futures.ProcessPoolExecutor(jobs, mp_context=context) as pool:
         pending = {pool.submit(run_case, name, images): name
@@ -72,39 +72,39 @@ def run_all(names: list[str], images: pathlib.Path, jobs: int, resume: bool) -> 
             result = done.result()
             results[result.name] = result
             kept.keep(result)
-            tell(result, len(results), len(names))
+            tell(result, len(results), len(names), every_check)
     return [results[name] for name in names]
 
 
-def tell(result: Result, done: int, count: int) -> None:
-    """A line for a case that ended, and what it missed."""
+def tell(result: Result, done: int, count: int, every_check: bool) -> None:
+    """Prints a line for a finished case, and its misses or all of its checks."""
     state = "stopped by an error" if result.failure else scorecard.totals([result])
     print(f"[{done}/{count}] {result.name} ({result.seconds:.1f} s): {state}", flush=True)
     for check in result.checks:
-        if check.verdict == MISSED:
-            print(f"    missed: {check.quantity}: {check.ours}, reference {check.reference}, "
+        if every_check or check.verdict in (MISSED, KNOWN):
+            print(f"    {check.verdict.replace('*', '')}: {check.quantity}: {check.ours}, reference {check.reference}, "
                   f"error {check.error}, tolerance {check.tolerance}", flush=True)
     if result.failure:
         print("    " + result.failure.strip().replace("\n", "\n    "), flush=True)
 
 
 def wrong(kind: str, place: str, message: str, remedy: str) -> NoReturn:
-    """Ends as the program does when it is given something wrong."""
+    """Ends with an error for invalid input, in the format of the program."""
     print(f"sinew: error: {place}: {message}; {remedy} [{kind}]", file=sys.stderr)
     sys.exit(2)
 
 
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("cases", nargs="*", metavar="CASE", help="all by default")
-    parser.add_argument("--list", action="store_true", help="names the cases and ends")
-    parser.add_argument("--fast", action="store_true", help="only the cases that take seconds")
+    parser.add_argument("cases", nargs="*", metavar="CASE", help="cases to run (default: all)")
+    parser.add_argument("--list", action="store_true", help="list the cases and exit")
+    parser.add_argument("--fast", action="store_true", help="run only the cases that take seconds")
     parser.add_argument("--resume", action="store_true",
-                        help="runs only the cases that have not ended with this build")
+                        help="continue an interrupted run: skip cases already finished with this build")
     parser.add_argument("--out", type=pathlib.Path, default=HERE.parent / "docs",
                         help="folder for scorecard.md and images/validation (default: docs)")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)),
-                        help="cases at once (default: one a core)")
+                        help="cases to run in parallel (default: one per core)")
     chosen = parser.parse_args()
     unknown = sorted(set(chosen.cases) - set(case_names()))
     if unknown:
@@ -130,13 +130,14 @@ def main() -> int:
             print(f"{name:28} {modules[name].TITLE}")
         return 0
     images = options.out / "images" / "validation"
-    results = run_all(names, images, min(options.jobs, len(names)), options.resume)
+    complete = names == case_names()
+    results = run_all(names, images, min(options.jobs, len(names)), options.resume, not complete)
     print(scorecard.totals(results))
-    if names == case_names():
+    if complete:
         scorecard.write(results, options.out / "scorecard.md", images)
-        print(f"written: {options.out / 'scorecard.md'}")
+        print(f"wrote {options.out / 'scorecard.md'}")
     else:
-        print("only some cases ran: the scorecard is left as it is")
+        print(f"not all cases ran: scorecard.md is unchanged; the plots are in {images}")
     return 1 if any(result.failure or result.count(MISSED) for result in results) else 0
 
 

@@ -30,7 +30,7 @@ const BodyDescription& choose(const SceneDescription& scene, const std::string& 
   if (arms.empty()) {
     throw Error(ErrorKind::wrong_type, {.item = "bodies"},
                 fmt::format("the scene has no arm; its bodies are {}", fmt::join(names, ", ")),
-                "give a scene with a body of type pcc, such as examples/fluidic_arm/arm.yaml");
+                "use a scene with a body of type pcc, such as examples/fluidic_arm/arm.yaml");
   }
   if (name.empty() && arms.size() > 1) {
     throw Error(ErrorKind::bad_argument, {.item = "--body"},
@@ -48,7 +48,7 @@ const BodyDescription& choose(const SceneDescription& scene, const std::string& 
   }
   if (!found->arm) {
     throw Error(ErrorKind::wrong_type, {.item = "--body"},
-                fmt::format("body '{}' is no arm of type pcc", wanted),
+                fmt::format("body '{}' is not an arm of type pcc", wanted),
                 fmt::format("name one of {}", fmt::join(arms, ", ")));
   }
   return *found;
@@ -133,17 +133,18 @@ ArmScene load_arm_scene(const ArmSceneOptions& options) {
 
 void print_left_out(const ArmScene& scene) {
   if (scene.left_out.empty()) return;
-  fmt::print("not taken into account: {}\n", fmt::join(scene.left_out, ", "));
+  fmt::print("ignored: {}\n", fmt::join(scene.left_out, ", "));
 }
 
 void add_arm_scene_options(Command& command, ArmSceneOptions& options) {
   command.add_option("SCENE", options.file, "Scene file (YAML) with a body of type pcc").required();
   command
       .add_option("--set", options.overrides,
-                  "Set a value of the scene: bodies.arm.segments.0.mass=200g; may be repeated")
+                  "Override a scene value, e.g. bodies.arm.segments.0.mass=200g (repeatable)")
       .type_name("PATH=VALUE")
       .allow_extra_args(false);
-  command.add_option("--body", options.body, "Which arm (default: the only one)").type_name("NAME");
+  command.add_option("--body", options.body, "Arm to use, if the scene has several")
+      .type_name("NAME");
 }
 
 }  // namespace sinew::cli

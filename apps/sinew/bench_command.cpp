@@ -163,7 +163,7 @@ nlohmann::ordered_json to_json(const Samples& samples, Session& session, int war
 }
 
 void print_report(const nlohmann::ordered_json& json) {
-  fmt::print("{}: {} steps after {}, {} thread{}, {} tangent\n{}, {}, {}, {}\n\n",
+  fmt::print("{}: {} steps after {} warm-up steps, {} thread{}, {} tangent\n{}, {}, {}, {}\n\n",
              json["scene"].get<std::string>(), json["steps"].get<int>(),
              json["warm_up_steps"].get<int>(), json["threads"].get<int>(),
              json["threads"] == 1 ? "" : "s", json["tangent"].get<std::string>(),
@@ -188,11 +188,11 @@ void print_report(const nlohmann::ordered_json& json) {
                     fmt::format("{:.3g}, {:.3g} mm", 1e3 * json["mean_error_m"].get<double>(),
                                 1e3 * json["max_error_m"].get<double>())});
     rows.push_back(
-        {"active set changed", fmt::format("{} times", json["active_set_changes"].get<int>())});
+        {"active set changes", fmt::format("{}", json["active_set_changes"].get<int>())});
   }
   rows.push_back({"max relative residual",
                   fmt::format("{:.2e}", json["max_relative_residual"].get<double>())});
-  rows.push_back({"memory of one more run",
+  rows.push_back({"memory per simulation",
                   fmt::format("{:.2f} MB", 1e-6 * json["bytes_per_simulation"].get<double>())});
   fmt::print("{}", format_table(rows));
 }
@@ -216,9 +216,7 @@ int bench(const BenchOptions& options) {
   const Samples samples = measure(options, session, warm_up);
   if (samples.stages.back().empty()) {
     throw Error(ErrorKind::bad_argument, {.item = "bench"},
-                "interrupted before the first step "
-                "that counts",
-                "let it run, or ask for fewer steps");
+                "interrupted before the first measured step", "reduce --warm-up or --steps");
   }
   const nlohmann::ordered_json json = to_json(samples, session, warm_up);
   if (options.json) write_file(*options.json, json.dump(2) + "\n");
@@ -229,21 +227,21 @@ int bench(const BenchOptions& options) {
 }  // namespace
 
 void add_bench(CommandLine& line) {
-  Command command = line.add_command("bench", "Time the stages of a step");
+  Command command = line.add_command("bench", "Measure the time of each stage of a step");
   const auto options = std::make_shared<BenchOptions>();
   add_scene_options(command, options->scene);
-  command.add_option("--steps", options->steps, "Steps that count (default: 300)").type_name("N");
+  command.add_option("--steps", options->steps, "Steps to measure (default: 300)").type_name("N");
   command
       .add_option("--warm-up", options->warm_up,
-                  "Steps before those (default: the targets' first turn, or 20)")
+                  "Warm-up steps, not measured (default: the first cycle of the targets, else 20)")
       .type_name("N");
-  command.add_option("--json", options->json, "Also write the figures to a file").type_name("FILE");
+  command.add_option("--json", options->json, "Also write the results as JSON").type_name("FILE");
   command
       .add_option("--tangent", options->tangent,
-                  "exact, projected or corotated (default: the scene's)")
+                  "Tangent: exact, projected or corotated (default: the scene's)")
       .type_name("NAME");
   command.add_flag("--compare-eigen", options->compare_eigen,
-                   "Also time Eigen's SimplicialLDLT on the same matrix, on one thread");
+                   "Also measure Eigen's SimplicialLDLT on the same matrix, on one thread");
   command.footer(
       "Example:\n"
       "  sinew bench trunk.yaml --steps 400 --threads 1 --compare-eigen --json bench.json");

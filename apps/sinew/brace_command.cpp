@@ -64,7 +64,7 @@ std::vector<std::string> take_objects(const BraceOptions& options, const ArmScen
       throw Error(ErrorKind::bad_argument,
                   {.file = options.scene.file.string(),
                    .item = fmt::format("contacts.{}.motion", contact.name)},
-                  "the surface moves", "lean on surfaces that stand still: leave its motion out");
+                  "the arm cannot brace on a moving surface", "remove the motion of this contact");
     }
     plan::BraceObject object;
     object.surface = contact.surface;
@@ -184,7 +184,7 @@ void print_trials(const std::vector<BraceTrial>& trials) {
     }
   }
   fmt::print(
-      "{}spread: of the tip about its mean while disturbed; error: its mean distance from "
+      "{}spread: RMS distance of the disturbed tip from its mean; error: its mean distance from "
       "the goal\n",
       format_table(rows));
 }
@@ -200,11 +200,11 @@ void print_trials(const std::vector<BraceTrial>& trials) {
                     arm));
   }
   throw Error(ErrorKind::not_converged, {.item = "brace"},
-              fmt::format("no brace was found: {}", plan::status_name(brace.status)),
+              fmt::format("no brace found: {}", plan::status_name(brace.status)),
               brace.status == plan::BraceStatus::no_object_in_reach
-                  ? "move an object to where the arm can touch it"
-                  : "move the object or the goal, give a smaller --hold-force, a wider "
-                    "--tolerance, more --starts, or limits that leave more torque");
+                  ? "move an object within reach of the arm"
+                  : "move the object or the goal, reduce --hold-force, increase --tolerance "
+                    "or --starts, or raise the torque limits");
 }
 
 int find_and_carry_out(const BraceOptions& options) {
@@ -232,9 +232,10 @@ int find_and_carry_out(const BraceOptions& options) {
     fmt::print("wrote {}\n", options.out);
   }
   if (run.status != plan::BraceRunStatus::held && run.status != plan::BraceRunStatus::slipped) {
-    throw Error(ErrorKind::not_converged, {.item = "brace"},
-                fmt::format("it was not carried out: {}", plan::status_name(run.status)),
-                "give a smaller --hold-force or a wider --tolerance, or move the object");
+    throw Error(
+        ErrorKind::not_converged, {.item = "brace"},
+        fmt::format("the brace was not reached in simulation: {}", plan::status_name(run.status)),
+        "reduce --hold-force, increase --tolerance, or move the object");
   }
   return options.plot.empty() ? 0 : draw_json("brace", json.dump(), options.plot);
 }
@@ -243,54 +244,57 @@ int find_and_carry_out(const BraceOptions& options) {
 
 void add_brace(CommandLine& line) {
   Command command =
-      line.add_command("brace", "Lean an arm on what is around it, so that its tip is steadier");
+      line.add_command("brace", "Find where an arm can lean on its environment to steady its tip");
   const auto options = std::make_shared<BraceOptions>();
   options->scene.takes_contacts = true;  // its objects
   add_arm_scene_options(command, options->scene);
-  command.add_option("--goal", options->goal, "Where the tip is to be: \"5 0 -53 cm\"")
+  command.add_option("--goal", options->goal, "Goal of the tip, e.g. \"5 0 -53 cm\"")
       .required()
       .type_name("POINT");
   command
       .add_option("--friction", options->friction,
-                  "Of all objects: silicone-on-steel, coated-rigid, 0.6 or \"0.6 0.9\" (default: "
-                  "the scene's)")
+                  "Friction coefficient of all objects: 0.6, a range \"0.6 0.9\", "
+                  "silicone-on-steel or coated-rigid (default: the scene's)")
       .type_name("MU");
-  command.add_option("--tolerance", options->tolerance, "Of the tip's distance (default: 5mm)")
+  command
+      .add_option("--tolerance", options->tolerance,
+                  "Distance of the tip from the goal (default: 5mm)")
       .type_name("LENGTH");
   command
       .add_option("--hold-force", options->hold_force,
-                  "On the tip, under which the braced point is to stick (default: 0.04N)")
+                  "Tip force under which the braced point must not slip (default: 0.04N)")
       .type_name("FORCE");
   command
       .add_option("--hold-frequency", options->hold_frequency,
-                  "Of that force at most (default: 2Hz)")
+                  "Highest frequency of that force (default: 2Hz)")
       .type_name("FREQUENCY");
   command
       .add_option("--segment", options->segments,
-                  "Brace this one, counted from 1 (default: the first that can be)")
+                  "Segment to brace, counted from 1 (default: the first that can brace)")
       .type_name("N");
-  command.add_option("--starts", options->starts, "Of the search, a candidate (default: 2)")
+  command.add_option("--starts", options->starts, "Starts of the search per candidate (default: 2)")
       .type_name("N");
   command
       .add_option("--disturbance", options->disturbance,
-                  "Random force on the tip, root mean square along each axis (default: 0.01N)")
+                  "Random force on the tip, RMS per axis (default: 0.01N)")
       .type_name("FORCE");
-  command.add_option("--duration", options->hold, "Of being disturbed (default: 4s)")
+  command.add_option("--duration", options->hold, "Duration of the disturbance (default: 4s)")
       .type_name("TIME");
-  command.add_option("--disturbances", options->seeds, "How many are tried (default: 1)")
-      .type_name("N");
-  command.add_option("--seed", options->seed, "Of the first one (default: 1)").type_name("S");
-  command.add_option("--json", options->json, "Also write the figures to a file").type_name("FILE");
-  command.add_option("-o,--out", options->out, "CSV file of the first run").type_name("FILE");
   command
-      .add_option("--plot", options->plot,
-                  "PNG file to draw poses, forces and the tip's error into")
+      .add_option("--disturbances", options->seeds,
+                  "Number of disturbances to simulate (default: 1)")
+      .type_name("N");
+  command.add_option("--seed", options->seed, "Random seed of the first disturbance (default: 1)")
+      .type_name("S");
+  command.add_option("--json", options->json, "Also write the results as JSON").type_name("FILE");
+  command.add_option("-o,--out", options->out, "Write the first run as CSV").type_name("FILE");
+  command.add_option("--plot", options->plot, "Plot poses, forces and tip error to a PNG file")
       .type_name("FILE");
   command.footer(
+      "The objects are the surfaces of the scene's contacts with the arm.\n\n"
       "Example:\n"
       "  sinew brace examples/fluidic_arm/brace.yaml --goal \"5 0 -53 cm\" --disturbances 5 --plot "
-      "brace.png\n"
-      "Objects are the surfaces of the scene's contacts with the arm.");
+      "brace.png");
   command.set_action([options] { return find_and_carry_out(*options); });
 }
 

@@ -44,7 +44,7 @@ Error superfluous(const CLI::App& app, const std::string& word) {
   if (!word.starts_with("-") || word == "-") {
     return {ErrorKind::bad_argument,
             {.item = name},
-            fmt::format("'{}' is one argument too many", word),
+            fmt::format("unexpected argument '{}'", word),
             fmt::format("see 'sinew {} --help'", name)};
   }
   const std::string option = word.substr(0, word.find('='));
@@ -52,7 +52,7 @@ Error superfluous(const CLI::App& app, const std::string& word) {
   const std::string nearest = nearest_word(option, known);
   return {ErrorKind::unknown_option,
           {.item = name},
-          fmt::format("there is no option '{}'", option),
+          fmt::format("unknown option '{}'", option),
           nearest.empty() ? fmt::format("the options are {}", joined(known))
                           : fmt::format("did you mean {}?", nearest)};
 }
@@ -73,7 +73,7 @@ Error argument_error(const CLI::App& app, const CLI::ParseError& problem) {
 void require_command(const CLI::App& app, int argc, const char* const* argv) {
   const auto names = command_names(app);
   if (argc < 2) {
-    throw Error(ErrorKind::bad_argument, {.item = "sinew"}, "a command is missing",
+    throw Error(ErrorKind::bad_argument, {.item = "sinew"}, "no command given",
                 fmt::format("the commands are {}; see 'sinew --help'", joined(names)));
   }
   const std::string word = argv[1];
@@ -83,7 +83,7 @@ void require_command(const CLI::App& app, int argc, const char* const* argv) {
   }
   const std::string nearest = nearest_word(word, names);
   throw Error(ErrorKind::unknown_option, {.item = "sinew"},
-              fmt::format("there is no command '{}'", word),
+              fmt::format("unknown command '{}'", word),
               nearest.empty() ? fmt::format("the commands are {}", joined(names))
                               : fmt::format("did you mean '{}'?", nearest));
 }

@@ -33,29 +33,34 @@ int converge(const ConvergenceOptions& options) {
 }  // namespace
 
 void add_convergence(CommandLine& line) {
-  Command command =
-      line.add_command("convergence", "Refine a scene's meshes and estimate what they cost");
+  Command command = line.add_command(
+      "convergence", "Refine the meshes of a scene and estimate their discretisation error");
   const auto options = std::make_shared<ConvergenceOptions>();
   command.add_option("SCENE", options->scene, "Scene file (YAML)").required();
   command
       .add_option("--measure", options->measures,
-                  "What to compare at the end: tip.position, trunk.strain_energy; may be repeated "
-                  "(default: all effectors)")
+                  "Quantity to compare at the end, e.g. tip.position or trunk.strain_energy "
+                  "(repeatable; default: all effectors)")
       .type_name("NAME")
       .allow_extra_args(false);
-  command.add_option("--levels", options->levels, "Meshes, the scene's own included (default: 3)")
-      .type_name("N");
-  command.add_option("--duration", options->duration, "How long to simulate (default: the scene's)")
-      .type_name("TIME");
-  command.add_flag("--static", options->fixed, "A static equilibrium in place of a run");
   command
-      .add_option("--set", options->overrides,
-                  "Set a value of the scene for all meshes; may be repeated")
+      .add_option("--levels", options->levels,
+                  "Number of meshes, including the scene's own (default: 3)")
+      .type_name("N");
+  command
+      .add_option("--duration", options->duration, "Simulated time, e.g. 5s (default: the scene's)")
+      .type_name("TIME");
+  command.add_flag("--static", options->fixed,
+                   "Solve for static equilibrium instead of simulating");
+  command
+      .add_option("--set", options->overrides, "Override a scene value on all meshes (repeatable)")
       .type_name("PATH=VALUE")
       .allow_extra_args(false);
-  command.add_option("--json", options->out, "File for the figures, in SI units").type_name("FILE");
+  command.add_option("--json", options->out, "Also write the results as JSON, in SI units")
+      .type_name("FILE");
   command.footer(
-      "Shapes get smaller cells, tetrahedra of mesh files are cut in eight.\n\n"
+      "Primitive shapes are meshed with smaller elements; tetrahedra of mesh files are split into\n"
+      "eight. Guide: docs/convergence.md.\n\n"
       "Examples:\n"
       "  sinew convergence examples/trunk/trunk.yaml --duration 1s --levels 2\n"
       "  sinew convergence beam.yaml --static --measure tip.position");

@@ -37,21 +37,22 @@ int estimate(const EstimateOptions& options) {
 void add_readings(Command& command, EstimateOptions& options) {
   command
       .add_option("--measured", options.measured,
-                  "CSV of readings: columns 'time [s]', 'tip.x [mm]', 'long_0.tension [N]' as in "
-                  "run.csv; empty cells are no readings")
+                  "CSV of measurements with columns as in run.csv: 'time [s]', 'tip.x [mm]', "
+                  "'long_0.tension [N]'; an empty cell is a missing reading")
       .type_name("FILE")
       .required();
   command
       .add_option("--std", options.stds,
-                  "Standard deviation of a sensor, NAME a column or a pattern: tip.*=0.1mm; may be "
-                  "repeated. Columns of actuators without one are exact commands, others unused")
+                  "Standard deviation of the columns that match NAME, e.g. tip.*=0.1mm "
+                  "(repeatable). Actuator columns without one are exact commands, all others are "
+                  "ignored")
       .type_name("NAME=STD")
       .allow_extra_args(false)
       .required();
   command
       .add_option("--marker", options.markers,
-                  "A measured point that the scene does not declare: low=trunk:0 18 70 mm; may be "
-                  "repeated")
+                  "Measured point that is not in the scene, e.g. \"low=trunk:0 18 70 mm\" "
+                  "(repeatable)")
       .type_name("NAME=BODY:POINT")
       .allow_extra_args(false);
 }
@@ -59,46 +60,47 @@ void add_readings(Command& command, EstimateOptions& options) {
 void add_unknowns(Command& command, EstimateOptions& options) {
   command
       .add_option("--force", options.forces,
-                  "A force of unknown size and direction at a known place, and the standard "
-                  "deviation of its components before: hand=trunk:0 0 195 mm:1N; may be repeated")
+                  "Unknown force vector at a known point, with the prior standard deviation of its "
+                  "components, e.g. \"hand=trunk:0 0 195 mm:1N\" (repeatable)")
       .type_name("NAME=BODY:POINT:STD")
       .allow_extra_args(false);
   command
       .add_option("--parameter", options.parameters,
-                  "A number of the scene, where to start and its relative standard deviation: "
-                  "bodies.trunk.material.young_modulus=450kPa:0.3; may be repeated")
+                  "Unknown scene parameter, with its initial value and relative prior standard "
+                  "deviation, e.g. bodies.trunk.material.young_modulus=450kPa:0.3 (repeatable)")
       .type_name("PATH=START:STD")
       .allow_extra_args(false);
   command
       .add_option("--search", options.search,
-                  "A push at an unknown place of a body: trunk:48:1N searches 48 patches")
+                  "Locate an unknown force on a body's surface, divided into PATCHES, e.g. "
+                  "trunk:48:1N")
       .type_name("BODY:PATCHES:STD");
-  command
-      .add_option("--walk", options.walk, "How fast forces wander, N per root second (default: 1)")
+  command.add_option("--walk", options.walk, "Random walk of the forces, N/sqrt(s) (default: 1)")
       .type_name("RATE");
 }
 
 }  // namespace
 
 void add_estimate(CommandLine& line) {
-  Command command = line.add_command(
-      "estimate", "Estimate forces and numbers of a robot from readings: docs/estimation.md");
+  Command command =
+      line.add_command("estimate", "Estimate external forces and parameters from measurements");
   const auto options = std::make_shared<EstimateOptions>();
   command.add_option("SCENE", options->scene, "Scene file (YAML)").required();
   add_readings(command, *options);
   add_unknowns(command, *options);
   command
       .add_option("--method", options->method,
-                  "settled (every row by itself), extended, unscented or horizon (default: "
-                  "extended; settled for parameters)")
+                  "Estimator: settled (each row separately, at rest), extended, unscented or "
+                  "horizon (default: extended; settled with --parameter)")
       .type_name("METHOD");
-  command.add_option("--set", options->overrides, "Set a value of the scene; may be repeated")
+  command.add_option("--set", options->overrides, "Override a scene value (repeatable)")
       .type_name("PATH=VALUE")
       .allow_extra_args(false);
   command.add_option("--out", options->out, "Output folder (default: out/<scene name>-estimate)")
       .type_name("DIR");
-  command.add_flag("--quiet", options->quiet, "No summary");
+  command.add_flag("--quiet", options->quiet, "Suppress the summary");
   command.footer(
+      "Writes estimate.csv to the output folder. Guide: docs/estimation.md.\n\n"
       "Example:\n"
       "  sinew estimate examples/trunk/trunk.yaml --measured out/trunk/run.csv --std "
       "tip.*=0.1mm\n"

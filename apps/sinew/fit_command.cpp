@@ -1,4 +1,4 @@
-// sinew fit: coefficients of rubber from tests.
+// sinew fit: hyperelastic models from material tests.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -57,9 +57,9 @@ void print_header(const std::vector<RubberTest>& tests, const identify::FitSetti
   }
   fmt::print("\n{:<14} {:>6}", "model", "mu_0");
   for (const RubberTest& test : tests) fmt::print(" {:>16}", test.name.substr(0, 16));
-  fmt::print(" {:>18} {:>8}\n{:<14} {:>6}", "stable in tension", "numbers", "", "kPa");
+  fmt::print(" {:>18} {:>8}\n{:<14} {:>6}", "stable range", "params", "", "kPa");
   for (std::size_t k = 0; k < tests.size(); ++k) fmt::print(" {:>16}", "RMS kPa (%)");
-  fmt::print(" {:>18} {:>8}\n", "(uniaxial)", "fitted");
+  fmt::print(" {:>18} {:>8}\n", "(uniaxial)", "");
 }
 
 void print_row(const FitResult& fit, const std::string& marks) {
@@ -89,7 +89,7 @@ std::size_t print_rows(const std::vector<FitResult>& fits) {
     print_row(fits[k], marks);
   }
   if (fits.size() > 1) {
-    fmt::print("* best supported (least Bayesian information criterion)   + least error\n");
+    fmt::print("* lowest Bayesian information criterion (BIC)   + lowest error\n");
   }
   return supported;
 }
@@ -100,7 +100,7 @@ void print_terms(const FitResult& fit) {
   const std::size_t asked = static_cast<std::size_t>(fit.model.back() - '0');
   const std::size_t found = fit.coefficients.size() / 2;
   if (found == asked) return;
-  fmt::print("  {} of {} terms: further ones do not lessen the error\n", found, asked);
+  fmt::print("  {} of {} terms: more terms do not reduce the error\n", found, asked);
 }
 
 void print_fit(const FitResult& fit) {
@@ -120,12 +120,12 @@ void print_fit(const FitResult& fit) {
   fmt::print("  initial shear modulus {:.4g} kPa, Young's modulus {:.4g} kPa\n",
              1e-3 * fit.energy.shear_modulus(), 1e-3 * fit.energy.young_modulus());
   const auto range = [](const char* mode, const std::pair<double, double>& r) {
-    fmt::print("  stable after Drucker, {}: stretch {:.3g} to {:.3g}\n", mode, r.first, r.second);
+    fmt::print("  Drucker-stable, {}: stretch {:.3g} to {:.3g}\n", mode, r.first, r.second);
   };
   range("uniaxial", fit.uniaxial_range);
   range("equibiaxial", fit.equibiaxial_range);
   range("planar", fit.planar_range);
-  if (!fit.converged) fmt::print("  the search ended before it converged: give more --starts\n");
+  if (!fit.converged) fmt::print("  the fit did not converge: increase --starts\n");
 }
 
 std::string json_of(const std::vector<RubberTest>& tests, const std::vector<FitResult>& fits) {
@@ -171,7 +171,7 @@ int fit(const FitOptions& options) {
   print_fit(own);
   if (!options.out.empty()) {
     write_file(options.out, identify::material_yaml(own, tests, settings));
-    fmt::print("wrote {}: in a scene, material: {{file: {}}}\n", options.out, options.out);
+    fmt::print("wrote {}; use it in a scene as material: {{file: {}}}\n", options.out, options.out);
   }
   return options.plot.empty() ? 0 : draw_json("fit", json_of(tests, fits), options.plot);
 }
@@ -180,29 +180,45 @@ int fit(const FitOptions& options) {
 
 void add_fit(CommandLine& line) {
   Command command =
-      line.add_command("fit", "Fit a rubber's law to tensile, equibiaxial and planar tests");
+      line.add_command("fit", "Fit a hyperelastic model to tensile, equibiaxial and planar tests");
   const auto options = std::make_shared<FitOptions>();
   command
       .add_option("DATA", options->files,
-                  "Tables with named columns, a strain or stretch and a stress with its unit; "
-                  "FILE:uniaxial, FILE:equibiaxial or FILE:planar where the name does not say")
+                  "CSV with a column of strain or stretch and one of stress with its unit; append "
+                  ":uniaxial, :equibiaxial or :planar if the file name does not contain it")
+      .type_name("FILE")
       .required();
-  command.add_option("--model", options->model,
-                     "neo-hookean, mooney-rivlin, yeoh1 to yeoh3, ogden1 to ogden6, arruda-boyce "
-                     "(default: ogden3; with --all the best supported)");
-  command.add_flag("--all", options->all, "Compare all models in one table");
-  command.add_option("--min-stretch", options->settings.min_stretch,
-                     "Leave out rows of a smaller stretch (default: 0)");
-  command.add_option("--max-stretch", options->settings.max_stretch,
-                     "Leave out rows of a larger stretch (default: none)");
-  command.add_option("--starts", options->settings.starts, "Random starts (default: 5)");
-  command.add_option("--seed", options->settings.seed, "Of the random starts");
+  command
+      .add_option("--model", options->model,
+                  "neo-hookean, mooney-rivlin, yeoh1 to yeoh3, ogden1 to ogden6 or arruda-boyce "
+                  "(default: ogden3; with --all, the one with the lowest BIC)")
+      .type_name("NAME");
+  command.add_flag("--all", options->all, "Fit all models and compare them");
+  command
+      .add_option("--min-stretch", options->settings.min_stretch,
+                  "Ignore rows below this stretch (default: 0)")
+      .type_name("X");
+  command
+      .add_option("--max-stretch", options->settings.max_stretch,
+                  "Ignore rows above this stretch (default: none)")
+      .type_name("X");
+  command
+      .add_option("--starts", options->settings.starts,
+                  "Random starts of nonlinear fits (default: 5)")
+      .type_name("N");
+  command.add_option("--seed", options->settings.seed, "Random seed of the starts (default: 1)")
+      .type_name("S");
   command.add_flag("--mullins", options->settings.mullins,
-                   "Fit the softening on unloading, too; rows in the order measured");
-  command.add_option("--poisson-ratio", options->settings.poisson_ratio,
-                     "Of the material that is written (default: 0.49)");
-  command.add_option("-o,--out", options->out, "YAML file to write, for scenes");
-  command.add_option("--plot", options->plot, "PNG file to draw data, fit and residual into");
+                   "Also fit the Mullins effect (softening on unloading); rows in measured order");
+  command
+      .add_option("--poisson-ratio", options->settings.poisson_ratio,
+                  "Poisson's ratio of the written material; the fit is incompressible (default: "
+                  "0.49)")
+      .type_name("NU");
+  command.add_option("-o,--out", options->out, "Write the material as YAML, for scenes")
+      .type_name("FILE");
+  command.add_option("--plot", options->plot, "Plot data, fit and residuals to a PNG file")
+      .type_name("FILE");
   command.footer(
       "Examples:\n"
       "  sinew fit uniaxial.csv equibiaxial.csv --model ogden3 -o rubber.yaml --plot rubber.png\n"

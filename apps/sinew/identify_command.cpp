@@ -70,24 +70,24 @@ MotionRecord read_record(const std::string& file, const IdentifyOptions& options
   const Eigen::Index inputs = record.input.cols(), wanted = std::ssize(scene.inputs);
   if (inputs == 0) {
     throw Error(ErrorKind::wrong_columns, {.file = file},
-                "it does not say what drove the arm: no column torque_0 or volume_0",
-                "add a column for each actuator, or say --passive if nothing did");
+                "no column torque_0 or volume_0: the inputs of the arm are unknown",
+                "add a column for each actuator, or give --passive if the arm was not actuated");
   }
   if (inputs != wanted) {
-    throw Error(
-        ErrorKind::wrong_columns, {.file = file},
-        fmt::format("it has {} inputs, and {} torques drive the scene's arm", inputs, wanted),
-        wanted == 0 ? "add actuators of type torque to the scene, or say --passive"
-                    : fmt::format("give a column for each of {}, numbered from 0",
-                                  fmt::join(scene.inputs, ", ")));
+    throw Error(ErrorKind::wrong_columns, {.file = file},
+                fmt::format("the record has {} inputs, but the scene's arm has {} torque actuators",
+                            inputs, wanted),
+                wanted == 0 ? "add actuators of type torque to the scene, or give --passive"
+                            : fmt::format("give a column for each of {}, numbered from 0",
+                                          fmt::join(scene.inputs, ", ")));
   }
   const bool volumes = holds_volumes(file);
   if (volumes != options.coefficient.has_value()) {
     throw Error(ErrorKind::bad_argument, {.file = file, .item = "--coefficient"},
-                volumes ? "volumes drove the arm, and nothing says what torque they make"
-                        : "torques drove the arm, and no actuator is to be fitted",
-                volumes ? "give a first guess of c in torque = c volume^3: --coefficient 4e12"
-                        : "leave --coefficient out");
+                volumes ? "the inputs are volumes, and their relation to torque is not given"
+                        : "the inputs are torques, which need no coefficient",
+                volumes ? "give an initial guess of c in torque = c volume^3: --coefficient 4e12"
+                        : "omit --coefficient");
   }
   return record;
 }
@@ -141,7 +141,7 @@ identify::ArmModel model_of(const IdentifyOptions& options, const ArmScene& scen
 void print_records(const char* title, const std::vector<RecordFit>& records, bool fitted) {
   if (records.empty()) return;
   std::vector<std::vector<std::string>> rows = {{title, "NRMSE %", "mean error mm"}};
-  if (fitted) rows.front().insert(rows.front().end(), {"summed before m", "after m"});
+  if (fitted) rows.front().insert(rows.front().end(), {"summed error before m", "after m"});
   for (const RecordFit& record : records) {
     rows.push_back({record.name, fmt::format("{:.3g}", 100.0 * record.nrmse),
                     fmt::format("{:.3g}", 1e3 * record.mean_error)});
@@ -262,8 +262,8 @@ int run_identify(const IdentifyOptions& options) {
     }
   }
   fmt::print("{}", identify::fit_table(found.fit, found.own));
-  print_records("fitted to", found.records, true);
-  print_records("not fitted to", validated, false);
+  print_records("fit", found.records, true);
+  print_records("validation", validated, false);
   if (options.json) {
     write_file(*options.json, to_json(scene, found, validated).dump(2) + "\n");
   }
@@ -281,52 +281,61 @@ int run_identify(const IdentifyOptions& options) {
 }  // namespace
 
 void add_identify(CommandLine& line) {
-  Command command =
-      line.add_command("identify", "Fit an arm's masses, stiffness and damping to recorded motion");
+  Command command = line.add_command(
+      "identify", "Identify masses, stiffness and damping of an arm from motion data");
   const auto options = std::make_shared<IdentifyOptions>();
   add_arm_scene_options(command, options->scene);
   command
       .add_option("RECORD", options->records,
-                  "Tables of motion: time [s], x_0 [mm], z_0 [mm], x_1 [mm] ..., and torque_0 "
-                  "[N m] or volume_0 [ml] ... of the scene's torques in their order")
+                  "CSV of motion: time [s], x_0 [mm], z_0 [mm], x_1 [mm] ..., and torque_0 [N m] "
+                  "or volume_0 [ml] ... in the order of the scene's actuators")
+      .type_name("FILE")
       .required();
-  command.add_option("--fixed", options->fixed, "Known parameters: mass_1,stiffness")
+  command
+      .add_option("--fixed", options->fixed,
+                  "Parameters to keep at the scene's values, e.g. mass_1,stiffness")
       .delimiter(',')
       .type_name("NAMES")
       .allow_extra_args(false);
-  command.add_flag("--passive", options->passive,
-                   "Nothing drove the arm; inputs are not looked at");
-  command.add_flag("--moving", options->moving, "Records begin in motion, not at rest");
+  command.add_flag("--passive", options->passive, "The arm was not actuated; ignore input columns");
+  command.add_flag("--moving", options->moving, "Records start in motion (default: at rest)");
   command
       .add_option("--coefficient", options->coefficient,
-                  "With volumes: a first guess of c in torque = c volume^3, N m/m^9")
+                  "Volume inputs: initial guess of c in torque = c volume^3, N m/m^9")
       .type_name("C");
-  command.add_option("--delay", options->delay, "With volumes: a first guess (default: 0s)")
+  command
+      .add_option("--delay", options->delay,
+                  "Volume inputs: initial guess of the actuator delay (default: 0s)")
       .type_name("TIME");
   command
       .add_option("--mass-spread", options->mass_spread,
-                  "How far masses may go from the scene's, as a fraction (default: 0.38)")
+                  "Bounds on masses, as a fraction of the scene's (default: 0.38)")
       .type_name("X");
   command
       .add_option("--stiffness-spread", options->stiffness_spread,
-                  "The same of the stiffness (default: 0.23)")
+                  "Bounds on stiffness, as a fraction of the scene's (default: 0.23)")
       .type_name("X");
-  command.add_option("--damping", options->damping, "Its bounds (default: \"1e-3 5e-3 N m s\")")
+  command
+      .add_option("--damping", options->damping, "Bounds on damping (default: \"1e-3 5e-3 N m s\")")
       .type_name("RANGE");
-  command.add_option("--time-step", options->time_step, "Of the simulation (default: 5ms)")
+  command
+      .add_option("--time-step", options->time_step, "Time step of the simulation (default: 5ms)")
       .type_name("TIME");
-  command.add_option("--starts", options->starts, "Of the search; the rest random (default: 1)")
+  command
+      .add_option("--starts", options->starts,
+                  "Starts of the fit: the scene's values, then random (default: 1)")
       .type_name("N");
-  command.add_option("--seed", options->seed, "Of the random starts (default: 1)").type_name("S");
+  command.add_option("--seed", options->seed, "Random seed of the starts (default: 1)")
+      .type_name("S");
   command
       .add_option("--validate", options->validate,
-                  "A record to predict that is not fitted to; may be repeated")
+                  "Record for validation, not used in the fit (repeatable)")
       .type_name("RECORD")
       .allow_extra_args(false);
-  command.add_option("--json", options->json, "Also write the figures to a file").type_name("FILE");
-  command.add_option("-o,--out", options->out, "YAML file: the scene with the identified arm")
+  command.add_option("--json", options->json, "Also write the results as JSON").type_name("FILE");
+  command.add_option("-o,--out", options->out, "Write the scene with the identified arm as YAML")
       .type_name("FILE");
-  command.add_option("--plot", options->plot, "PNG file to draw measured and predicted ends into")
+  command.add_option("--plot", options->plot, "Plot measured and predicted motion to a PNG file")
       .type_name("FILE");
   command.footer(
       "Example:\n"

@@ -325,8 +325,8 @@ Facts facts_of(const InfoOptions& options) {
   if (fs::is_directory(path)) {
     if (fs::exists(path / "run.h5")) return run_facts((path / "run.h5").string());
     throw Error(ErrorKind::file_unreadable, {.file = options.file},
-                "this is a folder, and there is no run.h5 in it",
-                "name a mesh, a surface, a scene, a saved state, or the folder of a run");
+                "this folder contains no run.h5",
+                "give a mesh, a surface, a scene, a saved state, or the folder of a run");
   }
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(),
@@ -356,11 +356,17 @@ void add_info(CommandLine& line) {
   Command command =
       line.add_command("info", "Describe a mesh, surface, scene, recorded run or saved state");
   const auto options = std::make_shared<InfoOptions>();
-  command.add_option("FILE", options->file, "The file, or the folder of a run").required();
-  command.add_option("--unit", options->unit, "Unit of a mesh's lengths: mm").type_name("UNIT");
-  command.add_flag("--json", options->json, "As JSON, in SI units");
+  command
+      .add_option("FILE", options->file,
+                  "Mesh, surface, scene, saved state, or output folder of a run")
+      .required();
+  command
+      .add_option("--unit", options->unit,
+                  "Length unit of a mesh or surface file, e.g. mm (default: m)")
+      .type_name("UNIT");
+  command.add_flag("--json", options->json, "Print JSON, in SI units");
   command.footer(
-      "A mesh with defects is described, not refused.\n\n"
+      "Defects of a mesh are listed; only an unreadable file is an error.\n\n"
       "Examples:\n"
       "  sinew info finger.vtk --unit mm\n"
       "  sinew info out/trunk --json");

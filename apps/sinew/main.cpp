@@ -1,5 +1,5 @@
-// sinew: simulate and steer soft robots from the command line.
-// Exit codes: 0 done, 1 the run failed, 2 wrong input.
+// sinew: simulate and control soft robots from the command line.
+// Exit codes: 0 success, 1 failed or unreliable run, 2 invalid input.
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -34,7 +34,7 @@ constexpr const char* kExamples =
     "  sinew plan examples/fluidic_arm/arm.yaml --goal \"20 0 -40 cm\" -o plan.csv\n"
     "  sinew bench examples/trunk/circle.yaml --steps 400 --json bench.json\n"
     "\n"
-    "Exit codes: 0 done, 1 the run failed, 2 wrong input.";
+    "Exit codes: 0 success, 1 failed or unreliable run, 2 invalid input.";
 
 int report(const Error& error) {
   std::fflush(stdout);
@@ -43,7 +43,7 @@ int report(const Error& error) {
 }
 
 int run(int argc, const char* const* argv) {
-  cli::CommandLine line("Simulates soft robots and steers them in real time.",
+  cli::CommandLine line("Simulate and control soft robots in real time.",
                         fmt::format("sinew {} ({}, {})", version(), compiler(), instruction_set()),
                         kExamples);
   cli::add_run(line);
@@ -74,10 +74,10 @@ int main(int argc, char** argv) {
   } catch (const Error& error) {
     return report(error);
   } catch (const std::bad_alloc&) {
-    return report(Error(ErrorKind::size_limit, {}, "there is not enough memory",
+    return report(Error(ErrorKind::size_limit, {}, "out of memory",
                         "use a coarser mesh, or a machine with more memory"));
   } catch (const std::exception& error) {
-    return report(
-        Error(ErrorKind::internal, {}, error.what(), "please report this with the input"));
+    return report(Error(ErrorKind::internal, {}, error.what(),
+                        "please report this error with the input that caused it"));
   }
 }

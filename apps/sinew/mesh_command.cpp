@@ -32,8 +32,8 @@ struct MeshOptions {
 
 mesh::Mesh from_shape(const MeshOptions& options) {
   if (options.unit) {
-    throw Error(ErrorKind::bad_argument, {.item = "--unit"}, "a shape has no unit of its own",
-                "give --unit with a surface file only");
+    throw Error(ErrorKind::bad_argument, {.item = "--unit"}, "shapes have no file unit",
+                "give --unit only with a surface file");
   }
   scene::MeshDescription description = scene::read_shape(options.shape, options.measures);
   if (options.size) {
@@ -45,13 +45,13 @@ mesh::Mesh from_shape(const MeshOptions& options) {
 
 mesh::Mesh from_surface(const MeshOptions& options) {
   if (!options.measures.empty()) {
-    throw Error(ErrorKind::bad_argument, {.item = "--set"}, "a surface file has no measures to set",
-                "give --set with --shape only");
+    throw Error(ErrorKind::bad_argument, {.item = "--set"},
+                "a surface file has no dimensions to set", "give --set only with --shape");
   }
   mesh::TetrahedraliseOptions settings;
   settings.program = options.gmsh;
   if (!options.size) {
-    throw Error(ErrorKind::bad_argument, {.item = "--size"}, "the wanted edge length is missing",
+    throw Error(ErrorKind::bad_argument, {.item = "--size"}, "the target edge length is missing",
                 "write for example --size 5mm");
   }
   settings.size = positive_quantity("--size", *options.size, dimension::kLength);
@@ -66,7 +66,8 @@ int make(const MeshOptions& options) {
   if (options.surface.empty() == options.shape.empty()) {
     throw Error(
         ErrorKind::bad_argument, {.item = "mesh"},
-        options.surface.empty() ? "there is nothing to mesh" : "there are two things to mesh",
+        options.surface.empty() ? "neither a surface nor a shape is given"
+                                : "both a surface and a shape are given",
         fmt::format("give a surface file or --shape {}", fmt::join(scene::shape_names(), "|")));
   }
   mesh::require_writable_format(options.out);
@@ -74,36 +75,41 @@ int make(const MeshOptions& options) {
   mesh::Mesh mesh = options.shape.empty() ? from_surface(options) : from_shape(options);
   for (int i = 0; i < options.refine; ++i) mesh = mesh::refine(mesh);
   mesh::write_mesh(options.out, mesh);
-  fmt::print("{}written to {}, lengths in m\n", mesh::format_report(mesh::describe(mesh)),
-             options.out);
+  fmt::print("{}wrote {}, lengths in m\n", mesh::format_report(mesh::describe(mesh)), options.out);
   return 0;
 }
 
 }  // namespace
 
 void add_mesh(CommandLine& line) {
-  Command command = line.add_command("mesh", "Fill a surface with tetrahedra, or make a shape");
+  Command command = line.add_command(
+      "mesh", "Mesh a closed surface with tetrahedra, or create a primitive shape");
   const auto options = std::make_shared<MeshOptions>();
-  command.add_option("SURFACE", options->surface, "Closed surface: STL, OBJ or PLY");
+  command.add_option("SURFACE", options->surface, "Closed surface: STL, OBJ or PLY file");
   command
       .add_option("--shape", options->shape,
-                  fmt::format("Make a shape instead: {}", fmt::join(scene::shape_names(), ", ")))
+                  fmt::format("Create a shape instead: {}", fmt::join(scene::shape_names(), ", ")))
       .type_name("SHAPE");
   command
       .add_option("--set", options->measures,
-                  "Set a measure of the shape, as scenes name it: radius=15mm; may be repeated")
+                  "Dimension of the shape, named as in scenes, e.g. radius=15mm (repeatable)")
       .type_name("KEY=VALUE")
       .allow_extra_args(false);
   command
-      .add_option("-o,--out", options->out,
-                  "File to write: .vtu, .vtk, or .stl for the surface alone")
+      .add_option("-o,--out", options->out, "Output file: .vtu, .vtk, or .stl for the surface only")
       .required()
       .type_name("FILE");
-  command.add_option("--size", options->size, "Wanted edge length: 5mm").type_name("LENGTH");
-  command.add_option("--unit", options->unit, "Unit of the surface file: mm").type_name("UNIT");
-  command.add_option("--refine", options->refine, "Cut every tetrahedron in eight, N times")
+  command
+      .add_option("--size", options->size, "Target edge length, e.g. 5mm; required for a surface")
+      .type_name("LENGTH");
+  command
+      .add_option("--unit", options->unit, "Length unit of the surface file, e.g. mm (default: m)")
+      .type_name("UNIT");
+  command
+      .add_option("--refine", options->refine,
+                  "Split every tetrahedron into eight, N times (default: 0)")
       .type_name("N");
-  command.add_option("--gmsh", options->gmsh, "The Gmsh program that fills surfaces")
+  command.add_option("--gmsh", options->gmsh, "Gmsh executable (default: gmsh)")
       .type_name("PROGRAM");
   command.footer(
       "Examples:\n"

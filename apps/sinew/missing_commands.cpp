@@ -15,7 +15,8 @@ namespace {
 
 void add_missing(CommandLine& line, const char* name, const char* part, const char* option,
                  const char* library) {
-  Command command = line.add_command(name, fmt::format("Not in this build, which has no {}", part));
+  Command command =
+      line.add_command(name, fmt::format("Not available: this build has no {}", part));
   command.allow_extras();
   command.set_action([=]() -> int {
     throw Error(ErrorKind::tool_missing, {.item = name},

@@ -74,7 +74,7 @@ double torque_rate(const std::string& text) {
     return positive_quantity("--rate-limit", text, dimension::kPower);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::wrong_dimension) throw;
-    throw Error(error.kind(), error.place(), fmt::format("'{}' is no torque a second", text),
+    throw Error(error.kind(), error.place(), fmt::format("'{}' is not a torque rate", text),
                 "write for example 2Nm/s");
   }
 }
@@ -137,9 +137,8 @@ void print_attempts(const std::vector<Attempt>& attempts) {
       rows.back().push_back(fmt::format("{:.3f}", 100.0 * value));
     }
   }
-  fmt::print(
-      "{}tip error and speed are those of the motion that the torques cause, integrated anew\n",
-      format_table(rows));
+  fmt::print("{}tip error and tip speed: at the end of a simulation with the planned torques\n",
+             format_table(rows));
 }
 
 // The cheapest plan; null when there is none.
@@ -159,7 +158,7 @@ const Attempt* best_of(const std::vector<Attempt>& attempts) {
   const Plan& first = attempts.front().plan;
   const std::string missed =
       first.status == plan::PlanStatus::not_met_on_replay
-          ? fmt::format(", the motion of the torques ends {:.3g} mm from the goal at {:.3g} mm/s",
+          ? fmt::format(", the simulated motion ends {:.3g} mm from the goal at {:.3g} mm/s",
                         1e3 * first.tip_error, 1e3 * first.tip_speed)
           : "";
   throw Error(
@@ -167,8 +166,8 @@ const Attempt* best_of(const std::vector<Attempt>& attempts) {
       fmt::format("no plan was found from {} start{}: {}", attempts.size(),
                   attempts.size() == 1 ? "" : "s",
                   alike ? std::string(plan::status_name(status)) + missed : "see the table"),
-      "give a longer --duration or --free-duration, more --seeds or --intervals, wider "
-      "tolerances, or limits that leave more torque");
+      "increase --duration, --seeds, --intervals or the tolerances, use --free-duration, or raise "
+      "the torque limits");
 }
 
 // Times and torques as signals of files read them: straight lines between rows.
@@ -245,7 +244,7 @@ nlohmann::ordered_json to_json(const ArmScene& scene, const PlanTask& task,
 
 void say_how_to_play(const PlanOptions& options, const ArmScene& scene, const Plan& plan) {
   const std::string table = std::filesystem::absolute(options.out).lexically_normal().string();
-  fmt::print("wrote {}; to play it:\n  sinew run {} --duration {:.6g}s", options.out,
+  fmt::print("wrote {}; to run it:\n  sinew run {} --duration {:.6g}s", options.out,
              options.scene.file.string(), plan.duration());
   for (const std::string& set : options.scene.overrides) fmt::print(" \\\n    --set '{}'", set);
   for (const std::string& input : scene.inputs) {
@@ -278,44 +277,50 @@ int make_plan(const PlanOptions& options) {
 }  // namespace
 
 void add_plan(CommandLine& line) {
-  Command command = line.add_command("plan", "Plan torques that bring an arm's tip to a goal");
+  Command command = line.add_command("plan", "Plan joint torques that move an arm's tip to a goal");
   const auto options = std::make_shared<PlanOptions>();
   add_arm_scene_options(command, options->scene);
-  command.add_option("--goal", options->goal, "Where the tip is to be: \"20 0 -40 cm\"")
+  command.add_option("--goal", options->goal, "Goal of the tip, e.g. \"20 0 -40 cm\"")
       .required()
       .type_name("POINT");
-  command.add_option("--duration", options->duration, "Of the motion (default: 1.6s)")
+  command.add_option("--duration", options->duration, "Duration of the motion (default: 1.6s)")
       .type_name("TIME");
   command.add_flag("--free-duration", options->free_duration,
-                   "Let it be chosen, from half of that to twice that");
+                   "Optimise the duration, from half to twice --duration");
   command
       .add_option("--rate-limit", options->rate_limit,
-                  "Of every torque, beside the scene's own: 2Nm/s")
+                  "Limit on the rate of every torque, besides the scene's, e.g. 2Nm/s")
       .type_name("RATE");
-  command.add_option("--tolerance", options->tolerance, "Of the tip's distance (default: 2mm)")
+  command
+      .add_option("--tolerance", options->tolerance,
+                  "Distance of the tip from the goal at the end (default: 2mm)")
       .type_name("LENGTH");
   command
       .add_option("--speed-tolerance", options->speed_tolerance,
-                  "Of the tip's speed at the end (default: 5mm/s)")
+                  "Speed of the tip at the end (default: 5mm/s)")
       .type_name("SPEED");
-  command.add_option("--method", options->method, "radau or backward-euler (default: radau)")
-      .type_name("NAME");
   command
-      .add_option("--intervals", options->intervals, "Between knots, to begin with (default: 50)")
+      .add_option("--method", options->method,
+                  "Collocation method: radau or backward-euler (default: radau)")
+      .type_name("NAME");
+  command.add_option("--intervals", options->intervals, "Initial number of intervals (default: 50)")
       .type_name("N");
-  command.add_option("--seeds", options->seeds, "Random starts; the cheapest plan is kept (1)")
+  command
+      .add_option("--seeds", options->seeds,
+                  "Number of random starts; keep the cheapest plan (default: 1)")
       .type_name("N");
-  command.add_option("--seed", options->seed, "Of the first start (default: 1)").type_name("S");
-  command.add_option("--json", options->json, "Also write the figures to a file").type_name("FILE");
-  command.add_option("-o,--out", options->out, "CSV file of times and torques, for scenes")
+  command.add_option("--seed", options->seed, "Random seed of the first start (default: 1)")
+      .type_name("S");
+  command.add_option("--json", options->json, "Also write the results as JSON").type_name("FILE");
+  command.add_option("-o,--out", options->out, "Write times and torques as CSV, for scenes")
       .type_name("FILE");
-  command.add_option("--plot", options->plot, "PNG file to draw torques and the tip's path into")
+  command.add_option("--plot", options->plot, "Plot torques and tip path to a PNG file")
       .type_name("FILE");
   command.footer(
+      "Uses the scene's actuators of type torque, within their limits.\n\n"
       "Example:\n"
       "  sinew plan examples/fluidic_arm/arm.yaml --goal \"20 0 -40 cm\" --rate-limit 2Nm/s -o "
-      "plan.csv\n"
-      "The actuators of type torque drive it, within their limits.");
+      "plan.csv");
   command.set_action([options] { return make_plan(*options); });
 }
 

@@ -23,12 +23,11 @@ int plot(const PlotOptions& options) {
   }
   if (!std::filesystem::exists(folder / "run.csv")) {
     throw Error(ErrorKind::file_not_found, {.file = (folder / "run.csv").string()},
-                "there is no recorded run",
-                "name the folder that `sinew run` or `sinew sweep` wrote");
+                "no recorded run here", "give the output folder of `sinew run` or `sinew sweep`");
   }
   if (!options.kind.empty()) {
-    throw Error(ErrorKind::bad_argument, {.item = "--kind"}, "only sweeps have kinds of plots",
-                "leave it out for a run");
+    throw Error(ErrorKind::bad_argument, {.item = "--kind"}, "--kind applies to sweeps only",
+                "omit it for a run");
   }
   const std::string out = options.out.empty() ? (folder / "run.png").string() : options.out;
   return draw_plot({"run", folder.string(), out});
@@ -37,19 +36,18 @@ int plot(const PlotOptions& options) {
 }  // namespace
 
 void add_plot(CommandLine& line) {
-  Command command =
-      line.add_command("plot", "Draw what a run or a sweep recorded, from its folder");
+  Command command = line.add_command("plot", "Plot a recorded run or a sweep");
   const auto options = std::make_shared<PlotOptions>();
-  command
-      .add_option("DIR", options->folder,
-                  "Folder of the run or the sweep, as `sinew run` or `sinew sweep` wrote it")
+  command.add_option("DIR", options->folder, "Output folder of `sinew run` or `sinew sweep`")
       .required();
-  command.add_option("-o,--out", options->out,
-                     "PNG file (default: DIR/run.png); of a sweep the folder of several, or with "
-                     "--kind the file (default: DIR)");
+  command
+      .add_option("-o,--out", options->out,
+                  "PNG file (default: DIR/run.png); for a sweep, a folder (default: DIR), or a "
+                  "file with --kind")
+      .type_name("PATH");
   command
       .add_option("--kind", options->kind,
-                  "Of a sweep only this: scatter, parallel, surface or workspace (default: all)")
+                  "Plot of a sweep: scatter, parallel, surface or workspace (default: all four)")
       .type_name("KIND");
   command.footer("Example:\n  sinew run examples/trunk/circle.yaml && sinew plot out/circle");
   command.set_action([options] { return plot(*options); });

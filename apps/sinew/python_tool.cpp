@@ -38,7 +38,7 @@ std::filesystem::path plot_script() {
     if (std::filesystem::exists(path)) return path;
   }
   throw Error(ErrorKind::tool_missing, {.file = SINEW_PLOT_DEFAULT},
-              "the script that draws plots is not there", "install the Python package");
+              "the plotting script is missing", "install the Python package");
 }
 
 // As execv() takes them.
@@ -59,7 +59,7 @@ std::vector<std::string> module_call(const std::string& module,
 
 [[noreturn]] void throw_missing_interpreter(const std::string& what) {
   throw Error(ErrorKind::tool_missing, {.file = kInterpreter},
-              fmt::format("{}, and Python cannot be started", what),
+              fmt::format("{}, but Python cannot be started", what),
               "apt-get install python3 python3-numpy python3-matplotlib");
 }
 
@@ -75,7 +75,7 @@ int run_interpreter(std::vector<std::string> words) {
   int status = 0;
   if (child < 0 || waitpid(child, &status, 0) < 0 || !WIFEXITED(status) ||
       WEXITSTATUS(status) == 127) {
-    throw_missing_interpreter("plots are drawn by the Python package");
+    throw_missing_interpreter("this command needs the Python package");
   }
   return WEXITSTATUS(status);
 }
@@ -104,7 +104,7 @@ int become_python(std::vector<std::string> words, const std::string& what) {
 
 int become_python_module(const std::string& module, const std::vector<std::string>& arguments) {
   return become_python(module_call(module, arguments),
-                       fmt::format("'{}' is a part of the Python package", module));
+                       fmt::format("'{}' is part of the Python package", module));
 }
 
 int draw_json(const std::string& kind, const std::string& json, const std::string& out) {

@@ -62,7 +62,8 @@ plan::ArmLimits torque_limits(const ArmScene& scene) {
       continue;
     }
     throw Error(ErrorKind::out_of_range, {.item = fmt::format("actuators.{}", scene.inputs[u])},
-                "its torque has no limit", "write limits: {torque: {min: -0.1 N m, max: 0.1 N m}}");
+                "the torque has no limits",
+                "write limits: {torque: {min: -0.1 N m, max: 0.1 N m}}");
   }
   return plan::completed_limits(*scene.arm, limits);
 }
@@ -81,11 +82,11 @@ std::string centimetres(const Vector3& point) {
 
 void print_reach(const plan::ReachMap& map, const std::vector<GoalReach>& goals) {
   if (map.tip.rows() > 0) {
-    fmt::print("{} stable equilibria, their tips within cm {} to {}\n", map.tip.rows(),
+    fmt::print("{} stable equilibria, tips from {} to {} cm\n", map.tip.rows(),
                centimetres(map.tip.colwise().minCoeff()),
                centimetres(map.tip.colwise().maxCoeff()));
   } else {
-    fmt::print("no stable equilibrium was found\n");
+    fmt::print("no stable equilibrium found\n");
   }
   if (goals.empty()) return;
   std::vector<std::vector<std::string>> rows = {
@@ -184,29 +185,29 @@ int reach(const ReachOptions& options) {
 }  // namespace
 
 void add_reach(CommandLine& line) {
-  Command command =
-      line.add_command("reach", "Find where an arm's tip can be held at rest, and where not");
+  Command command = line.add_command("reach", "Compute the static workspace of an arm's tip");
   const auto options = std::make_shared<ReachOptions>();
   add_arm_scene_options(command, options->scene);
-  command.add_option("--samples", options->samples, "Random torques to try (default: 1000)")
+  command
+      .add_option("--samples", options->samples, "Number of random torque samples (default: 1000)")
       .type_name("N");
-  command.add_option("--seed", options->seed, "Of the random torques (default: 1)").type_name("S");
+  command.add_option("--seed", options->seed, "Random seed (default: 1)").type_name("S");
   command
       .add_option("--goal", options->goals,
-                  "Find the nearest equilibrium to it, and prove that there is none near it: "
-                  "\"20 0 -40 cm\"; may be repeated")
+                  "Find the equilibrium nearest to this point, or prove that none is near, e.g. "
+                  "\"20 0 -40 cm\" (repeatable)")
       .type_name("POINT")
       .allow_extra_args(false);
-  command.add_option("--json", options->json, "Also write the figures to a file").type_name("FILE");
-  command.add_option("-o,--out", options->out, "CSV file of tips, angles and torques")
+  command.add_option("--json", options->json, "Also write the results as JSON").type_name("FILE");
+  command.add_option("-o,--out", options->out, "Write tip positions, angles and torques as CSV")
       .type_name("FILE");
-  command.add_option("--plot", options->plot, "PNG file to draw the reachable points into")
+  command.add_option("--plot", options->plot, "Plot the reachable points to a PNG file")
       .type_name("FILE");
   command.footer(
+      "Torques are sampled within the limits of the scene's actuators of type torque; segments\n"
+      "without an actuator are passive.\n\n"
       "Example:\n"
-      "  sinew reach examples/fluidic_arm/arm.yaml --goal \"20 0 -40 cm\" --plot reach.png\n"
-      "Torques act within the limits of the scene's actuators of type torque; other segments have "
-      "none.");
+      "  sinew reach examples/fluidic_arm/arm.yaml --goal \"20 0 -40 cm\" --plot reach.png");
   command.set_action([options] { return reach(*options); });
 }
 

@@ -107,8 +107,8 @@ std::int64_t step_count(double duration, double time_step) {
   const double steps = std::round(duration / time_step);
   if (steps > kMaxSteps) {
     throw Error(ErrorKind::out_of_range, {.item = "duration"},
-                fmt::format("{:g} s are {:g} steps of {:g} s", duration, steps, time_step),
-                "run for a shorter time or with a larger time step");
+                fmt::format("{:g} s is {:g} steps of {:g} s", duration, steps, time_step),
+                "shorten the duration or increase the time step");
   }
   return std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
 }
@@ -187,7 +187,7 @@ int check_video(const RunOptions& options, const scene::Robot& robot) {
   if (options.video.empty()) return 0;
   if (!robot.description.record.states) {
     throw Error(ErrorKind::bad_argument, {.item = "--video"},
-                "the scene records no positions, which a video is drawn from",
+                "a video needs the node positions, which this scene does not record",
                 "write record: {states: true}");
   }
   return run_python_module("sinew.render", {"--check", "--video", options.video});
@@ -248,9 +248,10 @@ int run(const RunOptions& options) {
   finish();
   warn(tally);
   if (tally.steps < steps) {
-    fmt::print(stderr,
-               "sinew: interrupted at t = {:g} s of {:g} s; what was recorded is complete\n",
-               session.simulation().time(), duration);
+    fmt::print(
+        stderr,
+        "sinew: interrupted at t = {:g} s of {:g} s; the record is complete up to this time\n",
+        session.simulation().time(), duration);
     return tally.flagged.empty() || options.keep_going ? 0 : 1;
   }
   recorder.reset();  // closes run.h5, which others may then read
@@ -261,32 +262,31 @@ int run(const RunOptions& options) {
 }  // namespace
 
 void add_run(CommandLine& line) {
-  Command command = line.add_command("run", "Run a scene and record it");
+  Command command = line.add_command("run", "Simulate a scene and record the results");
   const auto options = std::make_shared<RunOptions>();
   add_scene_options(command, options->scene);
   command
       .add_option(
           "--duration", options->duration,
-          "How long to simulate: 5s (default: the scene's duration, or its signals' length)")
+          "Simulated time, e.g. 5s (default: the scene's duration, else the end of its signals)")
       .type_name("TIME");
-  command.add_option("--out", options->out, "Folder for the record (default: out/<scene name>)")
+  command.add_option("--out", options->out, "Output folder (default: out/<scene name>)")
       .type_name("DIR");
-  command.add_flag("--vtk", options->vtk, "Also write a series for ParaView, run.pvd");
+  command.add_flag("--vtk", options->vtk, "Also write a time series for ParaView, run.pvd");
   command
       .add_option("--video", options->video,
-                  "Also draw the run: NAME.mp4 (needs ffmpeg), NAME.webp, NAME.gif, NAME_%04d.png "
-                  "or a folder")
+                  "Also render a video: NAME.mp4 (needs ffmpeg), NAME.webp, NAME.gif, "
+                  "NAME_%04d.png or a folder")
       .type_name("FILE");
   command.add_flag("--keep-going", options->keep_going,
-                   "End with 0 although steps were flagged: out of equilibrium, gaining energy, "
-                   "cut back, or short of their commands");
+                   "Exit with 0 even if steps were flagged as unreliable: not in equilibrium, "
+                   "gaining energy, cut back, or command not reached");
   command.add_flag("--check", options->check,
-                   "Only read the scene and build the robot: no step, no files");
-  command.add_flag("--quiet", options->quiet, "No progress bar and no summary");
+                   "Load and check the scene without running it; write nothing");
+  command.add_flag("--quiet", options->quiet, "Suppress the progress bar and the summary");
   command.footer(
-      "Writes DIR/run.csv, DIR/run.h5 and DIR/scene.yaml. Ctrl-C ends the run; what was recorded "
-      "is\n"
-      "then complete and readable.\n\n"
+      "Writes run.csv, run.h5 and scene.yaml to the output folder. After Ctrl-C these files are\n"
+      "complete up to the last finished step.\n\n"
       "Examples:\n"
       "  sinew run trunk.yaml\n"
       "  sinew run trunk.yaml --duration 5s --set actuators.long_0.command.displacement=10mm\n"

@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/contact.hpp"
 #include "sinew/scene/scene.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "arguments.hpp"
@@ -16,7 +18,8 @@ namespace sinew::cli {
 namespace {
 
 constexpr int kMaxThreads = 256;
-constexpr double kSlowStep = 2.0;  // s, of wall time
+constexpr double kSlowStep = 2.0;         // s, of wall time
+constexpr std::size_t kManyPoints = 500;  // of contacts, whose law then takes most of a step
 
 scene::Robot load(const SceneOptions& options) {
   std::vector<std::string> overrides = options.overrides;
@@ -27,6 +30,16 @@ scene::Robot load(const SceneOptions& options) {
   scene::Robot robot = scene::load(options.file, overrides);
   print_warnings(robot.notices);
   return robot;
+}
+
+// Advice where the contacts have many points; else empty.
+std::string contact_hint(const sim::Model& model) {
+  std::size_t points = 0;
+  for (std::size_t i = 0; i < model.contacts().size(); ++i) {
+    points += model.contact(static_cast<int>(i)).size();
+  }
+  if (points < kManyPoints) return {};
+  return fmt::format("; the contacts have {} points: use fewer, or `aggregate`", points);
 }
 
 // The controller to attach: none, the one that was named, or the first.
@@ -76,9 +89,10 @@ sim::Watched watch_steps(sim::Simulation& simulation, ProgressBar& bar, const st
             if (step.seconds < kSlowStep || !bar.slow_due()) return;
             bar.update_slow(done,
                             fmt::format("t = {:g} s: this step has taken {:.0f} s: iteration {}, "
-                                        "residual {:.1e}, {}",
+                                        "residual {:.1e}, {}{}",
                                         simulation.time(), step.seconds, step.iterations,
-                                        step.relative_residual, search_stage_text(step.stage)));
+                                        step.relative_residual, search_stage_text(step.stage),
+                                        contact_hint(simulation.model())));
           }};
 }
 
@@ -86,15 +100,17 @@ void add_scene_options(Command& command, SceneOptions& options, bool optional) {
   command.add_option("SCENE", options.file, "Scene file (YAML)").required(!optional);
   command
       .add_option("--set", options.overrides,
-                  "Set a value of the scene: actuators.long_0.command.displacement=10mm; may be "
-                  "repeated")
+                  "Override a scene value, e.g. actuators.long_0.command.displacement=10mm "
+                  "(repeatable)")
       .type_name("PATH=VALUE")
       .allow_extra_args(false);
-  command.add_option("--threads", options.threads, "Threads inside a step (default: the scene's)")
+  command
+      .add_option("--threads", options.threads,
+                  "Threads per step (default: the scene's solver.threads, else 1)")
       .type_name("N");
   command
       .add_option("--controller", options.controller,
-                  "Controller to attach, or none (default: the scene's first)")
+                  "Controller of the scene to use, or 'none' (default: the first)")
       .type_name("NAME");
 }
 

@@ -33,8 +33,8 @@ fs::path validation_script() {
     if (fs::exists(folder / "run.py")) return folder / "run.py";
   }
   throw Error(ErrorKind::tool_missing, {.file = (folders.front() / "run.py").string()},
-              "the validation cases are not there",
-              "run from a source tree, or set SINEW_VALIDATION_DIR to its folder 'validation'");
+              "the validation cases are missing",
+              "run in a source tree, or set SINEW_VALIDATION_DIR to its folder validation");
 }
 
 struct ValidateOptions {
@@ -71,11 +71,12 @@ Command add_page(CommandLine& line, const char* name, const char* description,
 }  // namespace
 
 void add_schema(CommandLine& line) {
-  add_page(line, "schema", "Print the JSON Schema of scene files, for editors", scene::json_schema)
+  add_page(line, "schema", "Print the JSON Schema of scene files, for completion in editors",
+           scene::json_schema)
       .footer(
           "Example:\n"
           "  sinew schema > scene.schema.json\n\n"
-          "An editor with YAML's language server then completes and checks scenes that begin with\n"
+          "An editor with a YAML language server completes and checks scenes that begin with\n"
           "  # yaml-language-server: $schema=scene.schema.json");
   add_page(line, "reference", "", [] {
     std::string text;
@@ -85,18 +86,18 @@ void add_schema(CommandLine& line) {
 }
 
 void add_completion(CommandLine& line) {
-  Command command = line.add_command("completion", "Print a script that completes commands");
+  Command command = line.add_command("completion", "Print a shell completion script");
   const auto shell = std::make_shared<std::string>();
-  command.add_option("SHELL", *shell, "bash").required();
+  command.add_option("SHELL", *shell, "Shell: bash").type_name("NAME").required();
   command.footer(
       "Example:\n"
       "  sinew completion bash > ~/.local/share/bash-completion/completions/sinew\n\n"
-      "New shells then complete commands, options and file names; so does this one after\n"
-      "source <(sinew completion bash).");
+      "Completes commands, options and file names in new shells. For the current shell, run\n"
+      "  source <(sinew completion bash)");
   command.set_action([&line, shell] {
     if (*shell != "bash") {
       throw Error(ErrorKind::unknown_choice, {.item = "completion"},
-                  fmt::format("there is no completion for '{}'", *shell), "write bash");
+                  fmt::format("no completion for '{}'", *shell), "write bash");
     }
     fmt::print("{}",
                line.bash_completion({{"--shape", scene::shape_names()}, {"completion", {"bash"}}}));
@@ -106,23 +107,23 @@ void add_completion(CommandLine& line) {
 
 void add_validate(CommandLine& line) {
   Command command =
-      line.add_command("validate", "Compare Sinew's numbers with references: docs/scorecard.md");
+      line.add_command("validate", "Run the validation suite and write the scorecard");
   const auto options = std::make_shared<ValidateOptions>();
-  command.add_option("CASE", options->cases, "Cases to run (default: all)");
-  command.add_flag("--list", options->list, "Name the cases and end");
-  command.add_flag("--fast", options->fast, "Only the cases that take seconds");
+  command.add_option("CASE", options->cases, "Names of cases (default: all)");
+  command.add_flag("--list", options->list, "List the cases and exit");
+  command.add_flag("--fast", options->fast, "Run only the cases that take seconds");
   command.add_flag("--resume", options->resume,
-                   "Only the cases that have not ended with this build: goes on with a run that "
-                   "was interrupted");
+                   "Continue an interrupted run: skip cases already finished with this build");
   command
       .add_option("--out", options->out,
-                  "Folder for scorecard.md and images/validation (default: docs)")
+                  "Output folder for scorecard.md and images/validation (default: docs)")
       .type_name("DIR");
-  command.add_option("--jobs", options->jobs, "Cases at once (default: one a core)").type_name("N");
+  command.add_option("--jobs", options->jobs, "Cases to run in parallel (default: one per core)")
+      .type_name("N");
   command.footer(
       "Examples:\n"
       "  sinew validate --list\n"
-      "  sinew validate patch --out /tmp/validation");
+      "  sinew validate patch_test --out /tmp/validation");
   command.set_action([options] { return validate(*options); });
 }
 

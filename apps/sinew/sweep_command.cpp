@@ -40,64 +40,67 @@ int sweep(const SweepOptions& options) {
 void add_samples(Command& command, SweepOptions& options) {
   command
       .add_option("--vary", options.vary,
-                  "What to vary: KEY=FROM:TO:N (grid), KEY=FROM:TO (range, with --sample) or "
-                  "KEY=A,B,C; may be repeated")
+                  "Parameter and values: KEY=FROM:TO:N (grid), KEY=A,B,C (list) or KEY=FROM:TO "
+                  "(range, with --sample) (repeatable)")
       .type_name("KEY=VALUES")
       .allow_extra_args(false)
       .required();
   command
       .add_option("--sample", options.sample,
-                  "Samples of the ranges: sobol:N, halton:N, random:N, or saltelli:N for Sobol "
-                  "indices")
+                  "Sample the ranges: sobol:N, halton:N, random:N, or saltelli:N for Sobol "
+                  "indices (default: grid)")
       .type_name("METHOD:N");
-  command.add_option("--seed", options.seed, "Of the sample (default: 1)").type_name("S");
+  command.add_option("--seed", options.seed, "Random seed of --sample (default: 1)").type_name("S");
   command
-      .add_option("--set", options.overrides,
-                  "Set a value of the scene for all samples; may be repeated")
+      .add_option("--set", options.overrides, "Override a scene value in all samples (repeatable)")
       .type_name("PATH=VALUE")
       .allow_extra_args(false);
 }
 
 void add_runs(Command& command, SweepOptions& options) {
   command
-      .add_option(
-          "--measure", options.measures,
-          "What to keep of the end of each sample: tip.position, trunk.strain_energy; may be "
-          "repeated")
+      .add_option("--measure", options.measures,
+                  "Quantity to record at the end of each sample, e.g. tip.position or "
+                  "trunk.strain_energy (repeatable)")
       .type_name("NAME")
       .allow_extra_args(false)
       .required();
-  command.add_option("--duration", options.duration, "How long to simulate (default: the scene's)")
+  command
+      .add_option("--duration", options.duration, "Simulated time, e.g. 5s (default: the scene's)")
       .type_name("TIME");
-  command.add_flag("--static", options.fixed, "A static equilibrium in place of a run");
-  command.add_option("--timeout", options.timeout, "Limit of wall time for each sample")
+  command.add_flag("--static", options.fixed, "Solve for static equilibrium instead of simulating");
+  command
+      .add_option("--timeout", options.timeout,
+                  "Wall-time limit per sample, e.g. 60s (default: none)")
       .type_name("TIME");
 }
 
 void add_workers(Command& command, SweepOptions& options) {
-  command
-      .add_option("--workers", options.workers, "Processes on this machine (default: one a core)")
+  command.add_option("--workers", options.workers, "Local worker processes (default: one per core)")
       .type_name("N");
   command
       .add_option("--scheduler", options.scheduler,
-                  "Address of a Dask scheduler whose workers to use instead: tcp://HOST:PORT")
+                  "Use the workers of a running Dask scheduler instead: tcp://HOST:PORT")
       .type_name("ADDRESS");
-  command.add_option("--out", options.out, "Folder of the table, sweep.h5").required();
-  command.add_flag("--resume", options.resume, "Go on where the sweep in the folder stopped");
-  command.add_flag("--quiet", options.quiet, "No progress bar and no summary");
+  command.add_option("--out", options.out, "Output folder, for sweep.h5")
+      .type_name("DIR")
+      .required();
+  command.add_flag("--resume", options.resume,
+                   "Continue an interrupted sweep in the output folder");
+  command.add_flag("--quiet", options.quiet, "Suppress the progress bar and the summary");
 }
 
 }  // namespace
 
 void add_sweep(CommandLine& line) {
-  Command command =
-      line.add_command("sweep", "Run a scene for many values of its parameters: docs/sweeps.md");
+  Command command = line.add_command("sweep", "Run a scene over a range of parameter values");
   const auto options = std::make_shared<SweepOptions>();
   command.add_option("SCENE", options->scene, "Scene file (YAML)").required();
   add_samples(command, *options);
   add_runs(command, *options);
   add_workers(command, *options);
   command.footer(
+      "Guide: docs/sweeps.md.\n\n"
       "Example:\n"
       "  sinew sweep examples/trunk/trunk.yaml --vary "
       "bodies.trunk.material.young_modulus=300kPa:600kPa:7\n"

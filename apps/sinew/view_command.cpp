@@ -76,14 +76,14 @@ int view(const ViewOptions& options) {
   if (!viewer::limits::is_speed(options.speed)) {
     throw Error(ErrorKind::out_of_range, {.item = "--speed"},
                 fmt::format("{:g} is out of range", options.speed),
-                "give 0.01 to 100 simulated seconds a second, or 0 for as fast as it can");
+                "give 0.01 to 100 simulated seconds per second, or 0 for as fast as possible");
   }
   viewer::ServerSettings settings{options.host, std::nullopt};
   if (options.port) settings.port = static_cast<std::uint16_t>(*options.port);
   viewer::Server server(settings, source_of(options));
   const Interrupt interrupt;
   server.start();
-  fmt::print("the view is at {}\nCtrl-C ends it\n", server.url());
+  fmt::print("the view is at {}\npress Ctrl-C to quit\n", server.url());
   std::fflush(stdout);
   if (!options.no_open) viewer::open_browser(server.url());
   while (!Interrupt::requested()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -94,8 +94,8 @@ int view(const ViewOptions& options) {
 #else
 
 int view(const ViewOptions&) {
-  throw Error(ErrorKind::tool_missing, {.item = "view"}, "this program was built without the view",
-              "build it with -DSINEW_VIEWER=ON");
+  throw Error(ErrorKind::tool_missing, {.item = "view"}, "this build has no view",
+              "configure the build with -D SINEW_VIEWER=ON");
 }
 
 #endif
@@ -104,27 +104,27 @@ int view(const ViewOptions&) {
 
 void add_view(CommandLine& line) {
   Command command = line.add_command(
-      "view", "See a scene run in the browser and drive it, or replay a recorded run");
+      "view", "Run a scene interactively in the browser, or replay a recorded run");
   const auto options = std::make_shared<ViewOptions>();
   add_scene_options(command, options->scene, true);
   command
       .add_option("--port", options->port,
-                  "Port to listen on; 0: any that is free (default: 8080 or the next free one)")
+                  "Port to listen on; 0 for any free port (default: 8080 or the next free one)")
       .type_name("N");
   command
       .add_option("--host", options->host,
-                  "Address to listen on (default: 127.0.0.1, this machine alone). Another one asks "
-                  "browsers for the token in the printed URL")
+                  "Address to listen on; any other than the default requires the token in the "
+                  "printed URL (default: 127.0.0.1, this machine only)")
       .type_name("ADDRESS");
   command
       .add_option("--speed", options->speed,
-                  "Simulated seconds a second; 0: as fast as it can (default: 1)")
+                  "Simulated seconds per second; 0 for as fast as possible (default: 1)")
       .type_name("X");
   command.add_flag("--paused", options->paused, "Start paused");
   command.add_flag("--no-open", options->no_open, "Do not open a browser");
   command.footer(
-      "Without SCENE the examples are shown, to choose one. SCENE may also be the folder of a run\n"
-      "that 'sinew run' recorded.\n\n"
+      "SCENE may also be the output folder of a run. Without SCENE, a gallery of the examples "
+      "opens.\n\n"
       "Examples:\n"
       "  sinew view\n"
       "  sinew view examples/trunk/circle.yaml\n"

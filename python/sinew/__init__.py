@@ -1,4 +1,4 @@
-"""Simulates soft robots and steers them in real time.
+"""Simulation and control of soft robots in real time.
 
     import sinew
     sim = sinew.load("trunk.yaml")
@@ -10,6 +10,16 @@ SI units everywhere. docs/python.md is the guide.
 """
 
 import importlib as _importlib
+import sys as _sys
+
+try:
+    import numpy as _numpy  # noqa: F401 - before all that needs it, for the message
+    from . import _core  # noqa: F401
+except ImportError as _problem:
+    raise ImportError(
+        f"{_problem}; sinew needs NumPy and the Python that it was built for, which is Debian's /usr/bin/python3 after "
+        f"`make build`; this is {_sys.executable}, Python {_sys.version.split()[0]}"
+    ) from _problem
 
 from . import collision, errors, fields, mesh, pcc, qp, sensors
 from ._core import (
@@ -111,11 +121,21 @@ __all__ = [
 ]
 
 
+# Imported when they are first used: most programs need few of them, and some need more packages.
+_ON_USE = ("control", "convergence", "estimate", "gym", "identify", "learn", "plan", "plot", "render", "sweep")
+
+
 def __getattr__(name):
-    # Pictures and loops are imported when they are first asked for: most programs have none.
-    if name in ("control", "render"):
+    if name not in _ON_USE:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    try:
         return _importlib.import_module(f".{name}", __name__)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    except ImportError as problem:  # hasattr() and help() take an AttributeError
+        raise AttributeError(f"sinew.{name}: {problem}") from problem
+
+
+def __dir__():
+    return sorted({*__all__, *_ON_USE})
 
 
 def _repr_png_(sim):

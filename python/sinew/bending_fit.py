@@ -1,4 +1,4 @@
-"""Calibration of bending actuators from recorded tips; sinew.pcc has these names."""
+"""Calibration of bending actuators from recorded tip motion; exported by sinew.pcc."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ __all__ = ["BendingFit", "TipErrors", "TipRecord", "fit_modulus", "read_tip_reco
 
 @dataclass(frozen=True)
 class TipRecord:
-    """A recorded motion of an actuator's tip.
+    """Recorded motion of an actuator's tip.
 
     Attributes
     ----------
     time : (n,) ndarray
         s, increasing; may be uneven and have gaps.
     tip : (n, 2) ndarray
-        x aside and height, m from the base.
+        Lateral position and height relative to the base, m.
     pressure : (n,) ndarray or None
-        Pa; a fit needs it.
+        Pa; required by a fit.
     name : str
-        For messages.
+        Name used in messages.
     """
 
     time: ArrayLike
@@ -40,14 +40,14 @@ class TipRecord:
 
 @dataclass(frozen=True)
 class TipErrors:
-    """How far a simulated tip is from a measured one.
+    """Errors of a simulated tip motion.
 
     Attributes
     ----------
     mean, largest : float
-        Of the distance, m.
+        Distance from the measured tip, m.
     mean_of_length, largest_of_length : float
-        Those over the actuator's length.
+        The same divided by the length of the actuator.
     mean_absolute, root_mean_square : (2,) ndarray
         MAE and RMSE of x and height, m.
     """
@@ -62,21 +62,21 @@ class TipErrors:
 
 @dataclass(frozen=True)
 class BendingFit:
-    """What fit_modulus() found.
+    """Result of fit_modulus().
 
     Attributes
     ----------
     actuator : BendingActuator
-        The one given, with what was fitted in place.
+        The given actuator with the fitted values.
     tips : list of (n, 2) ndarray
-        Of each record, simulated, m.
+        Simulated tip motion of each record, m.
     errors : list of TipErrors
-        Of each record.
+        Errors for each record.
     cost : float
-        Mean squared distance over the squared length, every record weighing the same.
+        Mean squared distance divided by the squared length, with equal weights for all records.
     converged : bool
     at_bound : bool
-        A value sits on its bound, which then decides it.
+        Whether a value is at its bound.
     """
 
     actuator: BendingActuator
@@ -93,8 +93,8 @@ def read_tip_record(path: Union[str, os.PathLike[str]]) -> TipRecord:
     Parameters
     ----------
     path : path-like
-        Columns time, x and y (or z, the height), and pressure where there is one, as "time_s",
-        "x [mm]", "y_m", "pressure_kPa". Others are ignored.
+        Columns time, x, y (or z, the height) and optionally pressure, such as "time_s", "x [mm]",
+        "y_m", "pressure_kPa". Other columns are ignored.
 
     Returns
     -------
@@ -109,14 +109,14 @@ def read_tip_record(path: Union[str, os.PathLike[str]]) -> TipRecord:
 
 
 def tip_errors(found: ArrayLike, measured: ArrayLike, length: float) -> TipErrors:
-    """Distances between two motions of a tip.
+    """Errors between two motions of a tip.
 
     Parameters
     ----------
     found, measured : (n, 2) array_like
         m.
     length : float
-        Of the actuator, m.
+        Length of the actuator, m.
 
     Returns
     -------
@@ -138,25 +138,25 @@ def fit_modulus(
     integrator: str = "generalized-alpha",
     spectral_radius: float = 0.8,
 ) -> BendingFit:
-    """The modulus with which an actuator's tip moves as recorded, by bounded least squares.
+    """Fits the modulus of an actuator to recorded tip motion, by bounded least squares.
 
     Every record starts at rest, in the equilibrium of its first pressure.
 
     Parameters
     ----------
     actuator : BendingActuator
-        All that is not fitted; its modulus is where the search begins.
+        Gives all other parameters and the initial modulus.
     records : TipRecord or iterable of TipRecord
-        With pressures.
+        Records with pressures.
     degree : int
-        Of the polynomial E(P), 0 (a constant) to 5. It is fitted as its values at degree + 1
-        pressures and holds for the records' pressures only.
+        Degree of the polynomial E(P), 0 (constant) to 5. It is fitted by its values at degree + 1
+        pressures and is valid in the pressure range of the records only.
     kind : {'shear', 'young', 'bending'}
-        Which modulus is fitted; see BendingModulus.
+        Modulus to fit; see BendingModulus.
     bounds : tuple of float
-        Of those values, Pa.
+        Bounds on these values, Pa.
     damping : bool
-        Whether to fit Rayleigh's beta as well, up to `highest_damping` (s).
+        Whether to fit the stiffness damping (Rayleigh's beta) too, up to `highest_damping` (s).
     longest_step : float
         s.
     integrator, spectral_radius
@@ -169,9 +169,9 @@ def fit_modulus(
     Raises
     ------
     Error
-        missing-key for a record without pressures; out-of-range, contradictory-limits.
+        missing-key for a record without pressures, out-of-range, contradictory-limits.
     RunError
-        not-converged when the start cannot be simulated.
+        not-converged if the initial actuator cannot be simulated.
     """
     given = [records] if isinstance(records, TipRecord) else list(records)
     found = _core._fit_modulus(

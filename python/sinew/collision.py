@@ -1,10 +1,10 @@
-"""Geometry of triangle surfaces: what is near, crosses, lies inside, overlaps, or meets in motion.
+"""Queries on triangle surfaces: proximity, intersection, containment, overlap and impacts.
 
     ball = sinew.collision.Surface(points, triangles)          # (n, 3) m, (m, 3) nodes
     near = sinew.collision.proximity(ball, other, distance=1e-3)
     near.distances, near.first_points, near.normals
 
-docs/collision.md says how each of them works.
+docs/collision.md describes the algorithms.
 """
 
 from ._core import (

@@ -1,4 +1,4 @@
-"""What the meshes of a scene cost in accuracy: the same scene on finer meshes.
+"""Mesh convergence studies: estimate the discretisation error of a scene from runs on finer meshes.
 
     import sinew.convergence
     study = sinew.convergence.study("beam.yaml", static=True)
@@ -24,8 +24,8 @@ from typing import Any, Optional, Union
 
 import numpy as np
 
-from . import mesh, scene
-from .errors import Error, RunError
+from . import command, mesh, scene
+from .errors import Error
 from .sweep.worker import measure as measure_now
 
 __all__ = ["Estimate", "Level", "Study", "study"]
@@ -36,23 +36,22 @@ LEAST_ORDER, LARGEST_ORDER = 1.0, 6.0
 #: Displacements relative to the largest coordinate, rotations in rad, and values of a robot that does not move, in SI units, are
 #: rounding below this: the errors of sums over some thousand nodes.
 _ROUNDING = 1e3 * float(np.finfo(float).eps)
-_FAILED, _WRONG_INPUT = 1, 2
 
 
 @dataclass(frozen=True)
 class Level:
-    """One mesh of a study.
+    """Result on one mesh of a study.
 
     Attributes
     ----------
     elements, nodes : int
-        Of all deformable bodies.
+        Totals of all deformable bodies.
     size : float
         h = (volume/elements)^(1/3), m.
     seconds : float
-        Wall time of loading and running.
+        Wall time of loading and simulating.
     values : dict
-        Of each measure, (k,) or (): positions as displacements from the start, m.
+        Value of each measure, (k,) or (). Positions are displacements from the start, m.
     """
 
     elements: int
@@ -64,25 +63,25 @@ class Level:
 
 @dataclass(frozen=True)
 class Estimate:
-    """What a study says of one measure.
+    """Convergence of one measure.
 
-    With values f_k on meshes of size h_k, the last the finest, and the order p of convergence, Richardson's extrapolation is
+    With values f_k on meshes of size h_k, the last being the finest, and the order p of convergence, Richardson's extrapolation is
     f = f_n + (f_n - f_(n-1))/((h_(n-1)/h_n)^p - 1) (L. F. Richardson, Phil. Trans. R. Soc. A 210, 1911; P. J. Roache, J. Fluids
     Eng. 116, 1994, eq. 9 to 11, also for the uncertainty).
 
     Attributes
     ----------
     order : float or None
-        p as seen on the last three meshes; None where there are only two of them, or where the differences do not shrink as h^p
-        with p from 1 to 6 and in one direction. Then p = 1 is taken.
+        Observed order p on the last three meshes. None, and p = 1 is used, for two meshes, or if the differences do not
+        shrink in one direction as h^p with p from 1 to 6.
     extrapolated : ndarray
-        f, the value without error of the mesh.
+        f, the estimate without discretisation error.
     error : float
-        |f_0 - f| of the scene's own mesh.
+        |f_0 - f|, the error of the scene's own mesh.
     relative_error : float
-        The same over |f|; NaN where f is zero.
+        The same divided by |f|; NaN if f is zero.
     uncertainty : float
-        Of `extrapolated`: Roache's factor of safety, 1.25 with an observed order and else 3, times |f_n - f|.
+        Uncertainty of `extrapolated`: |f_n - f| times Roache's safety factor, 1.25 with an observed order, else 3.
     """
 
     order: Optional[float]
@@ -94,12 +93,12 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Study(Mapping[str, Estimate]):
-    """A mapping of measures to their estimates.
+    """Result of a convergence study: a mapping from measures to estimates.
 
     Attributes
     ----------
     levels : tuple of Level
-        The scene's own mesh first, then ever finer ones.
+        The scene's own mesh, then the finer ones.
     estimates : dict
     """
 
@@ -126,28 +125,28 @@ def study(
     set: scene.Overrides = None,  # noqa: A002
     progress: bool = False,
 ) -> Study:
-    """Runs a scene on its own meshes and on finer ones, and extrapolates what it ends with.
+    """Runs a scene on its own meshes and on finer ones, and extrapolates the final values to zero element size.
 
-    Shapes are made of cells that are 1.5, 2, 2.5, ... times as small; tetrahedra of mesh files are cut in eight, again and again.
-    The meshes should be fine enough that differences shrink: see `Estimate.order`.
+    The cells of primitive shapes become smaller by factors of 1.5, 2, 2.5, ...; tetrahedra of mesh files are split into eight
+    per level. The estimate needs meshes on which the differences shrink: see `Estimate.order`.
 
     Parameters
     ----------
     scene : path-like or dict
-        As of sinew.load().
+        As in sinew.load().
     measure : sequence of str, optional
-        Observables, or strain_energy, mass and the like of a body: "tip.position", "trunk.strain_energy". By default the
-        positions and rotations of all effectors.
+        Observables such as "tip.position", or body quantities such as "trunk.strain_energy". By default the positions and
+        rotations of all effectors.
     levels : int
-        Meshes, the scene's own included; 2 or more.
+        Number of meshes, including the scene's own; 2 or more.
     duration : float, optional
-        s; by default the scene's.
+        Simulated time, s; by default the scene's.
     static : bool
-        An equilibrium under the commands and loads of the start in place of a run.
+        Solve for static equilibrium under the initial commands and loads instead of simulating.
     set : list of str or dict, optional
-        As of sinew.load().
+        As in sinew.load().
     progress : bool
-        Whether each mesh is told of on stderr.
+        Whether to report each mesh on standard error.
 
     Returns
     -------
@@ -157,8 +156,8 @@ def study(
     ------
     Error
         bad-argument if there is nothing to measure or to refine, or if a measure is zero to rounding on every mesh, such as the
-        displacement of a robot without load; unsupported-element for hexahedra and quadratic tetrahedra
-        of files; and what sinew.load() and the run raise.
+        displacement of a robot without load; unsupported-element for hexahedra and quadratic tetrahedra of mesh files; and the
+        errors of sinew.load() and Simulation.run().
     """
     if levels < 2:
         raise Error("out-of-range", "study(levels)", f"{levels} meshes show no convergence", "give 2 or more")
@@ -193,7 +192,7 @@ class _Refinement:
         self._files: dict[str, tuple[int, mesh.Mesh]] = {}  # of which level
         self._bodies = [name for name, body in self._tree["bodies"].items() if body.get("type") == "fem"]
         if not self._bodies:
-            raise Error("bad-argument", "convergence", "the scene has no body of finite elements", "give one whose meshes can be refined")
+            raise Error("bad-argument", "convergence", "the scene has no body of finite elements", "use a scene with a mesh to refine")
         self._sizes = {name: _edge(self._first.body(name)) for name in self._bodies}
 
     def load(self, k: int, before: Optional[Level]) -> Any:
@@ -249,7 +248,7 @@ def _measures(sim: Any) -> list[str]:
     names = [name for name in sim.run(0.0) if name in wanted]
     if not names:
         raise Error("bad-argument", "convergence", "the scene has no effectors",
-                    "name what to compare: --measure BODY.strain_energy, or an observable of run.csv")
+                    "name a quantity to compare, for example --measure BODY.strain_energy")
     return names
 
 
@@ -341,8 +340,7 @@ def _shown(value: np.ndarray) -> str:
 
 
 def _options(words: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="sinew convergence", allow_abbrev=False)
-    parser.add_argument("scene", metavar="SCENE")
+    parser = command.parser("convergence")
     for name in ("measure", "set"):
         parser.add_argument(f"--{name}", action="append", default=[])
     for name in ("duration", "json"):
@@ -364,22 +362,18 @@ def _written(found: Study) -> str:
 
 
 def main(words: list[str]) -> int:
-    """Of the command line; the exit code: 0 done, 1 a run failed, 2 wrong input, 130 after Ctrl-C."""
-    from .sweep.__main__ import _seconds
-
+    """Runs `sinew convergence`; returns the exit code, see command.exit_code()."""
     options = _options(words)
-    try:
-        found = study(options.scene, measure=options.measure or None, levels=options.levels, static=options.static,
-                      duration=_seconds("--duration", options.duration), set=options.set, progress=True)
-        print(_table(found))
-        if options.json:
-            pathlib.Path(options.json).write_text(_written(found))
-        return 0
-    except Error as error:
-        print(f"sinew: error: {error}", file=sys.stderr)
-        return _FAILED if isinstance(error, RunError) else _WRONG_INPUT
-    except KeyboardInterrupt:
-        return 130
+    return command.exit_code(lambda: _converge(options))
+
+
+def _converge(options: argparse.Namespace) -> int:
+    found = study(options.scene, measure=options.measure or None, levels=options.levels, static=options.static,
+                  duration=command.seconds("--duration", options.duration), set=options.set, progress=True)
+    print(_table(found))
+    if options.json:
+        pathlib.Path(options.json).write_text(_written(found))
+    return 0
 
 
 if __name__ == "__main__":

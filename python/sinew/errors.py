@@ -1,4 +1,4 @@
-"""What sinew raises and warns of."""
+"""Errors and warnings."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ __all__ = ["Error", "Location", "Notice", "RunError", "SinewWarning"]
 
 
 class Location(NamedTuple):
-    """Where something is wrong; what is unknown is empty or 0.
+    """Location of an error or notice. Unknown fields are empty or 0.
 
     Attributes
     ----------
@@ -17,7 +17,7 @@ class Location(NamedTuple):
     line, column : int
         From 1.
     item : str
-        The dotted path in the scene, as "bodies.trunk.mass", or the argument.
+        Dotted path in the scene, such as "bodies.trunk.mass", or name of the argument.
     """
 
     file: str = ""
@@ -35,21 +35,21 @@ class Location(NamedTuple):
 
 
 class Error(Exception):
-    """Something wrong in what was given: a scene, a file, an argument.
+    """Invalid input: a scene, a file or an argument.
 
     Parameters
     ----------
     kind : str
-        Which error it is, as "unknown-name": stable, to be tested for.
+        Kind of error, such as "unknown-name". Kinds are stable: programs may test for them.
     place : Location or str
-        Where; a string is the item.
+        Location; a string gives the item only.
     message : str
-        What is wrong, with the offending value.
+        Description with the offending value.
     remedy : str
-        What to do instead; may be empty.
+        Suggested fix; may be empty.
     """
 
-    #: What Simulation.run() recorded before it failed: dict of arrays; None elsewhere.
+    #: Arrays recorded by Simulation.run() before it failed, by name; None for other errors.
     recorded: dict[str, Any] | None = None
 
     def __init__(
@@ -70,27 +70,27 @@ class Error(Exception):
 
 
 class SinewWarning(UserWarning):
-    """A notice of the level "warning", through Python's warnings."""
+    """Issued by load() for every notice of level "warning"."""
 
 
 class Notice(NamedTuple):
-    """Something that a user should know of a scene, and that stops nothing.
+    """Information about a scene that does not prevent it from running.
 
     Attributes
     ----------
     level : str
-        "warning": it follows from a default, or the scene does not get what it asks for, and load()
-        warns of it. "remark": the scene asks for what it is about.
+        "warning": a default or an ignored request may surprise; load() issues a warning. "remark": the consequence
+        of an explicit choice in the scene.
     kind : str
-        "locking-element": the elements make a body much stiffer than its material. "bare-points": a cable pulls at
-        single points, which dent the material. "other-tangent": the tangent that the scene asks for is none of
-        its materials, and another takes its place.
+        "locking-element": the elements are much stiffer than the material. "bare-points": a cable pulls at single
+        points, which dent the material. "other-tangent": the materials do not have the requested tangent, and another
+        one is used.
     place : Location
-        Where in the scene.
+        Location in the scene.
     message : str
-        With the value that it is about.
+        Description with the value in question.
     remedy : str
-        What to write instead.
+        Suggested change.
     """
 
     level: str
@@ -107,4 +107,4 @@ class Notice(NamedTuple):
 
 
 class RunError(Error):
-    """A run that cannot go on: diverged, inverted-in-run, not-converged, singular-matrix."""
+    """A simulation that cannot continue: diverged, inverted-in-run, not-converged, singular-matrix."""

@@ -1,4 +1,4 @@
-"""Strains and stresses of a body's elements, and their means at nodes.
+"""Strains and stresses of elements and their nodal averages.
 
     body.element_field("von_mises_stress")          # (m,) Pa
     body.nodal_field("max_stretch")                 # (n,), as the view colours it
@@ -7,8 +7,7 @@
     sinew.fields.principal_values(sigma)            # (m, 3) Pa
     sinew.fields.to_nodes(body, sigma)              # (n, 3, 3) Pa, volume-weighted means
 
-The functions here do the algebra of tensors, those of a body or of your own. What a body's fields
-are called, their units and equations are in FIELDS.
+The functions work on any tensors. FIELDS lists the fields of a body with units and equations.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from . import _core
 
 __all__ = ["FIELDS", "green_strain", "log_strain", "principal_stretches", "principal_values", "to_nodes", "von_mises"]
 
-#: Fields of Body.element_field() and Body.nodal_field(): name -> (unit, what it is).
+#: Fields of Body.element_field() and Body.nodal_field(): name -> (unit, definition).
 FIELDS: dict[str, tuple[str, str]] = _core._element_fields()
 
 
@@ -102,17 +101,17 @@ def principal_values(stress: ArrayLike) -> NDArray:
 
 
 def to_nodes(body, values: ArrayLike) -> NDArray:
-    """Means at nodes of values of elements, by the volume of the elements round each.
+    """Averages element values at the nodes, weighted by the volumes of the adjacent elements.
 
     Parameters
     ----------
     body : Body
     values : (m, ...) array_like
-        One for every element, tetrahedra before hexahedra.
+        One value per element, tetrahedra before hexahedra.
 
     Returns
     -------
     (n, ...) ndarray
-        NaN at nodes that belong to no element.
+        NaN at nodes without elements.
     """
     return body.nodal_means(np.asarray(values, float))

@@ -1,4 +1,4 @@
-"""A loop at 500 Hz to 1 kHz beside a slow model: docs/high_rate.md is the guide."""
+"""Control and estimation at 500 Hz to 1 kHz beside a slower model: docs/high_rate.md is the guide."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -13,25 +13,25 @@ __all__ = ["HighRateLoop", "HighRateOutput", "HighRateReport", "HighRateTimes", 
 
 @dataclass
 class Snapshot:
-    """A robot's linear equations at one state: motions = free + compliance @ efforts.
+    """Linearised equations of a robot at one state: motions = free + compliance @ efforts.
 
-    Rows stand in the order of the loop's lists: `driven`, `unknown`, all rows of `effectors`, `hands`, then a normal and
-    two tangents of each contact. HighRateLoop.snapshot() makes one from a simulation.
+    The rows follow the lists of the loop: `driven`, `unknown`, all rows of `effectors`, `hands`, then a normal and two
+    tangents per contact. HighRateLoop.snapshot() creates one from a simulation.
 
     Attributes
     ----------
     compliance : (rows, rows) array_like
-        W, m/N. Columns of effectors do not count.
+        W, m/N. The columns of effectors are ignored.
     free : (rows,) array_like
-        Motions without efforts of these rows, m or rad.
+        Motions without efforts on these rows, m or rad.
     effort : (rows,) array_like, optional
-        Efforts at the linearisation, N; zero unless given.
+        Efforts at the linearisation, N (default: zero).
     friction : (contacts,) array_like
-        Coulomb's coefficients.
+        Coefficients of friction.
     time : float
-        Of the model, s.
+        Time of the model, s.
     size : float
-        Of the robot, m: what motions are small beside.
+        Size of the robot, m, the scale of motions.
     """
 
     compliance: np.ndarray
@@ -44,36 +44,38 @@ class Snapshot:
 
 @dataclass(frozen=True)
 class HighRateOutput:
-    """What a loop found in one period.
+    """Result of one period of a loop.
 
     Attributes
     ----------
     driven, driven_motion : dict
-        Of each driven actuator its effort (N), to be applied in this period, and its motion then (m), foreseen.
+        Effort (N) of each driven actuator to apply in this period, and its predicted motion (m).
     unknown, deviation : dict
-        Of each unknown force its estimate and its standard deviation, N. One near the prior's says that no sensor sees it.
+        Estimate and standard deviation of each unknown force, N. A deviation near the prior's means that the force is not
+        observable.
     hands : dict
-        Of each hand the force that it pushes with, N; it feels the opposite.
+        Force of each hand on the robot, N; the hand feels the opposite force.
     tasks : dict
-        Of each task what is foreseen: (rows,) ndarray in m or rad of an effector, float of a motion (m) or a hand (N).
+        Prediction for each task: (rows,) ndarray (m or rad) for an effector, float for a motion (m) or a hand (N).
     contacts : (max_contacts, 3) ndarray
-        Normal and tangential forces, N, zero behind those of the snapshot.
+        Normal and tangential forces, N; zero beyond the contacts of the snapshot.
     state : str
         'waiting' for the first snapshot, 'running', 'holding', 'releasing' or 'released' (docs/high_rate.md).
     cause : str
-        What is stale: 'none', 'snapshot', 'input' or 'sensors'.
+        Stale data: 'none', 'snapshot', 'input' or 'sensors'.
     limits_conflict, failed : bool
-        Limits of motions gave way to those of efforts; a program had no solution, and its part stays as it was.
+        Whether motion limits were relaxed in favour of effort limits; whether a program had no solution, in which case its
+        part of the result is unchanged.
     law_residual : float
-        Distance of hands and contacts from their laws, of the largest effort.
+        Violation of the laws of hands and contacts, relative to the largest effort.
     snapshot_time, snapshot_age : float
-        s, of the model; s, since the loop got it.
+        Time of the model, s; time since the loop received it, s.
     jump : float
-        N, the largest change of a hand's force by a refresh in this period.
+        Largest change of a hand's force due to a new snapshot in this period, N.
     damping : float
-        N s/m, that passivity took in this period.
+        Damping added for passivity in this period, N s/m.
     energy_created : float
-        J, by the forces that hands felt since the start; passive where it is not positive.
+        Energy created by the forces on the hands since the start, J; not positive if passive.
     period : int
         Number of the output, from 1; 0 before the first.
     """
@@ -99,20 +101,20 @@ class HighRateOutput:
 
 
 class HighRateReport(NamedTuple):
-    """What a loop has done since it was made.
+    """Counters of a loop since its creation.
 
     Attributes
     ----------
     periods, snapshots : int
-        Outputs; snapshots that were taken up.
+        Number of outputs; number of snapshots used.
     missed : int
         Periods without an output in time.
     limits_conflicts, failures : int
-        Periods with them.
+        Number of periods with such a conflict or failure.
     real_time : bool
-        Whether the thread runs before all ordinary ones (SCHED_FIFO).
+        Whether the thread has real-time priority (SCHED_FIFO).
     scheduling : str
-        'SCHED_FIFO', or why not and what allows it.
+        'SCHED_FIFO', or the reason why not and the remedy.
     """
 
     periods: int
@@ -125,16 +127,16 @@ class HighRateReport(NamedTuple):
 
 
 class UdpReport(NamedTuple):
-    """What came through a loop's socket.
+    """Counters of a loop's socket.
 
     Attributes
     ----------
     port : int
-        That it is bound to.
+        Port of the socket.
     received, invalid, outdated : int
-        Good measurements; bad packets, and those that came again or too late: both are ignored.
+        Valid measurements; invalid packets; repeated or late packets. The latter two are ignored.
     sent, not_sent : int
-        Commands; those that the operating system did not take.
+        Commands sent; commands that the operating system rejected.
     """
 
     port: int
@@ -146,21 +148,21 @@ class UdpReport(NamedTuple):
 
 
 class HighRateTimes(NamedTuple):
-    """How often times of so many microseconds occurred.
+    """Histogram of times in microseconds.
 
     Attributes
     ----------
     counts : (1001,) ndarray
-        Of times within [k, k + 1) us; the last of those of a millisecond and more.
+        Number of times within [k, k + 1) us; the last entry counts times of 1 ms and more.
     longest : float
-        s.
+        Longest time, s.
     """
 
     counts: np.ndarray
     longest: float
 
     def quantile(self, part):
-        """The time (s) that this part of all times does not exceed, to a microsecond; 0 without any."""
+        """Quantile of the times, s, with a resolution of 1 us; 0 without data."""
         if self.counts.sum() == 0:
             return 0.0
         bin = int(np.searchsorted(np.cumsum(self.counts), part * self.counts.sum()))
@@ -175,20 +177,20 @@ def _pair(value, place, unit):
     try:
         low, high = (float(part) for part in value)
     except (TypeError, ValueError):
-        _refuse("wrong-type", place, f"{value!r} is no pair of limits", f"give (least, most) in {unit}")
+        _refuse("wrong-type", place, f"{value!r} is not a pair of limits", f"give (least, most) in {unit}")
     return low, high
 
 
 def _number(value, place, unit):
     if isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool):
         return float(value)
-    _refuse("wrong-type", place, f"{value!r} is no number", f"give a number in {unit}")
+    _refuse("wrong-type", place, f"{value!r} is not a number", f"give a number in {unit}")
 
 
 class HighRateLoop:
-    """Solves two small inverse problems once a period on the latest snapshot of a robot: sensors to outside forces, and
-    targets to efforts, while hands and contacts obey their laws. Its thread waits for nobody; the model linearises in a
-    thread of the caller's, at 50 to 500 Hz:
+    """Solves two small inverse problems per period on the latest snapshot of a robot: external forces from sensors, and
+    efforts from targets, subject to the laws of hands and contacts. Its thread never blocks; the model is linearised in a
+    thread of the caller, at 50 to 500 Hz:
 
         loop = sinew.HighRateLoop(sim, driven=["long_0", "long_1"], tasks={"tip": 1.0}, effectors=["tip"])
         with loop:                              # start() and stop()
@@ -201,40 +203,39 @@ class HighRateLoop:
     Parameters
     ----------
     sim : Simulation or None
-        Whose rows are named below; None for snapshots that are made by hand.
+        Simulation with the rows named below; None for snapshots from another source.
     driven : list of str, or dict of name: (least, most) effort
-        Actuators whose efforts the loop chooses. Limits that are not given are those of the simulation's actuators, with
-        those on rates and motions.
+        Actuators whose efforts the loop chooses. Without limits here, the limits of the simulation's actuators apply,
+        including their rates and motions.
     unknown : dict of name: float
-        Actuators of type force, as outside forces that nobody measures, and the standard deviation that is expected of
-        each, N.
+        Actuators of type force that represent unmeasured external forces, with the prior standard deviation of each, N.
     effectors : list of str, or without a simulation dict of name: number of rows
-        Whose motions are measured or asked for.
+        Effectors that are measured or controlled.
     hands : list of str, or dict of name: (least, most) force
-        Actuators of type force that hands push with: where a hand is, their point goes, with a force (N) within these
-        limits, which hold 0. (0, inf) unless given: a hand that pushes.
+        Actuators of type force that represent hands: the point follows the hand with a force (N) within these limits,
+        which must include 0. Default (0, inf): a hand that pushes.
     sensors : dict of name: float
-        Standard deviation (m or rad) of the measured motion of a driven actuator, or of each row of an effector.
+        Standard deviation (m or rad) of the measured motion of a driven actuator, or of every row of an effector.
     tasks : dict of name: float
-        Weights of targets: motion of an effector or of a driven actuator, force of a hand.
+        Weights of the targets: motion of an effector or a driven actuator, force of a hand.
     rate : float
-        Periods a second, 10 to 10000.
+        Periods per second, 10 to 10000.
     max_contacts : int
-        Of contact points those take part that carry a force or are nearest, at most so many.
+        Maximum number of contact points; those with a force or the smallest gap are used.
     blend : float
-        s: a new snapshot comes to count in equal parts in this time.
+        Time over which a new snapshot is blended in, s.
     stale_after, release_time : float
-        s: without a newer snapshot, input (with sensors or hands) or any sensor's value for longer than `stale_after`,
-        efforts are held; after twice that time they go to zero along a ramp of `release_time`.
+        If the snapshot, the input (with sensors or hands) or any sensor value is older than `stale_after` (s), the efforts
+        are held; after twice that time they ramp to zero within `release_time` (s).
     epsilon, largest_step : float
-        As those of InverseController.
+        As in InverseController.
     passivity : bool
-        Whether hands are damped where their forces would create energy.
+        Whether to damp hands whose forces would create energy.
     reserve, damping_limit : float
-        Part of the energy foreseen that is dissipated on top; largest damping, over K T/2.
+        Additional dissipation as a fraction of the predicted energy; maximum damping relative to K T/2.
     udp : None or (str, int)
-        Address and port (0: any) of a socket that measurements come through and commands go out: docs/high_rate.md has
-        the packets. Sensors, hands and measured efforts then come from there, targets from set_input().
+        Address and port (0: any) of a socket for measurements and commands; docs/high_rate.md specifies the packets.
+        Sensors, hands and measured efforts are then read from it, and targets from set_input().
 
     Raises
     ------
@@ -348,12 +349,12 @@ class HighRateLoop:
                          for name in self._hands]).reshape(-1, 2)  # fmt: skip
 
     def snapshot(self, *, statics=True):
-        """A Snapshot of the simulation as it is now, which is left as it is.
+        """Snapshot of the simulation at its current state, which does not change.
 
         Parameters
         ----------
         statics : bool
-            W of equilibrium; False: of the scene's integrator and time step.
+            True: W of static equilibrium; False: W of the scene's integrator and time step.
 
         Raises
         ------
@@ -366,7 +367,7 @@ class HighRateLoop:
         return Snapshot(**_core._take_snapshot(self._sim, names, self._max_contacts, bool(statics)))
 
     def publish(self, snapshot=None):
-        """Hands a Snapshot to the loop; without one, that of the simulation. From any thread.
+        """Passes a Snapshot to the loop, by default snapshot(). May be called from any thread.
 
         Raises
         ------
@@ -384,18 +385,18 @@ class HighRateLoop:
         self._loop.publish(compliance, free, effort.ravel(), friction, float(snapshot.time), float(snapshot.size))
 
     def set_input(self, *, sensors=None, hands=None, targets=None, driven=None):
-        """What is measured and asked from the next period on; what is not named stays as it was.
+        """Sets measurements and targets from the next period on. Omitted values are unchanged.
 
         Parameters
         ----------
         sensors : dict of name: (rows,) array_like
-            Measured motions, m or rad, nan where there is none.
+            Measured motions, m or rad; nan for a missing value.
         hands : dict of name: float
-            Where hands are along their rows, m from rest; nan: no hand is there.
+            Positions of hands along their rows, m from rest; nan for no hand.
         targets : dict of name: (rows,) array_like
-            m or rad, of a hand N; nan: nothing is asked.
+            Targets, m or rad, N for a hand; nan for no target.
         driven : dict of name: float
-            Measured efforts, N; nan: those of the last output are taken.
+            Measured efforts, N; nan for the efforts of the last output.
 
         Raises
         ------
@@ -417,15 +418,15 @@ class HighRateLoop:
         self._loop.set_input(*lists)
 
     def start(self):
-        """Begins the loop's thread. Raises Error(bad-argument) where it runs."""
+        """Starts the thread. Raises Error(bad-argument) if it is running."""
         self._loop.start()
 
     def stop(self):
-        """Returns when the thread has ended; start() goes on."""
+        """Stops the thread and waits for its end. start() resumes."""
         self._loop.stop()
 
     def advance(self, periods=1):
-        """So many periods now, in the calling thread, on an ideal clock: what tests and examples do.
+        """Runs a number of periods in the calling thread with an ideal clock, for tests and examples.
 
         Raises
         ------
@@ -443,7 +444,7 @@ class HighRateLoop:
 
     @property
     def running(self):
-        """bool: whether the thread runs."""
+        """bool: whether the thread is running."""
         return self._loop.running()
 
     @property
@@ -465,7 +466,7 @@ class HighRateLoop:
 
     @property
     def report(self):
-        """HighRateReport: counts since the loop was made."""
+        """HighRateReport: counters since creation."""
         return HighRateReport(**self._loop.report())
 
     @property
@@ -476,13 +477,13 @@ class HighRateLoop:
 
     @property
     def lateness(self):
-        """HighRateTimes: by how much periods began after they were due."""
+        """HighRateTimes: delay of the start of periods."""
         counts, longest = self._loop.lateness()
         return HighRateTimes(np.array(counts), longest)
 
     @property
     def work(self):
-        """HighRateTimes: how long periods took."""
+        """HighRateTimes: computation time of periods."""
         counts, longest = self._loop.work()
         return HighRateTimes(np.array(counts), longest)
 

@@ -1,4 +1,4 @@
-"""Parameters of simulations from measurements.
+"""Identification of simulation parameters from measurements.
 
     from sinew import identify, pcc
     records = [identify.read_motion("first.csv", segments=4), identify.read_motion("second.csv", segments=4)]
@@ -7,7 +7,7 @@
 
     fit = identify.fit(predict, measured, {"young_modulus": (100e3, 50e3, 200e3)})    # any simulation
 
-docs/identification.md has the equations and what they assume. SI units everywhere.
+docs/identification.md has the equations and their assumptions. SI units everywhere.
 """
 
 from . import _core

@@ -1,12 +1,12 @@
-"""Grabs learned from attempt to attempt: identify, plan, invert, run, repeat.
+"""Iterative learning of dynamic reaching motions: identify, plan, invert, run, repeat.
 
     from sinew import learn, pcc
     learner = learn.Learner(arm, actuators, cylinders, goal=[0.20, 0.0, -0.40], torque_limits=[0.12, 0.13, 0.18])
     for attempt in learner.run(plant, attempts=5):    # plant(command) -> sinew.identify.MotionRecord
         print(attempt.tip_error)                      # m, as measured
 
-A robot that is no function runs `learner.propose().command` and hands back what was measured with
-`learner.observe(record)`. docs/learning.md has the method and what it reaches. SI units everywhere.
+For hardware, run the command of `learner.propose()` yourself and pass the measurement to
+`learner.observe(record)`. docs/learning.md describes the method and its accuracy. SI units everywhere.
 """
 
 from __future__ import annotations
@@ -23,22 +23,22 @@ _HAT = 0.1  # s, half the width of what commands are changed by
 
 
 class Proposal(NamedTuple):
-    """What is to be run next.
+    """The next attempt.
 
     Attributes
     ----------
     times : (samples,) s
-        From 0 to lead + duration, when the tip is to be at the goal.
+        From 0 to lead + duration, the time at which the tip should be at the goal.
     command : (samples, inputs)
-        Of the cylinders.
+        Commands of the cylinders.
     volume : (samples, inputs) m^3
-        That they are expected to deliver.
+        Predicted volumes.
     plan : Plan
-        What the commands came from before they were changed; its time 0 is `lead`.
+        Plan from which the commands were derived; its time 0 is `lead`.
     predicted : (3,) m
-        Where the tip is expected at the end.
+        Predicted final position of the tip.
     arm, actuators, cylinders
-        The model that it was made with.
+        Model used for the proposal.
     """
 
     times: np.ndarray
@@ -52,17 +52,17 @@ class Proposal(NamedTuple):
 
 
 class Attempt(NamedTuple):
-    """What became of a proposal.
+    """Outcome of a proposal.
 
     Attributes
     ----------
     proposal : Proposal
     record : sinew.identify.MotionRecord
-        What was measured.
+        Measured motion.
     tip_error : float
-        m, measured distance of the tip from the goal at the end.
+        Measured final distance of the tip from the goal, m.
     fit : sinew.identify.ArmFit or None
-        Of the arm after it; None where the fit failed and the model stays.
+        Fit of the arm after the attempt; None if it failed, in which case the model is unchanged.
     """
 
     proposal: Proposal
@@ -72,46 +72,46 @@ class Attempt(NamedTuple):
 
 
 class Learner:
-    """Brings an arm's tip to a goal that it cannot hold, with a model that learns from each attempt.
+    """Brings an arm's tip to a goal beyond its static workspace, with a model that is refitted after each attempt.
 
-    A swing is planned with the model as it is (plan.Task), taken back through actuators and
-    cylinders (plan.invert_drive), run and measured; then arm and actuators are fitted to the latest
-    records (identify.fit_arm) and the cylinders to all (identify.fit_cylinder). Each attempt's commands are those of
-    the one before with the least change that takes the model's tip to the goal, less what the model missed at the end
-    of that attempt; only where there is no such change the swing is planned anew.
+    A swing is planned with the current model (plan.Task), inverted through actuators and cylinders
+    (plan.invert_drive), run and measured. Then the arm and the actuators are fitted to the latest records
+    (identify.fit_arm), and the cylinders to all records (identify.fit_cylinder). The commands of the next attempt are the
+    previous ones with the smallest change that moves the tip of the model to the goal, corrected for the final error of
+    the model in that attempt. If there is no such change, the swing is planned again.
 
     Parameters
     ----------
     arm : sinew.pcc.Arm
     actuators : list of FluidicActuator
     cylinders : list of DriveCylinder
-        The model at first; one of each for each input, cylinders of one sample time.
+        Initial model, with one of each per input; all cylinders have the same sample time.
     goal : (3,) m
     torque_limits : (inputs,) N m
-        Either way, by the first model; what is kept are the volumes that they take, as motion leaves the scale of
-        torques open.
+        Limits in both directions, for the initial model. The corresponding volumes are kept as limits, because motion data
+        do not determine the scale of the torques.
     torque_rate_limits : (inputs,) or float, N m/s
     duration : float
-        s, of the plan.
+        Duration of the plan, s.
     lead : float
-        s before it, for the delay and for the cylinders to start.
+        Time before the plan, s, for the delay and the start of the cylinders.
     memory : int
-        Latest records that the arm is fitted to: a model that is wrong is right near them only.
+        Number of latest records that the arm is fitted to: an imperfect model holds only near them.
     corrections : int
-        Most steps of Gauss-Newton in changing commands.
+        Maximum number of Gauss-Newton steps when changing commands.
     close : float
-        m, distance of the model's tip from the goal, beyond which the swing is planned anew.
+        Distance of the model's tip from the goal beyond which the swing is planned again, m.
     time_step : float
-        s, of the simulations that the model is fitted with and judged by.
+        Time step of the simulations, s.
     fit_options, plan_options : dict, optional
-        More for identify.fit_arm, whose time step is `time_step`, and plan.Task.
+        Further arguments of identify.fit_arm (except its time step) and plan.Task.
     seed : int
-        Of the first plan.
+        Random seed of the first plan.
 
     Raises
     ------
     Error
-        wrong-length, out-of-range and what plan.Task raises.
+        wrong-length, out-of-range, and the errors of plan.Task.
     """
 
     def __init__(
@@ -156,19 +156,19 @@ class Learner:
         plan.Task(arm, self.goal, torque_limits, **self._task)
 
     def learn_from(self, command: np.ndarray, record: identify.MotionRecord) -> Optional[identify.ArmFit]:
-        """Fits the model to a motion before the first attempt, from rest: of an excitation or a rehearsal.
+        """Fits the model to a motion from rest before the first attempt: an excitation or a rehearsal.
 
         Parameters
         ----------
         command : (samples, inputs)
-            Of the cylinders, in their sample time.
+            Commands of the cylinders, at their sample time.
         record : sinew.identify.MotionRecord
-            What was measured at the same times; its inputs are the volumes delivered, m^3.
+            Motion measured at the same times; its inputs are the delivered volumes, m^3.
 
         Returns
         -------
         ArmFit or None
-            None where the fit failed and the model stays.
+            None if the fit failed; the model is then unchanged.
 
         Raises
         ------
@@ -183,13 +183,13 @@ class Learner:
         return self._identify()
 
     def rehearsal(self, fraction: float = 0.9) -> np.ndarray:
-        """Commands (samples, inputs) of the next attempt at a fraction of its volumes, to be run and learned from
-        (learn_from) before it.
+        """Commands (samples, inputs) of the next attempt at a fraction of its volumes, for learn_from() before the
+        attempt.
 
         Parameters
         ----------
         fraction : float
-            Above 0, below 1; torque goes with its cube.
+            Above 0, below 1. The torque scales with its cube.
 
         Raises
         ------
@@ -204,7 +204,7 @@ class Learner:
         return fraction * self._next().command
 
     def propose(self) -> Proposal:
-        """The next attempt's commands.
+        """Commands of the next attempt.
 
         Raises
         ------
@@ -215,12 +215,12 @@ class Learner:
         return self._proposal
 
     def observe(self, record: identify.MotionRecord) -> Attempt:
-        """Takes in what was measured of the last proposal.
+        """Learns from the measurement of the last proposal.
 
         Parameters
         ----------
         record : sinew.identify.MotionRecord
-            At the proposal's times; its inputs are the volumes delivered, m^3.
+            Motion at the proposal's times; its inputs are the delivered volumes, m^3.
 
         Raises
         ------
@@ -229,7 +229,7 @@ class Learner:
         """
         proposal = self._proposal
         if proposal is None:
-            raise errors.Error("out-of-range", errors.Location(item="observe"), "nothing was proposed", "call propose()")
+            raise errors.Error("out-of-range", errors.Location(item="observe"), "no proposal to observe", "call propose() first")
         fit = self.learn_from(proposal.command, record)
         residual = (record.positions - fit.records[-1].predicted)[-5:, -1] if fit else np.full((1, 3), np.nan)
         if np.isfinite(residual).any(axis=0).all():
@@ -242,7 +242,7 @@ class Learner:
         return self.attempts[-1]
 
     def run(self, plant: Callable[[np.ndarray], identify.MotionRecord], attempts: int) -> Iterator[Attempt]:
-        """Attempts on a plant: plant(command (samples, inputs)) gives the record."""
+        """Runs attempts on a plant: plant(command (samples, inputs)) returns the record."""
         for _ in range(attempts):
             yield self.observe(plant(self.propose().command))
 

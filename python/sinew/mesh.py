@@ -1,4 +1,4 @@
-"""Volume meshes: read them, make simple shapes, write VTU, VTK and STL. Lengths in m."""
+"""Volume meshes: read files, create primitive shapes, write VTU, VTK and STL. Lengths in m."""
 
 from __future__ import annotations
 
@@ -31,17 +31,17 @@ def read(
     *,
     several_components: bool = False,
 ) -> Mesh:
-    """Reads and checks a mesh: VTK legacy, VTU or Gmsh, told apart by content.
+    """Reads and checks a mesh file. The format, legacy VTK, VTU or Gmsh, is detected from the content.
 
     Parameters
     ----------
     path : path-like
         The file.
     unit : str or float, optional
-        What one unit of the file is: "mm", or 0.001 (m). Without it the file is in m, and a robot
-        of an unlikely size is refused.
+        Length unit of the file: "mm", or 0.001 (m). By default m; implausibly large meshes are
+        then rejected.
     several_components : bool
-        Whether the mesh may consist of unconnected parts.
+        Whether the mesh may have several unconnected components.
 
     Returns
     -------
@@ -50,7 +50,7 @@ def read(
     Raises
     ------
     Error
-        What is wrong with the file or the mesh, with the place and the remedy.
+        If the file or the mesh is invalid: with location and remedy.
     """
     return _core.read_mesh(os.fspath(path), unit, several_components)
 
@@ -60,7 +60,7 @@ def block(
     cells: ArrayLike = (10, 2, 2),
     corner: ArrayLike = (0.0, 0.0, 0.0),
 ) -> Mesh:
-    """A box of cubes of six tetrahedra each; node sets x_min, x_max, ... z_max.
+    """A box of hexahedral cells, each split into six tetrahedra; node sets x_min, x_max, ... z_max.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def block(
     cells : (3,) array_like of int
         Cells along x, y, z.
     corner : (3,) array_like
-        The least corner, m.
+        Corner with the smallest coordinates, m.
     """
     return _core.mesh_block(size, cells, corner)
 
@@ -133,8 +133,8 @@ def chambered_cylinder(
 ) -> Mesh:
     """A cylinder along +z from z = 0 (m) with a cylindrical chamber beside its axis, along +x.
 
-    Node sets bottom, top, side and chamber, the chamber's wall. `core` rings of cells fill the
-    chamber's circle where it is solid, `through` lie between its wall and the outside.
+    Node sets bottom, top, side and chamber (the wall of the chamber). `core` rings of cells fill the
+    cross-section of the chamber above and below it, `through` rings its wall.
     """
     return _core.mesh_chambered_cylinder(
         radius=radius,
@@ -152,7 +152,7 @@ def chambered_cylinder(
 def sphere(*, radius: float = 0.015, rings: int = 3) -> Mesh:
     """A ball about the origin (m) of 12 rings^3 tetrahedra; node sets surface, top, bottom.
 
-    The polyhedron has the volume of the ball: its corners lie a little outside of `radius`.
+    The polyhedron has the volume of the ball; its corners are slightly outside of `radius`.
     """
     return _core.mesh_sphere(radius=radius, rings=rings)
 
@@ -160,7 +160,7 @@ def sphere(*, radius: float = 0.015, rings: int = 3) -> Mesh:
 def capsule(
     *, radius: float = 0.01, length: float = 0.04, rings: int = 2, layers: int = 4
 ) -> Mesh:
-    """A cylinder of `length` along z (m) with half balls at its ends, its centre at the origin.
+    """A cylinder of `length` along z (m) with hemispherical ends, centred at the origin.
 
     Node sets surface, side, top, bottom. The volume is exact, as for sphere().
     """
@@ -179,7 +179,7 @@ def ribbed_finger(
     spine_cells: int = 1,
     rib_rise_cells: int = 2,
 ) -> Mesh:
-    """A finger for a cable: a spine along +x from the origin with ribs on it, upwards.
+    """A cable-driven finger: a spine along +x from the origin, with ribs towards +z.
 
     Node sets x_min, x_max, ... z_max.
 
@@ -190,11 +190,11 @@ def ribbed_finger(
     spine : float
         Thickness of the spine, m.
     gap : float
-        Between two ribs, m; the ribs share the rest of the length.
+        Gap between two ribs, m; the ribs share the remaining length.
     ribs : int
-        2 or more; one at each end.
+        Number of ribs, 2 or more, with one at each end.
     rib_cells, gap_cells, width_cells, spine_cells, rib_rise_cells : int
-        Cells along a rib, along a gap, across, through the spine, from there to the top.
+        Cells along a rib, along a gap, across the width, through the spine, from the spine to the top.
 
     Returns
     -------
@@ -203,7 +203,7 @@ def ribbed_finger(
     Raises
     ------
     Error
-        out-of-range where the gaps leave no ribs or the spine fills the height.
+        out-of-range if the gaps leave no room for ribs or the spine fills the height.
     """
     return _core.mesh_ribbed_finger(
         size,
@@ -230,7 +230,7 @@ def trunk(
 ) -> Mesh:
     """A tapered trunk with bellows along +z from z = 0 (m); node sets bottom, top, side.
 
-    `groove_depth` is the depth of a groove over the local crest radius, 0 to 0.6.
+    `groove_depth` is the depth of a groove divided by the local crest radius, 0 to 0.6.
     """
     return _core.mesh_trunk(
         height=height,

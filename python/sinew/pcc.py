@@ -1,5 +1,5 @@
-"""Models of constant curvature by themselves, which cost microseconds: soft arms of segments, and
-bending actuators of one angle.
+"""Piecewise-constant-curvature models: soft arms of several segments, and bending actuators with a
+single angle. An evaluation takes microseconds.
 
     import numpy as np
     from sinew import pcc

@@ -1,17 +1,17 @@
-"""Planning for soft arms of constant curvature: swings to places that they cannot hold at rest.
+"""Motion planning for constant-curvature arms, to goals beyond their static workspace.
 
     from sinew import pcc, plan
     arm = pcc.published_arm()
     task = plan.Task(arm, goal=[-0.25, 0.0, -0.45], torque_limits=[0.0, 0.12, 0.13, 0.18])
     found = task.solve()                    # a Plan: found.status, found.torque, ...
-    task.replay(found).tip_error            # m, carried out in fine steps
+    task.replay(found).tip_error            # m, simulated with fine steps
     plan.Tracker(task, found).run()         # with feedback
     plan.Task(arm, goal, limits, actuators=actuators, cylinders=cylinders).solve().drive["command"]
     bar = plan.BraceObject.capsule([-0.077, -0.1, -0.445], [-0.077, 0.1, -0.445], 0.05)
     limits = pcc.published_torque_limits()
-    plan.brace(arm, [0.05, 0.0, -0.53], limits, [bar]).run()    # steadied by leaning on the bar
+    plan.brace(arm, [0.05, 0.0, -0.53], limits, [bar]).run()    # braced against the bar
 
-SI units everywhere. docs/planning.md and docs/bracing.md have the equations and what they assume.
+SI units everywhere. docs/planning.md and docs/bracing.md have the equations and their assumptions.
 """
 
 from ._core import (

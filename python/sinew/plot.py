@@ -1,4 +1,4 @@
-"""Pictures of runs, sweeps and fits, by matplotlib: `python3 -m sinew.plot run DIR OUT.png`."""
+"""Plots of runs, sweeps and fits with matplotlib: `python3 -m sinew.plot run DIR OUT.png`."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ import warnings
 
 OURS, DATA, SECOND, QUIET = "#1f5fa8", "#222222", "#c8501e", "#999999"
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5195", "#5c5c5c")
+LEGEND_ROWS = 11  # as many as a panel is high
+DASHES = ("-", "-.", ":")  # of the first lines, of the next as many, and so on
 
 
 def _pyplot():
@@ -32,16 +34,16 @@ SHOWN = {"m": ("mm", 1e3), "Pa": ("kPa", 1e-3), "m^3": ("ml", 1e6), "J": ("mJ", 
 
 
 def read_run(folder, table="run.csv") -> dict[str, list[float]]:
-    """The numeric columns of a run's table, by their headings.
+    """Reads the numeric columns of a recorded run, by heading.
 
-    Warns where a run.csv of an older version lacks commands.
+    Warns if a run.csv of an older version lacks commands.
 
     Parameters
     ----------
     folder : path-like
-        As `sinew run` wrote it.
+        Output folder of `sinew run`.
     table : str
-        Or "probes.csv", "sensors.csv".
+        "run.csv", "probes.csv" or "sensors.csv".
     """
     with open(pathlib.Path(folder) / table, newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
@@ -93,6 +95,11 @@ def _owner(name: str) -> str:
     return name.removesuffix(" command").removesuffix(" true")
 
 
+def _style(line: int) -> tuple[int, str]:
+    """How often the colours were used up before this line, and its colour."""
+    return line // len(COLOURS), COLOURS[line % len(COLOURS)]
+
+
 def _sensor(heading: str) -> tuple[str, str] | None:
     """The panel that a column of sensors.csv belongs to, and its name there; None: in none."""
     name, unit = _split(heading)
@@ -104,15 +111,15 @@ def _sensor(heading: str) -> tuple[str, str] | None:
 
 
 def run(folder, out) -> pathlib.Path:
-    """Draws efforts, motions, effectors, contacts, probes, sensors, errors and energies of a recorded run over time.
+    """Plots efforts, motions, effectors, contacts, probes, sensors, errors and energies of a recorded run over time.
 
-    What is commanded is drawn as a thin dashed line of its actuator's colour, what is true so beside what a sensor
-    measured, and targets so in grey; of a line that is probed, its length.
+    Thin dashed lines show the commands of actuators and the true values of sensors, in the same colour, and the
+    targets of effectors, in grey. A line probe is shown by its length.
 
     Parameters
     ----------
     folder : path-like
-        As `sinew run` wrote it.
+        Output folder of `sinew run`.
     out : path-like
         PNG file.
     """
@@ -142,11 +149,13 @@ def run(folder, out) -> pathlib.Path:
             shown, scale = SHOWN.get(unit, (unit, 1.0))
             owner = _owner(name)
             target, asked = ".target_" in name, ".target_" in name or name != owner
-            axis.plot(time, [scale * v for v in values], "--" if asked else "-", lw=1.0 if asked else 1.5,
-                      color=QUIET if target else COLOURS[owners.index(owner) % len(COLOURS)],
+            lap, colour = (0, QUIET) if target else _style(owners.index(owner))
+            axis.plot(time, [scale * v for v in values], "--" if asked else DASHES[lap % len(DASHES)], lw=1.0 if asked else 1.5,
+                      color=colour,
                       label=None if target or (asked and owner in names) else name.replace("_", " "))
             axis.set_ylabel(f"{group.split(' (')[0]} ({shown})" if shown else group)
-        axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02))
+        labels = axis.get_legend_handles_labels()[1]
+        axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02), ncol=1 + (len(labels) - 1) // LEGEND_ROWS)
     axes[-1, 0].set_xlabel("time (s)")
     figure.savefig(out, dpi=110)
     plt.close(figure)
@@ -154,7 +163,7 @@ def run(folder, out) -> pathlib.Path:
 
 
 def fit(data, out) -> pathlib.Path:
-    """Draws tests of rubber, fitted laws, and what is left between them.
+    """Plots material tests, fitted models and residuals.
 
     Parameters
     ----------
@@ -185,7 +194,7 @@ def fit(data, out) -> pathlib.Path:
 
 
 def reach(data, out) -> pathlib.Path:
-    """Draws where an arm's tip can rest, and goals with what comes nearest to each.
+    """Plots the static workspace of an arm's tip, the goals, and the equilibrium nearest to each goal.
 
     Parameters
     ----------
@@ -219,7 +228,7 @@ def reach(data, out) -> pathlib.Path:
 
 
 def plan(data, out) -> pathlib.Path:
-    """Draws a plan's torques, the tip's path with the goal, and its distance and speed over time.
+    """Plots the torques of a plan, the path of the tip with the goal, and distance and speed of the tip over time.
 
     Parameters
     ----------
@@ -271,7 +280,7 @@ def _draw_object(axis, shape, aside):
 
 
 def brace(data, out) -> pathlib.Path:
-    """Draws a braced arm's poses, the forces of the braced point, and the tip's error with and without the brace.
+    """Plots the poses of a braced arm, the forces at the bracing point, and the tip error with and without the brace.
 
     Parameters
     ----------
@@ -310,7 +319,7 @@ def brace(data, out) -> pathlib.Path:
 
 
 def identify(data, out) -> pathlib.Path:
-    """Draws measured and predicted ends of an arm's segments, and their distances.
+    """Plots measured and predicted positions of the ends of an arm's segments, and their distances.
 
     Parameters
     ----------
@@ -348,7 +357,7 @@ def identify(data, out) -> pathlib.Path:
 
 
 def sweep(folder, out=None, kind=None) -> list[pathlib.Path]:
-    """Draws a sweep's table: see sinew.sweep.plots.draw()."""
+    """Plots the table of a sweep: see sinew.sweep.plots.draw()."""
     from sinew.sweep import plots
 
     return plots.draw(folder, out, kind)

@@ -1,4 +1,4 @@
-"""Quadratic programs, and complementarity problems by themselves: contacts with Coulomb friction.
+"""Solvers for quadratic programs and for contact problems with Coulomb friction.
 
     found = sinew.qp.solve_quadratic(G, g, lower, upper, C, row_lower, row_upper)
     found.x, found.status

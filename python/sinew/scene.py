@@ -1,4 +1,4 @@
-"""Simulations from scenes."""
+"""Load simulations from scenes."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ def load(
     threads: Optional[int] = None,
     folder: Union[str, os.PathLike[str]] = "",
 ) -> Simulation:
-    """A simulation of a scene. Its first controller, if any, is attached.
+    """Loads a scene and returns its simulation, with the first controller of the scene attached.
 
     Parameters
     ----------
     scene : path-like or dict
-        A YAML file, or the same structure as a dict of dicts, lists, numbers and text.
+        Path of a YAML file, or the same structure as a dict.
     set : list of str or dict, optional
-        Values to change before the scene is read: ["time_step=5ms"] or {"time_step": "5 ms"}.
+        Overrides of scene values: ["time_step=5ms"] or {"time_step": "5 ms"}.
     threads : int, optional
-        Threads inside a step; by default as the scene says, else 1. Results do not depend on it.
+        Threads per step; by default the scene's, else 1. Results do not depend on it.
     folder : path-like
-        Where relative paths in a dict start; the working folder by default. A file's start where
-        it is.
+        Base of relative paths in a dict; by default the working folder. Paths in a file are
+        relative to the file's folder.
 
     Returns
     -------
@@ -45,13 +45,12 @@ def load(
     Raises
     ------
     Error
-        What is wrong, with file, line and column, and the remedy.
+        If the scene is invalid: with file, line, column and remedy.
 
     Warns
     -----
     SinewWarning
-        Where a default makes a robot that is not what its material says: the warnings among
-        `Simulation.notices`.
+        For every warning in `Simulation.notices`, for example elements that lock.
 
     Examples
     --------
@@ -66,7 +65,7 @@ def load(
         raise Error(
             "wrong-type",
             "load(scene)",
-            f"a value of type {type(scene).__name__} is no scene",
+            f"a value of type {type(scene).__name__} is not a scene",
             "give the path of a YAML file, or a dict",
         )
     return _warned(_core.load_file(os.fspath(scene), overrides, _count(threads)))
@@ -79,7 +78,7 @@ def loads(
     threads: Optional[int] = None,
     folder: Union[str, os.PathLike[str]] = "",
 ) -> Simulation:
-    """A simulation of a scene given as YAML text, such as Simulation.to_yaml() writes.
+    """Loads a scene from YAML text, for example from Simulation.to_yaml().
 
     Parameters
     ----------
@@ -108,7 +107,7 @@ def _warned(sim: Simulation) -> Simulation:
 def _count(threads: Optional[int]) -> Optional[int]:
     if threads is None or (isinstance(threads, int) and not isinstance(threads, bool)):
         return threads
-    raise Error("wrong-type", "load(threads)", f"{threads!r} is no count", "give 1 or more")
+    raise Error("wrong-type", "load(threads)", f"{threads!r} is not a number of threads", "give an int, 1 or more")
 
 
 def _assignments(overrides: Overrides) -> list[str]:
@@ -125,8 +124,8 @@ def _assignments(overrides: Overrides) -> list[str]:
             raise Error(
                 "wrong-type",
                 "load(set)",
-                f"{assignment!r} is no text",
-                'give "path=value" each, or a dict',
+                f"{assignment!r} is not text",
+                'give a list of "path=value", or a dict',
             )
     return assignments
 
@@ -141,5 +140,5 @@ def _spell(value: Any) -> str:
         return json.dumps(value)
     except TypeError:
         raise Error(
-            "wrong-type", "load(set)", f"{value!r} has no place in a scene", "use numbers and text"
+            "wrong-type", "load(set)", f"a scene cannot hold {value!r}", "use numbers and text"
         ) from None

@@ -54,7 +54,7 @@ double to_number(const py::handle& value, const std::string& place, const std::s
       py::isinstance<py::str>(value)) {
     PyErr_Clear();
     throw Error(ErrorKind::wrong_type, {.item = place},
-                fmt::format("{} of type {} is no number",
+                fmt::format("{} of type {} is not a number",
                             std::string(py::repr(value)).substr(0, 60), type_name(value)),
                 fmt::format("give one number in {}", unit));
   }
@@ -68,7 +68,7 @@ double to_number(const py::handle& value, const std::string& place, const std::s
 std::int64_t to_count(const py::handle& value, const std::string& place) {
   if (PyIndex_Check(value.ptr()) == 0 || PyBool_Check(value.ptr())) {
     throw Error(ErrorKind::wrong_type, {.item = place},
-                fmt::format("{} of type {} is no whole number",
+                fmt::format("{} of type {} is not a whole number",
                             std::string(py::repr(value)).substr(0, 60), type_name(value)),
                 "give an int");
   }

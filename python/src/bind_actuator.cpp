@@ -143,10 +143,10 @@ auto of_cable(const char* what, Measure measure) {
 }
 
 void bind_limits(py::module_& module) {
-  py::class_<sim::Limits>(module, "Limits", "Inclusive limits; infinite where there is none.")
+  py::class_<sim::Limits>(module, "Limits", "Inclusive limits; infinite if unlimited.")
       .def_readonly("min", &sim::Limits::min, "float: N, m, Pa or m^3.")
       .def_readonly("max", &sim::Limits::max, "float: N, m, Pa or m^3.")
-      .def_readonly("rate", &sim::Limits::rate, "float: largest change a second.")
+      .def_readonly("rate", &sim::Limits::rate, "float: largest change per second.")
       .def("__repr__", [](const sim::Limits& self) {
         return fmt::format("Limits(min={:g}, max={:g}, rate={:g})", self.min, self.max, self.rate);
       });
@@ -163,61 +163,63 @@ void bind_commands(py::class_<Actuator>& type) {
   bind_quantity(type, "displacement", motion,
                 R"(float: length pulled out of the robot, or travel of a force's point along it (m).
 
-Reading gives what it is; assigning commands it: a number (m), a signal such as `sinew.Ramp`, or
-(n, 2) samples of time and value. The actuator obeys within its limits. Raises Error
-(actuator-owned) while a controller has it.)");
+Reading returns the present value; assignment sets the command: a number (m), a signal such as
+`sinew.Ramp`, or (n, 2) samples of time and value. The actuator follows within its limits. Raises
+Error (actuator-owned) while a controller owns the actuator.)");
   bind_quantity(type, "tension", effort,
-                "float: tension of a cable (N), >= 0. Assigning commands it, as for "
+                "float: tension of a cable (N), >= 0. Assignment sets the command, as for "
                 "`displacement`. Of a spring, which takes no command: negative when it pushes.");
-  bind_quantity(type, "force", effort,
-                "float: force of a force actuator along its direction (N). Assigning commands it, "
-                "as for `displacement`.");
-  bind_quantity(type, "pressure", effort,
-                "float: pressure in a chamber above ambient (Pa). Assigning commands it, as for "
-                "`displacement`; through the chamber's supply when it has one.");
+  bind_quantity(
+      type, "force", effort,
+      "float: force of a force actuator along its direction (N). Assignment sets the command, "
+      "as for `displacement`.");
+  bind_quantity(
+      type, "pressure", effort,
+      "float: pressure in a chamber above ambient (Pa). Assignment sets the command, as for "
+      "`displacement`; through the chamber's supply when it has one.");
   bind_quantity(
       type, "torque", effort,
-      "float: torque on a bend, or of a motor on its joint (N m). Assigning commands it, as "
+      "float: torque on a bend, or of a motor on its joint (N m). Assignment sets the command, as "
       "for `displacement`.");
   bind_quantity(type, "angle", motion,
-                "float: a bend under a torque, or a motor's joint angle (rad). Assigning commands "
-                "it.");
+                "float: a bend under a torque, or a motor's joint angle (rad). Assignment sets "
+                "the command.");
   bind_quantity(
       type, "velocity", told,
-      "float: the rate that a motor is told to turn or travel at (rad/s, m/s), 0 while it "
-      "is told something else. Assigning commands it; the joint obeys within the limits "
-      "of the motor's effort.");
+      "float: commanded rate of a motor (rad/s, m/s), 0 while another quantity is commanded. "
+      "Assignment sets the command; the joint follows within the limits of the motor's "
+      "effort.");
   bind_quantity(type, "volume_growth", motion,
-                "float: volume that a chamber gained since rest (m^3). Assigning commands it, as "
-                "a syringe of liquid would.");
+                "float: volume gained by a chamber since rest (m^3). Assignment sets the command, "
+                "as a syringe of liquid does.");
   bind_quantity(
       type, "gas", [](const Actuator& self, const char*) { return added_gas(self); },
-      "float: gas added to what a chamber holds at rest, in volume at ambient pressure (m^3). "
-      "Assigning commands it, as for `displacement`. Chambers with `gas` alone.");
+      "float: gas added to a chamber since rest, as a volume at ambient pressure (m^3). "
+      "Assignment sets the command, as for `displacement`. Only for chambers with `gas`.");
   bind_quantity(
       type, "liquid",
       [](const Actuator& self, const char*) { return drive_number(self, "liquid", "liquid", 0); },
-      "float: liquid added to a chamber (m^3). Assigning commands it. Chambers with `liquid` "
-      "alone.");
+      "float: liquid added to a chamber (m^3). Assignment sets the command. Only for chambers "
+      "with `liquid`.");
   bind_quantity(type, "power", told,
-                "float: electric power into a shape-memory spring (W). Assigning commands it.");
+                "float: electric power of a shape-memory spring (W). Assignment sets the command.");
   bind_quantity(
       type, "phase",
       [](const Actuator& self, const char*) { return wire_number(self, "phase", 1); },
-      "float: part of a shape-memory spring that is austenite, 0 to 1. Assigning commands it where "
-      "the scene says so.");
+      "float: austenite fraction of a shape-memory spring, 0 to 1. Assignment sets the command, if "
+      "the scene allows it.");
   type.def_property_readonly(
           "temperature", [](const Actuator& self) { return wire_number(self, "temperature", 0); },
-          "float: of a shape-memory spring (K).")
+          "float: temperature of a shape-memory spring (K).")
       .def_property_readonly(
           "volume",
           [](const Actuator& self) {
             const double rest = chamber(self, "volume").rest_volume();
             return rest + motion(self, "volume_growth");
           },
-          "float: volume of a chamber now (m^3), without dead volume.")
+          "float: present volume of a chamber (m^3), without dead volume.")
       .def_property_readonly("command", &command,
-                             "tuple: what it is told, as ('displacement', 0.01): the quantity and "
+                             "tuple: the command, such as ('displacement', 0.01): the quantity and "
                              "a number or a Signal.")
       .def_property_readonly(
           "owned",
@@ -225,7 +227,7 @@ Reading gives what it is; assigning commands it: a number (m), a signal such as 
             return read(self,
                         [](const sim::ActuatorState& state) { return state.owner != nullptr; });
           },
-          "bool: whether a controller has it, so that commands raise.");
+          "bool: whether a controller owns it; commands then raise.");
 }
 
 void bind_measures(py::class_<Actuator>& type) {
@@ -236,12 +238,12 @@ void bind_measures(py::class_<Actuator>& type) {
           [](const Actuator& self) {
             return read(self, [](const sim::ActuatorState& state) { return state.slack; });
           },
-          "bool: a cable without tension.")
+          "bool: whether a cable is slack, without tension.")
       .def_property_readonly(
           "length",
           of_cable("length",
                    [](const Cable& c, const Configuration& now) { return c.length(now); }),
-          "float: length of a cable from its pull point to its end now (m).")
+          "float: present length of a cable from its pull point to its end (m).")
       .def_property_readonly(
           "rest_length",
           of_cable("rest_length",

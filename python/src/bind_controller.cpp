@@ -57,7 +57,7 @@ std::string text_key(const py::handle& key, const char* place) {
 py::dict to_dict(const py::handle& value, const char* place) {
   if (py::isinstance<py::dict>(value)) return py::reinterpret_borrow<py::dict>(value);
   throw Error(ErrorKind::wrong_type, {.item = place},
-              fmt::format("{} is no dict", std::string(py::repr(value)).substr(0, 60)),
+              fmt::format("{} is not a dict", std::string(py::repr(value)).substr(0, 60)),
               "give a dict such as {'tip': [0.03, 0.0, 0.18]}");
 }
 
@@ -152,7 +152,7 @@ std::vector<int> to_actuators(const sim::Model& model, const py::object& names) 
   if (names.is_none()) return actuators;
   if (py::isinstance<py::str>(names) || !py::isinstance<py::iterable>(names)) {
     throw Error(ErrorKind::wrong_type, {.item = "InverseController(actuators)"},
-                fmt::format("{} is no list of names", std::string(py::repr(names))),
+                fmt::format("{} is not a list of names", std::string(py::repr(names))),
                 "give a list such as ['long_0', 'long_1']");
   }
   for (const auto& name : names) {
@@ -281,48 +281,47 @@ constexpr const char* kControllerDoc =
     R"(InverseController(sim, targets={}, *, actuators=None, weights=None, regularisation='change', epsilon=None, tolerance=None, largest_step=None, contacts=None, priorities=None, certify=False)
 --
 
-Finds the efforts that bring effectors to their targets, in every step.
+Inverse controller: chooses the actuator efforts that bring effectors to their targets.
 
 Minimises 1/2 |W_ea effort + delta_e - target|^2 + eps/2 (effort - last)^T W_aa (effort - last)
-within the actuators' limits on effort, stroke and rate. It owns its actuators until it is
-detached: by detach(), by Simulation.detach(), or at the end of a `with` block. Dropping the Python
-object does not detach it.
+in every step, within the actuators' limits on effort, stroke and rate. The controller owns its
+actuators until it is detached by detach(), by Simulation.detach() or at the end of a `with` block.
+Deleting the Python object does not detach it.
 
 Parameters
 ----------
 sim : Simulation
 targets : dict
-    Effector names to where they should be: (3,) array_like (m; for an orientation effector the
-    rotation vector, rad), or a Circle, Polyline or Trajectory.
+    Targets by name of the effector: (3,) array_like (m; for an orientation effector the rotation
+    vector, rad), or a Circle, Polyline or Trajectory.
 actuators : list of str, optional
-    What it may use; all by default. The others obey their commands.
+    Actuators to use (default: all). The others follow their commands.
 weights : dict, optional
-    Effector names to one weight, or one for each of its directions; >= 0.
+    Weight of each effector, or one weight per direction; >= 0.
 regularisation : {'change', 'effort'}
-    What is kept small among efforts that serve equally well: their change, or the efforts
-    themselves, which biases the effector.
+    Whether to minimise the change of efforts or the efforts themselves among equally good
+    solutions. 'effort' biases the effector.
 epsilon : float, optional
     Weight of the regularisation relative to the objective, > 0.
 tolerance : float, optional
-    m (or rad): an effector this near is on target.
+    Distance below which an effector is on target, m (or rad).
 largest_step : float, optional
-    Targets farther than this part of the robot's size are approached in such steps.
+    Largest motion per step towards a target, as a fraction of the robot's size.
 contacts : dict, optional
-    Names of contacts to what is asked of their forces, before targets: `normal_force`, a number (N)
-    or {'min': N, 'max': N}, the sum over the contact's points; `slip`, False keeps the resultant
-    within the friction cone; `reserve`, within the cone less this part of it.
+    Tasks on contact forces by name of the contact, with priority over targets: `normal_force`, a
+    number (N) or {'min': N, 'max': N} for the sum over the contact's points; `slip`, False keeps the
+    resultant within the friction cone; `reserve`, the fraction by which the cone is reduced.
 priorities : dict, optional
-    Effector names to 1 (first, the default) to 3. An effector moves one of the priority before by
-    about 1e-4 of what it lacks itself.
+    Priority of each effector, from 1 (highest, the default) to 3. The error of an effector disturbs
+    those of the next higher priority by about 1e-4 of itself.
 certify : bool, optional
-    Whether to find out more of every choice, see `certificate`. Takes longer than the choice.
+    Whether to compute a `certificate` of every solution, which takes longer than the solution.
 
 Raises
 ------
 Error
     actuator-owned while another controller is attached, unknown-name, no-effectors, wrong-shape,
-    not-finite, out-of-range; suspicious-unit for a target farther than a hundred sizes of the
-    robot.
+    not-finite, out-of-range; suspicious-unit for a target more than a hundred robot sizes away.
 )";
 
 void bind_methods(py::class_<Controller>& type) {
@@ -363,7 +362,7 @@ RunError
           R"(detach($self)
 --
 
-Gives the actuators back. Each holds the displacement where it stands until it is told otherwise.
+Releases the actuators. Each holds its present displacement until it gets another command.
 )")
       .def("__enter__", [](const py::object& self) { return self; })
       .def("__exit__", [](const Controller& self, const py::args&) {
@@ -383,36 +382,34 @@ void bind_results(py::class_<Controller>& type) {
   type.def_property_readonly("status", guarded([](const TargetController& law) {
                                return std::string(inverse_status_name(law.status()));
                              }),
-                             "str: how the last step served the targets: 'not-started'; "
-                             "'on-target', within the tolerance and as foreseen; 'moving', on the "
-                             "way; 'rate-limited', on the way at the limits on rates; "
-                             "'out-of-reach', at rest as near as limits allow; 'local-optimum', at "
-                             "rest where no small change of efforts comes nearer, though no limit "
-                             "is in the way; 'limits-conflict', see `conflict`. A closed loop is "
-                             "on target by its samples, 'at-limits' where limits hold effectors "
-                             "back, and 'holding' while a sensor is silent.")
+                             "str: status of the last step: 'not-started'; 'on-target', within the "
+                             "tolerance and as predicted; 'moving', on the way; 'rate-limited', on "
+                             "the way at rate limits; 'out-of-reach', at rest as near as limits "
+                             "allow; 'local-optimum', at rest where no small change of efforts "
+                             "reduces the error, although no limit is active; 'limits-conflict', "
+                             "see `conflict`. A closed loop judges 'on-target' by its samples, and "
+                             "is 'at-limits' if limits prevent motion, 'holding' while a sensor is "
+                             "silent.")
       .def_property_readonly(
           "conflict", guarded([](const TargetController& law) { return law.conflict(); }),
           "str: with 'limits-conflict', which limits of which actuators contradict each other; "
           "with 'holding', which sensors are silent; else empty.")
       .def_property_readonly(
           "efforts", guarded([](const TargetController& law) { return copy(law.efforts()); }),
-          "(k,) ndarray: efforts chosen last (N), of a closed loop those that the actuators have, "
-          "in "
-          "the order of `actuators`. A copy.")
-      .def_property_readonly("actuators", &actuator_names, "list of str: what it owns.")
+          "(k,) ndarray: latest efforts (N), for a closed loop the present ones, in the order of "
+          "`actuators`. A copy.")
+      .def_property_readonly("actuators", &actuator_names,
+                             "list of str: names of the owned actuators.")
       .def_property_readonly(
           "error", guarded([](const TargetController& law) { return law.error(); }),
-          "float: distance of the effectors from their targets now, along the directions "
-          "whose weight is not zero, the "
-          "largest one (m or rad); measured, before the first step too.")
+          "float: largest present distance of an effector from its target (m or rad), along "
+          "directions with nonzero weight; also available before the first step.")
       .def_property_readonly("errors", &errors, "dict: `error` of every effector.")
       .def_property_readonly("measured_errors", &measured_errors,
-                             "dict: of a closed loop the same of every effector by the last sample "
-                             "of its sensor, NaN before the first; else empty.")
-      .def_property_readonly(
-          "sensors", &sensors,
-          "dict: of a closed loop effector names to those of their sensors; else empty.")
+                             "dict: for a closed loop, the error of every effector by the latest "
+                             "sample of its sensor, NaN before the first; else empty.")
+      .def_property_readonly("sensors", &sensors,
+                             "dict: for a closed loop, the sensor of every effector; else empty.")
       .def_property_readonly("force_errors", guarded([](const TargetController& law) {
                                py::dict errors;
                                const auto& tasks = law.settings().contacts;
@@ -423,8 +420,8 @@ void bind_results(py::class_<Controller>& type) {
                                }
                                return errors;
                              }),
-                             "dict: of every contact in `contacts`, by how much its forces are "
-                             "beyond what is asked (N); NaN before a step.")
+                             "dict: violation of the force task of every contact in `contacts` "
+                             "(N); NaN before the first step.")
       .def_property_readonly(
           "certificate", guarded([](const TargetController& law) -> py::object {
             const auto& found = law.certificate();

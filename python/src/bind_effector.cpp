@@ -71,23 +71,26 @@ Array directions(const Effector& self) {
 
 void bind_effector(py::module_& module) {
   py::class_<Effector>(module, "Effector",
-                       "Something on the robot whose motion matters. From Simulation.effector().")
+                       "A controlled or recorded point or orientation. From Simulation.effector().")
       .def_property_readonly(
-          "name", [](const Effector& self) { return model(self).name(); }, "str: as in the scene.")
+          "name", [](const Effector& self) { return model(self).name(); },
+          "str: name in the scene.")
       .def_property_readonly(
           "position", [](const Effector& self) { return value_of(self, false); },
-          "(3,) ndarray: where the point, or the mean of the points, is now (m). A copy.")
+          "(3,) ndarray: present position of the point, or of the mean of the points (m). A copy.")
       .def_property_readonly(
           "rotation", [](const Effector& self) { return value_of(self, true); },
-          "(3,) ndarray: rotation vector since rest of an orientation effector (rad). A copy.")
+          "(3,) ndarray: rotation vector of an orientation effector relative to rest (rad). A "
+          "copy.")
       .def_property_readonly("velocity", &velocity,
                              "(3,) ndarray: velocity (m/s), or angular velocity of an orientation "
                              "effector (rad/s); zero in quasi-static runs.")
-      .def_property_readonly("value", &value, "(3,) ndarray: position or rotation, by its kind.")
+      .def_property_readonly("value", &value,
+                             "(3,) ndarray: position or rotation, depending on the kind.")
       .def_property_readonly(
           "unit", [](const Effector& self) { return model(self).unit(); }, "str: 'm' or 'rad'.")
       .def_property_readonly("directions", &directions,
-                             "(k, 3) ndarray: unit directions along which its motion matters.")
+                             "(k, 3) ndarray: unit vectors of the controlled directions.")
       .def("__repr__", [](const Effector& self) {
         return fmt::format("<sinew.Effector '{}'>", model(self).name());
       });

@@ -49,7 +49,7 @@ Signal samples(const py::handle& value, const char* place) {
 
 void bind_base(py::module_& module) {
   py::class_<Signal>(module, "Signal",
-                     "A value over time, for commands: Ramp, Sine, Steps or Samples. Immutable.")
+                     "A command over time: Ramp, Sine, Steps or Samples. Immutable.")
       .def("value", &Signal::value, py::arg("time"),
            R"(value($self, time)
 --
@@ -66,10 +66,11 @@ Returns
 float
     In the unit of the quantity that it commands: N or m.
 )")
-      .def_property_readonly("end_time", &Signal::end_time,
-                             "float: when it has shown all it has (s); 0 for a constant.")
+      .def_property_readonly(
+          "end_time", &Signal::end_time,
+          "float: end of the signal or of its first period (s); 0 for a constant.")
       .def_property_readonly("is_constant", &Signal::is_constant,
-                             "bool: whether the value is the same at all times.")
+                             "bool: whether the value is constant.")
       .def("__repr__", [](const py::object& self) {
         return fmt::format("<sinew.{} {:g} at 0 s, ends at {:g} s>",
                            std::string(py::str(py::type::of(self).attr("__name__"))),

@@ -61,8 +61,8 @@ void bind_control(SimulationType& type) {
             if (!self->controller()) return py::none();
             return py::cast(Controller{self, self->controller()});
           },
-          "InverseController or None: what is attached. A scene's first controller is, from the "
-          "start.")
+          "InverseController or None: the attached controller. Initially the first one of the "
+          "scene.")
       .def(
           "detach",
           [](const std::shared_ptr<Session>& self) {
@@ -71,7 +71,8 @@ void bind_control(SimulationType& type) {
           R"(detach($self)
 --
 
-Detaches the controller, if there is one. Its actuators hold where they stand until told otherwise.
+Detaches the controller, if any. Its actuators hold their present displacements until they get
+another command.
 )");
 }
 
@@ -104,10 +105,11 @@ Simulation
 
 void bind_simulation(py::module_& module) {
   SimulationType type(module, "Simulation",
-                      R"(A running robot, from sinew.load().
+                      R"(A simulated robot, from sinew.load().
 
-Positions are in the mesh file's node order, units are SI. One thread at a time may use a
-simulation (others get an Error of kind 'simulation-busy'); several simulations run side by side.)");
+Positions are in the node order of the mesh file, in SI units. Only one thread at a time may use a
+simulation (others get an Error of kind 'simulation-busy'); several simulations may run in
+parallel.)");
   bind_simulation_parts(type);
   bind_simulation_stepping(type);
   bind_simulation_state(type);

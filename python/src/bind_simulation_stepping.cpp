@@ -77,7 +77,7 @@ void bind_step(SimulationType& type) {
       R"(step($self, n=1)
 --
 
-Advances n time steps. Other Python threads run meanwhile; Ctrl-C ends it between steps.
+Advances the simulation by n time steps. Releases the GIL; Ctrl-C interrupts between steps.
 
 Parameters
 ----------
@@ -88,7 +88,7 @@ Raises
 ------
 RunError
     diverged, inverted-in-run, singular-matrix or not-converged, with the step, the body and the
-    likely cause; the state is then that before the step that failed.
+    likely cause. The simulation keeps the state before the failed step.
 )");
 }
 
@@ -100,28 +100,29 @@ void bind_solve_static(SimulationType& type) {
       R"(solve_static($self, *, tolerance=1e-10, max_iterations=60, max_load_steps=256, max_relaxation_steps=200, stability='stable')
 --
 
-A stable static equilibrium at the present inputs, by Newton with the exact tangent and the cables'
-geometric stiffness.
+Solves for a stable static equilibrium under the present inputs, by Newton's method with the exact
+tangent and the geometric stiffness of cables.
 
-Limits on rates are lifted and the actuators of a controller hold their efforts. Velocities become
-zero; time stands still. Where Newton fails in one go, the load comes in parts; where that ends
-before the full load, the robot moves on by overdamped motion. An unstable equilibrium (a column
-straight beyond its buckling load) is disturbed along the direction of its lowest curvature and left
-for a stable one.
+Rate limits are ignored, and the actuators of a controller hold their efforts. Velocities become
+zero; the time does not change. If Newton's method fails, the load is applied in steps; if that
+fails, overdamped motion continues from the last load step. An unstable equilibrium (a straight
+column beyond its buckling load) is perturbed along its direction of lowest curvature and left for a
+stable one.
 
 Parameters
 ----------
 tolerance : float
-    Residual relative to the loads, and violation of the actuators' law relative to the size.
+    Residual relative to the loads, and violation of the actuators' laws relative to the robot's
+    size.
 max_iterations : int
-    Of Newton in one load step.
+    Maximum number of Newton iterations per load step.
 max_load_steps : int
-    Where one go fails, the load comes in parts, the least of which is its inverse.
+    Maximum number of load steps: the smallest load increment is its inverse.
 max_relaxation_steps : int
-    Steps of overdamped motion.
+    Maximum number of steps of overdamped motion.
 stability : str
-    'stable', or 'any' for the equilibrium that Newton finds, stable or not: to follow an unstable
-    branch. See StaticReport.negative_pivots.
+    'stable', or 'any' to accept an unstable equilibrium, for example to follow an unstable branch.
+    See StaticReport.negative_pivots.
 
 Returns
 -------
@@ -141,15 +142,15 @@ void bind_follow_path(SimulationType& type) {
       R"(follow_path($self, *, first_step=0.01, largest_step=0.05, tolerance=1e-09, max_points=500)
 --
 
-Equilibria while loads and commanded efforts grow in proportion, from what acted last (nothing, at
-the start) to what they are told to be now: by arc length, so through limit points and back, where
-solve_static() would jump or fail. The last one lies at the full load or just beyond it. Friction of
-contacts is that of one slow motion from each point to the next.
+Follows the path of equilibria while loads and commanded efforts grow in proportion, from the last
+ones (none at the start) to the present commands. Arc-length continuation passes limit points, where
+solve_static() would jump or fail. The last point is at the full load or just beyond it. Contact
+friction is the friction of a slow motion from point to point.
 
 Parameters
 ----------
 first_step, largest_step : float
-    Largest motion of any coordinate in a step, as a part of the robot's size.
+    Largest motion of any coordinate per step, as a fraction of the robot's size.
 tolerance : float
     Residual relative to the loads.
 max_points : int
@@ -157,8 +158,8 @@ max_points : int
 Returns
 -------
 dict
-    'load_fraction' (k,): part of the load; 'negative_pivots' (k,): directions in which the point is
-    unstable; and by its name the value (k, 3) of every effector.
+    'load_fraction' (k,); 'negative_pivots' (k,): number of unstable directions at the point; and the
+    value (k, 3) of every effector by name.
 
 Raises
 ------
@@ -176,26 +177,27 @@ void bind_run(SimulationType& type) {
            R"(run($self, duration=None, *, record=None, every=1, progress=None)
 --
 
-Steps for a while and returns what happened, the start included.
+Simulates for a time and returns the recorded quantities, including the initial state.
 
 Parameters
 ----------
 duration : float, optional
-    s; by default the scene's, or the length of its signals and targets.
+    Simulated time, s; by default the scene's, or the length of its signals and targets.
 record : list of str, optional
-    Which keys to return beside 'time'; by default all but those named "on request" below.
+    Keys to return in addition to 'time'; by default all except those "on request" below.
 every : int
     Steps between records; the last step is always recorded.
 progress : callable, optional
-    Called with (steps done, all steps) about ten times a second. It may read the simulation and
-    command it.
+    Called with (steps done, all steps) about ten times per second. It may read and command the
+    simulation.
 
 Returns
 -------
 dict of ndarray
     'time' (k,) s; for every actuator effort and motion, 'NAME.tension' (k,) N and
-    'NAME.displacement' (k,) m, and what is commanded of them, 'NAME.tension_command' and
-    'NAME.displacement_command', NaN while another quantity is (a controller commands efforts); for
+    'NAME.displacement' (k,) m, and their commands 'NAME.tension_command' and
+    'NAME.displacement_command', NaN for a quantity that is not commanded (a controller commands
+    efforts); for
     every effector 'NAME.position' (k, 3) m or 'NAME.rotation' (k, 3) rad; for every probe
     'NAME.value'; for every sensor 'NAME.measured', 'NAME.true' and 'NAME.sample_time' s, NaN before
     its first sample; for every contact 'NAME.force' (k, 3) N, 'NAME.normal_force', 'NAME.gap' and so
@@ -208,8 +210,8 @@ dict of ndarray
 Raises
 ------
 RunError
-    As step(). What was recorded until then is in the exception's `recorded`, as it is in that of
-    a KeyboardInterrupt.
+    As step(). The exception has the arrays recorded so far as `recorded`, as has a
+    KeyboardInterrupt.
 )");
 }
 

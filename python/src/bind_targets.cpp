@@ -21,7 +21,7 @@ struct Trajectory : Target {};
 
 void bind_base(py::module_& module) {
   py::class_<Target>(module, "Target",
-                     "Where an effector is asked to be over time: Circle, Polyline or Trajectory. "
+                     "Target of an effector over time: Circle, Polyline or Trajectory. "
                      "Immutable.")
       .def(
           "at", [](const Target& self, double time) { return copy(self.at(time)); },
@@ -43,7 +43,7 @@ Returns
 )")
       .def_property_readonly(
           "end_time", &Target::end_time,
-          "float: when it has shown all it has (s): one turn of a circle, the end of a path.")
+          "float: end of the first cycle (s): one turn of a circle, the end of a path.")
       .def("__repr__", [](const py::object& self) {
         return fmt::format("<sinew.{}, ends at {:g} s>",
                            std::string(py::str(py::type::of(self).attr("__name__"))),

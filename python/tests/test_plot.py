@@ -39,3 +39,19 @@ def test_a_run_with_contacts_is_drawn(tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert sinew.plot.run(tmp_path, tmp_path / "run.png").stat().st_size > 1000
+
+
+def test_no_two_lines_of_a_panel_look_alike(tmp_path, monkeypatch):
+    plt = pytest.importorskip("matplotlib.pyplot")
+    names = [f"pad_{k}.{force} [N]" for k in range(4) for force in ("force_x", "force_y", "force_z", "normal_force", "friction_force")]
+    rows = [["time [s]", *names, "substeps"], ["0", *["1"] * len(names), "1"], ["1", *["2"] * len(names), "1"]]
+    (tmp_path / "run.csv").write_text("\n".join(",".join(row) for row in rows) + "\n")
+    drawn = []
+    monkeypatch.setattr(plt, "close", drawn.append)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # of legends that leave no room for their panel
+        sinew.plot.run(tmp_path, tmp_path / "run.png")
+    monkeypatch.undo()
+    lines = drawn[0].axes[0].get_lines()
+    assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == len(lines) == 20
+    plt.close(drawn[0])

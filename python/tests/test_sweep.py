@@ -113,7 +113,7 @@ def test_sobol_points_fill_space_better_than_chance():
     ({"a": "1:2"}, "lattice:8", ["lattice:8", "sobol:512"]),
     ({"a": "1:2"}, "sobol:0", ["sobol:0"]),
     ({"a": "1:2:100000", "b": "1:2:100000"}, None, ["10000000000", "fewer"]),
-    ({}, None, ["nothing is varied", "--vary"]),
+    ({}, None, ["no parameter to vary", "--vary"]),
 ])
 def test_wrong_variations_say_what_and_what_instead(vary, sample, words):
     with pytest.raises(sinew.Error) as error:
@@ -428,7 +428,7 @@ def test_a_changed_scene_or_mesh_is_not_resumed(scene, cluster, tmp_path):
 @pytest.mark.parametrize("options,words", [
     ({"measure": ["tip.posiion"]}, ["tip.posiion", "did you mean 'tip.position'"]),
     ({"measure": ["status"]}, ["'status' is a word"]),
-    ({"measure": []}, ["nothing is measured", "--measure"]),
+    ({"measure": []}, ["no quantity to measure", "--measure"]),
     ({"measure": ["actuator_work"], "static": True}, ["actuator_work", "equilibrium"]),
     ({"static": True, "duration": 1.0}, ["no duration"]),
     ({"duration": -1.0}, ["-1"]),
@@ -679,7 +679,7 @@ def test_the_command_ends_cleanly_on_an_interrupt(scene, tmp_path):
     finally:
         watch.cancel()
     assert process.returncode == 130
-    assert told == "sinew: stopped; the samples that were done are in the table, and --resume does the others\n"
+    assert told == "sinew: interrupted; the finished samples are in the table, continue with --resume\n"
     assert 0 < len(sinew.sweep.load(tmp_path / "out")) < 5000
 
 

@@ -247,6 +247,7 @@ def test_a_long_step_tells_of_itself_and_can_be_ended(tmp_path, how):
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         line = process.stderr.readline()
         assert re.match(r"sinew: t = \S+ s: this step has taken \d+ s: iteration \d+, residual \S+, ", line), line
+        assert line.endswith("; the contacts have 1681 points: use fewer, or `aggregate`\n"), line
         sent = time.monotonic()
         process.send_signal(how)
         _, errors = process.communicate(timeout=60)
@@ -368,13 +369,13 @@ WRONG_ARGUMENTS = [
     (["bench", "{scene}", "--steps", "0"], "out-of-range", "--steps"),
     (["bench", "{scene}", "--steps", "many"], "bad-argument", "--steps"),
     (["bench", "{scene}", "--tangent", "best"], "unknown-choice", "exact, projected or corotated"),
-    (["validate", "patch", "--json"], "unknown-option", "there is no option '--json'"),
+    (["validate", "patch", "--json"], "unknown-option", "unknown option '--json'"),
     (["validate", "patch", "--lst"], "unknown-option", "did you mean --list?"),
     (["validate", "--jobs", "two"], "bad-argument", "--jobs"),
     (["info"], "bad-argument", "FILE"),
     (["info", "none.vtu"], "file-not-found", "none.vtu"),
     (["info", "{scene}", "--units", "mm"], "unknown-option", "did you mean --unit?"),
-    (["info", "{folder}"], "file-unreadable", "name a mesh, a surface, a scene, a saved state, or the folder of a run"),
+    (["info", "{folder}"], "file-unreadable", "give a mesh, a surface, a scene, a saved state, or the folder of a run"),
     (["info", "{junk}"], "unknown-format", "junk"),
     (["info", "{junk}", "--unit", "kg"], "wrong-dimension", "--unit"),
     (["mesh", "-o", "a.vtu"], "bad-argument", "--shape"),
@@ -472,6 +473,16 @@ def test_convergence(scene, tmp_path):
     assert "error of the scene's mesh" in result.stdout
     first, second = json.loads((tmp_path / "figures.json").read_text())["levels"]
     assert first["elements"] == 240 < second["elements"]
+
+
+def test_a_filled_surface_names_the_unit_of_its_file(tmp_path):
+    if shutil.which("gmsh") is None:
+        pytest.skip("without Gmsh")
+    cube = ROOT / "tests" / "mesh" / "data_surface" / "cube_binary.stl"
+    for unit, length in (("m", "1 m"), ("cm", "10 mm")):
+        made = sinew("mesh", cube, "--unit", unit, "--size", f"0.05 {unit}", "-o", tmp_path / "cube.vtu")
+        assert made.returncode == DONE, made.stderr
+        assert f"1 file unit = {length}\n" in made.stdout and f"wrote {tmp_path / 'cube.vtu'}, lengths in m\n" in made.stdout
 
 
 def test_mesh_and_info(tmp_path):
@@ -729,11 +740,11 @@ def test_fit_writes_a_material_that_a_scene_takes(scene, tmp_path):
     stress = 12.0 * 2 * (stretch - stretch**-2) + 0.3 * 4 * (stretch**2 + 2 / stretch - 3) * (stretch - stretch**-2)
     table = "\n".join(f"{a:.6f},{b:.8f}" for a, b in zip(stretch, stress))
     (tmp_path / "tensile.csv").write_text("stretch,nominal stress [kPa]\n" + table + "\n")
-    if "Not in this build" in sinew("fit", "--help").stdout:
+    if "Not available" in sinew("fit", "--help").stdout:
         pytest.skip("built without Ceres")
     done = sinew("fit", "tensile.csv", "--model", "yeoh2", "-o", "rubber.yaml", "--plot", "rubber.png", cwd=tmp_path)
     assert done.returncode == DONE, done.stderr
-    assert "stable after Drucker" in done.stdout and "initial shear modulus 24 kPa" in done.stdout
+    assert "Drucker-stable" in done.stdout and "initial shear modulus 24 kPa" in done.stdout
     assert (tmp_path / "rubber.png").read_bytes().startswith(b"\x89PNG")
     text = (tmp_path / "rubber.yaml").read_text()
     c10 = float([line for line in text.splitlines() if line.startswith("c10")][0].split()[1])
@@ -748,9 +759,12 @@ def test_fit_writes_a_material_that_a_scene_takes(scene, tmp_path):
     assert part.returncode == DONE and "; 5 in the range" in part.stdout, part.stdout
     none = sinew("fit", "tensile.csv", "--max-stretch", "1.01", cwd=tmp_path)
     assert none.returncode == WRONG and "too-few-points" in none.stderr
-    for arguments, kind in ((["tensile.csv", "--model", "yoeh2"], "unknown-choice"), (["none.csv"], "file-not-found")):
-        wrong = sinew("fit", *arguments, cwd=tmp_path)
-        assert wrong.returncode == WRONG and kind in wrong.stderr
+    missing = sinew("fit", "none.csv", cwd=tmp_path)
+    assert missing.returncode == WRONG and "file-not-found" in missing.stderr
+    for model, remedy in (("yeoh", "did you mean 'yeoh1'? the models are "), ("gent", "; the models are ")):
+        wrong = sinew("fit", "tensile.csv", "--model", model, cwd=tmp_path)
+        assert wrong.returncode == WRONG and "unknown-choice" in wrong.stderr
+        assert remedy in wrong.stderr and "yeoh1, yeoh2, yeoh3, arruda-boyce" in wrong.stderr
 
 
 def test_validate_passes_cases_on(tmp_path):
@@ -786,6 +800,11 @@ def test_validation_resumes_with_the_cases_that_have_not_ended(tmp_path):
     assert count == 2 and "1 held, 0 missed" in card
     case.write_text(case.read_text().replace("3.1416", "3.14159"))
     assert validate("--resume")[0] == 3
+    shutil.copy(case, folder / "cases" / "other.py")
+    one = subprocess.run([os.path.abspath(PROGRAM), "validate", "circle", "--out", str(tmp_path / "docs")], capture_output=True,
+                         text=True, env={**os.environ, "SINEW_VALIDATION_DIR": str(folder)}, check=False)
+    assert "    held: pi: 3.1416, reference 3.1416, error " in one.stdout, one.stdout
+    assert f"scorecard.md is unchanged; the plots are in {tmp_path / 'docs' / 'images'}" in one.stdout
 
 
 def test_elements_are_named_and_warned_of(scene, tmp_path):

@@ -18,64 +18,63 @@ __all__ = ["ClosedLoop"]
 class ClosedLoop(Loop):
     """Brings measured effectors to their targets by a resolved-rate or PI law with the Jacobian of a model.
 
-    The effectors are asked for the velocity v = dr/dt + rate e + integral (time integral of e). A small quadratic
-    program finds the changes u of efforts that give it within the limits of efforts, motions and their rates,
+    The desired velocity of the effectors is v = dr/dt + rate e + integral (time integral of e). A small quadratic
+    program finds the changes u of the efforts that achieve it within the limits of efforts, motions and rates,
 
         min |W_ea u - v T|^2_Q + s change |u|^2_W_aa + s relaxation |lambda + u|^2_W_aa,
 
-    and the actuators are commanded the motions m + W_aa u (or the efforts lambda + u), that is J_model^+ v T with
-    J_model = W_ea W_aa^-1, the compliance being that of equilibrium (Simulation.response()). The model obeys the same
-    commands beside the robot, so that W belongs to where the robot is, up to the model's errors.
+    and the commands are the motions m + W_aa u (or the efforts lambda + u), that is J_model^+ v T with
+    J_model = W_ea W_aa^-1 and the static compliance W (Simulation.response()). The model receives the same commands as
+    the robot: W is the compliance at the state of the robot, up to the errors of the model.
 
-    The errors fall where the symmetric part of J_real J_model^+ is positive definite (Zhang, Dequidt, Kruszewski,
+    The errors decrease if the symmetric part of J_real J_model^+ is positive definite (Zhang, Dequidt, Kruszewski,
     Largilliere & Duriez, IROS 2016; Zhang et al., IEEE Robotics and Automation Letters 3 (2018) 1529-1536): then
-    d|e|^2/dt = -2 rate e^T J_real J_model^+ e < 0. `least_eigenvalue` reports it in each step, with the limits that
-    are active. docs/closed_loop.md derives both, and the largest gain for a delay.
+    d|e|^2/dt = -2 rate e^T J_real J_model^+ e < 0. `least_eigenvalue` reports the condition in every step, including
+    the active limits. docs/closed_loop.md derives it and the largest gain for a delay.
 
-    While an integral acts, what limits keep from the effectors is taken off it (back-calculation).
+    Anti-windup: the motion prevented by limits is subtracted from the integral (back-calculation).
 
-    When a measurement stays away, all commands are held for the time `hold`; after that the model stands in for it,
-    corrected by the last difference, until it is back: `status` says so.
+    If a measurement is missing, all commands are held for the time `hold`. After that the model, corrected by the last
+    measured difference, replaces the measurement until it is back; `status` reports it.
 
     Parameters
     ----------
     model : Simulation
-        Of the robot, quasi-static as a rule, in the state and with the commands that the robot has. The loop commands
-        it and steps it, once in each step(): its time step is the loop's.
+        Model of the robot, usually quasi-static, in the same state and with the same commands. The loop commands and
+        steps it once per step(): its time step is the sample time of the loop.
     effectors : dict
-        Names to targets: (3,) array_like (m; for an orientation effector the rotation vector, rad), or a Circle,
-        Polyline or Trajectory over the time given to step().
+        Targets by name of the effector: (3,) array_like (m; for an orientation effector the rotation vector, rad), or a
+        Circle, Polyline or Trajectory over the time given to step().
     actuators : list of str, optional
-        Which it may use; all that take commands by default. The model's others keep their commands.
+        Actuators to use; by default all that take commands. The others keep their commands.
     gains : Gains, Schedule or float
         A number is the rate, 1/s.
     sensors : dict or list of Sensor, optional
-        Of each effector the sensor of a plant or of a robot that measures it: a marker, or an orientation
-        (`plant.sensor('camera')`); a list where their names are those of the effectors. step() then takes the
-        samples that have been delivered, with their rate, delay and losses. Without, step() is given measurements
-        that are exact and of now.
+        Sensor of each effector, a marker or an orientation sensor of a plant or robot (`plant.sensor('camera')`), or a
+        list if sensors and effectors have the same names. step() then uses the delivered samples, with their rate, delay
+        and dropouts. Without sensors, step() takes exact and current measurements.
     command : 'motion', 'effort' or dict by actuator, optional
-        What actuators are commanded: a motion by default (displacement, angle), but chambers their pressure.
+        Commanded quantity: by default the motion (displacement, angle), for chambers the pressure.
     weights : dict, optional
-        Effectors to one weight, or one for each of its directions; >= 0.
+        Weight of each effector, or one per direction; >= 0.
     compensate : bool
-        Whether the age of samples is made up for by the model (Smith, Chem. Eng. Prog. 53 (1957) 217): the error is
-        that of the model now, corrected by what was measured less what the model had then.
+        Whether to compensate the age of samples with the model (Smith predictor, Chem. Eng. Prog. 53 (1957) 217): the
+        error is the present error of the model, corrected by the difference between the measurement and the model at the
+        time of the sample.
     tolerance : float
-        m (or rad): an effector measured this near is on target.
+        Distance below which an effector is on target, m (or rad).
     change, relaxation : float
-        Weights of the program: of changes of efforts, and of efforts themselves.
+        Weights of the changes of efforts and of the efforts in the program.
     hold : float
-        s, for how long commands are held when measurements stay away: a sample that is not valid, or older than its
-        sensor's delay and period.
+        Time for which commands are held if a measurement is missing, s: if the sample is invalid, or older than the
+        delay and period of its sensor.
     real_jacobian : 'estimate', 'model' or callable
-        The J_real of `least_eigenvalue`: estimated from measured motions (JacobianEstimator); that of the model; or a
-        function without arguments that returns it, (rows, actuators), as control.jacobian() does for a plant.
+        J_real of `least_eigenvalue`: estimated from measured motions (JacobianEstimator), the Jacobian of the model, or a
+        function without arguments that returns it, (rows, actuators), for example control.jacobian() of a plant.
     estimator : dict, optional
-        Of JacobianEstimator: `noise` (1e-4 m) and `noise_rotation` (1e-3 rad), standard deviations of measurements
-        where no sensor says its own;
-        `spread` (0.3), of the relative error of the model's Jacobian; `forgetting` (0.9); `window` (5), samples from
-        one measured difference to the next.
+        Arguments of JacobianEstimator: `noise` (1e-4 m) and `noise_rotation` (1e-3 rad), standard deviations of
+        measurements without a sensor that specifies them; `spread` (0.3), of the relative error of the model's Jacobian;
+        `forgetting` (0.9); `window` (5), samples between measured differences.
 
     Raises
     ------
@@ -110,7 +109,7 @@ class ClosedLoop(Loop):
 
     @property
     def gains(self) -> Union[Gains, Schedule]:
-        """Assigning them takes effect in the next step."""
+        """Gains of the next step."""
         return self._gains
 
     @gains.setter

@@ -1,4 +1,4 @@
-"""Gains of a loop, constant or by table, and the limit that a delay sets to them."""
+"""Gains of a loop, constant or scheduled, and their limit for a given delay."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ class Gains(NamedTuple):
     Attributes
     ----------
     rate : float
-        1/s, above 0: the error of a loop without delay falls as exp(-rate t).
+        1/s, > 0: without delay, the error decays as exp(-rate t).
     integral : float
-        1/s^2, 0 or more. Without it a disturbance that grows by d m/s leaves the error d/rate; with it none. The loop
-        is critically damped at rate^2/4.
+        1/s^2, >= 0. Without it, a disturbance that grows by d m/s causes the error d/rate; with it, none. The loop is
+        critically damped at rate^2/4.
     """
 
     rate: float = 5.0
@@ -45,7 +45,7 @@ class Gains(NamedTuple):
 
 
 class Schedule:
-    """Gains by table over a scheduling variable: linear between the entries, constant beyond them.
+    """Gain schedule over a variable: linear between the points, constant beyond them.
 
     Gains that change slowly against the loop keep the loop as stable as each of them is (Shamma & Athans, Automatica
     27 (1991) 559-564); a variable that follows the motion itself at the loop's own rate has no such guarantee.
@@ -53,11 +53,11 @@ class Schedule:
     Parameters
     ----------
     variable : callable
-        Takes the loop before its step, returns a float: loop.positions["tip"][2], loop.time, ...
+        Function of the loop before its step that returns a float: loop.positions["tip"][2], loop.time, ...
     points : (n,) array_like
-        Where gains are given, ascending.
+        Ascending values of the variable.
     gains : list of Gains
-        As many.
+        Gains at these points.
 
     Raises
     ------
@@ -87,7 +87,7 @@ class Schedule:
 
 
 def delay_limit(delay: int) -> float:
-    """The largest rate times sample time, rate * T, at which a resolved-rate loop with an exact Jacobian is stable.
+    """Largest stable rate times sample time, rate * T, of a resolved-rate loop with an exact Jacobian.
 
     The loop is an integrator with a delay, x[n+1] = x[n] - k x[n-d], whose characteristic polynomial
     z^(d+1) - z^d + k has its largest root on the unit circle, at z = exp(i pi/(2 d + 1)), for

@@ -1,4 +1,4 @@
-"""What all loops share: the model beside the robot, measurements that come and stay away, commands and reports."""
+"""Common to all loops: the parallel model, measurements and their loss, commands and reports."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _vector(value: Any, place: str, unit: str) -> np.ndarray:
     try:
         found = np.array(value, dtype=float)
     except (TypeError, ValueError):
-        raise Error("wrong-type", place, f"{value!r} is no vector", f"give three numbers ({unit})") from None
+        raise Error("wrong-type", place, f"{value!r} is not a vector", f"give three numbers ({unit})") from None
     if found.shape != (3,):
         raise Error("wrong-shape", place, f"its shape is {found.shape}", f"give three numbers ({unit})")
     return found
@@ -59,7 +59,7 @@ class Loop:
                  real_jacobian: Union[str, Callable[[], np.ndarray]], estimator: Optional[Mapping[str, Any]]) -> None:
         place = self._place = type(self).__name__
         if not isinstance(effectors, Mapping):
-            raise Error("wrong-type", f"{place}(effectors)", f"{effectors!r} is no dict",
+            raise Error("wrong-type", f"{place}(effectors)", f"{effectors!r} is not a dict",
                         "give a dict such as {'tip': [0.03, 0.0, 0.18]}")
         if not effectors:
             raise Error("no-effectors", f"{place}(effectors)", "there are none", "give at least one target")
@@ -111,12 +111,12 @@ class Loop:
         - 'on-target': every effector was measured within the tolerance of its target
         - 'moving': on the way
         - 'at-limits': on the way, with an active limit of an actuator
-        - 'limits-conflict': efforts are beyond their limits, and those of motions do not let them come back
+        - 'limits-conflict': efforts are beyond their limits, and motion limits prevent their return
         - 'condition-violated': no limit is active, and the symmetric part of J_real J_model^+ is not positive definite
           (`least_eigenvalue` is at most 0, by more than twice its standard deviation where it is estimated)
-        - 'holding': a measurement stays away; all commands are kept
-        - 'open-loop': it stayed away for longer than `hold`; the model stands in for it, corrected by the last
-          difference
+        - 'holding': a measurement is missing; all commands are held
+        - 'open-loop': it has been missing for longer than `hold`; the model, corrected by the last difference,
+          replaces it
         """
         return self._status
 
@@ -128,7 +128,7 @@ class Loop:
 
     @property
     def error(self) -> float:
-        """The largest of `errors`."""
+        """Largest of `errors`."""
         return max(self._errors.values())
 
     @property
@@ -145,37 +145,37 @@ class Loop:
 
     @property
     def commands(self) -> dict[str, float]:
-        """What was commanded last, by actuator; `quantities` says what it is."""
+        """Last commands by actuator; `quantities` gives the commanded quantities."""
         return {name: float(value) for name, value in zip(self._robot.actuators, self._commands)}
 
     @property
     def quantities(self) -> dict[str, str]:
-        """Of each actuator what it is commanded: "displacement" (m), "tension" (N), "pressure" (Pa) ..."""
+        """Commanded quantity of each actuator: "displacement" (m), "tension" (N), "pressure" (Pa) ..."""
         return self._robot.quantities
 
     @property
     def actuators(self) -> list[str]:
-        """What it commands."""
+        """Names of the commanded actuators."""
         return list(self._robot.actuators)
 
     @property
     def positions(self) -> dict[str, np.ndarray]:
-        """(3,) m, or rotation vector, rad, of each effector: the model's, corrected by the last measured difference."""
+        """(3,) position (m) or rotation vector (rad) of each effector: the model's, corrected by the last measured difference."""
         return {name: self._robot.shifted(name, value, self._offsets[name])
                 for name, value in self._robot.positions().items()}
 
     @property
     def time(self) -> float:
-        """s, of the last step; -inf before."""
+        """Time of the last step, s; -inf before the first."""
         return self._time
 
     @property
     def targets(self) -> dict[str, Any]:
-        """Where effectors are asked to be: (3,) arrays or sinew.Target."""
+        """Targets by effector: (3,) arrays or sinew.Target."""
         return dict(self._targets)
 
     def set_target(self, name: str, target: Any) -> None:
-        """Asks an effector to be elsewhere, from the next step on.
+        """Sets the target of an effector from the next step on.
 
         Parameters
         ----------
@@ -205,7 +205,7 @@ class Loop:
         self._targets[name] = target
 
     def send(self, sim: Any, commands: Mapping[str, float]) -> None:
-        """Commands a simulation that has the same actuators: the plant of a twin test.
+        """Sends commands to a simulation with the same actuators: the plant of a twin test.
 
         Raises
         ------
@@ -220,15 +220,15 @@ class Loop:
         Parameters
         ----------
         measured : dict, optional
-            Of a loop without sensors, effectors to where they are now: (3,) m, or rotation vector, rad. What stays
-            away is left out, None or NaN.
+            For a loop without sensors: current position (3,) m, or rotation vector, rad, by effector. A missing
+            measurement is omitted, None or NaN.
         time : float
-            s, now, on the sensors' clock; later than that of the step before.
+            Present time on the clock of the sensors, s; later than at the previous step.
 
         Returns
         -------
         dict
-            Commands by actuator, to be obeyed until the next step; `quantities` says what they are.
+            Commands by actuator, valid until the next step; `quantities` gives the commanded quantities.
 
         Raises
         ------
@@ -266,13 +266,13 @@ class Loop:
         return self.commands
 
     def state(self) -> tuple:
-        """All that decides how it goes on, the model's state included, as a value; targets and gains are inputs."""
+        """Complete state of the loop, including the model, as a value. Targets and gains are inputs and not included."""
         return (self.model.state(), self._status, self._time, self._lost_since,
                 {name: offset.copy() for name, offset in self._offsets.items()}, dict(self._errors), self._least,
                 self._least_std, list(self._memory), self._commands.copy(), self._estimator.state(), self._state())
 
     def restore(self, state: tuple) -> None:
-        """Takes up a state(), bit for bit. Raises Error: those of Simulation.restore()."""
+        """Restores a state(), bit for bit. Raises the errors of Simulation.restore()."""
         self.model.restore(state[0])
         (self._status, self._time, self._lost_since) = state[1:4]
         self._offsets = {name: offset.copy() for name, offset in state[4].items()}
@@ -284,12 +284,12 @@ class Loop:
         self._restore(state[11])
 
     def clone(self, sensors: Union[Mapping[str, Any], Sequence[Any], None] = None) -> "Loop":
-        """Another loop on a clone of the model, in the same state. A function given as `real_jacobian` is shared.
+        """A loop on a clone of the model, in the same state. A function given as `real_jacobian` is shared.
 
         Parameters
         ----------
         sensors : dict or list of Sensor, optional
-            Those of another plant, such as a clone; the same by default.
+            Sensors of another plant, such as a clone; by default the same sensors.
         """
         other = copy.copy(self)
         if sensors is not None:
@@ -380,7 +380,7 @@ class Loop:
     def _read(self, measured: Optional[Mapping[str, Any]]) -> dict[str, Any]:
         """Of each effector the measurement, None where it stays away."""
         if measured is not None and not isinstance(measured, Mapping):
-            raise Error("wrong-type", "step(measured)", f"{measured!r} is no dict",
+            raise Error("wrong-type", "step(measured)", f"{measured!r} is not a dict",
                         "give a dict from effectors to (3,) arrays")
         measured = measured or {}
         for name in measured:

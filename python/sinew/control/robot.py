@@ -51,7 +51,7 @@ class Robot:
         self.effectors = {name: sim.effector(name) for name in effectors}
         names = [n for n, a in sim.actuators.items() if a.type != "spring"] if actuators is None else list(actuators)
         if isinstance(actuators, str):
-            raise Error("wrong-type", f"{place}(actuators)", f"{actuators!r} is no list of names",
+            raise Error("wrong-type", f"{place}(actuators)", f"{actuators!r} is not a list of names",
                         "give a list of names")
         if not names:
             raise Error("no-actuators", f"{place}(actuators)", "there are none", "name at least one")

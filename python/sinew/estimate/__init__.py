@@ -1,4 +1,4 @@
-"""Shape and forces of a robot from its sensors, with their covariance.
+"""Estimation of the shape of a robot and the forces on it from sensor data, with covariance.
 
     from sinew import estimate
     twin = estimate.Twin("trunk.yaml", [estimate.Measured("tip.position", 1e-4)],

@@ -5,11 +5,11 @@ from __future__ import annotations
 import argparse
 import pathlib
 import sys
-import warnings
 
 import numpy as np
 
-from .. import _core
+from .. import command
+from ..command import quantity
 from ..errors import Error, RunError
 from .files import read_readings, write_table
 from .places import locate, patches
@@ -18,13 +18,10 @@ from .replay import FILTERS, filtered, has_parameters, settled, twin_of
 from .static import solve
 from .twin import Twin
 
-_FAILED, _WRONG_INPUT = 1, 2
-_FORCE, _LENGTH = (1, 1, -2, 0), (1, 0, 0, 0)
 
 
 def _options(words: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="sinew estimate", allow_abbrev=False)
-    parser.add_argument("scene", metavar="SCENE")
+    parser = command.parser("estimate")
     for name in ("measured", "out", "walk", "method", "search"):
         parser.add_argument(f"--{name}")
     for name in ("std", "force", "parameter", "marker", "set"):
@@ -33,22 +30,16 @@ def _options(words: list[str]) -> argparse.Namespace:
     return parser.parse_args(words)
 
 
-def _quantity(option: str, text: str, dimension=None) -> float:
-    try:
-        value, found = _core._quantity(text)
-    except Error as error:
-        raise Error(error.kind, option, error.message, error.remedy) from None
-    if dimension is not None and found not in ((0, 0, 0, 0), dimension):
-        raise Error("wrong-dimension", option, f"'{text}' has another dimension", "see `sinew estimate --help`")
-    return value
+def _force(option: str, text: str) -> float:
+    return quantity(option, text, (1, 1, -2, 0), kind="a force", example="1N")
 
 
 def _point(option: str, text: str) -> list[float]:
     words = text.split()
     unit = words.pop() if len(words) == 4 else ""
     if len(words) != 3:
-        raise Error("wrong-length", option, f"'{text}' is no point", "write three numbers and a unit: 0 10 150 mm")
-    return [_quantity(option, f"{word} {unit}", _LENGTH) for word in words]
+        raise Error("wrong-length", option, f"'{text}' is not a point", "write three numbers and a unit, for example 0 10 150 mm")
+    return [quantity(option, f"{word} {unit}", (1, 0, 0, 0), kind="a length", example="10mm") for word in words]
 
 
 def _pair(option: str, text: str, parts: int) -> tuple[str, list[str]]:
@@ -61,24 +52,24 @@ def _pair(option: str, text: str, parts: int) -> tuple[str, list[str]]:
 
 
 def _unknowns(options: argparse.Namespace) -> list:
-    walk = _quantity("--walk", options.walk) if options.walk else 1.0
+    walk = quantity("--walk", options.walk) if options.walk else 1.0
     unknowns: list = []
     for text in options.force:
         name, (body, point, std) = _pair("--force", text, 3)
-        unknowns.append(Force(name, body, _point("--force", point), prior=_quantity("--force", std, _FORCE), walk=walk))
+        unknowns.append(Force(name, body, _point("--force", point), prior=_force("--force", std), walk=walk))
     for text in options.parameter:
         path, (start, share) = _pair("--parameter", text, 2)
-        unknowns.append(Parameter(path, _quantity("--parameter", start), _quantity("--parameter", share)))
+        unknowns.append(Parameter(path, quantity("--parameter", start), quantity("--parameter", share)))
     if not unknowns and not options.search:
-        raise Error("no-unknowns", "sinew estimate", "nothing is unknown", "give --force, --parameter or --search")
+        raise Error("no-unknowns", "sinew estimate", "nothing to estimate", "give --force, --parameter or --search")
     return unknowns
 
 
 def _estimate(options: argparse.Namespace) -> int:
     if options.measured is None:
-        raise Error("bad-argument", "--measured", "no file of readings", "give --measured FILE.csv")
+        raise Error("bad-argument", "--measured", "no measurements given", "give --measured FILE.csv")
     record = read_readings(options.measured)
-    stds = {name: _quantity("--std", value) for name, (value,) in (_pair("--std", text, 1) for text in options.std)}
+    stds = {name: quantity("--std", value) for name, (value,) in (_pair("--std", text, 1) for text in options.std)}
     markers = {name: (body, _point("--marker", point)) for name, (body, point) in (_pair("--marker", t, 2) for t in options.marker)}
     twin, commanded = twin_of(options.scene, record, stds, _unknowns(options), markers=markers, set=options.set)
     out = pathlib.Path(options.out or f"out/{pathlib.Path(options.scene).stem}-estimate")
@@ -136,7 +127,7 @@ def _search(options: argparse.Namespace, twin: Twin, record, commanded) -> dict[
     if not count.isdigit() or not std:
         raise Error("bad-argument", "--search", f"'{options.search}' is not of the form BODY:PATCHES:STD", "write trunk:48:1N")
     areas = patches(twin.sim, body, int(count))
-    prior = _quantity("--search", std, _FORCE)
+    prior = _force("--search", std)
     names = ("x", "y", "z")
     table: dict[str, list] = {"time [s]": [], "patch": [], "probability": [], **{f"place.{a} [m]": [] for a in names},
                               **{f"force.{a} [N]": [] for a in names}, "status": []}
@@ -170,16 +161,9 @@ def _print(options: argparse.Namespace, table, out: pathlib.Path) -> None:
 
 
 def main(words: list[str]) -> int:
-    """Of the command line; the exit code: 0 done, 1 no estimate, 2 wrong input, 130 after Ctrl-C."""
+    """Runs `sinew estimate`; returns the exit code, see command.exit_code()."""
     options = _options(words)
-    warnings.showwarning = lambda message, *_, **__: print(f"sinew: warning: {message}", file=sys.stderr)
-    try:
-        return _estimate(options)
-    except Error as error:
-        print(f"sinew: error: {error}", file=sys.stderr)
-        return _FAILED if isinstance(error, RunError) else _WRONG_INPUT
-    except KeyboardInterrupt:
-        return 130
+    return command.exit_code(lambda: _estimate(options))
 
 
 if __name__ == "__main__":

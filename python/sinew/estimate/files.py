@@ -1,4 +1,4 @@
-"""Readings in files: CSV in, estimates out."""
+"""Read measurements from CSV files, write estimates."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ _HEADING = re.compile(r"^\s*(?P<name>[^\[\]]+?)\s*(\[(?P<unit>[^\]]*)\])?\s*$")
 
 @dataclass(frozen=True)
 class Record:
-    """Readings over time.
+    """Measurements over time.
 
     Attributes
     ----------
     time : (n,) ndarray
         s, increasing.
     columns : dict of str to (n,) ndarray
-        SI, by the names of components: "tip.x", "long_0.displacement". NaN: no reading.
+        SI values by name of the component: "tip.x", "long_0.displacement". NaN for a missing reading.
     path : str
     """
 
@@ -38,18 +38,18 @@ class Record:
     path: str = ""
 
     def at(self, row: int) -> dict[str, float]:
-        """Readings of one row that are there."""
+        """Available readings of one row."""
         return {name: float(values[row]) for name, values in self.columns.items() if math.isfinite(values[row])}
 
     @property
     def missing(self) -> dict[str, int]:
-        """How many readings each column lacks, where it lacks any."""
+        """Number of missing readings of each incomplete column."""
         counts = {name: int(np.isnan(values).sum()) for name, values in self.columns.items()}
         return {name: count for name, count in counts.items() if count}
 
     @property
     def gaps(self) -> list[tuple[float, float]]:
-        """Pauses longer than three times the median step: from, to, s."""
+        """Pauses longer than three median steps, as (begin, end) in s."""
         steps = np.diff(self.time)
         if len(steps) < 2:
             return []
@@ -62,20 +62,20 @@ def _factor(unit: Optional[str], place: Location) -> float:
     try:
         return float(_core._quantity(f"1 {unit}")[0])
     except Error as error:
-        raise Error(error.kind, place, f"'{unit}' is no unit", "write one such as mm, N, kPa or rad") from error
+        raise Error(error.kind, place, f"'{unit}' is not a unit", "write one such as mm, N, kPa or rad") from error
 
 
 def read_readings(path: Any, *, wanted: Optional[Sequence[str]] = None) -> Record:
-    """Readings from a CSV file with a heading for each column: "time [s]", "tip.x [mm]", "long_0.tension [N]".
+    """Reads measurements from a CSV file with headings such as "time [s]", "tip.x [mm]", "long_0.tension [N]".
 
-    Names are those of run.csv, so that a recorded run reads as measurements. A unit in brackets is converted, without one
-    numbers are SI. An empty cell, "nan" and "-" are no reading. Columns that hold words are left out.
+    The names are the same as in run.csv: a recorded run can be read as measurements. Units in brackets are converted; values
+    without a unit are SI. An empty cell, "nan" and "-" mean a missing reading. Text columns are ignored.
 
     Parameters
     ----------
     path : path-like
     wanted : list of str, optional
-        Columns to keep; others are ignored.
+        Columns to read; all others are ignored.
 
     Raises
     ------
@@ -122,7 +122,7 @@ def _number(text: str, name: str, wanted, words: set, place: Location) -> float:
         value = float(text)
     except ValueError:
         if name == "time" or wanted is not None:
-            raise Error("wrong-type", place, f"'{text}' is no number", "leave the cell empty where there is no reading") from None
+            raise Error("wrong-type", place, f"'{text}' is not a number", "leave the cell empty where there is no reading") from None
         words.add(name)
         return math.nan
     if math.isinf(value):
@@ -142,7 +142,7 @@ def _check_time(time: np.ndarray, path: pathlib.Path) -> None:
 
 
 def write_table(path: Any, columns: Mapping[str, np.ndarray]) -> None:
-    """Writes columns with their headings, "time [s]" and so on, as CSV. Raises Error (file-unwritable)."""
+    """Writes columns with headings such as "time [s]" as CSV. Raises Error (file-unwritable)."""
     try:
         with open(path, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file, lineterminator="\n")

@@ -1,4 +1,4 @@
-"""Unknowns over time: extended and unscented Kalman filters, moving horizon, with sensors of different rates and delays."""
+"""Estimation over time: extended and unscented Kalman filters and moving horizon, for sensors with different rates and delays."""
 
 from __future__ import annotations
 
@@ -59,11 +59,11 @@ class Reading:
     Attributes
     ----------
     time : float
-        s: the instant that it is of, not that of its arrival.
+        Time of the sample, not of its arrival, s.
     sensor : int
-        Number in the model's sensors.
+        Index of the sensor in the model.
     values : (m,) ndarray
-        SI; NaN: not seen.
+        SI; NaN for a missing value.
     """
 
     time: float
@@ -83,23 +83,23 @@ class _Instant:
 
 
 class Filter:
-    """Steps a model through time and corrects it by readings, whenever they arrive.
+    """Advances a model through time and corrects it with readings as they arrive.
 
-    A reading of an earlier instant (a delayed camera) goes where it belongs: the filter returns to the last instant before
-    it and takes the steps and readings after it again, so that the estimate is the one that it would be without delay.
-    Readings older than `memory` are dropped and counted.
+    If a reading is late (a camera with a delay), the filter returns to the last instant before the sample and repeats the
+    steps and readings since then. The estimate is therefore the same as without the delay. Readings older than `memory` are
+    dropped and counted.
 
     Parameters
     ----------
     model : ProcessModel
     step : float
-        s, of the model, > 0.
+        Time step of the model, s, > 0.
     start : ((n,) ndarray, (n, n) ndarray), optional
-        Mean and covariance at the beginning in place of the model's.
+        Initial mean and covariance; by default the model's.
     memory : float
-        s of steps that are kept for late readings; 0: none can come, and no state is saved.
+        Time for which steps are kept for late readings, s; 0 if there are none, and no state is saved.
     silence : float
-        A sensor without a reading for this many of its periods (of steps without a rate) counts as lost.
+        Number of periods (steps for sensors without a rate) without a reading after which a sensor is lost.
 
     Attributes
     ----------
@@ -108,13 +108,13 @@ class Filter:
     mean : (n,) ndarray
     covariance : (n, n) ndarray
     dropped : int
-        Readings that came too late.
+        Number of readings that arrived too late.
     """
 
     def __init__(self, model: ProcessModel, step: float, *, start: Optional[tuple[np.ndarray, np.ndarray]] = None, time: float = 0.0,
                  memory: float = 0.5, silence: float = 5.0) -> None:
         if not (math.isfinite(step) and step > 0.0):
-            raise Error("out-of-range", "Filter(step)", f"{step!r} is no time step", "give s, > 0")
+            raise Error("out-of-range", "Filter(step)", f"{step!r} is not a time step", "give a time > 0, in s")
         for sensor in model.sensors:
             if sensor.rate is not None and sensor.rate * step > 1.0 + 1e-9:
                 raise Error("out-of-range", f"Measured({sensor.name!r}).rate",
@@ -150,20 +150,20 @@ class Filter:
 
     @property
     def lost(self) -> list[str]:
-        """Names of sensors that are silent; the estimate goes on without them, and its covariance grows."""
+        """Names of lost sensors. The estimate continues without them, with growing covariance."""
         periods = [1.0 / s.rate if s.rate else self.step for s in self.model.sensors]
         return [s.name for k, s in enumerate(self.model.sensors)
                 if self.time - self._last[k] - s.delay > self.silence * periods[k] + _TOGETHER]
 
     def sensor(self, name: str) -> int:
-        """Number of a sensor. Raises Error (unknown-name)."""
+        """Index of a sensor. Raises Error (unknown-name)."""
         names = [s.name for s in self.model.sensors]
         if name not in names:
             raise Error("unknown-name", "Filter", f"there is no sensor '{name}'", f"there are {', '.join(names)}")
         return names.index(name)
 
     def delivered(self, sensors: Iterable[Any]) -> list[Reading]:
-        """Samples that sensors have delivered in their last step, for update().
+        """Samples delivered by sensors in their last step, for update().
 
         Parameters
         ----------
@@ -180,14 +180,14 @@ class Filter:
                 for sensor in sensors if sensor.fresh]
 
     def update(self, time: float, readings: Sequence[Reading] = ()) -> None:
-        """Goes to a time with the readings that have arrived since the last call, in any order.
+        """Advances to a time with the readings that have arrived since the last call, in any order.
 
         Parameters
         ----------
         time : float
-            s, not before the filter's own.
+            New time, s, not before the time of the filter.
         readings : list of Reading
-            None of later than `time`; those with NaN alone are no readings.
+            Readings up to `time`. Readings with only NaN are ignored.
 
         Raises
         ------
@@ -195,7 +195,7 @@ class Filter:
             non-monotonic-time.
         """
         if time < self.time - _TOGETHER:
-            raise Error("non-monotonic-time", "Filter.update(time)", f"{time:g} s lies before {self.time:g} s", "go forwards")
+            raise Error("non-monotonic-time", "Filter.update(time)", f"{time:g} s is before the time of the filter, {self.time:g} s", "give increasing times")
         fresh = []
         for reading in readings:
             if reading.time > time + _TOGETHER:

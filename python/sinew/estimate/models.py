@@ -1,4 +1,4 @@
-"""Robots as filters see them: finite elements by few unknowns, arms in full."""
+"""Process models for filters: finite elements with few unknowns, and complete arm dynamics."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _DIFFERENCE = 1e-6
 
 
 class TwinModel:
-    """A robot of any bodies that is in equilibrium all the time: the state is its unknowns, which wander at random.
+    """Any robot in static equilibrium at all times: the state consists of its unknowns, which follow a random walk.
 
     x = (u, e): u(t + h) = u(t) + w, w of covariance walk^2 h, and e the errors of measured commands, white from one
     instant to the next with the standard deviations of their sensors. y = h(u, command + e), the static equilibrium.

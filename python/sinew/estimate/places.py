@@ -1,4 +1,4 @@
-"""Where on its surface something touches a body: patches, and how likely each is."""
+"""Localisation of a force on the surface of a body: patches and their probabilities."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _ROUNDS = 200
 
 @dataclass(frozen=True)
 class Patch:
-    """A part of a body's surface.
+    """A patch of a body's surface.
 
     Attributes
     ----------
@@ -83,17 +83,17 @@ def surface(sim: _core.Simulation, body: str) -> np.ndarray:
 
 
 def patches(sim: _core.Simulation, body: str, count: int = 48) -> list[Patch]:
-    """The free surface of a body in patches of about equal size: Lloyd's iteration on the triangles' centres, by area.
+    """Divides the free surface of a body into patches of about equal area, by Lloyd's iteration on the triangle centres.
 
-    Begins with the triangles that are farthest from each other, so that the same body always has the same patches.
+    The iteration starts from triangles that are far from each other: the patches of a body are always the same.
 
     Parameters
     ----------
     sim : sinew.Simulation
     body : str
-        Of finite elements.
+        A body of finite elements.
     count : int
-        How many, >= 2.
+        Number of patches, >= 2.
 
     Raises
     ------
@@ -146,16 +146,16 @@ def _cluster(features: np.ndarray, weights: np.ndarray, count: int) -> np.ndarra
 
 @dataclass(frozen=True)
 class Search:
-    """What readings say of the place of a force.
+    """Result of locate().
 
     Attributes
     ----------
     status : str
-        "found"; "ambiguous": no patch has the probability asked for; "unexplained": the best place does not explain the
-        readings; "unobservable": they tell less of the force there than its prior does; "no-force": they are as likely
-        without any.
+        "found"; "ambiguous": no patch has the required probability; "unexplained": the best location does not explain the
+        readings; "unobservable": the prior dominates the readings there; "no-force": the readings are as likely without a
+        force.
     patch : int
-        The most probable.
+        Index of the most probable patch.
     probability : (patches,) ndarray
         Posterior, where each area has its share of the prior; sums to 1.
     log_evidence : (patches,) ndarray
@@ -296,7 +296,7 @@ def _frame(normal: np.ndarray) -> np.ndarray:
 
 def locate(twin: Twin, readings: Mapping[str, Any], areas: Sequence[Patch], *, prior: float = 1.0, friction: float = 0.3,
            candidates: int = 6, probability: float = 0.5, significance: float = 1e-3) -> Search:
-    """Where something pushes at a body, how hard, and how sure that is.
+    """Locates and estimates an unknown pushing force on a body, with probabilities.
 
     The columns of all points of the surface come from one factorisation (Linearisation.fields): the motion of every node
     under the efforts of the measured rows is, by reciprocity, the answer of these rows to a force on any node. The evidence of
@@ -308,20 +308,20 @@ def locate(twin: Twin, readings: Mapping[str, Any], areas: Sequence[Patch], *, p
     Parameters
     ----------
     twin : Twin
-        What is measured; its unknowns are kept, and the force is added to them. Its readings are rows.
+        Measurement model; the force is added to its unknowns. Its readings must be rows.
     readings : dict of str to float or array_like
     areas : list of Patch
-        Of one body. The prior of each is its share of the area.
+        Patches of one body, with prior probabilities proportional to area.
     prior : float
         Standard deviation of the normal force, N.
     friction : float
         Standard deviation of each tangential force over the normal force.
     candidates : int
-        How many patches are solved nonlinearly.
+        Number of patches to solve nonlinearly.
     probability : float
-        What the best patch must have; else "ambiguous".
+        Required probability of the best patch; below it the status is "ambiguous".
     significance : float
-        Of chi squared at the best patch; below it the readings are "unexplained".
+        Significance of chi squared at the best patch; below it the status is "unexplained".
 
     Returns
     -------
@@ -332,7 +332,7 @@ def locate(twin: Twin, readings: Mapping[str, Any], areas: Sequence[Patch], *, p
     Error
         As solve(); wrong-type for bodies without finite elements, bad-argument for readings that are no rows.
     RunError
-        not-converged: no place has an equilibrium.
+        not-converged if there is no equilibrium at any location.
     """
     if not twin.is_linear_in_rows:
         raise Error("bad-argument", "locate()", "readings of this model are no rows, or follow drives and friction of cables",

@@ -1,4 +1,4 @@
-"""What is measured, and what is not known."""
+"""Measured quantities and unknowns."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ _AXES = "xyz"
 def _positive(value: float, place: str, unit: str) -> float:
     number = float(value)
     if not (math.isfinite(number) and number > 0.0):
-        raise Error("out-of-range", place, f"{value!r} is no positive number of {unit}", "give a standard deviation > 0")
+        raise Error("out-of-range", place, f"{value!r} is not a positive number of {unit}", "give a standard deviation > 0")
     return number
 
 
 @dataclass(frozen=True)
 class Measured:
-    """A quantity that a sensor reads: the true value plus independent Gaussian noise.
+    """A measured quantity: the true value plus independent Gaussian noise.
 
     Parameters
     ----------
     name : str
-        As observables of a run are named: "tip.position" (its three coordinates), "tip.x", "long_0.tension",
-        "long_0.displacement", "chamber.volume_growth"; an effector of an orientation has "imu.rotation"; a probe its name.
+        Name of an observable: "tip.position" (three coordinates), "tip.x", "long_0.tension", "long_0.displacement",
+        "chamber.volume_growth", "imu.rotation" for an orientation effector, or the name of a probe.
     std : float
-        Standard deviation of the noise in the quantity's SI unit, > 0.
+        Standard deviation of the noise in the SI unit of the quantity, > 0.
     rate : float, optional
-        Hz; None: at every step of a filter.
+        Sampling rate, Hz; by default every step of the filter.
     delay : float
-        s, from the instant that a reading is of to its arrival, >= 0.
+        Delay from the sample to its arrival, s, >= 0.
 
     Raises
     ------
@@ -56,14 +56,14 @@ class Measured:
         if self.rate is not None:
             _positive(self.rate, f"{place}.rate", "Hz")
         if not (math.isfinite(self.delay) and self.delay >= 0.0):
-            raise Error("out-of-range", f"{place}.delay", f"{self.delay!r} is no delay", "give s, >= 0")
+            raise Error("out-of-range", f"{place}.delay", f"{self.delay!r} is not a delay", "give s, >= 0")
 
     @classmethod
     def by(cls, sensor: Any) -> "Measured":
-        """What a sensor of a simulation or a robot measures (Simulation.sensor()), with its noise, rate and delay.
+        """The quantity measured by a sensor of a simulation or a robot (Simulation.sensor()), with its noise, rate and delay.
 
-        A marker measures the position of the model's effector that has the sensor's name, an orientation its rotation;
-        any other sensor what it reads (Sensor.observable).
+        A marker sensor measures the position, and an orientation sensor the rotation, of the effector of the same name in the
+        model. Other sensors measure their observable (Sensor.observable).
 
         Parameters
         ----------
@@ -72,7 +72,7 @@ class Measured:
         Raises
         ------
         Error
-            out-of-range: a sensor without noise and quantum; bad-argument: nothing else observes what it reads.
+            out-of-range for a sensor without noise and quantum; bad-argument if the model has no such observable.
         """
         place = f"Measured.by({sensor.name})"
         if not sensor.std > 0.0:
@@ -86,37 +86,37 @@ class Measured:
 
 
 def readings_of(sensors: Iterable[Any]) -> dict[str, Any]:
-    """Of each sensor the sample that it delivered last, by the name of what it measures: readings for solve().
+    """Latest sample of each sensor, by name of the measured quantity: the readings for solve().
 
     Parameters
     ----------
     sensors : iterable of Sensor
-        Those that have delivered nothing yet, or nothing valid, are left out.
+        Sensors without a valid sample are skipped.
     """
     return {Measured.by(sensor).name: sensor.value for sensor in sensors if sensor.valid}
 
 
 @dataclass(frozen=True)
 class Force:
-    """A dead force of unknown size and direction on a point of a body.
+    """An unknown dead force vector on a point of a body.
 
-    Its prior is Gaussian: independent components along `directions`.
+    The prior is Gaussian, with independent components along `directions`.
 
     Parameters
     ----------
     name : str
-        Of the force; its components are `name.x`, `name.y`, `name.z`, with own directions `name.0` and so on.
+        Name of the force. Its components are `name.x`, `name.y`, `name.z`, or `name.0` ... with `directions`.
     body : str
     point : (3,) array_like
-        m, at rest; carried by the nearest element where it lies outside of the mesh.
+        Position at rest, m. A point outside of the mesh is attached to the nearest element.
     prior : float or (k,) array_like
-        Standard deviation of each component before anything is measured, N.
+        Prior standard deviation of each component, N.
     mean : float or (k,) array_like
         N.
     directions : (k, 3) array_like, optional
         World directions of the components, 1 to 3; by default x, y and z.
     walk : float
-        N/sqrt(s): how fast a filter takes the force to wander, the standard deviation after one second.
+        Random walk of the force in a filter: its standard deviation after one second, N/sqrt(s).
     """
 
     name: str
@@ -153,7 +153,7 @@ class Force:
 
 @dataclass(frozen=True)
 class NodalForce:
-    """A dead force of unknown size and direction that is spread over nodes of a body of finite elements.
+    """An unknown dead force vector distributed over nodes of a finite-element body.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ class NodalForce:
     body : str
     nodes : (n,) array_like of int
     weights : (n,) array_like
-        Share of each node, sum 1.
+        Fraction of the force on each node, with sum 1.
     prior, mean, directions, walk
         As of Force.
     """
@@ -181,12 +181,12 @@ class NodalForce:
 
 @dataclass(frozen=True)
 class Effort:
-    """An effort of an actuator that nothing measures: a cable's tension, a chamber's pressure, a motor's torque.
+    """An unmeasured effort of an actuator: tension of a cable, pressure of a chamber, torque of a motor.
 
     Parameters
     ----------
     actuator : str
-        Is commanded in effort.
+        Name of an actuator that is commanded in effort.
     prior : float
         Standard deviation, N, Pa or N m.
     mean : float
@@ -203,14 +203,14 @@ class Effort:
 
 @dataclass(frozen=True)
 class Motion:
-    """A motion of an actuator that is known to a standard deviation only: a cable's length by its encoder.
+    """A motion of an actuator known with limited accuracy, such as the length of a cable from its encoder.
 
-    Readings of a commanded motion become such an unknown by themselves.
+    Readings of a commanded motion become such an unknown automatically.
 
     Parameters
     ----------
     actuator : str
-        Is commanded in motion.
+        Name of an actuator that is commanded in motion.
     prior : float
         Standard deviation, m, m^3 or rad.
     mean : float
@@ -227,21 +227,21 @@ class Motion:
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number of the scene: Young's modulus, a coefficient of friction, a mass.
+    """An unknown scene parameter: Young's modulus, a coefficient of friction, a mass.
 
-    Estimated as its logarithm, log(value/start), whose prior is Gaussian: it stays positive, and `prior` is the relative
-    standard deviation. Each change builds the model anew, and its derivative is a central difference.
+    The estimated quantity is log(value/start), with a Gaussian prior: the value stays positive, and `prior` is its relative
+    standard deviation. Every change rebuilds the model; derivatives are central differences.
 
     Parameters
     ----------
     path : str
         "bodies.trunk.material.young_modulus".
     start : float
-        SI, > 0: the median before anything is measured.
+        Prior median, SI, > 0.
     prior : float
-        Standard deviation of log(value), about the relative one.
+        Prior standard deviation of log(value), about the relative standard deviation of the value.
     also : dict of str to float
-        More numbers of the scene with their starts, which change by the same factor.
+        Further parameters with their initial values, which change by the same factor.
     walk : float
         1/sqrt(s), of the logarithm.
     """
@@ -274,7 +274,7 @@ def names_of(unknown: Unknown) -> list[str]:
 def _spread(value, count: int, place: str) -> np.ndarray:
     array = np.asarray(value, float)
     if array.shape not in ((), (count,)) or not np.isfinite(array).all():
-        raise Error("wrong-shape", place, f"{value!r} is no number, nor {count} of them", f"give one number or {count}")
+        raise Error("wrong-shape", place, f"{value!r} is not a number, nor {count} of them", f"give one number or {count}")
     return np.broadcast_to(array, (count,)).copy()
 
 

@@ -1,4 +1,4 @@
-"""Unknowns from readings of a robot at rest: the nonlinear maximum a posteriori, its covariance, and what cannot be seen."""
+"""Static estimation: nonlinear maximum a posteriori estimate, its covariance, and observability."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ _SEEN = 1.0  # singular value from which readings tell more of a direction than 
 
 @dataclass(frozen=True)
 class Observability:
-    """What readings tell of the unknowns, beside their prior.
+    """Information in the readings about the unknowns, compared with the prior.
 
     The singular values are those of the whitened sensitivity S = R^(-1/2) J P_0^(1/2), R the covariance of noise and of
     measured commands, P_0 the prior's. Readings reduce the standard deviation along a direction of singular value s from the
-    prior's to 1/sqrt(1 + s^2) of it: s = 0 is not observable, at s < 1 the prior says more than the readings do.
+    prior's to 1/sqrt(1 + s^2) of it: s = 0 is not observable, and for s < 1 the prior dominates.
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class Observability:
     directions : (k, k) ndarray
         Rows: unit vectors of unknowns in units of their prior's standard deviation.
     names : list of str
-        Of the unknowns.
+        Names of the unknowns.
     """
 
     singular_values: np.ndarray
@@ -44,7 +44,7 @@ class Observability:
 
     @property
     def unobservable(self) -> list[str]:
-        """Directions of singular value below 1, in words: "0.98 hand.y + 0.2 hand.z (0.03)"."""
+        """Directions with singular values below 1, as text: "0.98 hand.y + 0.2 hand.z (0.03)"."""
         return [f"{self._spell(direction)} (singular value {value:.2g})"
                 for value, direction in zip(self.singular_values, self.directions) if value < _SEEN]
 
@@ -55,29 +55,30 @@ class Observability:
 
 @dataclass(frozen=True)
 class Estimate:
-    """Unknowns of a robot at rest.
+    """Estimate for a robot at rest.
 
     Attributes
     ----------
     values, std : dict of str to float
-        Of each unknown, SI; of a Parameter the value itself, and its standard deviation to first order.
+        Value and standard deviation of each unknown, SI. For a Parameter, the standard deviation is to first order.
     names : list of str
-        Order of `covariance`; measured commands, which are estimated too, come last.
+        Order of `covariance`. Measured commands, which are also estimated, come last.
     covariance : (inputs, inputs) ndarray
-        (P_0^-1 + J^T R^-1 J)^-1 at the estimate, SI; of a Parameter that of its logarithm.
+        (P_0^-1 + J^T R^-1 J)^-1 at the estimate, SI; for a Parameter, of its logarithm.
     unknowns : (inputs,) ndarray
-        Values in that order; of a Parameter log(value/start).
+        Values in that order; for a Parameter, log(value/start).
     observability : Observability
-        Of the unknowns that were asked for.
+        Observability of the requested unknowns.
     predicted, residuals : dict of str to float
-        Readings that the model makes of the estimate, and readings less these, in units of each sensor's std.
+        Readings predicted at the estimate, and measured minus predicted readings in standard deviations of each sensor.
     chi_squared : float
-        Of residuals and of the distance from the prior together; of `degrees` degrees of freedom where the model is right.
+        Chi squared of the residuals and of the distance from the prior, with `degrees` degrees of freedom if the model is
+        correct.
     degrees : int
     probability : float
-        That chi squared is as large as this or larger.
+        Probability that chi squared is at least this large.
     log_evidence : float
-        log p(readings | model), by Laplace's approximation about the estimate.
+        log p(readings | model), by Laplace's approximation.
     iterations : int
     status : str
         "converged" or "iteration-limit".
@@ -102,12 +103,12 @@ class Estimate:
     positions: dict[str, np.ndarray]
 
     def holds(self, truth: Sequence[float], share: float = 0.9) -> bool:
-        """Whether the ellipsoid that holds the truth with a given probability does.
+        """Whether a true value is inside of the confidence ellipsoid.
 
         Parameters
         ----------
         truth : (k,) array_like
-            Of the first k of `names`.
+            True values of the first k `names`.
         share : float
         """
         error = np.asarray(truth, float) - self.unknowns[:len(truth)]
@@ -209,27 +210,27 @@ def _descend(problem: _Problem, v: np.ndarray, max_iterations: int, tolerance: f
 
 def solve(twin: Twin, readings: Mapping[str, Any], *, start: Optional[Sequence[float]] = None, unobservable: str = "report",
           max_iterations: int = 30, tolerance: float = 1e-3, extra: Optional[np.ndarray] = None) -> Estimate:
-    """The unknowns that explain readings of a robot at rest best, given their prior.
+    """Maximum a posteriori estimate of the unknowns from readings of a robot at rest.
 
     Minimises |R^(-1/2) (y - h(u))|^2 + |P_0^(-1/2) (u - u_0)|^2, h the nonlinear equilibrium, by Gauss-Newton's method on the
-    compliance that control uses (Tarantola, Inverse Problem Theory, SIAM 2005, sec. 3.4). The covariance is that of the
+    compliance that control uses (Tarantola, Inverse Problem Theory, SIAM 2005, sec. 3.4). The covariance follows from the
     linearisation at the estimate.
 
     Parameters
     ----------
     twin : Twin
-        Is left at the estimate: `twin.sim` has the shape.
+        Afterwards at the estimate: `twin.sim` has the estimated shape.
     readings : dict of str to float or array_like
-        By names of sensors; NaN or missing: a sensor that is lost.
+        Readings by name of the sensor. A sensor that is missing or NaN is ignored.
     start : (inputs,) array_like, optional
-        Where to begin; the prior's mean by default.
+        Initial guess; by default the prior mean.
     unobservable : {"report", "refuse"}
-        Whether to raise an error where the readings tell less of a direction than the prior does.
+        "refuse" raises an error if the prior dominates the readings in any direction.
     max_iterations : int
     tolerance : float
-        Of the last step, in standard deviations of the estimate.
+        Size of the last step, in standard deviations of the estimate.
     extra : (outputs, outputs) array_like, optional
-        Covariance of what the model does not know beside the sensors' noise.
+        Covariance of model errors, in addition to the sensor noise.
 
     Returns
     -------
@@ -238,9 +239,9 @@ def solve(twin: Twin, readings: Mapping[str, Any], *, start: Optional[Sequence[f
     Raises
     ------
     Error
-        unknown-name, wrong-shape, no-sensors of readings; unobservable.
+        unknown-name, wrong-shape, no-sensors for readings; unobservable.
     RunError
-        not-converged: the model has no equilibrium at the start.
+        not-converged if the model has no equilibrium at the initial guess.
     """
     problem = _Problem(twin, readings, extra)
     v = np.zeros(len(problem.mean)) if start is None else (np.asarray(start, float) - problem.mean) / problem.std
@@ -277,7 +278,7 @@ def _told(twin: Twin, problem: _Problem, v, residual, covariance, seen, evidence
 
 
 def shape_std(twin: Twin, estimate: Estimate, body: str) -> np.ndarray:
-    """(n, 3) m: standard deviation of the nodes' coordinates of a body of finite elements.
+    """Standard deviation of the nodal coordinates of a finite-element body, (n, 3) m.
 
     Parameters
     ----------

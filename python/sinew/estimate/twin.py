@@ -1,4 +1,4 @@
-"""The model that measurements are compared with: readings as a function of the unknowns, and its derivative."""
+"""Measurement model of a robot: readings as a function of the unknowns, and derivatives."""
 
 from __future__ import annotations
 
@@ -56,39 +56,39 @@ def _tree(scene: Any, folder: str, overrides: Any) -> dict:
 
 
 class Twin:
-    """A robot's scene, what is measured of it and what of it is unknown.
+    """Measurement model of a robot: its scene, its sensors and the unknowns.
 
-    Readings of what an actuator is commanded (its length by an encoder) are inputs of the model whose noise counts:
-    the true command is an unknown of its own, with the reading as its mean and the sensor's standard deviation.
-    All other readings are outputs, y = h(u) + noise, h the static equilibrium.
+    Readings of commanded quantities, such as the length of a cable from its encoder, are noisy inputs of the model: the true
+    command is an additional unknown, with the reading as mean and the standard deviation of the sensor. All other readings
+    are outputs, y = h(u) + noise, where h is the static equilibrium.
 
     Parameters
     ----------
     scene : path-like, dict or Simulation
-        The robot. Controllers are left out.
+        The robot. Its controllers are ignored.
     measured : iterable of Measured
     unknowns : iterable of Force, NodalForce, Effort, Motion, Parameter
-        None where only a place is searched, see locate().
+        Unknowns; empty if only the location of a force is searched, see locate().
     markers : dict of str to (str, (3,) array_like), optional
-        Points that the scene does not declare, as body and place at rest (m): effectors of the model.
+        Measured points that are not in the scene, as body and position at rest (m); they become effectors of the model.
     commanded : dict of str to str, optional
-        Actuators with the quantity that they are commanded in, "displacement" or "tension", from 0 on and in place of
-        what the scene says.
+        Actuators with their commanded quantity, "displacement" or "tension". Replaces the command of the scene and
+        starts from 0.
     set, folder, threads
-        As of sinew.load().
+        As in sinew.load().
 
     Raises
     ------
     Error
-        unknown-name for sensors and actuators that do not exist; duplicate-name; no-sensors; what
-        sinew.load() raises.
+        unknown-name for sensors and actuators that do not exist; duplicate-name; no-sensors; and the errors of
+        sinew.load().
 
     Attributes
     ----------
     sim : sinew.Simulation
-        The model. Its commands are the caller's to set; those that are measured follow their readings.
+        The model. The caller sets its commands, except measured ones, which follow their readings.
     inputs, outputs : list of str
-        Names of the unknowns' components, then of measured commands; of measured numbers.
+        Names of the components of the unknowns, then of the measured commands; names of the measured components.
     """
 
     def __init__(self, scene: Any, measured: Iterable[Measured], unknowns: Iterable[Unknown], *,
@@ -134,7 +134,7 @@ class Twin:
         if len(names) != len({*names}):
             raise Error("duplicate-name", "Twin(unknowns)", f"two unknowns have one name among {', '.join(names)}", "rename one")
         if not self._outputs:
-            raise Error("no-sensors", "Twin(measured)", "nothing is measured but commands",
+            raise Error("no-sensors", "Twin(measured)", "only commands are measured",
                         "give a marker, or the effort of a cable")
         self._from_rows = has_rows_alone(self.sim) and all(o.kind != "observable" for o in self._outputs)
         self._fields = any(isinstance(u, NodalForce) for u in self.unknowns)
@@ -211,22 +211,22 @@ class Twin:
 
     @property
     def asked(self) -> int:
-        """How many of the inputs are unknowns that were asked for; the others are measured commands."""
+        """Number of inputs that are requested unknowns; the remaining inputs are measured commands."""
         return sum(i.measured is None for i in self._inputs)
 
     @property
     def is_linear_in_rows(self) -> bool:
-        """Whether derivatives come from one linearisation."""
+        """Whether one linearisation gives all derivatives."""
         return self._from_rows
 
     @property
     def noise(self) -> np.ndarray:
-        """(outputs,) standard deviations."""
+        """(outputs,) standard deviations of the readings."""
         return np.array([o.of.std for o in self._outputs])
 
     @property
     def sensors(self) -> list[Measured]:
-        """Of each output."""
+        """Sensor of each output."""
         return [o.of for o in self._outputs]
 
     def prior(self, commands: Optional[Mapping[str, float]] = None) -> tuple[np.ndarray, np.ndarray]:
@@ -235,7 +235,7 @@ class Twin:
         Parameters
         ----------
         commands : dict of str to float, optional
-            Readings of measured commands; without one the command's present value is its mean.
+            Readings of measured commands. The mean of a command without a reading is its present value.
         """
         means, stds = [], []
         for one in self._inputs:
@@ -249,7 +249,7 @@ class Twin:
         return np.array(means), np.array(stds)
 
     def walk(self) -> np.ndarray:
-        """(inputs,) how fast each wanders, per sqrt(s)."""
+        """(inputs,) random walk of each input, per sqrt(s)."""
         return np.array([i.unknown.walk if i.measured is None else 0.0 for i in self._inputs], float)
 
     def _command_value(self, actuator: str) -> float:
@@ -257,12 +257,12 @@ class Twin:
         return float(value.value(self.sim.time) if isinstance(value, _core.Signal) else value)
 
     def split(self, readings: Mapping[str, Any]) -> tuple[np.ndarray, dict[str, float]]:
-        """Readings by name as (outputs,) numbers and measured commands; NaN where there is none.
+        """Splits readings by name into (outputs,) values and measured commands; NaN if missing.
 
         Parameters
         ----------
         readings : dict of str to float or array_like
-            By the sensors' names, or by the components' ("tip.x").
+            By name of the sensor or of the component ("tip.x").
 
         Raises
         ------
@@ -293,24 +293,24 @@ class Twin:
     # What the model answers
 
     def predict(self, values: Sequence[float]) -> np.ndarray:
-        """(outputs,) readings without noise at the static equilibrium of the unknowns.
+        """(outputs,) noise-free readings at the static equilibrium for given unknowns.
 
         Parameters
         ----------
         values : (inputs,) array_like
-            SI; of a Parameter log(value/start).
+            SI; for a Parameter, log(value/start).
 
         Raises
         ------
         RunError
-            not-converged, diverged: there is no stable equilibrium to be found.
+            not-converged, diverged if no stable equilibrium is found.
         """
         self.set(values)
         self.settle()
         return self.read()
 
     def set(self, values: Sequence[float]) -> None:
-        """Gives the model its unknowns, without looking for its equilibrium."""
+        """Sets the unknowns in the model without solving for equilibrium."""
         values = np.asarray(values, float)
         self._build([v for i, v in zip(self._inputs, values) if isinstance(i.unknown, Parameter)])
         nodal: dict[str, np.ndarray] = {}
@@ -337,7 +337,7 @@ class Twin:
         found = []
         for one in self._inputs:
             if isinstance(one.unknown, (NodalForce, Parameter)):
-                raise Error("bad-argument", f"'{one.name}'", "it is no actuator's, and a step tells nothing of it",
+                raise Error("bad-argument", f"'{one.name}'", "it does not belong to an actuator, and a step gives no derivative by it",
                             "use TwinModel, or a Force at a point")
             actuator = self.sim.actuator(_row_name(one))
             found.append((actuator, actuator.command[0]))
@@ -424,7 +424,7 @@ class Twin:
             bad-argument where readings are no rows, or unknowns are parameters or forces on nodes.
         """
         if not self._from_rows or self._fields or any(isinstance(i.unknown, Parameter) for i in self._inputs):
-            raise Error("bad-argument", "of_step()", "a step tells derivatives by efforts and motions of rows alone",
+            raise Error("bad-argument", "of_step()", "a step gives derivatives by efforts and motions of rows only",
                         "measure rows, or use a filter of equilibria")
         linear = self.sim.last_linearisation()
         if self.sim.contacts or any(o.kind == "rotation" for o in self._outputs):

@@ -1,11 +1,11 @@
-"""Learning environments: many robots in one process, with Gymnasium's interface.
+"""Environments for reinforcement learning: many robots in one process, with the interface of Gymnasium.
 
     envs = sinew.gym.make_vec("trunk-reach", num_envs=64, threads=2)
     observations, infos = envs.reset(seed=1)
     observations, rewards, terminations, truncations, infos = envs.step(envs.action_space.sample())
 
-Gymnasium is not needed. Where it is installed, spaces and base classes are its own, and the tasks are registered under
-`sinew/...` when this package is imported. docs/gym.md is the guide.
+Gymnasium is optional. If it is installed, its spaces and base classes are used, and importing this package registers the
+tasks under `sinew/...`. docs/gym.md is the guide.
 """
 
 from . import spaces, tasks as _tasks

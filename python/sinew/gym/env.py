@@ -91,7 +91,7 @@ class Env(EnvBase):
         """
         self._check("reset")
         if seed is not None and (not isinstance(seed, (int, np.integer)) or seed < 0):
-            raise Error("out-of-range", "reset(seed)", f"{seed!r} is no seed", "give an integer, 0 or more, or None")
+            raise Error("out-of-range", "reset(seed)", f"{seed!r} is not a seed", "give an integer, 0 or more, or None")
         info = self.episode.reset(None if seed is None else int(seed), dict(options or {}))
         self._begun = True
         self.task.sense(self.episode, self._seen)

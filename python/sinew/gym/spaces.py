@@ -109,7 +109,7 @@ class PlainBox(PlainSpace):
         """Whether all bounds are finite: "below", "above" or "both"."""
         below, above = bool(self.bounded_below.all()), bool(self.bounded_above.all())
         if manner not in ("below", "above", "both"):
-            raise Error("unknown-name", "Box.is_bounded", f"{manner!r} is no manner", "give below, above or both")
+            raise Error("unknown-name", "Box.is_bounded", f"{manner!r} is not a manner", "give below, above or both")
         return {"below": below, "above": above, "both": below and above}[manner]
 
     def sample(self, mask: None = None) -> np.ndarray:
@@ -198,4 +198,4 @@ def mode_named(mode: Union[str, Any]) -> Any:
         if mode is known or (isinstance(mode, str) and mode in (known.name, known.value)):
             return known
     names = ", ".join(known.name for known in AutoresetMode)
-    raise Error("unknown-name", "autoreset_mode", f"{mode!r} is no autoreset mode", f"give one of {names}")
+    raise Error("unknown-name", "autoreset_mode", f"{mode!r} is not an autoreset mode", f"give one of {names}")

@@ -34,7 +34,7 @@ def range_of(item: str, value: Range, least: float, greatest: float, unit: str) 
     try:
         low, high = (float(v) for v in (value if np.ndim(value) else (value, value)))
     except (TypeError, ValueError):
-        raise Error("wrong-type", item, f"{value!r} is no range", "give a number, or (low, high)") from None
+        raise Error("wrong-type", item, f"{value!r} is not a range", "give a number, or (low, high)") from None
     if not least <= low <= high <= greatest:
         raise Error("out-of-range", item, f"the range is ({low:g}, {high:g}){unit}", f"give {least:g} <= low <= high <= {greatest:g}{unit}")
     return low, high
@@ -106,7 +106,7 @@ class Task:
         self.payload = range_of("payload", payload, 0.0, 0.05, " kg")
         delay = range_of("action_delay", action_delay, 0, 10, " steps")
         if delay != (int(delay[0]), int(delay[1])):
-            raise Error("wrong-type", "action_delay", f"{action_delay!r} is no number of steps", "give whole numbers")
+            raise Error("wrong-type", "action_delay", f"{action_delay!r} is not a number of steps", "give whole numbers")
         self.action_delay = (int(delay[0]), int(delay[1]))
         if not 1 <= models <= 64:
             raise Error("out-of-range", "models", f"it is {models}", "give 1 to 64")
@@ -128,7 +128,7 @@ class Task:
     def bounded(item: str, value: float, least: float, greatest: float, unit: str = "") -> float:
         """A number between two bounds; raises out-of-range and wrong-type."""
         if np.ndim(value):
-            raise Error("wrong-type", item, f"{value!r} is no number", "give a number")
+            raise Error("wrong-type", item, f"{value!r} is not a number", "give a number")
         return range_of(item, value, least, greatest, unit)[0]
 
     def bind(self, robot: Robot) -> None:

@@ -297,7 +297,7 @@ class VectorEnv(VectorEnvBase):
                         "give one for each, or one integer")
         for one in seeds:
             if one is not None and (not isinstance(one, (int, np.integer)) or one < 0):
-                raise Error("out-of-range", "reset(seed)", f"{one!r} is no seed", "give integers, 0 or more, or None")
+                raise Error("out-of-range", "reset(seed)", f"{one!r} is not a seed", "give integers, 0 or more, or None")
         return [None if one is None else int(one) for one in seeds]
 
     def _mask(self, mask: Any) -> np.ndarray:

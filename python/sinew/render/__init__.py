@@ -1,4 +1,4 @@
-"""Pictures and videos of simulations, without a window, a display or a browser.
+"""Offscreen rendering of pictures and videos, without a display or a browser.
 
     picture = sinew.render(sim)                              # (480, 640, 3) uint8
     picture = sinew.render(sim, camera="side", field="von_mises_stress")
@@ -29,7 +29,7 @@ _kept = threading.local()
 
 
 def render(sim: Any, size: tuple[int, int] = (640, 480), camera: Union[Camera, str, None] = None, **options: Any) -> np.ndarray:
-    """A picture of a simulation as it is now.
+    """Renders a picture of the current state of a simulation.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def render(sim: Any, size: tuple[int, int] = (640, 480), camera: Union[Camera, s
         Width and height, pixels.
     camera : Camera or str, optional
         A Camera, or "corner" (default), "front", "side" or "top", which are fitted to the scene. The picture's up is
-        against gravity, +z without gravity.
+        opposite to gravity, or +z without gravity.
     **options
         As for Renderer: field, field_range, goals, background, edges, lighting ...
 

@@ -33,7 +33,7 @@ def checked_size(size: Any) -> tuple[int, int]:
     try:
         width, height = (int(part) for part in size)
     except (TypeError, ValueError):
-        raise Error("wrong-shape", "size", f"{size!r} is no size", "give width and height in pixels") from None
+        raise Error("wrong-shape", "size", f"{size!r} is not a size", "give width and height in pixels") from None
     if width < 1 or height < 1:
         raise Error("out-of-range", "size", f"it is {width} x {height}", "give width and height in pixels, 1 or more")
     return width, height
@@ -46,7 +46,7 @@ def checked_range(given: Any) -> Optional[tuple[float, float]]:
     try:
         low, high = (float(part) for part in given)
     except (TypeError, ValueError):
-        raise Error("wrong-shape", "field_range", f"{given!r} is no range", "give the lower value and then the higher one") from None
+        raise Error("wrong-shape", "field_range", f"{given!r} is not a range", "give the lower value and then the higher one") from None
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
         raise Error("out-of-range", "field_range", f"it is {low:g} to {high:g}", "give the lower value and then the higher one")
     return low, high

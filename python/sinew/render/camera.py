@@ -164,7 +164,7 @@ def camera_of(camera: Union[Camera, str, None], points: np.ndarray, up: np.ndarr
     if camera is None:
         camera = "corner"
     if not isinstance(camera, str):
-        raise Error("wrong-type", "camera", f"a value of type {type(camera).__name__} is no camera",
+        raise Error("wrong-type", "camera", f"a value of type {type(camera).__name__} is not a camera",
                     "give a sinew.render.Camera, the name of a view, or None")
     if camera not in VIEWS:
         near = difflib.get_close_matches(camera, VIEWS, 1)

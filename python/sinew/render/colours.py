@@ -67,7 +67,7 @@ def parse(colour: Any, item: str) -> tuple[float, float, float]:
             return red, green, blue
     except (TypeError, ValueError):
         pass
-    raise Error("out-of-range", item, f"{colour!r} is no colour", 'give "#rrggbb", or three numbers from 0 to 1')
+    raise Error("out-of-range", item, f"{colour!r} is not a colour", 'give "#rrggbb", or three numbers from 0 to 1')
 
 
 def ticks(low: float, high: float, unit: str) -> list[str]:

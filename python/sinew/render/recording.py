@@ -1,4 +1,4 @@
-"""A recorded run as moments that are drawn."""
+"""Recorded runs as a source of pictures."""
 
 from __future__ import annotations
 
@@ -55,13 +55,13 @@ class Recording:
         if self.path.is_dir():
             self.path = self.path / "run.h5"
         if not self.path.exists():
-            raise Error("file-not-found", (str(self.path), 0, 0, ""), "there is no recorded run", "name the folder that `sinew run` wrote")
+            raise Error("file-not-found", (str(self.path), 0, 0, ""), "there is no recorded run", "give the output folder of `sinew run`")
         try:
             self._file = h5py.File(self.path, "r")
         except OSError as problem:
             raise Error("unknown-format", (str(self.path), 0, 0, ""), f"it cannot be opened as HDF5: {problem}", "name a run.h5") from None
         if self._file.attrs.get("format") != _FORMAT:
-            raise Error("unknown-format", (str(self.path), 0, 0, ""), "it is no recorded run", "name a run.h5")
+            raise Error("unknown-format", (str(self.path), 0, 0, ""), "this is not a recorded run", "give a run.h5")
         if "positions" not in self._file:
             raise Error("malformed-file", (str(self.path), 0, 0, ""), "the run was recorded without positions",
                         "run the scene again, with record: {states: true}")

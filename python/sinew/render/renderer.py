@@ -1,4 +1,4 @@
-"""Pictures of a robot, one after another."""
+"""Renders a series of pictures of a robot."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ _MIN_FORCE = 0.01  # forces under this share of the largest are not drawn
 
 
 class Renderer:
-    """Draws a simulation again and again: surfaces, camera and buffers are made once.
+    """Renders a simulation repeatedly; surfaces, camera and buffers are created once.
 
-    The camera, the scale of the forces' arrows and the range of the colours stay from picture to picture: the camera is
-    fitted to the first one, and scale and range grow with the largest values so far.
+    The camera is fitted to the first picture and then fixed. The scale of force arrows and the colour range grow with the
+    largest values so far.
 
     Parameters
     ----------
@@ -48,30 +48,30 @@ class Renderer:
         A Camera, or "corner" (default), "front", "side" or "top", which are fitted to the scene. The picture's up is
         against gravity, +z without gravity.
     field : str, optional
-        What colours the bodies: "displacement", or a name of sinew.fields.FIELDS.
+        Field to colour the bodies by: "displacement", or a name in sinew.fields.FIELDS.
     field_range : (float, float), optional
-        Values of the ends of the colour map, in the field's unit. By default those of what was drawn so far.
+        Range of the colour map, in the unit of the field. By default the range of the values so far.
     colour_map : str
         "viridis" or "cividis".
     colour_bar : bool
-        Whether a bar tells the values of the colours.
+        Whether to draw a colour bar.
     goals : mapping or array_like, optional
-        More points to mark beside the controller's targets: (n, 3) m, or by name.
+        Points to mark in addition to the controller's targets: (n, 3) m, or by name.
     background : str or (3,) array_like
         "#rrggbb", or red, green and blue from 0 to 1.
     floor : bool
-        Whether a grid lies below a robot that has no plane to touch.
+        Whether to draw a grid below a robot without a contact plane.
     lighting : bool
-        False: colours as they are in the colour bar.
+        False: unlit colours, exactly as in the colour bar.
     edges : bool
         Whether to draw the edges of the mesh.
     cables, contacts, effectors : bool
-        Whether to draw them; `contacts` are the forces on bodies, and the surfaces that they touch.
+        Whether to draw them; `contacts` are the contact forces on bodies, and the contact surfaces.
 
     Attributes
     ----------
     camera : Camera or str or None
-        As given; assign to look from elsewhere. After the first picture, a Camera.
+        As given; may be assigned. After the first picture, a Camera.
 
     Raises
     ------
@@ -209,7 +209,7 @@ class Renderer:
             self._range = (low, high) if self._range is None else (min(self._range[0], low), max(self._range[1], high))
 
     def close(self) -> None:
-        """Frees the memory of the graphics card; may be called again."""
+        """Releases the graphics memory. May be called repeatedly."""
         # What another thread's context holds goes with that thread.
         if getattr(self, "_triangles", None) is not None and current() is self._context:
             self._triangles.release()

@@ -1,4 +1,4 @@
-"""Sweeps: a scene, or a function, for many values of its parameters, on the processes of a Dask cluster.
+"""Parameter sweeps of a scene or a function on a Dask cluster.
 
     import sinew.sweep
     table = sinew.sweep.run("trunk.yaml", vary={"bodies.trunk.material.young_modulus": "300kPa:600kPa:7"},

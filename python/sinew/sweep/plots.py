@@ -1,4 +1,4 @@
-"""Pictures of a sweep's table."""
+"""Plots of the table of a sweep."""
 
 from __future__ import annotations
 
@@ -168,27 +168,27 @@ KINDS: dict[str, Callable[[Any, _Table], Any]] = {
 
 
 def draw(folder: _Path, out: Optional[_Path] = None, kind: Optional[str] = None) -> list[pathlib.Path]:
-    """Draws a sweep: scatter matrix, parallel coordinates, response surfaces, and the workspace of the first position.
+    """Plots a sweep: scatter matrix, parallel coordinates, response surfaces, and the workspace of the first position.
 
     Parameters
     ----------
     folder : path-like
-        Of the sweep; it may still run.
+        Folder of the sweep, which may still be running.
     out : path-like, optional
-        Folder of the pictures scatter.png, parallel.png, surface.png and workspace.png, by default that of the sweep;
-        with a kind, the PNG file.
+        Output folder for scatter.png, parallel.png, surface.png and workspace.png, by default the folder of the sweep.
+        With `kind`, the PNG file.
     kind : str, optional
-        Only this one: "scatter", "parallel", "surface" or "workspace".
+        Plot only "scatter", "parallel", "surface" or "workspace".
 
     Returns
     -------
     list of Path
-        What was drawn: kinds that the table has no columns for are left out.
+        Files written. Plots without suitable columns are skipped.
 
     Raises
     ------
     Error
-        unknown-choice; too-few-points where the one that was asked for has nothing to draw; as load().
+        unknown-choice; too-few-points if the requested plot has no data; and the errors of load().
     """
     if kind is not None and kind not in KINDS:
         raise Error("unknown-choice", "plot(kind)", f"there is no plot '{kind}'", f"choose one of {', '.join(KINDS)}")

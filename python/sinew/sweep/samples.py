@@ -1,4 +1,4 @@
-"""What a sweep varies, and the samples that follow from it."""
+"""Parameters of a sweep and the samples of their values."""
 
 from __future__ import annotations
 
@@ -139,12 +139,12 @@ def design(vary: Mapping[str, Any], sample: Optional[str] = None, seed: int = 1)
         bad-argument, with the key and the remedy: no key, a grid with a sample, a range without one, mixed units.
     """
     if not isinstance(vary, Mapping) or not vary:
-        raise Error("bad-argument", "sweep(vary)", "nothing is varied", 'give {"time_step": ["5 ms", "10 ms"]}, or --vary KEY=FROM:TO:N')
+        raise Error("bad-argument", "sweep(vary)", "no parameter to vary", 'give {"time_step": ["5 ms", "10 ms"]}, or --vary KEY=FROM:TO:N')
     axes = [_axis(str(key), spec) for key, spec in vary.items()]
     method, count = _method(sample)
     for axis in axes:
         if method == "grid" and axis.kind == "range":
-            raise Error("bad-argument", axis.key, "it is varied over a range, and nothing says how many samples to take",
+            raise Error("bad-argument", axis.key, "a range needs a number of samples",
                         "write FROM:TO:N for a grid, or add a sample such as sobol:512 (--sample)")
         if method != "grid" and axis.kind == "grid":
             raise Error("bad-argument", axis.key, f"it is varied over a grid, and {sample} is a sample of a range",
@@ -157,7 +157,7 @@ def _method(sample: Optional[str]) -> tuple[str, int]:
         return "grid", 0
     name, _, count = str(sample).partition(":")
     if name not in METHODS or not re.fullmatch(r"[1-9][0-9]*", count):
-        raise Error("bad-argument", "sweep(sample)", f"'{sample}' is no sample",
+        raise Error("bad-argument", "sweep(sample)", f"'{sample}' is not a sample",
                     "write sobol:512, halton:500, random:500 or, for Sobol indices, saltelli:256")
     return name, int(count)
 
@@ -167,7 +167,7 @@ def _axis(key: str, spec: Any) -> Axis:
         return _axis_of_text(key, spec)
     if isinstance(spec, tuple):
         if len(spec) != 2:
-            raise Error("bad-argument", key, f"{spec!r} is no range", "give (low, high), or a list of values")
+            raise Error("bad-argument", key, f"{spec!r} is not a range", "give (low, high), or a list of values")
         (low, high), unit = _numbers(key, spec)
         return Axis(key, "range", low=low, high=high, unit=unit)
     if hasattr(spec, "tolist"):
@@ -206,7 +206,7 @@ def _axis_of_text(key: str, text: str) -> Axis:
     if len(ends) == 2:
         return Axis(key, "range", low=low, high=high, unit=unit)
     if not re.fullmatch(r"[0-9]+", ends[2]) or int(ends[2]) < 2:
-        raise Error("bad-argument", key, f"'{ends[2]}' is no number of values of a grid", "write FROM:TO:N with N of 2 or more")
+        raise Error("bad-argument", key, f"'{ends[2]}' is not a number of values of a grid", "write FROM:TO:N with N of 2 or more")
     if int(ends[2]) > _MAX_SAMPLES:
         raise Error("size-limit", key, f"{ends[2]} values are more than {_MAX_SAMPLES}", "vary fewer values")
     values: list[Value] = [float(value) for value in np.linspace(low, high, int(ends[2]))]

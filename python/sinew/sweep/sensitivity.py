@@ -1,4 +1,4 @@
-"""Sobol indices: which input an output's variance comes from."""
+"""Sobol sensitivity indices: contributions of inputs to the variance of an output."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from ..errors import Error
 
 
 class SobolIndices(NamedTuple):
-    """Of d inputs.
+    """Sobol indices of d inputs.
 
     Attributes
     ----------
     first : (d,) ndarray
-        Share of the output's variance that each input explains alone.
+        First-order indices: fraction of the variance explained by each input alone.
     total : (d,) ndarray
-        Share that would be left if all other inputs were known: alone and together with others.
+        Total indices: fraction that includes all interactions of each input.
     first_interval, total_interval : (d, 2) ndarray
         Bootstrap intervals.
     count : int
-        Base points that were used: those at which every value is finite.
+        Number of base points used, at which all values are finite.
     """
 
     first: NDArray
@@ -33,7 +33,7 @@ class SobolIndices(NamedTuple):
 
 
 def saltelli_points(dimensions: int, count: int, seed: int = 1) -> NDArray:
-    """The points at which sobol_indices() needs a function.
+    """Evaluation points for sobol_indices().
 
     Base points A and B are the two halves of scrambled Sobol points (SciPy) of twice the dimension. At each of them
     stand, in this order, A, B and, for every input i, A with input i from B.

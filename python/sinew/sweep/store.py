@@ -180,7 +180,7 @@ class Rows:
         path = pathlib.Path(path)
         path = table_path(path) if path.is_dir() else path
         if not path.exists():
-            raise Error("file-not-found", (str(path), 0, 0, ""), "there is no table of a sweep", "name a folder of `sinew sweep --out`")
+            raise Error("file-not-found", (str(path), 0, 0, ""), "there is no table of a sweep", "give the output folder of `sinew sweep`")
         try:
             file = _h5py().File(path, "r", libver="latest", swmr=True)
         except OSError as problem:

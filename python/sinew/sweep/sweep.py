@@ -1,4 +1,4 @@
-"""A sweep from its description to its table."""
+"""Runs a sweep and returns its table."""
 
 from __future__ import annotations
 
@@ -50,47 +50,47 @@ def run(
     resume: bool = False,
     progress: Union[bool, Callable[[int, int], object], None] = None,
 ) -> pandas.DataFrame:
-    """Runs a scene, or a function, for many values of its parameters, on the processes of a Dask cluster.
+    """Runs a scene, or a function, over a range of parameter values on a Dask cluster.
 
-    Each sample loads the scene with its values, runs it, and measures the state at the end. A sample that fails is a row
-    of the table. The table grows while the sweep runs and outlives whatever ends it.
+    Each sample loads the scene with its parameter values, simulates it, and measures the final state. A failed sample is also a
+    row of the table. Rows are written as samples finish: an aborted sweep leaves a valid table.
 
     Parameters
     ----------
     scene : path-like or dict, optional
-        As of sinew.load(). Files that it names must be where the workers can read them.
+        As in sinew.load(). The workers must be able to read the files that it names.
     vary : dict
-        For each key of the scene, as in `set`: text as on the command line, "300kPa:600kPa:7" (grid, both ends
-        included), "300kPa:600kPa" (range) or "1mm,2mm,5mm"; a list or array of numbers in SI or of text; a tuple
-        (low, high), a range. A grid has all combinations, the last key changing fastest.
+        Values for each key of the scene (keys as in `set`): text as on the command line, "300kPa:600kPa:7" (grid, both
+        ends included), "300kPa:600kPa" (range) or "1mm,2mm,5mm" (list); a list or array of SI numbers or of text; or a
+        tuple (low, high), a range. A grid has all combinations; the last key changes fastest.
     measure : list of str
-        Observables of the simulation, as of Simulation.run(record=...): "tip.position" (m), "strain_energy" (J); and
-        of a body "trunk.strain_energy", kinetic_energy, gravity_energy (J), mass (kg), volume (m^3). With a function,
-        the names that it must return; by default any.
+        Observables as in Simulation.run(record=...), such as "tip.position" (m) or "strain_energy" (J), and body quantities
+        such as "trunk.strain_energy", kinetic_energy, gravity_energy (J), mass (kg), volume (m^3). With a function, the
+        names that it must return (default: any).
     out : path-like
-        Folder of the table, sweep.h5.
+        Output folder, for sweep.h5.
     function : callable, optional
-        Takes a Sample and returns a dict of numbers and arrays, in place of running the scene. An output has one shape in
-        all samples. Its keys in `vary` need not be those of a scene.
+        Called with a Sample instead of simulating the scene; returns a dict of numbers and arrays. The shape of an output
+        must be the same in all samples. The keys of `vary` are then arbitrary.
     sample : str, optional
-        "sobol:512" (scrambled), "halton:500" (scrambled) or "random:500" over the ranges; "saltelli:256" for Sobol
-        indices, 256 (keys + 2) samples. Of a list each value has an equal share.
+        Sampling of the ranges: "sobol:512" (scrambled), "halton:500" (scrambled), "random:500", or "saltelli:256" for Sobol
+        indices, with 256 (keys + 2) samples. The values of a list are equally likely.
     seed : int
-        Of the sample.
+        Random seed of the sample.
     workers : int, optional
-        Processes on this machine, one thread each; by default one a core.
+        Local worker processes with one thread each; by default one per core.
     scheduler : str or distributed.Client, optional
-        Address of a Dask scheduler, as "tcp://127.0.0.1:8786", or a client, in place of `workers`.
+        Address of a Dask scheduler such as "tcp://127.0.0.1:8786", or a client, to use instead of `workers`.
     duration : float, optional
-        s; by default the scene's.
+        Simulated time, s; by default the scene's.
     static : bool
-        A stable equilibrium (Simulation.solve_static()) in place of a run.
+        Solve for static equilibrium (Simulation.solve_static()) instead of simulating.
     set : list of str or dict, optional
-        As of sinew.load(), for all samples.
+        Overrides for all samples, as in sinew.load().
     timeout : float, optional
-        s, of each sample: it then runs in a process of its own, which is ended with all that it started.
+        Wall-time limit per sample, s. Samples then run in a separate process, which is killed with its children.
     resume : bool
-        Goes on where a sweep of the same scene, variation and function stopped; starts it where there is none.
+        Continue an interrupted sweep of the same scene, variation and function, or start it if there is none.
     progress : bool or callable, optional
         By default a line on standard error if that is a terminal. A function is called with (rows, samples) after each
         batch.
@@ -98,17 +98,17 @@ def run(
     Returns
     -------
     pandas.DataFrame
-        As sinew.sweep.load(out).
+        The table, as from sinew.sweep.load(out).
 
     Raises
     ------
     Error
-        bad-argument, unknown-name (with a suggestion) and what sinew.load() raises, before any work; file-exists where
-        `out` has a table and `resume` is not asked for, or that of another sweep.
+        Before the first sample: bad-argument, unknown-name (with a suggestion) and the errors of sinew.load(); file-exists
+        if `out` has a table and `resume` is not set, or the table of another sweep.
     RunError
-        scheduler-lost, worker-failed: rows that are there stay.
+        scheduler-lost, worker-failed. Finished rows are kept.
     KeyboardInterrupt
-        After Ctrl-C: rows that are there stay.
+        After Ctrl-C. Finished rows are kept.
 
     Examples
     --------
@@ -167,7 +167,7 @@ def _job(scene: Any, samples: Design, measure: list[str], function: Any, duratio
     if function is None and scene is None:
         raise Error("bad-argument", "sweep.run()", "there is neither a scene nor a function", "give one of them")
     if function is None and not measure:
-        raise Error("bad-argument", "sweep(measure)", "nothing is measured", "name observables such as 'tip.position' (--measure)")
+        raise Error("bad-argument", "sweep(measure)", "no quantity to measure", "name observables such as 'tip.position' (--measure)")
     if len({*measure}) != len(measure):
         raise Error("duplicate-key", "sweep(measure)", f"a name comes twice in {measure}", "measure each once")
     if static and duration is not None:

@@ -1,4 +1,4 @@
-"""Tables of sweeps, read."""
+"""Read the tables of sweeps."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ _Path = Union[str, "os.PathLike[str]"]
 
 
 def load(folder: _Path) -> pandas.DataFrame:
-    """The table of a sweep, also of one that runs or was stopped.
+    """Loads the table of a sweep, which may still be running or have been interrupted.
 
     Parameters
     ----------
     folder : path-like
-        As run() or `sinew sweep --out` was given.
+        Output folder of run() or `sinew sweep`.
 
     Returns
     -------
     pandas.DataFrame
-        Indexed and sorted by the number of the sample. A column for every varied key (SI, or text) and every number
-        measured: "tip.position.x", "strain_energy" (SI; NaN where the sample failed); larger arrays have numbers,
-        "trunk.coordinates.0". Outputs of more than 64 numbers are left to arrays(). Then `status` ("done", "flagged":
-        steps whose results are not reliable, "failed"), `error`, `seconds` (s, wall time), and `version`,
-        `instruction_set` and `worker` of who ran it. `attrs` has "scene" (YAML), "seed", "samples", "units", "hash" ...
+        Indexed and sorted by sample number. Columns: every varied key (SI, or text) and every measured component, such as
+        "tip.position.x" or "strain_energy" (SI; NaN for a failed sample); components of larger arrays are numbered,
+        "trunk.coordinates.0", and arrays of more than 64 numbers are available from arrays() only. Then `status` ("done",
+        "flagged" for unreliable steps, "failed"), `error`, `seconds` (wall time, s), and `version`, `instruction_set` and
+        `worker` of the process. `attrs` has "scene" (YAML), "seed", "samples", "units", "hash" ...
 
     Raises
     ------
@@ -62,18 +62,18 @@ def load(folder: _Path) -> pandas.DataFrame:
 
 
 def arrays(folder: _Path, name: str) -> np.ndarray:
-    """One output whole, in the order of load(): "trunk.positions" as (rows, n, 3) m.
+    """A complete output in the order of load(), for example "trunk.positions" as (rows, n, 3) m.
 
     Parameters
     ----------
     folder : path-like
     name : str
-        A measure, or what a function returned.
+        Name of a measure or of an output of the function.
 
     Returns
     -------
     (rows, ...) ndarray
-        SI; NaN where the sample failed.
+        SI; NaN for failed samples.
 
     Raises
     ------
@@ -87,15 +87,15 @@ def arrays(folder: _Path, name: str) -> np.ndarray:
 
 
 def indices(folder: _Path, column: str, *, confidence: float = 0.95, resamples: int = 200) -> pandas.DataFrame:
-    """Sobol indices of a sweep that was sampled by "saltelli:N": see sobol_indices().
+    """Sobol indices of a sweep with `sample="saltelli:N"`: see sobol_indices().
 
     Parameters
     ----------
     folder : path-like
     column : str
-        Of load(): "tip.position.x".
+        Column of load(), such as "tip.position.x".
     confidence, resamples
-        As of sobol_indices().
+        As in sobol_indices().
 
     Returns
     -------
@@ -105,8 +105,8 @@ def indices(folder: _Path, column: str, *, confidence: float = 0.95, resamples: 
     Raises
     ------
     Error
-        bad-argument for another sample; unknown-name; too-few-points. Base points with a sample that failed or is not
-        there yet are left out.
+        bad-argument for another sampling method; unknown-name; too-few-points. Base points with a failed or missing sample
+        are ignored.
     """
     import pandas
 

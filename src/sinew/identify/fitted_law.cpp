@@ -149,8 +149,9 @@ FittedLaw fitted_law(const std::string& model) {
   const std::string near = nearest_word(model, models);
   throw Error(ErrorKind::unknown_choice, {.item = "model"},
               fmt::format("there is no model '{}'", model),
-              near.empty() ? fmt::format("take one of {}", fmt::join(models, ", "))
-                           : fmt::format("did you mean '{}'?", near));
+              fmt::format("{}the models are {}; the digit is the number of terms",
+                          near.empty() ? "" : fmt::format("did you mean '{}'? ", near),
+                          fmt::join(models, ", ")));
 }
 
 TermStress term_stress(material::DeformationMode mode, double stretch, double alpha) {

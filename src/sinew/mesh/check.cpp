@@ -128,8 +128,8 @@ MaybeDefect suspicious_size(const Mesh& mesh, const CheckOptions& options) {
   if (size <= options.largest_size) return {};
   return Defect{ErrorKind::suspicious_unit,
                 fmt::format("the mesh is {:.4g} m large, since no unit is given", size),
-                fmt::format("write `unit: mm` if the file is in millimetres (it is then {:.4g} mm "
-                            "large), or `unit: m` if it is meant so",
+                fmt::format("if the file is in millimetres (the mesh is then {:.4g} mm large), write "
+                            "`unit: mm` in a scene, --unit mm on the command line; else `unit: m`",
                             size)};
 }
 

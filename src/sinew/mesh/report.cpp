@@ -127,13 +127,12 @@ void print_quality(const MeshReport& report, std::string& text) {
   text += fmt::format("edges        {} to {}, mean {}\n", format_length(report.shortest_edge),
                       format_length(report.longest_edge), format_length(report.mean_edge));
   text += fmt::format(
-      "quality      radius ratio at least {:.3f} (1 is best), mean {:.3f}; worst is tetrahedron "
-      "{}\n",
+      "quality      radius ratio min {:.3f} (1 is best), mean {:.3f}; worst: tetrahedron {}\n",
       report.min_radius_ratio, report.mean_radius_ratio, report.worst_tetrahedron);
   text += fmt::format("             dihedral angles {:.1f} to {:.1f} degrees\n",
                       report.min_dihedral, report.max_dihedral);
   print_histogram(report.radius_ratio, "radius ratio (tetrahedra)", 1, text);
-  print_histogram(report.dihedral, "dihedral angle in degrees (six a tetrahedron)", 0, text);
+  print_histogram(report.dihedral, "dihedral angle in degrees (six per tetrahedron)", 0, text);
 }
 
 void print_sets(const MeshReport& report, std::string& text) {
@@ -206,16 +205,16 @@ std::string format_report(const MeshReport& report) {
   std::string text;
   text += fmt::format("mesh         {}\n", report.name);
   if (!report.notes.format.empty()) {
-    text += fmt::format("format       {}; 1 file unit = {:g} m\n", report.notes.format,
-                        report.notes.unit);
+    text += fmt::format("format       {}; 1 file unit = {}\n", report.notes.format,
+                        format_length(report.notes.unit));
   }
   text += fmt::format("nodes        {}{}\n", report.nodes,
                       report.unused_nodes > 0
-                          ? fmt::format(" ({} that no volume element uses)", report.unused_nodes)
+                          ? fmt::format(" ({} unused by volume elements)", report.unused_nodes)
                           : "");
   text +=
       fmt::format("elements     {} tetrahedra, {} hexahedra", report.tetrahedra, report.hexahedra);
-  text += fmt::format("; {} triangles, {} other cells passed over\n", report.triangles,
+  text += fmt::format("; {} triangles, {} other cells ignored\n", report.triangles,
                       report.notes.passed_over_cells);
   text += fmt::format("size         {} x {} x {}\n", format_length(size.x()),
                       format_length(size.y()), format_length(size.z()));

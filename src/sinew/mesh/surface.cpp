@@ -158,8 +158,9 @@ void check_size(const Surface& surface, const SurfaceOptions& options) {
   if (size <= kLargest) return;
   throw Error(ErrorKind::suspicious_unit, {.file = surface.name},
               fmt::format("the surface is {:.4g} m large, since no unit is given", size),
-              "give the unit, `unit: mm` if the file is in millimetres, or `unit: m` if it is "
-              "meant so");
+              fmt::format("if the file is in millimetres (the surface is then {:.4g} mm large), write "
+                          "`unit: mm` in a scene, --unit mm on the command line; else `unit: m`",
+                          size));
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ Mesh tetrahedralise_surface(const std::filesystem::path& surface_file,
                 "install it with `apt-get install gmsh`");
   }
   Mesh mesh = run_gmsh(surface, options);
-  mesh.notes = {.format = "Gmsh"};
+  mesh.notes = {.format = "surface, meshed by Gmsh", .unit = options.surface.unit};
   check(mesh, {.allow_several_components = true, .unit_given = true});
   if (!out.empty()) write_vtu(out, mesh);
   return mesh;

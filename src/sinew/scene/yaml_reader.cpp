@@ -94,8 +94,8 @@ class TreeBuilder : public YAML::EventHandler {
 
   void refuse_tag(const std::string& tag, const YAML::Mark& mark) const {
     if (tag.empty() || tag == "?" || tag == "!") return;
-    throw Error(ErrorKind::syntax_error, place_of(file_, mark), fmt::format("the tag {}", tag),
-                "scenes use no YAML tags; remove it");
+    throw Error(ErrorKind::syntax_error, place_of(file_, mark), fmt::format("YAML tag {}", tag),
+                "scenes do not use YAML tags; remove it");
   }
 
   [[noreturn]] void too_deep(const YAML::Mark& mark) const {
@@ -120,11 +120,15 @@ class TreeBuilder : public YAML::EventHandler {
       throw Error(ErrorKind::size_limit, place, fmt::format("a key of {} characters", key.size()),
                   fmt::format("keys have at most {}", limits_.key_length));
     }
+    if (key == "<<") {
+      throw Error(ErrorKind::syntax_error, place, "YAML merge keys (<<) are not supported",
+                  "repeat the keys, or take over a whole map by an alias, `other: *name`");
+    }
     const auto [first, is_new] = parent.lines.emplace(key, place.line);
     if (!is_new) {
       throw Error(ErrorKind::duplicate_key, place,
-                  fmt::format("the key '{}' stands twice, first in line {}", key, first->second),
-                  "keep one of the two");
+                  fmt::format("duplicate key '{}', first given in line {}", key, first->second),
+                  "remove one of the two");
     }
     parent.key = key;
     parent.key_place = std::move(place);
@@ -134,7 +138,7 @@ class TreeBuilder : public YAML::EventHandler {
   void refuse_as_key(const YAML::Mark& mark) const {
     if (!awaits_key()) return;
     throw Error(ErrorKind::syntax_error, place_of(file_, mark),
-                "a list, a map or nothing where a key should stand",
+                "a list, a map or nothing in place of a key",
                 "close brackets and quotes, and write keys as words");
   }
 
