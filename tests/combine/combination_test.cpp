@@ -63,10 +63,10 @@ TEST(Combination, TheCoverHasEveryPairOfLevels) {
   EXPECT_EQ(missing, refused);
 }
 
-// Joint friction and a motor that is told to stand still both hold the joint of this scene, a weld
-// holds many nodes of a rigid end, and a cable is just taut, when event-driven integration begins
-// with an impact: its impulses were others in another order of bodies.
-TEST(Combination, AnyOrderWhereManyHoldOneJointAtAnImpact) {
+// A motor, a brake and a limit repeat each other in one hinge, whose body hangs on a weld. In one
+// order of actuators rounding made their matrix indefinite; the step then failed and was made in
+// halves, which moved nodes by 1e-5 m.
+TEST(Combination, OrderDoesNotMatterWhereManyHoldOneJoint) {
   const Selection selection = select({{"bodies", "fem pcc"},
                                       {"mesh", "hollow-cylinder"},
                                       {"element", "hex8"},
@@ -131,14 +131,6 @@ TEST_P(RandomScenes, RunAndReproduce) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenes, ::testing::Range(0, kRandomBlocks));
-
-// Of the cover. A motor, a brake and a limit repeat each other in one hinge, whose body hangs on a
-// weld. In one order of actuators rounding made their matrix indefinite; the step then failed and
-// was made in halves, which moved nodes by 1e-5 m.
-TEST(Combination, OrderDoesNotMatterWhereManyHoldOneJoint) {
-  constexpr std::uint64_t kManyHold = 174;
-  expect_sound(pairwise_cover().at(kManyHold), kManyHold);
-}
 
 // Of thousands that were tried: controllers beside a contact that stops a point under
 // generalized-alpha, which crashed, and a limited cable under event-driven integration, which went

@@ -71,11 +71,12 @@ TEST_F(BentCable, DirectionsAreTheDerivativeOfTheMotion) {
   EXPECT_NEAR(directional(rows, middle, after, t), difference, 1e-6 * std::abs(difference));
 }
 
-TEST_F(BentCable, CurvatureIsTheDerivativeOfTheDirections) {
+TEST_F(BentCable, HessianIsTheDerivativeOfTheDirections) {
   const double t = 1e-6;
   auto& world = simulation_.world();
-  std::vector<mechanics::RowCurvature> pairs(
-      model_->curvatures().begin(), model_->curvatures().begin() + cable().curvature_count());
+  std::vector<mechanics::StiffnessPair> pairs(
+      model_->stiffness_pairs().begin(),
+      model_->stiffness_pairs().begin() + cable().stiffness_pair_count());
   const std::vector<double> effort{1.0};
   cable().geometric_stiffness(simulation_.configuration(), effort, pairs);
   const Points middle = cable().points(simulation_.configuration());
@@ -92,9 +93,9 @@ TEST_F(BentCable, CurvatureIsTheDerivativeOfTheDirections) {
     for (const auto& pair : pairs) {
       const int first = pair.first.number - pairs[0].first.number;
       const int second = pair.second.number - pairs[0].first.number;
-      if (first == point) expected += pair.curvature * velocity.row(second + 1).transpose();
+      if (first == point) expected += pair.hessian * velocity.row(second + 1).transpose();
       if (second == point && first != second) {
-        expected += pair.curvature.transpose() * velocity.row(first + 1).transpose();
+        expected += pair.hessian.transpose() * velocity.row(first + 1).transpose();
       }
     }
     const auto e = static_cast<std::size_t>(point);
@@ -103,8 +104,8 @@ TEST_F(BentCable, CurvatureIsTheDerivativeOfTheDirections) {
   }
 }
 
-// Every row's directions are the derivatives of its motion, the curvature that of H^T lambda.
-TEST(CableFriction, RowsAndCurvatureAgreeWithDifferences) {
+// Every row's directions are the derivatives of its motion, the Hessian that of H^T lambda.
+TEST(CableFriction, RowsAndHessianAgreeWithDifferences) {
   const auto model = sinew::testing::beam({.cables = 1, .pull_from_world = false, .friction = 0.2});
   sim::Simulation simulation(model);
   auto& body = simulation.body(0);
@@ -149,14 +150,15 @@ TEST(CableFriction, RowsAndCurvatureAgreeWithDifferences) {
     const double difference = (ahead.delta[k] - behind.delta[k]) / (2.0 * t);
     EXPECT_NEAR(rate, difference, 1e-7 * (1.0 + std::abs(difference))) << k;
   }
-  std::vector<mechanics::RowCurvature> pairs(model->curvatures().begin(),
-                                             model->curvatures().begin() + cable.curvature_count());
+  std::vector<mechanics::StiffnessPair> pairs(
+      model->stiffness_pairs().begin(),
+      model->stiffness_pairs().begin() + cable.stiffness_pair_count());
   cable.geometric_stiffness(simulation.configuration(), effort, pairs);
   for (const auto& pair : pairs) {
     const int a = pair.first.number - first_point, b = pair.second.number - first_point;
-    expected.row(a) += (pair.curvature * rates.row(b).transpose()).transpose();
+    expected.row(a) += (pair.hessian * rates.row(b).transpose()).transpose();
     if (a != b)
-      expected.row(b) += (pair.curvature.transpose() * rates.row(a).transpose()).transpose();
+      expected.row(b) += (pair.hessian.transpose() * rates.row(a).transpose()).transpose();
   }
   EXPECT_LT((slope - expected).cwiseAbs().maxCoeff(), 1e-5 * slope.cwiseAbs().maxCoeff());
 }

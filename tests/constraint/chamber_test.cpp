@@ -106,9 +106,9 @@ TEST_P(ChamberTest, DirectionsAreTheDerivativeOfTheVolume) {
   }
 }
 
-TEST_P(ChamberTest, CurvatureIsTheDerivativeOfTheDirections) {
+TEST_P(ChamberTest, HessianIsTheDerivativeOfTheDirections) {
   distort(1e-3);
-  auto pairs = simulation_.model().curvatures();
+  auto pairs = simulation_.model().stiffness_pairs();
   const std::vector<double> effort{1.0};
   held_chamber().geometric_stiffness(simulation_.configuration(), effort, pairs);
   const auto& points = held_chamber().material_points();
@@ -117,7 +117,7 @@ TEST_P(ChamberTest, CurvatureIsTheDerivativeOfTheDirections) {
     while (points[k].number != wanted.number) ++k;
     return k;
   };
-  ASSERT_EQ(static_cast<int>(pairs.size()), held_chamber().curvature_count());
+  ASSERT_EQ(static_cast<int>(pairs.size()), held_chamber().stiffness_pair_count());
   constexpr double kStep = 1e-5;
   double largest = 0.0;
   for (const auto& pair : pairs) {
@@ -129,7 +129,7 @@ TEST_P(ChamberTest, CurvatureIsTheDerivativeOfTheDirections) {
       const Vector3 down = rows().direction[first];
       move(pair.second, axis, kStep);
       const Vector3 column = (up - down) / (2.0 * kStep);
-      EXPECT_LT((pair.curvature.col(axis) - column).norm(), 1e-10);
+      EXPECT_LT((pair.hessian.col(axis) - column).norm(), 1e-10);
       largest = std::max(largest, column.norm());
     }
   }

@@ -49,8 +49,8 @@ TEST_F(ContactRows, AreTheDerivativeOfGapAndSlip) {
   for (const collision::Shape& surface : surfaces()) {
     ShapeContact contact("contact", std::vector{effector.point()}, surface, 0.5);
     mechanics::RowPattern pattern;
-    std::vector<mechanics::RowCurvature> curvatures;
-    contact.declare(pattern, curvatures);
+    std::vector<mechanics::StiffnessPair> stiffness_pairs;
+    contact.declare(pattern, stiffness_pairs);
     mechanics::RowValues values;
     values.resize(pattern);
     const Configuration& configuration = simulation_.configuration();
@@ -88,8 +88,8 @@ TEST_F(ContactRows, FrameIsThatOfTheWay) {
   const Sphere ball{at + Vector3(0.05, 0.0, -0.0051), 0.005};
   ShapeContact contact("contact", std::vector{effector.point()}, ball, 0.5);
   mechanics::RowPattern pattern;
-  std::vector<mechanics::RowCurvature> curvatures;
-  contact.declare(pattern, curvatures);
+  std::vector<mechanics::StiffnessPair> stiffness_pairs;
+  contact.declare(pattern, stiffness_pairs);
   mechanics::RowValues values;
   values.resize(pattern);
   const Eigen::Isometry3d rest = Eigen::Isometry3d::Identity();
@@ -109,8 +109,8 @@ TEST_F(ContactRows, PointThatTheSurfaceCarriesDoesNotSlip) {
   ShapeContact contact("contact", std::vector{effector.point()}, Sphere{{0.1, 0.0, 0.03}, 0.03},
                        0.5);
   mechanics::RowPattern pattern;
-  std::vector<mechanics::RowCurvature> curvatures;
-  contact.declare(pattern, curvatures);
+  std::vector<mechanics::StiffnessPair> stiffness_pairs;
+  contact.declare(pattern, stiffness_pairs);
   mechanics::RowValues values;
   values.resize(pattern);
   auto& body = simulation_.body(0);

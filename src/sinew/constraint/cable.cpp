@@ -64,7 +64,8 @@ Vector3 Cable::point(const Configuration& configuration, int i) const {
   return i == 0 ? *pull_point_ : configuration.position(points_[static_cast<std::size_t>(i - 1)]);
 }
 
-void Cable::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>& curvatures) {
+void Cable::declare(mechanics::RowPattern& rows,
+                    std::vector<mechanics::StiffnessPair>& stiffness_pairs) {
   first_entry_ = rows.entries();
   first_row_ = rows.add_row(points_);
   row_count_ = 1;
@@ -72,14 +73,14 @@ void Cable::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurva
   for (int via = 0; friction_ && via < via_count(); ++via, ++row_count_) {
     rows.add_row(std::span(points_).subspan(static_cast<std::size_t>(via + 1 - skip)));
   }
-  first_curvature_ = static_cast<int>(curvatures.size());
+  first_stiffness_pair_ = static_cast<int>(stiffness_pairs.size());
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    curvatures.push_back({points_[i], points_[i], Matrix3::Zero()});
+    stiffness_pairs.push_back({points_[i], points_[i], Matrix3::Zero()});
     if (i + 1 < points_.size()) {
-      curvatures.push_back({points_[i], points_[i + 1], Matrix3::Zero()});
+      stiffness_pairs.push_back({points_[i], points_[i + 1], Matrix3::Zero()});
     }
   }
-  curvature_count_ = static_cast<int>(curvatures.size()) - first_curvature_;
+  stiffness_pair_count_ = static_cast<int>(stiffness_pairs.size()) - first_stiffness_pair_;
 }
 
 void Cable::linearise(const Configuration& configuration, mechanics::RowValues& values) const {
@@ -130,9 +131,9 @@ void Cable::linearise_friction(const Configuration& configuration,
 }
 
 void Cable::geometric_stiffness(const Configuration& configuration, std::span<const double> effort,
-                                std::span<mechanics::RowCurvature> curvatures) const {
+                                std::span<mechanics::StiffnessPair> stiffness_pairs) const {
   const int skip = pull_point_ ? 1 : 0;
-  for (auto& entry : curvatures) entry.curvature.setZero();
+  for (auto& entry : stiffness_pairs) entry.hessian.setZero();
   const double* lambda = effort.data() + first_row_;
   double tension = lambda[0];
   // Diagonal pairs of sliding point k stand at 2 k, its pair with the next one at 2 k + 1.
@@ -144,10 +145,10 @@ void Cable::geometric_stiffness(const Configuration& configuration, std::span<co
         tension * (Matrix3::Identity() - s.direction * s.direction.transpose()) / s.length;
     const int k = i - skip;
     if (k >= 0) {
-      curvatures[static_cast<std::size_t>(2 * k)].curvature -= bend;
-      curvatures[static_cast<std::size_t>(2 * k + 1)].curvature += bend;
+      stiffness_pairs[static_cast<std::size_t>(2 * k)].hessian -= bend;
+      stiffness_pairs[static_cast<std::size_t>(2 * k + 1)].hessian += bend;
     }
-    curvatures[static_cast<std::size_t>(2 * (k + 1))].curvature -= bend;
+    stiffness_pairs[static_cast<std::size_t>(2 * (k + 1))].hessian -= bend;
   }
 }
 

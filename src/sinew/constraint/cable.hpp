@@ -13,8 +13,8 @@ namespace sinew::constraint {
 /// First row: effort = tension T_0 >= 0 (N) at the pull point, delta = L_0 - L (m), the length
 /// pulled out there. With u_i the unit vector of segment i, d(delta)/dx_i = u_i - u_{i-1}, so that
 /// H^T T_0 is the force T_0 (u_i - u_{i-1}) which a taut frictionless cable puts on via point i.
-/// The curvature of a segment of length l is d2(delta) = -(I - u u^T)/l on its two ends' relative
-/// motion.
+/// The Hessian of the length of a segment of length l is d2(delta) = -(I - u u^T)/l on its two
+/// ends' relative motion.
 ///
 /// With friction, each point i that it slides through has a row more. The length s_i that has
 /// passed the point towards the pull point is what the segments behind it lost, so that
@@ -38,10 +38,10 @@ class Cable : public Constraint {
         bool friction = false);
 
   void declare(mechanics::RowPattern& rows,
-               std::vector<mechanics::RowCurvature>& curvatures) override;
+               std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
   void geometric_stiffness(const Configuration& configuration, std::span<const double> effort,
-                           std::span<mechanics::RowCurvature> curvatures) const override;
+                           std::span<mechanics::StiffnessPair> stiffness_pairs) const override;
 
   void add_to(ValueHash& hash) const override { hash.add(pull_point_, rest_length_, friction_); }
 

@@ -153,16 +153,16 @@ void Chamber::list_edges() {
 }
 
 void Chamber::declare(mechanics::RowPattern& rows,
-                      std::vector<mechanics::RowCurvature>& curvatures) {
+                      std::vector<mechanics::StiffnessPair>& stiffness_pairs) {
   first_entry_ = rows.entries();
   first_row_ = rows.add_row(points_);
   row_count_ = 1;
-  first_curvature_ = static_cast<int>(curvatures.size());
+  first_stiffness_pair_ = static_cast<int>(stiffness_pairs.size());
   for (const auto& [a, b] : pairs_) {
-    curvatures.push_back({points_[static_cast<std::size_t>(a)],
-                          points_[static_cast<std::size_t>(b)], Matrix3::Zero()});
+    stiffness_pairs.push_back({points_[static_cast<std::size_t>(a)],
+                               points_[static_cast<std::size_t>(b)], Matrix3::Zero()});
   }
-  curvature_count_ = static_cast<int>(pairs_.size());
+  stiffness_pair_count_ = static_cast<int>(pairs_.size());
 }
 
 void Chamber::linearise(const Configuration& configuration, mechanics::RowValues& values) const {
@@ -190,14 +190,14 @@ void Chamber::linearise(const Configuration& configuration, mechanics::RowValues
 
 void Chamber::geometric_stiffness(const Configuration& configuration,
                                   std::span<const double> effort,
-                                  std::span<mechanics::RowCurvature> curvatures) const {
-  for (auto& entry : curvatures) entry.curvature.setZero();
+                                  std::span<mechanics::StiffnessPair> stiffness_pairs) const {
+  for (auto& entry : stiffness_pairs) entry.hessian.setZero();
   const double pressure = effort[static_cast<std::size_t>(first_row_)];
   const Vector3 origin = configuration.position(points_.front());
   for (const Edge& edge : edges_) {
     const Vector3 c =
         configuration.position(points_[static_cast<std::size_t>(edge.third)]) - origin;
-    curvatures[static_cast<std::size_t>(edge.pair)].curvature +=
+    stiffness_pairs[static_cast<std::size_t>(edge.pair)].hessian +=
         pressure * edge.weight * cross_matrix(c);
   }
 }

@@ -37,10 +37,10 @@ class Chamber : public Constraint {
           std::vector<ChamberFace> faces, const Points& points_at_rest);
 
   void declare(mechanics::RowPattern& rows,
-               std::vector<mechanics::RowCurvature>& curvatures) override;
+               std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
   void geometric_stiffness(const Configuration& configuration, std::span<const double> effort,
-                           std::span<mechanics::RowCurvature> curvatures) const override;
+                           std::span<mechanics::StiffnessPair> stiffness_pairs) const override;
 
   void add_to(ValueHash& hash) const override;
 

@@ -3,6 +3,6 @@
 namespace sinew::constraint {
 
 void Constraint::geometric_stiffness(const Configuration&, std::span<const double>,
-                                     std::span<mechanics::RowCurvature>) const {}
+                                     std::span<mechanics::StiffnessPair>) const {}
 
 }  // namespace sinew::constraint

@@ -21,24 +21,24 @@ class Constraint {
  public:
   virtual ~Constraint() = default;
 
-  /// Appends this constraint's rows (and pairs of points that its curvature couples) to the world's
-  /// and remembers where they start. Called once, when the model is built.
+  /// Appends this constraint's rows (and pairs of points that its geometric stiffness couples) to
+  /// the world's and remembers where they start. Called once, when the model is built.
   virtual void declare(mechanics::RowPattern& rows,
-                       std::vector<mechanics::RowCurvature>& curvatures) = 0;
+                       std::vector<mechanics::StiffnessPair>& stiffness_pairs) = 0;
   /// Writes delta of its rows for the current configuration, and the directions that follow it: all
   /// but the frames of a contact, which its step sets (see Contact).
   virtual void linearise(const Configuration& configuration,
                          mechanics::RowValues& values) const = 0;
-  /// Writes its geometric stiffness for the current configuration: the curvature of its declared
+  /// Writes its geometric stiffness for the current configuration: the Hessians of its declared
   /// pairs. @param configuration of all bodies. @param effort (rows,) N or Pa, of all rows of the
   /// world.
-  /// @param curvatures its own, first_curvature() on.
+  /// @param stiffness_pairs its own, first_stiffness_pair() on.
   virtual void geometric_stiffness(const Configuration& configuration,
                                    std::span<const double> effort,
-                                   std::span<mechanics::RowCurvature> curvatures) const;
+                                   std::span<mechanics::StiffnessPair> stiffness_pairs) const;
 
-  /// Whether its curvature can only stiffen: a taut cable's is of one sign. Asked at the efforts of
-  /// all rows of the world, (rows,) N or Pa.
+  /// Whether its geometric stiffness can only stiffen: a taut cable's is of one sign. Asked at the
+  /// efforts of all rows of the world, (rows,) N or Pa.
   virtual bool stiffens(std::span<const double>) const { return false; }
 
   /// Adds what its rows depend on beside the points that they touch.
@@ -47,16 +47,16 @@ class Constraint {
   const std::string& name() const { return name_; }
   int first_row() const { return first_row_; }
   int row_count() const { return row_count_; }
-  int first_curvature() const { return first_curvature_; }
-  int curvature_count() const { return curvature_count_; }
+  int first_stiffness_pair() const { return first_stiffness_pair_; }
+  int stiffness_pair_count() const { return stiffness_pair_count_; }
 
  protected:
   explicit Constraint(std::string name) : name_(std::move(name)) {}
 
   int first_row_ = -1;
   int row_count_ = 0;
-  int first_curvature_ = -1;
-  int curvature_count_ = 0;
+  int first_stiffness_pair_ = -1;
+  int stiffness_pair_count_ = 0;
 
  private:
   std::string name_;

@@ -9,7 +9,7 @@ namespace sinew::constraint {
 CoordinateForce::CoordinateForce(std::string name, mechanics::Coordinate coordinate)
     : Constraint(std::move(name)), coordinate_(coordinate) {}
 
-void CoordinateForce::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>&) {
+void CoordinateForce::declare(mechanics::RowPattern& rows, std::vector<mechanics::StiffnessPair>&) {
   first_entry_ = rows.entries();
   first_row_ = rows.add_row({coordinate_});
   row_count_ = 1;

@@ -13,7 +13,7 @@ class CoordinateForce : public Constraint {
   CoordinateForce(std::string name, mechanics::Coordinate coordinate);
 
   void declare(mechanics::RowPattern& rows,
-               std::vector<mechanics::RowCurvature>& curvatures) override;
+               std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
   /// As a force along the first axis: fingerprints of saved states stay as they were.
   void add_to(ValueHash& hash) const override { hash.add(Vector3(1, 0, 0), Vector3(0, 0, 0)); }

@@ -9,7 +9,7 @@ namespace sinew::constraint {
 Coupling::Coupling(mechanics::MaterialPoint first, mechanics::MaterialPoint second)
     : Constraint("coupling"), first_(first), second_(second) {}
 
-void Coupling::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>&) {
+void Coupling::declare(mechanics::RowPattern& rows, std::vector<mechanics::StiffnessPair>&) {
   first_row_ = rows.rows();
   first_entry_ = rows.entries();
   row_count_ = 2;

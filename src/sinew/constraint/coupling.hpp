@@ -15,7 +15,7 @@ class Coupling : public Constraint {
   Coupling(mechanics::MaterialPoint first, mechanics::MaterialPoint second);
 
   void declare(mechanics::RowPattern& rows,
-               std::vector<mechanics::RowCurvature>& curvatures) override;
+               std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
   void add_to(ValueHash&) const override {}
 

@@ -50,7 +50,7 @@ PointEffector::PointEffector(std::string name, mechanics::MaterialPoint point,
                              std::vector<Vector3> directions)
     : Effector(std::move(name), std::move(directions)), point_(point) {}
 
-void PointEffector::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>&) {
+void PointEffector::declare(mechanics::RowPattern& rows, std::vector<mechanics::StiffnessPair>&) {
   first_row_ = rows.rows();
   first_entry_ = rows.entries();
   row_count_ = static_cast<int>(directions_.size());
@@ -93,7 +93,7 @@ SectionOrientation::SectionOrientation(std::string name, mechanics::Orientation 
     : OrientationEffector(std::move(name)), section_(section) {}
 
 void SectionOrientation::declare(mechanics::RowPattern& rows,
-                                 std::vector<mechanics::RowCurvature>&) {
+                                 std::vector<mechanics::StiffnessPair>&) {
   first_row_ = rows.rows();
   first_entry_ = rows.entries();
   row_count_ = 3;
@@ -128,7 +128,7 @@ TriangleOrientation::TriangleOrientation(std::string name,
 }
 
 void TriangleOrientation::declare(mechanics::RowPattern& rows,
-                                  std::vector<mechanics::RowCurvature>&) {
+                                  std::vector<mechanics::StiffnessPair>&) {
   first_row_ = rows.rows();
   first_entry_ = rows.entries();
   row_count_ = 3;

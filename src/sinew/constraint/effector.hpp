@@ -50,7 +50,7 @@ class PointEffector : public Effector {
                 std::vector<Vector3> directions = {});
 
   void declare(mechanics::RowPattern& rows,
-               std::vector<mechanics::RowCurvature>& curvatures) override;
+               std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
   Vector3 value(const Configuration& configuration) const override;
   void target_delta(const Configuration& configuration, const Vector3& target,
@@ -85,7 +85,7 @@ class SectionOrientation : public OrientationEffector {
   SectionOrientation(std::string name, mechanics::Orientation section);
 
   void declare(mechanics::RowPattern& rows,
-               std::vector<mechanics::RowCurvature>& curvatures) override;
+               std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
 
  private:
@@ -108,7 +108,7 @@ class TriangleOrientation : public OrientationEffector {
                       const std::array<Vector3, 3>& rest_positions);
 
   void declare(mechanics::RowPattern& rows,
-               std::vector<mechanics::RowCurvature>& curvatures) override;
+               std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
   void add_to(ValueHash& hash) const override { hash.add(directions_, rest_frame_); }
 

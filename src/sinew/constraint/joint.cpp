@@ -102,7 +102,7 @@ Joint::Joint(std::string name, JointType type, const JointPlace& place)
       displacements_(slides_along_axis(type) ? 2 : 3),
       turns_(turns_of(type)) {}
 
-void Joint::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>&) {
+void Joint::declare(mechanics::RowPattern& rows, std::vector<mechanics::StiffnessPair>&) {
   first_row_ = rows.rows();
   first_entry_ = rows.entries();
   row_count_ = displacements_ + static_cast<int>(turns_.size());
@@ -173,7 +173,7 @@ double Joint::gap(const Configuration& configuration) const {
 JointMotion::JointMotion(std::string name, Kind kind, const JointPlace& place)
     : Constraint(std::move(name)), kind_(kind), place_(place) {}
 
-void JointMotion::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>&) {
+void JointMotion::declare(mechanics::RowPattern& rows, std::vector<mechanics::StiffnessPair>&) {
   first_entry_ = rows.entries();
   first_row_ = place_.add_row(rows, kind_ == Kind::displacement, true);
   row_count_ = 1;

@@ -71,7 +71,7 @@ class Joint : public Constraint {
   Joint(std::string name, JointType type, const JointPlace& place);
 
   void declare(mechanics::RowPattern& rows,
-               std::vector<mechanics::RowCurvature>& curvatures) override;
+               std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
   void add_to(ValueHash& hash) const override;
 
@@ -111,7 +111,7 @@ class JointMotion : public Constraint {
   JointMotion(std::string name, Kind kind, const JointPlace& place);
 
   void declare(mechanics::RowPattern& rows,
-               std::vector<mechanics::RowCurvature>& curvatures) override;
+               std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
   void add_to(ValueHash& hash) const override;
   Kind kind() const { return kind_; }

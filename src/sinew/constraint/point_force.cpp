@@ -18,7 +18,7 @@ PointForce::PointForce(std::string name, mechanics::MaterialPoint point, const V
   direction_ = direction / length;
 }
 
-void PointForce::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>&) {
+void PointForce::declare(mechanics::RowPattern& rows, std::vector<mechanics::StiffnessPair>&) {
   first_entry_ = rows.entries();
   first_row_ = rows.add_row({point_});
   row_count_ = 1;

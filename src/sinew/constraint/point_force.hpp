@@ -18,7 +18,7 @@ class PointForce : public Constraint {
              const Vector3& rest_position);
 
   void declare(mechanics::RowPattern& rows,
-               std::vector<mechanics::RowCurvature>& curvatures) override;
+               std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
 
   void add_to(ValueHash& hash) const override { hash.add(direction_, rest_position_); }

@@ -37,7 +37,7 @@ ShapeContact::ShapeContact(std::string name, RigidSide own, collision::Shape sur
       surface_(checked(std::move(surface))),
       carrier_(std::move(carrier)) {}
 
-void ShapeContact::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>&) {
+void ShapeContact::declare(mechanics::RowPattern& rows, std::vector<mechanics::StiffnessPair>&) {
   first_row_ = rows.rows();
   first_entry_ = rows.entries();
   row_count_ = 3 * static_cast<int>(size());

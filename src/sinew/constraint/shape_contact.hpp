@@ -48,7 +48,7 @@ class ShapeContact : public Contact {
                std::optional<RigidSide> carrier = {});
 
   void declare(mechanics::RowPattern& rows,
-               std::vector<mechanics::RowCurvature>& curvatures) override;
+               std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   /// Sets the frames of a step. @param configuration at its start. @param start,end the surface's
   /// poses. @param time_step s; 0: points are taken to stay.
   /// @param values gets directions, offset, and reference: the rows' values at x_s.

@@ -41,7 +41,7 @@ SurfaceContact::SurfaceContact(std::string name, Side first, Side second, const 
       second_(std::move(second)),
       settings_(settings) {}
 
-void SurfaceContact::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>&) {
+void SurfaceContact::declare(mechanics::RowPattern& rows, std::vector<mechanics::StiffnessPair>&) {
   first_row_ = rows.rows();
   first_entry_ = rows.entries();
   row_count_ = 3 * static_cast<int>(size());

@@ -48,7 +48,7 @@ class SurfaceContact : public Contact {
   double depth() const { return settings_.depth; }
 
   void declare(mechanics::RowPattern& rows,
-               std::vector<mechanics::RowCurvature>& curvatures) override;
+               std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
   void add_to(ValueHash& hash) const override;
 

@@ -10,7 +10,7 @@ namespace sinew::constraint {
 Tie::Tie(std::string name, std::vector<Pair> pairs)
     : Constraint(std::move(name)), pairs_(std::move(pairs)) {}
 
-void Tie::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>&) {
+void Tie::declare(mechanics::RowPattern& rows, std::vector<mechanics::StiffnessPair>&) {
   first_row_ = rows.rows();
   first_entry_ = rows.entries();
   row_count_ = 3 * static_cast<int>(pairs_.size());

@@ -14,9 +14,9 @@ namespace sinew::constraint {
 /// each pair,
 ///   delta = x_b - x_a = 0,
 /// whose effort is the force on b, and whose opposite acts on a. They are linear in the positions:
-/// no curvature, and rotations follow from several pairs. With the nodes of one mesh tied to points
-/// in the elements of another this is node-to-element collocation (the finer mesh belongs on the
-/// side of the nodes: Wriggers, Computational Contact Mechanics, 2006, sec. 6.3).
+/// no geometric stiffness, and rotations follow from several pairs. With the nodes of one mesh tied
+/// to points in the elements of another this is node-to-element collocation (the finer mesh belongs
+/// on the side of the nodes: Wriggers, Computational Contact Mechanics, 2006, sec. 6.3).
 class Tie : public Constraint {
  public:
   struct Pair {
@@ -27,7 +27,7 @@ class Tie : public Constraint {
   Tie(std::string name, std::vector<Pair> pairs);
 
   void declare(mechanics::RowPattern& rows,
-               std::vector<mechanics::RowCurvature>& curvatures) override;
+               std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
   void add_to(ValueHash&) const override {}
 

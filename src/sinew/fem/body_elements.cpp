@@ -14,12 +14,12 @@ Tangent element_tangent(mechanics::Tangent tangent) {
   return Tangent::exact;
 }
 
-BodyElements::BodyElements(FemState& state, ThreadPool& pool, bool with_curvature)
-    : state_(state), pool_(pool), active_(&workspace(with_curvature)) {}
+BodyElements::BodyElements(FemState& state, ThreadPool& pool, bool with_geometric_stiffness)
+    : state_(state), pool_(pool), active_(&workspace(with_geometric_stiffness)) {}
 
-SystemWorkspace& BodyElements::workspace(bool with_curvature) {
+SystemWorkspace& BodyElements::workspace(bool with_geometric_stiffness) {
   const FemBodyModel& model = state_.model;
-  const FemSystem& system = model.system(with_curvature);
+  const FemSystem& system = model.system(with_geometric_stiffness);
   auto& own = model.is_plain(system) ? plain_ : curved_;
   if (!own) {
     own = std::make_unique<SystemWorkspace>(system, pool_);
@@ -46,7 +46,7 @@ void BodyElements::begin_step() {
 // rounding would decide.
 void BodyElements::linearise(const mechanics::LinearisationRequest& request, bool first) {
   SystemWorkspace* const before = active_;
-  active_ = &workspace(request.with_curvature);
+  active_ = &workspace(request.with_geometric_stiffness);
   if (active_ != before) before->present.reset();
   active_->iterating = request.iterating;
   prepare_history(request.weights.time_step);

@@ -21,9 +21,9 @@ Tangent element_tangent(mechanics::Tangent tangent);
 /// Over the plain pattern or the wider one, as each linearisation asks for it.
 class BodyElements {
  public:
-  /// @param state,pool must outlive this. @param with_curvature the system whose memory is taken at
-  /// once; the other's is when it is first asked for.
-  BodyElements(FemState& state, ThreadPool& pool, bool with_curvature);
+  /// @param state,pool must outlive this. @param with_geometric_stiffness the system whose memory
+  /// is taken at once; the other's is when it is first asked for.
+  BodyElements(FemState& state, ThreadPool& pool, bool with_geometric_stiffness);
 
   /// What the last linearisation was over.
   SystemWorkspace& active() { return *active_; }
@@ -50,7 +50,7 @@ class BodyElements {
   std::size_t bytes() const;
 
  private:
-  SystemWorkspace& workspace(bool with_curvature);
+  SystemWorkspace& workspace(bool with_geometric_stiffness);
   void prepare_history(double time_step);
   void keep_damping_stiffness(const mechanics::StepWeights& weights);
 

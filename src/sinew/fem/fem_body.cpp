@@ -7,9 +7,10 @@
 
 namespace sinew::fem {
 
-FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvature, int histories)
+FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_geometric_stiffness,
+                 int histories)
     : state_(std::make_unique<FemState>(model, histories)),
-      step_(std::make_unique<FemStep>(*state_, pool, with_curvature)) {}
+      step_(std::make_unique<FemStep>(*state_, pool, with_geometric_stiffness)) {}
 
 FemBody::~FemBody() = default;
 

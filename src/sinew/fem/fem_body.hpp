@@ -27,8 +27,9 @@ class FemBody : public mechanics::Body,
                 public HasMaterial {
  public:
   /// @param model must outlive the body. @param pool likewise.
-  /// @param with_curvature,histories see mechanics::BodyModel::create().
-  FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvature, int histories = 0);
+  /// @param with_geometric_stiffness,histories see mechanics::BodyModel::create().
+  FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_geometric_stiffness,
+          int histories = 0);
   ~FemBody() override;
 
   const mechanics::BodyModel& model() const override;

@@ -111,7 +111,7 @@ Vector3 FemBodyModel::rest_position(int point) const {
 }
 
 void FemBodyModel::finish(int body, const mechanics::RowPattern& rows,
-                          std::span<const mechanics::RowCurvature> curvatures,
+                          std::span<const mechanics::StiffnessPair> stiffness_pairs,
                           const linalg::FactorisationSettings& settings) {
   body_ = body;
   world_rows_ = rows;
@@ -130,10 +130,10 @@ void FemBodyModel::finish(int body, const mechanics::RowPattern& rows,
     return rows.transient[static_cast<std::size_t>(row)] == 0;
   });
   fixed_rows_ = static_cast<std::size_t>(transient - rows_.begin());
-  for (const auto& curvature : curvatures) {
-    const bool mine = curvature.first.body == body && curvature.second.body == body;
-    if (mine && !couples(curvature.first.number, curvature.second.number)) {
-      coupled_points_.push_back({curvature.first.number, curvature.second.number});
+  for (const auto& pair : stiffness_pairs) {
+    const bool mine = pair.first.body == body && pair.second.body == body;
+    if (mine && !couples(pair.first.number, pair.second.number)) {
+      coupled_points_.push_back({pair.first.number, pair.second.number});
     }
   }
 }
@@ -151,8 +151,8 @@ bool FemBodyModel::couples(int first, int second) const {
   return true;
 }
 
-const FemSystem& FemBodyModel::system(bool with_curvature) const {
-  if (!with_curvature || coupled_points_.empty()) {
+const FemSystem& FemBodyModel::system(bool with_geometric_stiffness) const {
+  if (!with_geometric_stiffness || coupled_points_.empty()) {
     std::call_once(plain_once_, [this] { plain_ = make_system(settings_.elements); });
     return plain_;
   }
@@ -210,9 +210,10 @@ FemSystem FemBodyModel::make_system(const FemModelSettings& elements) const {
   return system;
 }
 
-std::unique_ptr<mechanics::Body> FemBodyModel::create(ThreadPool& pool, bool with_curvature,
+std::unique_ptr<mechanics::Body> FemBodyModel::create(ThreadPool& pool,
+                                                      bool with_geometric_stiffness,
                                                       int histories) const {
-  return std::make_unique<FemBody>(*this, pool, with_curvature, histories);
+  return std::make_unique<FemBody>(*this, pool, with_geometric_stiffness, histories);
 }
 
 }  // namespace sinew::fem

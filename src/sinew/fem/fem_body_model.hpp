@@ -19,7 +19,7 @@
 namespace sinew::fem {
 
 /// What a body factorises: its elements on one pattern, bordered by its rows. A body has two, since
-/// the curvature of constraints (geometric stiffness) needs a wider pattern than most steps use.
+/// the geometric stiffness of constraints needs a wider pattern than most steps use.
 struct FemSystem {
   /// border[3 position ..] += weight * direction[entry], for every free node of every entry.
   struct Scatter {
@@ -63,13 +63,13 @@ class FemBodyModel final : public mechanics::BodyModel,
                              const std::string& what) const override;
   int add_load(Load load) override;
   void finish(int body, const mechanics::RowPattern& rows,
-              std::span<const mechanics::RowCurvature> curvatures,
+              std::span<const mechanics::StiffnessPair> stiffness_pairs,
               const linalg::FactorisationSettings& settings) override;
   bool couples(int first, int second) const override;
   std::vector<NamedHash> parts() const override;
   std::uint64_t site_hash(int site) const override;
   std::uint64_t load_hash(int load) const override;
-  std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_curvature,
+  std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_geometric_stiffness,
                                           int histories) const override;
 
   const mesh::Mesh& mesh() const override { return *settings_.mesh; }
@@ -96,9 +96,9 @@ class FemBodyModel final : public mechanics::BodyModel,
   /// What attach_surface() returned; -1: nothing touches the body's surface.
   int surface_site() const { return surface_site_; }
   bool leaves_rows_out() const override { return true; }
-  /// The plain system, or the one whose pattern holds the rows' curvature. Made at first use, since
-  /// most robots need one of them; safe from several threads.
-  const FemSystem& system(bool with_curvature) const;
+  /// The plain system, or the one whose pattern holds the geometric stiffness. Made at first use,
+  /// since most robots need one of them; safe from several threads.
+  const FemSystem& system(bool with_geometric_stiffness) const;
   bool is_plain(const FemSystem& system) const { return &system == &plain_; }
 
  private:

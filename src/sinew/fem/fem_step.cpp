@@ -21,9 +21,9 @@ std::span<double> span_of(VectorX& v) { return {v.data(), static_cast<std::size_
 
 }  // namespace
 
-FemStep::FemStep(FemState& state, ThreadPool& pool, bool with_curvature)
+FemStep::FemStep(FemState& state, ThreadPool& pool, bool with_geometric_stiffness)
     : state_(state),
-      elements_(state, pool, with_curvature),
+      elements_(state, pool, with_geometric_stiffness),
       loads_(state),
       rows_(state.model),
       inertia_(state) {
@@ -89,11 +89,11 @@ void FemStep::form_right_side(const mechanics::StepWeights& weights) {
   for (const std::int32_t held : elements.held()) right_[held] = 0.0;
 }
 
-void FemStep::add_curvature(const mechanics::RowCurvature& curvature) {
+void FemStep::add_geometric_stiffness(const mechanics::StiffnessPair& pair) {
   const FemBodyModel& model = state_.model;
-  const Attachment& first = model.attachment(curvature.first.number);
-  const Attachment& second = model.attachment(curvature.second.number);
-  const bool same = curvature.first.number == curvature.second.number;
+  const Attachment& first = model.attachment(pair.first.number);
+  const Attachment& second = model.attachment(pair.second.number);
+  const bool same = pair.first.number == pair.second.number;
   const auto free = model.elements().free_index();
   for (std::size_t a = 0; a < first.nodes.size(); ++a) {
     const auto i = free[static_cast<std::size_t>(first.nodes[a])];
@@ -101,7 +101,7 @@ void FemStep::add_curvature(const mechanics::RowCurvature& curvature) {
     for (std::size_t b = 0; b < second.nodes.size(); ++b) {
       const auto j = free[static_cast<std::size_t>(second.nodes[b])];
       if (j < 0 || (same && i < j)) continue;
-      Matrix3 block = -first.weights[a] * second.weights[b] * curvature.curvature;
+      Matrix3 block = -first.weights[a] * second.weights[b] * pair.hessian;
       // Off-diagonal pairs stand for themselves and their transpose.
       if (!same && i == j) block = (block + block.transpose()).eval();
       elements_.active().assembly.add_block(i, j, block);

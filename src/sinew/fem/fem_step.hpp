@@ -14,13 +14,14 @@ namespace sinew::fem {
 /// M a + C v + f(q) = p + H^T lambda over the free nodes, C = alpha M + beta K(q_start).
 class FemStep : public mechanics::StepSystem {
  public:
-  /// @param state,pool must outlive this. @param with_curvature see mechanics::BodyModel::create().
-  FemStep(FemState& state, ThreadPool& pool, bool with_curvature);
+  /// @param state,pool must outlive this. @param with_geometric_stiffness see
+  /// mechanics::BodyModel::create().
+  FemStep(FemState& state, ThreadPool& pool, bool with_geometric_stiffness);
 
   void begin_step() override;
   void begin_query() override;
   void linearise(const mechanics::LinearisationRequest& request) override;
-  void add_curvature(const mechanics::RowCurvature& curvature) override;
+  void add_geometric_stiffness(const mechanics::StiffnessPair& pair) override;
   void take_rows(const mechanics::RowValues& rows) override;
   void retake_rows(const mechanics::RowValues& rows) override { take_rows(rows); }
   mechanics::Inertia condense() override;

@@ -52,13 +52,14 @@ class BodyModel {
   /// Ends building: fixes which rows touch the body and plans the factorisation.
   /// @param body this body's position in the world.
   /// @param rows the rows of all constraints of the world.
-  /// @param curvatures the pairs of points that add_curvature may be given.
+  /// @param stiffness_pairs the pairs of points that add_geometric_stiffness may be given.
   /// @param settings for the factorisation.
-  virtual void finish(int body, const RowPattern& rows, std::span<const RowCurvature> curvatures,
+  virtual void finish(int body, const RowPattern& rows,
+                      std::span<const StiffnessPair> stiffness_pairs,
                       const linalg::FactorisationSettings& settings) = 0;
 
-  /// Whether A holds the blocks of two attached points without curvature (see RowCurvature): for
-  /// points of one element it does. After finish().
+  /// Whether A holds the blocks of two attached points without a constraint (see StiffnessPair):
+  /// for points of one element it does. After finish().
   virtual bool couples(int first, int second) const = 0;
 
   /// Whether transient rows are worth leaving out (see RowValues::active).
@@ -78,10 +79,11 @@ class BodyModel {
 
   /// A body at rest with its own state and workspace.
   /// @param pool must outlive the body.
-  /// @param with_curvature workspace for this kind of linearisation is taken now, for the other
+  /// @param with_geometric_stiffness workspace for this kind of linearisation is taken now, for the
+  /// other
   ///   when it is first asked for.
   /// @param histories see history_count().
-  virtual std::unique_ptr<Body> create(ThreadPool& pool, bool with_curvature,
+  virtual std::unique_ptr<Body> create(ThreadPool& pool, bool with_geometric_stiffness,
                                        int histories) const = 0;
 };
 

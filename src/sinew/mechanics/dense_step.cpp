@@ -47,13 +47,13 @@ void DenseStep::linearise(const LinearisationRequest& request) {
   add_row_stiffness(matrix_);
 }
 
-void DenseStep::add_curvature(const RowCurvature& curvature) {
-  site_jacobian(curvature.first.number, jacobian_);
-  site_jacobian(curvature.second.number, second_jacobian_);
-  pulled_.noalias() = curvature.curvature * second_jacobian_;
+void DenseStep::add_geometric_stiffness(const StiffnessPair& pair) {
+  site_jacobian(pair.first.number, jacobian_);
+  site_jacobian(pair.second.number, second_jacobian_);
+  pulled_.noalias() = pair.hessian * second_jacobian_;
   symmetric_.noalias() = jacobian_.transpose() * pulled_;
   matrix_ -= symmetric_;
-  if (curvature.first.number != curvature.second.number) matrix_ -= symmetric_.transpose();
+  if (pair.first.number != pair.second.number) matrix_ -= symmetric_.transpose();
 }
 
 void DenseStep::patch_jacobian(const Patch&, MatrixX&) const {

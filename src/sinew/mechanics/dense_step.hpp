@@ -17,7 +17,7 @@ namespace sinew::mechanics {
 class DenseStep : public StepSystem {
  public:
   void linearise(const LinearisationRequest& request) final;
-  void add_curvature(const RowCurvature& curvature) final;
+  void add_geometric_stiffness(const StiffnessPair& pair) final;
   void take_rows(const RowValues& rows) final;
   void retake_rows(const RowValues& rows) final;
   Inertia condense() final;

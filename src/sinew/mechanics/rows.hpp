@@ -35,12 +35,12 @@ struct RowPattern {
 };
 
 /// Second derivative of a constraint's loads (a loaded cable's geometric stiffness), which couples
-/// two points, of one body or, along a cable between bodies, of two: `curvature` is the sum over
+/// two points, of one body or, along a cable between bodies, of two: `hessian` is the sum over
 /// the constraint's rows of effort d2(delta)/d(x_first)d(x_second), N/m; the pair (second, first)
 /// is its transpose and is not listed.
-struct RowCurvature {
+struct StiffnessPair {
   MaterialPoint first, second;
-  Matrix3 curvature = Matrix3::Zero();
+  Matrix3 hessian = Matrix3::Zero();
 };
 
 /// A point of a surface that is found anew in every step, by the nodes of its body's mesh.

@@ -27,8 +27,9 @@ namespace sinew::mechanics {
 struct LinearisationRequest {
   StepWeights weights;
   Tangent tangent = Tangent::corotated;
-  /// Rows' curvature will be added (see add_curvature); costs a wider pattern.
-  bool with_curvature = false;
+  /// Constraints' geometric stiffness will be added (see add_geometric_stiffness); costs a wider
+  /// pattern.
+  bool with_geometric_stiffness = false;
   /// Further linearisations of the same step may follow (Newton's iterations).
   bool iterating = false;
 };
@@ -74,10 +75,10 @@ class StepSystem {
   /// The same for a look at the present state: its base goes nowhere.
   virtual void begin_query() { begin_step(); }
   virtual void linearise(const LinearisationRequest& request) = 0;
-  /// Adds the curvature of a constraint's loads (geometric stiffness): A -= effort d2(delta)/dq2.
-  /// Between linearise (with_curvature) and condense. A linearisation to which nothing was added is
-  /// taken up by the next one at the same state.
-  virtual void add_curvature(const RowCurvature& curvature) = 0;
+  /// Adds the geometric stiffness of a constraint's loads: A -= effort d2(delta)/dq2.
+  /// Between linearise (with_geometric_stiffness) and condense. A linearisation to which nothing
+  /// was added is taken up by the next one at the same state.
+  virtual void add_geometric_stiffness(const StiffnessPair& pair) = 0;
   /// Takes this body's part of H for what follows.
   virtual void take_rows(const RowValues& rows) = 0;
   /// Takes which transient rows are active, and their directions, anew after condense(): what

@@ -126,11 +126,12 @@ MaybeDefect suspicious_size(const Mesh& mesh, const CheckOptions& options) {
   const double size =
       (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).maxCoeff();
   if (size <= options.largest_size) return {};
-  return Defect{ErrorKind::suspicious_unit,
-                fmt::format("the mesh is {:.4g} m large, since no unit is given", size),
-                fmt::format("if the file is in millimetres (the mesh is then {:.4g} mm large), write "
-                            "`unit: mm` in a scene, --unit mm on the command line; else `unit: m`",
-                            size)};
+  return Defect{
+      ErrorKind::suspicious_unit,
+      fmt::format("the mesh is {:.4g} m large, since no unit is given", size),
+      fmt::format("if the file is in millimetres (the mesh is then {:.4g} mm large), write "
+                  "`unit: mm` in a scene, --unit mm on the command line; else `unit: m`",
+                  size)};
 }
 
 template <typename List>

@@ -156,11 +156,12 @@ void check_size(const Surface& surface, const SurfaceOptions& options) {
   const double size =
       (surface.nodes.colwise().maxCoeff() - surface.nodes.colwise().minCoeff()).maxCoeff();
   if (size <= kLargest) return;
-  throw Error(ErrorKind::suspicious_unit, {.file = surface.name},
-              fmt::format("the surface is {:.4g} m large, since no unit is given", size),
-              fmt::format("if the file is in millimetres (the surface is then {:.4g} mm large), write "
-                          "`unit: mm` in a scene, --unit mm on the command line; else `unit: m`",
-                          size));
+  throw Error(
+      ErrorKind::suspicious_unit, {.file = surface.name},
+      fmt::format("the surface is {:.4g} m large, since no unit is given", size),
+      fmt::format("if the file is in millimetres (the surface is then {:.4g} mm large), write "
+                  "`unit: mm` in a scene, --unit mm on the command line; else `unit: m`",
+                  size));
 }
 
 }  // namespace

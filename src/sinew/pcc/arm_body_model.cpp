@@ -108,7 +108,7 @@ Vector3 ArmBodyModel::rest_position(int point) const {
 }
 
 void ArmBodyModel::finish(int body, const mechanics::RowPattern& rows,
-                          std::span<const mechanics::RowCurvature>,
+                          std::span<const mechanics::StiffnessPair>,
                           const linalg::FactorisationSettings&) {
   own_rows_ = mechanics::OwnRows(body, rows);
 }

@@ -45,12 +45,12 @@ class ArmBodyModel final : public mechanics::BodyModel,
   int attach_coordinate(int coordinate) override;
   Vector3 rest_position(int point) const override;
   void finish(int body, const mechanics::RowPattern& rows,
-              std::span<const mechanics::RowCurvature> curvatures,
+              std::span<const mechanics::StiffnessPair> stiffness_pairs,
               const linalg::FactorisationSettings& settings) override;
   bool couples(int, int) const override { return true; }
   std::vector<NamedHash> parts() const override;
   std::uint64_t site_hash(int site) const override;
-  std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_curvature,
+  std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_geometric_stiffness,
                                           int histories) const override;
   /// A cylinder of hexahedra of the arm's radius, for records and the view.
   const mesh::Mesh& mesh() const override { return skin_; }

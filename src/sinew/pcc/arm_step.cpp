@@ -31,7 +31,7 @@ ArmStep::ArmStep(const ArmBodyModel& model, ArmState& state, ArmPose& pose)
 }
 
 // b = -r(q, v, a) at the step's end, A = dr/dq + (dv/dd) dr/dv + (da/dd) H: the derivative, exact
-// but for what rows pull (add_curvature), and unsymmetric where the arm moves.
+// but for what rows pull (add_geometric_stiffness), and unsymmetric where the arm moves.
 double ArmStep::form(const mechanics::LinearisationRequest& request, VectorX& right,
                      MatrixX& matrix) {
   const auto& weights = request.weights;

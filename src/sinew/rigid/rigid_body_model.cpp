@@ -201,7 +201,7 @@ int RigidBodyModel::add(const Attachment& attachment) {
 Vector3 RigidBodyModel::rest_position(int point) const { return centre() + attachment(point).arm; }
 
 void RigidBodyModel::finish(int body, const mechanics::RowPattern& rows,
-                            std::span<const mechanics::RowCurvature>,
+                            std::span<const mechanics::StiffnessPair>,
                             const linalg::FactorisationSettings&) {
   own_rows_ = mechanics::OwnRows(body, rows, surface_site_);
 }

@@ -45,7 +45,7 @@ class RigidBodyModel final : public mechanics::BodyModel,
   bool holds(NodeId) const override { return settings_.fixed; }
   Vector3 rest_position(int point) const override;
   void finish(int body, const mechanics::RowPattern& rows,
-              std::span<const mechanics::RowCurvature> curvatures,
+              std::span<const mechanics::StiffnessPair> stiffness_pairs,
               const linalg::FactorisationSettings& settings) override;
   bool couples(int, int) const override { return true; }
   bool is_free() const override { return !settings_.fixed; }
@@ -53,7 +53,7 @@ class RigidBodyModel final : public mechanics::BodyModel,
   std::vector<NamedHash> parts() const override;
   std::uint64_t site_hash(int site) const override;
   const mesh::Mesh& mesh() const override { return skin_; }
-  std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_curvature,
+  std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_geometric_stiffness,
                                           int histories) const override;
 
   Vector3 rest_origin() const override { return settings_.position; }

@@ -28,10 +28,10 @@ std::span<const double> numbers(const VectorX& all) {
 }  // namespace
 
 Bodies::Bodies(const Model& model, ThreadPool& pool) {
-  const bool with_curvature = model.geometric_stiffness().extends_pattern;
+  const bool with_geometric_stiffness = model.geometric_stiffness().extends_pattern;
   const int histories = mechanics::history_count(model.step().integrator);
   for (const auto& body : model.bodies()) {
-    bodies_.push_back(body.create(pool, with_curvature, histories));
+    bodies_.push_back(body.create(pool, with_geometric_stiffness, histories));
     systems_.push_back(&bodies_.back()->system());
   }
   ends_.resize(bodies_.size());

@@ -18,7 +18,7 @@ GeometricStiffness::GeometricStiffness(const Model& model,
       configuration_(configuration),
       systems_(systems),
       problem_(problem),
-      curvatures_(model.curvatures()),
+      stiffness_pairs_(model.stiffness_pairs()),
       effort_(static_cast<std::size_t>(model.rows().rows())) {
   const auto add_rows = [&](int constraint, int count) {
     const int row = model.constraint(constraint).first_row();
@@ -57,9 +57,9 @@ void GeometricStiffness::add() {
 
 void GeometricStiffness::add_constraint(const constraint::Constraint& constraint) {
   const std::span<const double> effort(effort_);
-  const std::span<mechanics::RowCurvature> pairs(
-      curvatures_.data() + constraint.first_curvature(),
-      static_cast<std::size_t>(constraint.curvature_count()));
+  const std::span<mechanics::StiffnessPair> pairs(
+      stiffness_pairs_.data() + constraint.first_stiffness_pair(),
+      static_cast<std::size_t>(constraint.stiffness_pair_count()));
   const auto own = effort.subspan(static_cast<std::size_t>(constraint.first_row()),
                                   static_cast<std::size_t>(constraint.row_count()));
   if (std::ranges::all_of(own, [](double lambda) { return lambda == 0.0; })) return;
@@ -67,7 +67,7 @@ void GeometricStiffness::add_constraint(const constraint::Constraint& constraint
   const bool exact = tangent_ == mechanics::Tangent::exact || constraint.stiffens(effort);
   for (const auto& pair : pairs) {
     if (exact && pair.first.body == pair.second.body) {
-      systems_[static_cast<std::size_t>(pair.first.body)]->add_curvature(pair);
+      systems_[static_cast<std::size_t>(pair.first.body)]->add_geometric_stiffness(pair);
     } else if (exact) {
       couple(pair);
     } else {
@@ -77,33 +77,33 @@ void GeometricStiffness::add_constraint(const constraint::Constraint& constraint
   }
 }
 
-void GeometricStiffness::add_to(const mechanics::MaterialPoint& point, const Matrix3& curvature) {
-  systems_[static_cast<std::size_t>(point.body)]->add_curvature({point, point, curvature});
+void GeometricStiffness::add_to(const mechanics::MaterialPoint& point, const Matrix3& hessian) {
+  systems_[static_cast<std::size_t>(point.body)]->add_geometric_stiffness({point, point, hessian});
 }
 
 // A piece of a cable between two bodies: its C = T/l (I - n n^T), which the pairs of either point
 // with itself have added to the bodies, becomes a spring T/l along the rows of its coupling.
-void GeometricStiffness::couple(const mechanics::RowCurvature& pair) {
+void GeometricStiffness::couple(const mechanics::StiffnessPair& pair) {
   for (const mechanics::MaterialPoint& point : {pair.first, pair.second}) {
-    add_to(point, pair.curvature);
+    add_to(point, pair.hessian);
   }
-  const auto index = static_cast<int>(&pair - curvatures_.data());
+  const auto index = static_cast<int>(&pair - stiffness_pairs_.data());
   const auto& couplings = model_.couplings();
-  const auto found = std::ranges::find(couplings, index, &CouplingModel::curvature);
+  const auto found = std::ranges::find(couplings, index, &CouplingModel::pair);
   const auto first = anchor_rows_ + 2 * static_cast<std::size_t>(found - couplings.begin());
   for (std::size_t k = first; k < first + 2; ++k) {
-    problem_.stiffness[k].stiffness = 0.5 * pair.curvature.trace();
+    problem_.stiffness[k].stiffness = 0.5 * pair.hessian.trace();
   }
 }
 
 // A pair (x_i, x_j) with block C puts -C at (i, j) and -C^T at (j, i) into A. What is never less:
 // |C| I at (i, i) and (j, j), as bodies bound what they hold; a pair of one point gives its
 // positive part. All stays on points' own blocks.
-void GeometricStiffness::add_majorant(const mechanics::RowCurvature& pair) {
+void GeometricStiffness::add_majorant(const mechanics::StiffnessPair& pair) {
   if (pair.first == pair.second) {
-    return add_to(pair.first, -linalg::positive_part(Matrix3(-pair.curvature)));
+    return add_to(pair.first, -linalg::positive_part(Matrix3(-pair.hessian)));
   }
-  const Matrix3 bound = pair.curvature.norm() * Matrix3::Identity();
+  const Matrix3 bound = pair.hessian.norm() * Matrix3::Identity();
   add_to(pair.first, -bound);
   add_to(pair.second, -bound);
 }

@@ -42,7 +42,9 @@ class Model {
   PartList<constraint::Probe> probes() const { return PartList(data_.probes); }
   const std::vector<SensorModel>& sensors() const { return data_.sensors; }
   const mechanics::RowPattern& rows() const { return data_.rows; }
-  const std::vector<mechanics::RowCurvature>& curvatures() const { return data_.curvatures; }
+  const std::vector<mechanics::StiffnessPair>& stiffness_pairs() const {
+    return data_.stiffness_pairs;
+  }
   const StepSettings& step() const { return data_.step; }
   /// Whether what a step leaves of its equation stays in the motion: in dynamics, and where a
   /// material has a memory. Other quasi-static steps begin with it.

@@ -11,8 +11,8 @@
 #include "sinew/rigid/rigid_settings.hpp"
 #include "sinew/sim/add_parts.hpp"
 #include "sinew/sim/body_holding.hpp"
-#include "sinew/sim/curvatures.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/stiffness_pairs.hpp"
 
 namespace sinew::sim {
 
@@ -124,10 +124,10 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
   add_couplings(data_);
   // Transient rows stand behind all others, which keep their numbers in a step's problem.
   for (const ContactModel& contact : data_.contacts) {
-    data_.constraint(contact.constraint).declare(data_.rows, data_.curvatures);
+    data_.constraint(contact.constraint).declare(data_.rows, data_.stiffness_pairs);
   }
   for (std::size_t i = 0; i < data_.bodies.size(); ++i) {
-    data_.bodies[i]->finish(static_cast<int>(i), data_.rows, data_.curvatures, settings);
+    data_.bodies[i]->finish(static_cast<int>(i), data_.rows, data_.stiffness_pairs, settings);
   }
   list_geometric_stiffness(data_);
   auto model = std::make_shared<const Model>(std::move(data_));

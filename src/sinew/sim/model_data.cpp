@@ -26,7 +26,7 @@ ModelData::ModelData(ModelData&&) noexcept = default;
 ModelData& ModelData::operator=(ModelData&&) noexcept = default;
 
 int ModelData::declare(std::unique_ptr<constraint::Constraint> constraint) {
-  constraint->declare(rows, curvatures);
+  constraint->declare(rows, stiffness_pairs);
   constraints.push_back(std::move(constraint));
   return static_cast<int>(constraints.size()) - 1;
 }

@@ -77,9 +77,9 @@ struct AnchorModel {
   double stiffness = 0.0;  ///< N/m
 };
 
-/// Rows for the curvature of a cable between two bodies.
+/// Rows for the geometric stiffness of a cable between two bodies.
 struct CouplingModel {
-  int curvature = -1;   ///< in Model::curvatures()
+  int pair = -1;        ///< in Model::stiffness_pairs()
   int constraint = -1;  ///< a constraint::Coupling
 };
 
@@ -142,7 +142,7 @@ struct ModelData {
   std::vector<LoadModel> loads;
   std::vector<MassModel> masses;
   mechanics::RowPattern rows;
-  std::vector<mechanics::RowCurvature> curvatures;
+  std::vector<mechanics::StiffnessPair> stiffness_pairs;
   GeometricStiffnessModel geometric_stiffness;
   int drive_states = 0;
   double size = 0.0;  ///< m

@@ -250,7 +250,7 @@ NewtonReport NewtonStep::descend(double time_step, int iterations) {
   NewtonSettings downhill = settings(time_step);
   downhill.request.tangent = mechanics::Tangent::projected;
   // A matrix that is never less has the stiffness of all cables, whatever the scene leaves out.
-  downhill.request.with_curvature = true;
+  downhill.request.with_geometric_stiffness = true;
   downhill.geometric = run_.model->geometric_stiffness().all;
   downhill.max_iterations = iterations;
   NewtonReport result = run_.newton(nullptr, downhill);

@@ -28,7 +28,7 @@ namespace sinew::sim {
 class StageClock;
 
 /// Data of one simulation below the level of commands and laws. Nothing allocates after
-/// construction, but for the first use of curvature.
+/// construction, but for the first use of geometric stiffness.
 class World {
  public:
   /// @param model shared. @param pool must outlive the world.
@@ -69,7 +69,7 @@ class World {
   const mechanics::Inertia& inertia() const { return inertia_; }
   /// Whether the robot is stable with its drives and held rows, as far as its linearisation tells.
   bool is_stable() const;
-  /// Whether a majorant of curvature stands in A, which is then no derivative.
+  /// Whether a majorant of the geometric stiffness stands in A, which is then no derivative.
   bool has_majorant() const { return stiffness_.has_majorant(); }
 
   /// m: how far `effort` and the present configuration are from obeying all laws, points that are

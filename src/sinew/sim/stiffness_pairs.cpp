@@ -1,4 +1,4 @@
-#include "sinew/sim/curvatures.hpp"
+#include "sinew/sim/stiffness_pairs.hpp"
 
 #include <cstddef>
 #include <memory>
@@ -10,8 +10,8 @@
 namespace sinew::sim {
 
 void add_couplings(ModelData& data) {
-  for (std::size_t k = 0; k < data.curvatures.size(); ++k) {
-    const auto& [first, second, curvature] = data.curvatures[k];
+  for (std::size_t k = 0; k < data.stiffness_pairs.size(); ++k) {
+    const auto& [first, second, hessian] = data.stiffness_pairs[k];
     if (first.body == second.body) continue;
     const int rows = data.declare(std::make_unique<constraint::Coupling>(first, second));
     data.couplings.push_back({static_cast<int>(k), rows});
@@ -20,14 +20,14 @@ void add_couplings(ModelData& data) {
 
 void list_geometric_stiffness(ModelData& data) {
   for (std::size_t i = 0; i < data.constraints.size(); ++i) {
-    if (data.constraints[i]->curvature_count() == 0) continue;
+    if (data.constraints[i]->stiffness_pair_count() == 0) continue;
     data.geometric_stiffness.all.push_back(static_cast<int>(i));
   }
   for (const int index : data.geometric_stiffness.in_steps) {
     const constraint::Constraint& constraint = data.constraint(index);
-    for (int k = 0; k < constraint.curvature_count(); ++k) {
-      const mechanics::RowCurvature& pair =
-          data.curvatures[static_cast<std::size_t>(constraint.first_curvature() + k)];
+    for (int k = 0; k < constraint.stiffness_pair_count(); ++k) {
+      const mechanics::StiffnessPair& pair =
+          data.stiffness_pairs[static_cast<std::size_t>(constraint.first_stiffness_pair() + k)];
       if (pair.first.body != pair.second.body) continue;  // see add_couplings()
       data.geometric_stiffness.extends_pattern |=
           !data.body(pair.first.body).couples(pair.first.number, pair.second.number);

@@ -6,7 +6,8 @@ namespace sinew::sim {
 
 struct ModelData;
 
-/// Rows for the curvatures between two bodies: no body has room for what couples it to another.
+/// Rows for the stiffness pairs between two bodies: no body has room for what couples it to
+/// another.
 void add_couplings(ModelData& data);
 
 /// Which constraints have a geometric stiffness, and whether that which joins A in every step
