@@ -166,6 +166,8 @@ std::string group_of(const sim::Observable& observable) {
       return unit == "rad" ? "angle" : "probe";
     case sim::ObservableKind::sensor:
       return unit.empty() ? "sensor" : "sensor " + unit;
+    case sim::ObservableKind::estimator:
+      return "estimate";
     case sim::ObservableKind::contact:
       return unit == "N" ? "contact" : unit == "m" ? "gap" : "touching";
     case sim::ObservableKind::joint:
@@ -370,6 +372,8 @@ bool is_signal(const sim::Observable& observable) {
       return observable.quantity == "value";
     case sim::ObservableKind::sensor:
       return observable.quantity != "sample_time";
+    case sim::ObservableKind::estimator:
+      return observable.quantity != "status";
     default:
       return true;
   }

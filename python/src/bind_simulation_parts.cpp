@@ -64,6 +64,12 @@ A probe by its name. Raises Error (unknown-name) with a suggestion.
 
 A sensor by its name. Raises Error (unknown-name) with a suggestion.
 )")
+      .def("estimator", named<Estimator>(&sim::Model::estimator_index), py::arg("name"),
+           R"(estimator($self, name)
+--
+
+An estimator by its name. Raises Error (unknown-name) with a suggestion.
+)")
       .def("load", named<Load>(&sim::Model::load_index), py::arg("name"),
            R"(load($self, name)
 --
@@ -108,6 +114,8 @@ void bind_lists(SimulationType& type) {
                              "dict: all probes by name, in the scene's order.")
       .def_property_readonly("sensors", all<Sensor>(&sim::Model::sensors),
                              "dict: all sensors by name, in the scene's order.")
+      .def_property_readonly("estimators", all<Estimator>(&sim::Model::estimators),
+                             "dict: all estimators by name, in the scene's order.")
       .def_property_readonly("masses", all<PointMass>(&sim::Model::masses),
                              "dict: all masses that hang on bodies by name, body by body.")
       .def_property_readonly("contacts", all<Contact>(&sim::Model::contacts),

@@ -200,7 +200,8 @@ dict of ndarray
     efforts); for
     every effector 'NAME.position' (k, 3) m or 'NAME.rotation' (k, 3) rad; for every probe
     'NAME.value'; for every sensor 'NAME.measured', 'NAME.true' and 'NAME.sample_time' s, NaN before
-    its first sample; for every contact 'NAME.force' (k, 3) N, 'NAME.normal_force', 'NAME.gap' and so
+    its first sample; for every estimator 'NAME.UNKNOWN' (k, 3) N, 'NAME.UNKNOWN.std' (k, 3) N and
+    'NAME.status'; for every contact 'NAME.force' (k, 3) N, 'NAME.normal_force', 'NAME.gap' and so
     on; 'residual' (k,) N and other numbers of the step's report; 'status' (k,) of str; with a
     controller 'NAME.target' (k, 3), 'NAME.error' (k,), 'error' (k,) m and 'controller' (k,) of str.
     On request for every body 'NAME.positions' (k, n, 3) m and 'NAME.velocities'; for the n points

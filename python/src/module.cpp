@@ -28,6 +28,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_mass(module);
   python::bind_probe(module);
   python::bind_sensor(module);
+  python::bind_estimator(module);
   python::bind_state(module);
   python::bind_contact(module);
   python::bind_joint(module);

@@ -27,6 +27,8 @@ std::string dataset_of(const sim::Observable& observable) {
       return in("contact_resultants");
     case sim::ObservableKind::joint:
       return in("joints");
+    case sim::ObservableKind::estimator:
+      return in("estimators");
     case sim::ObservableKind::controller:
       if (!observable.owner.empty()) return in("controller");
       break;

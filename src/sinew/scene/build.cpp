@@ -162,6 +162,9 @@ Robot build(SceneDescription description) {
   for (const SensorDescription& sensor : description.sensors) {
     add_sensor(builder, {description, contacts, body_of}, sensor);
   }
+  for (const EstimatorDescription& estimator : description.estimators) {
+    add_estimator(builder, description, estimator);
+  }
   robot.model = builder.build(factorisation_settings(description.solver));
   for (const ControllerDescription& controller : description.controllers) {
     robot.controllers.push_back(controller_of(controller, *robot.model));

@@ -123,4 +123,12 @@ struct SensorSurroundings {
 void add_sensor(sim::ModelBuilder& builder, const SensorSurroundings& surroundings,
                 const SensorDescription& sensor);
 
+/// Builds the robot as the estimator knows it, and adds the estimator.
+/// @param builder that has the sensors. @param scene of the estimator, without robots in files.
+/// @param estimator to be added. Throws what build() does of that robot, and Error: wrong-type and
+/// out-of-range (a sensor), everything-fixed (a point that cannot move), conflicting-keys (a sensor
+/// that answers to no unknown).
+void add_estimator(sim::ModelBuilder& builder, const SceneDescription& scene,
+                   const EstimatorDescription& estimator);
+
 }  // namespace sinew::scene

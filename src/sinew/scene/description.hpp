@@ -327,6 +327,27 @@ struct SensorDescription {
   std::shared_ptr<const sim::SensorRecord> record;  ///< of a file
 };
 
+/// A force from outside that is to be found.
+struct UnknownForceDescription {
+  std::string name;
+  Location place, point_place;
+  std::string body;
+  Vector3 point = Vector3::Zero();  ///< m
+  mesh::Outside outside = mesh::Outside::error;
+  double prior = 0.0;  ///< N, > 0
+  double walk = 0.0;   ///< N/sqrt(s), > 0; left out: as many as the prior
+};
+
+/// What concludes forces from sensors.
+struct EstimatorDescription {
+  std::string name;
+  Location place;
+  std::vector<std::string> sensors;
+  std::vector<Location> sensor_places;
+  std::vector<UnknownForceDescription> unknowns;
+  std::vector<std::string> unknown_loads;
+};
+
 /// A surface that points of a body may touch, or two bodies.
 struct ContactDescription {
   std::string name;
@@ -425,6 +446,7 @@ struct SceneDescription {
   std::vector<EffectorDescription> effectors;
   std::vector<ProbeDescription> probes;
   std::vector<SensorDescription> sensors;
+  std::vector<EstimatorDescription> estimators;
   std::vector<ContactDescription> contacts;
   std::vector<JointDescription> joints;
   std::vector<ControllerDescription> controllers;

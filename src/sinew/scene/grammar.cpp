@@ -240,6 +240,11 @@ KeyTable scene_table() {
        .description =
            "Simulated sensors with the errors of real ones. They do not affect the robot."});
   scene.keys.push_back(
+      {.name = "estimators",
+       .forms = {names(estimator_form())},
+       .example = "{push: {type: filter, sensors: [tip, length], unknowns: {hand: ...}}}",
+       .description = "Estimators of unknown forces from sensors. They do not affect the robot."});
+  scene.keys.push_back(
       {.name = "contacts",
        .forms = {names(contact_form())},
        .example = "{floor: {body: block, surface: {plane: {}}, friction: 0.5}}",
@@ -260,7 +265,6 @@ KeyTable scene_table() {
                         .description = "Output of a run."});
   scene.keys.push_back(later_key("materials", "Materials by name."));
   scene.keys.push_back(later_key("obstacles", "Obstacles around the robot."));
-  scene.keys.push_back(later_key("estimators", "State estimators that use the sensors."));
   return scene;
 }
 

@@ -154,6 +154,7 @@ Form contact_form();
 Form joint_form();
 Form probe_form();
 Form sensor_form();
+Form estimator_form();
 Form controller_form();
 
 }  // namespace sinew::scene::forms

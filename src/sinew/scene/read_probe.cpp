@@ -8,7 +8,7 @@ namespace sinew::scene {
 
 namespace {
 
-using Kind = ProbeDescription::Kind;
+using ProbeKind = ProbeDescription::Kind;
 using Part = ProbeDescription::Part;
 
 void set_point(const Vector3& point, const Location& place, PointList& list) {
@@ -98,17 +98,17 @@ ProbeDescription read_probe(const Node::Entry& entry, const ReadContext& context
   fields.read_choice("outside", probe.outside,
                      {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
   if (fields.find("line") != nullptr) {
-    probe.kind = Kind::line;
+    probe.kind = ProbeKind::line;
     part.points = read_points(fields, "line", context);
     fields.read("samples", probe.samples);
   } else if (fields.find("bend") != nullptr) {
-    probe.kind = Kind::bend;
+    probe.kind = ProbeKind::bend;
     read_bend(fields, probe);
   } else if (fields.find("distance") != nullptr) {
-    probe.kind = Kind::distance;
+    probe.kind = ProbeKind::distance;
     read_distance(fields, context, probe);
   } else if (fields.find("extent") != nullptr) {
-    probe.kind = Kind::extent;
+    probe.kind = ProbeKind::extent;
     read_extent(fields, probe);
   } else {
     read_spot(fields, context, part);

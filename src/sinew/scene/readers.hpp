@@ -49,6 +49,7 @@ JointDescription read_joint(const Node::Entry& entry, const ReadContext& context
 sim::BaseMotion read_motion(const Fields& fields, const ReadContext& context);
 ProbeDescription read_probe(const Node::Entry& entry, const ReadContext& context);
 SensorDescription read_sensor(const Node::Entry& entry, const ReadContext& context);
+EstimatorDescription read_estimator(const Node::Entry& entry);
 /// The samples under `file`; null without, and when files are not opened.
 /// @param fields of the sensor. @param sensor read so far: its name, rate and delay.
 /// @param numbers names of its components: "x", "y", "z"; empty for its only one.

@@ -54,6 +54,7 @@ const std::vector<Section>& sections() {
       {"scene/loads.md", "Scene files: loads", {"loads"}},
       {"scene/effectors.md", "Scene files: effectors and probes", {"effectors", "probes"}},
       {"scene/sensors.md", "Scene files: sensors", {"sensors"}},
+      {"scene/estimators.md", "Scene files: estimators", {"estimators"}},
       {"scene/contacts.md", "Scene files: contacts", {"contacts"}},
       {"scene/joints.md", "Scene files: joints", {"joints"}},
       {"scene/controllers.md", "Scene files: controllers", {"controllers"}},

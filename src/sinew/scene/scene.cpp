@@ -183,6 +183,8 @@ SceneDescription read_scene(const Node& tree, const ReadContext& context) {
               [&](const auto& entry) { scene.probes.push_back(read_probe(entry, context)); });
   for_entries(fields, "sensors",
               [&](const auto& entry) { scene.sensors.push_back(read_sensor(entry, context)); });
+  for_entries(fields, "estimators",
+              [&](const auto& entry) { scene.estimators.push_back(read_estimator(entry)); });
   for_entries(fields, "contacts",
               [&](const auto& entry) { scene.contacts.push_back(read_contact(entry, context)); });
   for_entries(fields, "joints",

@@ -30,6 +30,7 @@ struct CableSettings;
 struct ChamberSettings;
 struct ContactSettings;
 struct EffectorSettings;
+struct EstimatorSettings;
 struct ForceSettings;
 struct LoadSettings;
 struct ModelData;
@@ -72,5 +73,6 @@ int add_effector(ModelData& data, const EffectorSettings& settings);
 int add_probe(ModelData& data, const ProbeSettings& settings);
 /// After what it reads.
 int add_sensor(ModelData& data, const SensorSettings& settings);
+int add_estimator(ModelData& data, const EstimatorSettings& settings);
 
 }  // namespace sinew::sim

@@ -95,6 +95,10 @@ int Model::sensor_index(std::string_view name) const {
   return find_by_name(data_.sensors, name, "sensor", [](const auto& s) { return s.name; });
 }
 
+int Model::estimator_index(std::string_view name) const {
+  return find_by_name(data_.estimators, name, "estimator", [](const auto& e) { return e.name; });
+}
+
 const mechanics::BodyModel& Model::body(int index) const {
   return *data_.bodies.at(static_cast<std::size_t>(index));
 }

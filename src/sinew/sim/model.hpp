@@ -41,6 +41,7 @@ class Model {
   const std::vector<CouplingModel>& couplings() const { return data_.couplings; }
   PartList<constraint::Probe> probes() const { return PartList(data_.probes); }
   const std::vector<SensorModel>& sensors() const { return data_.sensors; }
+  const std::vector<EstimatorModel>& estimators() const { return data_.estimators; }
   const mechanics::RowPattern& rows() const { return data_.rows; }
   const std::vector<mechanics::StiffnessPair>& stiffness_pairs() const {
     return data_.stiffness_pairs;
@@ -64,6 +65,7 @@ class Model {
   int mass_index(std::string_view name) const;
   int probe_index(std::string_view name) const;
   int sensor_index(std::string_view name) const;
+  int estimator_index(std::string_view name) const;
 
   /// By these positions.
   const mechanics::BodyModel& body(int index) const;

@@ -119,6 +119,10 @@ int ModelBuilder::add_sensor(const SensorSettings& settings) {
   return sim::add_sensor(data_, settings);
 }
 
+int ModelBuilder::add_estimator(const EstimatorSettings& settings) {
+  return sim::add_estimator(data_, settings);
+}
+
 std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSettings& settings) {
   hold_bodies(data_, places_);
   add_couplings(data_);

@@ -27,6 +27,7 @@ struct CableSettings;
 struct ChamberSettings;
 struct ContactSettings;
 struct EffectorSettings;
+struct EstimatorSettings;
 struct ForceSettings;
 struct LoadSettings;
 struct ProbeSettings;
@@ -88,6 +89,10 @@ class ModelBuilder {
   /// missing-key and conflicting-keys (the radius of a drum), wrong-length and
   /// degenerate-orientation, too-few-points, point-outside-mesh, empty-region, zero-volume.
   int add_sensor(const SensorSettings& settings);
+
+  /// After sensors. Throws Error: unknown-name (a sensor), out-of-range (a sensor without noise, or
+  /// with a delay of more than 100 steps).
+  int add_estimator(const EstimatorSettings& settings);
 
   /// Plans and hands the model over; the builder is empty afterwards.
   /// @param settings of the factorisation.

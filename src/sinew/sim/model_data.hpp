@@ -14,6 +14,7 @@
 #include "sinew/mechanics/rows.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/base_motion.hpp"
+#include "sinew/sim/estimator_model.hpp"
 #include "sinew/sim/sensor_model.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/step_settings.hpp"
@@ -138,6 +139,7 @@ struct ModelData {
   std::vector<CouplingModel> couplings;
   std::vector<std::unique_ptr<constraint::Probe>> probes;
   std::vector<SensorModel> sensors;
+  std::vector<EstimatorModel> estimators;
   std::vector<BaseMotion> base_motions;
   std::vector<LoadModel> loads;
   std::vector<MassModel> masses;

@@ -30,6 +30,7 @@ enum class ObservableKind {
   contact_point,  ///< of every point of a contact, and the pose of its surface
   contact,        ///< of all points of a contact together
   joint,          ///< force, moment, gap and motion
+  estimator,      ///< unknowns, their standard deviations, and its status
   controller,     ///< targets and errors
   energy,         ///< of all bodies; evaluates their elements
   ledger,         ///< work and losses since the first reading; evaluates the elements, too
@@ -94,6 +95,8 @@ class Observables {
   /// `NAME.force` (3,) N, `NAME.normal_force` and `NAME.friction_force` N, `NAME.gap` m,
   /// `NAME.sticking`, `NAME.slipping`; of every joint `NAME.force` (3,) N and `NAME.moment` (3,) N
   /// m (see JointLoad), `NAME.gap` m, `NAME.angle` rad and `NAME.displacement` m where it has them;
+  /// of every estimator `NAME.UNKNOWN` (3,) N and its standard deviation `NAME.UNKNOWN.std` (3,) N
+  /// for each unknown force, and `NAME.status`;
   /// `strain_energy`, `kinetic_energy`, `gravity_energy`, `actuator_work`, `outside_work`,
   /// `dissipation`, `numerical_loss` J; the report's `residual` N, `relative_residual`,
   /// `iterations`, `substeps`, `scale`, `smallest_volume_ratio`, with contacts `contact_residual`,

@@ -25,9 +25,11 @@ Run::Run(std::shared_ptr<const Model> shared_model, int threads)
       actuation(*model),
       surroundings(*model, world.bodies()),
       effort(static_cast<std::size_t>(model->rows().rows()), 0.0),
-      sensors(*model) {
+      sensors(*model),
+      estimators(*model, threads) {
   finish_step();
   sensors.restart(*this);
+  estimators.begin(*this);
   keep(before);
 }
 
@@ -84,6 +86,7 @@ void Run::restart() {
   if (step::WithMemory* one = attached()) one->forget();
   report = {};
   sensors.restart(*this);
+  estimators.begin(*this);
 }
 
 std::size_t Run::bytes() const {

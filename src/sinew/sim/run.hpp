@@ -8,6 +8,7 @@
 
 #include "sinew/core/thread_pool.hpp"
 #include "sinew/sim/actuation.hpp"
+#include "sinew/sim/estimators.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/sensors.hpp"
 #include "sinew/sim/stage_clock.hpp"
@@ -81,6 +82,7 @@ struct Run {
   State before;      ///< before that, or before the search in hand
   StepReport report;
   Sensors sensors;
+  Estimators estimators;
   StageClock clock;
 };
 

@@ -112,6 +112,8 @@ class EffortSource : public SensorSource {
   /// @param actuator its number. @param factor of its effort. @param unit of the product.
   EffortSource(int actuator, double factor, const char* unit)
       : SensorSource({{"", unit}}), actuator_(actuator), factor_(factor) {}
+  int actuator() const { return actuator_; }
+  double factor() const { return factor_; }
   void read(const Run& run, std::span<const double> memory,
             std::span<double> values) const override;
 
@@ -125,6 +127,7 @@ class MotionSource : public SensorSource {
  public:
   /// @param actuator its number. @param unit of its motion.
   MotionSource(int actuator, const char* unit) : SensorSource({{"", unit}}), actuator_(actuator) {}
+  int actuator() const { return actuator_; }
   void read(const Run& run, std::span<const double> memory,
             std::span<double> values) const override;
 

@@ -35,6 +35,7 @@ const StepReport& Simulation::step() {
     stepper_->step();
   }
   run_->sensors.advance(*run_);
+  run_->estimators.advance(*run_);
   return run_->report;
 }
 
@@ -60,15 +61,19 @@ const EnergyLedger& Simulation::ledger() const { return run_->ledger.sums(); }
 StaticReport Simulation::solve_static(const StaticSettings& settings) {
   StaticReport report = StaticSolver(*run_, settings).run();
   run_->sensors.settle(*run_);
+  run_->estimators.settle(*run_);
   return report;
 }
 
+// On the way loads and commands act in part, of which an estimator knows nothing.
 std::vector<PathPoint> Simulation::follow_path(const PathSettings& settings,
                                                const std::function<void()>& visit) {
-  return PathFollower(*run_, settings).follow([&] {
+  std::vector<PathPoint> path = PathFollower(*run_, settings).follow([&] {
     run_->sensors.settle(*run_);
     if (visit) visit();
   });
+  run_->estimators.settle(*run_);
+  return path;
 }
 
 void Simulation::reset() { run_->restart(); }
@@ -120,6 +125,8 @@ void Simulation::read_sensor_truth(int index, std::span<double> values) const {
 void Simulation::feed_sensor(int index, double time, std::span<const double> value) {
   run_->sensors.channel(index).receive(time, value);
 }
+
+const Estimator& Simulation::estimator(int index) const { return run_->estimators.at(index); }
 
 ContactReader Simulation::contacts() const { return ContactReader(*run_); }
 

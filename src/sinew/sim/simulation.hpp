@@ -35,6 +35,7 @@ class Channel;
 struct Command;
 class Commander;
 class ContactReader;
+class Estimator;
 struct EnergyLedger;
 struct Inputs;
 class Model;
@@ -129,6 +130,10 @@ class Simulation {
   /// what Channel::receive() does. @param index of Model::sensors(). @param time s, when it was
   /// taken. @param value (size,).
   void feed_sensor(int index, double time, std::span<const double> value);
+
+  /// What an estimator concludes from the sensors, after each step and each search for an
+  /// equilibrium. @param index of Model::estimators().
+  const Estimator& estimator(int index) const;
 
   /// Forces, gaps and states of contacts; valid as long as the simulation.
   ContactReader contacts() const;

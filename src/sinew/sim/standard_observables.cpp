@@ -15,6 +15,8 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/estimator.hpp"
+#include "sinew/sim/estimator_model.hpp"
 #include "sinew/sim/joint_load.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/observables.hpp"
@@ -333,6 +335,35 @@ void add_joints(Observables& list) {
   }
 }
 
+void add_estimators(Observables& list) {
+  const Simulation& simulation = list.simulation();
+  const auto& estimators = simulation.model().estimators();
+  for (std::size_t i = 0; i < estimators.size(); ++i) {
+    const EstimatorModel& estimator = estimators[i];
+    std::vector<Observable> parts;
+    const auto add = [&](const std::string& quantity) {
+      parts.push_back(of(ObservableKind::estimator, estimator.name, quantity, "N", {3}));
+      for (const char* axis : kAxes) {
+        parts.back().components.push_back(fmt::format("{}.{}", parts.back().name, axis));
+      }
+    };
+    for (const UnknownForce& unknown : estimator.unknowns) add(unknown.name);
+    for (const UnknownForce& unknown : estimator.unknowns) add(unknown.name + ".std");
+    parts.push_back(of(ObservableKind::estimator, estimator.name, "status", ""));
+    for (int code = 0; code < kEstimatorStatuses; ++code) {
+      parts.back().words.push_back(
+          {code, estimator_status_name(static_cast<EstimatorStatus>(code))});
+    }
+    list.add(std::move(parts), [&simulation, i](std::span<double> all) {
+      const Estimator& one = simulation.estimator(static_cast<int>(i));
+      Numbers to(all);
+      for (const double force : one.mean()) to.put(force);
+      for (const double deviation : one.deviation()) to.put(deviation);
+      to.put(static_cast<double>(one.status()));
+    });
+  }
+}
+
 // Energies, work and losses since the first reading. What actuators and loads have put in since
 // then is in the bodies, dissipated, or lost by the integrator.
 class Ledger {
@@ -442,6 +473,7 @@ void list_standard_observables(Observables& list) {
   add_sensors(list);
   add_contacts(list);
   add_joints(list);
+  add_estimators(list);
   add_energies(list);
   add_report(list);
   add_timing(list);

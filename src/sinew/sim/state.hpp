@@ -40,6 +40,7 @@ struct State {
   std::vector<double> joints;      ///< (motions of joints,) rad or m, see JointRows
   std::vector<double> controller;  ///< memory of the attached controller; empty without one
   std::vector<double> sensors;     ///< memory of the sensors, see Sensors; empty without
+  std::vector<double> estimators;  ///< memory of the estimators, see Estimators; empty without
   EnergyLedger ledger;
   double volume_ratio = 1.0;  ///< min det F
   double residual = 0.0;      ///< that the last step left, relative: controllers judge rest by it
@@ -75,6 +76,7 @@ struct State {
     visitor("last step", state.last_step);
     visitor("next step", state.next_step);
     visitor("sensors", state.sensors);
+    visitor("estimators", state.estimators);
   }
 
   /// Over all numbers by their bits, and the count of steps: equal runs have equal hashes.

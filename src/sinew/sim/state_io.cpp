@@ -154,10 +154,12 @@ SavedState read(std::string_view bytes, const std::string& name) {
   state.steps = saved.header.steps;
   state.bodies.resize(reader.count());
   State::visit(state, [&](std::string_view part, auto& numbers) {
-    // Robots of before had no joints that move, no surfaces that touched each other, no sensors.
+    // Robots of before had no joints that move, no surfaces that touched each other, no sensors and
+    // no estimators.
     const bool lacks = (part == "joints" && saved.header.version < kFirstWithJoints) ||
                        (part == "points" && saved.header.version < kFirstWithPoints) ||
-                       (part == "sensors" && saved.header.version <= kVersionWithoutSensors);
+                       (part == "sensors" && saved.header.version <= kVersionWithoutSensors) ||
+                       (part == "estimators" && saved.header.version <= kVersionWithoutEstimators);
     if (!lacks) reader.number(numbers);
   });
   if (!reader.done()) corrupt(name, "something follows the last number");
@@ -174,8 +176,11 @@ std::string format_state(const Simulation& simulation) {
 std::string format_state(const State& state, const Model& model) {
   Writer writer;
   writer.append(kMagic.data(), kMagic.size());
-  const bool senses = !state.sensors.empty();
-  const std::uint32_t version[2] = {senses ? kStateVersion : kVersionWithoutSensors, 0};
+  const bool concludes = !state.estimators.empty(), senses = !state.sensors.empty() || concludes;
+  const std::uint32_t version[2] = {concludes ? kStateVersion
+                                    : senses  ? kVersionWithoutEstimators
+                                              : kVersionWithoutSensors,
+                                    0};
   writer.append(version, sizeof version);
   writer.word(model.fingerprint());
   writer.word(static_cast<std::uint64_t>(state.steps));
@@ -186,7 +191,8 @@ std::string format_state(const State& state, const Model& model) {
   }
   writer.word(state.bodies.size());
   State::visit(state, [&](std::string_view part, const auto& numbers) {
-    if (senses || part != "sensors") writer.number(numbers);
+    const bool lacks = (part == "sensors" && !senses) || (part == "estimators" && !concludes);
+    if (!lacks) writer.number(numbers);
   });
   return writer.finish();
 }

@@ -26,9 +26,10 @@ struct State;
 /// Whoever changes the layout, what the fingerprint hashes or what State::visit() comes to raises
 /// kStateVersion and reads states of all versions from kOldestStateVersion on, of which files are
 /// kept (python/tests/states).
-/// States without sensors are those of the version before sensors, and are written as such.
-inline constexpr std::uint32_t kStateVersion = 9, kVersionWithoutSensors = 8,
-                               kOldestStateVersion = 6;
+/// States without estimators, and without sensors, are those of the versions before these, and are
+/// written as such.
+inline constexpr std::uint32_t kStateVersion = 10, kVersionWithoutEstimators = 9,
+                               kVersionWithoutSensors = 8, kOldestStateVersion = 6;
 
 /// What a saved state says of itself.
 struct StateHeader {

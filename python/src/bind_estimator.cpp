@@ -1,0 +1,109 @@
+#include <string>
+
+#include "sinew/sim/estimator.hpp"
+#include "sinew/sim/estimator_model.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "session.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+const sim::EstimatorModel& model(const Estimator& self) {
+  return self.session->model().estimators()[static_cast<std::size_t>(self.index)];
+}
+
+template <class Get>
+auto of_estimator(Get get) {
+  return [get](const Estimator& self) {
+    const Session::Use use(*self.session);
+    return get(self.session->simulation().estimator(self.index));
+  };
+}
+
+py::list sensor_names(const Estimator& self) {
+  py::list names;
+  for (const sim::EstimatorSensor& sensor : model(self).sensors) {
+    names.append(self.session->model().sensors()[static_cast<std::size_t>(sensor.index)].name);
+  }
+  return names;
+}
+
+py::dict forces(const Estimator& self) {
+  const Session::Use use(*self.session);
+  const VectorX mean = self.session->simulation().estimator(self.index).mean();
+  py::dict all;
+  Eigen::Index first = 0;
+  for (const sim::UnknownForce& unknown : model(self).unknowns) {
+    all[py::str(unknown.name)] = copy(Vector3(mean.segment<3>(first)));
+    first += 3;
+  }
+  return all;
+}
+
+py::list to_list(const std::vector<std::string>& texts) {
+  py::list list;
+  for (const std::string& text : texts) list.append(text);
+  return list;
+}
+
+}  // namespace
+
+void bind_estimator(py::module_& module) {
+  py::class_<Estimator>(module, "Estimator",
+                        "An estimator of the scene, which acts on nothing. From "
+                        "Simulation.estimator() or Simulation.estimators.")
+      .def_property_readonly(
+          "name", [](const Estimator& self) { return model(self).name; }, "str: as in the scene.")
+      .def_property_readonly("sensors", &sensor_names, "list of str: the sensors that it uses.")
+      .def_property_readonly(
+          "components",
+          [](const Estimator& self) { return to_list(model(self).component_names()); },
+          "list of str, n = 3 for each unknown force: 'hand.x', 'hand.y', 'hand.z', ...")
+      .def_property_readonly("forces", &forces,
+                             "dict of (3,) ndarray: the estimate of each unknown force (N), in "
+                             "world axes.")
+      .def_property_readonly(
+          "mean", of_estimator([](const sim::Estimator& one) { return copy(one.mean()); }),
+          "(n,) ndarray: the estimate of all components (N).")
+      .def_property_readonly(
+          "std", of_estimator([](const sim::Estimator& one) { return copy(one.deviation()); }),
+          "(n,) ndarray: standard deviations of the components (N).")
+      .def_property_readonly("covariance", of_estimator([](const sim::Estimator& one) {
+                               return copy(one.covariance());
+                             }),
+                             "(n, n) ndarray: covariance of the components (N^2).")
+      .def_property_readonly("singular_values", of_estimator([](const sim::Estimator& one) {
+                               return copy(one.observability().singular_values);
+                             }),
+                             "(n,) ndarray, falling: what one sample of each sensor tells along n "
+                             "directions, relative to the prior. Along a direction of value s, the "
+                             "samples lower the deviation to 1/sqrt(1 + s^2) of the prior's. Zeros "
+                             "before the first step.")
+      .def_property_readonly("unobservable", of_estimator([](const sim::Estimator& one) {
+                               return to_list(one.unobservable());
+                             }),
+                             "list of str: directions with a singular value below 1, such as "
+                             "'0.98 hand.z - 0.2 hand.x (singular value 0.03)'. The prior decides "
+                             "the estimate there.")
+      .def_property_readonly(
+          "lost", of_estimator([](const sim::Estimator& one) { return to_list(one.lost()); }),
+          "list of str: sensors without a sample for five periods, or older than their timeout.")
+      .def_property_readonly("dropped",
+                             of_estimator([](const sim::Estimator& one) { return one.dropped(); }),
+                             "int: samples that came later than the longest delay of the sensors.")
+      .def_property_readonly("status", of_estimator([](const sim::Estimator& one) {
+                               return std::string(sim::estimator_status_name(one.status()));
+                             }),
+                             "str: 'not-started', 'estimating', 'unobservable', 'sensors-lost' or "
+                             "'no-equilibrium'.")
+      .def_property_readonly("message",
+                             of_estimator([](const sim::Estimator& one) { return one.message(); }),
+                             "str: what the status is about; empty if there is nothing to say.");
+}
+
+}  // namespace sinew::python

@@ -1,0 +1,132 @@
+"""Estimators of scenes: forces from sensors, beside everything else."""
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+import sinew
+
+PUSH = Path(__file__).resolve().parents[2] / "examples" / "finger" / "push.yaml"
+
+
+def scene(**changes):
+    return yaml.safe_load(PUSH.read_text()) | changes
+
+
+def errors_over_run(sim, steps, true):
+    """(steps, 3) of the estimate's errors and of its deviations, N."""
+    push = sim.estimator("push")
+    errors, deviations = [], []
+    for _ in range(steps):
+        sim.step()
+        errors.append(push.forces["hand"] - true(sim.time))
+        deviations.append(push.std.copy())
+    return np.array(errors), np.array(deviations)
+
+
+def hand(time):
+    return np.array([0.3, 0.1, 0.0]) * (1.0 <= time < 2.0)
+
+
+def test_a_push_is_found_and_its_deviation_is_honest():
+    sim = sinew.load(PUSH)
+    assert sim.estimator("push").status == "not-started"
+    errors, deviations = errors_over_run(sim, 300, hand)
+    assert sim.estimator("push").status == "estimating"
+    settled = errors[150:199]
+    assert np.abs(settled.mean(axis=0)[:2]).max() < 0.01  # N
+    # Before the push, after the first tenth of a second: deviations as told, over 90 samples that the walk correlates.
+    spread = np.sqrt((errors[10:99] ** 2).mean(axis=0)) / deviations[10:99].mean(axis=0)
+    assert (spread > 0.3).all() and (spread < 2.0).all()
+
+
+def test_an_estimator_acts_on_nothing():
+    with_one, without = sinew.load(PUSH), sinew.load(scene(estimators={}))
+    with_one.step(40)
+    without.step(40)
+    np.testing.assert_array_equal(with_one.body("finger").positions, without.body("finger").positions)
+
+
+def test_states_and_clones_go_on_bit_for_bit(tmp_path):
+    sim = sinew.load(PUSH)
+    sim.step(105)
+    sim.save_state(tmp_path / "state")
+    clone, again = sim.clone(), sinew.load(PUSH)
+    again.load_state(tmp_path / "state")
+    for one in (sim, clone, again):
+        one.step(30)
+    for one in (clone, again):
+        np.testing.assert_array_equal(one.estimator("push").mean, sim.estimator("push").mean)
+        np.testing.assert_array_equal(one.estimator("push").covariance, sim.estimator("push").covariance)
+        assert one.state_hash == sim.state_hash
+    sim.reset()
+    assert sim.estimator("push").status == "not-started"
+    sim.step(5)
+    fresh = sinew.load(PUSH)
+    fresh.step(5)
+    np.testing.assert_array_equal(sim.estimator("push").mean, fresh.estimator("push").mean)
+
+
+def test_threads_give_the_same_bits():
+    means = []
+    for threads in (1, 2):
+        sim = sinew.load(PUSH, threads=threads)
+        sim.step(30)
+        means.append(sim.estimator("push").mean)
+    np.testing.assert_array_equal(*means)
+
+
+def test_what_no_sensor_sees_is_named():
+    """One load cell on a cable tells of one direction."""
+    tree = scene()
+    tree["estimators"]["push"]["sensors"] = ["pull_east"]
+    sim = sinew.load(tree)
+    sim.step(3)
+    push = sim.estimator("push")
+    assert push.status == "unobservable"
+    assert len(push.unobservable) >= 2 and "hand.y" in " ".join(push.unobservable)
+    assert "the prior decides" in push.message
+    assert push.singular_values[1] < 1e-9
+
+
+def test_a_lost_sensor_is_told():
+    tree = scene()
+    tree["sensors"]["tip"]["dropout"] = "100 %"
+    sim = sinew.load(tree)
+    sim.step(40)
+    push = sim.estimator("push")
+    assert push.status == "sensors-lost" and push.lost == ["tip"] and "tip" in push.message
+
+
+def test_a_static_solution_settles_the_estimate():
+    tree = scene()
+    tree["loads"]["hand"].pop("factor")
+    tree["sensors"] = {name: {**one, "noise": "1 um" if one["type"] == "marker" else "0.1 mN"} for name, one in tree["sensors"].items()}
+    for one in tree["sensors"].values():
+        one.pop("rate", None), one.pop("delay", None)
+    sim = sinew.load(tree)
+    sim.solve_static()
+    np.testing.assert_allclose(sim.estimator("push").forces["hand"], [0.3, 0.1, 0.0], atol=2e-3)
+
+
+def test_estimates_are_recorded():
+    rows = sinew.load(PUSH).run(0.2)
+    assert rows["push.hand"].shape == rows["push.hand.std"].shape == (len(rows["time"]), 3)
+    assert set(rows["push.status"]) <= {"not-started", "estimating", "unobservable"}
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        (lambda t: t["sensors"]["tip"].update(noise=0), "noise"),
+        (lambda t: t["estimators"]["push"].update(sensors=["tip", "middel"]), "did you mean"),
+        (lambda t: t["estimators"]["push"]["unknowns"]["hand"]["force"].update(point="0 0 0 mm", outside="error"), "nothing moves"),
+        (lambda t: t["estimators"]["push"]["unknowns"]["hand"]["force"].update(point="0 0 300 mm", outside="error"), "outside"),
+    ],
+)
+def test_what_cannot_be_estimated_is_an_error(change, words):
+    tree = scene()
+    change(tree)
+    with pytest.raises(sinew.Error, match=words):
+        sinew.load(tree)

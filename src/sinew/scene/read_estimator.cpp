@@ -1,0 +1,70 @@
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sinew/mesh/embedding.hpp"
+#include "sinew/scene/readers.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+// In an estimator's observables.
+constexpr const char* kTakenName = "status";
+
+UnknownForceDescription read_unknown(const Node::Entry& entry, const Form& form) {
+  UnknownForceDescription unknown;
+  unknown.name = entry.key;
+  unknown.place = entry.key_place;
+  if (unknown.name == kTakenName) {
+    throw Error(ErrorKind::duplicate_key, unknown.place,
+                "'status' is what the estimator's own status is called", "choose another name");
+  }
+  const Fields fields(entry.value, form);
+  fields.read("prior", unknown.prior);
+  unknown.walk = unknown.prior;
+  fields.read("walk", unknown.walk);
+  const Fields force = fields.below("force");
+  force.read("body", unknown.body);
+  force.read("point", unknown.point);
+  unknown.point_place = force.place("point");
+  force.read_choice("outside", unknown.outside,
+                    {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
+  return unknown;
+}
+
+// Each once.
+void read_names(const Fields& fields, const char* key, std::vector<std::string>& names,
+                std::vector<Location>& places) {
+  const Node* list = fields.find(key);
+  if (list == nullptr) return;
+  for (const Node& name : list->items()) {
+    if (std::ranges::find(names, name.spelling()) != names.end()) {
+      throw Error(ErrorKind::duplicate_key, name.place(),
+                  fmt::format("{} is named twice", show(name.spelling())), "name it once");
+    }
+    names.push_back(name.spelling());
+    places.push_back(name.place());
+  }
+}
+
+}  // namespace
+
+EstimatorDescription read_estimator(const Node::Entry& entry) {
+  EstimatorDescription estimator;
+  estimator.name = entry.key;
+  estimator.place = entry.key_place;
+  const Form& form = form_of(grammar(), "estimators", Shape::names).items.front();
+  const Fields fields(entry.value, form);
+  std::vector<Location> load_places;
+  read_names(fields, "sensors", estimator.sensors, estimator.sensor_places);
+  read_names(fields, "unknown_loads", estimator.unknown_loads, load_places);
+  const Form& unknown = fields.form("unknowns").items.front();
+  for (const Node::Entry& one : fields.find("unknowns")->entries()) {
+    estimator.unknowns.push_back(read_unknown(one, unknown));
+  }
+  return estimator;
+}
+
+}  // namespace sinew::scene

@@ -1,0 +1,72 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/sim/add_parts.hpp"
+#include "sinew/sim/estimator_model.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/model_data.hpp"
+#include "sinew/sim/new_name.hpp"
+#include "sinew/sim/sensor_source.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// The covariance of all instants has 9 kMaxLags^2 numbers for a force.
+constexpr int kMaxLags = 100;
+
+EstimatorSensor sensor_of(const ModelData& data, const std::string& name, const Location& place,
+                          const Model& robot) {
+  const auto found = std::ranges::find(data.sensors, name, &SensorModel::name);
+  if (found == data.sensors.end()) {
+    throw Error(ErrorKind::unknown_name, place, fmt::format("there is no sensor '{}'", name),
+                "name a sensor of the scene");
+  }
+  const ChannelSettings& channel = found->channel;
+  const double deviation = channel.standard_deviation();
+  if (!(deviation > 0.0)) {
+    throw Error(ErrorKind::out_of_range, place,
+                fmt::format("'{}' has no noise, and an estimator weighs sensors by it", name),
+                "give the sensor noise or a quantum: how exact it is");
+  }
+  EstimatorSensor sensor;
+  sensor.index = static_cast<int>(found - data.sensors.begin());
+  const auto same = std::ranges::find(robot.effectors(), name, &EffectorModel::name);
+  if (same != robot.effectors().end()) {
+    sensor.effector = static_cast<int>(same - robot.effectors().begin());
+  }
+  sensor.deviation = deviation;
+  sensor.delay = channel.delay;
+  sensor.period = channel.rate > 0.0 ? 1.0 / channel.rate : data.step.time_step;
+  sensor.size = found->source->size();
+  return sensor;
+}
+
+}  // namespace
+
+int add_estimator(ModelData& data, const EstimatorSettings& settings) {
+  check_new_name(data.estimators, &EstimatorModel::name, "estimators", settings.name,
+                 settings.place);
+  EstimatorModel estimator{settings.name, settings.robot, {}, settings.unknowns, settings.loads, 0};
+  for (std::size_t k = 0; k < settings.sensors.size(); ++k) {
+    const Location& place = settings.sensor_places[k];
+    const EstimatorSensor sensor = sensor_of(data, settings.sensors[k], place, *settings.robot);
+    // Delivered at the first step at least that much later.
+    const double steps = std::ceil(sensor.delay / data.step.time_step - 1e-6);
+    if (steps > kMaxLags) {
+      throw Error(ErrorKind::out_of_range, place,
+                  fmt::format("'{}' is {:g} steps late, and an estimator remembers {}",
+                              settings.sensors[k], steps, kMaxLags),
+                  "give a shorter delay, or a longer time_step");
+    }
+    estimator.lags = std::max(estimator.lags, static_cast<int>(steps));
+    estimator.sensors.push_back(sensor);
+  }
+  data.estimators.push_back(std::move(estimator));
+  return static_cast<int>(data.estimators.size()) - 1;
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,57 @@
+#include "sinew/sim/estimators.hpp"
+
+#include "sinew/core/named_hash.hpp"
+#include "sinew/sim/estimator_model.hpp"
+#include "sinew/sim/model.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// A whole number that a double holds exactly.
+double signature_of(const std::vector<EstimatorModel>& estimators) {
+  ValueHash hash;
+  for (const EstimatorModel& one : estimators) {
+    hash.add(one.name, one.lags, one.robot->fingerprint(), one.component_names());
+    for (const EstimatorSensor& sensor : one.sensors) hash.add(sensor.index, sensor.size);
+  }
+  return static_cast<double>(hash.value() >> 12);
+}
+
+}  // namespace
+
+Estimators::Estimators(const Model& model, int threads)
+    : signature_(signature_of(model.estimators())) {
+  for (const EstimatorModel& one : model.estimators()) all_.emplace_back(one, model, threads);
+}
+
+void Estimators::begin(const Run& run) {
+  for (Estimator& one : all_) one.begin(run);
+}
+
+void Estimators::advance(const Run& run) {
+  for (Estimator& one : all_) one.advance(run);
+}
+
+void Estimators::settle(const Run& run) {
+  for (Estimator& one : all_) one.settle(run);
+}
+
+void Estimators::save(std::vector<double>& memory) const {
+  memory.clear();
+  if (all_.empty()) return;
+  memory.push_back(signature_);
+  for (const Estimator& one : all_) one.save(memory);
+}
+
+bool Estimators::load(std::span<const double> memory) {
+  if (all_.empty()) return true;
+  if (memory.empty() || memory.front() != signature_) return false;
+  memory = memory.subspan(1);
+  for (Estimator& one : all_) {
+    if (!one.load(memory)) return false;
+  }
+  return memory.empty();
+}
+
+}  // namespace sinew::sim
