@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """The published multigait robot crawls: a quadruped with five air chambers in silicone on a stiffer bottom layer.
 
-    PYTHONPATH=build/release/python /usr/bin/python3 examples/crawl/multigait.py ../shared/data/multigait [--out FOLDER] [--friction MU ...]
+    PYTHONPATH=build/release/python /usr/bin/python3 examples/crawl/multigait.py MESHES [--out FOLDER] [--friction MU ...]
 
-The folder given has multigait.vtk and cavity_*.stl (mm), which are not part of Sinew; docs/locomotion.md says where they
+The folder MESHES has multigait.vtk and cavity_*.stl (mm), which are not part of Sinew; docs/locomotion.md says where they
 come from. The chambers of the rear legs, the centre and the front legs fill one after the other and empty in the same
 order. FOLDER gets multigait.png and, per coefficient of friction, a CSV of the motion. A cycle takes some minutes of one core.
 """
