@@ -74,6 +74,8 @@ def _panel(heading: str) -> tuple[str, str] | None:
         return None
     if last == "error":
         return "Error", name
+    if last in ("x", "y", "z") and unit == "N":
+        return None if of.endswith(".std") else ("Estimates (N)", name)
     if last in ("x", "y", "z", "rx", "ry", "rz") or last.startswith("target_"):
         return f"Effectors ({unit})", name
     if last in ("force_x", "force_y", "force_z", "normal_force", "friction_force"):
@@ -111,10 +113,11 @@ def _sensor(heading: str) -> tuple[str, str] | None:
 
 
 def run(folder, out) -> pathlib.Path:
-    """Plots efforts, motions, effectors, contacts, probes, sensors, errors and energies of a recorded run over time.
+    """Plots efforts, motions, effectors, contacts, probes, sensors, estimates, errors and energies of a recorded run over time.
 
     Thin dashed lines show the commands of actuators and the true values of sensors, in the same colour, and the
-    targets of effectors, in grey. A line probe is shown by its length.
+    targets of effectors, in grey. A line probe is shown by its length. Bands about estimates are one standard deviation wide
+    to each side.
 
     Parameters
     ----------
@@ -140,6 +143,7 @@ def run(folder, out) -> pathlib.Path:
     for heading, values in sensors.items():
         if (panel := _sensor(heading)) is not None:
             panels.setdefault(panel[0], []).append((panel[1], _split(heading)[1], values))
+    numbers = {_split(heading)[0]: values for heading, values in columns.items()}
     count = max(1, len(panels))
     figure, axes = plt.subplots(count, 1, figsize=(9, 2.3 * count + 0.3), sharex=True, squeeze=False)
     for axis, (group, series) in zip(axes[:, 0], panels.items()):
@@ -153,6 +157,10 @@ def run(folder, out) -> pathlib.Path:
             axis.plot(time, [scale * v for v in values], "--" if asked else DASHES[lap % len(DASHES)], lw=1.0 if asked else 1.5,
                       color=colour,
                       label=None if target or (asked and owner in names) else name.replace("_", " "))
+            of, _, component = name.rpartition(".")
+            if (spread := numbers.get(f"{of}.std.{component}")) is not None:
+                axis.fill_between(time, *([scale * (v + side * s) for v, s in zip(values, spread)] for side in (-1, 1)), color=colour,
+                                  alpha=0.15, lw=0)
             axis.set_ylabel(f"{group.split(' (')[0]} ({shown})" if shown else group)
         labels = axis.get_legend_handles_labels()[1]
         axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02), ncol=1 + (len(labels) - 1) // LEGEND_ROWS)

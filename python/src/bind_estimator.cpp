@@ -45,7 +45,7 @@ py::dict forces(const Estimator& self) {
   return all;
 }
 
-py::list to_list(const std::vector<std::string>& texts) {
+py::list list_of(const std::vector<std::string>& texts) {
   py::list list;
   for (const std::string& text : texts) list.append(text);
   return list;
@@ -62,7 +62,7 @@ void bind_estimator(py::module_& module) {
       .def_property_readonly("sensors", &sensor_names, "list of str: the sensors that it uses.")
       .def_property_readonly(
           "components",
-          [](const Estimator& self) { return to_list(model(self).component_names()); },
+          [](const Estimator& self) { return list_of(model(self).component_names()); },
           "list of str, n = 3 for each unknown force: 'hand.x', 'hand.y', 'hand.z', ...")
       .def_property_readonly("forces", &forces,
                              "dict of (3,) ndarray: the estimate of each unknown force (N), in "
@@ -85,13 +85,13 @@ void bind_estimator(py::module_& module) {
                              "samples lower the deviation to 1/sqrt(1 + s^2) of the prior's. Zeros "
                              "before the first step.")
       .def_property_readonly("unobservable", of_estimator([](const sim::Estimator& one) {
-                               return to_list(one.unobservable());
+                               return list_of(one.unobservable());
                              }),
                              "list of str: directions with a singular value below 1, such as "
                              "'0.98 hand.z - 0.2 hand.x (singular value 0.03)'. The prior decides "
                              "the estimate there.")
       .def_property_readonly(
-          "lost", of_estimator([](const sim::Estimator& one) { return to_list(one.lost()); }),
+          "lost", of_estimator([](const sim::Estimator& one) { return list_of(one.lost()); }),
           "list of str: sensors without a sample for five periods, or older than their timeout.")
       .def_property_readonly("dropped",
                              of_estimator([](const sim::Estimator& one) { return one.dropped(); }),

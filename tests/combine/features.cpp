@@ -169,6 +169,7 @@ std::vector<Feature> list_features() {
       {"kinetic_friction", switched},
       {"force_task", {"none", "force", "limits", "reserve"}},
       {"feedback", switched},
+      {"estimator", switched},
   };
 }
 

@@ -125,10 +125,12 @@ class Drafter {
     add_effector();
     add_probe();
     add_sensor();
+    add_estimator();
     add_controller();
     SceneDraft draft{settings_, {}};
-    for (const char* section : {"bodies", "actuators", "loads", "masses", "membranes", "effectors",
-                                "probes", "sensors", "contacts", "joints", "controllers"}) {
+    for (const char* section :
+         {"bodies", "actuators", "loads", "masses", "membranes", "effectors", "probes", "sensors",
+          "estimators", "contacts", "joints", "controllers"}) {
       if (!sections_[section].empty()) draft.sections.emplace_back(section, sections_[section]);
     }
     return draft;
@@ -713,6 +715,18 @@ class Drafter {
     }
     add("sensors", "sense",
         fmt::format("{{type: {}, {}, delay: 15 ms, dropout: 20 %}}", kind, what));
+  }
+
+  // Of a force that is or is not there.
+  void add_estimator() {
+    if (!has("estimator")) return;
+    const Body& on = bodies_.front();
+    add("sensors", "seen",
+        fmt::format("{{type: marker, {}, noise: 0.1 mm, delay: 5 ms}}", sensed("marker", on)));
+    add("estimators", "guess",
+        fmt::format("{{type: filter, sensors: [<seen>], unknowns: {{hand: {{force: {{body: <{}>, "
+                    "point: {}, outside: nearest}}, prior: 0.1 N}}}}}}",
+                    on.id, vector_text(on.shape.at(0.7, 0.2, 0.0))));
   }
 
   void add_controller() {

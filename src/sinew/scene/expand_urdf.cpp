@@ -106,6 +106,9 @@ void for_each_body_name(SceneDescription& scene, Rename&& rename) {
     rename(sensor.patch_body, sensor.place);
     for (std::string& body : sensor.electrode_bodies) rename(body, sensor.place);
   }
+  for (EstimatorDescription& estimator : scene.estimators) {
+    for (UnknownForceDescription& unknown : estimator.unknowns) rename(unknown.body, unknown.place);
+  }
   for (ContactDescription& contact : scene.contacts) {
     rename(contact.body, contact.place);
     rename(contact.other, contact.between_place);

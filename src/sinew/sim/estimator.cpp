@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>

@@ -46,8 +46,7 @@ struct EstimatorModel {
   std::vector<std::string> component_names() const;
 };
 
-/// What ModelBuilder::add_estimator() is told. Sensors have no numbers of samples yet: these follow
-/// from the names.
+/// What ModelBuilder::add_estimator() is told: sensors by name.
 struct EstimatorSettings {
   std::string name;
   Location place;
