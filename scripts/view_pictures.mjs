@@ -15,7 +15,7 @@ const circle = join(root, 'examples/trunk/circle.yaml');
 const EXAMPLES = [['trunk/circle', 320], ['trunk/trunk', 250], ['arm/square', 420], ['beam/swing', 60], ['arm/conical', 25],
                   ['finger/module', 190], ['ring/sma', 300], ['roll/roll', 60], ['arm/curl', 540], ['arm/underwater', 400],
                   ['contact/incline', 120], ['contact/lift', 300], ['contact/soft_lift', 300], ['contact/squeeze', 500],
-                  ['finger/sensors', 150], ['finger/hold', 80], ['finger/ribbed', 50], ['fluidic_arm/arm', 500, false], ['fluidic_arm/brace', 0, false], ['joints/two_segments', 120],
+                  ['finger/sensors', 150], ['finger/hold', 80], ['finger/push', 150], ['finger/ribbed', 50], ['fluidic_arm/arm', 500, false], ['fluidic_arm/brace', 0, false], ['joints/two_segments', 120],
                   ['rigid/bounce', 60, false], ['rigid/hand', 100], ['rigid/slider_crank', 120, false],
                   ['rigid/urdf_arm', 300, false]];
 const words = process.argv.slice(2);

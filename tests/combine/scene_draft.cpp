@@ -717,9 +717,9 @@ class Drafter {
         fmt::format("{{type: {}, {}, delay: 15 ms, dropout: 20 %}}", kind, what));
   }
 
-  // Of a force that is or is not there.
+  // Of a force that is or is not there. Its own robot is at rest, which a link that swings is not.
   void add_estimator() {
-    if (!has("estimator")) return;
+    if (!has("estimator") || (has("link") && of("link") != "weld")) return;
     const Body& on = bodies_.front();
     add("sensors", "seen",
         fmt::format("{{type: marker, {}, noise: 0.1 mm, delay: 5 ms}}", sensed("marker", on)));

@@ -411,7 +411,7 @@ bool ContactRows::gap_closed(std::span<const double> effort) const {
   return false;
 }
 
-bool ContactRows::stops_points(std::span<const double> effort, double time_step, bool slip) const {
+bool ContactRows::stops_points(std::span<const double> effort, double time_step) const {
   const double still = std::max(kStill * fastest_node(), kNoMotion * model_.size() / time_step);
   for (const constraint::Contact* contact : planes_.contacts()) {
     for (std::size_t k = 0; k < contact->size(); ++k) {
@@ -419,8 +419,7 @@ bool ContactRows::stops_points(std::span<const double> effort, double time_step,
       if (!(force[0] > 0.0)) continue;
       const Vector3 velocity =
           contact->frame(k, rows_).transpose() * planes_.velocity_beside(*contact, k);
-      const bool sticks =
-          slip && contact->friction().sticking > 0.0 && !contact->friction().slides(force);
+      const bool sticks = contact->friction().sticking > 0.0 && !contact->friction().slides(force);
       if (std::abs(velocity[0]) > still || (sticks && velocity.tail<2>().norm() > still)) {
         return true;
       }

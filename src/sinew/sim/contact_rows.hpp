@@ -93,10 +93,10 @@ class ContactRows {
 
   /// Whether a point has a force that had none when the step began. @param effort (rows,) N.
   bool gap_closed(std::span<const double> effort) const;
-  /// Whether the step holds a point that moved when it began: an impact along the normal, or, where
-  /// `slip` counts as well, one that slid and sticks. Before bodies' velocities follow.
-  /// @param effort (rows,) N. @param time_step s.
-  bool stops_points(std::span<const double> effort, double time_step, bool slip) const;
+  /// Whether the step holds a point that moved when it began: an impact along the normal, or one
+  /// that slid and sticks. Before bodies' velocities follow. @param effort (rows,) N.
+  /// @param time_step s.
+  bool stops_points(std::span<const double> effort, double time_step) const;
   /// Whether a point with a kinetic coefficient has friction at its static limit: its force jumps
   /// in the next step. @param effort (rows,) N.
   bool breaks_loose(std::span<const double> effort) const;

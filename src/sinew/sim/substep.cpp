@@ -48,17 +48,14 @@ bool Substep::reaches_back() const {
 bool Substep::stops_points(double time_step) const {
   const bool alpha = run_.model->step().integrator == mechanics::Integrator::generalized_alpha;
   return run_.world.turns_back(time_step) ||
-         run_.world.contacts().stops_points(run_.effort, time_step, alpha);
+         (alpha && run_.world.contacts().stops_points(run_.effort, time_step));
 }
 
-// Formulas that reach back: generalized-alpha to the acceleration of the step before, BDF2 to its
-// motion. Where a point is stopped there is an impulse instead. By generalized-alpha the point
-// would rebound with twice the energy; by BDF2, v = (3 d - d_before)/(2 h), with half its velocity,
-// which several contacts with friction turn into energy as restitution does (Kane's paradox). Such
-// a step is made again by backward Euler, v = d/h, and so is the next one, the first to go on from.
-// So is one in which a point with kinetic friction comes to rest: its velocity would be on the way
-// back before static friction can hold it. A point that ends its slide by Coulomb friction has no
-// jump of velocity: BDF2 keeps its order there.
+// Generalized-alpha carries on from the acceleration of the step before. Where a point is stopped
+// there is none, but an impulse, and the point would rebound with twice the energy. Such a step is
+// made again by backward Euler, v = d/h, and so is the next one, whose acceleration is the first to
+// go on from. So is a step of any formula that reaches back, in which a point with kinetic friction
+// comes to rest: its velocity would be on the way back before static friction can hold it.
 void Substep::solve_afresh(double time_step, bool divisible) {
   run_.go_back();
   run_.last_step = 0.0;
