@@ -522,6 +522,7 @@ class Drafter {
   // A box on its way along an axis; in statics it stands still, or goes where bases go, too.
   void add_stone(const std::array<double, 3>& centre, std::size_t along, const char* axis) {
     std::string moves = "fixed: true";
+    flies_ |= dynamic();
     if (dynamic()) {
       moves = fmt::format("mass: 20 g, velocity: {{linear: {} m/s, angular: 3 1 2 rad/s}}", axis);
     } else if (has("base")) {
@@ -539,6 +540,7 @@ class Drafter {
   void add_pillow(const std::array<double, 3>& centre, std::size_t along, const char* axis) {
     const std::string moves = dynamic() ? fmt::format("initial_velocity: {{linear: {} m/s}}", axis)
                                         : fmt::format("fixed: [{{set: {}_min}}]", "xyz"[along]);
+    flies_ |= dynamic();
     std::array<double, 3> corner = centre;
     for (double& x : corner) x -= 15.0;
     add("bodies", "pillow",
@@ -717,9 +719,10 @@ class Drafter {
         fmt::format("{{type: {}, {}, delay: 15 ms, dropout: 20 %}}", kind, what));
   }
 
-  // Of a force that is or is not there. Its own robot is at rest, which a link that swings is not.
+  // Of a force that is or is not there. Its own robot is at rest, unlike a body that flies or
+  // swings.
   void add_estimator() {
-    if (!has("estimator") || (has("link") && of("link") != "weld")) return;
+    if (!has("estimator") || flies_ || (has("link") && of("link") != "weld")) return;
     const Body& on = bodies_.front();
     add("sensors", "seen",
         fmt::format("{{type: marker, {}, noise: 0.1 mm, delay: 5 ms}}", sensed("marker", on)));
@@ -776,6 +779,7 @@ class Drafter {
   std::vector<Steerable> steerable_;
   std::array<double, 3> tip_{};
   bool orientation_ = false;
+  bool flies_ = false;  // a body that nothing holds
 };
 
 // Other names that sort the other way round.

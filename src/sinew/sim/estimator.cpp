@@ -110,7 +110,12 @@ void Estimator::begin(const Run& run) {
   state.steps = run.steps;
   robot_->restore(state);
   filter_.restart();
-  for (Instant& instant : instants_) instant.known = false;
+  for (Instant& instant : instants_) {
+    instant.known = false;
+    instant.force.setZero();
+    instant.readings.setZero();
+    instant.sensitivity.setZero();
+  }
   std::ranges::fill(used_, kNever);
   std::ranges::fill(silent_, 0.0);
   dropped_ = 0.0;
