@@ -637,7 +637,11 @@ class Drafter {
                     turns ? "orientation" : "marker", on.id, place));
   }
 
-  bool has_loop() const { return has("controller") && has("feedback") && !steerable_.empty(); }
+  // Its response has no inertia: a link that swings freely moves too far for it, or without end.
+  bool has_loop() const {
+    if (!has("controller") || !has("feedback") || steerable_.empty()) return false;
+    return steerable_.front().body != "link" || of("link") == "weld";
+  }
 
   void add_probe() {
     if (!has("probe")) return;

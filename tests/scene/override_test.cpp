@@ -146,7 +146,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadOverride{"index", "effectors.tip.point.0=1", K::unknown_key, "nothing under",
                                 "3 numbers"},
                     BadOverride{"yaml", "bodies.trunk.fixed={box: [1", K::syntax_error,
-                                "where a key should stand", "brackets"}),
+                                "in place of a key", "brackets"}),
     [](const auto& test) { return test.param.name; });
 
 }  // namespace

@@ -11,7 +11,8 @@
 namespace sinew::sim {
 
 /// Calls look(state), which may change the simulation's state and the world's problem, and puts
-/// both back, also where it throws. @param look takes the State before. @return what it returns.
+/// both back, also where it throws. @param simulation that is looked at. @param look takes the
+/// State before. @return what it returns.
 template <class Look>
 auto query(Simulation& simulation, Look&& look) {
   const State state = simulation.state();
