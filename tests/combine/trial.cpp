@@ -341,10 +341,11 @@ Outcome try_scene(const Selection& selection, std::uint64_t seed) {
 
 std::string try_changed_number(const Selection& selection, std::uint64_t seed) {
   const std::string text = write_scene(draft_scene(selection, seed));
-  // Group 4 is a number of the robot; what stands before it in the pattern are inputs and settings.
+  // Group 4 is a number of the robot; what stands before it in the pattern are inputs, settings,
+  // and an estimator with its sensor, which do not act on it.
   static const std::regex number(
       "(command|factor|pressure|target|rotation): (\\{[^}]*\\}[^}]*\\}|[^,}]*)|"
-      "solver: [^\\n]*|sinew: 1|time_step: [^\\n]*|fixed: [^\\n,]*|"
+      "(?:seen|guess|solver): [^\\n]*|sinew: 1|time_step: [^\\n]*|fixed: [^\\n,]*|"
       "([ \\[])([0-9]+\\.?[0-9]*)(?=[ ,}\\]])");
   std::vector<std::smatch> numbers;
   for (auto at = std::sregex_iterator(text.begin(), text.end(), number);

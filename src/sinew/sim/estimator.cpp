@@ -278,7 +278,7 @@ void Estimator::observe() {
 
 void Estimator::advance(const Run& run) {
   filter_.predict(plant_.step().time_step);
-  std::ranges::rotate(instants_, instants_.end() - 1);
+  std::rotate(instants_.begin(), instants_.end() - 1, instants_.end());  // as a range: no clang 14
   take_up(run, false);
   correct(run);
   note_silence(run);

@@ -8,12 +8,12 @@ namespace sinew::sim {
 
 namespace {
 
-// Of what decides how many numbers there are, and which sensors they are of; names do not. A whole
-// number that a double holds exactly.
+// Of the robots, sensors and unknowns that the numbers are of. A whole number that a double holds
+// exactly.
 double signature_of(const std::vector<EstimatorModel>& estimators) {
   ValueHash hash;
   for (const EstimatorModel& one : estimators) {
-    hash.add(one.lags, one.unknowns.size());
+    hash.add(one.lags, one.robot->fingerprint(), one.unknowns.size());
     for (const EstimatorSensor& sensor : one.sensors) hash.add(sensor.index, sensor.size);
   }
   return static_cast<double>(hash.value() >> 12);
