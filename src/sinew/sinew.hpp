@@ -47,6 +47,7 @@
 #include "sinew/sim/contact_settings.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/effector_settings.hpp"
+#include "sinew/sim/estimator.hpp"
 #include "sinew/sim/force_settings.hpp"
 #include "sinew/sim/inputs.hpp"
 #include "sinew/sim/joint_settings.hpp"
