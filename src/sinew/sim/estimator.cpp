@@ -90,12 +90,7 @@ Estimator::Estimator(const EstimatorModel& model, const Model& plant, int thread
   for (const UnknownForce& unknown : model.unknowns) {
     for (int axis = 0; axis < 3; ++axis) controlled_.push_back(unknown.first_actuator + axis);
   }
-  const Eigen::Index count = readings_of(model), size = filter_.size();
-  instants_.assign(static_cast<std::size_t>(model.lags) + 1,
-                   {false, VectorX::Zero(size), VectorX::Zero(count), MatrixX::Zero(count, size)});
-  used_.assign(model.sensors.size(), kNever);
-  silent_.assign(model.sensors.size(), 0.0);
-  observe();
+  forget();
 }
 
 Estimator::~Estimator() = default;
@@ -103,21 +98,27 @@ Estimator::Estimator(Estimator&&) noexcept = default;
 
 VectorX Estimator::deviation() const { return filter_.covariance().diagonal().cwiseSqrt(); }
 
-// Its time is the run's.
 void Estimator::begin(const Run& run) {
   robot_->reset();
+  keep_time(run);
+  forget();
+}
+
+// The time of its robot is the run's.
+void Estimator::keep_time(const Run& run) {
+  if (robot_->steps() == run.steps) return;
   State state = robot_->state();
   state.steps = run.steps;
   robot_->restore(state);
+}
+
+void Estimator::forget() {
   filter_.restart();
-  for (Instant& instant : instants_) {
-    instant.known = false;
-    instant.force.setZero();
-    instant.readings.setZero();
-    instant.sensitivity.setZero();
-  }
-  std::ranges::fill(used_, kNever);
-  std::ranges::fill(silent_, 0.0);
+  const Eigen::Index count = readings_of(model_), size = filter_.size();
+  instants_.assign(static_cast<std::size_t>(model_.lags) + 1,
+                   {false, VectorX::Zero(size), VectorX::Zero(count), MatrixX::Zero(count, size)});
+  used_.assign(model_.sensors.size(), kNever);
+  silent_.assign(model_.sensors.size(), 0.0);
   dropped_ = 0.0;
   started_ = stopped_ = false;
   reason_.clear();
@@ -169,10 +170,7 @@ void Estimator::take_up(const Run& run, bool settles) {
   }
   now.known = !stopped_;
   if (now.known) remember();
-  if (robot_->steps() == run.steps) return;
-  State state = robot_->state();
-  state.steps = run.steps;
-  robot_->restore(state);
+  keep_time(run);
 }
 
 void Estimator::remember() {

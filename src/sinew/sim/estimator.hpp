@@ -99,6 +99,8 @@ class Estimator {
     MatrixX sensitivity;  // (m, n)
   };
 
+  void forget();
+  void keep_time(const Run& run);
   Inputs inputs_of(const Run& run) const;
   void take_up(const Run& run, bool settles);
   void remember();
