@@ -87,9 +87,9 @@ def exit_code(command: Callable[[], int], interrupted: str = "") -> int:
     int
         What `command` returns; 1 for RunError, 2 for any other Error, 130 after SIGINT and 143 after SIGTERM.
     """
+    before = {number: signal.signal(number, _interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
+    show = warnings.showwarning
     warnings.showwarning = lambda message, *_, **__: print(f"sinew: warning: {message}", file=sys.stderr)
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, _interrupt)
     try:
         return command()
     except Error as error:
@@ -99,6 +99,10 @@ def exit_code(command: Callable[[], int], interrupted: str = "") -> int:
         if interrupted:
             print(f"sinew: {interrupted}", file=sys.stderr)
         return SIGNALLED + (stop.args[0] if stop.args else signal.SIGINT)
+    finally:  # a caller within Python keeps its own handlers
+        warnings.showwarning = show
+        for number, handler in before.items():
+            signal.signal(number, signal.SIG_DFL if handler is None else handler)
 
 
 def _interrupt(number: int, _frame: object) -> None:

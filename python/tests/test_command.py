@@ -1,5 +1,6 @@
 """Exit codes and quantities of the commands that run in Python."""
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -29,14 +30,23 @@ def raising(error):
     return work
 
 
-@pytest.fixture(autouse=True)
-def restore_handlers():
-    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
-    show = warnings.showwarning
-    yield
-    warnings.showwarning = show
-    for number, handler in handlers.items():
-        signal.signal(number, handler)
+def test_who_calls_a_command_keeps_its_handlers():
+    def state():
+        return [signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM), warnings.showwarning]
+
+    before = state()
+    seen = []
+    for error in (None, Error("unknown-name", "--measure", "no 'tp'"), KeyboardInterrupt(), ValueError()):
+        def work(error=error):
+            seen.append(state())
+            if error is not None:
+                raise error
+            return 0
+
+        with contextlib.suppress(ValueError):  # not an error of ours: the traceback is the caller's
+            command.exit_code(work)
+        assert state() == before
+    assert all(one[:2] != before[:2] for one in seen)
 
 
 def test_errors_are_told_on_stderr_with_their_exit_code(capsys):

@@ -391,7 +391,15 @@ def test_an_interrupt_keeps_the_rows_and_other_samples_follow(cluster, tmp_path)
     assert list(table.index) == list(range(200))
 
 
-def test_an_interrupt_is_not_lost_where_python_ignores_exceptions():
+@pytest.fixture
+def interruptible():
+    """Python's own handler of SIGINT, also where a shell in the background had pytest ignore it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+def test_an_interrupt_is_not_lost_where_python_ignores_exceptions(interruptible):
     class Future:
         def __del__(self):  # Dask's futures have a destructor, too
             signal.raise_signal(signal.SIGINT)
