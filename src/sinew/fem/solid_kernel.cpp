@@ -132,15 +132,15 @@ SINEW_INLINE Lanes linear_pressure(const SolidGroup& group, const Batch<N, Q>& b
   return shared_dilatation(group, batch, number, ratio, nullptr, bulk).pressure;
 }
 
-template <Tangent kTangent>
-constexpr material::Projection projection() {
+material::Projection projection_of(Tangent tangent) {
   using enum material::Projection;
-  if (kTangent == Tangent::rates) return rates;
-  return kTangent == Tangent::projected ? positive : none;
+  if (tangent == Tangent::rates) return rates;
+  return tangent == Tangent::exact ? none : positive;
 }
 
-template <int N, int Q, Tangent kTangent>
-void evaluate(const SolidGroup& group, int begin, int end, const double* points,
+// Compiled with and without blocks, not for each tangent: the compiler needs long for each.
+template <int N, int Q, bool kBlocks>
+void evaluate(const SolidGroup& group, int begin, int end, const double* points, Tangent tangent,
               const SolidOutput& output, LaneMinimum& minimum) {
   const BulkModuli bulk(group);
   const double* patch_ratio = patch_ratios_of(group, output);
@@ -158,8 +158,7 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
     }
     const Dilatation shared = shared_dilatation(group, batch, b, ratio, patch_ratio, bulk.shared);
     Lanes lag = lanes(0.0);  // of the tangent's pressure behind the force's
-    if (kTangent != Tangent::none && bulk.dominates && output.start != nullptr &&
-        patch_ratio == nullptr) {
+    if (kBlocks && bulk.dominates && output.start != nullptr && patch_ratio == nullptr) {
       lag = linear_pressure(group, batch, b, f, output, bulk.shared) - shared.pressure;
     }
     Sums<N> sums;
@@ -196,14 +195,14 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
               weight * (cof[q][r][0] * g[a][0] + cof[q][r][1] * g[a][1] + cof[q][r][2] * g[a][2]);
         }
       }
-      if constexpr (kTangent != Tangent::none) {
+      if constexpr (kBlocks) {
         for (int i = 0; i < 3; ++i) {
           response.first[i] += lag * ratio[q];
           for (int j = 0; j <= i; ++j) response.second[i][j] += lag * ratio[q];
         }
         material::Lanes9x9 a9;
-        material::tangent(f[q], at, response, projection<kTangent>(), a9);
-        if (kTangent == Tangent::exact && past.carried != nullptr) {
+        material::tangent(f[q], at, response, projection_of(tangent), a9);
+        if (tangent == Tangent::exact && past.carried != nullptr) {
           Overstress(past.carried + 6 * q, split, f[q], cof[q], ratio[q]).add_tangent(a9);
         }
         sums.add_tangent(a9, g, weight);
@@ -211,7 +210,7 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
     }
     sums.store_vectors(sums.force, output.forces + 4 * (group.first_force + N * kLanes * b));
     output.energy[b] = sum(energy);
-    if constexpr (kTangent != Tangent::none) {
+    if constexpr (kBlocks) {
       if constexpr (N == 4) {
         if (patch_ratio != nullptr) {
           sums.store_vectors(sums.spread, spread_records(group, output, b));
@@ -237,7 +236,7 @@ bool is_neo_hookean(const material::Hyperelastic& law) {
 ///              + (2/9 m I1 + p J + kappa' J^2) h_a h_b^T - s h_b h_a^T },
 /// the derivative of P by dJ = J H : dF and dH = -H dF^T H; without patches Jm = J, kappa' = kappa
 /// and the tangent's p may be that of SolidOutput::start.
-template <Tangent kTangent>
+template <bool kBlocks>
 void evaluate_neo_hookean(const SolidGroup& group, int begin, int end, const double* points,
                           const SolidOutput& output, LaneMinimum& minimum) {
   const double c = group.law.powers.front().coefficient;
@@ -275,7 +274,7 @@ void evaluate_neo_hookean(const SolidGroup& group, int begin, int end, const dou
       sums.force[0][r] = -(sums.force[1][r] + sums.force[2][r] + sums.force[3][r]);
     }
     sums.store_vectors(sums.force, output.forces + 4 * (group.first_force + 4 * kLanes * b));
-    if constexpr (kTangent == Tangent::exact) {
+    if constexpr (kBlocks) {
       if (patch_ratio != nullptr) {
         for (int r = 0; r < 3; ++r) {
           sums.spread[0][r] = lanes(0.0);
@@ -321,16 +320,10 @@ void evaluate_neo_hookean(const SolidGroup& group, int begin, int end, const dou
 template <int N, int Q>
 void evaluate_kind(const SolidGroup& group, int begin, int end, const double* points,
                    Tangent tangent, const SolidOutput& output, LaneMinimum& minimum) {
-  switch (tangent) {
-    case Tangent::none:
-      return evaluate<N, Q, Tangent::none>(group, begin, end, points, output, minimum);
-    case Tangent::corotated:
-    case Tangent::projected:
-      return evaluate<N, Q, Tangent::projected>(group, begin, end, points, output, minimum);
-    case Tangent::rates:
-      return evaluate<N, Q, Tangent::rates>(group, begin, end, points, output, minimum);
-    case Tangent::exact:
-      return evaluate<N, Q, Tangent::exact>(group, begin, end, points, output, minimum);
+  if (tangent == Tangent::none) {
+    evaluate<N, Q, false>(group, begin, end, points, tangent, output, minimum);
+  } else {
+    evaluate<N, Q, true>(group, begin, end, points, tangent, output, minimum);
   }
 }
 
@@ -342,9 +335,9 @@ SmallestRatio evaluate_solids(const SolidGroup& group, int begin, int end, const
   const bool elastic = output.history.carried == nullptr && output.history.peak == nullptr;
   const bool fast = group.nodes == 4 && elastic && is_neo_hookean(group.law);
   if (fast && tangent == Tangent::exact) {
-    evaluate_neo_hookean<Tangent::exact>(group, begin, end, points, output, minimum);
+    evaluate_neo_hookean<true>(group, begin, end, points, output, minimum);
   } else if (fast && tangent == Tangent::none) {
-    evaluate_neo_hookean<Tangent::none>(group, begin, end, points, output, minimum);
+    evaluate_neo_hookean<false>(group, begin, end, points, output, minimum);
   } else if (group.nodes == 4) {
     evaluate_kind<4, 1>(group, begin, end, points, tangent, output, minimum);
   } else if (group.nodes == 10) {
