@@ -169,7 +169,7 @@ class Filter:
         ----------
         sensors : iterable of Sensor
             Of a simulation or a robot. The quantities that they measure (Measured.by()) must be among the sensors of the model.
-            Readings of commands are skipped: they are inputs of the model.
+            Leave out sensors of commands: these are inputs of the model.
 
         Raises
         ------
