@@ -195,7 +195,7 @@ class Loop:
         """
         item = f"targets['{name}']"
         if name not in self._robot.effectors:
-            raise Error("unknown-name", item, f"this loop does not steer '{name}'",
+            raise Error("unknown-name", item, f"this loop does not control '{name}'",
                         f"it steers {', '.join(self._robot.effectors)}")
         if not isinstance(target, _core.Target):
             target = _vector(target, item, self._robot.effectors[name].unit)
@@ -350,7 +350,7 @@ class Loop:
                             "give a dict such as {'tip': plant.sensor('camera')}, or a list of sensors") from None
         for name in given:
             if name not in self._robot.effectors:
-                raise Error("unknown-name", place, f"this loop does not steer '{name}'",
+                raise Error("unknown-name", place, f"this loop does not control '{name}'",
                             f"it steers {', '.join(self._robot.effectors)}")
         for name, effector in self._robot.effectors.items():
             kind = "orientation" if effector.unit == "rad" else "marker"
@@ -388,7 +388,7 @@ class Loop:
         measured = measured or {}
         for name in measured:
             if name not in self._robot.effectors:
-                raise Error("unknown-name", "step(measured)", f"this loop does not steer '{name}'",
+                raise Error("unknown-name", "step(measured)", f"this loop does not control '{name}'",
                             f"it steers {', '.join(self._robot.effectors)}")
         found: dict[str, Any] = {}
         for name, effector in self._robot.effectors.items():

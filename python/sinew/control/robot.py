@@ -78,7 +78,7 @@ class Robot:
         given = {name: command for name in kinds} if isinstance(command, str) else dict(command or {})
         for name, kind in given.items():
             if name not in kinds:
-                raise Error("unknown-name", f"{place}(command)", f"'{name}' is none of its actuators",
+                raise Error("unknown-name", f"{place}(command)", f"'{name}' is not one of its actuators",
                             f"they are {', '.join(kinds)}")
             if kind not in _COMMANDS:
                 raise Error("unknown-choice", f"{place}(command)", f"there is no command {kind!r}",

@@ -44,7 +44,7 @@ class TwinModel:
 
     def __init__(self, twin: Twin, commands: Optional[Callable[[float], Mapping[str, float]]] = None) -> None:
         if any(isinstance(u, Parameter) for u in twin.unknowns):
-            raise Error("bad-argument", "TwinModel", "a number of the scene is unknown, and a filter does not build scenes anew",
+            raise Error("bad-argument", "TwinModel", "a parameter of the scene is unknown, and a filter cannot rebuild the scene",
                         "estimate it from equilibria: solve()")
         self.twin, self.commands = twin, commands
         self.names = twin.inputs

@@ -76,7 +76,7 @@ class Measured:
         """
         place = f"Measured.by({sensor.name})"
         if not sensor.std > 0.0:
-            raise Error("out-of-range", place, "the sensor has no noise, and no estimate weighs an exact reading",
+            raise Error("out-of-range", place, "the sensor has no noise, and an exact reading cannot be weighted",
                         "give the sensor a noise or a quantum")
         name = {"marker": f"{sensor.name}.position", "orientation": f"{sensor.name}.rotation"}.get(sensor.kind, sensor.observable)
         if name == f"{sensor.name}.true":

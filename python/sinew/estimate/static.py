@@ -252,7 +252,7 @@ def solve(twin: Twin, readings: Mapping[str, Any], *, start: Optional[Sequence[f
     covariance = np.linalg.inv(information) * np.outer(problem.std, problem.std)
     seen = observability(problem.lower @ jacobian / problem.std, problem.noise, problem.std, twin.inputs, twin.asked)
     if unobservable == "refuse" and seen.unobservable:
-        raise Error("unobservable", "solve(readings)", f"the readings do not tell {'; '.join(seen.unobservable)}",
+        raise Error("unobservable", "solve(readings)", f"the readings do not determine {'; '.join(seen.unobservable)}",
                     "add a sensor, ask for less, or take unobservable='report' and the prior's word for it")
     cost = _cost(residual, v)
     evidence = (-cost - 0.5 * np.linalg.slogdet(information)[1] - np.log(np.diag(problem.lower)).sum()
@@ -294,7 +294,7 @@ def shape_std(twin: Twin, estimate: Estimate, body: str) -> np.ndarray:
     by_unknown = []
     for one in twin._inputs:
         if isinstance(one.unknown, Parameter):
-            raise Error("bad-argument", "shape_std()", f"'{one.name}' is a number of the scene", "fix it first")
+            raise Error("bad-argument", "shape_std()", f"'{one.name}' is a parameter of the scene", "fix it first")
         by_unknown.append(_field_of(twin, response, field, one))
     motions = np.array(by_unknown)  # (inputs, n, 3)
     lower = np.linalg.cholesky(estimate.covariance)
@@ -305,5 +305,5 @@ def _field_of(twin: Twin, response: Response, field: np.ndarray, one) -> np.ndar
     _, efforts = twin.column(response, one.unknown, one.component)
     moved = np.einsum("r,rij->ij", efforts, field)
     if hasattr(one.unknown, "nodes"):
-        raise Error("bad-argument", "shape_std()", "forces on nodes have no rows", "take a Force at a point")
+        raise Error("bad-argument", "shape_std()", "forces on nodes have no rows", "use a Force at a point")
     return moved

@@ -174,7 +174,7 @@ class Twin:
         if actuator.command[0] == quantity:
             known = Motion(name, sensor.std) if quantity in _MOTIONS else Effort(name, sensor.std)
             if names_of(known)[0] in [i.name for i in self._inputs]:
-                raise Error("bad-argument", f"Measured({sensor.name!r})", "it is a command and an unknown too",
+                raise Error("bad-argument", f"Measured({sensor.name!r})", "it is both a command and an unknown",
                             "leave one of them out: a measured command is an unknown by itself")
             self._inputs.append(_Input(names_of(known)[0], known, 0, sensor))
             return
@@ -410,7 +410,7 @@ class Twin:
             self._fill(response, result)
         if by_differences:
             if values is None:
-                raise Error("bad-argument", "sensitivity(values)", "this model is differentiated by differences", "give the values")
+                raise Error("bad-argument", "sensitivity(values)", "this model needs differences about a point", "give the values")
             self._differentiate(np.asarray(values, float), by_differences, result)
         return result
 

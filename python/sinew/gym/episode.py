@@ -128,7 +128,7 @@ def checked_actions(actions: Any, shape: tuple[int, ...], place: str) -> np.ndar
     try:
         given = np.asarray(actions, dtype=float)
     except (TypeError, ValueError):
-        raise Error("wrong-type", place, f"{actions!r} are no numbers", f"give an array of shape {shape}") from None
+        raise Error("wrong-type", place, f"{actions!r} are not numbers", f"give an array of shape {shape}") from None
     if given.shape != shape:
         raise Error("wrong-shape", place, f"the actions have shape {given.shape}", f"give an array of shape {shape}, the action space's")
     if np.isnan(given).any():

@@ -139,7 +139,7 @@ def expert(env: Union[Env, VectorEnv]) -> Expert:
     task = env.task
     if not isinstance(task, _CONTROLLED) and not _has_script(type(task)):
         known = ", ".join(each.name for each in _TASKS.values() if issubclass(each, _CONTROLLED) or _has_script(each))
-        raise Error("bad-argument", "expert(env)", f"there is no expert of {task.name}",
+        raise Error("bad-argument", "expert(env)", f"there is no expert for {task.name}",
                     f"give one of: {known}; or a task of your own that has scripted()")
     if task.action != task.actions[0] or (task.is_randomised and isinstance(task, _CONTROLLED)):
         without = " and without ranges of material_scale and payload" if isinstance(task, _CONTROLLED) else ""

@@ -34,7 +34,7 @@ def _task(task: Union[str, Task], options: dict[str, Any], own: tuple[str, ...])
     """A task by name, or the task itself. `own` are the options that are not passed to the task."""
     if isinstance(task, Task):
         if options:
-            raise Error("bad-argument", "make", f"{', '.join(options)} given with a task that is made", "give them to the task")
+            raise Error("bad-argument", "make", f"{', '.join(options)} given with a Task object", "pass them to its constructor")
         return task
     if task not in _TASKS:
         raise unknown("make", "task", task, list(_TASKS))

@@ -109,7 +109,7 @@ class PlainBox(PlainSpace):
         """Whether the bounds are finite: "below", "above" or "both"."""
         below, above = bool(self.bounded_below.all()), bool(self.bounded_above.all())
         if manner not in ("below", "above", "both"):
-            raise Error("unknown-name", "Box.is_bounded", f"{manner!r} is not a manner", "give below, above or both")
+            raise Error("unknown-name", "Box.is_bounded", f"{manner!r} is not valid", "give below, above or both")
         return {"below": below, "above": above, "both": below and above}[manner]
 
     def sample(self, mask: None = None) -> np.ndarray:

@@ -42,7 +42,7 @@ class Context:
         try:
             self.gl = moderngl.create_context(standalone=True, backend="egl", require=330)
         except Exception as problem:  # of many kinds, whatever the driver is
-            raise Error("tool-missing", "render", f"no graphics context could be made: {problem}",
+            raise Error("tool-missing", "render", f"no graphics context could be created: {problem}",
                         "install libegl1 and libgl1-mesa-dri, whose software renderer needs no graphics card") from None
         self.body, self.plain, self.mark, self.plane = (
             self.gl.program(vertex_shader=vertex.strip(), fragment_shader=fragment.strip())

@@ -77,7 +77,7 @@ def video(
             return video(path, run, fps, speed=speed, duration=duration, progress=progress, **options)
     if isinstance(source, Simulation):
         if duration is None:
-            raise Error("bad-argument", "video(duration)", "it is not said how long to simulate", "give duration in s")
+            raise Error("bad-argument", "video(duration)", "the duration is missing", "give duration in s")
         count = _count(duration, fps, speed)
         frames = _of_simulation(source, count, speed / fps, options)
     elif isinstance(source, Recording):

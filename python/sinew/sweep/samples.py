@@ -173,7 +173,7 @@ def _axis(key: str, spec: Any) -> Axis:
     if hasattr(spec, "tolist"):
         spec = spec.tolist()
     if not isinstance(spec, Iterable) or isinstance(spec, Mapping):
-        raise Error("bad-argument", key, f"{spec!r} says no values", 'give a list, a tuple (low, high), or text such as "1mm:5mm:9"')
+        raise Error("bad-argument", key, f"{spec!r} contains no values", 'give a list, a tuple (low, high), or text such as "1mm:5mm:9"')
     return _list_axis(key, list(spec))
 
 
@@ -201,7 +201,7 @@ def _axis_of_text(key: str, text: str) -> Axis:
     if len(ends) == 1:
         return _list_axis(key, _split(text, ","))
     if len(ends) > 3 or "" in ends:
-        raise Error("bad-argument", key, f"'{text}' says no values", "write FROM:TO:N, FROM:TO, or A,B,C")
+        raise Error("bad-argument", key, f"'{text}' contains no values", "write FROM:TO:N, FROM:TO, or A,B,C")
     (low, high), unit = _numbers(key, ends[:2])
     if len(ends) == 2:
         return Axis(key, "range", low=low, high=high, unit=unit)

@@ -97,7 +97,7 @@ def sobol_indices(values: ArrayLike, *, confidence: float = 0.95, resamples: int
         raise Error("wrong-shape", "sobol_indices(values)", f"the values have the shape {table.shape}",
                     "give (base points, inputs + 2), as saltelli_points() orders them")
     if not 0.0 < confidence < 1.0:
-        raise Error("out-of-range", "sobol_indices(confidence)", f"the confidence is {confidence:g}", "give a share such as 0.95")
+        raise Error("out-of-range", "sobol_indices(confidence)", f"the confidence is {confidence:g}", "give a fraction such as 0.95")
     table = table[np.isfinite(table).all(axis=1)]
     if len(table) < 2:
         raise Error("too-few-points", "sobol_indices(values)", f"{len(table)} base points have all their values",

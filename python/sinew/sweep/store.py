@@ -173,7 +173,7 @@ class Rows:
     Raises
     ------
     Error
-        file-not-found; malformed-file where it is none of a sweep.
+        file-not-found; malformed-file where it is not a sweep.
     """
 
     def __init__(self, path: _Path) -> None:

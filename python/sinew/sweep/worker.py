@@ -126,14 +126,14 @@ def check_measures(sim: _core.Simulation, measures: Sequence[str], static: bool)
     shapes = {}
     for name in measures:
         if static and name in LEDGER:
-            raise Error("bad-argument", "sweep(measure)", f"'{name}' counts over steps, and an equilibrium has none",
+            raise Error("bad-argument", "sweep(measure)", f"'{name}' accumulates over steps, and an equilibrium has none",
                         "run for a while, or measure 'strain_energy'")
         try:
             value = measure(sim, [name])[name]
         except Error as error:
             raise Error(error.kind, "sweep(measure)", error.message, error.remedy) from None
         if value.dtype.kind != "f":
-            raise Error("bad-argument", "sweep(measure)", f"'{name}' is a word",
+            raise Error("bad-argument", "sweep(measure)", f"'{name}' is text, not a number",
                         "measure numbers; the status of every sample is in the table anyway")
         shapes[name] = value.shape
     return shapes
