@@ -160,7 +160,7 @@ def study(
         errors of sinew.load() and Simulation.run().
     """
     if levels < 2:
-        raise Error("out-of-range", "study(levels)", f"{levels} mesh(es) cannot show convergence", "give 2 or more")
+        raise Error("out-of-range", "study(levels)", f"a single mesh shows no convergence, and levels is {levels}", "give 2 or more")
     with tempfile.TemporaryDirectory() as folder:
         refinement = _Refinement(scene, set, pathlib.Path(folder))
         found: list[Level] = []

@@ -276,7 +276,7 @@ class Engine:
         del self._flying[future]
 
     def _forgotten(self, future: Any) -> None:
-        """Whether the scheduler has lost a batch: it was replaced by another one at the same address, or is gone."""
+        """Submits a batch again that the scheduler has lost, because it is another one at the same address; ends if it is gone."""
         if self._client.status != "running":
             self._lost("the connection broke")
         self._submit(*self._flying.pop(future))
@@ -289,7 +289,7 @@ class Engine:
             for index in samples:
                 self._submit([index], apart=True)
             return
-        error = "workers died of it, each time again; give their processes more memory [process-died]"
+        error = "the sample ended its worker, also when repeated; give the processes more memory [process-died]"
         nobody = {"version": "", "instruction_set": "", "worker": ""}
         self._write([Row(index, "failed", error, float("nan"), {}) for index in samples], nobody)
 
