@@ -82,8 +82,9 @@ def tell(result: Result, done: int, count: int, every_check: bool) -> None:
     print(f"[{done}/{count}] {result.name} ({result.seconds:.1f} s): {state}", flush=True)
     for check in result.checks:
         if every_check or check.verdict in (MISSED, KNOWN):
-            print(f"    {check.verdict.replace('*', '')}: {check.quantity}: {check.ours}, reference {check.reference}, "
-                  f"error {check.error}, tolerance {check.tolerance}", flush=True)
+            against = f", error {check.error}, tolerance {check.tolerance}" if check.tolerance else ""
+            print(f"    {check.verdict.replace('*', '')}: {check.quantity}: {check.ours}, reference {check.reference}"
+                  f"{against}", flush=True)
     if result.failure:
         print("    " + result.failure.strip().replace("\n", "\n    "), flush=True)
 

@@ -74,11 +74,11 @@ def run(case):
     case.check("order of the small deflection in the segment length", order, 2.0, 0.1, source="beam")
     case.bound("deflection under its weight, 16 segments: difference from finite elements",
                abs(ours[16][0][-1] / fine[-1] - 1), 0.02, source="finite elements")
-    for count in (1, 4):
+    for count, name in ((1, "1 segment"), (4, "4 segments")):
         for weight, value, reference in zip(WEIGHTS, ours[count][0], fine):
-            case.report(f"{count} segments, {weight:g} of its weight: deflection / that of finite elements",
+            case.report(f"{name}, {weight:g} of its weight: deflection / that of finite elements",
                         value / reference, source="finite elements")
-        case.report(f"{count} segments: first frequency / that of finite elements", ours[count][1] / frequency,
+        case.report(f"{name}: first frequency / that of finite elements", ours[count][1] / frequency,
                     source="finite elements")
     figure, (left, right) = plots.axes(2)
     for k, (weight, colour) in enumerate(zip(WEIGHTS, (plots.OURS, plots.SECOND, "0.4"))):

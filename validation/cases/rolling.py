@@ -99,8 +99,7 @@ def rolls(case, axis, right):
         seen["rigid"].append(wheel.rolled_rigid() / wheel.rolled_round())
         seen["points"].append(wheel.points)
     for points, ours, rigid in zip(seen["points"], seen["stiff"], seen["rigid"]):
-        case.check(f"{points} points, 10 MPa: acceleration / a round wheel's, compared with the rigid wheel of points", ours, rigid, 0.05,
-                   source="McGeer")
+        case.check(f"{points} points, 10 MPa: acceleration / a round wheel's", ours, rigid, 0.05, source="McGeer")
     case.check(f"{points} points, 100 kPa: acceleration / a round wheel's", seen["soft"][-1], 1.0, 0.02, source="round")
     case.report("24 points, 100 kPa: acceleration / a round wheel's", seen["soft"][0], source="round")
     case.bound("largest energy gain in a backward Euler step / energy of the descent", gains["stiff"], 1e-4, source="round",

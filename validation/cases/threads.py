@@ -21,8 +21,8 @@ def run(case):
             ik.step(200)
             hashes.append(sim.state_hash)
         sim.reset()
-        case.agree(f"{threads} threads: start restored by reset", sim.state_hash == start, True,
+        case.agree(f"start restored by reset, {threads} thread{'s' * (threads > 1)}", sim.state_hash == start, True,
                    source="determinism")
     for threads, value in zip((2, 4), hashes[1:]):
-        case.agree(f"state after 200 steps, {threads} threads compared with 1", value == hashes[0], True,
+        case.agree(f"state after 200 steps, {threads} threads against one", value == hashes[0], True,
                    source="determinism")
