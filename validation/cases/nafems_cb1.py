@@ -5,7 +5,6 @@ import sinew
 
 from reference import shapes
 from suite import plots
-from suite.case import observed_order
 
 from .hertz import core_cells, in_plane
 
