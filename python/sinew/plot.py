@@ -65,7 +65,7 @@ def _split(heading: str) -> tuple[str, str]:
 
 
 def _panel(heading: str) -> tuple[str, str] | None:
-    """The panel that a column of run.csv belongs to, and its name there; None: in none."""
+    """Panel and label of a column of run.csv; None if it is not plotted."""
     name, unit = _split(heading)
     of, _, last = name.rpartition(".")
     if unit == "J":
@@ -98,12 +98,12 @@ def _owner(name: str) -> str:
 
 
 def _style(line: int) -> tuple[int, str]:
-    """How often the colours were used up before this line, and its colour."""
+    """How often the colours have been used up before this line, and its colour."""
     return line // len(COLOURS), COLOURS[line % len(COLOURS)]
 
 
 def _sensor(heading: str) -> tuple[str, str] | None:
-    """The panel that a column of sensors.csv belongs to, and its name there; None: in none."""
+    """Panel and label of a column of sensors.csv; None if it is not plotted."""
     name, unit = _split(heading)
     of, _, last = name.rpartition(".")
     quantity, _, component = last.partition("_")
@@ -272,7 +272,7 @@ def plan(data, out) -> pathlib.Path:
 
 
 def _draw_object(axis, shape, aside):
-    """A brace's object as it looks from the side on which x or y and z are seen."""
+    """Draws an object of a brace in a view of x or y against z."""
     if "plane" in shape:
         point, normal = shape["plane"]["point_m"], shape["plane"]["normal"]
         along = normal[2], -normal[aside]

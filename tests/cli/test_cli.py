@@ -797,13 +797,13 @@ def test_validation_resumes_with_the_cases_that_have_not_ended(tmp_path):
     assert validate()[0] == 1
     assert validate()[0] == 2
     count, card = validate("--resume")
-    assert count == 2 and "1 held, 0 missed" in card
+    assert count == 2 and "1 passed, 0 missed" in card
     case.write_text(case.read_text().replace("3.1416", "3.14159"))
     assert validate("--resume")[0] == 3
     shutil.copy(case, folder / "cases" / "other.py")
     one = subprocess.run([os.path.abspath(PROGRAM), "validate", "circle", "--out", str(tmp_path / "docs")], capture_output=True,
                          text=True, env={**os.environ, "SINEW_VALIDATION_DIR": str(folder)}, check=False)
-    assert "    held: pi: 3.1416, reference 3.1416, error " in one.stdout, one.stdout
+    assert "    passed: pi: 3.1416, reference 3.1416, error " in one.stdout, one.stdout
     assert f"scorecard.md is unchanged; the plots are in {tmp_path / 'docs' / 'images'}" in one.stdout
 
 

@@ -1,4 +1,4 @@
-"""Thin layers on faces: a stretched strip, a beam with a skin, a film that a gas inflates."""
+"""Thin layers on faces: a stretched strip, a beam with a skin, an inflated film."""
 
 import numpy as np
 import sinew
@@ -8,10 +8,14 @@ from scipy.optimize import brentq
 from suite import plots
 
 TITLE = "Membranes: a stretched strip, a beam with a skin, an inflated film"
-SETUP = """(i) A film of 5 N/mm on a block of 40 x 10 x 4 mm that carries next to nothing (1 kPa, nu = 0), stretched by 5 %, free across. (ii) A
-cantilever of 100 x 10 x 6 mm (100 kPa, nu = 0) with a film on its lower side, a small force at its end: the stiffer the film, the nearer the
-neutral axis lies to it. (iii) A circular film, 0.1 mm of 1 GPa, nu = 0.3, on a disc of 1 kPa that carries nothing, held at its rim, under 100
-Pa, three meshes. Default tangent, quasi-static."""
+SETUP = """Default tangent, quasi-static steps.
+
+- A film of 5 N/mm on a block of 40 x 10 x 4 mm that carries almost no load (1 kPa, nu = 0) is stretched by 5 % and free to
+  contract laterally.
+- A cantilever of 100 x 10 x 6 mm (100 kPa, nu = 0) has a film on its lower side and a small force at its end. The stiffer the
+  film, the closer the neutral axis is to it.
+- A circular film, 0.1 mm of 1 GPa, nu = 0.3, on a disc of 1 kPa that carries no load, is held at its rim under 100 Pa, on
+  three meshes."""
 SOURCES = {"strip": "plane stress, Saint Venant-Kirchhoff: N = E h b (e + e^2/2)(1 + e)",
            "composite": "S. P. Timoshenko, Strength of Materials I: a section of two materials, and the shear of the core (5/6)",
            "Hencky": "H. Hencky, Z. Math. Phys. 63 (1915): N'' + 3 N'/r = -E h q^2/(8 N^2), w' = -q r/(2 N), N_theta = nu N at the rim; "
@@ -44,10 +48,10 @@ def strip(case):
     side = low & (body.rest_positions[:, 1] > size[1] - 1e-9)
     stretched = (body.positions - body.rest_positions)[end, 0].mean() / size[0]
     narrowed = -(body.positions - body.rest_positions)[side, 1].mean() / size[1]
-    case.check("strip: stretch under the force of 5 %", stretched, strain, 2e-3, source="strip")
+    case.check("strip: stretch under the force for 5 %", stretched, strain, 2e-3, source="strip")
     # S_yy = 0: E_yy = -nu E_xx.
     lateral = 1.0 - np.sqrt(1.0 - 2.0 * 0.3 * (strain + strain**2 / 2.0))
-    case.check("strip: contraction across", narrowed, lateral, 2e-3, source="strip")
+    case.check("strip: lateral contraction", narrowed, lateral, 2e-3, source="strip")
 
 
 def skin(case):
@@ -121,4 +125,4 @@ def run(case):
     strip(case)
     skin(case)
     inflated(case, axis)
-    case.figure(figure, "The inflated film: nodes of the finest mesh, and the height of the middle by theory.")
+    case.figure(figure, "The inflated film: nodes of the finest mesh, and the theoretical height of the middle.")
