@@ -13,6 +13,7 @@ from .errors import Notice, RunError
 __version__: str
 compiler: str
 instruction_set: str
+silent_periods: float
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int32]
@@ -343,7 +344,6 @@ class Sensor:
     def feed(self, value: ArrayLike, time: Optional[float] = None) -> None: ...
 
 class Estimator:
-    SILENT_PERIODS: float
     @property
     def name(self) -> str: ...
     @property

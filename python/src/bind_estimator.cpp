@@ -61,11 +61,10 @@ py::list list_of(const std::vector<std::string>& texts) {
 }  // namespace
 
 void bind_estimator(py::module_& module) {
-  py::class_<Estimator> estimator(module, "Estimator",
-                                  "An estimator of the scene, which acts on nothing. From "
-                                  "Simulation.estimator() or Simulation.estimators.");
-  estimator.attr("SILENT_PERIODS") = sim::kSilentPeriods;
-  estimator
+  module.attr("silent_periods") = sim::kSilentPeriods;
+  py::class_<Estimator>(module, "Estimator",
+                        "An estimator of the scene, which acts on nothing. From "
+                        "Simulation.estimator() or Simulation.estimators.")
       .def_property_readonly(
           "name", [](const Estimator& self) { return model(self).name; }, "str: as in the scene.")
       .def_property_readonly("sensors", &sensor_names, "list of str: the sensors that it uses.")
