@@ -48,11 +48,16 @@ std::shared_ptr<const KeyTable> effort_place_table() {
 
 // What an unknown of one kind is called and measured in.
 struct UnknownWords {
-  const char *key, *name, *description, *place_example;
+  const char* key = "";
+  const char* name = "";
+  const char* description = "";
+  const char* place_example = "";
   std::shared_ptr<const KeyTable> place;
-  const char* place_description;
+  const char* place_description = "";
   Measure measure;
-  const char *prior_example, *walk_example, *of_each;
+  const char* prior_example = "";
+  const char* walk_example = "";
+  const char* of_each = "";
 };
 
 Form unknown_form(const UnknownWords& words) {

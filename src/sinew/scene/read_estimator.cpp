@@ -13,7 +13,7 @@ namespace {
 // In an estimator's observables.
 constexpr const char* kTakenName = "status";
 
-void read_force(const Fields& force, UnknownDescription& unknown) {
+void read_force_place(const Fields& force, UnknownDescription& unknown) {
   force.read("body", unknown.body);
   force.read("point", unknown.point);
   unknown.where_place = force.place("point");
@@ -21,7 +21,7 @@ void read_force(const Fields& force, UnknownDescription& unknown) {
                     {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
 }
 
-void read_effort(const Fields& effort, UnknownDescription& unknown) {
+void read_effort_place(const Fields& effort, UnknownDescription& unknown) {
   effort.read("actuator", unknown.actuator);
   unknown.where_place = effort.place("actuator");
   effort.read_choice("command", unknown.command_known, {{"known", true}, {"unknown", false}});
@@ -42,10 +42,10 @@ UnknownDescription read_unknown(const Node::Entry& entry, const std::vector<Form
   fields.read("walk", unknown.walk);
   const Fields where = fields.below(form.telltale);
   if (form.telltale == "force") {
-    read_force(where, unknown);
+    read_force_place(where, unknown);
   } else {
     unknown.quantity = form.telltale;
-    read_effort(where, unknown);
+    read_effort_place(where, unknown);
   }
   return unknown;
 }
