@@ -61,13 +61,14 @@ TEST(Estimators, RefuseDamagedMemoryAndBeginAnewOtherwise) {
   }
 }
 
-// A robot with inertia takes its first sample as exactly as one without: after the same solve.
+// Of the same samples, by a linearisation and by differences; both stop where an iteration moves
+// the estimate by less than a thousandth of its deviation.
 TEST(Estimators, OfBothKindsAgreeAtRest) {
   const auto still = estimating("quasi-static"), moving = estimating("backward-euler");
   still->solve_static();
   moving->solve_static();
   EXPECT_LT((still->estimator(0).mean() - moving->estimator(0).mean()).norm(),
-            1e-3 * still->estimator(0).deviation().norm());
+            5e-3 * still->estimator(0).deviation().norm());
   EXPECT_LT((still->estimator(0).deviation() - moving->estimator(0).deviation()).norm(),
             1e-2 * still->estimator(0).deviation().norm());
 }
