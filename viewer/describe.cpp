@@ -167,7 +167,7 @@ std::string group_of(const sim::Observable& observable) {
     case sim::ObservableKind::sensor:
       return unit.empty() ? "sensor" : "sensor " + unit;
     case sim::ObservableKind::estimator:
-      return "estimate";
+      return unit == "N" ? "estimate" : "estimate " + unit;
     case sim::ObservableKind::contact:
       return unit == "N" ? "contact" : unit == "m" ? "gap" : "touching";
     case sim::ObservableKind::joint:

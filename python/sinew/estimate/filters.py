@@ -10,6 +10,7 @@ from typing import Any, Optional, Protocol
 
 import numpy as np
 
+from .._core import silent_periods
 from ..errors import Error
 from .quantities import Measured
 
@@ -112,7 +113,7 @@ class Filter:
     """
 
     def __init__(self, model: ProcessModel, step: float, *, start: Optional[tuple[np.ndarray, np.ndarray]] = None, time: float = 0.0,
-                 memory: float = 0.5, silence: float = 5.0) -> None:
+                 memory: float = 0.5, silence: float = silent_periods) -> None:
         if not (math.isfinite(step) and step > 0.0):
             raise Error("out-of-range", "Filter(step)", f"{step!r} is not a time step", "give a time > 0, in s")
         for sensor in model.sensors:
@@ -368,7 +369,7 @@ class MovingHorizon(ExtendedKalman):
 
     def __init__(self, model: ProcessModel, step: float, *, horizon: int = 10, iterations: int = 5, lower: Optional[Sequence[float]] = None,
                  upper: Optional[Sequence[float]] = None, start: Optional[tuple[np.ndarray, np.ndarray]] = None, time: float = 0.0,
-                 memory: float = 0.5, silence: float = 5.0) -> None:
+                 memory: float = 0.5, silence: float = silent_periods) -> None:
         if horizon < 1:
             raise Error("out-of-range", "MovingHorizon(horizon)", f"{horizon} instants", "give 1 or more")
         super().__init__(model, step, start=start, time=time, memory=max(memory, (horizon + 1) * step), silence=silence)
