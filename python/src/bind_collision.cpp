@@ -24,7 +24,7 @@ std::vector<collision::Triangle> to_triangles(const py::object& value) {
   if (!any) PyErr_Clear();
   const char kind = any ? any.dtype().kind() : 'O';
   if (kind != 'i' && kind != 'u') {
-    throw Error(ErrorKind::wrong_type, {.item = "Surface(triangles)"}, "these are no node numbers",
+    throw Error(ErrorKind::wrong_type, {.item = "Surface(triangles)"}, "these are not node numbers",
                 "give an integer array of shape (m, 3)");
   }
   if (any.ndim() != 2 || any.shape(1) != 3) {

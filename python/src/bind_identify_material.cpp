@@ -41,7 +41,7 @@ RubberTest to_test(const py::handle& value, std::size_t index) {
   }
   const std::string place = fmt::format("fit_materials(tests[{}])", index);
   if (!py::isinstance<py::tuple>(value) || py::len(value) != 3) {
-    throw Error(ErrorKind::wrong_type, {.item = place}, "this is no test",
+    throw Error(ErrorKind::wrong_type, {.item = place}, "this is not a test",
                 "give a path, or a tuple of mode, stretches and nominal stresses (Pa)");
   }
   const auto parts = py::cast<py::tuple>(value);

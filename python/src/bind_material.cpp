@@ -34,7 +34,7 @@ Material read_material(const py::object& spec) {
   const scene::MaterialDescription& read = scene.bodies.front().material;
   if (read.model != scene::MaterialModel::hyperelastic) {
     throw Error(ErrorKind::wrong_type, {.item = "material(spec)"},
-                "a linear or corotational material is no law of large strain",
+                "a linear or corotational material is not a law of large strain",
                 "its constants are Young's modulus and Poisson's ratio");
   }
   return {read.energy, read.density};

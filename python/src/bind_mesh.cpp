@@ -57,7 +57,7 @@ std::array<int, 3> to_cells(const py::handle& value) {
     const double count = cells.at(static_cast<py::ssize_t>(i));
     if (count != std::floor(count) || count < 1.0 || count > 1e6) {
       throw Error(ErrorKind::out_of_range, {.item = "block(cells)"},
-                  fmt::format("{:g} is no count of cells", count), "give whole numbers from 1");
+                  fmt::format("{:g} is not a count of cells", count), "give whole numbers from 1");
     }
     counts[i] = static_cast<int>(count);
   }

@@ -21,7 +21,7 @@ VectorX to_limits(const py::object& value, const std::string& place, Eigen::Inde
   const MatrixX limits = to_gappy_matrix(value, place, "(n,), infinite where there is none");
   if (limits.size() == size && limits.cols() == 1 && !limits.hasNaN()) return limits;
   throw Error(ErrorKind::wrong_shape, {.item = place},
-              "it is no vector of " + std::to_string(size) + " numbers",
+              "it is not a vector of " + std::to_string(size) + " numbers",
               "give one limit for each, infinite where there is none");
 }
 

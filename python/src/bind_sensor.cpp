@@ -37,7 +37,8 @@ std::vector<double> to_value(const py::object& value, const std::string& place) 
   const auto array = Array::ensure(value);
   if (!array || array.ndim() > 1) {
     PyErr_Clear();
-    throw Error(ErrorKind::wrong_type, {.item = place}, "this is no number and no list of numbers",
+    throw Error(ErrorKind::wrong_type, {.item = place},
+                "this is neither a number nor a list of numbers",
                 "give a number, or an array of the sensor's numbers");
   }
   return {array.data(), array.data() + array.size()};

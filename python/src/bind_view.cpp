@@ -46,7 +46,7 @@ viewer::ServerSettings server_settings(const ViewOptions& options) {
   if (!options.port) return settings;
   if (*options.port < 0 || *options.port > std::numeric_limits<std::uint16_t>::max()) {
     throw Error(ErrorKind::out_of_range, {.item = "view(port)"},
-                fmt::format("{} is no port", *options.port),
+                fmt::format("{} is not a port", *options.port),
                 "give 1 to 65535, 0 for any that is free, or None");
   }
   settings.port = static_cast<std::uint16_t>(*options.port);

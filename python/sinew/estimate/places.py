@@ -330,12 +330,12 @@ def locate(twin: Twin, readings: Mapping[str, Any], areas: Sequence[Patch], *, p
     Raises
     ------
     Error
-        As solve(); wrong-type for bodies without finite elements, bad-argument for readings that are no rows.
+        As solve(); wrong-type for bodies without finite elements, bad-argument for readings that are not rows.
     RunError
         not-converged if there is no equilibrium at any location.
     """
     if not twin.is_linear_in_rows:
-        raise Error("bad-argument", "locate()", "readings of this model are no rows, or follow drives and friction of cables",
+        raise Error("bad-argument", "locate()", "readings of this model are not rows, or follow drives and friction of cables",
                     "measure markers, lengths and tensions, or give the place: Force")
     locator = _Locator(twin, readings, areas, prior, friction)
     base = locator.solve(None, np.zeros(3), None)

@@ -421,7 +421,7 @@ class Twin:
         Raises
         ------
         Error
-            bad-argument where readings are no rows, or unknowns are parameters or forces on nodes.
+            bad-argument where readings are not rows, or unknowns are parameters or forces on nodes.
         """
         if not self._from_rows or self._fields or any(isinstance(i.unknown, Parameter) for i in self._inputs):
             raise Error("bad-argument", "of_step()", "a step gives derivatives by efforts and motions of rows only",

@@ -116,7 +116,7 @@ def _goals(sim: Any) -> dict[str, np.ndarray]:
 
 
 def between(first: Moment, second: Moment, share: float) -> Moment:
-    """The moment at a share of the way from one to another of the same robot; what is no number is of the nearer one."""
+    """The moment at a share of the way from one to another of the same robot; values that are not numbers are those of the nearer one."""
 
     def mixed(a: Any, b: Any) -> Any:
         if isinstance(a, dict):
