@@ -1,4 +1,4 @@
-"""One environment."""
+"""A single environment."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["Env"]
 
 
 class Env(EnvBase):
-    """One environment of a task; Gymnasium's interface.
+    """A single environment of a task, with Gymnasium's interface.
 
     It does what environment 0 of a VectorEnv does, bit for bit. After the end of an episode call `reset`.
 
@@ -55,7 +55,7 @@ class Env(EnvBase):
 
     @property
     def np_random(self) -> np.random.Generator:
-        """The generator that everything random is drawn from; from the operating system before the first seed."""
+        """The random number generator of the environment. Until it is seeded, the operating system provides the seed."""
         if self.episode.random is None:
             self.episode.random = np.random.default_rng()
         return self.episode.random
@@ -66,11 +66,11 @@ class Env(EnvBase):
 
     @property
     def _np_random(self) -> Optional[np.random.Generator]:
-        """The name by which Gymnasium's checker asks for it."""
+        """The same generator under the name that Gymnasium's checker reads."""
         return self.episode.random
 
     def reset(self, *, seed: Optional[int] = None, options: Optional[Mapping[str, Any]] = None) -> tuple[np.ndarray, dict[str, Any]]:
-        """Begins an episode.
+        """Start an episode.
 
         Parameters
         ----------
@@ -99,7 +99,7 @@ class Env(EnvBase):
         return self._seen.copy(), info
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Takes an action.
+        """Apply an action for one step.
 
         Parameters
         ----------
@@ -133,14 +133,14 @@ class Env(EnvBase):
         return self._seen.copy(), float(reward), terminated, truncated, info
 
     def render(self) -> Optional[np.ndarray]:
-        """A picture, (height, width, 3) of uint8, if the render mode is "rgb_array"; else None."""
+        """Return a picture, (height, width, 3) of uint8, if the render mode is "rgb_array"; otherwise None."""
         self._check("render")
         if self.episode.count == 0:
             raise Error("not-reset", "render", "no episode has begun", "call reset()")
         return self._picture.frame(self.episode) if self.render_mode == "rgb_array" else None
 
     def close(self) -> None:
-        """Ends the use of the environment; may be called again."""
+        """Close the environment. Closing it twice does no harm."""
         if getattr(self, "_open", False):
             self._open = False
             self._picture.close()

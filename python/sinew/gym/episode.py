@@ -1,4 +1,4 @@
-"""One environment: its generator, its robot and how far it is."""
+"""The state of one environment: random number generator, robot, progress of the episode."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["Episode"]
 
 
 class Episode:
-    """An environment of a task, from reset to reset.
+    """The state of one environment of a task.
 
     Everything random is drawn from its own generator, so that neither other environments nor threads matter.
 
@@ -51,7 +51,7 @@ class Episode:
         self._late: deque[np.ndarray] = deque()
 
     def reset(self, seed: Optional[int], options: Mapping[str, Any]) -> dict[str, Any]:
-        """Begins an episode; returns its info.
+        """Start an episode and return its info.
 
         Parameters
         ----------
@@ -80,7 +80,7 @@ class Episode:
         return dict(model.drawn) if self.task.is_randomised else {}
 
     def step(self, action: np.ndarray) -> tuple[float, bool, bool, dict[str, Any]]:
-        """Takes an action: reward, terminated, truncated, info."""
+        """Apply an action for one step; return reward, terminated, truncated and info."""
         task, robot = self.task, self.robot
         acting = self.late(action)
         if acting is not None:
@@ -100,25 +100,25 @@ class Episode:
         return reward, over, self.steps >= task.episode_steps, info
 
     def late(self, action: np.ndarray) -> Optional[np.ndarray]:
-        """Takes an action: the one that acts now; None before the first one has arrived."""
+        """Queue an action and return the one that acts now, or None while the first one is still delayed."""
         self._late.append(action)
         return self._late.popleft()
 
     def release(self) -> None:
-        """Hands the robot back."""
+        """Return the robot to its model."""
         if self.robot is not None:
             self.model.give_back(self.robot)
             self.robot = None
 
     def _put(self, model: TaskModel) -> None:
-        """Takes a robot of the model."""
+        """Use a robot of this model."""
         if self.robot is None or model is not self.model:
             self.release()
             self.model, self.robot = model, model.take()
 
 
 def checked_actions(actions: Any, shape: tuple[int, ...], place: str) -> np.ndarray:
-    """Actions as an array of a shape, clipped to [-1, 1].
+    """Return the actions as an array of the given shape, clipped to [-1, 1].
 
     Raises
     ------
@@ -128,7 +128,7 @@ def checked_actions(actions: Any, shape: tuple[int, ...], place: str) -> np.ndar
     try:
         given = np.asarray(actions, dtype=float)
     except (TypeError, ValueError):
-        raise Error("wrong-type", place, f"{actions!r} are no numbers", f"give an array of shape {shape}") from None
+        raise Error("wrong-type", place, f"{actions!r} are not numbers", f"give an array of shape {shape}") from None
     if given.shape != shape:
         raise Error("wrong-shape", place, f"the actions have shape {given.shape}", f"give an array of shape {shape}, the action space's")
     if np.isnan(given).any():

@@ -1,4 +1,4 @@
-"""Experts: the inverse controller, or a script, as a policy."""
+"""Expert policies, based on the inverse controller or on a script."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _has_script(task: type[Task]) -> bool:
 
 
 class _Twin:
-    """A copy of the nominal robot that a controller steers, for one environment."""
+    """The expert of one environment: a copy of the nominal robot that an inverse controller steers."""
 
     def __init__(self, episode: Any) -> None:
         self.episode = episode
@@ -35,7 +35,7 @@ class _Twin:
         self.count = 0
 
     def action(self) -> np.ndarray:
-        """The increments of tension that the twin makes, in [-1, 1]."""
+        """Return the change of the copy's tensions as an action in [-1, 1]."""
         episode, robot = self.episode, self.robot
         if self.count != episode.count:
             self.count, self.missed = episode.count, np.zeros(3)
@@ -59,18 +59,18 @@ class _Twin:
 
 
 class _Script:
-    """What the task would do itself, for one environment."""
+    """The expert of one environment: the script of its task."""
 
     def __init__(self, episode: Any) -> None:
         self.episode = episode
 
     def action(self) -> np.ndarray:
-        """Task.scripted."""
+        """Return the action of Task.scripted."""
         return self.episode.task.scripted(self.episode)
 
 
 class Expert:
-    """Actions by the inverse controller or by a script; made by `expert`.
+    """A policy that calls the inverse controller or a script. Use `expert` to make one.
 
     **Trunks.** Every environment has a twin: a simulation of its robot without pushes and delays, whose inverse controller steers the
     tip to the goal. The action is the change of tensions that the twin makes. What the environment's tip misses of the
@@ -93,7 +93,7 @@ class Expert:
         self._each = [kind(episode) for episode in episodes]
 
     def __call__(self, observation: Any = None) -> np.ndarray:
-        """Actions for the environment as it is now.
+        """Return actions for the present state of the environment.
 
         Parameters
         ----------

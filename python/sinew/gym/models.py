@@ -1,4 +1,4 @@
-"""The robots of a task: the models that it draws from, and simulations of each.
+"""The models of a task and their simulations.
 
 What domain randomisation changes (the stiffness of a material, a payload, friction) is constant within a model, so a task
 builds a fixed number of models and an episode draws one of them. A simulation of a model is a clone and costs
@@ -22,7 +22,7 @@ __all__ = ["Models", "Robot", "TaskModel"]
 
 
 class Robot:
-    """A simulation with its parts at hand.
+    """A simulation and its parts.
 
     Attributes
     ----------
@@ -43,14 +43,14 @@ class Robot:
         self._alone: Optional[Batch] = None
 
     def read(self, names: Sequence[str]) -> np.ndarray:
-        """Observables now, (1, numbers), as sinew.Batch reads them."""
+        """Return the present values of observables, (1, numbers), like sinew.Batch.read."""
         if self._alone is None:
             self._alone = Batch([self.sim])
         return self._alone.read(names)
 
 
 class TaskModel:
-    """One robot of a task.
+    """One model of a task.
 
     Attributes
     ----------
@@ -77,21 +77,21 @@ class TaskModel:
 
     @property
     def material_scale(self) -> float:
-        """Factor of the stiffness."""
+        """Factor on the stiffness of the material."""
         return self.drawn["material_scale"]
 
     @property
     def payload(self) -> float:
-        """kg."""
+        """Mass of the payload, kg."""
         return self.drawn["payload"]
 
     def take(self) -> Robot:
-        """A free simulation of the model, in any state."""
+        """Return an unused simulation of the model, in any state."""
         with self._lock:
             return self._free.pop() if self._free else Robot(self.first.sim.clone())
 
     def give_back(self, robot: Robot) -> None:
-        """Makes a simulation free again."""
+        """Release a simulation, so that it can be used again."""
         with self._lock:
             self._free.append(robot)
 

@@ -1,4 +1,4 @@
-"""Tasks by their names."""
+"""The tasks by name."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _TASKS: dict[str, type[Task]] = {
 
 
 def tasks() -> dict[str, str]:
-    """Names of the tasks, and what is to be done.
+    """Return the names of all tasks, each with a summary.
 
     Examples
     --------
@@ -31,10 +31,10 @@ def tasks() -> dict[str, str]:
 
 
 def _task(task: Union[str, Task], options: dict[str, Any], own: tuple[str, ...]) -> Task:
-    """A task by its name, or the task itself. `own` are the options that do not go to the task."""
+    """Return the task with this name, or the task itself. `own` lists the options that are not passed to the task."""
     if isinstance(task, Task):
         if options:
-            raise Error("bad-argument", "make", f"{', '.join(options)} given with a task that is made", "give them to the task")
+            raise Error("bad-argument", "make", f"{', '.join(options)} given with a task that exists already", "give these options to the task")
         return task
     if task not in _TASKS:
         raise unknown("make", "task", task, list(_TASKS))
@@ -46,7 +46,7 @@ def _task(task: Union[str, Task], options: dict[str, Any], own: tuple[str, ...])
 
 
 def make(task: Union[str, Task], *, render_mode: Optional[str] = None, **options: Any) -> Env:
-    """An environment of a task.
+    """Make an environment of a task.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def make_vec(
     render_mode: Optional[str] = None,
     **options: Any,
 ) -> VectorEnv:
-    """Many environments of a task.
+    """Make many environments of a task.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def make_vec(
 
 
 def _register() -> None:
-    """Makes the tasks known to Gymnasium, as sinew/NAME."""
+    """Register the tasks with Gymnasium as sinew/NAME."""
     for name in _TASKS:
 
         def single(*, _name: str = name, **options: Any) -> Env:

@@ -38,12 +38,12 @@ class PlainSpace:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Of every array of the space."""
+        """Shape of the arrays in the space."""
         return self._shape
 
     @property
     def np_random(self) -> np.random.Generator:
-        """The generator that `sample` draws from."""
+        """The random number generator of `sample`."""
         return self._np_random
 
     def seed(self, seed: Optional[int] = None) -> int:
@@ -151,7 +151,7 @@ class PlainAutoresetMode(enum.Enum):
 
 
 class PlainEnv:
-    """What Gymnasium's environments have beside their methods."""
+    """The attributes that Gymnasium's environments have in addition to their methods."""
 
     metadata: dict[str, Any] = {"render_modes": []}
     render_mode: Optional[str] = None
@@ -163,7 +163,7 @@ class PlainEnv:
         return self
 
     def close(self) -> None:
-        """Ends the use of the environment."""
+        """Close the environment."""
 
     def __enter__(self) -> Any:
         return self

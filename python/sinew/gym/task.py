@@ -1,4 +1,4 @@
-"""What tasks have in common: a scene, actions, observations, rewards and what is drawn for an episode."""
+"""The base class of all tasks: scene, actions, observations, rewards and randomisation."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ Range = Union[float, Sequence[float]]
 
 
 def unknown(place: str, what: str, name: Any, known: Sequence[str]) -> Error:
-    """An error of kind unknown-name that suggests the nearest of the known names."""
+    """Return an error of kind unknown-name that suggests the most similar known name."""
     near = difflib.get_close_matches(str(name), known, n=1, cutoff=0.5)
     remedy = f"did you mean {near[0]!r}? " if near else ""
     return Error("unknown-name", place, f"there is no {what} {name!r}", f"{remedy}there are: {', '.join(known)}")
 
 
 def range_of(item: str, value: Range, least: float, greatest: float, unit: str) -> tuple[float, float]:
-    """(low, high) of a number or a pair, within bounds."""
+    """Return (low, high) of a number or a pair, which must lie within the bounds."""
     try:
         low, high = (float(v) for v in (value if np.ndim(value) else (value, value)))
     except (TypeError, ValueError):
@@ -41,31 +41,31 @@ def range_of(item: str, value: Range, least: float, greatest: float, unit: str) 
 
 
 class Task:
-    """A robot, what it may do, what it senses and what it is rewarded for.
+    """A robot with its actions, observations and rewards.
 
-    A task never changes while environments use it; what belongs to one environment is in its Episode. A subclass sets the
-    class attributes and defines `sense`, `reward`, and what else it needs of the methods below. A task whose steps take
-    microseconds names `observables` and defines `sense_rows` and `reward_rows` in their place: VectorEnv then takes all
-    environments at once.
+    A task does not change while environments use it: the state of each environment is in its Episode. A subclass sets the
+    class attributes and defines `sense`, `reward`, and overrides other methods below as needed. If a step takes only
+    microseconds, name `observables` and define `sense_rows` and `reward_rows` instead: VectorEnv then steps all environments
+    with one call.
 
     Parameters
     ----------
     time_limit : float, optional
-        s of an episode, after which it is truncated; by default the task's own.
+        Duration (s) after which an episode is truncated. The default is that of the task.
     observe : str
-        "sensors", or "state", which appends the hidden state: see the task.
+        "sensors", or "state", which adds the hidden state. See the task.
     action : str, optional
-        What actions mean, one of `actions`; by default the first.
+        Meaning of the actions: one of `actions`. The default is the first.
     material_scale : float or (low, high)
-        Factor of the stiffness of all material, 0.5 to 2, drawn for each episode. A task may say which material.
+        Factor on the stiffness of all materials, 0.5 to 2, drawn for each episode. A task may restrict it to some materials.
     payload : float or (low, high)
-        kg fixed to the tip, 0 to 0.05, drawn for each episode.
+        Mass at the tip, 0 to 0.05 kg, drawn for each episode.
     models : int
-        How many models are built to draw what is a range of, 1 to 64; 1 without a range.
+        Number of models from which episodes draw the ranges above, 1 to 64. Without a range there is one model.
     action_delay : int or (low, high)
-        Steps by which actions act late, 0 to 10, drawn for each episode.
+        Delay of the actions in steps, 0 to 10, drawn for each episode.
     set : dict, optional
-        Values of the scene to change, as of sinew.load: {"solver": "one-linearisation"}.
+        Changes of the scene, as in sinew.load: {"solver": "one-linearisation"}.
 
     Raises
     ------
@@ -116,7 +116,7 @@ class Task:
 
     @property
     def ranges(self) -> dict[str, tuple[float, float]]:
-        """What a model has a value of: the arguments of `randomised`, each with (low, high). The first is log-uniform."""
+        """Ranges (low, high) of the arguments of `randomised`. The first is drawn log-uniformly."""
         return {"material_scale": self.material_scale, "payload": self.payload}
 
     @property
@@ -126,13 +126,13 @@ class Task:
 
     @staticmethod
     def bounded(item: str, value: float, least: float, greatest: float, unit: str = "") -> float:
-        """A number between two bounds; raises out-of-range and wrong-type."""
+        """Return a number that must lie within the bounds. Raises out-of-range and wrong-type."""
         if np.ndim(value):
             raise Error("wrong-type", item, f"{value!r} is not a number", "give a number")
         return range_of(item, value, least, greatest, unit)[0]
 
     def bind(self, robot: Robot) -> None:
-        """Takes what is the same for all models from the first: time step, limits, spaces."""
+        """Set time step, limits and spaces, which are the same for all models, from the first model."""
         self.time_step = self.substeps * robot.sim.time_step
         if not self._time_limit >= self.time_step:
             raise Error("out-of-range", "time_limit", f"it is {self._time_limit} s",
@@ -148,71 +148,71 @@ class Task:
     # What a subclass may define.
 
     def described(self, folder: Path) -> Union[Path, dict[str, Any]]:
-        """The scene, as sinew.load takes it. A mesh may be written into the folder, which lasts until the scene is loaded."""
+        """Return the scene for sinew.load. Meshes can be written into `folder`, which exists until the scene is loaded."""
         return self.scene
 
     def randomised(self, material_scale: float, payload: float) -> dict[str, Any]:
-        """Values of the scene for a material and a payload (kg)."""
+        """Return the changes of the scene for a material scale and a payload (kg)."""
         raise NotImplementedError
 
     def limits(self, robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Least and greatest commands, and their greatest rates (1/s), (actions,) each; by default those of the actuators."""
+        """Return minimum and maximum commands and their maximum rates (per s), (actions,) each. The default is the actuators' limits."""
         limits = [actuator.limits[self.kind] for actuator in robot.actuators]
         least, greatest, rates = (np.array([getattr(limit, part) for limit in limits]) for part in ("min", "max", "rate"))
         return least, greatest, rates
 
     def prepare(self, robot: Robot) -> list[State]:
-        """States that episodes begin with; the simulation is as loaded."""
+        """Return the states in which episodes start. The simulation has just been loaded."""
         robot.sim.solve_static()
         return [robot.sim.state()]
 
     def picture_points(self, robot: Robot) -> np.ndarray:
-        """(n, 3) m: what a picture shows. By default room round the robot at rest."""
+        """Return points, (n, 3) m, that a picture must show. The default is a box around the robot at rest."""
         rest = np.asarray(robot.body.rest_positions)
         low, high = rest.min(axis=0), rest.max(axis=0)
         room = np.where(high - low < np.max(high - low), 0.22, 0.04) * np.max(high - low)
         return np.array(list(itertools.product(*zip(low - room, high + room))))
 
     def measure_rest(self, robot: Robot) -> dict[str, Any]:
-        """What the task keeps of a model; the simulation is in the first of its starts."""
+        """Return data of a model that the task keeps. The simulation is in the first start state."""
         return {"tip": robot.tip.position}
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """Draws what is random in an episode, from `episode.random`; the robot is in its start."""
+        """Draw the random quantities of an episode from `episode.random`. The robot is in its start state."""
 
     def commanded(self, robot: Robot) -> np.ndarray:
-        """The commands that a start corresponds to, (actions,); the robot is in it."""
+        """Return the commands, (actions,), that belong to the start state. The robot is in this state."""
         return np.array([getattr(actuator, self.kind) for actuator in robot.actuators])
 
     def apply(self, episode: Any) -> None:
-        """Passes `episode.commands` on to the robot."""
+        """Send `episode.commands` to the robot."""
         for actuator, value in zip(episode.robot.actuators, episode.commands.tolist()):
             setattr(actuator, self.kind, value)
 
     def disturb(self, episode: Any) -> None:
-        """Changes the world just before a step."""
+        """Change the environment of the robot just before a step."""
 
     def observation_names(self, robot: Robot) -> list[str]:
-        """What every number of an observation is."""
+        """Return the name of each number of an observation."""
         raise NotImplementedError
 
     def sense(self, episode: Any, out: np.ndarray) -> None:
-        """Writes an observation into out, (observation size,)."""
+        """Write an observation into out, (observation size,)."""
         self.sense_rows([episode], episode.robot.read(self.observables), out[None])
 
     def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
-        """Reward of the step just taken, whether the task is over, and info."""
+        """Return the reward of the last step, whether the episode has terminated, and info."""
         rewards, over, infos = self.reward_rows([episode], episode.robot.read(self.observables), episode.action[None])
         return rewards.item(), bool(over[0]), {key: values[0].item() for key, values in infos.items()}
 
     def sense_rows(self, episodes: Sequence[Any], read: np.ndarray, out: np.ndarray) -> None:
-        """The same as `sense` for many episodes, of tasks with `observables`; it may call no method of the robots.
+        """Write the observations of many episodes, for tasks with `observables`. It must not call methods of the robots.
 
         Parameters
         ----------
         episodes : list of n Episode
         read : (n, numbers)
-            The `observables` of their robots, side by side.
+            Values of the `observables` of their robots.
         out : (n, observation size)
         """
         raise NotImplementedError
@@ -220,14 +220,14 @@ class Task:
     def reward_rows(
         self, episodes: Sequence[Any], read: np.ndarray, actions: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
-        """The same as `reward`: rewards, whether the task is over, and infos, arrays (n,).
+        """Return the rewards of many episodes, whether each has terminated, and infos: arrays (n,).
 
         Parameters
         ----------
         episodes, read
             As of `sense_rows`.
         actions : (n, actions)
-            Those that acted.
+            The actions that acted.
         """
         raise NotImplementedError
 
@@ -235,26 +235,26 @@ class Task:
     options: Mapping[str, int] = {}
 
     def scripted(self, episode: Any) -> np.ndarray:
-        """What a scripted expert would do now, (actions,) in [-1, 1], for the task's first action. A task may have none."""
+        """Return the action of a scripted expert, (actions,) in [-1, 1], for the first kind of action. Optional."""
         raise NotImplementedError
 
     def observation_size(self, robot: Robot) -> int:
-        """Numbers of an observation."""
+        """Return the size of an observation."""
         return len(self.observation_names(robot))
 
     def commands(self, episode: Any, action: np.ndarray) -> np.ndarray:
-        """Commands of the actuators (N, m or N m) for an action in [-1, 1], (actuators,) each."""
+        """Return the actuators' commands (N, m or N m) for an action in [-1, 1]; both are (actuators,)."""
         return self.next_commands(episode.commands, action)
 
     def next_commands(self, commands: np.ndarray, action: np.ndarray) -> np.ndarray:
-        """The same from the last commands, (..., actuators) each."""
+        """Return the commands after an action, given the previous ones; all are (..., actuators)."""
         if self.is_increment:  # np.clip takes four times as long
             return np.minimum(np.maximum(commands + action * self.increment, self.low), self.high)
         return self.low + 0.5 * (action + 1.0) * (self.high - self.low)
 
     @classmethod
     def keywords(cls) -> list[str]:
-        """Names of all keyword arguments of the task."""
+        """Return the names of all keyword arguments of the task."""
         found: list[str] = []
         for base in cls.__mro__:
             if "__init__" in vars(base) and base is not object:

@@ -1,4 +1,4 @@
-"""Episodes whose simulations are stepped with one call."""
+"""Stepping of many episodes with one call."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _STATUS = "status"  # of the last step, a number; 0 is "solved"
 
 
 class Together:
-    """Takes actions in many episodes of a task that names `observables`, as Episode.step does in one, bit for bit.
+    """Steps many episodes of a task that names `observables`. The results equal those of Episode.step, bit for bit.
 
     The simulations are stepped by threads that run no Python; commands, observations and rewards are computed for all at once.
 
@@ -38,7 +38,7 @@ class Together:
         self._commands, self._actions = np.zeros((2, len(episodes), len(task.low)))
 
     def step(self, actions: np.ndarray, acts: np.ndarray, observations: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
-        """Takes an action in the episodes that `acts` chooses.
+        """Apply actions in the episodes that `acts` selects.
 
         Parameters
         ----------
@@ -93,7 +93,7 @@ class Together:
         infos[key][which], infos[f"_{key}"][which] = values, True
 
     def _follow_resets(self) -> None:
-        """Takes up the robots and commands of episodes that have been reset; their commands and actions are rows from then on."""
+        """Adopt the robots and commands of episodes that have been reset; their commands and actions become rows of arrays."""
         episodes = self._episodes
         for i, episode in enumerate(episodes):
             if self._counts[i] != episode.count:
@@ -105,7 +105,7 @@ class Together:
             self._robots, self._batch = robots, Batch([robot.sim for robot in robots], threads=self._threads)
 
     def _take(self, actions: np.ndarray, acts: np.ndarray) -> None:
-        """The commands of actions that act now."""
+        """Return the commands of the actions that act now."""
         told = acts
         if self.task.action_delay[1] > 0:
             late = [episode.late(action.copy()) if act else None for episode, action, act in zip(self._episodes, actions, acts)]

@@ -1,4 +1,4 @@
-"""Many environments of one task in one process."""
+"""Many environments of a task in one process."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ Arrays = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]
 
 
 class VectorEnv(VectorEnvBase):
-    """Steps many environments of a task, in threads; Gymnasium's vector interface.
+    """Many environments of a task, stepped in threads, with Gymnasium's vector interface.
 
-    The environments share the models of the task (mesh, material, factorisation plan); each has a simulation of its own. A
-    step of the simulation runs without the interpreter lock, so that threads share the work: each has a contiguous block of
-    environments. The simulations of a task with `observables` are stepped by one call (Together). Results are the same, bit for bit, for any number of threads, and an environment does the same alone and
-    among others: environment i has a generator of its own, seeded with s + i.
+    The environments share the models of the task (mesh, material, factorisation plan); each has its own
+    simulation. Steps release the interpreter lock, and each thread steps a contiguous block of environments. The simulations
+    of a task with `observables` are stepped with one call (Together). Results do not depend on the number of threads or of
+    other environments, bit for bit: environment i has its own random number generator, seeded with s + i.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ class VectorEnv(VectorEnvBase):
     def reset(
         self, *, seed: Union[int, Sequence[Optional[int]], None] = None, options: Optional[Mapping[str, Any]] = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Begins episodes.
+        """Start episodes.
 
         Parameters
         ----------
@@ -134,7 +134,7 @@ class VectorEnv(VectorEnvBase):
         return self._observations.copy(), self._gather(infos)
 
     def step(self, actions: Any) -> Arrays:
-        """Takes an action in every environment.
+        """Apply an action in every environment.
 
         Parameters
         ----------
@@ -169,13 +169,13 @@ class VectorEnv(VectorEnvBase):
         return self._observations.copy(), rewards, terminations, truncations, infos
 
     def render(self) -> Any:
-        """Pictures of all environments, (height, width, 3) of uint8 each, if the render mode is "rgb_array"; else None."""
+        """Return pictures of all environments, (height, width, 3) of uint8 each, if the render mode is "rgb_array"; otherwise None."""
         self._check_open("render")
         self._check_begun(ended=True)
         return tuple(self._picture.frame(episode) for episode in self.episodes) if self.render_mode == "rgb_array" else None
 
     def close(self, **kwargs: Any) -> None:
-        """Ends the threads and lets go of the simulations; may be called again."""
+        """End the threads and free the simulations. Closing twice does no harm."""
         if getattr(self, "_open", False):
             self._open = False
             if self._executor is not None:
@@ -186,7 +186,7 @@ class VectorEnv(VectorEnvBase):
 
     @property
     def memory(self) -> int:
-        """Bytes of an environment's simulation between steps, without the shared model. It is to be reset before."""
+        """Bytes of memory of one environment's simulation between steps, without the shared model. Call `reset` first."""
         self._check_begun(ended=True)
         return self.episodes[0].robot.sim.memory
 
@@ -232,7 +232,7 @@ class VectorEnv(VectorEnvBase):
 
     @staticmethod
     def _taken(infos: dict[str, Any], i: int) -> dict[str, Any]:
-        """Takes the info of an environment out of those of all; what no other one has goes."""
+        """Remove the info of one environment from those of all, and return it; keys without other values are dropped."""
         taken: dict[str, Any] = {}
         for key in [key for key in infos if f"_{key}" in infos and infos[f"_{key}"][i]]:
             values, mask = infos[key], infos[f"_{key}"]
@@ -276,7 +276,7 @@ class VectorEnv(VectorEnvBase):
             gathered[f"_{key}"][i] = True
 
     def _empty(self, key: str, value: Any) -> Any:
-        """What takes up the values of all environments, as in Gymnasium: numbers in arrays, arrays stacked, the rest as objects."""
+        """Return an empty array for values of all environments, as Gymnasium has it: numbers, stacked arrays, or objects."""
         if isinstance(value, dict):
             return {}
         if isinstance(value, np.ndarray) and key != "final_obs":

@@ -1,4 +1,4 @@
-"""An arm above what it can hold."""
+"""Swinging an arm above the height that it can hold."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class ArmSwingUp(Task):
         return states
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """Nothing more is drawn."""
+        """Nothing else is random."""
         episode.commands = np.zeros(3)
         episode.memory.update(highest=-np.inf)
 
@@ -90,7 +90,7 @@ class ArmSwingUp(Task):
                 + [f"{name} torque / limit" for name in robot.sim.actuators] + ["tip x / 0.56 m", "tip z / 0.56 m"])  # fmt: skip
 
     def sense_rows(self, episodes: Sequence[Any], read: np.ndarray, out: np.ndarray) -> None:
-        """Writes observations."""
+        """Write observations."""
         out[:, :4] = read[:, :4]
         out[:, 4:8] = read[:, 4:8] / 10.0
         out[:, 8:11] = read[:, 8:11] / self.high
@@ -99,7 +99,7 @@ class ArmSwingUp(Task):
     def reward_rows(
         self, episodes: Sequence[Any], read: np.ndarray, actions: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
-        """Height over length, less a little effort."""
+        """Return height over length, minus a small penalty on effort."""
         height = read[:, 13] - [episode.model.rest["tip"][2] for episode in episodes]
         effort = np.mean(actions**2, axis=1)
         highest = np.maximum(height, [episode.memory["highest"] for episode in episodes])

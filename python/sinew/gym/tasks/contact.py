@@ -1,4 +1,4 @@
-"""What the tasks with friction have in common."""
+"""The base class of tasks with friction."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["ContactTask"]
 
 
 class ContactTask(Task):
-    """A task whose robot touches things; its scene is made by Python.
+    """A task whose robot touches objects. Python generates its scene.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A soft quadruped crawls."""
+"""Crawling of a soft quadruped."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class Crawl(ContactTask):
         return changed
 
     def prepare(self, robot: Robot) -> list[State]:
-        """Empty, and three states with pressures of up to half of the limits."""
+        """Return the unpressurised state, and three states with pressures of up to half the limits."""
         sim, random = robot.sim, np.random.default_rng(0)
         sim.step(10)
         states = [sim.state()]
@@ -103,7 +103,7 @@ class Crawl(ContactTask):
                 "positions": np.array(body.positions)}  # fmt: skip
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """Keeps where the robot starts."""
+        """Store the start position."""
         episode.memory.update(start=self.centre(episode), moved=np.zeros(3))
         episode.memory["heading"] = self.direction(episode)
 
@@ -112,13 +112,13 @@ class Crawl(ContactTask):
         return episode.model.rest["shares"] @ episode.robot.body.positions
 
     def direction(self, episode: Any) -> float:
-        """Angle from x to where the robot looks (rad)."""
+        """Angle from the x axis to the robot's axis, rad."""
         positions, rest = episode.robot.body.positions, episode.model.rest
         ahead = positions[rest["front"]].mean(axis=0) - positions[rest["rear"]].mean(axis=0)
         return math.atan2(ahead[1], ahead[0])
 
     def heading(self, episode: Any) -> float:
-        """By how much the robot has turned since the start (rad), -pi to pi."""
+        """Angle by which the robot has turned since the start, rad, -pi to pi."""
         return math.remainder(self.direction(episode) - episode.memory["heading"], 2.0 * math.pi)
 
     def observation_names(self, robot: Robot) -> list[str]:
@@ -133,7 +133,7 @@ class Crawl(ContactTask):
         return names
 
     def sense(self, episode: Any, out: np.ndarray) -> None:
-        """Writes an observation."""
+        """Write an observation."""
         robot, rest = episode.robot, episode.model.rest
         out[:5] = [actuator.pressure for actuator in robot.actuators] / self.high
         out[5:10] = [actuator.volume for actuator in robot.actuators] / rest["volumes"] - 1.0
@@ -145,7 +145,7 @@ class Crawl(ContactTask):
             out[21:] = np.concatenate([np.ravel((robot.body.positions - rest["positions"]) / 0.05), np.ravel(robot.body.velocities / 0.1)])
 
     def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
-        """mm forward, less drift and a little effort."""
+        """Return the distance forward in mm, minus penalties on drift and effort."""
         last, moved = episode.memory["moved"], self.centre(episode) - episode.memory["start"]
         episode.memory["moved"] = moved
         gained = moved[0] - last[0] - 0.5 * (abs(moved[1]) - abs(last[1]))

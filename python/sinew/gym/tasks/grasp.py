@@ -1,4 +1,4 @@
-"""Three soft fingers lift a soft cup."""
+"""Lifting a soft cup with three soft fingers."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class Grasp(ContactTask):
         return changed
 
     def limits(self, robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of the cables, then of the feet."""
+        """Return the limits of the cables, then of the feet."""
         least, greatest, rates = super().limits(robot)
         return np.append(least, 0.0), np.append(greatest, _LIFT), np.append(rates, _LIFT_RATE)
 
@@ -97,14 +97,14 @@ class Grasp(ContactTask):
         return wanted
 
     def apply(self, episode: Any) -> None:
-        """Cables and feet."""
+        """Command cables and feet."""
         super().apply(episode)
         sim, lifted = episode.robot.sim, [0.0, 0.0, float(episode.commands[3])]
         for k in range(gripper.FINGERS):
             sim.body(f"finger_{k}").move_base(lifted)
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """Draws the height."""
+        """Draw the height."""
         height = episode.random.uniform(0.025, 0.060)
         if "height" in options:
             given = options["height"]
@@ -115,7 +115,7 @@ class Grasp(ContactTask):
         episode.memory.update(height=height, highest=0.0)
 
     def risen(self, episode: Any) -> np.ndarray:
-        """How far the cup's centre of mass has moved, (3,) m."""
+        """Displacement of the cup's centre of mass, (3,) m."""
         return episode.model.rest["shares"] @ episode.robot.body.positions - episode.model.rest["centre"]
 
     def axis(self, episode: Any) -> np.ndarray:
@@ -142,7 +142,7 @@ class Grasp(ContactTask):
         return names
 
     def sense(self, episode: Any, out: np.ndarray) -> None:
-        """Writes an observation."""
+        """Write an observation."""
         robot, rest, grips, moved = episode.robot, episode.model.rest, self.grips(episode), self.risen(episode)
         out[0:3] = [actuator.displacement / 0.010 for actuator in robot.actuators]
         out[3:6] = [actuator.tension / 10.0 for actuator in robot.actuators]
@@ -159,7 +159,7 @@ class Grasp(ContactTask):
             out[22:] = np.concatenate([*shifts, *(np.ravel(body.velocities) for body in bodies)])
 
     def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
-        """Share of the goal's height, less tilt."""
+        """Return the fraction of the goal's height that is reached, minus a penalty on tilt."""
         memory, height = episode.memory, float(self.risen(episode)[2])
         goal, tilt = memory["height"], math.acos(min(1.0, float(self.axis(episode)[2])))
         memory["highest"] = max(memory["highest"], height)

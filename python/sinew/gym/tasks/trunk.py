@@ -1,4 +1,4 @@
-"""What the tasks of the trunk have in common."""
+"""The base class of the trunk's tasks."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class TrunkTask(Task):
                 "energy": body.strain_energy + body.gravity_energy}  # fmt: skip
 
     def goal_given(self, episode: Any, options: Mapping[str, Any]) -> bool:
-        """Takes the goal from the options of a reset, if it is there."""
+        """Set the goal from the options of a reset, if they contain one."""
         if "goal" not in options:
             return False
         goal = np.array(options["goal"], dtype=float)
@@ -77,7 +77,7 @@ class TrunkTask(Task):
         return True
 
     def push(self, episode: Any, force: np.ndarray) -> None:
-        """Spreads a force (3,) N over the nodes at the tip, until it is changed."""
+        """Distribute a force, (3,) N, over the nodes at the tip. It acts until it is changed."""
         top = episode.model.rest["top"]
         episode.robot.body.external_forces[top] = force / len(top)
 
@@ -94,7 +94,7 @@ class TrunkTask(Task):
         return names
 
     def further_names(self, cables: list[str]) -> list[str]:
-        """What the task senses beside cables and tip."""
+        """Return the names of the numbers that follow those of cables and tip."""
         return []
 
     def sense_further(self, episode: Any) -> np.ndarray:
@@ -129,10 +129,10 @@ class TrunkTask(Task):
         return rates
 
     def toward_goal(self, episode: Any) -> np.ndarray:
-        """From the tip to the goal, over 0.1 m, (3,)."""
+        """Vector from the tip to the goal, (3,), divided by 0.1 m."""
         return (episode.goal - episode.robot.tip.position) / _PLACE
 
     def distance(self, episode: Any) -> float:
-        """m between tip and goal."""
+        """Distance between tip and goal, m."""
         away = episode.goal - episode.robot.tip.position
         return math.sqrt(away @ away)

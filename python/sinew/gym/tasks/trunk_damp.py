@@ -1,4 +1,4 @@
-"""Vibration to rest."""
+"""Damping of vibrations."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["TrunkDamp"]
 
 
 class TrunkDamp(TrunkTask):
-    """Bring a trunk to rest that has been struck; dynamic (generalized-alpha), 10 ms a step, 1 s an episode.
+    """Bring a trunk to rest after a blow; dynamic (generalized-alpha), 10 ms a step, 1 s an episode.
 
     A blow acts on the end of the trunk during the first 60 ms: 0.2 to 0.4 N across the axis, in a random direction. The
     passive trunk swings at about 4 Hz and loses half of its energy in 0.1 s (stiffness damping, 2 ms). The default action
@@ -34,14 +34,14 @@ class TrunkDamp(TrunkTask):
     RATE, GAIN = 0.1, 15.0  # m/s, that observed rates are divided by; N s/m, of the scripted expert
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """Draws the blow."""
+        """Draw the blow."""
         random = episode.random
         turn, size = random.uniform(0.0, 2.0 * np.pi), random.uniform(0.2, 0.4)
         self.push(episode, size * np.array([np.cos(turn), np.sin(turn), 0.0]))
         episode.memory.update(displacements=None)
 
     def disturb(self, episode: Any) -> None:
-        """Ends the blow."""
+        """End the blow."""
         if episode.steps == round(self.BLOW / self.time_step):
             self.push(episode, np.zeros(3))
 
@@ -65,7 +65,7 @@ class TrunkDamp(TrunkTask):
         return self.cable_rates(episode)
 
     def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
-        """Minus the energy in mJ."""
+        """Return minus the energy in mJ."""
         body = episode.robot.body
         energy = body.kinetic_energy + body.strain_energy + body.gravity_energy - episode.model.rest["energy"]
         return -1e3 * energy, False, {"energy": energy}

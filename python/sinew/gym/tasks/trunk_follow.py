@@ -1,4 +1,4 @@
-"""The tip after a moving goal."""
+"""Following a moving goal with the tip."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ class TrunkFollow(TrunkTask):
     default_time_limit = 2.0
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """Draws the curve."""
+        """Draw the curve."""
         random = episode.random
         episode.memory["curve"] = (random.uniform(0.020, 0.045, 2), random.uniform(1.5, 4.0, 2), random.uniform(0.0, 2.0 * np.pi, 2))
         episode.goal = self.goal_at(episode, 0.0)
 
     def goal_at(self, episode: Any, time: float) -> np.ndarray:
-        """Where the goal is at a time (s) of the episode, (3,) m."""
+        """Return the position of the goal, (3,) m, at a time (s) of the episode."""
         amplitude, period, phase = episode.memory["curve"]
         share = min(time / 0.5, 1.0)
         begun = share * share * (3.0 - 2.0 * share)
         return begun * surface(amplitude * np.sin(2.0 * np.pi * time / period + phase)) + (1.0 - begun) * episode.model.rest["tip"]
 
     def disturb(self, episode: Any) -> None:
-        """Moves the goal to where it is at the end of the step."""
+        """Move the goal to its position at the end of the step."""
         episode.goal = self.goal_at(episode, (episode.steps + 1) * self.time_step)
 
     def further_names(self, cables: list[str]) -> list[str]:

@@ -1,4 +1,4 @@
-"""The tip at rest against pushes."""
+"""Holding the tip against pushes."""
 
 from __future__ import annotations
 
@@ -37,21 +37,21 @@ class TrunkHold(TrunkTask):
         self.greatest_push = self.bounded("push", push, 0.0, 1.0, " N")
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """The goal is the rest position of the model at hand."""
+        """Set the goal to the rest position of the model."""
         episode.goal = episode.model.rest["tip"].copy()
         episode.memory.update(displacements=None)
         self._draw(episode, np.zeros(3))
         self.push(episode, np.zeros(3))
 
     def _draw(self, episode: Any, last: np.ndarray) -> None:
-        """Draws a push that begins with the step to come."""
+        """Draw a push that starts with the next step."""
         random, memory = episode.random, episode.memory
         turn, size = random.uniform(0.0, 2.0 * np.pi), random.uniform(0.0, self.greatest_push)
         memory.update(last=last, next=size * np.array([np.cos(turn), np.sin(turn), 0.0]), since=episode.steps)
         memory["until"] = episode.steps + round((GROWTH + random.uniform(0.1, 0.3)) / self.time_step)
 
     def disturb(self, episode: Any) -> None:
-        """Pushes, and draws the next push when the last one is over."""
+        """Apply the push; when it is over, draw the next one."""
         memory = episode.memory
         if episode.steps >= memory["until"]:
             self._draw(episode, memory["next"])
