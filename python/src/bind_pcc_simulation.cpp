@@ -100,7 +100,7 @@ py::tuple simulate(PccArm& self, const py::object& theta, const py::object& thet
   if ((!many && drive.ndim() != 2) || drive.shape(drive.ndim() - 1) != self.arm->inputs()) {
     throw Error(
         ErrorKind::wrong_shape, {.item = "simulate(torque)"},
-        fmt::format("it is no array (steps, {0}) or (arms, steps, {0})", self.arm->inputs()),
+        fmt::format("it is not an array (steps, {0}) or (arms, steps, {0})", self.arm->inputs()),
         "give the torques of every step in N m, a column for each input");
   }
   const Eigen::Index arms = many ? drive.shape(0) : 1, steps = drive.shape(many ? 1 : 0);

@@ -346,7 +346,7 @@ class Loop:
             try:
                 given = {sensor.name: sensor for sensor in given}
             except (TypeError, AttributeError):
-                raise Error("wrong-type", place, f"{given!r} are no sensors",
+                raise Error("wrong-type", place, f"{given!r} are not sensors",
                             "give a dict such as {'tip': plant.sensor('camera')}, or a list of sensors") from None
         for name in given:
             if name not in self._robot.effectors:

@@ -111,14 +111,14 @@ class Episode:
             self.robot = None
 
     def _put(self, model: TaskModel) -> None:
-        """Takes a robot of the model."""
+        """Use a robot of this model."""
         if self.robot is None or model is not self.model:
             self.release()
             self.model, self.robot = model, model.take()
 
 
 def checked_actions(actions: Any, shape: tuple[int, ...], place: str) -> np.ndarray:
-    """Actions as an array of a shape, clipped to [-1, 1].
+    """Return the actions as an array of the given shape, clipped to [-1, 1].
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Experts: the inverse controller, or a script, as a policy."""
+"""Expert policies, based on the inverse controller or on a script."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class _Script:
         self.episode = episode
 
     def action(self) -> np.ndarray:
-        """Task.scripted."""
+        """Return the action of Task.scripted."""
         return self.episode.task.scripted(self.episode)
 
 

@@ -77,16 +77,16 @@ class TaskModel:
 
     @property
     def material_scale(self) -> float:
-        """Factor of the stiffness."""
+        """Factor on the stiffness of the material."""
         return self.drawn["material_scale"]
 
     @property
     def payload(self) -> float:
-        """kg."""
+        """Mass of the payload, kg."""
         return self.drawn["payload"]
 
     def take(self) -> Robot:
-        """A free simulation of the model, in any state."""
+        """Return an unused simulation of the model, in any state."""
         with self._lock:
             return self._free.pop() if self._free else Robot(self.first.sim.clone())
 

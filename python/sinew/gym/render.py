@@ -24,7 +24,7 @@ def mode_checked(mode: Optional[str]) -> Optional[str]:
 
 
 class Picture:
-    """Draws environments in one of the render modes.
+    """Renders environments in one of the render modes.
 
     "rgb_array" draws robot and goal with sinew.render when `frame` is called. "human" shows environment 0 in the browser
     (sinew.view) after every step.
@@ -48,7 +48,7 @@ class Picture:
             self._view.update()
 
     def after_step(self, episode: Any) -> None:
-        """Shows the state."""
+        """Show the present state."""
         if self._mode == "human":
             self.after_reset(episode)
 

@@ -23,7 +23,7 @@ Range = Union[float, Sequence[float]]
 
 
 def unknown(place: str, what: str, name: Any, known: Sequence[str]) -> Error:
-    """An error of kind unknown-name that suggests the nearest of the known names."""
+    """Return an error of kind unknown-name that suggests the most similar known name."""
     near = difflib.get_close_matches(str(name), known, n=1, cutoff=0.5)
     remedy = f"did you mean {near[0]!r}? " if near else ""
     return Error("unknown-name", place, f"there is no {what} {name!r}", f"{remedy}there are: {', '.join(known)}")
@@ -52,7 +52,7 @@ class Task:
     time_limit : float, optional
         Duration of an episode, s, after which it is truncated; by default the task's own.
     observe : str
-        "sensors", or "state", which appends the hidden state: see the task.
+        "sensors", or "state", which adds the hidden state. See the task.
     action : str, optional
         Meaning of the actions, one of `actions`; by default the first.
     material_scale : float or (low, high)
@@ -190,14 +190,14 @@ class Task:
             setattr(actuator, self.kind, value)
 
     def disturb(self, episode: Any) -> None:
-        """Changes the world just before a step."""
+        """Change the environment of the robot just before a step."""
 
     def observation_names(self, robot: Robot) -> list[str]:
         """Name of every number of an observation."""
         raise NotImplementedError
 
     def sense(self, episode: Any, out: np.ndarray) -> None:
-        """Writes an observation into out, (observation size,)."""
+        """Write an observation into out, (observation size,)."""
         self.sense_rows([episode], episode.robot.read(self.observables), out[None])
 
     def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
@@ -212,7 +212,7 @@ class Task:
         ----------
         episodes : list of n Episode
         read : (n, numbers)
-            The `observables` of their robots, side by side.
+            Values of the `observables` of their robots.
         out : (n, observation size)
         """
         raise NotImplementedError
@@ -243,7 +243,7 @@ class Task:
         return len(self.observation_names(robot))
 
     def commands(self, episode: Any, action: np.ndarray) -> np.ndarray:
-        """Commands of the actuators (N, m or N m) for an action in [-1, 1], (actuators,) each."""
+        """Return the actuators' commands (N, m or N m) for an action in [-1, 1]; both are (actuators,)."""
         return self.next_commands(episode.commands, action)
 
     def next_commands(self, commands: np.ndarray, action: np.ndarray) -> np.ndarray:
@@ -254,7 +254,7 @@ class Task:
 
     @classmethod
     def keywords(cls) -> list[str]:
-        """Names of all keyword arguments of the task."""
+        """Return the names of all keyword arguments of the task."""
         found: list[str] = []
         for base in cls.__mro__:
             if "__init__" in vars(base) and base is not object:

@@ -1,4 +1,4 @@
-"""Many environments of one task in one process."""
+"""Many environments of a task in one process."""
 
 from __future__ import annotations
 

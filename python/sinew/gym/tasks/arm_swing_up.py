@@ -91,7 +91,7 @@ class ArmSwingUp(Task):
                 + [f"{name} torque / limit" for name in robot.sim.actuators] + ["tip x / 0.56 m", "tip z / 0.56 m"])  # fmt: skip
 
     def sense_rows(self, episodes: Sequence[Any], read: np.ndarray, out: np.ndarray) -> None:
-        """Writes observations."""
+        """Write observations."""
         out[:, :4] = read[:, :4]
         out[:, 4:8] = read[:, 4:8] / 10.0
         out[:, 8:11] = read[:, 8:11] / self.high

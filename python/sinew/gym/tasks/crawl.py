@@ -133,7 +133,7 @@ class Crawl(ContactTask):
         return names
 
     def sense(self, episode: Any, out: np.ndarray) -> None:
-        """Writes an observation."""
+        """Write an observation."""
         robot, rest = episode.robot, episode.model.rest
         out[:5] = [actuator.pressure for actuator in robot.actuators] / self.high
         out[5:10] = [actuator.volume for actuator in robot.actuators] / rest["volumes"] - 1.0

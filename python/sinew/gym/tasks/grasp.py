@@ -1,4 +1,4 @@
-"""Three soft fingers lift a soft cup."""
+"""Lifting a soft cup with three soft fingers."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ class Grasp(ContactTask):
         return names
 
     def sense(self, episode: Any, out: np.ndarray) -> None:
-        """Writes an observation."""
+        """Write an observation."""
         robot, rest, grips, moved = episode.robot, episode.model.rest, self.grips(episode), self.risen(episode)
         out[0:3] = [actuator.displacement / 0.010 for actuator in robot.actuators]
         out[3:6] = [actuator.tension / 10.0 for actuator in robot.actuators]

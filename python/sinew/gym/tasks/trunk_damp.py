@@ -34,14 +34,14 @@ class TrunkDamp(TrunkTask):
     RATE, GAIN = 0.1, 15.0  # m/s, that observed rates are divided by; N s/m, of the scripted expert
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """Draws the blow."""
+        """Draw the blow."""
         random = episode.random
         turn, size = random.uniform(0.0, 2.0 * np.pi), random.uniform(0.2, 0.4)
         self.push(episode, size * np.array([np.cos(turn), np.sin(turn), 0.0]))
         episode.memory.update(displacements=None)
 
     def disturb(self, episode: Any) -> None:
-        """Ends the blow."""
+        """End the blow."""
         if episode.steps == round(self.BLOW / self.time_step):
             self.push(episode, np.zeros(3))
 
@@ -65,7 +65,7 @@ class TrunkDamp(TrunkTask):
         return self.cable_rates(episode)
 
     def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
-        """Minus the energy in mJ."""
+        """Return minus the energy in mJ."""
         body = episode.robot.body
         energy = body.kinetic_energy + body.strain_energy + body.gravity_energy - episode.model.rest["energy"]
         return -1e3 * energy, False, {"energy": energy}

@@ -38,7 +38,7 @@ class TrunkReach(TrunkTask):
     options = {"goal": 1}
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """Draws the goal."""
+        """Draw the goal."""
         goal = random_goal(episode.random)
         if not self.goal_given(episode, options):
             episode.goal = goal
