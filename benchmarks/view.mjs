@@ -46,7 +46,7 @@ const wire = await bare.evaluate(async ({seconds, slides}) => {
     latest = signals;
     watch?.(signals);
   };
-  socket.send(JSON.stringify({type: 'hello', protocol: 1}));
+  socket.send(JSON.stringify({type: 'hello', protocol: 2}));
   const wait = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
   await wait(1000);
   arrivals = [];

@@ -1,24 +1,24 @@
-# How hard a target is optimised, which system headers it reads precompiled, how many sources are compiled at once.
+# Optimisation level, precompiled headers, and unity builds of targets.
 #
-# Element kernels, factorisations and solvers are worth -O3; the rest is compiled to be built quickly. Tests come with
-# -O1: what they time is nothing. All levels share one -march, so that vectors have one size everywhere.
+# Element kernels, factorisations and solvers need -O3; everything else is compiled to build quickly. Tests use -O1,
+# because they measure no time. All levels share one -march, so vectors have one size everywhere.
 #
-# sinew_optimise(<target> <level>): -O<level> in release builds, in place of -O3.
+# sinew_optimise(<target> <level>): -O<level> in release builds, instead of -O3.
 function(sinew_optimise target level)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O${level}>)
 endfunction()
 
-# sinew_unite(<target> <count>): so many sources are one translation unit, since most of a compiler's time goes into
-# headers: ours, and the templates of the precompiled ones, which each unit instantiates anew.
+# sinew_unite(<target> <count>): combines this number of sources into one translation unit, because most of the compile
+# time goes into headers: ours, and the templates of the precompiled ones, which each unit instantiates again.
 function(sinew_unite target count)
   if(SINEW_UNITY)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${count})
-    # A source within another one counts as a header, where types of an unnamed namespace are suspect.
+    # The compiler treats an included source as a header, in which it warns about types of an unnamed namespace.
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
 endfunction()
 
-# A precompiled header serves targets with the same flags: -fPIC or -fPIE, and one level.
+# A precompiled header can be shared by targets with the same flags: -fPIC or -fPIE, and the optimisation level.
 set(sinew_standard_headers <algorithm> <array> <chrono> <cmath> <filesystem> <functional> <map> <memory> <optional>
     <span> <string> <variant> <vector>)
 
@@ -48,7 +48,7 @@ if(SINEW_PCH)
   endif()
 endif()
 
-# Of a target: its level, so many sources at once, and the target whose precompiled header it reads.
+# Sets the level of a target, the number of sources per unit, and the target whose precompiled header it reuses.
 function(_sinew_build target level count precompiled)
   sinew_optimise(${target} ${level})
   sinew_unite(${target} ${count})
@@ -57,7 +57,7 @@ function(_sinew_build target level count precompiled)
   endif()
 endfunction()
 
-# sinew_build_library(<target> <level>), sinew_build_test(<target>): a level, and the precompiled header for it.
+# sinew_build_library(<target> <level>), sinew_build_test(<target>): sets a level and reuses the precompiled header for it.
 function(sinew_build_library target level)
   _sinew_build(${target} ${level} 10 sinew_precompiled_${level})
 endfunction()
@@ -66,7 +66,7 @@ function(sinew_build_test target)
   _sinew_build(${target} 1 6 sinew_precompiled_test)
 endfunction()
 
-# sinew_build_consumer(<target> <header>...): level 2, and a precompiled header of its own.
+# sinew_build_consumer(<target> <header>...): sets level 2 and creates a precompiled header for the target.
 function(sinew_build_consumer target)
   sinew_optimise(${target} 2)
   sinew_unite(${target} 6)

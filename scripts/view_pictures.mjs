@@ -92,6 +92,22 @@ await draw('docs/images/view_joints.png', [join(root, 'examples/rigid/slider_cra
   await page.waitForFunction(() => window.sinewView.state().step === 140);
   await page.getByText('knee', {exact: true}).click();
 });
+await draw('docs/images/view_section.png', [join(root, 'examples/finger/module.yaml')], {}, async (page) => {
+  await colour(page, 'von_mises_stress');
+  await step(page, 260);
+  await page.selectOption('[aria-label="Section across"]', {label: 'section at y'});
+  await page.getByRole('button', {name: 'Show the other side of the section'}).click();
+  await page.waitForFunction(() => window.sinewView.section(0)?.triangles > 0);
+  await page.keyboard.press('w');
+  await drawn(page);
+  const [x, y] = await page.evaluate(() => {
+    const {min, max} = window.sinewView.box();
+    return window.sinewView.screen(min.x + 0.3 * (max.x - min.x), (min.y + max.y) / 2, min.z + 0.55 * (max.z - min.z));
+  });
+  await page.mouse.click(x, y);
+  await page.locator('#picked').getByRole('button', {name: 'Values of the element (n)'}).click();
+  await page.locator('#picked').getByText(', element ').waitFor();
+});
 await draw('docs/images/contact_lift.png', [join(root, 'examples/contact/lift.yaml')], {}, async (page) => {
   await page.selectOption('[aria-label="Signals to plot"]', 'contact');
   await step(page, 300);

@@ -4,8 +4,8 @@
     validation/run.py [CASE...]         all cases by default; --list names them
     make validate                       builds first
 
-Needs the Python package: build/release/python is taken unless `sinew` can be imported already.
-Exit code: 0 when every check held, known misses aside; 1 when one was missed or a case stopped by an
+Needs the Python package: build/release/python is used unless `sinew` can already be imported.
+Exit code: 0 if every check passed, apart from known misses; 1 if one was missed or a case stopped with an
 error; 2 for wrong arguments. The scorecard is written in any case, unless only some cases ran.
 """
 
@@ -41,7 +41,7 @@ def case_names() -> list[str]:
 
 
 def run_case(name: str, images: pathlib.Path) -> Result:
-    """One case; what it raises is in the result."""
+    """Runs one case. An exception is stored in the result."""
     result = Result(name, title=name)
     start = time.monotonic()
     try:
@@ -58,12 +58,12 @@ def run_case(name: str, images: pathlib.Path) -> Result:
 
 
 def run_all(names: list[str], images: pathlib.Path, jobs: int, resume: bool, every_check: bool) -> list[Result]:
-    """Runs cases in parallel, the longest first, and reports each at its end. Resumed: without finished cases."""
+    """Runs cases in parallel, the longest first, and reports each when it ends. With `resume`, skips finished cases."""
     cost = {name: getattr(importlib.import_module(f"cases.{name}"), "COST", 1) for name in names}
     ended = {name: kept.find(name, images) for name in names} if resume else {}
     results = {name: result for name, result in ended.items() if result is not None}
     if resume:
-        print(f"{len(results)} of {len(names)} cases were finished before", flush=True)
+        print(f"{len(results)} of {len(names)} cases had finished before", flush=True)
     context = multiprocessing.get_context("spawn")
     with concurrent.futures.ProcessPoolExecutor(jobs, mp_context=context) as pool:
         pending = {pool.submit(run_case, name, images): name
@@ -78,12 +78,13 @@ def run_all(names: list[str], images: pathlib.Path, jobs: int, resume: bool, eve
 
 def tell(result: Result, done: int, count: int, every_check: bool) -> None:
     """Prints a line for a finished case, and its misses or all of its checks."""
-    state = "stopped by an error" if result.failure else scorecard.totals([result])
+    state = "stopped with an error" if result.failure else scorecard.totals([result])
     print(f"[{done}/{count}] {result.name} ({result.seconds:.1f} s): {state}", flush=True)
     for check in result.checks:
         if every_check or check.verdict in (MISSED, KNOWN):
-            print(f"    {check.verdict.replace('*', '')}: {check.quantity}: {check.ours}, reference {check.reference}, "
-                  f"error {check.error}, tolerance {check.tolerance}", flush=True)
+            against = f", error {check.error}, tolerance {check.tolerance}" if check.tolerance else ""
+            print(f"    {check.verdict.replace('*', '')}: {check.quantity}: {check.ours}, reference {check.reference}"
+                  f"{against}", flush=True)
     if result.failure:
         print("    " + result.failure.strip().replace("\n", "\n    "), flush=True)
 

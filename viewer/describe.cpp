@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <utility>
@@ -16,16 +15,16 @@
 #include "sinew/constraint/joint.hpp"
 #include "sinew/constraint/probe.hpp"
 #include "sinew/constraint/shape_contact.hpp"
-#include "sinew/fem/has_material.hpp"
-#include "sinew/mechanics/body.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/fem/solid_elements.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
-#include "sinew/mesh/topology.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/model.hpp"
-#include "sinew/sim/row_efforts.hpp"
 #include "sinew/sim/sensor_source.hpp"
-#include "sinew/sim/simulation.hpp"
+
+#include "fields.hpp"
 
 namespace sinew::viewer {
 
@@ -167,7 +166,7 @@ std::string group_of(const sim::Observable& observable) {
     case sim::ObservableKind::sensor:
       return unit.empty() ? "sensor" : "sensor " + unit;
     case sim::ObservableKind::estimator:
-      return "estimate";
+      return unit == "N" ? "estimate" : "estimate " + unit;
     case sim::ObservableKind::contact:
       return unit == "N" ? "contact" : unit == "m" ? "gap" : "touching";
     case sim::ObservableKind::joint:
@@ -297,13 +296,43 @@ Json joint_json(const SignalKeys& keys, const sim::Model& model, int index) {
           {"signals", keys.of(sim::ObservableKind::joint, joint.name)}};
 }
 
-Json body_json(const mechanics::BodyModel& model, const DisplaySurface& surface) {
+std::string material_text(const fem::MaterialRegion& region) {
+  const auto& energy = region.hyperelastic;
+  const char* law = energy && energy->saint_venant_shear > 0.0 ? "Saint Venant-Kirchhoff"
+                    : energy && energy->has_memory()           ? "hyperelastic with memory"
+                    : energy                                   ? "hyperelastic"
+                    : region.law == material::Law::linear      ? "linear"
+                                                               : "corotational";
+  return fmt::format("{}, E = {:.4g} kPa", law, 1e-3 * region.young_modulus());
+}
+
+// In the order of the regions: the body's own, where elements are left to it, then its parts.
+Json materials_json(const scene::Robot& robot, const mechanics::BodyModel& model) {
+  Json list = Json::array();
+  const auto* own = mechanics::as<const fem::HasElements>(model);
+  if (own == nullptr) return list;
+  const auto& regions = own->settings().elements.regions;
+  const auto body =
+      std::ranges::find(robot.description.bodies, model.name(), &scene::BodyDescription::name);
+  const std::size_t parts =
+      body == robot.description.bodies.end() ? 0 : std::min(body->parts.size(), regions.size());
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    const std::size_t before = regions.size() - parts;
+    const std::string part = r < before ? "" : body->parts[r - before].name + ": ";
+    list.push_back(part + material_text(regions[r]));
+  }
+  return list;
+}
+
+Json body_json(const scene::Robot& robot, const mechanics::BodyModel& model,
+               const DisplaySurface& surface) {
   const mesh::Mesh& mesh = model.mesh();
   return {{"name", model.name()},
           {"vertices", surface.nodes.size()},
           {"triangles", surface.triangles.size() / 3},
           {"nodes", mesh.nodes.rows()},
-          {"elements", mesh.tetrahedra.size() + mesh.hexahedra.size()}};
+          {"elements", mesh.tetrahedra.size() + mesh.hexahedra.size()},
+          {"materials", materials_json(robot, model)}};
 }
 
 Json notices_json(const std::vector<Notice>& notices) {
@@ -379,68 +408,23 @@ bool is_signal(const sim::Observable& observable) {
   }
 }
 
-const std::vector<FieldInfo>& list_fields() {
-  static const std::vector<FieldInfo> list = [] {
-    std::vector<FieldInfo> all = {
-        {"displacement", "Displacement", "m", "distance from the place at rest",
-         [](const mechanics::Body& body, const sim::Simulation&, const fem::NodalMean*) {
-           return fem::displacement_field(body);
-         }}};
-    const auto add = [&](FieldInfo info, const auto& values) {
-      info.values = [values](const mechanics::Body& body, const sim::Simulation& simulation,
-                             const fem::NodalMean* mean) {
-        const auto* own = mechanics::as<const fem::HasMaterial>(body);
-        return own == nullptr
-                   ? std::vector<double>(static_cast<std::size_t>(body.positions().rows()), 0.0)
-                   : values(*own, simulation, *mean);
-      };
-      all.push_back(std::move(info));
-    };
-    for (const fem::ElementFieldInfo& info : fem::element_fields()) {
-      add({info.name, info.label, info.unit, info.description, {}},
-          [field = info.field](const fem::HasMaterial& body, const sim::Simulation&,
-                               const fem::NodalMean& mean) {
-            return mean(fem::element_field(body, field));
-          });
-    }
-    add({"actuator_force", "Actuators' force", "N", "force of the actuators on each node", {}},
-        [](const fem::HasMaterial& body, const sim::Simulation& simulation, const fem::NodalMean&) {
-          return fem::row_force_field(body, sim::split_efforts(simulation).actuation);
-        });
-    return all;
-  }();
-  return list;
-}
-
-std::vector<double> fields_at(const mechanics::Body& body, const sim::Simulation& simulation,
-                              NodeId node) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const Points moved = body.positions().row(node) - body.model().mesh().nodes.row(node);
-  std::vector<double> values = {moved.norm()};
-  if (const auto* own = mechanics::as<const fem::HasMaterial>(body)) {
-    std::ranges::copy(fem::node_fields(*own, node), std::back_inserter(values));
-    const std::vector<double> forces =
-        fem::row_force_field(*own, sim::split_efforts(simulation).actuation);
-    values.push_back(forces[static_cast<std::size_t>(node)]);
+DisplaySurface display_surface(const mechanics::BodyModel& body) {
+  const mesh::Mesh& mesh = body.mesh();
+  DisplaySurface result{mesh::outer_surface(mesh)};
+  result.body = body.name();
+  result.node_count = mesh.node_count();
+  result.element_count = fem::ElementList(mesh).count();
+  for (const NodeId node : result.nodes) {
+    for (int c = 0; c < 3; ++c) result.rest.push_back(static_cast<float>(mesh.nodes(node, c)));
   }
-  values.resize(list_fields().size(), kNone);
-  return values;
-}
-
-DisplaySurface surface_of(const mesh::Mesh& mesh) {
-  DisplaySurface result;
-  std::vector<int> vertex(static_cast<std::size_t>(mesh.nodes.rows()), -1);
-  for (const mesh::Triangle& triangle : mesh::boundary_surface(mesh).triangles) {
-    for (const NodeId node : triangle) {
-      int& number = vertex[static_cast<std::size_t>(node)];
-      if (number < 0) {
-        number = static_cast<int>(result.nodes.size());
-        result.nodes.push_back(node);
-        for (int c = 0; c < 3; ++c) {
-          result.rest.push_back(static_cast<float>(mesh.nodes(node, c)));
-        }
-      }
-      result.triangles.push_back(static_cast<std::uint32_t>(number));
+  result.inside = mesh::interior(mesh, result);
+  const auto* own = mechanics::as<const fem::HasElements>(body);
+  if (own == nullptr) return result;
+  result.materials.assign(mesh.tetrahedra.size() + mesh.hexahedra.size(), 0);
+  const auto& regions = own->settings().elements.regions;
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    for (const NodeId element : regions[r].elements) {
+      result.materials[static_cast<std::size_t>(element)] = static_cast<int>(r);
     }
   }
   return result;
@@ -451,9 +435,8 @@ Description describe(const scene::Robot& robot, const sim::Observables& observab
   Description result;
   Json bodies = Json::array();
   for (const auto& body : model.bodies()) {
-    result.surfaces.push_back(surface_of(body.mesh()));
-    result.surfaces.back().body = body.name();
-    bodies.push_back(body_json(body, result.surfaces.back()));
+    result.surfaces.push_back(display_surface(body));
+    bodies.push_back(body_json(robot, body, result.surfaces.back()));
   }
   Json actuators = Json::array(), effectors = Json::array(), probes = Json::array();
   for (std::size_t i = 0; i < model.actuators().size(); ++i) {

@@ -17,7 +17,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are sent as they lie in memory");
 
 constexpr std::uint32_t kMagic = 0x31574e53;  // "SNW1"
-enum class Kind : std::uint16_t { surface = 1, frame = 2 };
+enum class Kind : std::uint16_t { surface = 1, frame, interior };
 enum class Section : std::uint16_t {
   positions = 1,
   field,
@@ -29,7 +29,9 @@ enum class Section : std::uint16_t {
   contacts,
   joints,
   pick,
-  timeline
+  timeline,
+  inner_positions,
+  inner_field
 };
 
 /// Appends numbers to bytes.
@@ -66,27 +68,40 @@ class Writer {
   std::vector<std::byte>& bytes_;
 };
 
+void put_field(Section kind, std::size_t body, int field,
+               const std::vector<std::vector<float>>& fields, Writer& writer) {
+  if (field < 0 || static_cast<std::size_t>(field) >= fields.size()) return;
+  const std::vector<float>& values = fields[static_cast<std::size_t>(field)];
+  if (values.empty()) return;
+  writer.section(kind, body, sizeof(std::uint32_t) + values.size() * sizeof(float));
+  writer.put(static_cast<std::uint32_t>(field));
+  writer.put(std::span<const float>(values));
+}
+
 void put_bodies(const Frame& frame, const FrameChoice& choice, Writer& writer) {
   for (std::size_t b = 0; b < frame.bodies.size(); ++b) {
     const BodyFrame& body = frame.bodies[b];
     if (choice.shape) writer.section(Section::positions, b, body.positions);
-    if (choice.field < 0 || static_cast<std::size_t>(choice.field) >= body.fields.size()) continue;
-    const std::vector<float>& field = body.fields[static_cast<std::size_t>(choice.field)];
-    if (field.empty()) continue;
-    writer.section(Section::field, b, sizeof(std::uint32_t) + field.size() * sizeof(float));
-    writer.put(static_cast<std::uint32_t>(choice.field));
-    writer.put(std::span<const float>(field));
+    put_field(Section::field, b, choice.field, body.fields, writer);
+    if (!choice.inside) continue;
+    if (choice.shape) writer.section(Section::inner_positions, b, body.inner_positions);
+    put_field(Section::inner_field, b, choice.field, body.inner_fields, writer);
   }
 }
 
-void put_pick(const Frame& frame, const SurfaceVertex& wanted, Writer& writer) {
+void put_pick(const Frame& frame, const Picked& wanted, Writer& writer) {
   const auto pick = std::ranges::find(frame.picks, wanted, &PickFrame::at);
   if (pick == frame.picks.end()) return;
-  writer.section(Section::pick, 0, 3 * sizeof(std::uint32_t) + pick->fields.size() * sizeof(float));
-  writer.put(static_cast<std::uint32_t>(wanted.body));
-  writer.put(static_cast<std::uint32_t>(wanted.vertex));
-  writer.put(static_cast<std::uint32_t>(pick->node));
-  writer.put(std::span<const float>(pick->fields));
+  const std::size_t floats = 1 + 2 * pick->positions.size() + pick->fields.size();
+  writer.section(Section::pick, 0, 5 * sizeof(std::uint32_t) + floats * sizeof(float));
+  for (const int number : {wanted.body, static_cast<int>(wanted.kind), wanted.number,
+                           pick->material, static_cast<int>(pick->positions.size() / 3)}) {
+    writer.put(static_cast<std::uint32_t>(number));
+  }
+  writer.put(pick->volume);
+  for (const auto* values : {&pick->positions, &pick->rest, &pick->fields}) {
+    writer.put(std::span<const float>(*values));
+  }
 }
 
 void put_timeline(const TimelineFrame& timeline, Writer& writer) {
@@ -100,23 +115,51 @@ void put_timeline(const TimelineFrame& timeline, Writer& writer) {
 
 }  // namespace
 
-std::vector<std::byte> encode_surface(const DisplaySurface& surface, int body,
-                                      std::uint16_t generation) {
-  constexpr std::size_t kMaxFloats = std::numeric_limits<std::uint32_t>::max() / sizeof(float);
-  if (surface.rest.size() > kMaxFloats || surface.triangles.size() > kMaxFloats) {
+namespace {
+
+// Header of a message about a body: two counts, and room for the rest.
+void begin_message(Writer& writer, Kind kind, int body, std::size_t first, std::size_t second,
+                   std::uint16_t generation) {
+  constexpr std::size_t kMaxCount = std::numeric_limits<std::uint32_t>::max() / 16;
+  if (std::max(first, second) > kMaxCount) {
     throw Error(ErrorKind::size_limit, {.item = "surface"},
-                fmt::format("the surface has {} triangles", surface.triangles.size() / 3),
+                fmt::format("the body has {} triangles or tetrahedra", second),
                 "show a coarser mesh");
   }
+  writer.header(kind, generation);
+  writer.put(static_cast<std::uint32_t>(body));
+  writer.put(static_cast<std::uint32_t>(first));
+  writer.put(static_cast<std::uint32_t>(second));
+  writer.put(std::uint32_t{0});
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_surface(const DisplaySurface& surface, int body,
+                                      std::uint16_t generation) {
   std::vector<std::byte> bytes;
   Writer writer(bytes);
-  writer.header(Kind::surface, generation);
-  writer.put(static_cast<std::uint32_t>(body));
-  writer.put(static_cast<std::uint32_t>(surface.rest.size() / 3));
-  writer.put(static_cast<std::uint32_t>(surface.triangles.size() / 3));
-  writer.put(std::uint32_t{0});
+  begin_message(writer, Kind::surface, body, surface.nodes.size(), surface.elements.size(),
+                generation);
   writer.put(std::span<const float>(surface.rest));
   writer.put(std::span<const std::uint32_t>(surface.triangles));
+  writer.put(std::span<const NodeId>(surface.nodes));
+  writer.put(std::span<const std::int32_t>(surface.elements));
+  return bytes;
+}
+
+std::vector<std::byte> encode_interior(const DisplaySurface& surface, int body,
+                                       std::uint16_t generation) {
+  const mesh::Interior& inside = surface.inside;
+  const std::size_t vertices = inside.nodes.size() + inside.hexahedra.size();
+  std::vector<std::byte> bytes;
+  Writer writer(bytes);
+  begin_message(writer, Kind::interior, body, vertices, inside.elements.size(), generation);
+  writer.put(std::span<const NodeId>(inside.nodes));
+  const std::vector<NodeId> middles(inside.hexahedra.size(), -1);
+  writer.put(std::span<const NodeId>(middles));
+  writer.put(std::span<const std::uint32_t>(inside.tetrahedra));
+  writer.put(std::span<const std::int32_t>(inside.elements));
   return bytes;
 }
 

@@ -11,15 +11,17 @@
 #include <vector>
 
 #include "sinew/core/types.hpp"
+#include "sinew/mesh/outer_surface.hpp"
 
 namespace sinew::viewer {
 
-/// The surface of a body, which alone is sent.
-struct DisplaySurface {
-  std::string body;                      ///< its name
-  std::vector<NodeId> nodes;             ///< (v,) mesh node of each vertex
-  std::vector<float> rest;               ///< (3 v,) m
-  std::vector<std::uint32_t> triangles;  ///< (3 t,) vertices, outward by the right-hand rule
+/// What is drawn of a body: its outside, and its inside to whoever asks for it.
+struct DisplaySurface : mesh::OuterSurface {
+  std::string body;         ///< its name
+  std::vector<float> rest;  ///< (3 v,) m
+  mesh::Interior inside;
+  int node_count = 0, element_count = 0;  ///< of the mesh
+  std::vector<int> materials;  ///< (elements,) which of the body's each is of; empty: none
 };
 
 /// A polyline of every frame's Frame::cables.
@@ -49,6 +51,9 @@ struct Description {
 struct BodyFrame {
   std::vector<float> positions;            ///< (3 v,) m
   std::vector<std::vector<float>> fields;  ///< (fields, v); one that nobody wants is empty
+  /// Of the inner vertices, as mesh::Interior numbers them; empty where nobody wants them.
+  std::vector<float> inner_positions;            ///< (3 i,) m
+  std::vector<std::vector<float>> inner_fields;  ///< (fields, i)
 };
 
 /// The mouse's spring.
@@ -58,17 +63,30 @@ struct PullFrame {
   double force = 0.0;                ///< N
 };
 
-/// A vertex of a body's surface.
-struct SurfaceVertex {
-  int body = 0, vertex = 0;  ///< positions in Description::surfaces and in Surface::nodes
-  auto operator<=>(const SurfaceVertex&) const = default;
+enum class PickKind : std::uint8_t { node, element };
+/// A node or an element of a body.
+struct Picked {
+  int body = 0;  ///< position in Description::surfaces
+  PickKind kind = PickKind::node;
+  int number = 0;  ///< of the mesh's nodes, or of its tetrahedra, then hexahedra
+  auto operator<=>(const Picked&) const = default;
 };
 
-/// What was asked of a node.
+/// What was asked of it.
 struct PickFrame {
-  SurfaceVertex at;
-  NodeId node = 0;            ///< of the mesh
-  std::vector<float> fields;  ///< (fields,) there; NaN where the body has no such field
+  Picked at;
+  int material = 0;              ///< of an element: which of the body's
+  float volume = 0.0F;           ///< m^3 at rest, of an element of a material; else NaN
+  std::vector<float> positions;  ///< (3 k,) m, of the node or of the element's nodes
+  std::vector<float> rest;       ///< (3 k,) m
+  std::vector<float> fields;     ///< (fields,) NaN where there is none
+};
+
+/// What is wanted beside positions on surfaces.
+struct FrameWishes {
+  std::vector<bool> fields;   ///< which of Description::fields
+  std::vector<Picked> picks;  ///< what to tell the values of
+  bool inside = false;        ///< positions and fields of inner vertices
 };
 
 /// The moments that a run can go back to; see Timeline.
@@ -106,13 +124,19 @@ struct Frame {
 std::vector<std::byte> encode_surface(const DisplaySurface& surface, int body,
                                       std::uint16_t generation);
 
+/// Bytes of what is inside: message kind 3. Throws as encode_surface() does.
+/// @param surface,body,generation as there.
+std::vector<std::byte> encode_interior(const DisplaySurface& surface, int body,
+                                       std::uint16_t generation);
+
 /// What a connection already has or does not want.
 struct FrameChoice {
   std::uint16_t generation = 0;
   std::uint32_t sequence = 0;  ///< counts the frames sent to this connection
   bool shape = true;           ///< false: positions have not changed since the last frame sent
   int field = -1;              ///< in Description::fields; -1: none
-  std::optional<SurfaceVertex> pick;
+  std::optional<Picked> pick;
+  bool inside = false;
 };
 
 /// Bytes of a frame: message kind 2.

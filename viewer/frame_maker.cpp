@@ -14,6 +14,7 @@
 #include "sinew/sim/sensor_source.hpp"
 #include "sinew/sim/state.hpp"
 
+#include "fields.hpp"
 #include "joint_marks.hpp"
 
 namespace sinew::viewer {
@@ -59,22 +60,41 @@ void FrameMaker::fill_signals(Frame& frame) {
   }
 }
 
-void FrameMaker::fill_body(std::size_t index, const FieldChoice& wanted, BodyFrame& frame) {
+void FrameMaker::fill_body(std::size_t index, const FrameWishes& wishes, BodyFrame& frame) {
   const mechanics::Body& body = simulation_.body(static_cast<int>(index));
   const DisplaySurface& surface = description_.surfaces[index];
+  const auto put_position = [](const auto& position, std::vector<float>& list) {
+    for (int c = 0; c < 3; ++c) list.push_back(static_cast<float>(position[c]));
+  };
   frame.positions.reserve(3 * surface.nodes.size());
-  for (const NodeId node : surface.nodes) {
-    for (int c = 0; c < 3; ++c) {
-      frame.positions.push_back(static_cast<float>(body.positions()(node, c)));
+  for (const NodeId node : surface.nodes) put_position(body.positions().row(node), frame.positions);
+  if (wishes.inside) {
+    for (const NodeId node : surface.inside.nodes) {
+      put_position(body.positions().row(node), frame.inner_positions);
+    }
+    for (const mesh::Hexahedron& nodes : surface.inside.hexahedra) {
+      Vector3 sum = Vector3::Zero();
+      for (const NodeId node : nodes) sum += body.positions().row(node).transpose();
+      put_position(Vector3(sum / static_cast<double>(nodes.size())), frame.inner_positions);
     }
   }
-  frame.fields.resize(wanted.size());
-  for (std::size_t f = 0; f < wanted.size(); ++f) {
-    if (!wanted[f]) continue;
+  frame.fields.resize(wishes.fields.size());
+  frame.inner_fields.resize(wishes.fields.size());
+  for (std::size_t f = 0; f < wishes.fields.size(); ++f) {
+    if (!wishes.fields[f]) continue;
     const std::vector<double> nodal =
         list_fields()[f].values(body, simulation_, means_[index].get());
-    for (const NodeId node : surface.nodes) {
-      frame.fields[f].push_back(static_cast<float>(nodal[static_cast<std::size_t>(node)]));
+    const auto at = [&nodal](NodeId node) { return nodal[static_cast<std::size_t>(node)]; };
+    const auto put = [](std::vector<float>& list, double value) {
+      list.push_back(static_cast<float>(value));
+    };
+    for (const NodeId node : surface.nodes) put(frame.fields[f], at(node));
+    if (!wishes.inside) continue;
+    for (const NodeId node : surface.inside.nodes) put(frame.inner_fields[f], at(node));
+    for (const mesh::Hexahedron& nodes : surface.inside.hexahedra) {
+      double sum = 0.0;
+      for (const NodeId node : nodes) sum += at(node);
+      put(frame.inner_fields[f], sum / static_cast<double>(nodes.size()));
     }
   }
 }
@@ -140,17 +160,7 @@ void FrameMaker::fill_contacts(Frame& frame) {
   }
 }
 
-PickFrame FrameMaker::picked(const SurfaceVertex& at) const {
-  const DisplaySurface& surface = description_.surfaces[static_cast<std::size_t>(at.body)];
-  PickFrame pick{at, surface.nodes[static_cast<std::size_t>(at.vertex)], {}};
-  for (const double value : fields_at(simulation_.body(at.body), simulation_, pick.node)) {
-    pick.fields.push_back(static_cast<float>(value));
-  }
-  return pick;
-}
-
-std::shared_ptr<Frame> FrameMaker::make(const FieldChoice& wanted,
-                                        const std::vector<SurfaceVertex>& picks) {
+std::shared_ptr<Frame> FrameMaker::make(const FrameWishes& wishes) {
   observables_.refresh();
   auto frame = std::make_shared<Frame>();
   frame->step = static_cast<std::uint64_t>(simulation_.steps());
@@ -158,11 +168,14 @@ std::shared_ptr<Frame> FrameMaker::make(const FieldChoice& wanted,
   frame->hash = simulation_.state().hash();
   fill_signals(*frame);
   frame->bodies.resize(description_.surfaces.size());
-  for (std::size_t b = 0; b < frame->bodies.size(); ++b) fill_body(b, wanted, frame->bodies[b]);
+  for (std::size_t b = 0; b < frame->bodies.size(); ++b) fill_body(b, wishes, frame->bodies[b]);
   fill_points(*frame);
   fill_contacts(*frame);
   frame->joints = joint_marks(simulation_);
-  for (const SurfaceVertex& at : picks) frame->picks.push_back(picked(at));
+  for (const Picked& at : wishes.picks) {
+    const DisplaySurface& surface = description_.surfaces[static_cast<std::size_t>(at.body)];
+    frame->picks.push_back(values_of(simulation_, at, surface.materials));
+  }
   return frame;
 }
 

@@ -21,16 +21,14 @@ class FrameMaker {
   FrameMaker(const sim::Simulation& simulation, sim::Observables& observables,
              const Description& description);
 
-  /// What is to be seen of the robot now. @param wanted which fields are. @param picks nodes whose
-  /// values are.
-  std::shared_ptr<Frame> make(const FieldChoice& wanted, const std::vector<SurfaceVertex>& picks);
+  /// What is to be seen of the robot now. @param wishes beside positions.
+  std::shared_ptr<Frame> make(const FrameWishes& wishes);
 
  private:
   void fill_signals(Frame& frame);
-  void fill_body(std::size_t index, const FieldChoice& wanted, BodyFrame& frame);
+  void fill_body(std::size_t index, const FrameWishes& wishes, BodyFrame& frame);
   void fill_points(Frame& frame);
   void fill_contacts(Frame& frame);
-  PickFrame picked(const SurfaceVertex& at) const;
 
   /// Where a contact's numbers are among the observables.
   struct ContactPlaces {

@@ -63,7 +63,7 @@ void HttpConnection::on_read(beast::error_code error) {
   if (error == http::error::header_limit) {
     return refuse(http::status::request_header_fields_too_large, "the request is too long");
   }
-  if (error) return refuse(http::status::bad_request, "this is no request that is understood");
+  if (error) return refuse(http::status::bad_request, "this request is not understood");
   answer();
 }
 

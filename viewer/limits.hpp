@@ -25,9 +25,6 @@ inline constexpr std::size_t kQueuedText = 256 * 1024;  ///< bytes not yet taken
 inline constexpr std::size_t kPendingRequests = 256;    ///< of one view, not yet answered
 inline constexpr std::size_t kRecordedRows = std::size_t{128}
                                              << 20;  ///< bytes of run.csv's numbers
-inline constexpr std::size_t kRecordedMotion = std::size_t{128}
-                                               << 20;  ///< bytes of motion.glb's positions
-inline constexpr std::size_t kMotionFrames = 600;      ///< beyond it every second one is dropped
 inline constexpr std::size_t kTimelineBytes = std::size_t{128} << 20;  ///< of states to go back to
 inline constexpr double kTimelineSeconds = 60.0;  ///< simulated; how far a run can go back
 inline constexpr std::chrono::milliseconds kStatusInterval{100};

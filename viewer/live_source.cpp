@@ -51,9 +51,8 @@ bool LiveSource::advance() {
   return true;
 }
 
-std::shared_ptr<const Frame> LiveSource::frame(const FieldChoice& wanted, double real_time_factor,
-                                               const std::vector<SurfaceVertex>& picks) {
-  std::shared_ptr<Frame> frame = state_.frame(wanted, real_time_factor, picks);
+std::shared_ptr<const Frame> LiveSource::frame(const FrameWishes& wishes, double real_time_factor) {
+  std::shared_ptr<Frame> frame = state_.frame(wishes, real_time_factor);
   if (!timeline_.empty()) frame->timeline = timeline_.describe(time());
   return frame;
 }

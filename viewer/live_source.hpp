@@ -55,8 +55,7 @@ class LiveSource : public SourceThread {
   void handle(const Request& request) override;
   void require_ready() const override;
   void begin() override { timeline_.keep(state_.moment()); }
-  std::shared_ptr<const Frame> frame(const FieldChoice& wanted, double real_time_factor,
-                                     const std::vector<SurfaceVertex>& picks) override;
+  std::shared_ptr<const Frame> frame(const FrameWishes& wishes, double real_time_factor) override;
   std::string status_members() const override;
 
   RobotState& state() { return state_; }

@@ -75,12 +75,12 @@ bool is_utf8(std::string_view text) {
 class Fields {
  public:
   explicit Fields(Json object) : object_(std::move(object)) {
-    if (!object_.is_object()) fail(ErrorKind::wrong_type, "message", "it is no JSON object");
+    if (!object_.is_object()) fail(ErrorKind::wrong_type, "message", "it is not a JSON object");
   }
 
   std::string text(const char* key) {
     const Json value = take(key);
-    if (!value.is_string()) fail(ErrorKind::wrong_type, key, "this is no text");
+    if (!value.is_string()) fail(ErrorKind::wrong_type, key, "this is not a text");
     auto result = value.get<std::string>();
     if (result.size() > kLongestName) fail(ErrorKind::size_limit, key, "this text is too long");
     return result;
@@ -100,13 +100,13 @@ class Fields {
   std::int64_t whole(const char* key, double least, double most) {
     const double value = number(key, least, most);
     if (value != std::floor(value)) {
-      fail(ErrorKind::wrong_type, key, fmt::format("{} is no whole number", value));
+      fail(ErrorKind::wrong_type, key, fmt::format("{} is not a whole number", value));
     }
     return static_cast<std::int64_t>(value);
   }
   Vector3 vector(const char* key, double most = kFarthest) {
     const Json value = take(key);
-    if (!value.is_array()) fail(ErrorKind::wrong_type, key, "this is no list");
+    if (!value.is_array()) fail(ErrorKind::wrong_type, key, "this is not a list");
     if (value.size() != 3) {
       fail(ErrorKind::wrong_length, key, fmt::format("{} numbers in place of 3", value.size()));
     }
@@ -137,7 +137,7 @@ class Fields {
     return value;
   }
   static double in_range(const char* key, const Json& value, double least, double most) {
-    if (!value.is_number()) fail(ErrorKind::wrong_type, key, "this is no number");
+    if (!value.is_number()) fail(ErrorKind::wrong_type, key, "this is not a number");
     const auto result = value.get<double>();
     if (!std::isfinite(result)) fail(ErrorKind::not_finite, key, "this number is not finite");
     if (result < least || result > most) {
@@ -156,7 +156,7 @@ Pull read_pull(Fields& fields) {
   const Vector3 vertices = fields.vector("vertices", kLargestIndex);
   for (int k = 0; k < 3; ++k) {
     if (vertices[k] < 0 || vertices[k] != std::floor(vertices[k])) {
-      fail(ErrorKind::wrong_type, "vertices", "these are no vertex numbers");
+      fail(ErrorKind::wrong_type, "vertices", "these are not vertex numbers");
     }
     pull.vertices[static_cast<std::size_t>(k)] = static_cast<int>(vertices[k]);
   }
@@ -170,10 +170,14 @@ Pull read_pull(Fields& fields) {
 }
 
 Pick read_pick(Fields& fields) {
-  const std::optional<std::string> body = fields.text_or_null("body");
-  const auto vertex = static_cast<int>(fields.whole("vertex", 0, kLargestIndex));
-  if (!body) return {};
-  return {PickedVertex{*body, vertex}};
+  Pick pick{.body = fields.text_or_null("body")};
+  const std::string kind = fields.text("kind");
+  if (kind != "node" && kind != "element") {
+    fail(ErrorKind::unknown_choice, "kind", fmt::format("'{}' is neither node nor element", kind));
+  }
+  pick.kind = kind == "node" ? PickKind::node : PickKind::element;
+  pick.number = static_cast<int>(fields.whole("number", 0, kLargestIndex));
+  return pick;
 }
 
 SetCommand read_command(Fields& fields) {
@@ -221,6 +225,7 @@ Request read_request(const std::string& type, Fields& fields) {
   if (type == "gallery") return ShowGallery{};
   if (type == "field") return ChooseField{fields.text_or_null("name")};
   if (type == "pick") return read_pick(fields);
+  if (type == "inside") return ShowInside{fields.truth("on")};
   if (type == "ready") return Ready{static_cast<int>(fields.whole("generation", 0, 65535))};
   if (type == "drive") return DriveRequest{fields.truth("on")};
   if (type == "ping") return Ping{};

@@ -13,10 +13,12 @@
 #include "sinew/core/types.hpp"
 #include "sinew/sim/actuator.hpp"
 
+#include "frame.hpp"
+
 namespace sinew::viewer {
 
 /// Version of the protocol; a page of another version is told to reload.
-inline constexpr int kProtocolVersion = 1;
+inline constexpr int kProtocolVersion = 2;
 /// Longest message of a browser, bytes.
 inline constexpr std::size_t kLongestMessage = 4096;
 /// Most steps that one `step` may ask for.
@@ -67,14 +69,16 @@ struct Release {};
 struct Ready {
   int generation = 0;  ///< of the robot that it shows, as in the scene message
 };
-/// A vertex of a body's surface.
-struct PickedVertex {
-  std::string body;
-  int vertex = 0;
-};
-/// The node whose values this connection wants with every frame. None: no more.
+/// The node or the element whose values this connection wants with every frame. No body: no more.
 struct Pick {
-  std::optional<PickedVertex> vertex;
+  std::optional<std::string> body;
+  PickKind kind = PickKind::node;
+  int number = 0;
+};
+/// Whether this connection wants what is inside of bodies: once how elements lie, and with every
+/// frame positions and fields.
+struct ShowInside {
+  bool on = false;
 };
 /// Begins a recording anew, or ends it.
 struct Record {
@@ -103,7 +107,7 @@ struct Ping {};
 
 using Request = std::variant<Hello, Play, Pause, Step, Reset, Settle, Speed, SetCommand,
                              ChooseController, SetTarget, Pull, Release, Record, Seek, Open,
-                             ShowGallery, ChooseField, Pick, Ready, DriveRequest, Ping>;
+                             ShowGallery, ChooseField, Pick, ShowInside, Ready, DriveRequest, Ping>;
 
 /// A request and the number by which its reply is told from others.
 struct Message {

@@ -28,7 +28,8 @@ void Playback::check(const RecordedState& recorded) const {
     }
     if (one.words.empty()) continue;
     for (const double number : numbers) {
-      if (one.word(number).empty()) refuse(fmt::format("{} is recorded, which is no word", number));
+      if (one.word(number).empty())
+        refuse(fmt::format("{} is recorded, which does not stand for a word", number));
     }
   }
 }

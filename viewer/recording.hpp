@@ -6,15 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "sinew/record/glb.hpp"
+#include "sinew/record/motion_recorder.hpp"
 
 #include "frame.hpp"
 
 namespace sinew::viewer {
 
-/// Keeps every step's numbers, and positions thirty times a simulated second. When the motion has
-/// as many frames as it may, every second one is dropped and half as many are kept from then on;
-/// the table is full when its memory is (see limits.hpp).
+/// Keeps every step's numbers, and the motion as record::MotionRecorder does. The table is full
+/// when its memory is (see limits.hpp).
 class Recording {
  public:
   /// @param shown what frames that are added belong to; outlives the recording. @param name of
@@ -32,17 +31,16 @@ class Recording {
   /// `time [s]`, `step`, every signal as "tip.x [m]", targets as "tip.target_x [m]" (nan: none),
   /// and the force of the hand; one row a step.
   std::string csv() const;
-  std::string glb() const { return record::write_glb(motion_); }
+  std::string glb() const { return record::write_glb(motion_.motion()); }
 
  private:
   void add_moment(const Frame& frame);
-  void thin_out();
 
   const Description& shown_;
-  record::Motion motion_;
+  record::MotionRecorder motion_;
   std::vector<double> values_;
-  std::size_t columns_ = 0, rows_ = 0, max_frames_ = 0, frame_bytes_ = 0;
-  double first_time_ = 0.0, last_time_ = 0.0, interval_, next_moment_ = 0.0;
+  std::size_t columns_ = 0, rows_ = 0;
+  double first_time_ = 0.0, last_time_ = 0.0;
   bool full_ = false;
 };
 

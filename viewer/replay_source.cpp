@@ -11,7 +11,6 @@
 #include "sinew/record/run_layout.hpp"
 #include "sinew/scene/scene.hpp"
 
-#include "limits.hpp"
 #include "recording.hpp"
 
 namespace sinew::viewer {
@@ -146,9 +145,9 @@ void ReplaySource::show() {
   state_.show(recorded);
 }
 
-std::shared_ptr<const Frame> ReplaySource::frame(const FieldChoice& wanted, double real_time_factor,
-                                                 const std::vector<SurfaceVertex>& picks) {
-  return state_.frame(wanted, real_time_factor, picks);
+std::shared_ptr<const Frame> ReplaySource::frame(const FrameWishes& wishes,
+                                                 double real_time_factor) {
+  return state_.frame(wishes, real_time_factor);
 }
 
 std::string ReplaySource::status_members() const {
@@ -159,7 +158,7 @@ std::string ReplaySource::status_members() const {
 std::string ReplaySource::motion() {
   Recording recording(description_, state_.robot().description.name);
   const std::int64_t shown = at_, frames = file_.frames();
-  const std::int64_t stride = 1 + (frames - 1) / static_cast<std::int64_t>(limits::kMotionFrames);
+  const std::int64_t stride = 1 + (frames - 1) / static_cast<std::int64_t>(record::kMotionFrames);
   for (at_ = 0; at_ < frames; at_ += stride) {
     show();
     static_cast<void>(recording.add(*state_.frame({}, 0.0)));

@@ -35,8 +35,7 @@ class ReplaySource final : public SourceThread {
   bool advance() override;
   void handle(const Request& request) override;
   void require_ready() const override;
-  std::shared_ptr<const Frame> frame(const FieldChoice& wanted, double real_time_factor,
-                                     const std::vector<SurfaceVertex>& picks) override;
+  std::shared_ptr<const Frame> frame(const FrameWishes& wishes, double real_time_factor) override;
   std::string status_members() const override;
   std::optional<Download> download(std::string_view name) override;
 

@@ -230,10 +230,9 @@ void RobotState::go_back(const Moment& moment) {
   ++shape_;
 }
 
-std::shared_ptr<Frame> RobotState::frame(const FieldChoice& wanted, double real_time_factor,
-                                         const std::vector<SurfaceVertex>& picks) {
+std::shared_ptr<Frame> RobotState::frame(const FrameWishes& wishes, double real_time_factor) {
   real_time_factor_ = real_time_factor;
-  std::shared_ptr<Frame> frame = frames_.make(wanted, picks);
+  std::shared_ptr<Frame> frame = frames_.make(wishes);
   frame->shape = shape_;
   if (pulled_) {
     const auto& body = *mechanics::as<mechanics::TakesForces>(simulation_->body(*pulled_));

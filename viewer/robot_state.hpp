@@ -82,10 +82,8 @@ class RobotState {
   void go_back(const Moment& moment);
 
   /// Everything that is to be seen now.
-  /// @param wanted which fields are. @param real_time_factor is among the signals; NaN: none.
-  /// @param picks nodes whose values are.
-  std::shared_ptr<Frame> frame(const FieldChoice& wanted, double real_time_factor,
-                               const std::vector<SurfaceVertex>& picks = {});
+  /// @param wishes beside positions. @param real_time_factor is among the signals; NaN: none.
+  std::shared_ptr<Frame> frame(const FrameWishes& wishes, double real_time_factor);
   /// JSON of the status message without what the source itself knows: controller, commands,
   /// targets, troubles, stopped.
   std::string status_members() const;

@@ -124,12 +124,13 @@ class Server::Hub final : public Publisher,
   bool wants_field(int field) const override {
     return field >= 0 && field < kMaxFields && wishes_[static_cast<std::size_t>(field)] > 0;
   }
-  std::vector<SurfaceVertex> picks() const override {
+  std::vector<Picked> picks() const override {
     const std::lock_guard lock(mutex_);
-    std::set<SurfaceVertex> wanted;
+    std::set<Picked> wanted;
     for (const auto& [number, pick] : picks_) wanted.insert(pick);
     return {wanted.begin(), wanted.end()};
   }
+  bool wants_inside() const override { return inside_ > 0; }
   void replace(std::function<std::unique_ptr<Source>()> next) override {
     asio::post(*io_, [self = weak_from_this(), next = std::move(next)] {
       if (auto hub = self.lock()) hub->change_source(next);
@@ -154,6 +155,7 @@ class Server::Hub final : public Publisher,
   void lose(ViewConnection& view) override {
     wish(view.field(), -1);
     choose_pick(view, {});
+    show_inside(view, false);
     const bool drove = driver_ == view.number();
     views_.erase(view.number());
     if (drove) {
@@ -205,6 +207,7 @@ class Server::Hub final : public Publisher,
   void change_source(const std::function<std::unique_ptr<Source>()>& next);
   void choose_field(ViewConnection& view, const std::optional<std::string>& name);
   void choose_pick(ViewConnection& view, const Pick& pick);
+  void show_inside(ViewConnection& view, bool on);
   void wish(int field, int change) {
     if (field >= 0 && field < kMaxFields) wishes_[static_cast<std::size_t>(field)] += change;
   }
@@ -227,11 +230,12 @@ class Server::Hub final : public Publisher,
   std::chrono::steady_clock::time_point last_status_;
   bool status_waits_ = false;
   std::array<std::atomic<int>, kMaxFields> wishes_;
+  std::atomic<int> inside_ = 0;  ///< connections that want what is inside
 
   mutable std::mutex mutex_;  // of what follows
   std::shared_ptr<const Frame> latest_;
   std::string status_ = "{}";
-  std::map<int, SurfaceVertex> picks_;  ///< by the connections' numbers
+  std::map<int, Picked> picks_;  ///< by the connections' numbers
   bool delivery_posted_ = false;
 };
 
@@ -243,7 +247,7 @@ void Server::Hub::listen(const ServerSettings& settings) {
       asio::ip::make_address(settings.host == "localhost" ? "127.0.0.1" : settings.host, error);
   if (error) {
     throw Error(ErrorKind::bad_argument, {.item = "--host"},
-                fmt::format("'{}' is no address", settings.host),
+                fmt::format("'{}' is not an address", settings.host),
                 "give an address of this machine, such as 127.0.0.1 or 0.0.0.0");
   }
   for (int port = first; port <= last; ++port) {
@@ -341,6 +345,7 @@ void Server::Hub::change_source(const std::function<std::unique_ptr<Source>()>& 
   source_ = std::move(source);
   ++generation_;
   for (auto& wish : wishes_) wish = 0;
+  inside_ = 0;
   {
     const std::lock_guard lock(mutex_);
     latest_.reset();
@@ -351,6 +356,7 @@ void Server::Hub::change_source(const std::function<std::unique_ptr<Source>()>& 
     view->forget_frames();
     view->choose_field(-1);
     view->choose_pick({});
+    view->show_inside(false);
     if (view->greeted()) introduce(*view);
   }
   source_->start(*this);
@@ -374,26 +380,39 @@ void Server::Hub::choose_field(ViewConnection& view, const std::optional<std::st
 }
 
 void Server::Hub::choose_pick(ViewConnection& view, const Pick& pick) {
-  std::optional<SurfaceVertex> chosen;
-  if (pick.vertex) {
+  std::optional<Picked> chosen;
+  if (pick.body) {
     const std::vector<DisplaySurface>& surfaces = source_->description().surfaces;
-    const auto found = std::ranges::find(surfaces, pick.vertex->body, &DisplaySurface::body);
+    const auto found = std::ranges::find(surfaces, *pick.body, &DisplaySurface::body);
     if (found == surfaces.end()) {
       throw Error(ErrorKind::unknown_name, {.item = "body"},
-                  fmt::format("there is no body '{}'", pick.vertex->body),
+                  fmt::format("there is no body '{}'", *pick.body),
                   "name one of the scene's bodies");
     }
-    if (static_cast<std::size_t>(pick.vertex->vertex) >= found->nodes.size()) {
-      throw Error(ErrorKind::index_out_of_range, {.item = "vertex"},
-                  fmt::format("vertex {} of {}", pick.vertex->vertex, found->nodes.size()),
-                  "name a vertex of the surface");
+    const bool node = pick.kind == PickKind::node;
+    const int count = node ? found->node_count : found->element_count;
+    if (pick.number >= count) {
+      throw Error(ErrorKind::index_out_of_range, {.item = "number"},
+                  fmt::format("{} {} of {}", node ? "node" : "element", pick.number, count),
+                  node ? "name a node of the mesh" : "name an element of the mesh");
     }
-    chosen = SurfaceVertex{static_cast<int>(found - surfaces.begin()), pick.vertex->vertex};
+    chosen = Picked{static_cast<int>(found - surfaces.begin()), pick.kind, pick.number};
   }
   view.choose_pick(chosen);
   const std::lock_guard lock(mutex_);
   picks_.erase(view.number());
   if (chosen) picks_.emplace(view.number(), *chosen);
+}
+
+void Server::Hub::show_inside(ViewConnection& view, bool on) {
+  inside_ += static_cast<int>(on) - static_cast<int>(view.inside());
+  view.show_inside(on);
+  if (!on) return;
+  const std::vector<DisplaySurface>& surfaces = source_->description().surfaces;
+  for (std::size_t b = 0; b < surfaces.size(); ++b) {
+    view.send(std::make_shared<const std::vector<std::byte>>(
+        encode_interior(surfaces[b], static_cast<int>(b), generation_)));
+  }
 }
 
 void Server::Hub::receive(ViewConnection& view, const Message& message) {
@@ -408,6 +427,11 @@ void Server::Hub::receive(ViewConnection& view, const Message& message) {
     }
     if (const auto* pick = std::get_if<Pick>(&message.request)) {
       choose_pick(view, *pick);
+      source_->submit(message.request, [](const Outcome&) {});
+      return answer({});
+    }
+    if (const auto* inside = std::get_if<ShowInside>(&message.request)) {
+      show_inside(view, inside->on);
       source_->submit(message.request, [](const Outcome&) {});
       return answer({});
     }

@@ -27,8 +27,10 @@ class Publisher {
   virtual void publish_status(std::string status) = 0;
   /// Whether any connection wants this field of Description::fields now.
   virtual bool wants_field(int field) const = 0;
-  /// The nodes whose values some connection wants now; none twice.
-  virtual std::vector<SurfaceVertex> picks() const { return {}; }
+  /// The nodes and elements whose values some connection wants now; none twice.
+  virtual std::vector<Picked> picks() const { return {}; }
+  /// Whether any connection wants what is inside of bodies now.
+  virtual bool wants_inside() const { return false; }
   /// The source asks to be replaced (the gallery, when an example was chosen).
   /// @param next makes the new source; called on a thread of the server's. What it throws is told
   ///   to the connection that asked, and the old source goes on.

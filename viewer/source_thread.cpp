@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "fields.hpp"
+
 namespace sinew::viewer {
 
 namespace {
@@ -171,15 +173,17 @@ void SourceThread::do_request(const Request& request) {
     speed_ = speed->factor;
     restart_clock();
   } else if (!std::holds_alternative<ChooseField>(request) &&
-             !std::holds_alternative<Pick>(request)) {  // which the publisher tells
+             !std::holds_alternative<Pick>(request) &&
+             !std::holds_alternative<ShowInside>(request)) {  // which the publisher tells
     handle(request);
   }
 }
 
 void SourceThread::publish() {
-  FieldChoice wanted(list_fields().size());
-  for (std::size_t f = 0; f < wanted.size(); ++f) {
-    wanted[f] = publisher_->wants_field(static_cast<int>(f));
+  FrameWishes wishes{std::vector<bool>(list_fields().size()), publisher_->picks(),
+                     publisher_->wants_inside()};
+  for (std::size_t f = 0; f < wishes.fields.size(); ++f) {
+    wishes.fields[f] = publisher_->wants_field(static_cast<int>(f));
   }
   const double factor = factor_.value();
   const bool slow = playing_ && speed_ > 0.0 && factor < kSlow * speed_;
@@ -190,7 +194,7 @@ void SourceThread::publish() {
     last_status_ = status;
     publisher_->publish_status(std::move(status));
   }
-  publisher_->publish(frame(wanted, factor, publisher_->picks()));
+  publisher_->publish(frame(wishes, factor));
   // Sixty a second on average, however late one of them is.
   frame_due_ = std::max(frame_due_, Clock::now() - ticks(kFrameTime)) + ticks(kFrameTime);
   dirty_ = false;

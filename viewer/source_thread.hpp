@@ -10,7 +10,6 @@
 #include <string>
 #include <thread>
 
-#include "describe.hpp"
 #include "real_time_factor.hpp"
 #include "source.hpp"
 
@@ -43,10 +42,9 @@ class SourceThread : public Source {
   virtual void handle(const Request& request) = 0;
   /// Throws Error when play and step are refused.
   virtual void require_ready() const {}
-  /// @param wanted field that colours the bodies. @param real_time_factor NaN: not measured. @param
-  /// picks nodes whose values are wanted.
-  virtual std::shared_ptr<const Frame> frame(const FieldChoice& wanted, double real_time_factor,
-                                             const std::vector<SurfaceVertex>& picks) = 0;
+  /// @param wishes beside positions. @param real_time_factor NaN: not measured.
+  virtual std::shared_ptr<const Frame> frame(const FrameWishes& wishes,
+                                             double real_time_factor) = 0;
   /// JSON object of the status message without playing, speed and slow.
   virtual std::string status_members() const = 0;
   /// "run.csv" and the like; none unless overridden.

@@ -141,8 +141,12 @@ void ViewConnection::pump() {
     writing_ = sending_frame_ = true;
     last_frame_ = std::move(frame_);
     frame_.reset();
-    const FrameChoice choice{owner_->generation(), ++sequence_, last_frame_->shape != last_shape_,
-                             field_, pick_};
+    const FrameChoice choice{owner_->generation(),
+                             ++sequence_,
+                             last_frame_->shape != last_shape_,
+                             field_,
+                             pick_,
+                             inside_};
     last_shape_ = last_frame_->shape;
     encode_frame(*last_frame_, choice, bytes_);
     socket_.binary(true);

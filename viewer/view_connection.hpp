@@ -61,7 +61,12 @@ class ViewConnection : public std::enable_shared_from_this<ViewConnection> {
   bool greeted() const { return greeted_; }
   int field() const { return field_; }
   void choose_field(int field);
-  void choose_pick(const std::optional<SurfaceVertex>& pick) { pick_ = pick; }
+  void choose_pick(const std::optional<Picked>& pick) { pick_ = pick; }
+  bool inside() const { return inside_; }
+  void show_inside(bool on) {
+    inside_ = on;
+    last_shape_ = kNoShape;  // positions of what is inside are to come
+  }
   int pending = 0;  ///< requests not yet answered
 
  private:
@@ -89,7 +94,8 @@ class ViewConnection : public std::enable_shared_from_this<ViewConnection> {
   std::uint64_t last_shape_ = kNoShape;
   std::uint32_t sequence_ = 0;
   int field_ = -1;
-  std::optional<SurfaceVertex> pick_;
+  std::optional<Picked> pick_;
+  bool inside_ = false;
   bool open_ = false, writing_ = false, sending_frame_ = false, closing_ = false, greeted_ = false,
        lost_ = false;
   double allowance_;

@@ -160,7 +160,7 @@ void print_brace(const Brace& brace, const BraceTask& task, const std::vector<st
     fmt::print(
         ": segment {} at {:g} of its length leans on '{}' at {:.2f} {:.2f} {:.2f} cm\n"
         "force {:.3f} N, friction {:.3f} N; sticks under up to {:.3f} N on the tip up to {:g} Hz\n"
-        "tip's compliance {:.4f} m/N at rest, {:.4f} m/N at most up to there",
+        "compliance of the tip {:.4f} m/N at rest, at most {:.4f} m/N up to this frequency",
         brace.segments, brace.point.fraction, names[static_cast<std::size_t>(brace.object)],
         place[0], place[1], place[2], brace.normal_force, brace.friction_force, brace.hold_force,
         task.hold_frequency, brace.tip_compliance, brace.peak_compliance);

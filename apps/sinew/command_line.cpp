@@ -1,5 +1,7 @@
 #include "command_line.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -19,11 +21,17 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
+std::vector<std::string> names_of(const CLI::Option& option) {
+  std::vector<std::string> names;
+  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
+  for (const std::string& name : option.get_snames()) names.push_back("-" + name);
+  return names;
+}
+
 std::vector<std::string> option_names(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+    std::ranges::move(names_of(*option), std::back_inserter(names));
   }
   return names;
 }
@@ -163,41 +171,20 @@ Command CommandLine::add_command(const std::string& name, const std::string& des
   return {command, &actions_[command]};
 }
 
-std::string CommandLine::bash_completion(
-    const std::map<std::string, std::vector<std::string>>& words) const {
-  std::string commands, values;
+std::vector<CommandWords> CommandLine::commands() const {
+  std::vector<CommandWords> result;
   for (const CLI::App* command : app_->get_subcommands([](const CLI::App*) { return true; })) {
     if (command->get_group().empty()) continue;
-    commands += fmt::format("    {}) words='{}' ;;\n", command->get_name(),
-                            fmt::join(option_names(*command), " "));
+    CommandWords words{command->get_name(), command->get_description(), {}};
+    for (const CLI::Option* option : command->get_options()) {
+      std::vector<std::string> names = names_of(*option);
+      if (names.empty()) continue;  // a positional argument
+      words.options.push_back(
+          {std::move(names), option->get_description(), option->get_items_expected_max() > 0});
+    }
+    result.push_back(std::move(words));
   }
-  for (const auto& [option, choices] : words) {
-    values += fmt::format("    {}) words='{}' ;;\n", option, fmt::join(choices, " "));
-  }
-  return fmt::format(R"(# Completion of sinew for bash: source <(sinew completion bash)
-_sinew() {{
-  local word=${{COMP_WORDS[COMP_CWORD]}} words=''
-  case ${{COMP_WORDS[COMP_CWORD-1]}} in
-{}  esac
-  if [ -n "$words" ]; then
-    COMPREPLY=($(compgen -W "$words" -- "$word"))
-    return
-  fi
-  if [ "$COMP_CWORD" = 1 ]; then
-    COMPREPLY=($(compgen -W '{} --help --version' -- "$word"))
-    return
-  fi
-  case ${{COMP_WORDS[1]}} in
-{}  esac
-  if [ "${{word#-}}" = "$word" ]; then
-    mapfile -t COMPREPLY < <(compgen -f -- "$word")
-  else
-    COMPREPLY=($(compgen -W "$words" -- "$word"))
-  fi
-}}
-complete -o filenames -F _sinew sinew
-)",
-                     values, fmt::join(command_names(*app_), " "), commands);
+  return result;
 }
 
 int CommandLine::run(int argc, const char* const* argv) {

@@ -76,6 +76,18 @@ class Command {
   Action* action_;
 };
 
+/// An option as help tells of it.
+struct OptionWords {
+  std::vector<std::string> names;  ///< "--out", "-o"
+  std::string description;
+  bool takes_value = false;
+};
+/// A command likewise.
+struct CommandWords {
+  std::string name, description;
+  std::vector<OptionWords> options;
+};
+
 /// See the file.
 class CommandLine {
  public:
@@ -89,9 +101,8 @@ class CommandLine {
   /// @param name of the command. @param description one line.
   Command add_command(const std::string& name, const std::string& description);
 
-  /// A script for bash that completes commands, options, and file names elsewhere.
-  /// @param words of options that take one of several: {"--shape", {"block", "cone"}}.
-  std::string bash_completion(const std::map<std::string, std::vector<std::string>>& words) const;
+  /// The commands of the program's help, and their options.
+  std::vector<CommandWords> commands() const;
 
   /// Reads the arguments of main() and does what the chosen command does; prints help or version
   /// where that is asked for. Returns the exit code. Throws Error for a wrong command line:

@@ -9,14 +9,17 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "sinew/constraint/effector.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/fem/element_count.hpp"
 #include "sinew/fem/fem_model.hpp"
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/inverse/controller_observables.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/record/motion_recorder.hpp"
 #include "sinew/record/run_recorder.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -37,7 +40,7 @@ struct RunOptions {
   SceneOptions scene;
   std::optional<std::string> duration;
   std::string out;
-  std::string video;
+  std::string video, glb;
   bool vtk = false;
   bool quiet = false;
   bool keep_going = false;
@@ -164,15 +167,25 @@ void warn(const Tally& tally) {
   }
 }
 
-void advance(Session& session, record::RunRecorder& recorder, std::int64_t steps, bool quiet,
-             Tally& tally) {
+// What keeps a run.
+struct Records {
+  std::optional<record::RunRecorder> run;
+  std::optional<record::RunMotion> motion;
+
+  void after_step() {
+    run->after_step();
+    if (motion) motion->after_step();
+  }
+};
+
+void advance(Session& session, Records& records, std::int64_t steps, bool quiet, Tally& tally) {
   const Interrupt interrupt;
   ProgressBar bar(steps, !quiet);
   const sim::Watched watched = watch_steps(session.simulation(), bar, tally.steps);
   while (tally.steps < steps) {
     Interrupt::check();
     session.step();
-    recorder.after_step();
+    records.after_step();
     count(tally, session);
     if (!bar.due()) continue;
     bar.update(tally.steps, session.controller() == nullptr
@@ -193,6 +206,20 @@ int check_video(const RunOptions& options, const scene::Robot& robot) {
   return run_python_module("sinew.render", {"--check", "--video", options.video});
 }
 
+// Likewise of the motion.
+void check_glb(const std::filesystem::path& file) {
+  if (file.empty()) return;
+  if (file.extension() != ".glb") {
+    throw Error(ErrorKind::unknown_format, {.file = file.string(), .item = "--glb"},
+                "the motion is written as binary glTF", "name the file *.glb");
+  }
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  if (std::filesystem::is_directory(file) || ::access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw Error(ErrorKind::file_unwritable, {.file = file.string(), .item = "--glb"},
+                "this file cannot be written", "name a file in an existing, writable folder");
+  }
+}
+
 int draw_video(const RunOptions& options, const std::filesystem::path& folder) {
   if (options.video.empty()) return 0;
   std::vector<std::string> words = {folder.string(), "--video", options.video};
@@ -208,6 +235,7 @@ int run(const RunOptions& options) {
   }
   Session session(scene);
   if (const int problem = check_video(options, session.robot()); problem != 0) return problem;
+  check_glb(options.glb);
   const double duration = run_duration(session.robot());
   const std::int64_t steps = step_count(duration, session.robot().model->step().time_step);
   if (options.check) return print_check(session, duration, steps);
@@ -227,19 +255,22 @@ int run(const RunOptions& options) {
   settings.vtk = options.vtk;
   sim::Observables observables(session.simulation());
   inverse::add_controller(observables, session.controller());
-  std::optional<record::RunRecorder> recorder(std::in_place, std::move(observables), settings);
+  Records records;
+  records.run.emplace(std::move(observables), settings);
+  if (!options.glb.empty()) records.motion.emplace(session.simulation(), description.name);
 
   const auto begin = std::chrono::steady_clock::now();
   const auto finish = [&] {
     tally.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    recorder->finish();
+    records.run->finish();
+    if (records.motion) write_file(options.glb, records.motion->glb());
     if (options.quiet) return;
     auto rows = summary(tally, session);
     rows.push_back({"recorded in", settings.folder.string()});
     fmt::print("{}", format_table(rows));
   };
   try {
-    advance(session, *recorder, steps, options.quiet, tally);
+    advance(session, records, steps, options.quiet, tally);
   } catch (const Interrupted&) {  // told of below
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::recording_failed) finish();
@@ -254,7 +285,7 @@ int run(const RunOptions& options) {
         session.simulation().time(), duration);
     return tally.flagged.empty() || options.keep_going ? 0 : 1;
   }
-  recorder.reset();  // closes run.h5, which others may then read
+  records.run.reset();  // closes run.h5, which others may then read
   if (const int problem = draw_video(options, settings.folder); problem != 0) return problem;
   return tally.flagged.empty() || options.keep_going ? 0 : 1;
 }
@@ -278,6 +309,11 @@ void add_run(CommandLine& line) {
                   "Also render a video: NAME.mp4 (needs ffmpeg), NAME.webp, NAME.gif, "
                   "NAME_%04d.png or a folder")
       .type_name("FILE");
+  command
+      .add_option(
+          "--glb", options->glb,
+          "Also write the motion of surfaces and cables as glTF, e.g. for Blender: NAME.glb")
+      .type_name("FILE");
   command.add_flag("--keep-going", options->keep_going,
                    "Exit with 0 even if steps were flagged as unreliable: not in equilibrium, "
                    "gaining energy, cut back, or command not reached");
@@ -291,7 +327,7 @@ void add_run(CommandLine& line) {
       "  sinew run trunk.yaml\n"
       "  sinew run trunk.yaml --duration 5s --set actuators.long_0.command.displacement=10mm\n"
       "  sinew run trunk.yaml --out results/first --vtk\n"
-      "  sinew run trunk.yaml --video trunk.webp");
+      "  sinew run trunk.yaml --video trunk.webp --glb trunk.glb");
   command.set_action([options] { return run(*options); });
 }
 

@@ -12,6 +12,7 @@
 #include "sinew/scene/scene.hpp"
 
 #include "commands.hpp"
+#include "completion.hpp"
 #include "program_folder.hpp"
 #include "python_tool.hpp"
 
@@ -88,19 +89,19 @@ void add_schema(CommandLine& line) {
 void add_completion(CommandLine& line) {
   Command command = line.add_command("completion", "Print a shell completion script");
   const auto shell = std::make_shared<std::string>();
-  command.add_option("SHELL", *shell, "Shell: bash").type_name("NAME").required();
+  command.add_option("SHELL", *shell, "Shell: bash, zsh or fish").type_name("NAME").required();
   command.footer(
-      "Example:\n"
-      "  sinew completion bash > ~/.local/share/bash-completion/completions/sinew\n\n"
+      "Examples:\n"
+      "  sinew completion bash > ~/.local/share/bash-completion/completions/sinew\n"
+      "  sinew completion zsh > ~/.zfunc/_sinew     # with fpath+=~/.zfunc before compinit\n"
+      "  sinew completion fish > ~/.config/fish/completions/sinew.fish\n\n"
       "Completes commands, options and file names in new shells. For the current shell, run\n"
       "  source <(sinew completion bash)");
   command.set_action([&line, shell] {
-    if (*shell != "bash") {
-      throw Error(ErrorKind::unknown_choice, {.item = "completion"},
-                  fmt::format("no completion for '{}'", *shell), "write bash");
-    }
-    fmt::print("{}",
-               line.bash_completion({{"--shape", scene::shape_names()}, {"completion", {"bash"}}}));
+    const auto shells = completed_shells();
+    fmt::print("{}", completion_script(*shell, line.commands(),
+                                       {{"--shape", scene::shape_names()},
+                                        {"completion", {shells.begin(), shells.end()}}}));
     return 0;
   });
 }

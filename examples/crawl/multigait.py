@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """The published multigait robot crawls: a quadruped with five air chambers in silicone on a stiffer bottom layer.
 
-    PYTHONPATH=build/release/python /usr/bin/python3 examples/crawl/multigait.py MESHES [--out FOLDER] [--friction MU ...]
+    PYTHONPATH=build/release/python /usr/bin/python3 examples/crawl/multigait.py MESHES [--out FOLDER] [--friction MU ...] [--zones MM]
 
 The folder MESHES has multigait.vtk and cavity_*.stl (mm), which are not part of Sinew; docs/locomotion.md says where they
 come from. The chambers of the rear legs, the centre and the front legs fill one after the other and empty in the same
 order. FOLDER gets multigait.png and, per coefficient of friction, a CSV of the motion. A cycle takes some minutes of one core.
+75 points of the sole can touch the floor. With --zones all of its 2592 nodes can, in zones of that size (mm), which takes longer.
 """
 
 import argparse
@@ -35,7 +36,16 @@ def sole_points(nodes):
     return np.array([node for _, node in squares.values()])
 
 
-def scene(data, folder, friction):
+def floor(nodes, friction, zones=None):
+    """The contact of the sole: of chosen points (nodes in mm), or of all nodes in zones of so many mm."""
+    contact = {"body": "robot", "surface": {"plane": {}}, "friction": friction}
+    if zones is None:
+        return {**contact, "points": (1e-3 * sole_points(nodes)).tolist()}
+    sole = {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1], "within": "0.1 mm"}}
+    return {**contact, "nodes": sole, "aggregate": 1e-3 * zones}
+
+
+def scene(data, folder, friction, zones=None):
     """The scene as a dict. Millimetres of the files become metres, with the middle of the robot at the origin."""
     mesh = meshio.read(data / "multigait.vtk")
     cells = mesh.cells_dict["tetra"]
@@ -56,17 +66,16 @@ def scene(data, folder, friction):
         }},
         "membranes": {"layer": {"body": "robot", "surface": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}},
                                 "thickness": "1 mm", "young_modulus": "5 MPa", "poisson_ratio": 0.49}},
-        "contacts": {"floor": {"body": "robot", "surface": {"plane": {}}, "points": (1e-3 * sole_points(nodes)).tolist(),
-                               "friction": friction}},
+        "contacts": {"floor": floor(nodes, friction, zones)},
         "actuators": {name: {"type": "chamber", "body": "robot", "surface": {"file": str(folder / f"{name}.stl")}}
                       for name in CHAMBERS},
     }  # fmt: skip
 
 
-def crawl(data, friction, cycles=1, log=None):
+def crawl(data, friction, cycles=1, log=None, zones=None):
     """(steps, 3): time (s), mean x (m) towards the front, greatest height (m)."""
     with tempfile.TemporaryDirectory() as folder:
-        sim = sinew.load(scene(data, Path(folder), friction))
+        sim = sinew.load(scene(data, Path(folder), friction, zones))
     for name, place in CHAMBERS.items():
         sim.actuator(name).pressure = pressure(place, cycles, period=PERIOD, full=PRESSURE)
     robot = sim.body("robot")
@@ -101,12 +110,13 @@ def main():
     parser.add_argument("data", type=Path, help="folder with multigait.vtk and cavity_*.stl")
     parser.add_argument("--out", type=Path, default=Path("out/multigait"))
     parser.add_argument("--friction", type=float, nargs="+", default=FRICTION)
+    parser.add_argument("--zones", type=float, metavar="MM", help="all nodes of the sole touch, in zones of this size, such as 10")
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
     runs = {}
     for friction in arguments.friction:
         with open(arguments.out / f"log_{friction:g}.txt", "w") as log:
-            runs[friction] = crawl(arguments.data, friction, log=log)
+            runs[friction] = crawl(arguments.data, friction, log=log, zones=arguments.zones)
         table = arguments.out / f"friction_{friction:g}.csv"
         np.savetxt(table, runs[friction], delimiter=",", header="time_s,moved_m,height_m", comments="")
         print(f"friction {friction:g}: {1e3 * runs[friction][-1, 1]:.2f} mm", flush=True)

@@ -13,6 +13,7 @@ from .errors import Notice, RunError
 __version__: str
 compiler: str
 instruction_set: str
+silent_periods: float
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int32]
@@ -351,6 +352,8 @@ class Estimator:
     def components(self) -> list[str]: ...
     @property
     def forces(self) -> dict[str, _Floats]: ...
+    @property
+    def efforts(self) -> dict[str, float]: ...
     @property
     def mean(self) -> _Floats: ...
     @property

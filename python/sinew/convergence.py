@@ -160,7 +160,7 @@ def study(
         errors of sinew.load() and Simulation.run().
     """
     if levels < 2:
-        raise Error("out-of-range", "study(levels)", f"{levels} meshes show no convergence", "give 2 or more")
+        raise Error("out-of-range", "study(levels)", f"a single mesh shows no convergence, and levels is {levels}", "give 2 or more")
     with tempfile.TemporaryDirectory() as folder:
         refinement = _Refinement(scene, set, pathlib.Path(folder))
         found: list[Level] = []
@@ -238,7 +238,7 @@ def _count(sim: Any) -> tuple[int, int]:
 
 
 def _edge(body: Any) -> float:
-    """About the edge of a body's cells, m: cubes are one hexahedron or six tetrahedra."""
+    """Approximate edge length of a body's cells, m: a cube is one hexahedron or six tetrahedra."""
     count = len(body.hexahedra) or len(body.tetrahedra) / 6
     return float((body.volume / count) ** (1 / 3))
 
@@ -253,7 +253,7 @@ def _measures(sim: Any) -> list[str]:
 
 
 def _values(sim: Any, names: list[str], duration: Optional[float], static: bool) -> tuple[dict[str, np.ndarray], frozenset[str]]:
-    """The values of measures at the end, and the names of those that are rounding."""
+    """Final values of the measures, and the names of those that are zero to rounding."""
     start, before = measure_now(sim, names), [np.array(body.positions) for body in _deformable(sim)]
     if static:
         sim.solve_static()
@@ -290,7 +290,7 @@ def _level(sim: Any, values: dict[str, np.ndarray], seconds: float) -> Level:
 
 
 def _order(sizes: Sequence[float], values: Sequence[np.ndarray]) -> Optional[float]:
-    """p of the last three values, from |f_1 - f_0|/|f_2 - f_1| = (h_0^p - h_1^p)/(h_1^p - h_2^p); None as Estimate.order says."""
+    """p of the last three values, from |f_1 - f_0|/|f_2 - f_1| = (h_0^p - h_1^p)/(h_1^p - h_2^p); None as described in Estimate.order."""
     from scipy.optimize import brentq
 
     if len(values) < 3:

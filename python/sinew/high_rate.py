@@ -299,7 +299,7 @@ class HighRateLoop:
         return [sum(row.startswith(prefixes[name]) for row in self._sim.rows) for name in self._effectors]
 
     def _turns(self, name):
-        """Whether the rows of an effector or actuator are angles; not where only their number is known."""
+        """Whether the rows of an effector or actuator are angles; false if only their number is known."""
         if self._sim is None or name in self._hands:
             return False
         if name in self._effectors:
@@ -489,6 +489,6 @@ class HighRateLoop:
 
 
 def _limits_of(actuator):
-    """(effort, motion) Limits of an actuator, whatever its quantities are called."""
+    """(effort, motion) limits of an actuator, independent of the names of its quantities."""
     effort, motion = actuator.limits.values()
     return effort, motion

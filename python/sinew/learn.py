@@ -247,7 +247,7 @@ class Learner:
             yield self.observe(plant(self.propose().command))
 
     def _next(self) -> Proposal:
-        """The last commands corrected, or a new plan's where the model says that these do not reach the goal."""
+        """The corrected last commands, or those of a new plan if the model cannot reach the goal with them."""
         best = self._corrected(self._last.plan, self._last.command) if self._last else None
         if best is None or self._left(best) > self._close:
             planned = self._planned()
@@ -270,8 +270,9 @@ class Learner:
         return self._corrected(found, drive["command"]) if drive["found"] else None
 
     def _corrected(self, found: plan.Plan, command: np.ndarray) -> Optional[Proposal]:
-        """The commands with the least change that takes the model's tip to the goal: Gauss-Newton, each step halved
-        until it brings the tip nearer."""
+        """Commands with the smallest change that moves the model's tip to the goal: Gauss-Newton, with each step halved until the
+        tip comes closer.
+        """
         best = self._simulated(found, command)
         for _ in range(self._corrections):
             if best is None or self._left(best) < 0.1 * self._close:
@@ -288,9 +289,10 @@ class Learner:
         return best
 
     def _least_change(self, proposal: Proposal) -> np.ndarray:
-        """Of the commands, (samples, inputs): with x the heights of hats along time, the columns of B, for each input,
-        min |B x|^2 subject to J x = what is left to the goal, J by differences. Hats that take a volume beyond its
-        limit are left out."""
+        """Smallest change of the commands, (samples, inputs): x are the heights of hat functions in time, the columns of B, for each
+        input, with min |B x|^2 subject to J x = remaining distance to the goal, J by differences. Hat functions that would exceed
+        a volume limit are omitted.
+        """
         samples, inputs = proposal.command.shape
         hats = self._hats(samples)
         count = hats.shape[1]
@@ -339,7 +341,7 @@ class Learner:
         return Proposal(times, command, volume, found, end + self._missed, self.arm, self.actuators, self.cylinders)
 
     def _end(self, volume: np.ndarray) -> np.ndarray:
-        """(3,) m, where volumes (samples, inputs) take the model's tip."""
+        """(3,) m, final tip position of the model for volumes (samples, inputs)."""
         times = self.cylinders[0].sample_time * np.arange(len(volume))
         return identify.predict_motion(self.arm, times, np.zeros(self.arm.coordinates), inputs=volume,
                                        actuators=self.actuators, time_step=self._time_step)[-1, -1]
@@ -359,7 +361,7 @@ class Learner:
         return fit
 
     def _fitted_cylinder(self, k: int) -> pcc.DriveCylinder:
-        """Fitted to all records, with the limits of the one before."""
+        """Cylinder fitted to all records, with the limits of the previous one."""
         before = self.cylinders[k]
         records = [(command[:, k], record.inputs[:, k], before.sample_time) for command, record in self._motions]
         try:

@@ -64,18 +64,26 @@ def _split(heading: str) -> tuple[str, str]:
     return name, unit.rstrip("]")
 
 
-def _panel(heading: str) -> tuple[str, str] | None:
-    """The panel that a column of run.csv belongs to, and its name there; None: in none."""
+def _spread(name: str, names) -> str | None:
+    """The quantity among `names` that is the standard deviation of an estimate; None if it is not an estimate."""
+    of, _, component = name.rpartition(".")
+    return next((one for one in (f"{name}.std", f"{of}.std.{component}") if one in names), None)
+
+
+def _panel(heading: str, names=()) -> tuple[str, str] | None:
+    """Panel and label of a column of run.csv with the quantities `names`; None if it is not plotted."""
     name, unit = _split(heading)
     of, _, last = name.rpartition(".")
+    if last == "std" or of.endswith(".std"):
+        return None
+    if _spread(name, names) is not None:
+        return f"Estimates ({unit})", name
     if unit == "J":
         return "Energy", name
     if not of:
         return None
     if last == "error":
         return "Error", name
-    if last in ("x", "y", "z") and unit == "N":
-        return None if of.endswith(".std") else ("Estimates (N)", name)
     if last in ("x", "y", "z", "rx", "ry", "rz") or last.startswith("target_"):
         return f"Effectors ({unit})", name
     if last in ("force_x", "force_y", "force_z", "normal_force", "friction_force"):
@@ -98,12 +106,12 @@ def _owner(name: str) -> str:
 
 
 def _style(line: int) -> tuple[int, str]:
-    """How often the colours were used up before this line, and its colour."""
+    """How often the colours have been used up before this line, and its colour."""
     return line // len(COLOURS), COLOURS[line % len(COLOURS)]
 
 
 def _sensor(heading: str) -> tuple[str, str] | None:
-    """The panel that a column of sensors.csv belongs to, and its name there; None: in none."""
+    """Panel and label of a column of sensors.csv; None if it is not plotted."""
     name, unit = _split(heading)
     of, _, last = name.rpartition(".")
     quantity, _, component = last.partition("_")
@@ -129,10 +137,11 @@ def run(folder, out) -> pathlib.Path:
     plt = _pyplot()
     columns = read_run(folder)
     time = columns.pop("time [s]")
+    numbers = {_split(heading)[0]: values for heading, values in columns.items()}
     panels: dict[str, list[tuple[str, str, list[float]]]] = {}
     for heading, values in columns.items():
         commanded = not _split(heading)[0].endswith("_command") or any(map(math.isfinite, values))
-        if commanded and (panel := _panel(heading)) is not None:
+        if commanded and (panel := _panel(heading, numbers)) is not None:
             panels.setdefault(panel[0], []).append((panel[1], _split(heading)[1], values))
     probes = read_run(folder, "probes.csv") if (pathlib.Path(folder) / "probes.csv").exists() else {}
     for heading, values in probes.items():
@@ -143,7 +152,6 @@ def run(folder, out) -> pathlib.Path:
     for heading, values in sensors.items():
         if (panel := _sensor(heading)) is not None:
             panels.setdefault(panel[0], []).append((panel[1], _split(heading)[1], values))
-    numbers = {_split(heading)[0]: values for heading, values in columns.items()}
     count = max(1, len(panels))
     figure, axes = plt.subplots(count, 1, figsize=(9, 2.3 * count + 0.3), sharex=True, squeeze=False)
     for axis, (group, series) in zip(axes[:, 0], panels.items()):
@@ -157,10 +165,9 @@ def run(folder, out) -> pathlib.Path:
             axis.plot(time, [scale * v for v in values], "--" if asked else DASHES[lap % len(DASHES)], lw=1.0 if asked else 1.5,
                       color=colour,
                       label=None if target or (asked and owner in names) else name.replace("_", " "))
-            of, _, component = name.rpartition(".")
-            if (spread := numbers.get(f"{of}.std.{component}")) is not None:
-                axis.fill_between(time, *([scale * (v + side * s) for v, s in zip(values, spread)] for side in (-1, 1)), color=colour,
-                                  alpha=0.15, lw=0)
+            if (spread := _spread(name, numbers)) is not None:
+                axis.fill_between(time, *([scale * (v + side * s) for v, s in zip(values, numbers[spread])] for side in (-1, 1)),
+                                  color=colour, alpha=0.15, lw=0)
             axis.set_ylabel(f"{group.split(' (')[0]} ({shown})" if shown else group)
         labels = axis.get_legend_handles_labels()[1]
         axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02), ncol=1 + (len(labels) - 1) // LEGEND_ROWS)
@@ -272,7 +279,7 @@ def plan(data, out) -> pathlib.Path:
 
 
 def _draw_object(axis, shape, aside):
-    """A brace's object as it looks from the side on which x or y and z are seen."""
+    """Draws an object of a brace in a view of x or y against z."""
     if "plane" in shape:
         point, normal = shape["plane"]["point_m"], shape["plane"]["normal"]
         along = normal[2], -normal[aside]

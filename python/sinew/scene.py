@@ -97,7 +97,7 @@ def loads(
 
 
 def _warned(sim: Simulation) -> Simulation:
-    """Warns of a scene's notices where load() or loads() was called."""
+    """Issues a scene's notices as warnings at the caller of load() or loads()."""
     for notice in sim.notices:
         if notice.level == "warning":
             warnings.warn(str(notice), SinewWarning, stacklevel=3)
@@ -111,7 +111,7 @@ def _count(threads: Optional[int]) -> Optional[int]:
 
 
 def _assignments(overrides: Overrides) -> list[str]:
-    """Overrides as "path=value" each."""
+    """Overrides as a list of "path=value"."""
     if overrides is None:
         return []
     if isinstance(overrides, str):
@@ -131,7 +131,7 @@ def _assignments(overrides: Overrides) -> list[str]:
 
 
 def _spell(value: Any) -> str:
-    """A value as YAML; JSON is a part of YAML."""
+    """A value as YAML (JSON is a subset of YAML)."""
     if isinstance(value, str):
         return value
     if hasattr(value, "tolist"):

@@ -160,41 +160,47 @@ void bind_quantity(py::class_<Actuator>& type, const char* name, Get get, const 
 }
 
 void bind_commands(py::class_<Actuator>& type) {
-  bind_quantity(type, "displacement", motion,
-                R"(float: length pulled out of the robot, or travel of a force's point along it (m).
+  bind_quantity(
+      type, "displacement", motion,
+      R"(float: length of cable pulled out of the robot, or displacement of a force's point along its direction (m).
 
 Reading returns the present value; assignment sets the command: a number (m), a signal such as
 `sinew.Ramp`, or (n, 2) samples of time and value. The actuator follows within its limits. Raises
 Error (actuator-owned) while a controller owns the actuator.)");
-  bind_quantity(type, "tension", effort,
-                "float: tension of a cable (N), >= 0. Assignment sets the command, as for "
-                "`displacement`. Of a spring, which takes no command: negative when it pushes.");
+  bind_quantity(
+      type, "tension", effort,
+      "float: tension of a cable (N), >= 0. Assignment sets the command, as for "
+      "`displacement`. For a spring, which takes no command, it is negative when the spring "
+      "pushes.");
   bind_quantity(
       type, "force", effort,
       "float: force of a force actuator along its direction (N). Assignment sets the command, "
       "as for `displacement`.");
   bind_quantity(
       type, "pressure", effort,
-      "float: pressure in a chamber above ambient (Pa). Assignment sets the command, as for "
-      "`displacement`; through the chamber's supply when it has one.");
+      "float: pressure of a chamber above ambient (Pa). Assignment sets the command, as for "
+      "`displacement`; if the chamber has a supply, the pressure approaches it through the "
+      "supply.");
   bind_quantity(
       type, "torque", effort,
-      "float: torque on a bend, or of a motor on its joint (N m). Assignment sets the command, as "
-      "for `displacement`.");
-  bind_quantity(type, "angle", motion,
-                "float: a bend under a torque, or a motor's joint angle (rad). Assignment sets "
-                "the command.");
+      "float: torque on the bend of a segment, or of a motor on its joint (N m). Assignment "
+      "sets the command, as for `displacement`.");
+  bind_quantity(
+      type, "angle", motion,
+      "float: angle of the bent segment, or of a motor's joint (rad). Assignment sets the "
+      "command.");
   bind_quantity(
       type, "velocity", told,
-      "float: commanded rate of a motor (rad/s, m/s), 0 while another quantity is commanded. "
-      "Assignment sets the command; the joint follows within the limits of the motor's "
-      "effort.");
-  bind_quantity(type, "volume_growth", motion,
-                "float: volume gained by a chamber since rest (m^3). Assignment sets the command, "
-                "as a syringe of liquid does.");
+      "float: commanded velocity of a motor (rad/s, m/s), 0 while another quantity is "
+      "commanded. Assignment sets the command; the joint follows within the limits on the "
+      "motor's effort.");
+  bind_quantity(
+      type, "volume_growth", motion,
+      "float: volume gained by a chamber from rest (m^3). Assignment sets the command, as a "
+      "syringe filled with liquid does.");
   bind_quantity(
       type, "gas", [](const Actuator& self, const char*) { return added_gas(self); },
-      "float: gas added to a chamber since rest, as a volume at ambient pressure (m^3). "
+      "float: gas added to a chamber from rest, as a volume at ambient pressure (m^3). "
       "Assignment sets the command, as for `displacement`. Only for chambers with `gas`.");
   bind_quantity(
       type, "liquid",
@@ -206,8 +212,8 @@ Error (actuator-owned) while a controller owns the actuator.)");
   bind_quantity(
       type, "phase",
       [](const Actuator& self, const char*) { return wire_number(self, "phase", 1); },
-      "float: austenite fraction of a shape-memory spring, 0 to 1. Assignment sets the command, if "
-      "the scene allows it.");
+      "float: austenite fraction of a shape-memory spring, 0 to 1. Assignment sets the command "
+      "if the scene allows it.");
   type.def_property_readonly(
           "temperature", [](const Actuator& self) { return wire_number(self, "temperature", 0); },
           "float: temperature of a shape-memory spring (K).")
@@ -227,7 +233,7 @@ Error (actuator-owned) while a controller owns the actuator.)");
             return read(self,
                         [](const sim::ActuatorState& state) { return state.owner != nullptr; });
           },
-          "bool: whether a controller owns it; commands then raise.");
+          "bool: whether a controller owns it. Commands then raise an error.");
 }
 
 void bind_measures(py::class_<Actuator>& type) {
@@ -238,7 +244,7 @@ void bind_measures(py::class_<Actuator>& type) {
           [](const Actuator& self) {
             return read(self, [](const sim::ActuatorState& state) { return state.slack; });
           },
-          "bool: whether a cable is slack, without tension.")
+          "bool: whether a cable is slack (tension zero).")
       .def_property_readonly(
           "length",
           of_cable("length",
@@ -261,13 +267,13 @@ void bind_measures(py::class_<Actuator>& type) {
             const auto values = found.tensions(self.session->simulation().efforts());
             return Array(static_cast<py::ssize_t>(values.size()), values.data());
           },
-          "(n - 1,) ndarray: tension of every segment of a cable, from the pull point on (N). They "
-          "differ by the friction at the points between; the last one is what its end is tied by.")
+          "(n - 1,) ndarray: tension of every segment of a cable, starting at the pull point (N). "
+          "They differ by the friction at the points between; the last one acts on the fixed end.")
       .def_property_readonly(
           "points",
           of_cable("points",
                    [](const Cable& c, const Configuration& now) { return copy(c.points(now)); }),
-          "(n, 3) ndarray: a cable's points now, pull point first (m).")
+          "(n, 3) ndarray: present points of a cable, the pull point first (m).")
       .def_property_readonly("limits", &limits,
                              "dict: Limits of the effort ('tension', 'force' or 'pressure') and of "
                              "the motion ('displacement' or 'volume_growth').");
@@ -277,11 +283,12 @@ void bind_measures(py::class_<Actuator>& type) {
 
 void bind_actuator(py::module_& module) {
   bind_limits(module);
-  py::class_<Actuator> type(module, "Actuator",
-                            "What drives a robot: a cable, force, chamber or spring. From "
-                            "Simulation.actuator().");
+  py::class_<Actuator> type(
+      module, "Actuator",
+      "An actuator of the robot, such as a cable, chamber, force, motor or spring. From "
+      "Simulation.actuator().");
   type.def_property_readonly(
-          "name", [](const Actuator& self) { return model(self).name; }, "str: as in the scene.")
+          "name", [](const Actuator& self) { return model(self).name; }, "str: name in the scene.")
       .def_property_readonly(
           "type", [](const Actuator& self) { return model(self).words().type; },
           "str: 'cable', 'force', 'chamber', 'spring', 'torque', 'motor' or 'linear-motor'.")

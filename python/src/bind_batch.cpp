@@ -74,15 +74,15 @@ void bind_batch(py::module_& module) {
                     R"(Batch(simulations, *, threads=1)
 --
 
-Simulations that are stepped side by side, each call for all of them; for many small ones, whose steps take microseconds.
+Many simulations that are stepped, commanded and read by one call each. Use it if a step takes only microseconds.
 
-Each thread has a contiguous block of the simulations and needs no interpreter lock. A simulation does what it does by itself, bit for
-bit, whatever the number of threads. A simulation may be used by itself between calls.
+Each thread has a contiguous block of simulations and does not need the interpreter lock. Results are the same as for each
+simulation alone, bit for bit, for any number of threads. Between calls, each simulation may also be used by itself.
 
 Parameters
 ----------
 simulations : list of Simulation
-    n of them, none twice: `sim.clone()` makes more. They may be of different robots.
+    n different simulations: `sim.clone()` makes more. They may be of different robots.
 threads : int
     1 or more.
 
@@ -102,16 +102,16 @@ Error
            R"(command($self, quantity, values, which=None)
 --
 
-Tells every actuator a constant, as assigning to its quantity does.
+Commands a constant for every actuator, like assigning to its quantity.
 
 Parameters
 ----------
 quantity : str
-    Of every actuator: "tension", "torque", ...
+    Quantity of every actuator: "tension", "torque", ...
 values : (n, actuators)
     N, m, ...; actuators in the order of `sim.actuators`.
 which : (n,) of bool, optional
-    The simulations that are told; all by default.
+    Simulations to command; all by default.
 
 Raises
 ------
@@ -121,20 +121,20 @@ Error
            R"(step($self, n=1, which=None)
 --
 
-Advances n time steps, in threads, without the interpreter lock. Ctrl-C ends the steps at hand; simulations may then be at different
-times. Warns as Simulation.step() does.
+Advances by n time steps, in threads, without the interpreter lock. Ctrl-C ends the present steps; simulations may then be
+at different times. Issues the same warnings as Simulation.step().
 
 Parameters
 ----------
 n : int
     0 or more.
 which : (n,) of bool, optional
-    The simulations that are advanced; all by default.
+    Simulations to advance; all by default.
 
 Returns
 -------
 list of RunError or None
-    For each simulation what ended its steps, as Simulation.step() would have raised it: it is in the state before the step that failed.
+    For each simulation the error that ended its steps, as raised by Simulation.step(). It is then in the state before the step that failed.
 
 Raises
 ------
@@ -144,7 +144,7 @@ Error
            R"(read($self, names)
 --
 
-Observables of all simulations now, side by side.
+Present observables of all simulations.
 
 Parameters
 ----------
@@ -154,12 +154,12 @@ names : list of str
 Returns
 -------
 (n, numbers) ndarray
-    A row for each simulation, the numbers of one name after those of the other. SI units.
+    A row for each simulation; the numbers of one name follow those of the previous one. SI units.
 
 Raises
 ------
 Error
-    unknown-name, with a suggestion; wrong-shape where simulations differ in the shape of a name.)")
+    unknown-name, with a suggestion; wrong-shape if simulations differ in the shape of a name.)")
       .def("__repr__", [](const Batch& self) {
         return fmt::format("<sinew.Batch of {} simulations, {} threads>", self.size(),
                            self.threads());

@@ -78,54 +78,55 @@ py::dict parameters(const BendingActuator& self) {
 }
 
 void bind_constants(BendingActuatorClass& type) {
-  type.def_property_readonly("parameters", &parameters,
-                             "dict: what it was made from; BendingActuator(**parameters) is the "
-                             "same again.")
+  type.def_property_readonly(
+          "parameters", &parameters,
+          "dict: constructor arguments; BendingActuator(**parameters) is an equal actuator.")
       .def_property_readonly("mass", &BendingActuator::mass,
-                             "float: of silicone and filling at rest, kg.")
+                             "float: mass of silicone and filling at rest, kg.")
       .def_property_readonly("net_weight", &BendingActuator::net_weight,
-                             "float: weight less buoyancy at rest, N; negative where it floats.")
-      .def_property_readonly("second_moment", &BendingActuator::second_moment,
-                             "float: of the wall's section about the inextensible layer, m^4.")
+                             "float: weight minus buoyancy at rest, N; negative if it floats.")
+      .def_property_readonly(
+          "second_moment", &BendingActuator::second_moment,
+          "float: second moment of area of the wall's section about the inextensible layer, m^4.")
       .def_property_readonly("moment_per_pressure", &BendingActuator::moment_per_pressure,
-                             "float: pi r^2 (r + r_t), m^3.")
+                             "float: volume per angle of the chamber, pi r^2 (r + r_t), m^3.")
       .def_property_readonly(
           "angle_range",
           [](const BendingActuator& self) {
             return py::make_tuple(self.energies().lowest_angle(), self.energies().highest_angle());
           },
-          "tuple of float: angles that the model holds for, rad.");
+          "tuple of float: range of angles in which the model is valid, rad.");
 }
 
 constexpr const char* kActuatorDoc =
     R"(BendingActuator(length, chamber_radius, wall_thickness, modulus, *, outer_radius=None, silicone_density=1070.0, filling_density=1.2, surroundings_density=1.2, inclination=0.0, gravity=9.81, mass_damping=0.0, stiffness_damping=0.0, order=5, mass_line='layer')
 --
 
-A fibre-reinforced silicone tube with an inextensible layer, bent by pressure: one angle.
+A fibre-reinforced silicone tube with an inextensible layer, bent by pressure, with a single angle.
 docs/bending_actuator.md has the equations. Immutable; threads may share it.
 
 Parameters
 ----------
 length : float
-    Of the layer, m.
+    Length of the layer, m.
 chamber_radius, wall_thickness : float
     r, and r_t between chamber and layer, m.
 modulus : float or BendingModulus
     A number is the shear modulus, Pa.
 outer_radius : float, optional
-    r_o, m, at least r + r_t, which it is by default.
+    r_o, m, at least r + r_t (the default).
 silicone_density, filling_density, surroundings_density : float
     kg/m^3; 1.2 is air, 1000 water.
 inclination : float
-    Of the base, rad: 0 hangs, pi/2 is level and bends upwards, pi stands.
+    Inclination of the base, rad: 0 hangs, pi/2 is level and bends upwards, pi stands.
 gravity : float
     m/s^2.
 mass_damping, stiffness_damping : float
     Rayleigh's alpha (1/s) and beta (s).
 order : int or None
-    Of the energies in theta, 2 to 20; None: exact, by quadrature.
+    Order of the energies in theta, 2 to 20; None: exact, by quadrature.
 mass_line : {'layer', 'section'}
-    Whether the mass sits on the layer, as published, or at its height above it.
+    Whether the mass is concentrated on the layer, as published, or distributed over the section.
 
 Raises
 ------

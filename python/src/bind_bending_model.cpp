@@ -57,7 +57,7 @@ void bind_energies(BendingActuatorClass& type) {
           R"(energy($self, theta, theta_dot, pressure)
 --
 
-Strain, gravity's and kinetic energy together. Arguments broadcast.
+Sum of strain, gravity and kinetic energy. Arguments broadcast.
 
 Parameters
 ----------
@@ -73,7 +73,7 @@ float or ndarray
            R"(energies($self, theta, theta_dot, pressure)
 --
 
-The energies by themselves. Arguments broadcast.
+The separate energies. Arguments broadcast.
 
 Parameters
 ----------
@@ -124,7 +124,7 @@ void bind_stiffness(BendingActuatorClass& type) {
           py::arg("theta"), R"(inertia($self, theta)
 --
 
-I of the kinetic energy I theta'^2/2.
+Generalised inertia I in the kinetic energy I theta'^2/2.
 
 Parameters
 ----------
@@ -145,7 +145,7 @@ float or ndarray
           py::arg("theta"), py::arg("pressure"), R"(stiffness($self, theta, pressure)
 --
 
-Second derivative of strain and gravity energy by the angle. Arguments broadcast.
+Second derivative of strain and gravity energy with respect to the angle. Arguments broadcast.
 
 Parameters
 ----------
@@ -169,14 +169,14 @@ void bind_equilibrium(BendingActuatorClass& type) {
       py::arg("pressure"), py::arg("start") = 0.0, R"(equilibrium($self, pressure, start=0.0)
 --
 
-The stable angle at rest.
+Stable equilibrium angle under a pressure.
 
 Parameters
 ----------
 pressure : float or array_like
     Pa.
 start : float
-    Where Newton's method begins, rad.
+    Initial guess of Newton's method, rad.
 
 Returns
 -------
@@ -186,7 +186,7 @@ float or ndarray
 Raises
 ------
 RunError
-    not-converged when there is none within a full turn.
+    not-converged if there is none within a full turn.
 )");
 }
 
@@ -200,7 +200,7 @@ void bind_linear_angle(BendingActuatorClass& type) {
       py::arg("pressure"), R"(linear_angle($self, pressure)
 --
 
-theta = M L/(E I) with E = 4 G: small angles, no weight.
+Angle of linear theory, theta = M L/(E I) with E = 4 G, for small angles and without weight.
 
 Parameters
 ----------
@@ -224,7 +224,7 @@ void bind_geometry(BendingActuatorClass& type) {
           py::arg("theta"), R"(chamber_volume($self, theta)
 --
 
-pi r^2 (L + (r + r_t) theta).
+Volume of the chamber, pi r^2 (L + (r + r_t) theta).
 
 Parameters
 ----------
@@ -240,19 +240,19 @@ float or ndarray
            R"(point($self, theta, fraction=1.0)
 --
 
-A point of the inextensible layer, the tip by default. Arguments broadcast.
+A point of the inextensible layer, by default the tip. Arguments broadcast.
 
 Parameters
 ----------
 theta : float or array_like
     rad.
 fraction : float or array_like
-    Of the arc length, 0 to 1.
+    Fraction of the arc length, 0 to 1.
 
 Returns
 -------
 (..., 2) ndarray
-    x aside and height, m from the base. At the inclination 0 the straight actuator's tip is (0, -L).
+    Lateral coordinate x and height relative to the base, m. At the inclination 0 the straight actuator's tip is (0, -L).
 )");
 }
 
@@ -261,7 +261,7 @@ void bind_taylor_error(BendingActuatorClass& type) {
            py::arg("pressure"), R"(taylor_error($self, lowest, highest, pressure)
 --
 
-Bounds of what the Taylor polynomials leave out over a range of angles; zeros for an exact model.
+Bounds on the truncation error of the Taylor polynomials over a range of angles; zeros for an exact model.
 
 Parameters
 ----------

@@ -42,25 +42,25 @@ void bind_bending_modulus(py::module_& module) {
       R"(BendingModulus(coefficients, *, kind='shear', pressure_range=None, outside='refuse')
 --
 
-The modulus of a bending actuator's silicone: a constant, or a polynomial of the pressure.
+Modulus of a bending actuator's silicone: a constant, or a polynomial in the pressure.
 
 Parameters
 ----------
 coefficients : float or (n,) array_like
     Pa, or Pa/Pa^k from k = 0 on.
 kind : {'shear', 'young', 'bending'}
-    What it is: G, uniaxial E = 3 G, or E of theta = M L/(E I), which is 4 G since fibres keep the
+    Kind of modulus: G, the uniaxial E = 3 G, or E of theta = M L/(E I), which is 4 G because fibres keep the
     width.
 pressure_range : tuple of float, optional
-    Pressures that a polynomial was fitted to, Pa.
+    Pressure range of the fit of a polynomial, Pa.
 outside : {'refuse', 'hold'}
-    What a polynomial does at others: an Error, or its value at the nearer end.
+    Behaviour of a polynomial outside this range: an Error, or the value at the nearer end.
 
 Raises
 ------
 Error
-    out-of-range where it is not positive within its range, missing-key for a polynomial without
-    one.
+    out-of-range if it is not positive within its range, missing-key for a polynomial without
+    a range.
 )")
       .def(py::init(&make_modulus), py::arg("coefficients"), py::kw_only(),
            py::arg("kind") = "shear", py::arg("pressure_range") = py::none(),
@@ -74,7 +74,7 @@ Error
           py::arg("pressure"), R"(value($self, pressure)
 --
 
-The modulus, of its own kind.
+The modulus, of its own kind, at a pressure.
 
 Parameters
 ----------
@@ -95,7 +95,7 @@ float or ndarray
           py::arg("pressure"), R"(shear($self, pressure)
 --
 
-The shear modulus that follows.
+The corresponding shear modulus.
 
 Parameters
 ----------
@@ -121,7 +121,7 @@ float or ndarray
           },
           "(n,) ndarray: Pa/Pa^k from k = 0 on.")
       .def_property_readonly("pressure_range", &pressure_range,
-                             "tuple or None: pressures that a polynomial holds for, Pa.")
+                             "tuple or None: pressure range in which a polynomial is valid, Pa.")
       .def_property_readonly(
           "outside",
           [](const BendingModulus& self) {
@@ -145,12 +145,12 @@ float or ndarray
       py::arg("outside") = "refuse", R"(published_modulus(outside='refuse')
 --
 
-A published fit to a water-driven silicone actuator, 10 to 110 kPa: the kind 'bending', degree 5.
+Published fit to a water-driven silicone actuator, 10 to 110 kPa, of kind 'bending' and degree 5.
 
 Parameters
 ----------
 outside : {'refuse', 'hold'}
-    What it does at other pressures.
+    Behaviour at other pressures.
 
 Returns
 -------

@@ -80,21 +80,21 @@ void bind_bending_history(BendingActuatorClass& type) {
       R"(simulate($self, time, pressure, *, angle=None, rate=0.0, longest_step=1e-3, integrator='generalized-alpha', spectral_radius=0.8)
 --
 
-The motion under a history of pressure, by implicit steps.
+Simulates the motion under a given pressure over time, by implicit steps.
 
 Parameters
 ----------
 time : (n,) array_like
     s, increasing; steps may be uneven.
 pressure : (n,) array_like
-    Pa; straight lines between.
+    Pa, interpolated linearly.
 angle, rate : float, optional
-    At time[0], rad and rad/s; the equilibrium of pressure[0] without an angle.
+    At time[0], rad and rad/s; by default the equilibrium under pressure[0].
 longest_step : float
     s; longer intervals are divided evenly.
 integrator : {'quasi-static', 'backward-euler', 'bdf2', 'generalized-alpha'}
 spectral_radius : float
-    Of generalized-alpha: 0 damps fast motion most, 1 conserves.
+    For generalized-alpha: 0 damps fast motion most, 1 conserves energy.
 
 Returns
 -------
@@ -106,7 +106,7 @@ Raises
 Error
     non-monotonic-time, wrong-length, out-of-range.
 RunError
-    not-converged when no angle meets the equation of motion.
+    not-converged if no angle satisfies the equation of motion.
 )");
 }
 
@@ -119,18 +119,18 @@ void bind_bending_motion(py::module_& module) {
       R"(BendingMotion(actuator, *, angle=None, rate=0.0, pressure=0.0, time=0.0, integrator='generalized-alpha', spectral_radius=0.8)
 --
 
-A bending actuator that moves step by step, for control loops.
+Step-by-step simulation of a bending actuator, for control loops.
 
 Parameters
 ----------
 actuator : BendingActuator
 angle, rate : float, optional
-    At the start, rad and rad/s; the equilibrium of `pressure` without an angle.
+    Initial values, rad and rad/s; by default the equilibrium under `pressure`.
 pressure, time : float
-    At the start, Pa and s.
+    Initial values, Pa and s.
 integrator : {'quasi-static', 'backward-euler', 'bdf2', 'generalized-alpha'}
 spectral_radius : float
-    Of generalized-alpha: 0 damps fast motion most, 1 conserves.
+    For generalized-alpha: 0 damps fast motion most, 1 conserves energy.
 )")
       .def(py::init(&make_motion), py::arg("actuator"), py::kw_only(),
            py::arg("angle") = py::none(), py::arg("rate") = 0.0, py::arg("pressure") = 0.0,
@@ -144,24 +144,24 @@ spectral_radius : float
           py::arg("time_step"), py::arg("pressure"), R"(step($self, time_step, pressure)
 --
 
-One implicit step.
+Makes one implicit step.
 
 Parameters
 ----------
 time_step : float
     s; may change from step to step.
 pressure : float
-    At the step's end, Pa.
+    Pressure at the end of the step, Pa.
 
 Returns
 -------
 float
-    The angle at its end, rad.
+    Angle at the end of the step, rad.
 
 Raises
 ------
 RunError
-    not-converged; the state stays as it was.
+    not-converged; the state is then unchanged.
 )")
       .def_property_readonly("time", get(&BendingState::time), "float: s.")
       .def_property_readonly("angle", get(&BendingState::angle), "float: rad.")
@@ -174,7 +174,7 @@ RunError
             const Eigen::Vector2d tip = self.actuator().point(self.state().angle);
             return Array(2, tip.data());
           },
-          "(2,) ndarray: x aside and height, m.")
+          "(2,) ndarray: lateral coordinate x and height, m.")
       .def("__repr__", [](const BendingMotion& self) {
         return fmt::format("<sinew.pcc.BendingMotion at {:g} s, {:.4g} rad>", self.state().time,
                            self.state().angle);

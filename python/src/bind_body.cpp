@@ -39,7 +39,7 @@ const mechanics::HasCoordinates& arm(const Body& self) {
   const auto* found = mechanics::as<const mechanics::HasCoordinates>(body(self));
   if (found == nullptr) {
     throw Error(ErrorKind::wrong_type, {.item = fmt::format("body('{}')", name(self))},
-                "this body is not of constant curvatures", "ask for its positions");
+                "this body is not a constant-curvature arm", "read its positions instead");
   }
   return *found;
 }
@@ -48,7 +48,7 @@ const mechanics::HasPose& rigid(const Body& self, const char* what) {
   const auto* found = mechanics::as<const mechanics::HasPose>(body(self));
   if (found == nullptr) {
     throw Error(ErrorKind::wrong_type, {.item = fmt::format("body('{}').{}", name(self), what)},
-                "this body is not rigid", "ask for its positions, or declare an effector on it");
+                "this body is not rigid", "read its positions, or declare an effector on it");
   }
   return *found;
 }
@@ -195,8 +195,8 @@ void bind_state(py::class_<Body>& type) {
       R"(move_base($self, translation=(0.0, 0.0, 0.0), rotation=(0.0, 0.0, 0.0), centre=(0.0, 0.0, 0.0))
 --
 
-Moves the fixed nodes in the next step: turned about `centre`, then shifted, from rest. An input, as
-commands are: reset() puts the base back, and a saved state says where the base was.
+Moves the fixed nodes in the next step: a rotation about `centre`, then a translation, both relative to rest.
+Like a command, it is an input: reset() moves the base back, and a saved state contains where the base was.
 
 Parameters
 ----------
@@ -210,14 +210,14 @@ centre : (3,) array_like
 Raises
 ------
 Error
-    bad-argument where the scene moves this base by `base`; nothing-fixed; not-finite.
+    bad-argument if the scene moves this base by `base`; nothing-fixed; not-finite.
 )");
   type.def_property_readonly(
           "positions", [](const Body& self) { return points_view(self, body(self).positions()); },
-          R"((n, 3) ndarray: positions of all nodes now, in the mesh's order (m). Where a mesh of linear
-tetrahedra is made quadratic, its own nodes come first and the middle nodes after them.
+          R"((n, 3) ndarray: present positions of all nodes, in the mesh's order (m). If a mesh of linear
+tetrahedra was made quadratic, its own nodes come first and the mid-edge nodes after them.
 
-A live, read-only view: it shows every later step, keeps the simulation alive, and must not be read
+A live, read-only view: it follows every later step, keeps the simulation alive, and must not be read
 while another thread steps. Copy it to keep a moment: `body.positions.copy()`.)")
       .def_property_readonly(
           "coordinates",
@@ -232,7 +232,7 @@ while another thread steps. Copy it to keep a moment: `body.positions.copy()`.)"
             const Session::Use use(*self.session);
             return copy(arm(self).rates());
           },
-          "(coordinates,) ndarray: their rates (rad/s).")
+          "(coordinates,) ndarray: rates of the coordinates (rad/s).")
       .def_property_readonly(
           "arm",
           [](const Body& self) {
@@ -240,7 +240,7 @@ while another thread steps. Copy it to keep a moment: `body.positions.copy()`.)"
             const auto& own = *mechanics::as<const pcc::HasArm>(body(self).model());
             return std::make_unique<PccArm>(own.shared_arm());
           },
-          "sinew.pcc.Arm: what a constant-curvature body is made of.")
+          "sinew.pcc.Arm: model of a constant-curvature body.")
       .def_property_readonly(
           "velocities", [](const Body& self) { return points_view(self, body(self).velocities()); },
           "(n, 3) ndarray: velocities of all nodes (m/s); zero in quasi-static runs. A live, "
@@ -249,10 +249,10 @@ while another thread steps. Copy it to keep a moment: `body.positions.copy()`.)"
           "external_forces",
           [](const Body& self) { return points_view(self, external_forces(self), true); },
           &set_external_forces,
-          R"((n, 3) ndarray: dead loads on the nodes beside gravity (N).
+          R"((n, 3) ndarray: dead loads on the nodes in addition to gravity (N).
 
-A live, writable view: `body.external_forces[5] = [0, 0, -0.1]` acts from the next step on. They
-stay until changed; reset() sets them to zero. Forces on fixed nodes do nothing.)");
+A live, writable view: `body.external_forces[5] = [0, 0, -0.1]` acts from the next step on. The forces
+stay until changed; reset() sets them to zero. Forces on fixed nodes have no effect.)");
 }
 
 void bind_loads_of(py::class_<Body>& type) {
@@ -268,10 +268,10 @@ void bind_loads_of(py::class_<Body>& type) {
           py::arg("apart") = 0.0, R"(self_touch($self, apart=0.0)
 --
 
-Whether the body reaches into itself now: None, or (node, element) of the first surface node that
-lies in an element it does not belong to. Edges that cross are not seen; a contact
-`between: [body, body]` keeps both from happening. What is nearer than `apart` (m) at rest is not
-looked at, such as the dent round a point load.
+Whether the body penetrates itself: None, or (node, element) of the first surface node that
+lies in an element to which it does not belong. Crossing edges are not detected; a contact
+`between: [body, body]` prevents both. Parts closer than `apart` (m) at rest are not checked,
+such as the dent around a point load.
 )")
       .def_property_readonly(
           "load_forces",
@@ -279,8 +279,7 @@ looked at, such as the dent round a point load.
             const Session::Use use(*self.session);
             return copy(fem::of_elements<mechanics::TakesLoads>(body(self)).load_forces());
           },
-          "(n, 3) ndarray: what the scene's loads put on all nodes (N), as the last step had "
-          "them.");
+          "(n, 3) ndarray: forces of the scene's loads on all nodes (N) in the last step.");
 }
 
 // (m, k) of k nodes each.
@@ -304,7 +303,7 @@ void bind_mesh_of(py::class_<Body>& type) {
       .def_property_readonly(
           "quadratic_tetrahedra",
           [](const Body& self) { return numbers_view(self, body(self).model().mesh().quadratic); },
-          "(m, 10) ndarray of int32: corners and middle nodes of quadratic tetrahedra, in VTK's "
+          "(m, 10) ndarray of int32: corners and mid-edge nodes of quadratic tetrahedra, in VTK's "
           "order; `tetrahedra` has their corners. Read-only.")
       .def_property_readonly(
           "hexahedra",
@@ -314,7 +313,7 @@ void bind_mesh_of(py::class_<Body>& type) {
           "triangles",
           [](const Body& self) { return numbers_view(self, body(self).model().mesh().triangles); },
           "(m, 3) ndarray of int32: nodes of the triangles of its mesh, if it has any: the whole "
-          "surface of a rigid body that a file describes. Read-only.")
+          "surface of a rigid body from a file. Read-only.")
       .def_property_readonly(
           "elements",
           [](const Body& self) {
@@ -325,9 +324,10 @@ void bind_mesh_of(py::class_<Body>& type) {
             return result;
           },
           "dict: number of elements by kind, as {'tet10': 2639}; kinds are those of scenes.")
-      .def_property_readonly("fixed", &fixed,
-                             "(n,) ndarray of bool: nodes that never move: fixed ones and those "
-                             "that belong to no element.")
+      .def_property_readonly(
+          "fixed", &fixed,
+          "(n,) ndarray of bool: nodes that do not move: fixed nodes and nodes that belong to no "
+          "element.")
       .def_property_readonly(
           "node_sets", [](const Body& self) { return body(self).model().mesh().node_sets; },
           "dict: named sets of nodes of the mesh.")
@@ -356,17 +356,17 @@ auto energy(double mechanics::Energies::*part) {
 void bind_mechanics(py::class_<Body>& type) {
   type.def_property_readonly(
           "strain_energy", energy(&mechanics::Energies::strain),
-          "float: elastic energy now (J), that of the law of slow motion in viscoelastic "
-          "materials; with what softening has dissipated.")
+          "float: present strain energy (J), without the relaxing branches of viscoelastic "
+          "materials and with the energy dissipated by softening.")
       .def_property_readonly("kinetic_energy", energy(&mechanics::Energies::kinetic),
-                             "float: energy of motion now (J).")
+                             "float: present kinetic energy (J).")
       .def_property_readonly("gravity_energy", energy(&mechanics::Energies::gravity),
-                             "float: gravity's potential with respect to rest (J).")
+                             "float: gravity energy relative to rest (J).")
       .def("internal_forces", &internal_forces, py::arg("positions") = py::none(),
            R"(internal_forces($self, positions=None)
 --
 
-The elastic forces f(q) = dU/dq of the nodes; at equilibrium f = external + gravity + H^T effort.
+Elastic nodal forces f(q) = dU/dq; at equilibrium f = external + gravity + H^T effort.
 
 Parameters
 ----------
@@ -376,21 +376,21 @@ positions : (n, 3) array_like, optional
 Returns
 -------
 (n, 3) ndarray
-    N; zero at nodes that never move.
+    N; zero at nodes that do not move.
 )")
       .def("stiffness", &stiffness, py::arg("positions") = py::none(), py::kw_only(),
            py::arg("tangent") = "exact",
            R"(stiffness($self, positions=None, *, tangent='exact')
 --
 
-The elements' stiffness df/dq over free nodes, without the cables' part.
+Stiffness of the elements, df/dq, over free nodes, without that of the cables.
 
 Parameters
 ----------
 positions : (n, 3) array_like, optional
     m; the present ones by default. The simulation is not changed.
 tangent : {'exact', 'projected', 'corotated'}
-    The derivative of the forces, the same made positive semi-definite element by element, or
+    The derivative of the forces; its projection that is positive semi-definite element by element; or
     R K0 R^T with the rotations held fixed.
 
 Returns
@@ -402,7 +402,7 @@ scipy.sparse.csr_matrix
            R"(jacobian($self)
 --
 
-H at the present state: how the motion of every row follows from the motion of the nodes.
+H at the present state: derivative of the motion of every row with respect to the nodes.
 
 Returns
 -------
@@ -420,16 +420,16 @@ void bind_pose(py::class_<Body>& type) {
             const Session::Use use(*self.session);
             return copy(rigid(self, "position").origin());
           },
-          "(3,) ndarray: where the frame of a rigid body's shape is (m). Raises Error(wrong-type) "
-          "for bodies that deform.")
+          "(3,) ndarray: position of a rigid body's frame (m). Raises Error(wrong-type) for "
+          "deformable bodies.")
       .def_property_readonly(
           "rotation",
           [](const Body& self) {
             const Session::Use use(*self.session);
             return copy(VectorX(unit_quaternion(rigid(self, "rotation").axes())));
           },
-          "(4,) ndarray: its axes as a unit quaternion w, x, y, z with w >= 0. Raises as "
-          "`position`.")
+          "(4,) ndarray: rotation of its frame, a unit quaternion w, x, y, z with w >= 0. Raises "
+          "as `position`.")
       .def_property_readonly(
           "velocity",
           [](const Body& self) {
@@ -439,32 +439,33 @@ void bind_pose(py::class_<Body>& type) {
             both << own.linear_velocity(), own.angular_velocity();
             return copy(both);
           },
-          "(6,) ndarray: the velocity of its centre of mass (m/s), then its angular velocity about "
-          "the world's axes (rad/s). Raises as `position`.")
+          "(6,) ndarray: velocity of its centre of mass (m/s), then angular velocity in world axes "
+          "(rad/s). Raises as `position`.")
       .def_property_readonly(
           "centre_of_mass",
           [](const Body& self) {
             const Session::Use use(*self.session);
             return copy(rigid(self, "centre_of_mass").centre_of_mass());
           },
-          "(3,) ndarray: where its centre of mass is (m). Raises as `position`.")
+          "(3,) ndarray: position of its centre of mass (m). Raises as `position`.")
       .def_property_readonly(
           "inertia",
           [](const Body& self) {
             rigid(self, "inertia");
             return copy(Points(shape(self)->own_inertia()));
           },
-          "(3, 3) ndarray: its inertia about the centre of mass, in the shape's axes (kg m^2). "
+          "(3, 3) ndarray: inertia about the centre of mass, in the axes of its frame (kg m^2). "
           "Raises as `position`.");
 }
 
 }  // namespace
 
 void bind_body(py::module_& module) {
-  py::class_<Body> type(module, "Body",
-                        "A body: of finite elements, rigid, or an arm. From Simulation.body().");
+  py::class_<Body> type(
+      module, "Body",
+      "A body: finite elements, rigid, or a constant-curvature arm. From Simulation.body().");
   type.def_property_readonly(
-          "name", [](const Body& self) { return name(self); }, "str: as in the scene.")
+          "name", [](const Body& self) { return name(self); }, "str: name in the scene.")
       .def("__repr__", [](const Body& self) {
         if (shape(self) != nullptr) {
           return fmt::format("<sinew.Body '{}', rigid {}>", name(self), shape(self)->shape_name());

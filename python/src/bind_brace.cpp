@@ -41,7 +41,7 @@ plan::TouchStiffness stiffness_of(const py::object& value) {
 void bind_objects(py::module_& module) {
   using plan::BraceObject;
   py::class_<BraceObject>(module, "PlanBraceObject",
-                          "What an arm may lean against: plane(), sphere() or capsule().")
+                          "An object that an arm may lean against: plane(), sphere() or capsule().")
       .def_static(
           "plane",
           [](const py::object& point, const py::object& normal, const py::object& friction,
@@ -55,14 +55,14 @@ void bind_objects(py::module_& module) {
           R"(plane(point, normal, *, friction='silicone-on-steel', stiffness=None)
 --
 
-A half space through a point (3,) m; its normal (3,) points out of what is solid.
+A half space below a plane through a point (3,) m; the normal (3,) points out of the solid.
 
 Parameters
 ----------
 friction : str, float or (2,)
-    Of the pair: 'silicone-on-steel' (0.6 to 0.9), 'coated-rigid' (0.05 to 0.20), or numbers.
+    Friction of the pair: 'silicone-on-steel' (0.6 to 0.9), 'coated-rigid' (0.05 to 0.20), a number, or a range.
 stiffness : (2,), optional
-    Radial N/m and torsional N m/rad; rigid when left out.)")
+    Radial N/m and torsional N m/rad; rigid by default.)")
       .def_static(
           "sphere",
           [](const py::object& centre, double radius, const py::object& friction,
@@ -76,7 +76,7 @@ stiffness : (2,), optional
           R"(sphere(centre, radius, *, friction='silicone-on-steel', stiffness=None)
 --
 
-A ball of centre (3,) m and radius in m; see plane().)")
+A ball with centre (3,) m and radius in m; see plane().)")
       .def_static(
           "capsule",
           [](const py::object& start, const py::object& end, double radius,
@@ -90,7 +90,7 @@ A ball of centre (3,) m and radius in m; see plane().)")
           R"(capsule(start, end, radius, *, friction='silicone-on-steel', stiffness=None)
 --
 
-A bar with round ends, from (3,) to (3,) m, of a radius in m; see plane().)");
+A bar with round ends from (3,) to (3,) m, with a radius in m; see plane().)");
 }
 
 BraceOf find(const PccArm& arm, const py::object& goal, const py::object& torque_limits,
@@ -156,7 +156,7 @@ plan::BraceRun carry_out(const BraceOf& self, bool braced, const py::object& fri
 }
 
 void bind_found(py::module_& module) {
-  py::class_<BraceOf>(module, "PlanBrace", "What brace() found.")
+  py::class_<BraceOf>(module, "PlanBrace", "Result of brace().")
       .def_property_readonly(
           "status",
           [](const BraceOf& self) { return std::string(plan::status_name(self.brace.status)); },
@@ -165,29 +165,30 @@ void bind_found(py::module_& module) {
           "found", [](const BraceOf& self) { return self.brace.found(); }, "bool: braced.")
       .def_property_readonly(
           "segments", [](const BraceOf& self) { return self.brace.segments; },
-          "int: n, the braced point is on the n-th segment from the base.")
+          "int: n, the number of the braced segment, counted from 1 at the base.")
       .def_property_readonly(
           "object", [](const BraceOf& self) { return self.brace.object; },
-          "int: which of the objects; -1: none.")
+          "int: index of the object; -1: none.")
       .def_property_readonly(
           "fraction", [](const BraceOf& self) { return self.brace.point.fraction; },
-          "float: of the segment's length, where the braced point is.")
+          "float: position of the braced point, as a fraction of the segment's length.")
       .def_property_readonly(
           "theta", [](const BraceOf& self) { return copy(self.brace.position); },
           "(coordinates,) rad.")
       .def_property_readonly(
           "torque", [](const BraceOf& self) { return copy(self.brace.torque); }, "(inputs,) N m.")
       .def_property_readonly(
-          "turn", [](const BraceOf& self) { return self.brace.turn; }, "float: rad, of the base.")
+          "turn", [](const BraceOf& self) { return self.brace.turn; },
+          "float: rotation of the base, rad.")
       .def_property_readonly(
           "place", [](const BraceOf& self) { return copy(self.brace.place); },
           "(3,) m: the braced point, on the object.")
       .def_property_readonly(
           "normal", [](const BraceOf& self) { return copy(self.brace.normal); },
-          "(3,): out of the object.")
+          "(3,): outward normal of the object.")
       .def_property_readonly(
           "force", [](const BraceOf& self) { return copy(self.brace.force); },
-          "(3,) N: on the arm.")
+          "(3,) N: force on the arm.")
       .def_property_readonly(
           "normal_force", [](const BraceOf& self) { return self.brace.normal_force; }, "float: N.")
       .def_property_readonly(
@@ -199,29 +200,31 @@ void bind_found(py::module_& module) {
           "tip_error", [](const BraceOf& self) { return self.brace.tip_error; }, "float: m.")
       .def_property_readonly(
           "gap", [](const BraceOf& self) { return self.brace.gap; },
-          "float: m, of the braced point.")
+          "float: gap of the braced point, m.")
       .def_property_readonly(
           "clearance", [](const BraceOf& self) { return self.brace.clearance; },
-          "float: m, the least of the skin's other points.")
+          "float: smallest gap of the other points of the skin, m.")
       .def_property_readonly(
           "balance", [](const BraceOf& self) { return self.brace.balance; },
-          "float: N m, largest component of the equilibrium's residual.")
+          "float: largest component of the residual of the equilibrium, N m.")
       .def_property_readonly(
           "tip_compliance", [](const BraceOf& self) { return self.brace.tip_compliance; },
-          "float: m/N, the largest at rest while the braced point sticks.")
+          "float: largest static compliance of the tip while the braced point sticks, m/N.")
       .def_property_readonly(
           "peak_compliance", [](const BraceOf& self) { return self.brace.peak_compliance; },
-          "float: m/N, the largest of all up to hold_frequency while the braced point sticks.")
+          "float: largest compliance of the tip up to hold_frequency while the braced point "
+          "sticks, m/N.")
       .def_property_readonly(
           "hold_force", [](const BraceOf& self) { return self.brace.hold_force; },
-          "float: N, on the tip, up to which the braced point sticks where friction is least.")
+          "float: force on the tip up to which the braced point sticks at the lower end of the "
+          "friction range, N.")
       .def_property_readonly(
           "mobility", [](const BraceOf& self) { return self.brace.mobility; },
-          "int: directions in which the tip still moves then.")
+          "int: number of directions in which the tip can still move.")
       .def_property_readonly(
           "conditions", [](const BraceOf& self) { return conditions_of(self.brace); },
           "list of dict: 'name' (friction, stiffness, kinematic), 'verdict' (holds, uncertain, "
-          "violated), 'value' and 'limit'; where no brace was found, of what came nearest, or "
+          "violated), 'value' and 'limit'; if no brace was found, for the closest equilibrium, or "
           "empty.")
       .def(
           "run", &carry_out, py::arg("braced") = true, py::kw_only(),
@@ -231,27 +234,27 @@ void bind_found(py::module_& module) {
           R"(run($self, braced=True, *, friction=None, force=0.01, seed=1, hold=4.0, time_step=0.001)
 --
 
-Moves to contact, presses, plans anew, moves to the goal, and is disturbed there: a BraceRun.
+Simulates the brace: the arm moves to contact, presses, replans, moves to the goal, and is disturbed there. Returns a BraceRun.
 
 Parameters
 ----------
 braced : bool
-    False: without objects, by the torque of the equilibrium nearest to the goal.
+    False: without objects, with the torques of the equilibrium closest to the goal.
 friction : float, optional
-    Coulomb's coefficient of every object; the least of its range when left out.
+    Coulomb's coefficient of every object; by default the lower end of its range.
 force : float
-    N, root mean square of the disturbance along x, y and z, a sum of sines of 0.2 to 2 Hz.
+    Root mean square of the disturbance along x, y and z, a sum of sines of 0.2 to 2 Hz, N.
 seed : int
-    Of the disturbance.
+    Seed of the disturbance.
 hold : float
-    s, of being disturbed.
+    Duration of the disturbance, s.
 time_step : float
-    s, of backward Euler.)");
+    Step of backward Euler, s.)");
 }
 
 void bind_run(py::module_& module) {
   using plan::BraceRun;
-  py::class_<BraceRun>(module, "PlanBraceRun", "A brace carried out, over equal steps.")
+  py::class_<BraceRun>(module, "PlanBraceRun", "Simulation of a brace, in equal steps.")
       .def_property_readonly(
           "status",
           [](const BraceRun& self) { return std::string(plan::status_name(self.status)); },
@@ -268,42 +271,42 @@ void bind_run(py::module_& module) {
           "tip", [](const BraceRun& self) { return copy(self.tip); }, "(steps + 1, 3) m.")
       .def_property_readonly(
           "normal_force", [](const BraceRun& self) { return copy(self.normal_force); },
-          "(steps + 1,) N, of the braced point.")
+          "(steps + 1,) N, at the braced point.")
       .def_property_readonly(
           "friction_force", [](const BraceRun& self) { return copy(self.friction_force); },
-          "(steps + 1,) N, of the braced point.")
+          "(steps + 1,) N, at the braced point.")
       .def_property_readonly(
           "contact_time", [](const BraceRun& self) { return self.contact_time; },
-          "float: s, of the first touch; 0: never.")
+          "float: time of first contact, s; 0: never.")
       .def_property_readonly(
           "replan_time", [](const BraceRun& self) { return self.replan_time; },
-          "float: s, when the rest was planned anew.")
+          "float: time of the replanning, s.")
       .def_property_readonly(
           "disturbed_from", [](const BraceRun& self) { return self.disturbed_from; }, "float: s.")
       .def_property_readonly(
           "measured", [](const BraceRun& self) { return copy(self.measured); },
-          "(coordinates,) rad, when the rest was planned anew.")
+          "(coordinates,) rad, at the replanning.")
       .def_property_readonly(
           "hold_force", [](const BraceRun& self) { return self.after.hold_force; },
-          "float: N, on the tip, up to which the braced point sticks as planned anew.")
+          "float: force on the tip up to which the braced point sticks in the new plan, N.")
       .def_property_readonly(
           "slips", [](const BraceRun& self) { return self.slips; },
-          "int: steps, disturbed, in which the braced point did not stick.")
+          "int: number of disturbed steps in which the braced point did not stick.")
       .def_property_readonly(
           "cone_residual", [](const BraceRun& self) { return self.cone_residual; },
-          "float: N, largest of friction less its limit in any step.")
+          "float: largest excess of friction over its limit in any step, N.")
       .def_property_readonly(
           "contact_residual", [](const BraceRun& self) { return self.contact_residual; },
-          "float: largest relative residual of the contacts' laws in any step.")
+          "float: largest relative residual of the contact laws in any step.")
       .def_property_readonly(
           "mean_error", [](const BraceRun& self) { return self.mean_error; },
-          "float: m, the tip's mean distance from the goal while disturbed.")
+          "float: mean distance of the tip from the goal during the disturbance, m.")
       .def_property_readonly(
           "offset", [](const BraceRun& self) { return self.offset; },
-          "float: m, its mean's distance.")
+          "float: distance of the tip's mean position from the goal, m.")
       .def_property_readonly(
           "spread", [](const BraceRun& self) { return self.spread; },
-          "float: m, root mean square about its mean.");
+          "float: root mean square distance of the tip from its mean position, m.");
 }
 
 }  // namespace
@@ -327,42 +330,42 @@ void bind_brace(py::module_& module) {
       R"(plan_brace(arm, goal, torque_limits, objects, *, tolerance=0.005, angle_limits=None, turn=None, segments=None, fractions=(0.25, 0.5, 0.75, 1.0), along=8, sides=0, clearance=0.001, hold_force=0.04, hold_frequency=2.0, friction_fraction=0.9, min_force=0.05, max_force=20.0, stiffness_ratio=10.0, starts=2, seed=1)
 --
 
-Where an arm leans against its surroundings so that its tip is held steadier: a Brace.
+Finds where an arm can lean on its surroundings to hold its tip steadier. Returns a Brace.
 
 Parameters
 ----------
 arm : sinew.pcc.Arm
 goal : (3,) m
-    Of the tip.
+    Goal of the tip.
 torque_limits : (inputs,) or (2, inputs) N m
 objects : list of BraceObject
-    None: infeasible.
+    An empty list is infeasible.
 tolerance : float
-    m; a brace is found with 40 % of it, the rest is for the way there.
+    m; the brace is planned with 40 % of it, the rest is for the motion there.
 angle_limits : (coordinates,) or (2, coordinates) rad, optional
 turn : (2,) rad, optional
-    The base turns about the arm's axis by an angle between these.
+    The base may turn about the arm's axis by an angle between these.
 segments : int, optional
-    The braced point is on this segment, counted from 1; else on the first for which there is one.
+    Segment of the braced point, counted from 1; by default the first one that can brace.
 fractions : sequence of float
-    Of a segment's length: which points of its skin may be braced.
+    Candidates for the braced point, as fractions of a segment's length.
 along : int
-    Points of the skin are there and at so many equal steps of a segment ...
+    Number of equal parts of a segment at whose ends the skin has points ...
 sides : int
-    ... at so many places round the section; 0: 2, spatial arms 4.
+    ... at this many positions around the section; 0: 2, or 4 for spatial arms.
 clearance : float
-    m, that the other points of the skin keep from the objects.
+    Distance of the other points of the skin from the objects, m.
 hold_force, hold_frequency : float
-    N and Hz: the braced point is to stick under any force on the tip that is a sum of sines up to this
+    N and Hz: the braced point must stick under any sum of sinusoidal forces on the tip up to this
     frequency whose amplitudes add up to this force.
 friction_fraction : float
-    Of the least friction, that the brace may need for it.
+    Fraction of the lowest friction that the brace may use.
 min_force, max_force : float
-    N, of the normal force.
+    Limits of the normal force, N.
 stiffness_ratio : float
-    From which on an object is much stiffer than the arm (1 N/mm, 0.2 N m/rad).
+    Required stiffness of an object relative to that of the arm (1 N/mm, 0.2 N m/rad).
 starts : int
-    Of the search, for each candidate.
+    Number of starts of the search for each candidate.
 seed : int
 
 Raises

@@ -24,7 +24,7 @@ std::vector<collision::Triangle> to_triangles(const py::object& value) {
   if (!any) PyErr_Clear();
   const char kind = any ? any.dtype().kind() : 'O';
   if (kind != 'i' && kind != 'u') {
-    throw Error(ErrorKind::wrong_type, {.item = "Surface(triangles)"}, "these are no node numbers",
+    throw Error(ErrorKind::wrong_type, {.item = "Surface(triangles)"}, "these are not node numbers",
                 "give an integer array of shape (m, 3)");
   }
   if (any.ndim() != 2 || any.shape(1) != 3) {
@@ -125,14 +125,14 @@ void bind_arrays(SurfaceType& type) {
             const Points& points = self_of(self).tree.positions();
             return view(points.data(), points.rows(), 3, self);
           },
-          "(n, 3) ndarray, read-only: the nodes (m); where they start, of a swept surface.")
+          "(n, 3) ndarray, read-only: nodes (m); for a swept surface, their start.")
       .def_property_readonly(
           "end_points",
           [=](const py::object& self) {
             const Points& points = self_of(self).tree.end_positions();
             return view(points.data(), points.rows(), 3, self);
           },
-          "(n, 3) ndarray, read-only: where a swept surface ends (m); else points.")
+          "(n, 3) ndarray, read-only: end of a swept surface (m); otherwise `points`.")
       .def_property_readonly(
           "triangles",
           [=](const py::object& self) {
@@ -149,14 +149,15 @@ void bind_arrays(SurfaceType& type) {
           "(e, 2) ndarray of int, read-only: the nodes of each edge, ascending.")
       .def_property_readonly(
           "closed", [](const CollisionSurface& self) { return self.topology->closed(); },
-          "bool: whether every edge has two triangles that run along it in opposite directions.");
+          "bool: whether every edge belongs to two triangles that traverse it in opposite "
+          "directions.");
 }
 
 void bind_moves(SurfaceType& type) {
   type.def("moved", &moved, py::arg("points"), R"(moved($self, points)
 --
 
-The surface with its nodes elsewhere. Cheaper than a new one.
+The surface with its nodes at other positions. Cheaper than creating a new one.
 
 Parameters
 ----------
@@ -170,7 +171,7 @@ Surface
       .def("swept", &swept, py::arg("end"), R"(swept($self, end)
 --
 
-The surface in motion: every node goes straight from `points` to `end` while time runs from 0 to 1.
+The surface in motion: every node moves on a straight line from `points` to `end` while time runs from 0 to 1.
 For impacts().
 
 Parameters
@@ -189,14 +190,14 @@ void bind_queries(SurfaceType& type) {
            R"(nearest($self, points, reach=None)
 --
 
-The points of the surface nearest to others.
+Nearest point of the surface for each of the given points.
 
 Parameters
 ----------
 points : (k, 3) array_like
     m.
 reach : float, optional
-    Farther ones are not looked for (m): their distance is inf, their triangle -1.
+    Search distance (m). Beyond it, the distance is inf and the triangle -1.
 
 Returns
 -------
@@ -206,7 +207,7 @@ NearestPoints
            R"(winding_numbers($self, points)
 --
 
-How often a closed surface winds round points: 0 outside, 1 inside, more where it overlaps itself.
+Winding numbers of a closed surface around points: 0 outside, 1 inside, more where it overlaps itself.
 Exact.
 
 Parameters
@@ -231,7 +232,7 @@ void bind_collision(py::module_& module) {
   SurfaceType type(module, "Surface", R"(Surface(points, triangles)
 --
 
-A triangle surface with a tree of boxes. It never changes: threads may share it.
+A triangle surface with a tree of bounding boxes. Immutable: threads may share it.
 
 Parameters
 ----------
@@ -255,13 +256,16 @@ Error
                        self.topology->triangles().size(), self.topology->node_count(),
                        self.topology->closed() ? "closed" : "open");
   });
-  py::class_<NearestPoints>(module, "NearestPoints", "What Surface.nearest() found.")
+  py::class_<NearestPoints>(module, "NearestPoints", "Result of Surface.nearest().")
       .def_readonly("distances", &NearestPoints::distances, "(k,) ndarray: m.")
-      .def_readonly("points", &NearestPoints::points, "(k, 3) ndarray: on the surface (m).")
-      .def_readonly("triangles", &NearestPoints::triangles,
-                    "(k,) ndarray of int: the lowest of those at that distance; -1: none in reach.")
+      .def_readonly("points", &NearestPoints::points,
+                    "(k, 3) ndarray: nearest points on the surface (m).")
+      .def_readonly(
+          "triangles", &NearestPoints::triangles,
+          "(k,) ndarray of int: triangle of the point, the lowest index if several are equally "
+          "near; -1: none within reach.")
       .def_readonly("weights", &NearestPoints::weights,
-                    "(k, 3) ndarray: of the triangle's corners, >= 0, sum 1.");
+                    "(k, 3) ndarray: weights of the triangle's corners, >= 0, sum 1.");
   bind_collision_pairs(module);
   bind_collision_primitives(module);
 }

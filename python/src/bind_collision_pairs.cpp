@@ -175,30 +175,33 @@ void bind_side(Type& type, const std::string& side, ProximityPoints ProximityPai
 }
 
 void bind_results(py::module_& module) {
-  py::class_<ProximityPairs> near(module, "ProximityPairs", "What proximity() found.");
+  py::class_<ProximityPairs> near(module, "ProximityPairs", "Result of proximity().");
   near.def_readonly("distances", &ProximityPairs::distances, "(k,) ndarray: m.")
       .def_readonly("normals", &ProximityPairs::normals,
-                    "(k, 3) ndarray: unit length, from the second point to the first.");
+                    "(k, 3) ndarray: unit vectors from the second point to the first.");
   bind_side(near, "first", &ProximityPairs::first);
   bind_side(near, "second", &ProximityPairs::second);
-  py::class_<InsideVertices>(module, "InsideVertices", "What penetration() found.")
-      .def_readonly("nodes", &InsideVertices::nodes, "(k,) ndarray of int: of the first surface.")
+  py::class_<InsideVertices>(module, "InsideVertices", "Result of penetration().")
+      .def_readonly("nodes", &InsideVertices::nodes,
+                    "(k,) ndarray of int: vertices of the first surface.")
       .def_readonly("depths", &InsideVertices::depths,
-                    "(k,) ndarray: distance from the second surface (m), >= 0.")
+                    "(k,) ndarray: their depths below the second surface (m), >= 0.")
       .def_readonly("normals", &InsideVertices::normals,
-                    "(k, 3) ndarray: unit length, the shortest way out.")
-      .def_readonly("points", &InsideVertices::points, "(k, 3) ndarray: where it leads to (m).")
-      .def_readonly("triangles", &InsideVertices::triangles,
-                    "(k,) ndarray of int: of the second surface, that the point lies on.");
-  py::class_<Overlap>(module, "Overlap", "What overlap() found.")
+                    "(k, 3) ndarray: unit vectors along the shortest way out.")
+      .def_readonly("points", &InsideVertices::points,
+                    "(k, 3) ndarray: end points of this way (m).")
+      .def_readonly(
+          "triangles", &InsideVertices::triangles,
+          "(k,) ndarray of int: triangles of the second surface that contain these points.");
+  py::class_<Overlap>(module, "Overlap", "Result of overlap().")
       .def_readonly("volume", &Overlap::volume, "float: m^3.")
       .def_property_readonly(
           "first_gradient", [](const Overlap& self) { return copy(self.first_gradient); },
-          "(n, 3) ndarray: its derivative by the first surface's nodes (m^2).")
+          "(n, 3) ndarray: its derivative with respect to the first surface's nodes (m^2).")
       .def_property_readonly(
           "second_gradient", [](const Overlap& self) { return copy(self.second_gradient); },
-          "(n, 3) ndarray: its derivative by the second surface's nodes (m^2).");
-  py::class_<SurfaceImpacts>(module, "SurfaceImpacts", "What impacts() found.")
+          "(n, 3) ndarray: its derivative with respect to the second surface's nodes (m^2).");
+  py::class_<SurfaceImpacts>(module, "SurfaceImpacts", "Result of impacts().")
       .def_readonly("first_kinds", &SurfaceImpacts::first_kinds,
                     "list of str: 'vertex', 'edge' or 'face'.")
       .def_readonly("second_kinds", &SurfaceImpacts::second_kinds, "list of str: likewise.")
@@ -207,8 +210,9 @@ void bind_results(py::module_& module) {
           "(k,) ndarray of int: node, row of edges or of triangles, of the first surface.")
       .def_readonly("second", &SurfaceImpacts::second,
                     "(k,) ndarray of int: likewise, of the second surface.")
-      .def_readonly("times", &SurfaceImpacts::times,
-                    "(k,) ndarray: from 0 to 1, a lower bound of each pair's first meeting.");
+      .def_readonly(
+          "times", &SurfaceImpacts::times,
+          "(k,) ndarray: lower bound of the time at which each pair first meets, 0 to 1.");
 }
 
 void bind_static_pairs(py::module_& module) {
@@ -216,12 +220,12 @@ void bind_static_pairs(py::module_& module) {
              py::arg("threads") = 1, R"(crossing(first, second=None, *, threads=1)
 --
 
-Pairs of triangles that have a point in common. Exact; touching counts.
+Pairs of triangles with a common point. Exact; touching counts.
 
 Parameters
 ----------
 first, second : Surface
-    Without a second one the first with itself; triangles that share a node make no pair.
+    Without a second surface, the first with itself; triangles that share a node are not paired.
 threads : int
     The result does not depend on it.
 
@@ -236,17 +240,17 @@ Returns
              R"(proximity(first, second=None, *, distance, slack=0.0, facing=True, threads=1)
 --
 
-All local minima of the distance of two surfaces, or of one from itself, up to a distance.
+All local minima of the distance between two surfaces, or of a surface from itself, up to a distance.
 
 Parameters
 ----------
 first, second : Surface
-    Without a second one the first with itself; features that share a node make no pair.
+    Without a second surface, the first with itself; features that share a node are not paired.
 distance : float
-    The farthest pair (m), >= 0.
+    Largest distance of a pair (m), >= 0.
 slack : float
-    Sine of the angle by which a neighbour of the nearest point may lie nearer: 0, local minima
-    alone; 1, every vertex over a face or an edge and all edges that cross.
+    Sine of the angle by which a neighbour of the nearest point may be closer: 0, only local minima;
+    1, every vertex over a face or an edge and all crossing edges.
 facing : bool
     Only points that see each other from outside, by the normals of their features.
 threads : int
@@ -260,7 +264,7 @@ ProximityPairs
              py::arg("threads") = 1, R"(penetration(first, second, *, threads=1)
 --
 
-Vertices of one surface that are inside another one, and how deep. Inside and outside are exact.
+Vertices of one surface inside another one, with their depths. Inside and outside are exact.
 
 Parameters
 ----------
@@ -283,7 +287,7 @@ Error
              py::arg("threads") = 1, R"(overlap(first, second, *, threads=1)
 --
 
-The volume that two closed surfaces have in common, and its derivative by all nodes.
+Volume of the intersection of two closed surfaces, and its derivative with respect to all nodes.
 
 Parameters
 ----------
@@ -312,16 +316,16 @@ void bind_collision_pairs(py::module_& module) {
              R"(impacts(first, second=None, *, separation=0.0, threads=1)
 --
 
-Vertices and faces, and edges, that meet along a motion. None is missed, whatever rounding does: two
-surfaces without any that do not cross at the start never do.
+Vertices and faces, and pairs of edges, that meet during a motion. None is missed in spite of rounding: if there
+are none and the surfaces do not cross at the start, they never do.
 
 Parameters
 ----------
 first, second : Surface
-    swept(); one that is not stands still. Without a second one the first with itself; features
-    that share a node make no pair.
+    From swept(); other surfaces are at rest. Without a second surface, the first with itself; features
+    that share a node are not paired.
 separation : float
-    The distance that counts as a meeting (m), >= 0.
+    Distance that counts as a meeting (m), >= 0.
 threads : int
     The result does not depend on it.
 

@@ -161,7 +161,10 @@ void bind_round_shapes(py::class_<RigidShape>& type) {
                                                to_vector3(normal, "plane(normal)", "")});
           },
           py::arg("point"), py::arg("normal"),
-          "plane(point, normal)\n--\n\nA half space, empty on the side that the normal points to.")
+          "plane(point, normal)\n"
+          "--\n"
+          "\n"
+          "A solid half space; the normal points out of it.")
       .def_static(
           "sphere",
           [](const py::object& centre, double radius) {
@@ -203,14 +206,14 @@ void bind_angular_shapes(py::class_<RigidShape>& type) {
 void bind_shape(py::module_& module) {
   py::class_<RigidShape> type(
       module, "Shape",
-      "A rigid shape in closed form, of one of the functions below. They raise "
-      "Error (out-of-range) for sizes that are not positive.");
+      "A rigid shape in closed form, created by one of the functions below. They raise Error "
+      "(out-of-range) for sizes that are not positive.");
   bind_round_shapes(type);
   bind_angular_shapes(type);
   type.def("distance", &distance, py::arg("points"), R"(distance($self, points)
 --
 
-Where points stand with respect to the shape: points = nearest + gap normal.
+Distances of points from the shape: points = nearest + gap normal.
 
 Parameters
 ----------
@@ -222,9 +225,9 @@ Returns
 gap : (n,) ndarray
     Signed distance (m), negative inside.
 nearest : (n, 3) ndarray
-    On the shape's surface (m). Where there are several, one of them.
+    Nearest point on the surface (m); one of them if there are several.
 normal : (n, 3) ndarray
-    Unit length, out of the shape: the gradient of the gap.
+    Unit vector out of the shape: the gradient of the gap.
 )");
 }
 
@@ -233,7 +236,7 @@ void bind_closest(py::module_& module) {
              R"(closest_on_triangles(points, triangles)
 --
 
-Of each triangle the point nearest to a point. Flat triangles count as their edges.
+Nearest point of each triangle to a given point. Flat triangles count as their edges.
 
 Parameters
 ----------
@@ -247,13 +250,13 @@ Returns
 nearest : (n, 3) ndarray
     m.
 weights : (n, 3) ndarray
-    Of the corners, >= 0, sum 1.
+    Weights of the corners, >= 0, sum 1.
 )");
   module.def("closest_on_edges", &closest_on_edges, py::arg("first"), py::arg("second"),
              R"(closest_on_edges(first, second)
 --
 
-Nearest points of pairs of edges. Of parallel edges, which have many, an end is given.
+Nearest points of pairs of edges. For parallel edges, which have many, one end is returned.
 
 Parameters
 ----------
@@ -265,18 +268,18 @@ Returns
 first_points, second_points : (n, 3) ndarray
     m.
 shares : (n, 2) ndarray
-    From 0 to 1, where they lie on the first and the second edge.
+    Fractions, 0 to 1, along the first and the second edge.
 )");
   module.def("triangles_meet", &triangles_meet, py::arg("first"), py::arg("second"),
              R"(triangles_meet(first, second)
 --
 
-Whether pairs of triangles have a point in common. Exact; touching counts.
+Whether pairs of triangles have a common point. Exact; touching counts.
 
 Parameters
 ----------
 first, second : (n, 3, 3) array_like
-    Corners (m). Coordinates should be zero or between 1e-90 and 1e90 in size.
+    Corners (m). Coordinates should be zero or between 1e-90 and 1e90 in magnitude.
 
 Returns
 -------
@@ -287,21 +290,21 @@ Returns
 void bind_impacts(py::module_& module) {
   const std::string text = R"(
 
-All points go straight on while time runs from 0 to 1. Conservative: what is no hit certainly stays
-farther apart than the separation, whatever rounding does; touching counts.
+All points move on straight lines while time runs from 0 to 1. The answer is conservative: a query without a hit
+stays farther apart than the separation, in spite of rounding; touching counts.
 
 Parameters
 ----------
 queries : (n, 8, 3) array_like
     {} at the start, then the same at the end (m).
 separation : float
-    The distance that counts as a meeting (m), >= 0.
+    Distance that counts as a meeting (m), >= 0.
 
 Returns
 -------
 hit : (n,) ndarray of bool
 time : (n,) ndarray
-    A lower bound of the first meeting's; inf where there is none.
+    Lower bound of the time of the first meeting; inf if there is none.
 )";
   const auto bind = [&](const std::string& name, const std::string& what, const char* points,
                         ImpactQuery query) {

@@ -59,7 +59,7 @@ py::list states(const Contact& self) {
 void bind_sums(py::class_<Contact>& type) {
   type.def_property_readonly(
           "force", [](const Contact& self) { return copy(resultant(self).force); },
-          "(3,) ndarray: the force on the body in the last step (N), of all points together.")
+          "(3,) ndarray: force on the body in the last step, summed over all points (N).")
       .def_property_readonly(
           "normal_force", [](const Contact& self) { return resultant(self).normal_force; },
           "float: sum of the points' normal forces (N), >= 0.")
@@ -68,21 +68,21 @@ void bind_sums(py::class_<Contact>& type) {
           "float: sum of the magnitudes of the points' friction forces (N).")
       .def_property_readonly(
           "gap", [](const Contact& self) { return resultant(self).smallest_gap; },
-          "float: the smallest gap of any point (m), negative inside the surface; between "
-          "deformable bodies that are not near each other, how far was looked.");
+          "float: smallest gap of all points (m), negative inside the surface; for deformable "
+          "bodies that are not near each other, the search distance, a lower bound.");
 }
 
 void bind_points(py::class_<Contact>& type) {
   type.def_property_readonly(
           "positions",
           [](const Contact& self) { return vectors(self, &sim::ContactPoint::position); },
-          "(n, 3) ndarray: the points that may touch, now (m).")
+          "(n, 3) ndarray: present positions of the points that may touch (m).")
       .def_property_readonly(
           "gaps", [](const Contact& self) { return numbers(self, &sim::ContactPoint::gap); },
           "(n,) ndarray: distance of every point from the surface (m), negative inside.")
       .def_property_readonly(
           "normals", [](const Contact& self) { return vectors(self, &sim::ContactPoint::normal); },
-          "(n, 3) ndarray: out of the surface, of the last step.")
+          "(n, 3) ndarray: outward normals of the surface in the last step.")
       .def_property_readonly(
           "normal_forces",
           [](const Contact& self) { return numbers(self, &sim::ContactPoint::normal_force); },
@@ -103,14 +103,14 @@ void bind_contact(py::module_& module) {
                            "Points of a body that may touch a surface. From Simulation.contact() "
                            "or Simulation.contacts.");
   type.def_property_readonly(
-          "name", [](const Contact& self) { return model(self).name; }, "str: as in the scene.")
+          "name", [](const Contact& self) { return model(self).name; }, "str: name in the scene.")
       .def_property_readonly(
           "bodies",
           [](const Contact& self) {
             return sim::touching_bodies(self.session->model(), self.index);
           },
-          "list of str: the body that `force` acts on, and the body that it touches; a surface "
-          "of the world has no name.")
+          "list of str: the body on which `force` acts, and the body that it touches; a surface of "
+          "the world has no name.")
       .def_property_readonly(
           "friction",
           [](const Contact& self) {
@@ -122,7 +122,7 @@ void bind_contact(py::module_& module) {
           [](const Contact& self) {
             return self.session->model().contact(self.index).friction().sliding;
           },
-          "float: that of points that slide; as a rule the same.");
+          "float: Coulomb's coefficient of sliding points, by default the same.");
   bind_sums(type);
   bind_points(type);
   type.def("__repr__", [](const Contact& self) {

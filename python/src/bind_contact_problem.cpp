@@ -102,13 +102,13 @@ path : path-like
 Returns
 -------
 ContactProblem
-    W a scipy.sparse.csc_matrix; r None where the file has no solution.
+    W is a scipy.sparse.csc_matrix; r is None if the file has no solution.
 
 Raises
 ------
 Error
-    file-not-found, unknown-format, malformed-file; not-in-this-version for problems in two
-    dimensions, with equations of joints, and global ones.
+    file-not-found, unknown-format, malformed-file; not-in-this-version for two-dimensional and global
+    problems, and for problems with joint equations.
 )");
   module.def("write_fclib", write_fclib, py::arg("path"), py::arg("W"), py::arg("q"),
              py::arg("friction"), py::arg("r") = py::none(), py::arg("title") = "",
@@ -116,12 +116,12 @@ Error
              R"(write_fclib(path, W, q, friction, r=None, title='', description='')
 --
 
-Writes a contact problem as FCLIB has it, for other solvers: u = W r + q, see solve_cones().
+Writes a contact problem in FCLIB's format, for other solvers: u = W r + q, see solve_cones().
 
 Parameters
 ----------
 path : path-like
-    Is replaced.
+    An existing file is replaced.
 W : (3n, 3n) array_like, or a sparse matrix of scipy
     Rows of a contact: normal, two tangents.
 q : (3n,) array_like
@@ -142,31 +142,30 @@ Error
 void bind_contact_problem(py::module_& module, SimulationType& type) {
   py::class_<ContactProblem>(
       module, "ContactProblem",
-      "Contacts by themselves: u = W r + q with Signorini's and Coulomb's laws. From "
+      "A contact problem: u = W r + q with Signorini's and Coulomb's laws. From "
       "Simulation.contact_problem() (u in m, r in N) or read_fclib().")
-      .def_readonly("W", &ContactProblem::w,
-                    "(3n, 3n) ndarray or sparse matrix: of each contact the normal, two tangents.")
+      .def_readonly(
+          "W", &ContactProblem::w,
+          "(3n, 3n) ndarray or sparse matrix; rows of each contact: the normal, two tangents.")
       .def_readonly("q", &ContactProblem::q, "(3n,) ndarray: u without efforts.")
       .def_readonly("friction", &ContactProblem::friction, "(n,) ndarray: mu of each contact.")
-      .def_readonly("r", &ContactProblem::r,
-                    "(3n,) ndarray: a solution; None where there is none.");
+      .def_readonly("r", &ContactProblem::r, "(3n,) ndarray: a solution, or None.");
   type.def("contact_problem", problem_of, py::arg("sparse") = py::none(),
            R"(contact_problem($self, sparse=None)
 --
 
-The problem that the contact forces of the last step, or equilibrium, solve.
+The contact problem of the last step or equilibrium: its contact forces are the solution.
 
-Its n contacts are the points that took part, in the order of contacts and their points; W and q are
-those of the last substep's last linearisation. Everything else keeps the state of the step: what
-holds a motion (joints, cables at a commanded length) goes on to hold it, what is at a limit keeps
-its effort, a gas is linearised. It is no part of the state: empty before the first step.
+The n contacts are the points that took part, in the order of contacts and their points. W and q are
+those of the last linearisation of the last substep. Everything else keeps its state in the step:
+held motions (joints, cables at a commanded length) stay held, efforts at their limits are constant,
+gas is linearised. The problem is not part of the state: it is empty before the first step.
 
 Parameters
 ----------
 sparse : bool, optional
-    Whether W is a scipy.sparse.csc_matrix (needs scipy) or an ndarray. By default it is sparse where
-    more than 32 points leave three quarters of it zero: points on bodies that have nothing in
-    common, as rigid ones, share no entry.
+    Whether W is a scipy.sparse.csc_matrix (needs scipy) or an ndarray. By default it is sparse if there
+    are more than 32 points and three quarters of W are zero, as with many rigid bodies.
 
 Returns
 -------

@@ -257,9 +257,10 @@ std::vector<std::string> actuator_names(const Controller& self) {
 }
 
 void bind_mapping(py::module_& module) {
-  py::class_<Targets>(module, "Targets",
-                      "Where a controller's effectors are asked to be; a live mapping from names. "
-                      "Assign three numbers (m) or a Target at any time between steps.")
+  py::class_<Targets>(
+      module, "Targets",
+      "Targets of a controller's effectors; a live mapping from names. Assign three numbers "
+      "(m) or a Target at any time between steps.")
       .def("__getitem__", &get_target, py::arg("name"))
       .def("__setitem__", &set_target, py::arg("name"), py::arg("target"))
       .def("__contains__", [](const Targets& self,
@@ -436,24 +437,24 @@ void bind_results(py::class_<Controller>& type) {
             all["best_nearby"] = found->best_nearby;
             return all;
           }),
-          "dict or None: with `certify`, what is known of the last choice, by its linearisation: "
-          "`violation` (m) of all laws; `stays` and `cold` (m), by how much the direct law, "
-          "started "
-          "there and started without forces, changes any motion; `between`, how many contacts, "
-          "cables or drives are at the limits of two states; `stationarity`, 'S', 'M', 'C', 'W' or "
-          "'none', by the multipliers on these; `best_nearby`, whether no piece that meets there "
-          "leads on: by 'S', or since all `pieces` (2^between) were compared.")
-      .def_property_readonly("predicted_error", guarded([](const TargetController& law) {
-                               return law.predicted_error();
-                             }),
-                             "float: what the last linearisation left (m or rad), all effectors "
-                             "together; NaN before a step.")
+          "dict or None: with `certify`, a certificate of the last choice, for its linearisation: "
+          "`violation` (m) of all laws; `stays` and `cold` (m), the largest change of a motion "
+          "when the forward problem is solved again from the choice, and from zero forces; "
+          "`between`, the number of contacts, cables or drives at the limit between two states; "
+          "`stationarity`, 'S', 'M', 'C', 'W' or 'none', by the multipliers on these; "
+          "`best_nearby`, whether no neighbouring piece is better: because of 'S', or because all "
+          "`pieces` (2^between) were compared.")
+      .def_property_readonly(
+          "predicted_error",
+          guarded([](const TargetController& law) { return law.predicted_error(); }),
+          "float: error predicted by the last linearisation (m or rad), over all effectors; NaN "
+          "before a step.")
       .def_property_readonly(
           "attached", [](const Controller& self) { return self.attached->attached; },
           "bool: whether it still owns its actuators.")
       .def_property_readonly(
           "name", [](const Controller& self) { return self.attached->name; },
-          "str: as in the scene; empty for one made from Python.")
+          "str: name in the scene; empty for a controller made in Python.")
       .def_property(
           "targets", [](const Controller& self) { return Targets{self}; },
           [](const Controller& self, const py::object& targets) {
@@ -462,8 +463,7 @@ void bind_results(py::class_<Controller>& type) {
                          py::reinterpret_borrow<py::object>(value));
             }
           },
-          "Targets: where the effectors are asked to be; `ik.targets['tip'] = [0.03, 0, 0.18]` "
-          "between steps steers from Python.")
+          "Targets of the effectors; assign `ik.targets['tip'] = [0.03, 0, 0.18]` between steps.")
       .def("__repr__", [](const Controller& self) {
         return fmt::format("<sinew.InverseController of {} actuators, {}>",
                            law(self).settings().actuators.size(),

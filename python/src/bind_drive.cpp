@@ -65,7 +65,7 @@ Parameters
 cubic, linear : float
     c, N m/m^9, and a, N m/m^3; not negative, not both zero.
 delay : float
-    Of the line, s.
+    Delay of the line, s.
 
 Raises
 ------
@@ -88,7 +88,7 @@ Error
           py::arg("volume"), R"(torque($self, volume)
 --
 
-N m of volumes in m^3, of their shape; the delay is not in it.)")
+Torques (N m) of volumes (m^3), in the same shape, without the delay.)")
       .def(
           "volume",
           [](const FluidicActuator& self, const py::object& torque) {
@@ -97,7 +97,7 @@ N m of volumes in m^3, of their shape; the delay is not in it.)")
           py::arg("torque"), R"(volume($self, torque)
 --
 
-m^3 of torques in N m, of their shape: the inverse of torque().)")
+Volumes (m^3) of torques (N m), in the same shape: the inverse of torque().)")
       .def("__repr__", [](const FluidicActuator& self) {
         return fmt::format("<sinew.pcc.FluidicActuator, {:.4g} N m/m^3, {:.4g} N m/m^9, {:.4g} s>",
                            self.linear, self.cubic, self.delay);
@@ -106,7 +106,7 @@ m^3 of torques in N m, of their shape: the inverse of torque().)")
   py::class_<DriveCylinder>(module, "DriveCylinder",
                             R"(DriveCylinder(a, b, c, d=0.0, *, sample_time, ...)
 
-A fluid drive cylinder from its command u to its volume y, two states in steps:
+A fluid drive cylinder, a discrete system with two states from its command u to its volume y:
 ``x[k+1] = A x[k] + B u[k]``, ``y[k] = C x[k] + D u[k]``.
 
 Parameters
@@ -116,12 +116,12 @@ d : float
 sample_time : float
     s.
 input_limits, volume_limits : (lowest, highest)
-    Of the command and of the volume.
+    Limits of the command and of the volume.
 
 Raises
 ------
 Error
-    out-of-range (unstable, or a sample time that is not above zero), contradictory-limits.)")
+    out-of-range (unstable, or a sample time that is not positive), contradictory-limits.)")
       .def(py::init(&make_cylinder), py::arg("a"), py::arg("b"), py::arg("c"), py::arg("d") = 0.0,
            py::kw_only(), py::arg("sample_time"),
            py::arg("input_limits") = std::pair(-kInfinity, kInfinity),
@@ -139,14 +139,15 @@ Error
           [](const DriveCylinder& self) {
             return std::pair(self.lowest_input, self.highest_input);
           },
-          "(lowest, highest) of the command.")
+          "(lowest, highest) limits of the command.")
       .def_property_readonly(
           "volume_limits",
           [](const DriveCylinder& self) {
             return std::pair(self.lowest_volume, self.highest_volume);
           },
           "(lowest, highest), m^3.")
-      .def_property_readonly("gain", &DriveCylinder::gain, "float: volume over command at rest.")
+      .def_property_readonly("gain", &DriveCylinder::gain,
+                             "float: static gain, volume per command.")
       .def(
           "simulate",
           [](const DriveCylinder& self, const py::object& command, const py::object& start) {
@@ -159,23 +160,23 @@ Error
           R"(simulate($self, command, start=(0.0, 0.0))
 --
 
-Volumes (samples,) of commands (samples,), within the limits, from a start (2,).)");
+Volumes (samples,) for commands (samples,), within the limits, from an initial state (2,).)");
 
   module.def("second_order_cylinder", &DriveCylinder::second_order, py::arg("gain"),
              py::arg("frequency"), py::arg("damping"), py::arg("sample_time"),
              R"(second_order_cylinder(gain, frequency, damping, sample_time)
 --
 
-The DriveCylinder ``gain w^2/(s^2 + 2 damping w s + w^2)``, its command held between samples.
+The DriveCylinder ``gain w^2/(s^2 + 2 damping w s + w^2)``, with its command held between samples.
 
 Parameters
 ----------
 gain : float
-    Volume over command at rest.
+    Static gain, volume per command.
 frequency : float
     w, rad/s.
 damping : float
-    Relative, not negative.
+    Damping ratio, not negative.
 sample_time : float
     s.)");
 
@@ -183,14 +184,14 @@ sample_time : float
       module, "Excitation",
       R"(Excitation(amplitude, *, peak_frequency=1.0, band=(0.4, 4.0), sines=40, seed=1)
 
-A sum of sines of random frequencies and phases with the energies of Bretschneider's spectrum
+A sum of sines with random frequencies and phases and the energies of Bretschneider's spectrum
 ``S(w) = (1.25/4) (w_p^4/w^5) zeta^2 exp(-1.25 (w_p/w)^4)``, ``zeta = 2 amplitude``. The same seed
-gives the same signal everywhere.
+gives the same signal on every machine.
 
 Parameters
 ----------
 amplitude : float
-    V_max; the signal's standard deviation is about half of it.
+    V_max; the standard deviation of the signal is about half of it.
 peak_frequency : float
     Hz.
 band : (lowest, highest)
@@ -216,7 +217,7 @@ Error
           py::arg("time"), R"(at($self, time)
 --
 
-The signal at times in s, of their shape.)");
+The signal at times (s), in the same shape.)");
 }
 
 }  // namespace sinew::python

@@ -33,17 +33,24 @@ py::list sensor_names(const Estimator& self) {
   return names;
 }
 
-py::dict forces(const Estimator& self) {
+py::dict unknowns(const Estimator& self, sim::Unknown::Kind kind) {
   const Session::Use use(*self.session);
   const VectorX mean = self.session->simulation().estimator(self.index).mean();
   py::dict all;
   Eigen::Index first = 0;
-  for (const sim::UnknownForce& unknown : model(self).unknowns) {
-    all[py::str(unknown.name)] = copy(Vector3(mean.segment<3>(first)));
-    first += 3;
+  for (const sim::Unknown& unknown : model(self).unknowns) {
+    if (unknown.kind == kind && kind == sim::Unknown::Kind::force) {
+      all[py::str(unknown.name)] = copy(Vector3(mean.segment<3>(first)));
+    } else if (unknown.kind == kind) {
+      all[py::str(unknown.name)] = mean[first];
+    }
+    first += unknown.size();
   }
   return all;
 }
+
+py::dict forces(const Estimator& self) { return unknowns(self, sim::Unknown::Kind::force); }
+py::dict efforts(const Estimator& self) { return unknowns(self, sim::Unknown::Kind::effort); }
 
 py::list list_of(const std::vector<std::string>& texts) {
   py::list list;
@@ -54,6 +61,7 @@ py::list list_of(const std::vector<std::string>& texts) {
 }  // namespace
 
 void bind_estimator(py::module_& module) {
+  module.attr("silent_periods") = sim::kSilentPeriods;
   py::class_<Estimator>(module, "Estimator",
                         "An estimator of the scene, which acts on nothing. From "
                         "Simulation.estimator() or Simulation.estimators.")
@@ -63,27 +71,33 @@ void bind_estimator(py::module_& module) {
       .def_property_readonly(
           "components",
           [](const Estimator& self) { return list_of(model(self).component_names()); },
-          "list of str, n = 3 for each unknown force: 'hand.x', 'hand.y', 'hand.z', ...")
+          "list of str (n,): 'hand.x', 'hand.y', 'hand.z' of an unknown force, 'leak' of an "
+          "unknown "
+          "pressure or tension.")
       .def_property_readonly("forces", &forces,
                              "dict of (3,) ndarray: the estimate of each unknown force (N), in "
                              "world axes.")
+      .def_property_readonly("efforts", &efforts,
+                             "dict of float: the estimate of each unknown pressure (Pa) and "
+                             "tension (N).")
       .def_property_readonly(
           "mean", of_estimator([](const sim::Estimator& one) { return copy(one.mean()); }),
-          "(n,) ndarray: the estimate of all components (N).")
+          "(n,) ndarray: the estimate of all components (N or Pa).")
       .def_property_readonly(
           "std", of_estimator([](const sim::Estimator& one) { return copy(one.deviation()); }),
-          "(n,) ndarray: standard deviations of the components (N).")
-      .def_property_readonly("covariance", of_estimator([](const sim::Estimator& one) {
-                               return copy(one.covariance());
-                             }),
-                             "(n, n) ndarray: covariance of the components (N^2).")
+          "(n,) ndarray: standard deviations of the components (N or Pa).")
+      .def_property_readonly(
+          "covariance",
+          of_estimator([](const sim::Estimator& one) { return copy(one.covariance()); }),
+          "(n, n) ndarray: covariance of the components, in products of their units.")
       .def_property_readonly("singular_values", of_estimator([](const sim::Estimator& one) {
                                return copy(one.observability().singular_values);
                              }),
                              "(n,) ndarray, falling: what one sample of each sensor tells along n "
-                             "directions, relative to the prior. Along a direction of value s, the "
-                             "samples lower the deviation to 1/sqrt(1 + s^2) of the prior's. Zeros "
-                             "before the first step.")
+                             "directions, relative to the prior; where the estimator's robot has "
+                             "inertia, what all samples so far tell. Along a direction of value s, "
+                             "the samples lower the deviation to 1/sqrt(1 + s^2) of the prior's. "
+                             "Zeros before the first step.")
       .def_property_readonly("unobservable", of_estimator([](const sim::Estimator& one) {
                                return list_of(one.unobservable());
                              }),

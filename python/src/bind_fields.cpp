@@ -98,16 +98,17 @@ void bind_fields(py::module_& module, py::class_<Body>& type) {
   type.def_property_readonly(
           "deformation_gradients",
           of_elements([](const fem::ElementStates& s) { return tensors(s.deformation); }),
-          "(m, 3, 3) ndarray: F = dx/dX of every element, tetrahedra before hexahedra, mean over "
-          "its points of integration. See `sinew.fields` for strains.")
+          "(m, 3, 3) ndarray: F = dx/dX of every element, tetrahedra before hexahedra, the mean "
+          "over its integration points. See `sinew.fields` for strains.")
       .def_property_readonly(
           "piola_stresses",
           of_elements([](const fem::ElementStates& s) { return tensors(s.piola); }),
-          "(m, 3, 3) ndarray: first Piola stress of every element (Pa), force by area at rest.")
+          "(m, 3, 3) ndarray: first Piola-Kirchhoff stress of every element (Pa), force per area "
+          "at rest.")
       .def_property_readonly(
           "cauchy_stresses",
           of_elements([](const fem::ElementStates& s) { return tensors(s.cauchy); }),
-          "(m, 3, 3) ndarray: Cauchy stress of every element (Pa), force by area now.")
+          "(m, 3, 3) ndarray: Cauchy stress of every element (Pa), force per present area.")
       .def_property_readonly(
           "element_volumes", of_elements([](const fem::ElementStates& s) {
             const auto count = static_cast<Eigen::Index>(s.volume.size());
@@ -118,7 +119,7 @@ void bind_fields(py::module_& module, py::class_<Body>& type) {
            R"(element_field($self, field)
 --
 
-One number for every element, tetrahedra before hexahedra: the mean over its points of integration.
+One number for every element, tetrahedra before hexahedra: the mean over its integration points.
 
 Parameters
 ----------
@@ -128,13 +129,13 @@ field : str
 Returns
 -------
 (m,) ndarray
-    In the unit that FIELDS gives.
+    In the unit given by FIELDS.
 )")
       .def("nodal_field", &nodal_field, py::arg("field"),
            R"(nodal_field($self, field)
 --
 
-What the view colours and `sinew run --vtk` writes: element_field()'s means at the nodes, by volume.
+Nodal values of a field: volume-weighted means of element_field(), as shown in the view and written by `sinew run --vtk`.
 
 Parameters
 ----------
@@ -150,7 +151,7 @@ Returns
            R"(nodal_means($self, values)
 --
 
-Means at nodes of values of elements, by the volumes at rest of the elements round each.
+Averages element values at the nodes, weighted by the rest volumes of the adjacent elements.
 
 Parameters
 ----------
@@ -164,9 +165,8 @@ Returns
 )")
       .def_property_readonly(
           "reactions", &support_forces,
-          "(n, 3) ndarray: forces of the supports on fixed nodes and held axes (N), which keep "
-          "these in equilibrium with elements, gravity, external forces and actuators; zero "
-          "elsewhere.");
+          "(n, 3) ndarray: forces of the supports on fixed nodes and along fixed axes (N), which "
+          "balance elements, gravity, external forces and actuators; zero elsewhere.");
 }
 
 }  // namespace sinew::python

@@ -193,7 +193,7 @@ py::tuple times(const TimeHistogram& histogram) {
 
 void bind_high_rate(py::module_& module) {
   py::class_<NativeLoop>(module, "_HighRateLoop",
-                         "Numbers of sinew.HighRateLoop, which names them.")
+                         "Implementation of sinew.HighRateLoop with rows by index.")
       .def(py::init(&make), py::arg("settings"), py::arg("udp"))
       .def("publish", &publish)
       .def("set_input", &set_input)

@@ -162,7 +162,7 @@ py::tuple python_fit_actuator(const py::object& time, const py::object& volume,
 
 void bind_identify(py::module_& module) {
   py::class_<ParameterFit>(module, "ParameterFit",
-                           "Parameters found by least squares, and what the data say about them.")
+                           "Parameters fitted by least squares, with their uncertainty.")
       .def_property_readonly(
           "values",
           [](const ParameterFit& self) {
@@ -174,7 +174,8 @@ void bind_identify(py::module_& module) {
           [](const ParameterFit& self) {
             return by_name(self, [](const FittedParameter& p) { return p.standard_error; });
           },
-          "dict: by name; inf where the data do not determine it, 0 where fixed.")
+          "dict: standard errors by name; inf if the data do not determine the parameter, 0 if it "
+          "is fixed.")
       .def_property_readonly(
           "intervals",
           [](const ParameterFit& self) {
@@ -192,29 +193,30 @@ void bind_identify(py::module_& module) {
             }
             return names;
           },
-          "list of str: parameters that a bound decides.")
-      .def_property_readonly("directions", &fit_directions,
-                             "list of dict: combinations of parameters from the best determined to "
-                             "the worst: 'singular_value', 'relative_error', 'undetermined', "
-                             "'weights' by name.")
+          "list of str: parameters at a bound.")
+      .def_property_readonly(
+          "directions", &fit_directions,
+          "list of dict: combinations of parameters from the best determined to the worst: "
+          "'singular_value', 'relative_error', 'undetermined', 'weights' by name.")
       .def_property_readonly("undetermined", &ParameterFit::undetermined,
-                             "int: directions that the data do not determine.")
+                             "int: number of directions that the data do not determine.")
       .def_property_readonly(
           "covariance", [](const ParameterFit& self) { return copy(self.covariance); },
           "(parameters, parameters); 0 for those without an interval.")
       .def_property_readonly(
           "prediction", [](const ParameterFit& self) { return copy(self.prediction); },
-          "(observations,), row by row of what was measured.")
+          "(observations,): measured values, row by row.")
       .def_property_readonly(
           "residual", [](const ParameterFit& self) { return copy(self.residual); },
-          "(observations,): prediction - measured; nan where nothing was measured.")
+          "(observations,): predicted minus measured values; nan for missing ones.")
       .def_readonly("cost", &ParameterFit::cost, "float: sum of squared residuals.")
-      .def_readonly("start_cost", &ParameterFit::start_cost, "float: the same at the start.")
+      .def_readonly("start_cost", &ParameterFit::start_cost,
+                    "float: sum of squared residuals at the initial guess.")
       .def_readonly("costs", &ParameterFit::costs,
-                    "list of float: of each start; inf if it failed.")
+                    "list of float: final cost of each start; inf if it failed.")
       .def_readonly("noise", &ParameterFit::noise, "float: standard deviation of the residuals.")
       .def_readonly("degrees_of_freedom", &ParameterFit::degrees_of_freedom, "int.")
-      .def_readonly("iterations", &ParameterFit::iterations, "int: of the best start.")
+      .def_readonly("iterations", &ParameterFit::iterations, "int: iterations of the best start.")
       .def_readonly("converged", &ParameterFit::converged, "bool.")
       .def("__str__", [](const ParameterFit& self) { return fit_table(self); });
 
@@ -225,26 +227,26 @@ void bind_identify(py::module_& module) {
       R"(fit(predict, measured, parameters, *, fixed=(), starts=1, seed=1, confidence=0.95, step=1e-5, max_iterations=100)
 --
 
-Named parameters of any simulation by bounded least squares; derivatives by central differences.
+Fits named parameters of any simulation by bounded least squares, with derivatives by central differences.
 
 Parameters
 ----------
 predict : callable
-    Takes a dict of parameters by name, gives an array of the shape of `measured`. A
-    sinew.RunError in it rejects these parameters; any other exception ends the fit.
+    Takes a dict of parameters by name and returns an array of the shape of `measured`. A
+    sinew.RunError rejects these parameters; any other exception ends the fit.
 measured : (n,) or (n, m)
-    nan where nothing was measured.
+    nan for missing values.
 parameters : dict
     By name: (start, lower, upper), or a start without bounds.
 fixed : list of str
-    Names of parameters that are known.
+    Names of known parameters.
 starts : int
-    The first as given, others at random between the bounds.
+    Number of starts: the given one, then random ones between the bounds.
 seed : int
 confidence : float
-    Of the intervals.
+    Level of the confidence intervals.
 step : float
-    Of the differences, relative to each parameter's start. Larger for noisy simulations.
+    Step of the differences relative to the start of each parameter. Choose it larger for noisy simulations.
 max_iterations : int
 
 Returns
@@ -264,22 +266,22 @@ Error
       py::arg("predicted"), py::arg("measured"), R"(nrmse(predicted, measured)
 --
 
-``|predicted - measured| / |measured - mean|`` over what was measured; each column has its mean.)");
+Normalised error ``|predicted - measured| / |measured - mean|`` over the available values, with a mean for each column.)");
   module.def("fit_cylinder", &python_fit_cylinder, py::arg("records"), py::kw_only(),
              py::arg("block_rows") = 10, py::arg("feedthrough") = false,
              R"(fit_cylinder(records, *, block_rows=10, feedthrough=False)
 --
 
-A drive cylinder's two states from records: subspace start, output-error refinement.
+Identifies a drive cylinder with two states from records: initial guess by a subspace method, then output-error minimisation.
 
 Parameters
 ----------
 records : list of (input, output, sample_time)
     (samples,), (samples,) and s.
 block_rows : int
-    Of the subspace method's Hankel matrices.
+    Block rows of the subspace method's Hankel matrices.
 feedthrough : bool
-    Fit D as well.
+    Whether to fit D as well.
 
 Returns
 -------
@@ -289,7 +291,7 @@ tuple
 Raises
 ------
 Error
-    too-few-points, out-of-range (an input that does not excite it), wrong-length.)");
+    too-few-points, out-of-range (an input that does not excite the cylinder), wrong-length.)");
   module.def(
       "validate_cylinder",
       [](const pcc::DriveCylinder& cylinder, const py::iterable& records) {
@@ -298,22 +300,22 @@ Error
       py::arg("cylinder"), py::arg("records"), R"(validate_cylinder(cylinder, records)
 --
 
-How a cylinder meets records that it was not fitted to: a dict of 'nrmse', 'predicted' and 'start'
-for each. The start comes from a record's first 20 samples.)");
+Predicts records that were not used in the fit: a dict of 'nrmse', 'predicted' and 'start' for each.
+The initial state is estimated from the first 20 samples of a record.)");
   module.def("fit_actuator", &python_fit_actuator, py::arg("time"), py::arg("volume"),
              py::arg("torque"), py::kw_only(), py::arg("linear") = false,
              py::arg("longest_delay") = 0.5,
              R"(fit_actuator(time, volume, torque, *, linear=False, longest_delay=0.5)
 --
 
-c and delay (and a) of ``tau = a V(t - delay) + c V(t - delay)**3``.
+Fits c and the delay (and a) of ``tau = a V(t - delay) + c V(t - delay)**3``.
 
 Parameters
 ----------
 time, volume, torque : (n,) s, m^3, N m
-    Torques may be nan where not measured.
+    Missing torques may be nan.
 linear : bool
-    Fit a as well; else it is zero.
+    Whether to fit a as well; otherwise it is zero.
 longest_delay : float
     s.
 

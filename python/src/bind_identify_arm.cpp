@@ -97,9 +97,9 @@ Motion capture of the ends of an arm's segments.
 Parameters
 ----------
 time : (samples,) s
-    Growing; steps need not be even.
+    Increasing; may be unevenly spaced.
 positions : (samples, segments, 3) m
-    nan where a marker was not seen.
+    nan for missing markers.
 inputs : (samples, inputs), optional
     Volumes, m^3, or torques, N m.
 name : str
@@ -123,18 +123,18 @@ Error
           py::arg("torque") = false, R"(csv($self, torque=False)
 --
 
-The table that read_motion() reads back, as str; `torque` says what the inputs are.)");
+The table in the format of read_motion(), as str; `torque` says whether the inputs are torques.)");
   module.def("read_motion", &read_motion_record, py::arg("path"), py::arg("segments"),
              R"(read_motion(path, segments)
 --
 
-A MotionRecord from a table: "time [s], x_0 [mm], y_0 [mm], z_0 [mm], ..., volume_0 [ml]", gaps empty.
+Reads a MotionRecord from a table: "time [s], x_0 [mm], y_0 [mm], z_0 [mm], ..., volume_0 [ml]", with empty cells for gaps.
 
 Parameters
 ----------
 path : path-like
 segments : int
-    Of the arm; ends are numbered from 0.
+    Number of segments; their ends are numbered from 0.
 
 Raises
 ------
@@ -147,50 +147,51 @@ Error
       R"(predict_motion(arm, time, theta, *, theta_dot=None, inputs=None, actuators=(), time_step=5e-3)
 --
 
-Ends (samples, segments, 3), m, of an arm's segments at times.
+Simulates the ends of an arm's segments, (samples, segments, 3) m, at given times.
 
 Parameters
 ----------
 arm : sinew.pcc.Arm
 time : (samples,) s
 theta, theta_dot : (coordinates,) rad, rad/s
-    At the first time; rates are zero when left out.
+    Values at the first time; rates are zero by default.
 inputs : (samples, inputs), optional
     Volumes, m^3, with `actuators`; torques, N m, without.
 actuators : list of FluidicActuator
     One for each input.
 time_step : float
-    s, of the implicit steps.)");
+    Length of the implicit steps, s.)");
 
-  py::class_<RecordFit>(module, "RecordFit", "How a model meets a record.")
+  py::class_<RecordFit>(module, "RecordFit", "Prediction of a record by a model.")
       .def_readonly("name", &RecordFit::name, "str.")
       .def_property_readonly(
           "predicted", [](const RecordFit& self) { return by_segment(self.predicted); },
           "(samples, segments, 3) m.")
       .def_property_readonly(
           "theta", [](const RecordFit& self) { return copy(self.start.position); },
-          "(coordinates,) rad: at its start.")
+          "(coordinates,) rad: angles at its start.")
       .def_property_readonly(
           "theta_dot", [](const RecordFit& self) { return copy(self.start.rate); },
-          "(coordinates,) rad/s: at its start.")
-      .def_readonly("nrmse", &RecordFit::nrmse, "float: of all ends.")
+          "(coordinates,) rad/s: rates at its start.")
+      .def_readonly("nrmse", &RecordFit::nrmse, "float: NRMSE over all ends.")
       .def_readonly("mean_error", &RecordFit::mean_error, "float: mean distance of an end, m.")
       .def_readonly("summed_error", &RecordFit::summed_error,
                     "float: sum of the distances of all ends over all samples, m.")
       .def_readonly("start_summed_error", &RecordFit::start_summed_error,
                     "float: the same before the fit, m.");
-  py::class_<ArmFit>(module, "ArmFit", "An arm found from motion capture.")
+  py::class_<ArmFit>(module, "ArmFit", "An arm identified from motion capture.")
       .def_readonly("fit", &ArmFit::fit, "ParameterFit.")
       .def_property_readonly(
           "arm", [](const ArmFit& self) { return std::make_unique<PccArm>(self.model.arm); },
-          "sinew.pcc.Arm: with the parameters found.")
+          "sinew.pcc.Arm: arm with the identified parameters.")
       .def_property_readonly(
           "actuators", [](const ArmFit& self) { return self.model.actuators; },
           "list of FluidicActuator.")
-      .def_readonly("records", &ArmFit::records, "list of RecordFit: as given.")
-      .def_property_readonly("undetermined", &ArmFit::undetermined,
-                             "int: directions of the arm's parameters that the data do not "
-                             "determine.")
+      .def_readonly("records", &ArmFit::records,
+                    "list of RecordFit: predictions, in the order of the records.")
+      .def_property_readonly(
+          "undetermined", &ArmFit::undetermined,
+          "int: number of directions of the arm's parameters that the data do not determine.")
       .def("__str__", [](const ArmFit& self) { return fit_table(self.fit, self.own); });
   module.def(
       "fit_arm", &python_fit_arm, py::arg("arm"), py::arg("records"), py::kw_only(),
@@ -202,30 +203,30 @@ time_step : float
       R"(fit_arm(arm, records, *, actuators=(), fixed=(), mass_spread=0.38, stiffness_spread=0.23, damping=(1e-3, 5e-3), coefficient_spread=0.9, longest_delay=0.5, start='at-rest', time_step=5e-3, starts=1, seed=1, confidence=0.95)
 --
 
-Masses ("mass_0", ...), "stiffness", "damping", and with actuators "coefficient_0", ... and "delay"
-of an arm from motion capture, by bounded least squares with exact derivatives.
+Fits masses ("mass_0", ...), "stiffness", "damping", and with actuators "coefficient_0", ... and "delay"
+of an arm to motion capture, by bounded least squares with exact derivatives.
 
 Parameters
 ----------
 arm : sinew.pcc.Arm
-    Where the search starts. Stiffnesses and dampings keep their ratios to those of the first.
+    Initial guess. Stiffnesses and dampings keep their ratios to those of the first segment.
 records : list of MotionRecord
-    Their inputs are volumes with `actuators`, torques without; none of a passive arm.
+    Their inputs are volumes with `actuators`, torques without; none for a passive arm.
 actuators : list of FluidicActuator
-    Where the search starts; one for each input.
+    Initial guess; one for each input.
 fixed : list of str
-    Parameters that are known. Motion alone leaves a common scale of masses, stiffness, damping and
-    coefficients free: fix one mass by weighing.
+    Known parameters. Motion alone does not determine a common scale of masses, stiffness, damping and
+    coefficients: weigh one segment and fix its mass.
 mass_spread, stiffness_spread, coefficient_spread : float
-    Bounds, relative to the start.
+    Bounds, relative to the initial guess.
 damping : (lowest, highest)
-    N m s, bounds.
+    Bounds, N m s.
 longest_delay : float
     s.
 start : {'at-rest', 'moving'}
-    Whether records start at rest; angles, and rates when moving, are fitted to each.
+    Whether records start at rest. The initial angles of each record are fitted, with 'moving' also the rates.
 time_step : float
-    s, of the implicit steps.
+    Length of the implicit steps, s.
 starts, seed, confidence
     See fit().
 
@@ -246,7 +247,7 @@ Error
       R"(validate_arm(found, records, time_step=5e-3)
 --
 
-RecordFit of each record that the arm was not fitted to, from its first pose at rest.)");
+Predicts records that were not used in the fit, each from its first pose at rest. Returns a RecordFit for each.)");
 }
 
 }  // namespace sinew::python

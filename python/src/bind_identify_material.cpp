@@ -41,7 +41,7 @@ RubberTest to_test(const py::handle& value, std::size_t index) {
   }
   const std::string place = fmt::format("fit_materials(tests[{}])", index);
   if (!py::isinstance<py::tuple>(value) || py::len(value) != 3) {
-    throw Error(ErrorKind::wrong_type, {.item = place}, "this is no test",
+    throw Error(ErrorKind::wrong_type, {.item = place}, "this is not a test",
                 "give a path, or a tuple of mode, stretches and nominal stresses (Pa)");
   }
   const auto parts = py::cast<py::tuple>(value);
@@ -110,30 +110,33 @@ auto of_tests(Get get) {
 
 void bind_result(py::module_& module) {
   py::class_<MaterialFit>(module, "MaterialFit",
-                          "A law fitted to tests of rubber. From sinew.identify.fit_materials().")
+                          "A law fitted to material tests. From sinew.identify.fit_materials().")
       .def_property_readonly(
           "model", [](const MaterialFit& self) { return self.fit.model; },
-          "str: as asked for; 'ogden3' may have fewer terms, where more do not help.")
-      .def_property_readonly("coefficients", &coefficients,
-                             "list of tuple: name and value (SI), as scenes name them; Ogden's mu "
-                             "and alpha in turn, mu-over-alpha.")
+          "str: requested model; 'ogden3' may have fewer terms if more do not improve the fit.")
+      .def_property_readonly(
+          "coefficients", &coefficients,
+          "list of tuple: name and value (SI) of each constant, named as in scenes; Ogden's mu and "
+          "alpha alternate, mu-over-alpha.")
       .def_property_readonly(
           "shear_modulus", [](const MaterialFit& self) { return self.fit.energy.shear_modulus(); },
           "float: initial, Pa.")
-      .def_property_readonly("rms", of_tests([](const TestFit& test) { return test.rms; }),
-                             "list of float: error in each test, Pa; of the rows in the range.")
+      .def_property_readonly(
+          "rms", of_tests([](const TestFit& test) { return test.rms; }),
+          "list of float: RMS error in each test over the rows in the range, Pa.")
       .def_property_readonly("relative_rms",
                              of_tests([](const TestFit& test) { return test.relative; }),
-                             "list of float: the same over the test's largest stress.")
-      .def_readonly("information", &MaterialFit::information,
-                    "float: Bayesian information criterion among the models fitted together; the "
-                    "least is that of the model which the tests support best.")
+                             "list of float: the same divided by the test's largest stress.")
+      .def_readonly(
+          "information", &MaterialFit::information,
+          "float: Bayesian information criterion among the models fitted together; the model with "
+          "the lowest value is best supported by the tests.")
       .def_property_readonly(
           "stable_range", [](const MaterialFit& self) { return self.fit.uniaxial_range; },
-          "tuple: stretches between which the law is stable after Drucker, uniaxial.")
+          "tuple: range of uniaxial stretches in which the law is Drucker-stable.")
       .def_property_readonly(
           "converged", [](const MaterialFit& self) { return self.fit.converged; },
-          "bool: whether the search ended by its criterion.")
+          "bool: whether the search converged.")
       .def_readonly("yaml", &MaterialFit::yaml,
                     "str: the material for a scene, `material: {file: rubber.yaml}`.")
       .def("__repr__", [](const MaterialFit& self) {
@@ -155,27 +158,26 @@ void bind_identify_material(py::module_& module) {
       R"(fit_materials(tests, models=[], *, min_stretch=0.0, max_stretch=None, starts=5, seed=1, mullins=False, poisson_ratio=0.49)
 --
 
-Hyperelastic laws by least squares over tests of rubber, as `sinew fit`.
+Fits hyperelastic laws to material tests by least squares, as `sinew fit` does.
 
-Every test counts the same, weighed by its largest stress. A richer model of a family never fits
-worse than a simpler one.
+Each test is weighted by its largest stress. A richer model of a family never fits worse than a simpler one.
 
 Parameters
 ----------
 tests : path-like, tuple, or list of them
-    A table that `sinew fit` reads, or (mode, stretch, stress): 'uniaxial', 'equibiaxial' or
-    'planar', (n,) stretches and (n,) nominal stresses (Pa), in the order measured.
+    A table as for `sinew fit`, or (mode, stretch, stress): 'uniaxial', 'equibiaxial' or
+    'planar', (n,) stretches and (n,) nominal stresses (Pa), in measured order.
 models : list of str
     'neo-hookean', 'mooney-rivlin', 'yeoh1' to 'yeoh3', 'ogden1' to 'ogden6', 'arruda-boyce'; empty:
     all of them.
 min_stretch, max_stretch : float
-    Rows outside do not count.
+    Rows outside are ignored.
 starts, seed : int
-    Random starts, beside those from simpler models.
+    Number and seed of random starts, in addition to those from simpler models.
 mullins : bool
-    Fit the softening on unloading, too.
+    Whether to fit softening on unloading, too.
 poisson_ratio : float
-    Of the material that `yaml` writes.
+    Poisson's ratio of the material written by `yaml`.
 
 Returns
 -------
@@ -185,7 +187,7 @@ list of MaterialFit
 Raises
 ------
 Error
-    What is wrong with a table or an argument.
+    For invalid tables or arguments.
 
 Examples
 --------

@@ -45,11 +45,12 @@ sim::JointLoad load(const Joint& self) {
 }  // namespace
 
 void bind_joint(py::module_& module) {
-  py::class_<Joint>(module, "Joint",
-                    "What holds two bodies together, or a body to the world. From "
-                    "Simulation.joint() or Simulation.joints.")
+  py::class_<Joint>(
+      module, "Joint",
+      "A joint between two bodies, or between a body and the world. From Simulation.joint() or "
+      "Simulation.joints.")
       .def_property_readonly(
-          "name", [](const Joint& self) { return model(self).name; }, "str: as in the scene.")
+          "name", [](const Joint& self) { return model(self).name; }, "str: name in the scene.")
       .def_property_readonly(
           "bodies",
           [](const Joint& self) {
@@ -62,27 +63,27 @@ void bind_joint(py::module_& module) {
                              "'universal'.")
       .def_property_readonly(
           "angle", [](const Joint& self) { return motion(self, 0, "angle"); },
-          "float: of a hinge or cylindrical joint, the angle of the second body in the first, "
-          "right-handed about the axis (rad). 0 at the start; whole turns count. Raises "
+          "float: angle of a hinge or cylindrical joint: the second body relative to the first, "
+          "right-handed about the axis (rad). 0 at the start; counts whole turns. Raises "
           "AttributeError for other joints.")
       .def_property_readonly(
           "displacement", [](const Joint& self) { return motion(self, 1, "displacement"); },
-          "float: of a slider or cylindrical joint, that of the second body along the axis (m). 0 "
-          "at the start. Raises AttributeError for other joints.")
+          "float: displacement of a slider or cylindrical joint: the second body relative to the "
+          "first along the axis (m). 0 at the start. Raises AttributeError for other joints.")
       .def_property_readonly(
           "force", [](const Joint& self) { return copy(load(self).force); },
-          "(3,) ndarray: the force that holds the second body in the last step (N). Motors, limits "
-          "and friction act beside it.")
+          "(3,) ndarray: constraint force on the second body in the last step (N), without motors, "
+          "limits and friction.")
       .def_property_readonly(
           "moment", [](const Joint& self) { return copy(load(self).moment); },
-          "(3,) ndarray: its moment about `centre` (N m).")
+          "(3,) ndarray: constraint moment about `centre` on the second body (N m).")
       .def_property_readonly(
           "centre", [](const Joint& self) { return copy(load(self).centre); },
-          "(3,) ndarray: where the joint is now, on its second body; of welded points their mean "
-          "(m).")
+          "(3,) ndarray: present position of the joint on its second body, for a weld the mean of "
+          "its points (m).")
       .def_property_readonly(
           "gap", [](const Joint& self) { return load(self).gap; },
-          "float: the largest distance of two points that should be one (m).")
+          "float: largest distance between two joined points (m).")
       .def("__repr__", [](const Joint& self) {
         const std::string first = body_name(self, model(self).first);
         const std::string second = body_name(self, model(self).second);

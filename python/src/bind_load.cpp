@@ -31,15 +31,14 @@ void set_factor(const Load& self, const py::object& value) {
 }  // namespace
 
 void bind_load(py::module_& module) {
-  py::class_<Load>(module, "Load",
-                   "What the surroundings do to a body: a load of the scene. From "
-                   "Simulation.load().")
+  py::class_<Load>(module, "Load", "An external load of the scene. From Simulation.load().")
       .def_property_readonly(
-          "name", [](const Load& self) { return model(self).name; }, "str: as in the scene.")
-      .def_property("factor", &factor, &set_factor,
-                    "float: what the load is multiplied by now; of a pressure, Pa. Assigning sets "
-                    "it from the next step on: a number, a signal such as `sinew.Ramp`, or (n, 2) "
-                    "samples of time and value.")
+          "name", [](const Load& self) { return model(self).name; }, "str: name in the scene.")
+      .def_property(
+          "factor", &factor, &set_factor,
+          "float: present load factor; for a pressure the pressure in Pa. Assignment sets it from "
+          "the next step on: a number, a signal such as `sinew.Ramp`, or (n, 2) samples of time "
+          "and value.")
       .def("__repr__",
            [](const Load& self) { return fmt::format("<sinew.Load '{}'>", model(self).name); });
 }

@@ -25,10 +25,9 @@ const mechanics::Body& carrier(const PointMass& self) {
 
 void bind_mass(py::module_& module) {
   py::class_<PointMass>(module, "PointMass",
-                        "A mass that hangs on a point of a body. From Simulation.mass() or "
-                        "Simulation.masses.")
+                        "A point mass on a body. From Simulation.mass() or Simulation.masses.")
       .def_property_readonly(
-          "name", [](const PointMass& self) { return model(self).name; }, "str: as in the scene.")
+          "name", [](const PointMass& self) { return model(self).name; }, "str: name in the scene.")
       .def_property_readonly(
           "body",
           [](const PointMass& self) { return self.session->model().body(model(self).body).name(); },
@@ -41,14 +40,14 @@ void bind_mass(py::module_& module) {
             const Session::Use use(*self.session);
             return copy(carrier(self).position(model(self).point));
           },
-          "(3,) ndarray: where it is now (m). A copy.")
+          "(3,) ndarray: present position (m). A copy.")
       .def_property_readonly(
           "velocity",
           [](const PointMass& self) {
             const Session::Use use(*self.session);
             return copy(carrier(self).velocity(model(self).point));
           },
-          "(3,) ndarray: how it moves now (m/s). A copy.")
+          "(3,) ndarray: present velocity (m/s). A copy.")
       .def("__repr__", [](const PointMass& self) {
         return fmt::format("<sinew.PointMass '{}', {:g} kg>", model(self).name, model(self).mass);
       });

@@ -34,7 +34,7 @@ Material read_material(const py::object& spec) {
   const scene::MaterialDescription& read = scene.bodies.front().material;
   if (read.model != scene::MaterialModel::hyperelastic) {
     throw Error(ErrorKind::wrong_type, {.item = "material(spec)"},
-                "a linear or corotational material is no law of large strain",
+                "linear and corotational materials are not large-strain laws",
                 "its constants are Young's modulus and Poisson's ratio");
   }
   return {read.energy, read.density};
@@ -104,7 +104,7 @@ void bind_material(py::module_& module) {
           "float: kappa, Pa.")
       .def_property_readonly(
           "young_modulus", [](const Material& self) { return self.energy.young_modulus(); },
-          "float: of small strain, Pa.")
+          "float: initial shear modulus, Pa.")
       .def_property_readonly(
           "poisson_ratio", [](const Material& self) { return self.energy.poisson_ratio(); },
           "float: of small strain.")
@@ -117,44 +117,44 @@ void bind_material(py::module_& module) {
             }
             return series;
           },
-          "list of tuple: relative modulus and relaxation time (s) of each part of its Prony "
-          "series; moduli and stresses of this object are those of slow motion.")
+          "list of tuple: relative modulus and relaxation time (s) of each branch of its Prony "
+          "series; moduli and stresses of this object are long-term values.")
       .def_property_readonly(
           "density",
           [](const Material& self) -> std::optional<double> {
             if (self.density > 0.0) return self.density;
             return std::nullopt;
           },
-          "float or None: kg/m^3, of a material of the library.")
+          "float or None: density of a library material, kg/m^3.")
       .def("nominal_stress", &nominal_stress, py::arg("stretch"), py::arg("mode") = "uniaxial",
            R"(nominal_stress($self, stretch, mode='uniaxial')
 --
 
-Force by undeformed area of the incompressible material, whose free faces bear nothing.
+Nominal stress of the incompressible material in a test: force per undeformed area, with stress-free free faces.
 
 Parameters
 ----------
 stretch : float or array_like
-    Length over length at rest, > 0.
+    Length divided by length at rest, > 0.
 mode : {'uniaxial', 'equibiaxial', 'planar'}
 
 Returns
 -------
 ndarray
-    Pa, of the shape of `stretch`.
+    Pa, in the shape of `stretch`.
 )")
       .def("stable_range", &stable_range, py::arg("mode") = "uniaxial", py::arg("lowest") = 0.1,
            py::arg("highest") = 10.0,
            R"(stable_range($self, mode='uniaxial', lowest=0.1, highest=10.0)
 --
 
-The stretches round 1 between which the incompressible material is stable after Drucker.
+Range of stretches around 1 in which the incompressible material is Drucker-stable.
 
 Parameters
 ----------
 mode : {'uniaxial', 'equibiaxial', 'planar'}
 lowest, highest : float
-    Ends of the search.
+    Range of the search.
 
 Returns
 -------
@@ -168,7 +168,7 @@ tuple of float
              R"(material(spec)
 --
 
-What a scene's `material` means, to look at before it is used.
+Creates a material from a scene's `material`, to examine it before it is used.
 
 Parameters
 ----------
@@ -183,19 +183,19 @@ Material
 Raises
 ------
 Error
-    As for a scene, and wrong-type for laws of small strain.
+    As for a scene, and wrong-type for small-strain laws.
 )");
   module.def("materials", &library,
              R"(materials()
 --
 
-The library of materials that scenes may name.
+The library of materials that scenes can name.
 
 Returns
 -------
 dict of dict
-    By name: 'trade_name', 'law', 'density' (kg/m^3), 'stretch_range' (between which stretches the
-    source measured, or None where it does not say), 'source' and 'remark'.
+    By name: 'trade_name', 'law', 'density' (kg/m^3), 'stretch_range' (stretches measured by the source,
+    or None if it does not say), 'source' and 'remark'.
 )");
 }
 

@@ -49,7 +49,7 @@ Shared read(const std::string& path, const py::object& unit, bool several) {
 std::array<int, 3> to_cells(const py::handle& value) {
   const Array cells = to_array(value, "block(cells)", "(3,)");
   if (cells.ndim() != 1 || cells.size() != 3) {
-    throw Error(ErrorKind::wrong_shape, {.item = "block(cells)"}, "it has not three entries",
+    throw Error(ErrorKind::wrong_shape, {.item = "block(cells)"}, "it does not have three entries",
                 "give three whole numbers, as (10, 2, 2)");
   }
   std::array<int, 3> counts{};
@@ -57,7 +57,7 @@ std::array<int, 3> to_cells(const py::handle& value) {
     const double count = cells.at(static_cast<py::ssize_t>(i));
     if (count != std::floor(count) || count < 1.0 || count > 1e6) {
       throw Error(ErrorKind::out_of_range, {.item = "block(cells)"},
-                  fmt::format("{:g} is no count of cells", count), "give whole numbers from 1");
+                  fmt::format("{:g} is not a number of cells", count), "give whole numbers from 1");
     }
     counts[i] = static_cast<int>(count);
   }
@@ -66,7 +66,7 @@ std::array<int, 3> to_cells(const py::handle& value) {
 
 void bind_type(py::module_& module) {
   py::class_<Mesh, Shared>(module, "Mesh", "A volume mesh; lengths in m. Immutable.")
-      .def_readonly("name", &Mesh::name, "str: the file, or what made it.")
+      .def_readonly("name", &Mesh::name, "str: the file or function that the mesh comes from.")
       .def_property_readonly(
           "nodes",
           [](const Shared& self) {
@@ -81,7 +81,7 @@ void bind_type(py::module_& module) {
           "(m, 8) ndarray of int32: in VTK's order. Read-only.")
       .def_property_readonly(
           "triangles", [](const Shared& self) { return elements(self, self->triangles); },
-          "(m, 3) ndarray of int32: surface triangles that the file holds. Read-only.")
+          "(m, 3) ndarray of int32: surface triangles in the file. Read-only.")
       .def_readonly("node_sets", &Mesh::node_sets, "dict: named sets of nodes.")
       .def_property_readonly(
           "volume", [](const Mesh& self) { return mesh::volume(self); }, "float: m^3.")
@@ -103,18 +103,18 @@ str
           R"(write($self, path)
 --
 
-Writes the mesh in the format of the file's ending, lengths in m.
+Writes the mesh in the format of the file extension, lengths in m.
 
 Parameters
 ----------
 path : path-like
-    .vtu (VTK XML, compressed) or .vtk (VTK legacy, binary), both with the named sets; .stl: the
-    outside alone, as triangles.
+    .vtu (VTK XML, compressed) or .vtk (VTK legacy, binary), both with the named sets; .stl: only the
+    outer surface, as triangles.
 
 Raises
 ------
 Error
-    unknown-format for another ending, file-unwritable.
+    unknown-format for other extensions, file-unwritable.
 )")
       .def(
           "refined",
@@ -125,7 +125,7 @@ Error
           R"(refined($self)
 --
 
-Every tetrahedron cut in eight. Nodes keep their numbers, the middles of edges follow.
+Mesh in which every tetrahedron is split into eight. Nodes keep their numbers; the mid-edge nodes follow.
 
 Returns
 -------

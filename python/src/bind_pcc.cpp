@@ -97,7 +97,7 @@ constexpr const char* kArmDoc =
     R"(Arm(lengths, masses, stiffness, damping, *, ...)
 
 A soft arm of N segments of constant curvature, hanging along -z at rest; a positive angle bends
-towards +x. Coordinates are one angle a segment; with ``bending="spatial"`` two (u towards x, v
+towards +x. Each segment has one angle as its coordinate; with ``bending="spatial"`` two (u towards x, v
 towards y), with `axial_stiffness` also the extension e in m.
 
 Parameters
@@ -106,12 +106,12 @@ lengths, masses : (N,) m, kg
 stiffness, damping : (N,) or float
     N m and N m s: torque ``-k theta - b theta_dot``.
 centre : str
-    Where a segment's mass sits: "arc" (half-way along the axis), "chord" (half-way along the
-    chord) or "distributed" (Gauss points along the axis).
+    Location of a segment's mass: "arc" (midpoint of the arc), "chord" (midpoint of the
+    chord) or "distributed" (Gauss points along the arc).
 gravity : float or (3,)
     m/s^2; a magnitude points along -z.
 gamma : (N,) or float
-    Turn about the axis before each segment, rad.
+    Rotation about the axis before each segment, rad.
 dead_lengths : (N,) or float
     Rigid length before each bend, m.
 bending : str
@@ -120,9 +120,9 @@ axial_stiffness, axial_damping : (N,) or float
     N/m and N s/m; makes spatial segments extensible.
 base : (3,) m
 actuation : (coordinates, inputs), optional
-    B of the generalised forces B tau; the identity when left out.
+    B in the generalised forces B tau; the identity by default.
 mass_points : int
-    Gauss points a segment of distributed mass.
+    Gauss points per segment of distributed mass.
 
 Raises
 ------
@@ -135,14 +135,14 @@ void bind_published(py::module_& module) {
              R"(published_arm(lengths=None, centre='arc')
 --
 
-The identified four-segment fluidic arm: masses, stiffness and damping as published; the lengths
-(4,) m, which are not published, 0.14 each when left out. An Arm.)");
+The identified four-segment fluidic arm, with published masses, stiffness and damping. The lengths
+(4,) m are not published; the default is 0.14 each. Returns an Arm.)");
   module.def(
       "published_torque_limits", [] { return copy(pcc::published_torque_limits()); },
       R"(published_torque_limits()
 --
 
-(4,) N m, either way, of that arm; its first segment is not actuated.)");
+(4,) N m, torque limits of that arm in both directions; its first segment is not actuated.)");
 }
 
 void bind_stiffness(py::module_& module) {
@@ -157,7 +157,7 @@ void bind_stiffness(py::module_& module) {
       py::arg("first"), py::arg("lengths"), R"(channel_stiffness(first, lengths)
 --
 
-(N,) N m: k_i = k_1 L_i / L_1, as published for fluidic segments of like channels.)");
+(N,) N m: k_i = k_1 L_i / L_1, as published for fluidic segments with equal channels.)");
   module.def(
       "beam_stiffness",
       [](double bending, const py::object& lengths) {

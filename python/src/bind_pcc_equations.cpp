@@ -18,16 +18,16 @@ void bind_sizes(PccArmClass& arm) {
          "segments", [](const PccArm& self) { return self.arm->segments(); }, "int.")
       .def_property_readonly(
           "coordinates", [](const PccArm& self) { return self.arm->coordinates(); },
-          "int: the length of theta.")
+          "int: number of coordinates.")
       .def_property_readonly(
           "length", [](const PccArm& self) { return self.arm->length(); },
-          "float: of the straight arm, m.")
+          "float: length of the straight arm, m.")
       .def_property_readonly(
           "stiffness", [](const PccArm& self) { return copy(self.arm->stiffness()); },
-          "(coordinates,) N m; of an extension N/m.")
+          "(coordinates,) N m; N/m for an extension.")
       .def_property_readonly(
           "damping", [](const PccArm& self) { return copy(self.arm->damping()); },
-          "(coordinates,) N m s; of an extension N s/m.");
+          "(coordinates,) N m s; N s/m for an extension.");
 }
 
 void bind_dynamics(PccArmClass& arm) {
@@ -67,7 +67,7 @@ Returns
           R"(inverse_dynamics($self, theta, theta_dot, theta_ddot)
 --
 
-(coordinates,) N m: H theta_ddot + C theta_dot + G + b theta_dot, what B torque must be.)");
+(coordinates,) N m: H theta_ddot + C theta_dot + G + b theta_dot, the required value of B torque.)");
 }
 
 void bind_matrices(PccArmClass& arm) {
@@ -90,7 +90,7 @@ H (coordinates, coordinates), kg m^2.)")
           py::arg("theta"), py::arg("theta_dot"), R"(coriolis_matrix($self, theta, theta_dot)
 --
 
-C (coordinates, coordinates) of Christoffel's symbols, N m s: dH/dt - 2C is skew.)");
+C (coordinates, coordinates) from Christoffel symbols, N m s: dH/dt - 2C is skew-symmetric.)");
 }
 
 void bind_derivatives(PccArmClass& arm) {
@@ -108,12 +108,12 @@ void bind_derivatives(PccArmClass& arm) {
       R"(linearise($self, theta, theta_dot, torque)
 --
 
-Forward dynamics with its exact derivatives.
+Forward dynamics with exact derivatives.
 
 Returns
 -------
 tuple
-    Acceleration (n,) rad/s^2, and its derivatives by theta (n, n), theta_dot (n, n) and torque
+    Acceleration (n,) rad/s^2, and its derivatives with respect to theta (n, n), theta_dot (n, n) and torque
     (n, inputs).)");
 }
 
@@ -126,7 +126,7 @@ void bind_points(PccArmClass& arm) {
          py::arg("theta"), R"(endpoints($self, theta)
 --
 
-(N, 3) m: where the segments end.)")
+(N, 3) m: ends of the segments.)")
       .def(
           "point",
           [](PccArm& self, const py::object& theta, int segment, double fraction,
@@ -140,15 +140,15 @@ void bind_points(PccArmClass& arm) {
           R"(point($self, theta, segment, fraction=1.0, *, offset=(0.0, 0.0))
 --
 
-Where a point of the arm is.
+Position of a point of the arm.
 
 Parameters
 ----------
 theta : (coordinates,) rad
 segment, fraction : int, float
-    Which segment, and at what part of its arc, 0 to 1.
+    Index of the segment, and fraction of its arc length, 0 to 1.
 offset : (2,) m
-    Aside from the axis, in the section.
+    Offset from the axis, in the section.
 
 Returns
 -------
@@ -169,7 +169,7 @@ void bind_jacobian(PccArmClass& arm) {
       R"(jacobian($self, theta, segment, fraction=1.0, *, offset=(0.0, 0.0))
 --
 
-(3, coordinates) m: derivative of point() by theta.)");
+(3, coordinates) m: derivative of point() with respect to theta.)");
 }
 
 void bind_energies(PccArmClass& arm) {
@@ -184,7 +184,7 @@ void bind_energies(PccArmClass& arm) {
          py::arg("theta"), py::arg("theta_dot"), R"(energy($self, theta, theta_dot)
 --
 
-float: kinetic, strain and gravity's energy (against the base's height), J.)")
+float: sum of kinetic, strain and gravity energy (relative to the height of the base), J.)")
       .def(
           "energies",
           [](PccArm& self, const py::object& theta, const py::object& rate) {

@@ -100,7 +100,7 @@ py::tuple simulate(PccArm& self, const py::object& theta, const py::object& thet
   if ((!many && drive.ndim() != 2) || drive.shape(drive.ndim() - 1) != self.arm->inputs()) {
     throw Error(
         ErrorKind::wrong_shape, {.item = "simulate(torque)"},
-        fmt::format("it is no array (steps, {0}) or (arms, steps, {0})", self.arm->inputs()),
+        fmt::format("it is not an array (steps, {0}) or (arms, steps, {0})", self.arm->inputs()),
         "give the torques of every step in N m, a column for each input");
   }
   const Eigen::Index arms = many ? drive.shape(0) : 1, steps = drive.shape(many ? 1 : 0);
@@ -138,7 +138,7 @@ void bind_equilibrium(PccArmClass& arm) {
       R"(equilibrium($self, torque, start=None)
 --
 
-(coordinates,) rad: the equilibrium that a descent from `start` (straight) ends in.
+(coordinates,) rad: the equilibrium found by descent from `start` (by default straight).
 
 Raises
 ------
@@ -154,34 +154,34 @@ void bind_simulate(PccArmClass& arm) {
       R"(simulate($self, theta, theta_dot, torque, *, time_step=0.001, integrator='generalized-alpha', spectral_radius=0.8, threads=1)
 --
 
-Motion under given torques, by implicit steps, of one arm or of many equal ones; the GIL is released.
+Simulates the motion under given torques by implicit steps, for one arm or many equal ones. Releases the GIL.
 
 Parameters
 ----------
 theta, theta_dot : (coordinates,) or (arms, coordinates) rad, rad/s
-    The start.
+    Initial values.
 torque : (steps, inputs) or (arms, steps, inputs) N m
-    At the end of each step.
+    Torques at the end of each step.
 time_step : float
     s.
 integrator : str
     "generalized-alpha", "bdf2" or "backward-euler".
 spectral_radius : float
-    Of generalized-alpha, 0 to 1.
+    For generalized-alpha, 0 to 1.
 threads : int
-    That share the arms, 1 or more. Results are the same, bit for bit, for any number, and those of each arm alone.
+    Number of threads that share the arms, 1 or more. The results are the same, bit for bit, for any number, and for each arm alone.
 
 Returns
 -------
 tuple of (steps + 1, coordinates) or (arms, steps + 1, coordinates)
-    theta in rad and theta_dot in rad/s, the start included.
+    theta in rad and theta_dot in rad/s, including the start.
 
 Raises
 ------
 Error
     wrong-shape, out-of-range, unknown-choice.
 RunError
-    not-converged, diverged; that of the first arm that fails.)");
+    not-converged, diverged; the error of the first arm that fails.)");
 }
 
 }  // namespace

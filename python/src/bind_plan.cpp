@@ -106,7 +106,7 @@ std::shared_ptr<const pcc::Arm> other(const PccArm* arm,
 
 void bind_obstacles(py::module_& module) {
   const py::class_<plan::Obstacle> obstacle(
-      module, "PlanObstacle", "What the arm's axis keeps clear of: a Sphere() or a Plane().");
+      module, "PlanObstacle", "An obstacle for the arm's axis: a Sphere() or a Plane().");
   module.def(
       "plan_sphere",
       [](const py::object& centre, double radius, double clearance) {
@@ -119,7 +119,7 @@ void bind_obstacles(py::module_& module) {
       R"(plan_sphere(centre, radius, clearance=0.0)
 --
 
-An Obstacle of centre (3,) m and radius in m, from which the axis keeps `clearance` in m.)");
+An Obstacle with centre (3,) m and radius in m, from which the axis keeps `clearance` in m.)");
   module.def(
       "plan_plane",
       [](const py::object& point, const py::object& normal, double clearance) {
@@ -132,19 +132,19 @@ An Obstacle of centre (3,) m and radius in m, from which the axis keeps `clearan
       R"(plan_plane(point, normal, clearance=0.0)
 --
 
-An Obstacle through a point (3,) m; its normal (3,) points to where the arm may be.)");
+An Obstacle below a plane through a point (3,) m; the normal (3,) points to the free side.)");
 }
 
 void bind_plans(py::module_& module) {
   using plan::Plan;
-  py::class_<Plan>(module, "Plan", "What Task.solve() found.")
+  py::class_<Plan>(module, "Plan", "Result of Task.solve().")
       .def_property_readonly(
           "status", [](const Plan& self) { return std::string(plan::status_name(self.status)); },
-          R"(str: 'solved' or 'acceptable' where the program was solved and the motion of its torques
-ends within the tolerances and clear of the obstacles; 'not-met-on-replay' where that motion
-misses; 'infeasible', 'iteration-limit', 'time-limit' or 'failed' where the program was not
-solved.)")
-      .def_property_readonly("found", &Plan::found, "bool: solved or acceptable.")
+          R"(str: 'solved' or 'acceptable' if the program was solved and the motion under its torques ends within
+the tolerances and clear of the obstacles; 'not-met-on-replay' if that motion misses;
+'infeasible', 'iteration-limit', 'time-limit' or 'failed' if the program was not solved.)")
+      .def_property_readonly("found", &Plan::found,
+                             "bool: whether the status is solved or acceptable.")
       .def_property_readonly(
           "times", [](const Plan& self) { return copy(self.knots.times); }, "(knots,) s.")
       .def_property_readonly(
@@ -161,44 +161,47 @@ solved.)")
           "objective", [](const Plan& self) { return self.objective; }, "float.")
       .def_property_readonly(
           "tip_error", [](const Plan& self) { return self.tip_error; },
-          "float: m, at the end of the motion that the torques cause, integrated anew.")
+          "float: distance of the tip from the goal at the end of the simulated motion under the "
+          "torques, m.")
       .def_property_readonly(
           "tip_speed", [](const Plan& self) { return self.tip_speed; },
-          "float: m/s, at the end of that motion.")
+          "float: tip speed at the end of that motion, m/s.")
       .def_property_readonly(
           "clearance", [](const Plan& self) { return self.clearance; },
-          "float: m, the least between axis and obstacles in that motion; inf without any.")
+          "float: smallest distance between axis and obstacles in that motion, m; inf without "
+          "obstacles.")
       .def_property_readonly(
           "planned_tip_error", [](const Plan& self) { return self.planned_tip_error; },
-          "float: m, of the last knot, theta[-1].")
+          "float: distance of the tip from the goal at the last knot, theta[-1], m.")
       .def_property_readonly(
           "planned_tip_speed", [](const Plan& self) { return self.planned_tip_speed; },
-          "float: m/s, of the last knot.")
+          "float: tip speed at the last knot, m/s.")
       .def_property_readonly(
-          "iterations", [](const Plan& self) { return self.iterations; }, "int: of all programs.")
+          "iterations", [](const Plan& self) { return self.iterations; },
+          "int: iterations of all programs.")
       .def_property_readonly(
           "corrections", [](const Plan& self) { return self.corrections; },
-          "int: programs solved after the first, with another aim or more knots.")
+          "int: number of programs solved after the first, with another aim or more knots.")
       .def_property_readonly(
           "seconds", [](const Plan& self) { return self.seconds; },
-          "float: of all programs and replays.")
+          "float: computation time of all programs and simulations, s.")
       .def_property_readonly(
           "drive",
           [](const Plan& self) -> py::object {
             if (!self.knots.drive) return py::none();
             return drive_result(*self.knots.drive);
           },
-          R"(dict or None: of a task with actuators and cylinders. "times" (samples,) s, from 0: the
-commands' own, "lead" s before the plan's; (samples, inputs) "command" and "volume" (m^3, that the
-commands give).)")
+          R"(dict or None: for a task with actuators and cylinders. "times" (samples,) s, from 0, the first command
+("lead" s before the plan); (samples, inputs) "command" and "volume" (m^3, delivered under the
+commands).)")
       .def(
           "torque_at", [](const Plan& self, double time) { return copy(self.torque(time)); },
           py::arg("time"),
           R"(torque_at($self, time)
 --
 
-(inputs,) N m at a time in s: linear between knots, with backward Euler constant; with a drive what
-its commands cause.)");
+(inputs,) N m at a time in s: linear between knots, with backward Euler constant; with a drive the torque that
+its commands produce.)");
   using plan::Replay;
   py::class_<Replay>(module, "PlanReplay", "An arm's motion at equally spaced times.")
       .def_property_readonly(
@@ -217,52 +220,54 @@ its commands cause.)");
           "tip_velocity", [](const Replay& self) { return copy(self.tip_velocity); },
           "(samples, 3) m/s.")
       .def_property_readonly(
-          "tip_error", [](const Replay& self) { return self.tip_error; }, "float: m, at the end.")
+          "tip_error", [](const Replay& self) { return self.tip_error; },
+          "float: distance of the tip from the goal at the end, m.")
       .def_property_readonly(
-          "tip_speed", [](const Replay& self) { return self.tip_speed; }, "float: m/s, at the end.")
+          "tip_speed", [](const Replay& self) { return self.tip_speed; },
+          "float: tip speed at the end, m/s.")
       .def_property_readonly(
           "clearance", &Replay::clearance,
-          "float: m, the least between the axis and the obstacles; inf without any.");
+          "float: smallest distance between the axis and the obstacles, m; inf without obstacles.");
 }
 
 void bind_task(py::module_& module) {
   py::class_<PlanTask>(module, "PlanTask", R"(PlanTask(arm, goal, torque_limits=None, *, ...)
 
-Bring an arm's tip to a goal, slow, by the least effort.
+Planning problem: bring an arm's tip to a goal at low final speed with minimal effort.
 
 Parameters
 ----------
 arm : sinew.pcc.Arm
 goal : (3,) m
 torque_limits : (inputs,) or (2, inputs) N m, optional
-    Either way, or lower and upper ones.
+    In both directions, or lower and upper limits.
 angle_limits : (coordinates,) or (2, coordinates) rad, optional
 rate_limits : (coordinates,) or float, rad/s, optional
 torque_rate_limits : (inputs,) or float, N m/s, optional
 tolerance, speed_tolerance : float
     Of the tip at the end, m and m/s; `speed_tolerance` None: any speed.
 effort, tip_speed, time : float
-    The cost is effort * integral of torque^2 + tip_speed * |tip's velocity at the end|^2
-    + time * duration (the last where the duration is free).
+    The cost is effort * integral of torque^2 + tip_speed * |final velocity of the tip|^2
+    + time * duration (the last term if the duration is free).
 duration : float
-    s; with duration_range (least, most) it is free and this its first guess.
+    s; with duration_range (shortest, longest) it is free, and this is the initial guess.
 intervals : int
-    Of the first mesh, equal ones; a plan may end with more, and uneven ones.
+    Number of equal intervals of the first mesh; a plan may end with more and uneven ones.
 method : str
-    "radau" (Radau IIA of three stages) or "backward-euler".
+    "radau" (Radau IIA with three stages) or "backward-euler".
 theta, theta_dot, torque : (coordinates,) rad, rad/s and (inputs,) N m, optional
-    The start; straight, at rest, without torque when left out.
+    Initial state; by default straight, at rest and without torque.
 obstacles : list of Obstacle
 backbone_points : int
-    A segment, that keep clear of the obstacles at the knots.
+    Number of points per segment that keep clear of the obstacles at the knots.
 actuators, cylinders : list of FluidicActuator, list of DriveCylinder, optional
-    One each for each input, cylinders of one sample time: the plan is one of their commands
-    (Plan.drive), which keeps to what they can do. The duration is fixed.
+    One each for each input; all cylinders have one sample time. The plan then consists of their commands
+    (Plan.drive) and respects their dynamics and limits. The duration is fixed.
 lead : float, optional
-    s by which the commands begin before the motion; the longest delay, in whole samples.
+    Time from the first command to the start of the motion, s; by default the longest delay, in whole samples.
 command_rate_limits : (inputs,) or float, 1/s, optional
 command : float
-    The cost of (torque per command * rate of the command)^2, s/(N m)^2, above zero.
+    Cost of (torque per command * rate of the command)^2, s/(N m)^2, positive.
 
 Raises
 ------
@@ -288,24 +293,24 @@ Error
           R"(solve($self, seed=0, *, warm=None, tolerance=1e-06, max_iterations=300, max_time=30.0, corrections=6)
 --
 
-A Plan; look at its status. The motion of its torques is integrated anew, to an accuracy of its own;
-where it misses the goal's tolerances or an obstacle's clearance the program is solved again with
-its aim moved by what was missed, or with more knots where they are too coarse.
+Solves the problem and returns a Plan; check its status. The motion under its torques is simulated with its own error
+control. If it misses the tolerances at the goal or the clearance of an obstacle, the program is solved again
+with a shifted aim, or with more knots where they are too coarse.
 
 Parameters
 ----------
 seed : int
-    Of the random torques whose motion is the first guess.
+    Seed of the random torques whose motion is the initial guess.
 warm : Plan, optional
-    Of a similar task: start there instead, on its knots.
+    Plan of a similar task as the initial guess, on its knots.
 tolerance : float
     Of the solver, scaled.
 max_iterations : int
-    Of each program.
+    For each program.
 max_time : float
-    s, of all programs together.
+    For all programs together, s.
 corrections : int
-    Most programs after the first, 0: the first as it is.
+    Maximum number of programs after the first; 0: the first one unchanged.
 
 Raises
 ------
@@ -322,7 +327,7 @@ Error
           R"(replay($self, plan, arm=None, *, time_step=0.001)
 --
 
-The plan's torque on the arm, or on another one, to an accuracy far finer than the plan's: a Replay,
+Simulates the plan's torques on the arm, or on another one, far more accurately than the plan's mesh: a Replay,
 in samples `time_step` (s) apart.)")
       .def(
           "replay_commands",
@@ -342,28 +347,28 @@ in samples `time_step` (s) apart.)")
           R"(replay_commands($self, command, actuators=None, cylinders=None, *, lead, arm=None, time_step=0.001)
 --
 
-Commands (samples, inputs) through the whole chain, cylinders, lines, actuators and the arm or
-another one, integrated like a plan: a Replay of lead + duration whose times begin with the
-commands. Actuators and cylinders are the task's when left out; all is at rest before.)");
+Simulates commands (samples, inputs) through the whole chain, cylinders, lines, actuators and the arm or
+another one, with the accuracy of replay(): a Replay of lead + duration whose times begin with the
+commands. Actuators and cylinders are by default the task's; everything is initially at rest.)");
 }
 
 void bind_tracker(py::module_& module) {
   py::class_<TrackerOf>(module, "PlanTracker", R"(PlanTracker(task, plan, *, ...)
 
-A linear quadratic regulator of variable gain along a plan.
+A time-varying linear quadratic regulator along a plan.
 
 Parameters
 ----------
 task : Task
 plan : Plan
 time_step : float
-    s, for which a torque is held.
+    Time for which a torque is held, s.
 angle, rate : float
-    Errors (rad, rad/s) on the way that are as bad as ...
+    Errors (rad, rad/s) along the way that cost as much as ...
 torque_fraction : float
-    ... this part of an input's range, and as bad as ...
+    ... this fraction of an input's range, and as much as ...
 tip_position, tip_speed : float
-    ... these of the tip at the end (m, m/s).
+    ... these errors of the tip at the end (m, m/s).
 
 Raises
 ------
@@ -382,7 +387,7 @@ Error
           "steps", [](const TrackerOf& self) { return self.tracker.steps(); }, "int.")
       .def_property_readonly(
           "time_step", [](const TrackerOf& self) { return self.tracker.time_step(); },
-          "float: s, a whole number of which makes the plan's duration.")
+          "float: control step, s; the plan's duration is a whole multiple of it.")
       .def(
           "gain",
           [](const TrackerOf& self, int step) {
@@ -414,18 +419,18 @@ Error
           R"(run($self, arm=None, *, theta=None, theta_dot=None, feedback=True, time_step=0.001)
 --
 
-A Replay of what the arm, or another one, makes of the plan.
+Simulates the arm, or another one, under the plan with feedback: a Replay.
 
 Parameters
 ----------
 arm : sinew.pcc.Arm, optional
-    Whose masses and stiffnesses may be others.
+    An arm with other masses and stiffnesses.
 theta, theta_dot : (coordinates,) rad, rad/s, optional
-    Where it starts instead.
+    Other initial values.
 feedback : bool
-    False: the plan's torques alone.
+    False: only the plan's torques.
 time_step : float
-    s, of the simulation.)");
+    Step of the simulation, s.)");
 }
 
 }  // namespace

@@ -81,8 +81,8 @@ void bind_plan_drive(py::module_& module) {
       R"(plan_invert_cylinder(cylinder, volume, *, start=(0.0, 0.0), smoothing=1e-06)
 --
 
-Commands that make a cylinder deliver volumes as nearly as its dynamics and limits allow: the least
-``sum (volume - C x - D u)**2``, by a quadratic program.
+Finds the commands with which a cylinder delivers volumes as closely as its dynamics and limits allow: minimises
+``sum (volume - C x - D u)**2`` by a quadratic program.
 
 Parameters
 ----------
@@ -92,13 +92,13 @@ volume : (samples,) m^3
 start : (2,)
     Its state at the first of them.
 smoothing : float
-    What changes of the command cost beside errors of volume, above zero.
+    Cost of changes of the command relative to errors of the volume, positive.
 
 Returns
 -------
 dict
-    "status" ('optimal', or 'infeasible' where no command keeps the volume within its limits),
-    "command" (samples,), "volume" (samples,) m^3 that it gives.
+    "status" ('optimal', or 'infeasible' if no command keeps the volume within its limits),
+    "command" (samples,), "volume" (samples,) m^3, delivered under the command.
 
 Raises
 ------
@@ -126,28 +126,28 @@ Error
       R"(plan_invert_drive(plan, actuators, cylinders, *, lead, smoothing=1e-06)
 --
 
-Commands of the cylinders that carry a plan out: its torques through the inverse of the actuators,
-earlier by their delay, then each cylinder's commands as by invert_cylinder().
+Finds the commands of the cylinders for a plan: the inverse of the actuators gives the volumes, advanced by
+the delay; invert_cylinder() then gives the commands of each cylinder.
 
 Parameters
 ----------
 plan : Plan
 actuators, cylinders : list of FluidicActuator, list of DriveCylinder
-    One each for each input of the arm; cylinders of one sample time.
+    One each for each input of the arm; all cylinders have one sample time.
 lead : float
-    s before the plan's torque begins, at least the longest delay: cylinders start moving in it.
+    Time from the first command to the start of the plan's torque, s, at least the longest delay: cylinders may move in it.
 
 Returns
 -------
 dict
     "found", "status" of each cylinder, "times" (samples,) s from 0 to lead + duration, and
-    (samples, inputs) "command", "wanted" (m^3, by the actuators' inverse) and "volume" (m^3, that
-    the commands give).
+    (samples, inputs) "command", "wanted" (m^3, from the inverse of the actuators) and "volume" (m^3,
+    delivered under the commands).
 
 Raises
 ------
 Error
-    wrong-length, out-of-range and what invert_cylinder() raises.)");
+    wrong-length, out-of-range and the errors of invert_cylinder().)");
 }
 
 }  // namespace sinew::python

@@ -28,14 +28,14 @@ void bind_plan_reach(py::module_& module) {
       R"(plan_sample_reach(arm, torque_limits, samples=1000, seed=1, *, angle_limits=None)
 --
 
-Where the tip can rest: stable equilibria under random torques within the limits.
+Samples the static workspace of the tip: stable equilibria under random torques within the limits.
 
 Parameters
 ----------
 arm : sinew.pcc.Arm
 torque_limits : (inputs,) or (2, inputs) N m
 samples : int
-    Of torques, each from two starts.
+    Number of torques, each with two starts.
 seed : int
 angle_limits : (coordinates,) or (2, coordinates) rad, optional
 
@@ -70,8 +70,8 @@ The equilibrium, stable or not, whose tip is nearest to a goal (3,) m: the best 
 Returns
 -------
 dict
-    "found", "stable", "distance" m, "tip" (3,) m, "theta", "torque", and "solved", how many of the
-    starts led to one.)");
+    "found", "stable", "distance" m, "tip" (3,) m, "theta", "torque", and "solved", the number of
+    starts that led to an equilibrium.)");
   module.def(
       "plan_prove_out_of_reach",
       [](const PccArm& arm, const py::object& torque_limits, const py::object& goal,
@@ -94,25 +94,25 @@ dict
       R"(plan_prove_out_of_reach(arm, torque_limits, goal, *, tolerance=0.02, angle=3.141592653589793, max_boxes=5000000, angle_limits=None)
 --
 
-Whether any equilibrium, stable or not, has its tip within `tolerance` (m, along each axis) of a
-goal (3,) m, by branch and bound over the angles.
+Proves by branch and bound over the angles whether any equilibrium, stable or not, has its tip within
+`tolerance` (m, along each axis) of a goal (3,) m.
 
 Parameters
 ----------
 arm : sinew.pcc.Arm
-    Of planar segments.
+    With planar segments.
 torque_limits : (inputs,) or (2, inputs) N m
 goal : (3,) m
 tolerance : float
 angle : float
-    rad, how far a segment may bend either way where `angle_limits` do not say.
+    Largest bend of a segment in both directions, rad, if `angle_limits` are not given.
 max_boxes : int
 angle_limits : (coordinates,) or (2, coordinates) rad, optional
 
 Returns
 -------
 dict
-    "verdict" ('out-of-reach', 'reachable' or 'undecided'), "boxes" looked at, "smallest" half-width
+    "verdict" ('out-of-reach', 'reachable' or 'undecided'), "boxes" examined, "smallest" half-width
     needed in rad, "theta" of an equilibrium found there.)");
 }
 

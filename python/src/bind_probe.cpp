@@ -37,26 +37,26 @@ Array positions(const Probe& self) {
 }  // namespace
 
 void bind_probe(py::module_& module) {
-  py::class_<Probe>(module, "Probe",
-                    "Something measured on the robot, which acts on nothing. From "
-                    "Simulation.probe() or Simulation.probes.")
+  py::class_<Probe>(
+      module, "Probe",
+      "A probe: a measurement that does not affect the robot. From Simulation.probe() or "
+      "Simulation.probes.")
       .def_property_readonly(
-          "name", [](const Probe& self) { return model(self).name(); }, "str: as in the scene.")
+          "name", [](const Probe& self) { return model(self).name(); }, "str: name in the scene.")
       .def_property_readonly(
           "kind", [](const Probe& self) { return model(self).kind(); },
           "str: 'point', 'line', 'bend', 'distance' or 'extent'.")
       .def_property_readonly(
           "unit", [](const Probe& self) { return model(self).components().front().unit; },
-          "str: 'm', or 'rad' of a bend.")
+          "str: 'm', or 'rad' for a bend.")
       .def_property_readonly(
           "value", &value,
-          "float: what it measures now (m, or rad); the length of a line. (3,) ndarray of a point "
-          "(m).")
-      .def_property_readonly("positions", &positions,
-                             "(k, 3) ndarray: where it measures now (m): a point; the points along "
-                             "a line; the ends of "
-                             "a distance; the nodes that an extent lies between; the middles of a "
-                             "bend's faces. A copy.")
+          "float: present value (m or rad); for a line its length. (3,) ndarray for a point (m).")
+      .def_property_readonly(
+          "positions", &positions,
+          "(k, 3) ndarray: present measuring points (m): the point; the points along a line; the "
+          "ends of a distance; the two outermost nodes of an extent; the centres of a bend's "
+          "faces. A copy.")
       .def("__repr__", [](const Probe& self) {
         return fmt::format("<sinew.Probe '{}', {}>", model(self).name(), model(self).kind());
       });

@@ -41,7 +41,7 @@ std::vector<std::string> state_names(const ConeSolution& self) {
 }  // namespace
 
 void bind_qp(py::module_& module) {
-  py::class_<ConeSolution>(module, "ConeSolution", "What solve_cones() found.")
+  py::class_<ConeSolution>(module, "ConeSolution", "Result of solve_cones().")
       .def_property_readonly(
           "x", [](const ConeSolution& self) { return copy(self.x); },
           "(3n,) efforts: normal and two tangents of each contact.")
@@ -52,16 +52,17 @@ void bind_qp(py::module_& module) {
       .def_readonly("residual", &ConeSolution::residual,
                     "|r - P_K(r - v)|/|q|, v = (u_n + mu |u_t|, u_t), norms over all contacts.")
       .def_readonly("iterations", &ConeSolution::iterations,
-                    "Gauss-Seidel sweeps and Newton steps of the part that took most.")
+                    "Gauss-Seidel sweeps and Newton steps of the group of bodies that took most.")
       .def_readonly("asymmetry", &ConeSolution::asymmetry,
-                    "The largest entry of W - W^T over the largest of W.")
-      .def_property_readonly("states", state_names, "Of each contact 'open', 'stick' or 'slip'.");
+                    "Largest entry of W - W^T relative to the largest entry of W.")
+      .def_property_readonly("states", state_names,
+                             "State of each contact: 'open', 'stick' or 'slip'.");
   module.def("solve_cones", solve_cones, py::arg("W"), py::arg("q"), py::arg("friction"),
              py::arg("tolerance") = 1e-8, py::arg("start") = py::none(),
              R"(solve_cones(W, q, friction, tolerance=1e-8, start=None)
 --
 
-Solves contacts with Coulomb friction: u = W r + q with
+Solves a contact problem with Coulomb friction: u = W r + q with
 
     0 <= u_n _|_ r_n >= 0,   |r_t| <= mu r_n,   r_t = -mu r_n u_t/|u_t| where u_t != 0.
 
@@ -70,18 +71,18 @@ Parameters
 W : (3n, 3n) array_like, or a sparse matrix of scipy
     Positive semidefinite; the symmetric part is used. Rows of a contact: normal, two tangents.
 q : (3n,) array_like
-    Motion without efforts.
+    Motions without efforts.
 friction : (n,) array_like
     mu >= 0 of each contact.
 tolerance : float
-    Of the natural map, see ConeSolution.residual.
+    On the natural map, see ConeSolution.residual.
 start : (3n,) array_like, optional
-    Efforts near the solution.
+    Initial guess of the efforts.
 
 Returns
 -------
 ConeSolution
-    Its status says whether the problem was solved.)");
+    Its status tells whether the problem was solved.)");
 }
 
 }  // namespace sinew::python

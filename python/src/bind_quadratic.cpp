@@ -18,10 +18,10 @@ using qp::QpResult;
 VectorX to_limits(const py::object& value, const std::string& place, Eigen::Index size,
                   double missing) {
   if (value.is_none()) return VectorX::Constant(size, missing);
-  const MatrixX limits = to_gappy_matrix(value, place, "(n,), infinite where there is none");
+  const MatrixX limits = to_gappy_matrix(value, place, "(n,), infinite for no limit");
   if (limits.size() == size && limits.cols() == 1 && !limits.hasNaN()) return limits;
   throw Error(ErrorKind::wrong_shape, {.item = place},
-              "it is no vector of " + std::to_string(size) + " numbers",
+              "it is not a vector of " + std::to_string(size) + " numbers",
               "give one limit for each, infinite where there is none");
 }
 
@@ -57,17 +57,17 @@ make an equation.
 Parameters
 ----------
 G : (n, n) array_like
-    Symmetric and positive semidefinite; the lower triangle is read.
+    Symmetric and positive semidefinite; only the lower triangle is read.
 g : (n,) array_like
 lower, upper : (n,) array_like, optional
-    Infinite where there is no limit.
+    Infinite for no limit.
 C : (m, n) array_like, optional
 row_lower, row_upper : (m,) array_like, optional
 
 Returns
 -------
 QuadraticSolution
-    Its status says whether the problem was solved.
+    Its status tells whether the problem was solved.
 
 Raises
 ------
@@ -77,17 +77,17 @@ Error
 }  // namespace
 
 void bind_quadratic(py::module_& module) {
-  py::class_<QpResult>(module, "QuadraticSolution", "What solve_quadratic() found.")
+  py::class_<QpResult>(module, "QuadraticSolution", "Result of solve_quadratic().")
       .def_property_readonly(
-          "x", [](const QpResult& self) { return copy(self.x); },
-          "(n,) where the objective is least.")
+          "x", [](const QpResult& self) { return copy(self.x); }, "(n,) solution.")
       .def_property_readonly(
           "status",
           [](const QpResult& self) { return std::string(qp::qp_status_name(self.status)); },
           "'optimal', 'infeasible', 'unbounded', 'not-convex', 'iteration-limit' or 'not-finite'.")
       .def_property_readonly(
           "bound_multiplier", [](const QpResult& self) { return copy(self.bound_multiplier); },
-          "(n,) y of G x + g = y + C^T z: above 0 at a lower limit, below 0 at an upper one.")
+          "(n,) multipliers y of G x + g = y + C^T z: positive at a lower limit, negative at an "
+          "upper one.")
       .def_property_readonly(
           "row_multiplier", [](const QpResult& self) { return copy(self.row_multiplier); },
           "(m,) z, likewise.")

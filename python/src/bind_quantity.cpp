@@ -42,13 +42,13 @@ void bind_quantity(py::module_& module) {
              R"(_quantity(text)
 --
 
-A quantity such as '300 kPa', in SI, and the exponents of its dimension: (300000.0, (-1, 1, -2, 0))
+Converts a quantity such as '300 kPa' to SI, with the exponents of its dimension: (300000.0, (-1, 1, -2, 0))
 for length, mass, time and temperature. A bare number is SI and has none.
 
 Raises
 ------
 Error
-    not-a-number, not-finite, unknown-unit, wrong-length; wrong-dimension where no key of a scene has
+    not-a-number, not-finite, unknown-unit, wrong-length; wrong-dimension if no key of a scene has
     such a dimension.
 )");
 }

@@ -23,55 +23,61 @@ py::dict times_of(const StepReport& report) {
 }
 
 void bind_step_report(py::module_& module) {
-  py::class_<StepReport>(module, "StepReport", "What the last step did.")
+  py::class_<StepReport>(module, "StepReport", "Report of the last step.")
       .def_property_readonly(
           "status", [](const StepReport& self) { return sim::step_status_name(self.status); },
-          "str: 'solved'; 'limits-conflict' when limits contradict each other and the least "
-          "violation was taken; or a flag, of which step() and run() warn: 'command-not-reached', "
-          "'cut-back', 'not-in-equilibrium', 'gaining-energy'.")
+          "str: 'solved'; 'limits-conflict' if limits contradict each other (the step takes the "
+          "smallest violation); or a flag, for which step() and run() issue a warning: "
+          "'command-not-reached', 'cut-back', 'not-in-equilibrium', 'gaining-energy'.")
       .def_property_readonly(
           "flagged", [](const StepReport& self) { return sim::is_flagged(self.status); },
-          "bool: whether the step's numbers are not those of the robot.")
+          "bool: whether the status is a flag: the results of the step are not reliable.")
       .def_readonly("residual", &StepReport::residual,
-                    "float: norm of the imbalance of forces at the end of the step (N).")
-      .def_readonly("energy_gained", &StepReport::energy_gained,
-                    "float: energy (J) that dynamics holds beyond what was put in since the start; "
-                    "negative where the integrator damps.")
+                    "float: norm of the unbalanced forces at the end of the step (N).")
+      .def_readonly(
+          "energy_gained", &StepReport::energy_gained,
+          "float: energy (J) of a dynamic robot beyond what was put in since the start; negative "
+          "if the integrator damps.")
       .def_readonly("relative_residual", &StepReport::relative_residual,
-                    "float: residual over the sum of the forces' norms.")
+                    "float: residual divided by the sum of the force norms.")
       .def_readonly("violation", &StepReport::violation,
-                    "float: how far the actuators are from their law at the end (m).")
-      .def_readonly("contact_residual", &StepReport::contact_residual,
-                    "float: largest distance of a contact point from the laws of Signorini and "
-                    "Coulomb, over the largest contact force; 0 without contacts.")
-      .def_readonly("contact_signorini", &StepReport::contact_signorini,
-                    "float: largest penetration of a point, or gap across which a force acts, that "
-                    "the solution of the contact laws left (m).")
-      .def_readonly("contact_coulomb", &StepReport::contact_coulomb,
-                    "float: largest motion along a surface that friction should have prevented, or "
-                    "that is not against its friction (m).")
+                    "float: violation of the actuators' laws at the end (m).")
+      .def_readonly(
+          "contact_residual", &StepReport::contact_residual,
+          "float: largest residual of the contact laws at any point, relative to the largest "
+          "contact force; 0 without contacts.")
+      .def_readonly(
+          "contact_signorini", &StepReport::contact_signorini,
+          "float: largest penetration of a point, or gap across which a force acts, in the "
+          "solution of the contact laws (m).")
+      .def_readonly(
+          "contact_coulomb", &StepReport::contact_coulomb,
+          "float: largest motion along a surface that friction should have prevented, or that is "
+          "not opposite to its friction (m).")
       .def_readonly("contact_complementarity", &StepReport::contact_complementarity,
-                    "float: largest product of a point's gap and normal force (J).")
+                    "float: largest product of gap and normal force of a point (J).")
       .def_readonly(
           "contact_aggregation", &StepReport::contact_aggregation,
-          "float: of contacts with `aggregate`, about how far their forces are from those "
-          "of single points, relative to the sum of the zones' forces; 0 without. Friction "
-          "counts from where the run began or a state was loaded.")
-      .def_readonly("iterations", &StepReport::iterations, "int: linear solutions in the step.")
-      .def_readonly("substeps", &StepReport::substeps,
-                    "int: parts that the step was made in; more than 1 where the whole found no "
-                    "solution, or in adaptive steps.")
-      .def_readonly("impacts", &StepReport::impacts,
-                    "int: moments in the step at which rigid bodies struck; of the integrator "
-                    "'event-driven'.")
-      .def_readonly("choice_held", &StepReport::choice_held,
-                    "bool: whether a controller's choice of efforts did not settle in the step and "
-                    "was held as it was. Efforts that serve about as well may then differ.")
+          "float: for contacts with `aggregate`, the estimated difference of their forces from "
+          "those of single points, relative to the sum of the zones' forces; otherwise 0. For "
+          "friction it starts at 0 when the run begins or a state is loaded.")
+      .def_readonly("iterations", &StepReport::iterations,
+                    "int: number of linear solutions in the step.")
+      .def_readonly(
+          "substeps", &StepReport::substeps,
+          "int: number of parts of the step; more than 1 if the whole step found no solution, or "
+          "in adaptive steps.")
+      .def_readonly(
+          "impacts", &StepReport::impacts,
+          "int: number of instants of impact in the step; only with the integrator 'event-driven'.")
+      .def_readonly(
+          "choice_held", &StepReport::choice_held,
+          "bool: whether a controller's choice of efforts did not settle in the step and was held. "
+          "Other efforts may then serve about as well.")
       .def_readonly("scale", &StepReport::scale,
-                    "float: 1, or less when the motion was cut back to keep elements from "
-                    "inverting.")
+                    "float: 1, or less if the motion was cut back to keep elements from inverting.")
       .def_readonly("smallest_volume_ratio", &StepReport::smallest_volume_ratio,
-                    "float: least det F of all elements at the end of the step.")
+                    "float: smallest det F of all elements at the end of the step.")
       .def_property_readonly("times", &times_of,
                              "dict: seconds in 'assembly', 'rows', 'factorisation', 'law', "
                              "'correction' and 'total'.")
@@ -83,30 +89,33 @@ void bind_step_report(py::module_& module) {
 }
 
 void bind_static_report(py::module_& module) {
-  py::class_<StaticReport>(module, "StaticReport", "How solve_static() came to equilibrium.")
+  py::class_<StaticReport>(module, "StaticReport", "Report of solve_static().")
       .def_property_readonly(
           "status",
           [](const StaticReport& self) { return std::string(newton_status_name(self.status)); },
           "str: 'converged'.")
       .def_readonly("residual", &StaticReport::residual,
-                    "float: norm of the imbalance of forces left (N).")
+                    "float: norm of the remaining unbalanced forces (N).")
       .def_readonly("relative_residual", &StaticReport::relative_residual,
-                    "float: residual over the sum of the forces' norms.")
+                    "float: residual divided by the sum of the force norms.")
       .def_readonly("violation", &StaticReport::violation,
-                    "float: how far the actuators are from their law (m).")
+                    "float: violation of the actuators' laws (m).")
       .def_readonly("iterations", &StaticReport::iterations,
-                    "int: Newton's iterations over all load steps.")
-      .def_readonly("load_steps", &StaticReport::load_steps, "int: load steps taken.")
-      .def_readonly("relaxation_steps", &StaticReport::relaxation_steps,
-                    "int: steps of overdamped motion taken, from where load steps ended or an "
-                    "unstable equilibrium was left.")
-      .def_readonly("negative_pivots", &StaticReport::negative_pivots,
-                    "int: negative eigenvalues of the exact tangent on the motions that commanded "
-                    "motions, drives and contacts leave free. Of pressure on open surfaces, whose "
-                    "tangent is not symmetric, the symmetric part is counted.")
-      .def_readonly("stable", &StaticReport::stable,
-                    "bool: whether small disturbances die out: no negative pivots, or, without a "
-                    "potential, overdamped motion came back from a disturbance.")
+                    "int: Newton iterations over all load steps.")
+      .def_readonly("load_steps", &StaticReport::load_steps, "int: number of load steps.")
+      .def_readonly(
+          "relaxation_steps", &StaticReport::relaxation_steps,
+          "int: number of steps of overdamped motion, from the last load step or from an unstable "
+          "equilibrium.")
+      .def_readonly(
+          "negative_pivots", &StaticReport::negative_pivots,
+          "int: number of negative eigenvalues of the exact tangent on the motions that commanded "
+          "motions, drives and contacts leave free. For pressure on open surfaces, whose tangent "
+          "is not symmetric, those of the symmetric part.")
+      .def_readonly(
+          "stable", &StaticReport::stable,
+          "bool: whether small disturbances decay: no negative pivots, or, without a potential, "
+          "overdamped motion returned from a disturbance.")
       .def("__repr__", [](const StaticReport& self) {
         return fmt::format("<StaticReport {} in {} iterations, residual {:.3g} N, {}>",
                            newton_status_name(self.status), self.iterations, self.residual,
@@ -132,30 +141,33 @@ py::list to_arrays(const std::vector<std::vector<Points>>& fields) {
 void bind_linearisation(py::module_& module) {
   py::class_<sim::Linearisation>(
       module, "Linearisation",
-      "delta = delta_free + W @ effort: how the rows' motions follow from their efforts near one "
-      "state. Rows are actuators, then effectors' directions, as named in `rows`.")
-      .def_readonly("rows", &sim::Linearisation::rows, "list of str: what every row belongs to.")
+      "Linearisation near one state, delta = delta_free + W @ effort: motions of the rows as a "
+      "function of their efforts. Rows are actuators, then effectors' directions, as named in "
+      "`rows`.")
+      .def_readonly("rows", &sim::Linearisation::rows, "list of str: name of every row.")
       .def_property_readonly(
           "W", [](const sim::Linearisation& self) { return copy(self.compliance); },
           "(rows, rows) ndarray: compliance, m/N (rad/N in rows of orientations). Symmetric.")
       .def_property_readonly(
           "delta", [](const sim::Linearisation& self) { return copy(self.delta); },
-          "(rows,) ndarray: the rows' motions now: pull of a cable, coordinate of an effector (m).")
+          "(rows,) ndarray: present motions of the rows: pull of a cable, coordinate of an "
+          "effector (m).")
       .def_property_readonly(
           "delta_free", [](const sim::Linearisation& self) { return copy(self.delta_free); },
-          "(rows,) ndarray: the motions without any effort, as the linearisation sees it (m).")
+          "(rows,) ndarray: motions without efforts in the linearisation (m).")
       .def_property_readonly(
           "effort", [](const sim::Linearisation& self) { return copy(self.effort); },
-          "(rows,) ndarray: efforts now (N); 0 for effectors.")
+          "(rows,) ndarray: present efforts (N); 0 for effectors.")
       .def_readonly("residual", &sim::Linearisation::residual,
-                    "float: norm of the imbalance of forces at this state (N).")
-      .def_readonly("negative_pivots", &sim::Linearisation::negative_pivots,
-                    "int: negative eigenvalues of the matrix; 0 where the equilibrium is stable.")
+                    "float: norm of the unbalanced forces at this state (N).")
+      .def_readonly(
+          "negative_pivots", &sim::Linearisation::negative_pivots,
+          "int: number of negative eigenvalues of the matrix; 0 for a stable equilibrium.")
       .def_property_readonly(
           "fields", [](const sim::Linearisation& self) { return to_arrays(self.fields); },
           "list of (rows, n, 3) ndarray, one for each body: motion of all nodes for a unit effort "
-          "of each row, m/N; by reciprocity also the row's motion for a unit force on each node. "
-          "Of bodies without finite elements (0, 0, 3). Empty unless asked for.");
+          "of each row, m/N; by reciprocity also the motion of the row for a unit force on each "
+          "node. (0, 0, 3) for bodies without finite elements. Empty unless requested.");
 }
 
 }  // namespace

@@ -37,7 +37,8 @@ std::vector<double> to_value(const py::object& value, const std::string& place) 
   const auto array = Array::ensure(value);
   if (!array || array.ndim() > 1) {
     PyErr_Clear();
-    throw Error(ErrorKind::wrong_type, {.item = place}, "this is no number and no list of numbers",
+    throw Error(ErrorKind::wrong_type, {.item = place},
+                "this is neither a number nor a list of numbers",
                 "give a number, or an array of the sensor's numbers");
   }
   return {array.data(), array.data() + array.size()};
@@ -65,28 +66,29 @@ void feed(const Sensor& self, const py::object& value, const std::optional<doubl
 }
 
 void bind_sensor_type(py::module_& module) {
-  py::class_<Sensor>(module, "Sensor",
-                     "A sensor of the scene, which acts on nothing. From Simulation.sensor() or "
-                     "Simulation.sensors.")
+  py::class_<Sensor>(
+      module, "Sensor",
+      "A sensor of the scene; it does not affect the robot. From Simulation.sensor() or "
+      "Simulation.sensors.")
       .def_property_readonly(
-          "name", [](const Sensor& self) { return model(self).name; }, "str: as in the scene.")
+          "name", [](const Sensor& self) { return model(self).name; }, "str: name in the scene.")
       .def_property_readonly(
           "kind", [](const Sensor& self) { return model(self).kind; },
           "str: its type in the scene, such as 'marker' or 'cable-length'.")
       .def_property_readonly(
           "unit", [](const Sensor& self) { return model(self).source->components().front().unit; },
-          "str: SI unit of its numbers; 'dB' of an attenuation; empty of a strain and a switch.")
+          "str: SI unit of its numbers; 'dB' for an attenuation; empty for a strain and a switch.")
       .def_property_readonly(
           "size", [](const Sensor& self) { return model(self).source->size(); },
-          "int: how many numbers a sample has.")
+          "int: number of components of a sample.")
       .def_property_readonly(
           "observable", [](const Sensor& self) { return model(self).observable; },
-          "str: the observable that it reads, such as 'long_0.displacement'; its own 'NAME.true' "
-          "where nothing else observes the same.")
+          "str: the observable that it reads, such as 'long_0.displacement'; 'NAME.true' if there "
+          "is no such observable.")
       .def_property_readonly(
           "std", [](const Sensor& self) { return model(self).channel.standard_deviation(); },
-          "float: standard deviation of one sample about the true value, sqrt(noise^2 + "
-          "quantum^2/12), in its unit; bias and drift aside.")
+          "float: standard deviation of one sample, sqrt(noise^2 + quantum^2/12), in its unit; "
+          "without bias and drift.")
       .def_property_readonly(
           "rate",
           [](const Sensor& self) -> py::object {
@@ -96,17 +98,16 @@ void bind_sensor_type(py::module_& module) {
           "float or None: samples per second; None: one every step.")
       .def_property_readonly(
           "delay", [](const Sensor& self) { return model(self).channel.delay; },
-          "float: from taking a sample to its delivery (s).")
-      .def_property_readonly("value",
-                             of_channel([](const Channel& channel, const sim::Simulation&) {
-                               return to_python(channel.value());
-                             }),
-                             "float, or (size,) ndarray: the sample delivered last, in its unit; "
-                             "nan before the first.")
-      .def_property_readonly("time", of_channel([](const Channel& channel, const sim::Simulation&) {
-                               return channel.time();
-                             }),
-                             "float: when that sample was taken (s); nan before the first.")
+          "float: time from taking a sample to its delivery (s).")
+      .def_property_readonly(
+          "value", of_channel([](const Channel& channel, const sim::Simulation&) {
+            return to_python(channel.value());
+          }),
+          "float, or (size,) ndarray: last delivered sample, in its unit; nan before the first.")
+      .def_property_readonly(
+          "time",
+          of_channel([](const Channel& channel, const sim::Simulation&) { return channel.time(); }),
+          "float: time at which that sample was taken (s); nan before the first.")
       .def_property_readonly(
           "fresh", of_channel([](const Channel& channel, const sim::Simulation&) {
             return channel.fresh();
@@ -117,31 +118,31 @@ void bind_sensor_type(py::module_& module) {
           "valid", of_channel([](const Channel& channel, const sim::Simulation& simulation) {
             return channel.valid(simulation.time());
           }),
-          "bool: whether there is a sample that is not older than the scene's `timeout`.")
-      .def_property_readonly("missing",
-                             of_channel([](const Channel& channel, const sim::Simulation&) {
-                               return channel.missing();
-                             }),
-                             "int: samples that were lost or fed with a nan, since the start.")
+          "bool: whether there is a sample not older than the scene's `timeout`.")
+      .def_property_readonly(
+          "missing", of_channel([](const Channel& channel, const sim::Simulation&) {
+            return channel.missing();
+          }),
+          "int: number of samples since the start that were lost or fed with a nan.")
       .def_property_readonly(
           "true_value",
           [](const Sensor& self) {
             const Session::Use use(*self.session);
             return to_python(self.session->simulation().sensor_truth(self.index));
           },
-          "float, or (size,) ndarray: what it would say now without errors and delay.")
+          "float, or (size,) ndarray: present value without errors and delay.")
       .def("feed", &feed, py::arg("value"), py::arg("time") = py::none(),
            R"(feed($self, value, time=None)
 --
 
-A sample of a real sensor, in place of the simulated ones from now until reset().
+Feeds a sample of a real sensor, which replaces the simulated ones until reset().
 
 Parameters
 ----------
 value : float, or (size,) array-like
-    In its unit. A sample with a nan is missing: the one before stays, and `missing` counts it.
+    In its unit. A sample with a nan is missing: the previous one remains, and `missing` counts it.
 time : float, optional
-    When it was taken (s); left out: the simulation's present time.
+    Time at which it was taken (s); by default the present time of the simulation.
 
 Raises
 ------
@@ -185,35 +186,35 @@ void bind_channel_type(py::module_& module) {
         range=None, timeout=None, seed=0, size=1)
 --
 
-What becomes of a quantity on its way through a sensor. Knows no physics: values are offered to it.
-A sample k of a true value x, taken at t_k, says
+Channel of a sensor: adds errors, sampling and delay to values that are offered to it.
+Sample k of a true value x, taken at t_k, is
 
     y = clamp(round((x + bias + w_k + noise n_k)/quantum) quantum, range)
     w_k = w_(k-1) + drift sqrt(t_k - t_(k-1)) m_k,  w_0 = 0
 
-n_k, m_k standard normal. Sample k draws n_k (component c) from words 0 and 1 and m_k from words 2
+with standard normal n_k and m_k. Sample k draws n_k (component c) from words 0 and 1 and m_k from words 2
 and 3 of block (k, c, 0, 0) of Philox4x64-10 (Salmon et al., SC'11) with the key (seed, 0), and
-whether it is lost from word 0 of block (k, 2^64 - 1, 0, 0): the same bits on any number of threads.
+whether it is lost from word 0 of block (k, 2^64 - 1, 0, 0): the same bits for any number of threads.
 
 Parameters
 ----------
 noise, bias, drift, quantum : float
-    In the value's unit; drift: standard deviation that the random walk gains in 1 s; quantum 0: no
+    In the value's unit; drift: standard deviation of the random walk after 1 s; quantum 0: no
     rounding.
 rate : float
-    Samples per second; 0: every value that is offered.
+    Samples per second; 0: every offered value.
 delay : float
-    From taking a sample to its delivery (s).
+    Time from taking a sample to its delivery (s).
 dropout : float
     Probability that a sample is lost.
 range : (float, float), optional
-    Where values saturate.
+    Limits at which values saturate.
 timeout : float, optional
     Age from which a sample is no longer valid (s).
 seed : int
-    Of the random numbers.
+    Random seed.
 size : int
-    Numbers of a value.
+    Number of components of a value.
 
 Raises
 ------
@@ -241,8 +242,8 @@ Error
           R"(offer($self, time, value)
 --
 
-The true value at a time (s), not before the last. Samples it where one is due, and delivers what is
-due. Returns whether a sample was delivered. Raises Error: wrong-type, wrong-length.
+Offers the true value at a time (s), not before the last one. Takes a sample if one is due, and delivers due
+samples. Returns whether a sample was delivered. Raises Error: wrong-type, wrong-length.
 )")
       .def(
           "receive",
@@ -253,27 +254,35 @@ due. Returns whether a sample was delivered. Raises Error: wrong-type, wrong-len
           R"(receive($self, time, value)
 --
 
-A sample of a real sensor; from then on nothing that is offered is sampled. One with a nan is
+Feeds a sample of a real sensor; from then on offered values are not sampled. A sample with a nan is
 missing. Raises Error: wrong-type, wrong-length, not-finite, non-monotonic-time.
 )")
-      .def("restart", &Channel::restart, "restart($self)\n--\n\nBack to the start.\n")
+      .def("restart", &Channel::restart,
+           "restart($self)\n"
+           "--\n"
+           "\n"
+           "Returns to the initial state.\n")
       .def(
           "valid", [](const Channel& self, double now) { return self.valid(now); }, py::arg("now"),
-          "valid($self, now)\n--\n\nWhether there is a sample not older than the timeout at a time "
-          "(s).\n")
+          "valid($self, now)\n"
+          "--\n"
+          "\n"
+          "Whether there is a sample not older than the timeout at a time (s).\n")
       .def_property_readonly(
           "value", [](const Channel& self) { return to_python(self.value()); },
-          "float, or (size,) ndarray: the sample delivered last; nan before the first.")
+          "float, or (size,) ndarray: last delivered sample; nan before the first.")
       .def_property_readonly("time", &Channel::time,
-                             "float: when it was taken (s); nan before the first.")
+                             "float: time at which it was taken (s); nan before the first.")
       .def_property_readonly("fresh", &Channel::fresh,
                              "bool: whether the last offer() delivered a sample.")
       .def_property_readonly("samples", &Channel::samples,
-                             "int: samples taken, lost ones included.")
-      .def_property_readonly("missing", &Channel::missing, "int: samples lost, or with a nan.")
+                             "int: number of samples taken, including lost ones.")
+      .def_property_readonly("missing", &Channel::missing,
+                             "int: number of samples lost, or with a nan.")
       .def_property_readonly(
           "std", [](const Channel& self) { return self.settings().standard_deviation(); },
-          "float: of one sample, sqrt(noise^2 + quantum^2/12); bias and drift aside.")
+          "float: standard deviation of one sample, sqrt(noise^2 + quantum^2/12), without bias and "
+          "drift.")
       .def("__copy__", [](const Channel& self) { return Channel(self); })
       .def("__deepcopy__", [](const Channel& self, const py::dict&) { return Channel(self); });
 }

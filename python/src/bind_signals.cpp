@@ -28,7 +28,7 @@ double number(const py::handle& value, const char* place) {
 std::vector<std::pair<double, double>> to_pairs(const py::handle& value, const char* place) {
   const Array table = to_array(value, place, "(n, 2): time in s, value");
   if (table.ndim() != 2 || table.shape(1) != 2) {
-    throw Error(ErrorKind::wrong_shape, {.item = place}, "the table has not two columns",
+    throw Error(ErrorKind::wrong_shape, {.item = place}, "the table does not have two columns",
                 "give an array of shape (n, 2): time in s, value");
   }
   std::vector<std::pair<double, double>> pairs;
@@ -54,7 +54,7 @@ void bind_base(py::module_& module) {
            R"(value($self, time)
 --
 
-The value at a time.
+Value at a time.
 
 Parameters
 ----------
@@ -64,7 +64,7 @@ time : float
 Returns
 -------
 float
-    In the unit of the quantity that it commands: N or m.
+    In the unit of the commanded quantity: N or m.
 )")
       .def_property_readonly(
           "end_time", &Signal::end_time,
@@ -83,7 +83,7 @@ void bind_smooth(py::module_& module) {
   py::class_<Ramp, Signal>(module, "Ramp", R"(Ramp(from_, to, *, start=0.0, duration=1.0)
 --
 
-`from_` until `start`, then straight to `to` within `duration`, then held.
+`from_` until `start`, then linearly to `to` within `duration`, then constant.
 
 Parameters
 ----------
@@ -134,7 +134,7 @@ void bind_tables(py::module_& module) {
   py::class_<Steps, Signal>(module, "Steps", R"(Steps(steps)
 --
 
-Each value holds from its time until the next one's; the last one holds for ever.
+A step function: each value holds from its time to the next one's, the last one from then on.
 
 Parameters
 ----------
@@ -149,7 +149,7 @@ steps : (n, 2) array_like
   py::class_<Samples, Signal>(module, "Samples", R"(Samples(samples)
 --
 
-Straight lines between samples; the first value holds before, the last one after.
+Linear interpolation between samples; constant before the first and after the last one.
 
 Parameters
 ----------
@@ -165,7 +165,7 @@ samples : (n, 2) array_like
 sim::Signal to_signal(const py::handle& value, const std::string& place, const std::string& unit) {
   if (py::isinstance<Signal>(value)) return value.cast<const Signal&>();
   if (py::isinstance<py::function>(value)) {
-    throw Error(ErrorKind::wrong_type, {.item = place}, "a function cannot be a command",
+    throw Error(ErrorKind::wrong_type, {.item = place}, "a command cannot be a function",
                 "assign a number before every step, or give a signal such as sinew.Ramp");
   }
   const bool table = py::isinstance<py::sequence>(value) && !py::isinstance<py::str>(value);

@@ -85,7 +85,7 @@ void bind_load_functions(py::module_& module) {
   module.def("load_recorded", &load_recorded, py::arg("text"), R"(load_recorded(text)
 --
 
-The robot of a recorded run. Words of its scene that have another name now are replaced.
+The robot of a recorded run. Renamed words in its scene are replaced.
 
 Parameters
 ----------

@@ -21,7 +21,8 @@ void bind_simulation_linearisation(SimulationType& type) {
   type.def_property_readonly(
           "rows", [](const Session& self) { return sim::row_names(self.model()); },
           "list of str: the rows of H and W in the scene's order: actuators by name, effectors as "
-          "'tip.x', contacts as 'floor point 3 normal'. Joints have none: they are taken out.")
+          "'tip.x', contacts as 'floor point 3 normal'. Joints have no rows here: they are "
+          "eliminated.")
       .def(
           "linearise",
           [](Session& self, const std::string& tangent, bool geometric_stiffness, bool statics,
@@ -35,24 +36,24 @@ void bind_simulation_linearisation(SimulationType& type) {
           R"(linearise($self, *, tangent='exact', geometric_stiffness=True, statics=True, fields=False)
 --
 
-How motions follow from efforts near the present state, which is not changed.
+Linearises the motions of the rows with respect to their efforts near the present state, which is not changed.
 
-Of contacts, the points that a step from here would begin with have rows: those with a force or near
-what they may touch. Points that share a row (`aggregate`) have the name of one of them and the sum
+Contacts have rows for the points with which a step from here would begin: those with a force or near
+a surface. Points that share a row (`aggregate`) have the name of one of them and the sum
 of their efforts.
 
 Parameters
 ----------
 tangent : {'exact', 'projected', 'corotated'}
-    The elements' stiffness: the derivative of the forces, the same made positive semi-definite
-    element by element, or R K0 R^T with rotations held fixed.
+    Stiffness of the elements: the derivative of the forces; its projection that is positive semi-definite
+    element by element; or R K0 R^T with rotations held fixed.
 geometric_stiffness : bool
-    Whether loaded cables add theirs.
+    Whether to add the geometric stiffness of loaded cables.
 statics : bool
-    W of equilibrium, H K^-1 H^T; False: of the scene's integrator and time step.
+    True: W of equilibrium, H K^-1 H^T; False: W of the scene's integrator and time step.
 fields : bool
-    Whether the motions of all nodes are computed too, K^-1 H^T, with the same factorisation: the
-    compliance between the rows and forces at any place on a body, see Linearisation.fields.
+    Whether to compute the motions of all nodes, K^-1 H^T, with the same factorisation: the
+    compliance between the rows and forces at any point of a body, see Linearisation.fields.
 
 Returns
 -------
@@ -69,11 +70,11 @@ RunError
           R"(last_linearisation($self)
 --
 
-W and delta_free as the last step had them, without a factorisation: for filters and fast loops.
+W and delta_free of the last step, without a factorisation: for filters and fast loops.
 
-Those of the last substep's last linearisation, of the scene's integrator and time step; after
-solve_static() those of the equilibrium. `delta` and `effort` are those of now, `residual` is NaN and
-there are no fields. linearise(), compliance() and response() leave it as it was. It is no part of the
+They belong to the last linearisation of the last substep, with the scene's integrator and time step; after
+solve_static() to that of the equilibrium. `delta` and `effort` are the present ones, `residual` is NaN and
+there are no fields. linearise(), compliance() and response() do not change it. It is not part of the
 state.
 
 Returns
@@ -83,9 +84,9 @@ Linearisation
 Raises
 ------
 Error
-    bad-argument where no step or solve led to the present state: before the first one, after
-    restore(), load_state(), reset() and a step that failed, and after an event-driven step that
-    ended with an impact or a look at contacts that strike. linearise() works there.
+    bad-argument if no step or solution led to the present state: before the first one, after
+    restore(), load_state(), reset() and a failed step, and after an event-driven step that
+    ended with an impact or a check for impacts. Use linearise() there.
 )")
       .def(
           "compliance",
@@ -99,8 +100,8 @@ Error
           R"(compliance($self, *, tangent='exact', geometric_stiffness=True, statics=True)
 --
 
-W as linearise() has it, but with every contact point: (rows, rows) ndarray, m/N, rows and columns
-as `rows`. Of surfaces that are searched for points in every step, those found last have rows.
+W as in linearise(), but with every contact point: (rows, rows) ndarray, m/N, rows and columns
+as `rows`. For surfaces whose contact points are searched in every step, the last ones found have rows.
 )");
 }
 

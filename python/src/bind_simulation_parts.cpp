@@ -89,7 +89,7 @@ A body by its name. Raises Error (unknown-name) with a suggestion.
            R"(mass($self, name)
 --
 
-A mass that hangs on a body, by its name. Raises Error (unknown-name) with a suggestion.
+A point mass by its name. Raises Error (unknown-name) with a suggestion.
 )")
       .def("contact", named<Contact>(&sim::Model::contact_index), py::arg("name"),
            R"(contact($self, name)
@@ -117,7 +117,7 @@ void bind_lists(SimulationType& type) {
       .def_property_readonly("estimators", all<Estimator>(&sim::Model::estimators),
                              "dict: all estimators by name, in the scene's order.")
       .def_property_readonly("masses", all<PointMass>(&sim::Model::masses),
-                             "dict: all masses that hang on bodies by name, body by body.")
+                             "dict: all point masses by name, body by body.")
       .def_property_readonly("contacts", all<Contact>(&sim::Model::contacts),
                              "dict: all contacts by name, in the scene's order.")
       .def_property_readonly("joints", all<Joint>(&sim::Model::joints),

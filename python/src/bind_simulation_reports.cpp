@@ -52,50 +52,49 @@ auto guarded(Get get) {
 
 void bind_progress(SimulationType& type) {
   type.def_property_readonly("time", &Session::time, "float: s.")
-      .def_property_readonly("steps", &Session::steps, "int: steps taken since the start.")
+      .def_property_readonly("steps", &Session::steps, "int: number of steps since the start.")
       .def_property_readonly(
           "time_step", [](const Session& self) { return self.model().step().time_step; },
           "float: s.")
       .def_property_readonly(
           "threads", [](const Session& self) { return self.simulation().threads(); },
-          "int: threads inside a step.")
+          "int: number of threads per step.")
       .def_property_readonly("busy", &Session::busy,
-                             "bool: whether a step is under way in some thread.")
+                             "bool: whether another thread is making a step.")
       .def_property_readonly("report", guarded([](const sim::Simulation& s) { return s.report(); }),
-                             "StepReport: what the last step did.")
+                             "StepReport: report of the last step.")
       .def_property_readonly(
           "state_hash", guarded([](const sim::Simulation& s) { return s.state().hash(); }),
-          "int: of positions, velocities, efforts and drives; equal runs have equal hashes, bit "
-          "for bit.");
+          "int: hash of positions, velocities, efforts and drives; equal runs have equal hashes, "
+          "bit for bit.");
 }
 
 void bind_balance(SimulationType& type) {
   type.def_property_readonly(
           "ledger", &ledger,
-          "dict: J, as in run.csv. Of all bodies now: `strain_energy`, `kinetic_energy` and "
-          "`gravity_energy` (from the height at rest). Since the start: `actuator_work`; "
-          "`outside_work` of loads and outside forces; `dissipation` by damping, drag, and the "
-          "friction of cables and contacts; `numerical_loss`, work less dissipation less what the "
-          "energies gained: the integrator's, and what solve_static(), follow_path() and a moved "
-          "base put in.")
-      .def_property_readonly("memory", guarded([](const sim::Simulation& s) { return s.bytes(); }),
-                             "int: bytes of this simulation without the model that it shares. Of "
-                             "many simulations of a model only those that are in a step hold a "
-                             "factor; between steps it is not counted.");
+          "dict: energies in J, as in run.csv. Present sums over all bodies: `strain_energy`, "
+          "`kinetic_energy` and `gravity_energy` (relative to rest). Since the start: "
+          "`actuator_work`; `outside_work` of loads and external forces; `dissipation` by damping, "
+          "drag, and the friction of cables and contacts; `numerical_loss`, work minus dissipation "
+          "minus energy gain: the loss of the integrator, and what solve_static(), follow_path() "
+          "and a moved base put in.")
+      .def_property_readonly(
+          "memory", guarded([](const sim::Simulation& s) { return s.bytes(); }),
+          "int: memory of this simulation without the shared model, bytes. Only simulations in a "
+          "step hold a factor; between steps it is not counted.");
 }
 
 void bind_scene(SimulationType& type) {
   type.def_property_readonly(
           "name", [](const Session& self) { return self.robot().robot.description.name; },
-          "str: of the scene.")
-      .def_property_readonly(
-          "notices", &notices,
-          "list of Notice: what a user should know of the scene, warnings and remarks.")
+          "str: name of the scene.")
+      .def_property_readonly("notices", &notices,
+                             "list of Notice: warnings and remarks on the scene.")
       .def("to_yaml", &to_yaml,
            R"(to_yaml($self)
 --
 
-The scene as YAML, overrides included and paths absolute. Loaded again it gives the same robot.
+The scene as YAML, with overrides and absolute paths. When loaded again, it gives the same robot.
 
 Returns
 -------

@@ -59,17 +59,17 @@ constexpr const char* kResponseDoc =
     R"(response($self, actuators=None, *, tangent='exact', geometric_stiffness=True, statics=True)
 --
 
-How effectors and actuators move when efforts of some actuators change, near the present state, while
+Response of effectors and actuators to the efforts of some actuators near the present state, while
 everything else obeys its law: other actuators keep their commands, contact points and cables at their
 guides keep sticking or sliding, joints hold. The state is not changed.
 
-Where every motion can be commanded, W_ea W_aa^-1 is the Jacobian of the effectors by the actuators'
-motions, that of the kinematics of a soft robot (Zhang et al., IROS 2016).
+If every motion can be commanded, W_ea W_aa^-1 is the Jacobian of the effectors with respect to the actuators'
+motions, as in the kinematics of soft robots (Zhang et al., IROS 2016).
 
 Parameters
 ----------
 actuators : list of str, optional
-    Whose efforts change; all by default.
+    Actuators whose efforts change; all by default.
 tangent, geometric_stiffness, statics
     See linearise().
 
@@ -89,9 +89,9 @@ RunError
 }  // namespace
 
 void bind_response(py::module_& module) {
-  py::class_<NamedResponse>(module, "Response", "What Simulation.response() found.")
+  py::class_<NamedResponse>(module, "Response", "Result of Simulation.response().")
       .def_readonly("actuators", &NamedResponse::actuators,
-                    "list of str: whose efforts change, in the order of columns.")
+                    "list of str: actuators whose efforts change, in the order of the columns.")
       .def_property_readonly(
           "W_ea",
           [](const NamedResponse& self) {
@@ -101,12 +101,12 @@ void bind_response(py::module_& module) {
             }
             return result;
           },
-          "dict: of each effector (its directions, actuators) ndarray, m/N (rad/N for "
-          "orientations; per Pa for chambers, per N m for torques).")
+          "dict: for each effector a (directions, actuators) ndarray, m/N (rad/N for orientations; "
+          "per Pa for chambers, per N m for torques).")
       .def_property_readonly(
           "W_aa", [](const NamedResponse& self) { return copy(self.response.actuators); },
-          "(actuators, actuators) ndarray: motions of the actuators, m/N (m^3/Pa, rad/(N m)). "
-          "Unsymmetric where something slides.");
+          "(actuators, actuators) ndarray: motions of the actuators, m/N (m^3/Pa, rad/(N m)). Not "
+          "symmetric if anything slides.");
 }
 
 void bind_simulation_response(SimulationType& type) {

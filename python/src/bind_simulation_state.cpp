@@ -10,18 +10,18 @@ void bind_copies(SimulationType& type) {
            R"(reset($self)
 --
 
-Back to the start, bit for bit: state, time, and the scene's commands; external forces become zero,
-and a base that move_base() moved is back.
+Restores the start, bit for bit: state, time, and the scene's commands. External forces become zero,
+and a base moved by move_base() returns.
 Controllers stay attached and keep their targets.
 )")
       .def("clone", &Session::clone,
            R"(clone($self)
 --
 
-A further simulation of the same robot, at the same state, with the same commands and controller.
+Creates another simulation of the same robot, with the same state, commands and controller.
 
-It shares the model (mesh, symbolic factorisation) and costs `memory` bytes. The two may run side
-by side in threads.
+It shares the model (mesh, symbolic factorisation) and costs `memory` bytes. Both may run in
+parallel threads.
 
 Returns
 -------
@@ -35,10 +35,11 @@ Simulation
           "__reduce_ex__",
           [](const Session&, const py::object&) -> py::object {
             throw py::type_error(
-                "a sinew.Simulation does not pickle; send sim.to_yaml() and sim.state(), load the "
-                "text elsewhere with sinew.loads(text), and restore(state) there");
+                "a sinew.Simulation cannot be pickled; send sim.to_yaml() and sim.state(), load "
+                "the text "
+                "elsewhere with sinew.loads(text), and restore(state) there");
           },
-          "Raises TypeError, which says what to pickle instead.");
+          "Raises TypeError, which names what to pickle instead.");
 }
 
 void bind_state_values(SimulationType& type) {
@@ -46,21 +47,21 @@ void bind_state_values(SimulationType& type) {
            R"(state($self)
 --
 
-Everything that decides, together with the inputs, how the run goes on.
+The state of the run. State and inputs together determine how the run continues.
 
 Returns
 -------
 sinew.State
-    A value: it compares, copies and pickles, and stays what it is while the simulation goes on.
+    A value that can be compared, copied and pickled. It does not change while the simulation continues.
 )")
       .def("restore", &Session::restore, py::arg("state"),
            R"(restore($self, state)
 --
 
-Takes up a state; the run then goes on bit for bit as the one that it came from.
+Restores a state. The run then continues bit for bit like the run that the state comes from.
 
-An attached controller takes up its memory where the state has it, and begins anew otherwise.
-Commands, factors of loads, external forces and tethers stay as they are.
+An attached controller restores its memory if the state contains it, and starts anew otherwise.
+Commands, load factors, external forces and tethers are not changed.
 
 Parameters
 ----------
@@ -70,7 +71,7 @@ state : sinew.State
 Raises
 ------
 Error
-    state-mismatch for a state of another robot, naming what differs; the state is then as before.
+    state-mismatch for a state of another robot, naming the difference; the state is then unchanged.
 )");
 }
 
@@ -80,12 +81,12 @@ void bind_state_files(SimulationType& type) {
 --
 
 Writes the state: positions, velocities, bases, efforts, drives, time. Commands and external forces
-are inputs and are not part of it.
+are inputs and not part of it.
 
 Parameters
 ----------
 path : path-like
-    The file appears whole or not at all.
+    The file is written completely or not at all.
 
 Raises
 ------
@@ -96,7 +97,7 @@ Error
            R"(load_state($self, path)
 --
 
-Puts back what save_state() wrote for the same robot; commands stay as they are.
+Restores a state written by save_state() for the same robot. Commands are not changed.
 
 Parameters
 ----------
@@ -106,7 +107,7 @@ Raises
 ------
 Error
     file-not-found, state-corrupt, state-version, or state-mismatch for a file of another robot;
-    the state is then as before.
+    the state is then unchanged.
 )");
 }
 

@@ -144,8 +144,8 @@ void bind_follow_path(SimulationType& type) {
 
 Follows the path of equilibria while loads and commanded efforts grow in proportion, from the last
 ones (none at the start) to the present commands. Arc-length continuation passes limit points, where
-solve_static() would jump or fail. The last point is at the full load or just beyond it. Contact
-friction is the friction of a slow motion from point to point.
+solve_static() would jump or fail. The last point is at the full load or slightly beyond it. Contact
+friction acts as in a slow motion from point to point.
 
 Parameters
 ----------
@@ -164,8 +164,8 @@ dict
 Raises
 ------
 Error
-    bad-argument where an actuator is told a motion or has a drive, or a cable has friction;
-    not-in-this-version beside curved surfaces with friction, and where contacts alone hold a body.
+    bad-argument if an actuator is commanded in motion or has a drive, or a cable has friction;
+    not-in-this-version for curved surfaces with friction, and if contacts alone hold a body.
 RunError
     not-converged; the state is then that of the start.
 )");

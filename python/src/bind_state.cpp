@@ -16,12 +16,12 @@ namespace sinew::python {
 void bind_state(py::module_& module) {
   py::class_<SavedState>(
       module, "State",
-      "Everything that decides, together with the inputs, how a run goes on. From "
-      "Simulation.state(); states of one robot compare, copy and pickle.")
-      .def_property_readonly("steps", &SavedState::steps, "int: since the start.")
+      "State of a run. State and inputs together determine how the run continues. From "
+      "Simulation.state(); states of one robot can be compared, copied and pickled.")
+      .def_property_readonly("steps", &SavedState::steps, "int: number of steps since the start.")
       .def_property_readonly(
           "bytes", [](const SavedState& self) { return py::bytes(self.bytes()); },
-          "bytes: as Simulation.save_state() writes them.")
+          "bytes: content of the file that Simulation.save_state() writes.")
       .def("__eq__",
            [](const SavedState& a, const SavedState& b) { return a.bytes() == b.bytes(); })
       .def("__eq__", [](const SavedState&, const py::object&) { return false; })

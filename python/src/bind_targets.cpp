@@ -29,7 +29,7 @@ void bind_base(py::module_& module) {
           R"(at($self, time)
 --
 
-The position at a time.
+Target value at a time.
 
 Parameters
 ----------
@@ -43,7 +43,7 @@ Returns
 )")
       .def_property_readonly(
           "end_time", &Target::end_time,
-          "float: end of the first cycle (s): one turn of a circle, the end of a path.")
+          "float: end of the first cycle (s): one turn of a circle, or the end of a path.")
       .def("__repr__", [](const py::object& self) {
         return fmt::format("<sinew.{}, ends at {:g} s>",
                            std::string(py::str(py::type::of(self).attr("__name__"))),
@@ -56,9 +56,9 @@ void bind_circle(py::module_& module) {
                              R"(Circle(centre, radius, *, period, normal=(0, 0, 1), start_angle=0.0)
 --
 
-A circle travelled at constant speed, counter-clockwise about `normal`.
+A circle at constant speed, counter-clockwise about `normal`.
 
-Angles count from the world's x axis made perpendicular to the normal (from the y axis when x is
+Angles count from the projection of the world's x axis onto the plane of the circle (of the y axis if x is
 within 25 degrees of the normal).
 
 Parameters
@@ -68,9 +68,9 @@ centre : (3,) array_like
 radius : float
     m, > 0.
 period : float
-    s a turn, > 0.
+    Time of one turn, s, > 0.
 normal : (3,) array_like
-    Of any length but zero.
+    Any non-zero length.
 start_angle : float
     rad.
 )")
@@ -99,9 +99,9 @@ Parameters
 points : (n, 3) array_like
     m, n >= 2.
 period : float
-    s for the whole path once, > 0.
+    Time for the whole path once, s, > 0.
 closed : bool
-    Return to the first point and repeat for ever; an open path holds its end.
+    Whether to return to the first point and repeat; an open path holds its end.
 )")
       .def(py::init([](const py::object& points, const py::object& period, bool closed) {
              return Polyline{at_argument("Polyline", [&] {
@@ -113,7 +113,7 @@ closed : bool
   py::class_<Trajectory, Target>(module, "Trajectory", R"(Trajectory(times, positions)
 --
 
-Straight lines between samples; the first position holds before, the last one after.
+Linear interpolation between samples; constant before the first and after the last one.
 
 Parameters
 ----------

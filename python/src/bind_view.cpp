@@ -46,7 +46,7 @@ viewer::ServerSettings server_settings(const ViewOptions& options) {
   if (!options.port) return settings;
   if (*options.port < 0 || *options.port > std::numeric_limits<std::uint16_t>::max()) {
     throw Error(ErrorKind::out_of_range, {.item = "view(port)"},
-                fmt::format("{} is no port", *options.port),
+                fmt::format("{} is not a port", *options.port),
                 "give 1 to 65535, 0 for any that is free, or None");
   }
   settings.port = static_cast<std::uint16_t>(*options.port);
@@ -204,17 +204,18 @@ py::object open_view(const std::shared_ptr<Session>& session, bool block, std::o
 }  // namespace
 
 void bind_view(py::module_& module) {
-  py::class_<View>(module, "View",
-                   R"(A script's simulation in the browser, from sinew.view(sim, block=False).
+  py::class_<View>(
+      module, "View",
+      R"(Live view of a simulation that a script steps, from sinew.view(sim, block=False).
 
-The script steps and calls update(); a `with` statement closes the view at its end. A notebook shows the page, in a frame.)")
+The script steps and calls update(); a `with` statement closes the view at its end. A notebook shows the page in a frame.)")
       .def("update", &View::update,
            R"(update($self)
 --
 
-Shows the simulation as it is now, and carries out what the page asked for: commands of actuators,
-targets of the attached controller, pulling. Returns at once, unless the page has paused the script
-or has it run no faster than the clock.
+Shows the present state, and applies the user's actions on the page: commands of actuators, targets of the
+attached controller, pulling. Returns at once, unless the page has paused the script or limits it to real
+time.
 
 Returns
 -------
@@ -229,7 +230,7 @@ KeyboardInterrupt
       .def("close", &View::close, R"(close($self)
 --
 
-Ends the view; the simulation stays as it is.
+Closes the view. The simulation does not change.
 )")
       .def_property_readonly("closed", &View::closed, "bool: whether close() was called.")
       .def_property_readonly("url", &View::url, "str: the page's address.")
@@ -246,9 +247,9 @@ Ends the view; the simulation stays as it is.
 
 Opens a simulation in the browser.
 
-With `block` the page drives it, from where it stands, until Ctrl-C; afterwards it is where the page
-left it, controller and targets included. A notebook shows the page below the cell. Without `block` the script goes on stepping and the page
-looks on and helps:
+With `block` the page runs the simulation from its present state until Ctrl-C; afterwards it is as the page
+left it, including controller and targets. A notebook shows the page below the cell. Without `block` the script
+steps the simulation and the page displays it:
 
     with sinew.view(sim, block=False) as view:
         for pull in np.linspace(0, 0.01, 200):
@@ -261,15 +262,15 @@ Parameters
 sim : Simulation
 block : bool
 port : int, optional
-    0: any that is free; by default 8080 or the next free one.
+    0: any free port; by default 8080 or the next free one.
 host : str
-    Address to listen on. Beyond this machine ('0.0.0.0') the printed address carries a token.
+    Address to listen on. If it is not this machine only ('0.0.0.0'), the printed address carries a token.
 open_browser : bool
-    Where there is a screen.
+    Whether to open a browser if there is a display.
 paused : bool
-    Whether to wait for the page's Play.
+    Whether to wait for Play on the page.
 speed : float, optional
-    Simulated seconds a second, 0 for as fast as it can; 1 by default with `block`, else 0.
+    Simulated seconds per second, 0 for as fast as possible; by default 1 with `block`, else 0.
 
 Returns
 -------

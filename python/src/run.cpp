@@ -69,7 +69,7 @@ std::vector<Column> choose_columns(const sim::Observables& observables, const py
   }
   if (py::isinstance<py::str>(record) || !py::isinstance<py::iterable>(record)) {
     throw Error(ErrorKind::wrong_type, {.item = "run(record)"},
-                fmt::format("{} is no list of names", std::string(py::repr(record))),
+                fmt::format("{} is not a list of names", std::string(py::repr(record))),
                 "give a list such as ['tip.position']");
   }
   chosen.push_back({observables.find("time"), {}});

@@ -136,6 +136,74 @@ def test_estimates_are_recorded():
     assert set(rows["push.status"]) <= {"not-started", "estimating", "unobservable"}
 
 
+def chambered(**unknown):
+    """A finger with a chamber that is inflated and leaks, seen by two markers and a pressure sensor on the command's side."""
+    return {
+        "sinew": 1, "time_step": "10 ms", "integrator": "quasi-static", "gravity": [0, 0, 0],
+        "bodies": {"finger": {"type": "fem", "mesh": {"shape": "chambered-cylinder", "radius": "12 mm", "height": "60 mm", "chamber_radius": "5 mm",
+                                                      "chamber_offset": "4 mm", "chamber_bottom": "10 mm", "chamber_top": "50 mm",
+                                                      "element_size": "30 mm"}, "element": "tet4",
+                              "material": {"model": "corotational", "young_modulus": "200 kPa", "poisson_ratio": 0.3},
+                              "mass": "30 g", "fixed": {"set": "bottom"}}},
+        "actuators": {"air": {"type": "chamber", "body": "finger", "surface": {"inside": "4 0 30 mm"},
+                              "command": {"pressure": {"ramp": {"to": "10 kPa", "duration": "0.2 s"}}}}},
+        "loads": {"leak": {"type": "pressure", "body": "finger", "surface": {"inside": "4 0 30 mm"}, "pressure": "-2 kPa"}},
+        "sensors": {name: {"type": "marker", "body": "finger", "point": point, "outside": "nearest", "noise": "5 um", "seed": seed}
+                    for name, point, seed in (("tip", "0 0 60 mm", 1), ("side", "12 0 40 mm", 2))},
+        "estimators": {"watch": {"type": "filter", "sensors": ["tip", "side"],
+                                 "unknowns": {"leak": {"pressure": {"actuator": "air"} | unknown, "prior": "5 kPa", "walk": "2 kPa"}}}},
+    }
+
+
+def test_a_leak_is_found():
+    """Beside a commanded pressure: what is missing; with an unknown command: all of it."""
+    for unknown, true in (({}, -2e3), ({"command": "unknown"}, 8e3)):
+        sim = sinew.load(chambered(**unknown))
+        rows = sim.run(0.4)
+        watch = sim.estimator("watch")
+        assert watch.components == ["leak"] and watch.forces == {}
+        assert watch.status == "estimating"
+        assert abs(watch.efforts["leak"] - true) < 4.0 * watch.std[0] < 500.0
+        assert rows["watch.leak"].shape == rows["watch.leak.std"].shape == rows["time"].shape
+
+
+def test_a_pressure_behind_a_commanded_volume_is_found():
+    """The estimator does not trust the volume, and looks for the pressure that it makes."""
+    tree = chambered()
+    tree["loads"] = {}
+    tree["actuators"]["air"]["command"] = {"volume_growth": {"ramp": {"to": "0.2 ml", "duration": "0.2 s"}}}
+    tree["sensors"]["gauge"] = {"type": "volume", "actuator": "air", "noise": "0.01 ml"}
+    tree["estimators"]["watch"]["sensors"].append("gauge")
+    sim = sinew.load(tree)
+    sim.step(40)
+    watch, pressure = sim.estimator("watch"), sim.actuator("air").pressure
+    assert pressure > 500.0
+    assert abs(watch.efforts["leak"] - pressure) < 4.0 * watch.std[0] < 0.5 * pressure
+
+
+def test_a_tension_is_found_beside_a_force():
+    """The estimator does not know that the cable is pulled; a load cell would tell at once, markers do in time."""
+    tree = scene()
+    tree["actuators"]["east"]["command"] = {"tension": {"steps": [["0 s", 0], ["0.3 s", "1 N"]]}}
+    tree["estimators"]["push"]["sensors"] = ["tip", "middle", "low", "pull_north"]
+    tree["estimators"]["push"]["unknowns"]["winch"] = {"tension": {"actuator": "east", "command": "unknown"}, "prior": "1 N"}
+    sim = sinew.load(tree)
+    push = sim.estimator("push")
+    assert push.components == ["hand.x", "hand.y", "hand.z", "winch"]
+    slack = []
+    for _ in range(25):
+        sim.step()
+        slack.append(push.efforts["winch"])
+    assert np.abs(slack[10:]).max() < 4.0 * push.std[3]
+    sim.step(60)
+    assert abs(push.efforts["winch"] - 1.0) < 4.0 * push.std[3] < 2.0
+    tree["estimators"]["push"]["sensors"].append("pull_east")
+    sim = sinew.load(tree)
+    sim.step(85)
+    push = sim.estimator("push")
+    assert abs(push.efforts["winch"] - 1.0) < 0.06 and push.std[3] < 0.02
+
+
 @pytest.mark.parametrize(
     "change, words",
     [
@@ -143,6 +211,11 @@ def test_estimates_are_recorded():
         (lambda t: t["estimators"]["push"].update(sensors=["tip", "middel"]), "did you mean"),
         (lambda t: t["estimators"]["push"]["unknowns"]["hand"]["force"].update(point="0 0 0 mm", outside="error"), "nothing moves"),
         (lambda t: t["estimators"]["push"]["unknowns"]["hand"]["force"].update(point="0 0 300 mm", outside="error"), "outside"),
+        (lambda t: t["estimators"]["push"]["unknowns"].update(air={"pressure": {"actuator": "east"}, "prior": "1 kPa"}), "type chamber"),
+        (lambda t: t["estimators"]["push"]["unknowns"].update(pull={"tension": {"actuator": "west"}, "prior": "1 N"}), "not under"),
+        (lambda t: t["estimators"]["push"]["unknowns"].update(pull={"tension": {"actuator": "east"}, "prior": "1 kPa"}), "Pa"),
+        (lambda t: t["estimators"]["push"]["unknowns"].update({k: {"tension": {"actuator": "east"}, "prior": "1 N"} for k in "ab"}), "twice"),
+        (lambda t: t["estimators"]["push"]["unknowns"].update(pull={"prior": "1 N"}), "tension"),
     ],
 )
 def test_what_cannot_be_estimated_is_an_error(change, words):

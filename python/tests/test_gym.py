@@ -553,7 +553,7 @@ class WithoutScript(TrunkDamp):
     (lambda: sinew.gym.make_vec("trunk-reach", 0), "out-of-range", "1 or more"),
     (lambda: sinew.gym.make_vec("trunk-reach", 2, threads=0), "out-of-range", "threads"),
     (lambda: sinew.gym.make_vec("trunk-reach", 2, autoreset_mode="later"), "unknown-name", "NEXT_STEP, SAME_STEP, DISABLED"),
-    (lambda: sinew.gym.expert(sinew.gym.make(WithoutScript())), "bad-argument", "no expert of trunk-damp"),
+    (lambda: sinew.gym.expert(sinew.gym.make(WithoutScript())), "bad-argument", "no expert for trunk-damp"),
     (lambda: sinew.gym.expert(sinew.gym.make("trunk-reach", action="tension")), "bad-argument", "tension-increment"),
 ])  # fmt: skip
 def test_errors_of_making(make, kind, words):

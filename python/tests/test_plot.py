@@ -23,6 +23,11 @@ def test_columns_of_a_run_with_contacts_have_panels_and_names_of_their_own():
     assert sinew.plot._panel("tip.x [m]") == ("Effectors (m)", "tip.x")
     assert sinew.plot._panel("strain_energy [J]") == ("Energy", "strain_energy")
     assert sinew.plot._panel("iterations") is None
+    estimates = ["push.hand.x", "push.hand.std.x", "watch.leak", "watch.leak.std"]
+    assert sinew.plot._panel("push.hand.x [N]", estimates) == ("Estimates (N)", "push.hand.x")
+    assert sinew.plot._panel("watch.leak [Pa]", estimates) == ("Estimates (Pa)", "watch.leak")
+    assert sinew.plot._panel("push.hand.std.x [N]", estimates) is None
+    assert sinew.plot._panel("watch.leak.std [Pa]", estimates) is None
 
 
 def test_a_run_with_contacts_is_drawn(tmp_path):

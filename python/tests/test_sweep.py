@@ -435,7 +435,7 @@ def test_a_changed_scene_or_mesh_is_not_resumed(scene, cluster, tmp_path):
 
 @pytest.mark.parametrize("options,words", [
     ({"measure": ["tip.posiion"]}, ["tip.posiion", "did you mean 'tip.position'"]),
-    ({"measure": ["status"]}, ["'status' is a word"]),
+    ({"measure": ["status"]}, ["'status' is text"]),
     ({"measure": []}, ["no quantity to measure", "--measure"]),
     ({"measure": ["actuator_work"], "static": True}, ["actuator_work", "equilibrium"]),
     ({"static": True, "duration": 1.0}, ["no duration"]),

@@ -290,7 +290,7 @@ HINGE = joint("j", "continuous", "base", "arm")
     ([BASE, "<link name="], r"robot.urdf:6: this is no XML", "syntax-error"),
     ([BASE, ARM], "'base' and 'arm' have no parent both", "malformed-file"),
     ([], "has no <link>", "malformed-file"),
-    ([BASE, ARM, joint("j", "continuous", "base", "amr")], r"robot.urdf:9.*'j'.*'amr' is no link; did you mean 'arm'", "unknown-name"),
+    ([BASE, ARM, joint("j", "continuous", "base", "amr")], r"robot.urdf:9.*'j'.*'amr' is not a link; did you mean 'arm'", "unknown-name"),
     ([BASE, ARM, HINGE, HINGE], r"robot.urdf:10.*line 9 has a <joint> of this name", "duplicate-key"),
     ([BASE, BASE], "line 3 has a <link> of this name", "duplicate-key"),
     ([BASE, ARM, HINGE, joint("k", "continuous", "base", "arm")], "has a parent already, by the joint of line 9", "malformed-file"),
@@ -308,7 +308,7 @@ HINGE = joint("j", "continuous", "base", "arm")
     ([BASE, link("arm", inertial("heavy", MOMENTS)), HINGE], "robot.urdf:6.*heavy|robot.urdf.*mass", "malformed-file"),
     ([BASE, link("arm", inertial(1, MOMENTS), box("1 0 1")), HINGE], "an edge is not positive", "out-of-range"),
     ([BASE, link("arm"), HINGE], "it moves and has no mass; add <inertial>", "missing-mass"),
-    ([link("the base"), ARM, HINGE], "is no name", "bad-argument"),
+    ([link("the base"), ARM, HINGE], "is not a name", "bad-argument"),
     ([BASE, link("arm", inertial("%s%n", MOMENTS)), HINGE], "robot.urdf:7.*holds a '%'", "bad-argument"),
     ([BASE, ARM, HINGE, "<xacro:macro/>"], "xacro", "malformed-file"),
 ])
@@ -328,8 +328,8 @@ def test_scenes_that_name_what_is_not_there(tmp_path):
             ({"loads": {"f": {**force, "body": "robo.upper"}}}, "'robo.upper'|robo.upper", "unknown-name"),
             ({"loads": {"f": {**force, "body": "robot"}}}, "robot of several bodies", "wrong-type"),
             ({"actuators": {"m": {**motor, "joint": "robot.midle"}}}, "no joint 'robot.midle'.*'robot.middle'", "unknown-name"),
-            ({"robot": {"angles": {"tap": "1 rad"}}}, "'tap' is no joint that turns", "unknown-name"),
-            ({"robot": {"displacements": {"top": "1 mm"}}}, "'top' is no joint that slides", "unknown-name"),
+            ({"robot": {"angles": {"tap": "1 rad"}}}, "'tap' is not a joint that turns", "unknown-name"),
+            ({"robot": {"displacements": {"top": "1 mm"}}}, "'top' is not a joint that slides", "unknown-name"),
             ({"robot": {"file": "none.urdf"}}, "there is no file", "file-not-found")):
         with pytest.raises(sinew.Error, match=message) as error:
             make(file, **more)

@@ -160,6 +160,37 @@ def test_a_run_is_drawn(scene, tmp_path):
     assert sorted(p.name for p in (tmp_path / "o").iterdir()) == ["run.csv", "run.h5", "scene.yaml"]
 
 
+def test_run_writes_its_motion(scene, tmp_path):
+    file = tmp_path / "motion.glb"
+    done = sinew("run", scene(), "--duration", "0.2s", "--glb", file, "--quiet", "--out", tmp_path / "o")
+    assert done.returncode == DONE, done.stderr
+    data = file.read_bytes()
+    length = int.from_bytes(data[12:16], "little")
+    motion = json.loads(data[20 : 20 + length])
+    assert data[:4] == b"glTF" and [mesh["name"] for mesh in motion["meshes"]] == ["beam", "up"]
+
+    def floats(index):
+        view = motion["bufferViews"][motion["accessors"][index]["bufferView"]]
+        start = 28 + length + view["byteOffset"]
+        return np.frombuffer(data[start : start + view["byteLength"]], dtype=np.float32)
+
+    # Thirty frames a second of the steps of 10 ms: at 0, 40, 80, 120, 160 and 200 ms.
+    times = floats(motion["animations"][0]["samplers"][0]["input"])
+    assert times == pytest.approx(0.04 * np.arange(6), abs=1e-6)
+    with h5py.File(tmp_path / "o" / "run.h5") as run:
+        positions = run["positions/beam"][()]
+        cells = run["mesh/beam/tetrahedra"][()]
+    faces = np.sort(cells[:, [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]].reshape(-1, 3), axis=1)
+    sides, count = np.unique(faces, axis=0, return_counts=True)
+    outside = np.unique(sides[count == 1])
+    surface = motion["meshes"][0]["primitives"][0]
+    first = floats(surface["attributes"]["POSITION"]).reshape(-1, 3)
+    last = first + floats(surface["targets"][-1]["POSITION"]).reshape(-1, 3)
+    for shown, there in ((first, positions[0]), (last, positions[-1])):
+        assert np.sort(shown, axis=0) == pytest.approx(np.sort(there[outside], axis=0), abs=1e-7)
+    assert np.abs(last - first).max() > 1e-3
+
+
 def test_a_video_that_cannot_be_written_is_noticed_before_the_run(scene, tmp_path):
     for name, more, kind in (("a.avi", "", "unknown-format"), ("film", "record: {states: false}", "bad-argument")):
         done = sinew("run", scene(more=more), "--video", tmp_path / name, "--out", tmp_path / "o")
@@ -390,7 +421,9 @@ WRONG_ARGUMENTS = [
     (["mesh", "--shape", "block", "--set", "length", "-o", "a.vtu"], "bad-argument", "length"),
     (["mesh", "a.stl", "--size", "5mm", "--set", "length=5mm", "-o", "a.vtu"], "bad-argument", "--set"),
     (["run", "{scene}", "--check", "--set", "bodies.beam.fixed=[{{set: x_mn}}]"], "unknown-set", "x_mi"),
-    (["completion", "fish"], "unknown-choice", "bash"),
+    (["completion", "tcsh"], "unknown-choice", "use one of bash, zsh, fish"),
+    (["run", "{scene}", "--glb", "motion.gltf"], "unknown-format", "*.glb"),
+    (["run", "{scene}", "--glb", "none/motion.glb"], "file-unwritable", "none/motion.glb"),
     (["view", "{scene}", "--no-open", "--port", "99999"], "out-of-range", "65535"),
     (["view", "{scene}", "--no-open", "--host", "nowhere"], "bad-argument", "127.0.0.1"),
     (["view", "{scene}", "--no-open", "--speed", "1000"], "out-of-range", "100"),
@@ -441,22 +474,46 @@ def test_a_check_builds_and_runs_nothing(scene, tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-COMPLETE = """source <({program} completion bash)
-COMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); _sinew; printf '%s\n' "${{COMPREPLY[@]}}"
-"""
+COMPLETIONS = [
+    ("sinew ru", {"run"}, {"bench"}),
+    ("sinew ''", {"run", "mesh", "convergence"}, {"reference"}),
+    ("sinew --", {"--help", "--version"}, {"run"}),
+    ("sinew run --v", {"--vtk", "--video"}, {"--set"}),
+    ("sinew mesh --shape r", {"ribbed-finger"}, {"block"}),
+    ("sinew run be", {"beam.yaml"}, {"--set"}),
+    ("sinew completion ''", {"bash", "zsh", "fish"}, {"beam.yaml"}),
+]
+# A script for each shell: what comes first, then what completes the words of a case.
+COMPLETE = {
+    "bash": ("source <({program} completion bash)",
+             "COMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); _sinew; printf '%s\\n' \"${{COMPREPLY[@]}}\""),
+    # What zsh's own functions would offer is printed: words that begin as the one at the cursor does.
+    "zsh": ("""compdef() {{ }}
+offer() {{ for word in "$@"; do [[ $word == $PREFIX* ]] && print -r -- $word; done }}
+compadd() {{ shift; offer "$@" }}
+_files() {{ offer *(N) }}
+_describe() {{ local -a all; all=(${{(P)@[-1]}}); offer ${{all%%:*}} }}
+source <({program} completion zsh)""", "words=({words}); CURRENT=$#words; PREFIX=$words[CURRENT]; _sinew"),
+    "fish": ("{program} completion fish | source", "complete -C \"$(string replace \"''\" '' \"{words}\")\""),
+}  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    "words, some, without",
-    [("sinew ru", {"run"}, {"bench"}), ("sinew ''", {"run", "mesh", "convergence", "--help"}, {"reference"}),
-     ("sinew run --v", {"--vtk", "--video"}, {"--set"}), ("sinew mesh --shape r", {"ribbed-finger"}, {"block"}),
-     ("sinew run be", {"beam.yaml"}, {"--set"}), ("sinew completion ''", {"bash"}, {"beam.yaml"})],
-)  # fmt: skip
-def test_bash_completes(words, some, without, scene):
-    script = COMPLETE.format(program=os.path.abspath(PROGRAM), words=words)
-    found = subprocess.run(["bash", "-c", script], capture_output=True, text=True, cwd=scene().parent, check=True)
+@pytest.mark.parametrize("shell", COMPLETE)
+def test_shells_complete(shell, scene):
+    if shutil.which(shell) is None:
+        pytest.skip(f"without {shell}")
+    first, each = COMPLETE[shell]
+    lines = [first.format(program=os.path.abspath(PROGRAM))]
+    for words, _, _ in COMPLETIONS:
+        lines += [each.format(words=words), "echo @@"]
+    plain = {"bash": ["--norc"], "zsh": ["-f"], "fish": ["--no-config"]}[shell]
+    found = subprocess.run([shell, *plain, "-c", "\n".join(lines)], capture_output=True, text=True, cwd=scene().parent, check=True)
     assert found.stderr == ""
-    assert some <= set(found.stdout.split()) and not without & set(found.stdout.split())
+    answers = found.stdout.split("@@\n")
+    assert len(answers) == len(COMPLETIONS) + 1
+    for answer, (words, some, without) in zip(answers, COMPLETIONS):
+        offered = {row.split("\t")[0] for row in answer.splitlines()}  # fish: word, tab, description
+        assert some <= offered and not without & offered, (words, offered)
 
 
 def test_shapes_have_the_dimensions_that_are_asked_for(tmp_path):
@@ -797,13 +854,13 @@ def test_validation_resumes_with_the_cases_that_have_not_ended(tmp_path):
     assert validate()[0] == 1
     assert validate()[0] == 2
     count, card = validate("--resume")
-    assert count == 2 and "1 held, 0 missed" in card
+    assert count == 2 and "1 passed, 0 missed" in card
     case.write_text(case.read_text().replace("3.1416", "3.14159"))
     assert validate("--resume")[0] == 3
     shutil.copy(case, folder / "cases" / "other.py")
     one = subprocess.run([os.path.abspath(PROGRAM), "validate", "circle", "--out", str(tmp_path / "docs")], capture_output=True,
                          text=True, env={**os.environ, "SINEW_VALIDATION_DIR": str(folder)}, check=False)
-    assert "    held: pi: 3.1416, reference 3.1416, error " in one.stdout, one.stdout
+    assert "    passed: pi: 3.1416, reference 3.1416, error " in one.stdout, one.stdout
     assert f"scorecard.md is unchanged; the plots are in {tmp_path / 'docs' / 'images'}" in one.stdout
 
 

@@ -723,17 +723,27 @@ class Drafter {
         fmt::format("{{type: {}, {}, delay: 15 ms, dropout: 20 %}}", kind, what));
   }
 
-  // Of a force that is or is not there. Its own robot is at rest, unlike a body that flies or
-  // swings.
+  // Of a force that is or is not there, or what an actuator does beside its command. A quasi-static
+  // robot is at rest, unlike a body that flies or swings.
   void add_estimator() {
-    if (!has("estimator") || flies_ || (has("link") && of("link") != "weld")) return;
+    if (!has("estimator")) return;
+    const bool held = !flies_ && (!has("link") || of("link") == "weld");
+    const bool statics = of("estimator") == "quasi-static" || of("integrator") == "quasi-static";
+    if (statics && !held) return;
     const Body& on = bodies_.front();
     add("sensors", "seen",
         fmt::format("{{type: marker, {}, noise: 0.1 mm, delay: 5 ms}}", sensed("marker", on)));
+    std::string unknown =
+        fmt::format("hand: {{force: {{body: <{}>, point: {}, outside: nearest}}, prior: 0.1 N}}",
+                    on.id, vector_text(on.shape.at(0.7, 0.2, 0.0)));
+    if (of("estimator") == "effort" && stands("actuators", "cable_0")) {
+      unknown += ", slip: {tension: {actuator: <cable_0>}, prior: 0.2 N}";
+    } else if (of("estimator") == "effort" && stands("actuators", "chamber")) {
+      unknown += ", leak: {pressure: {actuator: <chamber>, command: unknown}, prior: 0.5 kPa}";
+    }
     add("estimators", "guess",
-        fmt::format("{{type: filter, sensors: [<seen>], unknowns: {{hand: {{force: {{body: <{}>, "
-                    "point: {}, outside: nearest}}, prior: 0.1 N}}}}}}",
-                    on.id, vector_text(on.shape.at(0.7, 0.2, 0.0))));
+        fmt::format("{{type: filter, sensors: [<seen>], rank: 5, {}unknowns: {{{}}}}}",
+                    of("estimator") == "quasi-static" ? "inertia: false, " : "", unknown));
   }
 
   void add_controller() {

@@ -107,22 +107,5 @@ TEST(RandomWalkFilter, GoesOnFromItsNumbers) {
   EXPECT_FALSE(other.load(memory));
 }
 
-// One measurement of a direction of singular value s lowers its deviation by 1/sqrt(1 + s^2).
-TEST(RandomWalkFilter, SingularValuesTellWhatAMeasurementLowers) {
-  const VectorX prior{{2.0, 0.5, 1.0}}, variance{{0.04, 0.01}};
-  const MatrixX sensitivity{{1.0, 2.0, 0.0}, {0.5, -1.0, 0.0}};
-  const Observability found = observability(sensitivity, variance, prior);
-  EXPECT_EQ(found.singular_values[2], 0.0);
-  RandomWalkFilter filter(prior, VectorX::Zero(3), 0);
-  filter.correct(0, sensitivity, VectorX::Zero(2), variance);
-  const MatrixX scaled =
-      prior.cwiseInverse().asDiagonal() * filter.covariance() * prior.cwiseInverse().asDiagonal();
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    const VectorX direction = found.directions.col(k);
-    EXPECT_NEAR(direction.dot(scaled * direction),
-                1.0 / (1.0 + std::pow(found.singular_values[k], 2)), 1e-12);
-  }
-}
-
 }  // namespace
 }  // namespace sinew::estimate

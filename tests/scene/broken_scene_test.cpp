@@ -275,7 +275,7 @@ INSTANTIATE_TEST_SUITE_P(
                K::bad_argument,
                6,
                3,
-               "'tr.unk' is no name",
+               "'tr.unk' is not a name",
                "letters"},
         Broken{"two_masses",
                {{kMass, "mass: 42 g\n    density: 1000 kg/m^3"}},

@@ -8,11 +8,14 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/fem/element_fields.hpp"
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/fem/has_material.hpp"
 #include "sinew/inverse/target_controller.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mesh/quality.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/channel.hpp"
 #include "sinew/sim/signal.hpp"
@@ -21,6 +24,7 @@
 #include "sinew/step/controller.hpp"
 
 #include "robot_fixture.hpp"
+#include "viewer/fields.hpp"
 #include "viewer/robot_state.hpp"
 
 namespace sinew::viewer {
@@ -89,7 +93,7 @@ TEST(LiveSource, ShowsFieldsAndProbesAsTheyAreMeasured) {
     state.command({"up", "tension", 1.0 + k});
     state.step();
   }
-  const auto frame = state.frame(FieldChoice(list_fields().size(), true), 1.0);
+  const auto frame = state.frame({.fields = std::vector<bool>(list_fields().size(), true)}, 1.0);
   const mechanics::Body& body = state.simulation().body(0);
   const auto& own = *mechanics::as<const fem::HasMaterial>(body);
   const fem::NodalMean mean(own.material().elements());
@@ -129,24 +133,83 @@ TEST(LiveSource, TellsTheValuesOfANode) {
   RobotState state(same);
   state.command({"up", "tension", 2.0});
   for (int k = 0; k < 5; ++k) state.step();
-  const Description& description = state.description();
-  const std::size_t fields = list_fields().size();
-  const auto count = static_cast<int>(description.surfaces[0].nodes.size());
-  std::vector<SurfaceVertex> picks;
-  for (int vertex = 0; vertex < count; vertex += 7) picks.push_back({0, vertex});
-  const auto frame = state.frame(FieldChoice(fields, true), 1.0, picks);
-  ASSERT_EQ(frame->picks.size(), picks.size());
-  for (const PickFrame& pick : frame->picks) {
-    const auto vertex = static_cast<std::size_t>(pick.at.vertex);
-    EXPECT_EQ(pick.node, description.surfaces[0].nodes[vertex]);
-    ASSERT_EQ(pick.fields.size(), fields);
-    for (std::size_t f = 0; f < fields; ++f) {
-      const float painted = frame->bodies[0].fields[f][vertex];
+  const DisplaySurface& surface = state.description().surfaces[0];
+  FrameWishes wishes{.fields = std::vector<bool>(list_fields().size(), true)};
+  for (std::size_t v = 0; v < surface.nodes.size(); v += 7) {
+    wishes.picks.push_back({0, PickKind::node, surface.nodes[v]});
+  }
+  const auto frame = state.frame(wishes, 1.0);
+  ASSERT_EQ(frame->picks.size(), wishes.picks.size());
+  for (std::size_t k = 0; k < frame->picks.size(); ++k) {
+    const PickFrame& pick = frame->picks[k];
+    ASSERT_EQ(pick.fields.size(), wishes.fields.size());
+    for (std::size_t f = 0; f < wishes.fields.size(); ++f) {
+      const float painted = frame->bodies[0].fields[f][7 * k];
       EXPECT_NEAR(pick.fields[f], painted, 1e-5F * std::abs(painted) + 1e-12F)
-          << description.fields[f];
+          << state.description().fields[f];
+    }
+    const auto& body = frame->bodies[0];
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_EQ(pick.positions.at(c), body.positions[21 * k + c]);
+      EXPECT_EQ(pick.rest.at(c), surface.rest[21 * k + c]);
     }
   }
   EXPECT_GT(frame->picks[0].fields[1], 1.0F) << "stressed where it is held";
+}
+
+TEST(LiveSource, TellsTheValuesOfAnElement) {
+  const scene::Robot same = robot();
+  RobotState state(same);
+  state.command({"up", "tension", 2.0});
+  for (int k = 0; k < 5; ++k) state.step();
+  const mechanics::Body& body = state.simulation().body(0);
+  const auto& own = *mechanics::as<const fem::HasMaterial>(body);
+  const mesh::Mesh& mesh = body.model().mesh();
+  FrameWishes wishes;
+  for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); e += 5) {
+    wishes.picks.push_back({0, PickKind::element, e});
+  }
+  const auto frame = state.frame(wishes, 1.0);
+  for (const PickFrame& pick : frame->picks) {
+    const auto e = static_cast<std::size_t>(pick.at.number);
+    const double volume = mesh::signed_volume(mesh::corners_of(mesh, pick.at.number));
+    EXPECT_NEAR(static_cast<double>(pick.volume), volume, 1e-6 * volume);
+    ASSERT_EQ(pick.positions.size(), 12U);
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_EQ(pick.positions[3 * k + 2],
+                static_cast<float>(body.positions()(mesh.tetrahedra[e][k], 2)));
+    }
+    EXPECT_TRUE(std::isnan(pick.fields.front())) << "the displacement is of nodes";
+    for (std::size_t f = 0; f < fem::element_fields().size(); ++f) {
+      const double value = fem::element_field(own, fem::element_fields()[f].field)[e];
+      EXPECT_NEAR(static_cast<double>(pick.fields[f + 1]), value, 1e-5 * std::abs(value) + 1e-12)
+          << fem::element_fields()[f].name;
+    }
+  }
+}
+
+TEST(LiveSource, ShowsWhatIsInsideWhereItIsAskedFor) {
+  const scene::Robot same = robot();
+  RobotState state(same);
+  state.command({"up", "tension", 2.0});
+  for (int k = 0; k < 5; ++k) state.step();
+  const mesh::Interior& inside = state.description().surfaces[0].inside;
+  FrameWishes wishes{.fields = std::vector<bool>(list_fields().size())};
+  wishes.fields[0] = true;
+  EXPECT_TRUE(state.frame(wishes, 1.0)->bodies[0].inner_positions.empty());
+  wishes.inside = true;
+  const auto frame = state.frame(wishes, 1.0);
+  const BodyFrame& body = frame->bodies[0];
+  ASSERT_GT(inside.nodes.size(), 0U);
+  ASSERT_EQ(body.inner_positions.size(), 3 * inside.nodes.size());
+  const std::vector<double> moved = fem::displacement_field(state.simulation().body(0));
+  for (std::size_t k = 0; k < inside.nodes.size(); ++k) {
+    const NodeId node = inside.nodes[k];
+    EXPECT_EQ(body.inner_positions[3 * k + 1],
+              static_cast<float>(state.simulation().body(0).positions()(node, 1)));
+    EXPECT_EQ(body.inner_fields[0][k], static_cast<float>(moved[static_cast<std::size_t>(node)]));
+  }
+  EXPECT_TRUE(body.inner_fields[1].empty()) << "nobody asked";
 }
 
 TEST(LiveSource, WaitsForAPageWhenToldTo) {

@@ -55,10 +55,12 @@ TEST(Message, ReadsEveryKind) {
   EXPECT_EQ(read<ChooseField>(R"({"type": "field", "name": "von_mises_stress"})").name,
             "von_mises_stress");
   EXPECT_FALSE(read<DriveRequest>(R"({"type": "drive", "on": false})").on);
-  const auto pick = read<Pick>(R"({"type": "pick", "body": "b", "vertex": 12})");
-  EXPECT_EQ(pick.vertex->body, "b");
-  EXPECT_EQ(pick.vertex->vertex, 12);
-  EXPECT_FALSE(read<Pick>(R"({"type": "pick", "body": null, "vertex": 0})").vertex);
+  const auto pick = read<Pick>(R"({"type": "pick", "body": "b", "kind": "element", "number": 12})");
+  EXPECT_EQ(pick.body, "b");
+  EXPECT_EQ(pick.kind, PickKind::element);
+  EXPECT_EQ(pick.number, 12);
+  EXPECT_FALSE(read<Pick>(R"({"type": "pick", "body": null, "kind": "node", "number": 0})").body);
+  EXPECT_TRUE(read<ShowInside>(R"({"type": "inside", "on": true})").on);
   EXPECT_EQ(read<Ready>(R"({"type": "ready", "generation": 3})").generation, 3);
   read<Ping>(R"({"type": "ping"})");
   EXPECT_EQ(parse_message(R"({"id": 9007199254740991, "type": "ping"})").id, 9007199254740991);
@@ -173,10 +175,12 @@ const Wrong kWrong[] = {
      K::out_of_range},
     {R"({"type": "record", "on": 1})", K::wrong_type},
     {R"({"type": "seek", "frame": -1})", K::out_of_range},
-    {R"({"type": "pick", "body": "b"})", K::missing_key},
-    {R"({"type": "pick", "body": "b", "vertex": -1})", K::out_of_range},
-    {R"({"type": "pick", "body": "b", "vertex": 0.5})", K::wrong_type},
-    {R"({"type": "pick", "body": 1, "vertex": 0})", K::wrong_type},
+    {R"({"type": "pick", "body": "b", "kind": "node"})", K::missing_key},
+    {R"({"type": "pick", "body": "b", "kind": "node", "number": -1})", K::out_of_range},
+    {R"({"type": "pick", "body": "b", "kind": "node", "number": 0.5})", K::wrong_type},
+    {R"({"type": "pick", "body": "b", "kind": "vertex", "number": 0})", K::unknown_choice},
+    {R"({"type": "pick", "body": 1, "kind": "node", "number": 0})", K::wrong_type},
+    {R"({"type": "inside", "on": 1})", K::wrong_type},
     {R"({"type": "ready", "generation": 65536})", K::out_of_range},
     {R"({"type": "open"})", K::missing_key},
     {R"({"type": "drive"})", K::missing_key},

@@ -80,7 +80,7 @@ TEST(Recording, EndsWhenItsMemoryIsFull) {
   while (recording.add(frame) && rows < 10000) ++rows;
   EXPECT_TRUE(recording.full());
   EXPECT_EQ(recording.rows(), rows);
-  EXPECT_LE(recording.bytes(), limits::kRecordedRows + limits::kRecordedMotion);
+  EXPECT_LE(recording.bytes(), limits::kRecordedRows + record::kMotionBytes);
   EXPECT_GT(recording.bytes(), limits::kRecordedRows * 9 / 10);
   EXPECT_FALSE(recording.add(frame));
 }

@@ -1,6 +1,7 @@
 // The server against browsers that are well-behaved, slow, broken or hostile.
 #include "viewer/server.hpp"
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <future>
@@ -39,6 +40,9 @@ class FakeSource final : public Source {
     DisplaySurface surface;
     surface.body = "ball";
     surface.nodes.assign(vertices, 0);
+    surface.node_count = static_cast<int>(vertices);
+    surface.element_count = 4;
+    surface.inside.nodes = {0, 0};
     surface.rest.assign(3 * vertices, 0.5F);
     surface.triangles = {0, 1, 2};
     description_.surfaces = {surface};
@@ -54,8 +58,10 @@ class FakeSource final : public Source {
       while (!stopping_) {
         auto frame = std::make_shared<Frame>();
         frame->step = frame->shape = static_cast<std::uint64_t>(++steps);
-        frame->bodies = {{std::vector<float>(3 * vertices_, static_cast<float>(steps)), {}}};
-        for (const SurfaceVertex& at : publisher.picks()) frame->picks.push_back({at, 42, {1.5F}});
+        frame->bodies = {
+            {std::vector<float>(3 * vertices_, static_cast<float>(steps)), {}, {}, {}}};
+        if (publisher.wants_inside()) frame->bodies[0].inner_positions.assign(6, 1.0F);
+        for (const Picked& at : publisher.picks()) frame->picks.push_back({.at = at});
         publisher.publish(frame);
         std::this_thread::sleep_for(1ms);
       }
@@ -122,7 +128,7 @@ class Client {
   }
   void greet() {
     handshake();
-    say(R"({"type": "hello", "protocol": 1})");
+    say(R"({"type": "hello", "protocol": 2})");
   }
   /// The next message; binary ones as "#" and the bytes.
   std::string next() {
@@ -168,27 +174,38 @@ class Client {
   std::string host_;
 };
 
-/// The vertex of a frame's pick section; -1: it has none. Frames of the fake have no signals.
-int picked_vertex(const std::string& bytes) {
+/// Bytes of the first section of a kind of a frame, with "#" in front; empty: it has none. Frames
+/// of the fake have no signals.
+std::string section(const std::string& bytes, int wanted) {
   for (std::size_t at = 1 + 40; at + 8 <= bytes.size();) {
     std::uint16_t kind = 0;
-    std::uint32_t length = 0, vertex = 0;
+    std::uint32_t length = 0;
     std::memcpy(&kind, bytes.data() + at, sizeof kind);
     std::memcpy(&length, bytes.data() + at + 4, sizeof length);
-    if (kind == 10) std::memcpy(&vertex, bytes.data() + at + 12, sizeof vertex);
-    if (kind == 10) return static_cast<int>(vertex);
+    if (kind == wanted) return "#" + bytes.substr(at + 8, length);
     at += 8 + length;
   }
-  return -1;
+  return {};
 }
 
-/// Whether a client soon gets frames with this picked vertex.
-bool shows(Client& client, int vertex) {
+/// Whether a client soon gets a frame whose section of a kind is as it should be.
+template <typename Holds>
+bool shows(Client& client, int kind, const Holds& holds) {
   for (int k = 0; k < 1000; ++k) {
     const std::string bytes = client.next();
-    if (bytes.front() == '#' && bytes[5] == 2 && picked_vertex(bytes) == vertex) return true;
+    if (bytes.front() == '#' && bytes[5] == 2 && holds(section(bytes, kind))) return true;
   }
   return false;
+}
+
+/// Whether a client soon gets frames with this picked node or element; -1: none.
+bool shows_pick(Client& client, int number, PickKind kind = PickKind::node) {
+  return shows(client, 10, [&](const std::string& pick) {
+    if (pick.empty()) return number < 0;
+    std::array<std::uint32_t, 3> head{};
+    std::memcpy(head.data(), pick.data() + 1, sizeof head);
+    return head[1] == static_cast<std::uint32_t>(kind) && static_cast<int>(head[2]) == number;
+  });
 }
 
 /// The answer to raw bytes.
@@ -220,7 +237,7 @@ TEST(Server, IntroducesItselfAndShowsFrames) {
   Client client(shown.server->port());
   client.greet();
   const Json welcome = client.next_json("welcome");
-  EXPECT_EQ(welcome["protocol"], 1);
+  EXPECT_EQ(welcome["protocol"], 2);
   const Json scene = client.next_json("scene");
   EXPECT_EQ(scene["mode"], "live");
   EXPECT_EQ(scene["scene"]["name"], "fake");
@@ -272,20 +289,45 @@ TEST(Server, TellsEachConnectionOfItsOwnNode) {
   first.greet();
   second.greet();
   second.next_json("status");
-  second.say(R"({"type": "pick", "body": "ball", "vertex": 3, "id": 1})");
+  const auto pick = [](const char* body, const char* kind, int number) {
+    return R"({"type": "pick", "id": 1, "body": )" + std::string(body) + R"(, "kind": ")" + kind +
+           R"(", "number": )" + std::to_string(number) + "}";
+  };
+  second.say(pick(R"("ball")", "node", 3));
   EXPECT_FALSE(second.next_json("reply").contains("error")) << "a looker-on may";
-  EXPECT_TRUE(shows(second, 3));
-  first.say(R"({"type": "pick", "body": "ball", "vertex": 7, "id": 1})");
+  EXPECT_TRUE(shows_pick(second, 3));
+  first.say(pick(R"("ball")", "element", 3));
   EXPECT_FALSE(first.next_json("reply").contains("error"));
-  EXPECT_TRUE(shows(first, 7));
-  EXPECT_TRUE(shows(second, 3));
-  second.say(R"({"type": "pick", "body": "bell", "vertex": 3, "id": 2})");
+  EXPECT_TRUE(shows_pick(first, 3, PickKind::element));
+  EXPECT_TRUE(shows_pick(second, 3));
+  second.say(pick(R"("bell")", "node", 3));
   EXPECT_EQ(second.next_json("reply")["error"]["kind"], "unknown-name");
-  second.say(R"({"type": "pick", "body": "ball", "vertex": 30, "id": 3})");
+  second.say(pick(R"("ball")", "node", 30));
   EXPECT_EQ(second.next_json("reply")["error"]["kind"], "index-out-of-range");
-  second.say(R"({"type": "pick", "body": null, "vertex": 0, "id": 4})");
+  second.say(pick(R"("ball")", "element", 4));
+  EXPECT_EQ(second.next_json("reply")["error"]["kind"], "index-out-of-range");
+  second.say(pick("null", "node", 0));
   EXPECT_FALSE(second.next_json("reply").contains("error"));
-  EXPECT_TRUE(shows(second, -1));
+  EXPECT_TRUE(shows_pick(second, -1));
+}
+
+TEST(Server, TellsWhatIsInsideToWhoeverAsks) {
+  const Shown shown;
+  Client first(shown.server->port()), second(shown.server->port());
+  first.greet();
+  second.greet();
+  second.next_json("status");
+  second.say(R"({"type": "inside", "on": true})");
+  while (true) {
+    const std::string bytes = second.next();
+    if (bytes.front() == '#' && bytes[5] == 3) break;  // how elements lie
+  }
+  const auto has_inside = [](const std::string& inner) { return inner.size() == 1 + 24; };
+  EXPECT_TRUE(shows(second, 12, has_inside));
+  first.next_step();
+  EXPECT_TRUE(section(first.next(), 12).empty()) << "who has not asked";
+  second.say(R"({"type": "inside", "on": false})");
+  EXPECT_TRUE(shows(second, 12, [](const std::string& inner) { return inner.empty(); }));
 }
 
 TEST(Server, RefusesOtherHostsAndOrigins) {
@@ -365,10 +407,10 @@ TEST(Server, ClosesWithAReason) {
     misbehave(client);
     return client.closed();
   };
-  const std::string hello = R"({"type": "hello", "protocol": 1})";
+  const std::string hello = R"({"type": "hello", "protocol": 2})";
   EXPECT_EQ(closed([](Client& c) { c.say(R"({"type": "play"})"); }),
             "the first message must be hello");
-  EXPECT_NE(closed([](Client& c) { c.say(R"({"type": "hello", "protocol": 2})"); }).find("reload"),
+  EXPECT_NE(closed([](Client& c) { c.say(R"({"type": "hello", "protocol": 9})"); }).find("reload"),
             std::string::npos);
   EXPECT_NE(closed([](Client& c) { c.say("nonsense"); }).find("not JSON"), std::string::npos);
   EXPECT_EQ(closed([&](Client& c) {

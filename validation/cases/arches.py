@@ -6,16 +6,20 @@ from scipy.optimize import linprog
 
 from suite import plots
 
-TITLE = "Arches of 25 stones: thickness and friction at which they fall"
-SETUP = """A semicircular arch of 25 stones, R = 250 mm to the middle of the ring, 2300 kg/m^3, stands on a fixed plate. Stones
-are hulls of triangles with flat faces and radial joints, all equal, so that they touch rim on rim. Steps are 10 ms of backward
-Euler. Do forces exist that balance every stone, press each joint within its height and stay in
-the cone of friction? That is a linear program in three forces a joint. Where there are none, the arch must fall. Where there are
-some and joints are not about to slip, it stands: Heyman's safe theorem. The program gives the least t/R for these stones, and
-for many equal ones it tends to Milankovitch's 0.1075; 25 stones need a little less, as hinges open at joints only. To stand is
-to creep by less than 1e-6 R from 0.1 s to ten seconds, to fall is to move by 0.05 R in that time. The least friction of a thick
-arch is bracketed, too. Coulomb's friction is not associated, so there only the fall below it is certain. With mu = 0.2 the
-stones fall for 30 ms in steps of 1 ms, watched for overlap."""
+TITLE = "Arches of 25 stones: least thickness and least friction"
+SETUP = """A semicircular arch of 25 equal stones stands on a fixed plate. The radius to the middle of the ring is R = 250 mm,
+the density 2300 kg/m^3. The stones are triangle hulls with flat faces and radial joints, so their rims touch. Steps are 10
+ms, backward Euler.
+
+The reference is a linear program with three forces per joint. It looks for forces that balance every stone, press each joint
+within its height and lie in the friction cone. If there are none, the arch must fall. If there are some and the joints are
+not about to slip, the arch stands (Heyman's safe theorem). The program gives the least t/R, with t the thickness. For many
+equal stones it tends to Milankovitch's 0.1075. With 25 stones it is slightly smaller, because hinges can open only at joints.
+
+An arch stands if it creeps by less than 1e-6 R between 0.1 s and ten seconds, and falls if it moves by 0.05 R in that time.
+The least friction of a thick arch is bracketed in the same way. Coulomb's friction is not associated, so the program is
+certain only about the fall below this value. With mu = 0.2, the largest overlap of the stones is recorded during 30 ms of
+falling in steps of 1 ms."""
 SOURCES = {"Milankovitch": "M. Milankovitch, Theorie der Druckkurven, Z. Math. Phys. 55 (1907) 1-27: t/R = 0.1075",
            "limit analysis": "J. Heyman, The stone skeleton, Int. J. Solids Struct. 2 (1966) 249-279; R. K. Livesley, Limit analysis of "
                              "structures formed from rigid blocks, Int. J. Numer. Meth. Eng. 12 (1978) 1853-1871: the linear program",
@@ -25,7 +29,7 @@ G, RADIUS, COUNT, DEPTH, DENSITY = 9.81, 0.25, 25, 0.05, 2300.0
 
 
 def corners(k, count, thickness):
-    """(4, 2) m, x and z of a stone, counter-clockwise for who looks along y."""
+    """(4, 2) m, x and z of a stone, counter-clockwise seen along y."""
     angles = np.pi * np.array([k, k + 1]) / count
     ray = np.column_stack([np.cos(angles), np.sin(angles)])
     inner, outer = RADIUS - 0.5 * thickness, RADIUS + 0.5 * thickness
@@ -98,7 +102,7 @@ class Arch:
         return np.array([self.sim.body(name).centre_of_mass for name in self.names])
 
     def watch(self, duration):
-        """Creep since 0.1 s, and the way since the start; both over R. Ends early where the arch falls."""
+        """Creep since 0.1 s and displacement since the start, both divided by R. Ends early if the arch falls."""
         settled, crept, moved = None, 0.0, 0.0
         while self.sim.time < duration - 1e-6 and moved < 0.05:
             self.sim.run(duration=0.1)
@@ -109,7 +113,7 @@ class Arch:
         return float(crept), float(moved)
 
     def outlines(self):
-        """(4, 2) corners of every stone, as they are."""
+        """(4, 2) present corners of every stone."""
         drawn = []
         for name, shape in zip(self.names, self.shapes):
             body = self.sim.body(name)
@@ -119,7 +123,7 @@ class Arch:
         return drawn
 
     def overlap(self):
-        """Of neighbours, over R: how deep a corner of one is inside the plane of the other's joint, within its height."""
+        """Overlap of neighbours / R: how deep a corner of one is behind the plane of the other's joint, within its height."""
         outlines, deepest = self.outlines(), 0.0
         for one, following in zip(outlines, outlines[1:]):
             for stone, face, points in ((one, one[[2, 3]], following[[0, 1]]), (following, following[[0, 1]], one[[2, 3]])):
@@ -148,7 +152,7 @@ def thicknesses(case, axis):
     case.report("linear program, these 25 stones: least t/R", bound, source="limit analysis", reference=0.1075)
     for share in (1.01, 1.03):
         crept, _ = Arch(case.scratch, share * bound * RADIUS, 0.5).watch(10.0)
-        case.bound(f"{share:g} of the least thickness: creep in ten seconds over R", crept, 1e-6, source="limit analysis")
+        case.bound(f"{share:g} of the least thickness: creep in ten seconds / R", crept, 1e-6, source="limit analysis")
     for share, color in ((0.99, plots.SECOND), (0.97, plots.THIRD)):
         arch = Arch(case.scratch, share * bound * RADIUS, 0.5)
         case.agree(f"{share:g} of the least thickness: it falls", arch.watch(10.0)[1] >= 0.05, True, source="limit analysis")
@@ -161,10 +165,10 @@ def frictions(case, axis, thickness=0.2 * RADIUS):
     bound = least(lambda mu: admissible(thickness, mu), 0.1, 0.6)
     case.report("linear program, t = 0.2 R: least friction", bound, source="limit analysis")
     arch = Arch(case.scratch, thickness, 0.5)
-    case.bound("t = 0.2 R, mu = 0.5: creep in ten seconds over R", arch.watch(10.0)[0], 1e-6, source="Coulomb")
+    case.bound("t = 0.2 R, mu = 0.5: creep in ten seconds / R", arch.watch(10.0)[0], 1e-6, source="Coulomb")
     draw(axis, arch, plots.OURS, "t = 0.2 R, mu = 0.5, ten seconds")
     crept, _ = Arch(case.scratch, thickness, 1.01 * bound).watch(10.0)
-    case.bound("t = 0.2 R, 1.01 of the least friction: creep in ten seconds over R", crept, 1e-6, source="limit analysis")
+    case.bound("t = 0.2 R, 1.01 of the least friction: creep in ten seconds / R", crept, 1e-6, source="limit analysis")
     _, moved = Arch(case.scratch, thickness, 0.99 * bound).watch(10.0)
     case.agree("t = 0.2 R, 0.99 of the least friction: it falls", moved >= 0.05, True, source="limit analysis")
     arch = Arch(case.scratch, thickness, 0.2)
@@ -178,7 +182,7 @@ def overlaps(case, thickness=0.2 * RADIUS):
     for _ in range(30):
         arch.sim.step()
         deepest = max(deepest, arch.overlap())
-    case.bound("t = 0.2 R, mu = 0.2: largest overlap in 30 ms of fall over R", deepest, 1e-6, source="Coulomb")
+    case.bound("t = 0.2 R, mu = 0.2: largest overlap in 30 ms of falling / R", deepest, 1e-6, source="Coulomb")
 
 
 def run(case):

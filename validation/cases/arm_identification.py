@@ -1,4 +1,4 @@
-"""Identification of a fluidic arm from motion capture made of known parameters."""
+"""Identification of a fluidic arm from synthetic motion capture with known parameters."""
 
 import numpy as np
 from sinew import identify, pcc
@@ -6,13 +6,13 @@ from sinew import identify, pcc
 from suite import plots
 
 TITLE = "Identification of a fluidic arm"
-SETUP = """Motion capture of a four-segment arm (masses, stiffness and damping as published, segments of 0.14 m
-assumed) is made from known parameters: frames at 50 Hz, noise of 0.3 mm, 2 % of the markers not seen.
-(i) The model is right: a passive arm let go from two bent poses, and an arm driven by three actuators (2N + 2
-parameters) with volumes of Bretschneider's spectrum. Masses are within 15 % at the start, one is weighed.
-(ii) The model is wrong: the arm that moves has its mass distributed along it, a lumped one is fitted within the
-published bounds. Records that are not fitted to are predicted from their first pose. NRMSE is
-|predicted - measured|/|measured - mean|."""
+SETUP = """Synthetic motion capture of a four-segment arm with known parameters: masses, stiffness and damping as published,
+segments of 0.14 m (assumed). Frames come at 50 Hz with 0.3 mm of noise, and 2 % of the markers are hidden. NRMSE is
+|predicted - measured|/|measured - mean|. Records that were not used in the fit are predicted from their first pose.
+
+- *Correct model.* A passive arm is released from two bent poses. Another arm is driven by three actuators (2N + 2 parameters)
+  with volumes of Bretschneider's spectrum. Initial guesses of the masses are within 15 %, and one segment is weighed.
+- *Wrong model.* The moving arm has distributed mass; a lumped model is fitted within the published bounds."""
 SOURCES = {"synthetic": "the parameters that made the records; coverage from Seber and Wild, Nonlinear Regression, "
                         "Wiley 1989, sec. 5.1",
            "Marchese 2016": "A. D. Marchese, R. Tedrake, D. Rus, Dynamics and trajectory optimization for a soft "
@@ -68,10 +68,10 @@ def passive(case):
         other = seen(arm(), generator, 3.0, [0.6, -0.8, -0.4, 0.6])
         worst = max(worst, identify.validate_arm(found, [other])[0].nrmse)
     case.report("passive: true parameters within 95 % intervals", 100 * inside / (5 * seeds), unit="%", reference=95,
-                source="synthetic", remark=f"{inside} of {5 * seeds}; those of one fit go together")
-    case.check("passive: squared distance of estimates from the truth in their covariance, sum over seeds", distance,
-               5 * seeds, 0.4, source="synthetic", remark="chi squared of 100: outside with odds of 1 in 200")
-    case.bound("passive: NRMSE of records not fitted to, worst of all seeds", 100 * worst, 5, unit="%",
+                source="synthetic", remark=f"{inside} of {5 * seeds}; those of one fit are correlated")
+    case.check("passive: chi squared of the errors with the estimated covariance, sum over seeds", distance,
+               5 * seeds, 0.4, source="synthetic", remark="chi squared with 100 degrees of freedom: outside with a probability of 1 in 200")
+    case.bound("passive: NRMSE of held-out records, worst of all seeds", 100 * worst, 5, unit="%",
                source="synthetic")
 
 
@@ -92,17 +92,17 @@ def driven(case):
                 **{f"coefficient_{k}": CUBIC for k in range(3)}, "delay": DELAY}
     for name in ("mass_3", "stiffness", "damping", "coefficient_0", "delay"):
         case.check(f"driven: {name}", values[name] / expected[name], 1.0, 0.05, source="synthetic",
-                   remark=f"of the truth; standard error {100 * found.fit.standard_errors[name] / expected[name]:.2g} %")
+                   remark=f"of the true value; standard error {100 * found.fit.standard_errors[name] / expected[name]:.2g} %")
     free = identify.fit_arm(guess, records, actuators=start, **WIDE)
     scale = next(d for d in free.fit.directions if d["undetermined"] and abs(d["weights"]["stiffness"]) > 1e-3)
     weights = np.array([scale["weights"][name] for name in list(expected)[:9]])
-    case.agree("driven, nothing weighed: directions not determined", free.undetermined, 1, source="synthetic")
-    case.bound("driven, nothing weighed: that direction against equal shares of masses, stiffness, damping and "
+    case.agree("driven, nothing weighed: undetermined directions", free.undetermined, 1, source="synthetic")
+    case.bound("driven, nothing weighed: that direction compared with equal weights of masses, stiffness, damping and "
                "coefficients", np.abs(np.abs(weights) - 1 / 3).max(), 1e-4, source="synthetic")
     others = [record(seed) for seed in range(3, 7)]
     errors = [100 * fit.nrmse for fit in identify.validate_arm(found, others)]
     for other, error in zip(others, errors):
-        case.bound(f"driven: NRMSE of {other.name}, not fitted to", error, 5, unit="%", source="synthetic")
+        case.bound(f"driven: NRMSE of {other.name}, held out", error, 5, unit="%", source="synthetic")
 
 
 def mismatch(case):
@@ -135,15 +135,15 @@ def mismatch(case):
                 f"{before.mean():.3g} +- {before.std(ddof=1):.2g} m", source="Marchese 2016", reference=10)
     case.report("mismatch: summed error after, mean and spread of four trials",
                 f"{after.mean():.3g} +- {after.std(ddof=1):.2g} m", source="Marchese 2016", reference=0.97,
-                remark="published of a real arm; a sum depends on how many frames and markers there are")
-    case.bound("mismatch: error after over that before, worst trial, at most the published 0.97/10",
+                remark="published for a real arm; the sum depends on the number of frames and markers")
+    case.bound("mismatch: error after / before, worst trial, at most the published 0.97/10",
                (after / before).max(), 0.097, source="Marchese 2016",
-               known_miss="on trials of little motion the guess is nearer and the lumped model's own error is more of "
-                          "what is left")
+               known_miss="in trials with little motion the initial guess is closer, and the error of the lumped model is a larger "
+                          "part of the rest")
     sums = np.sum(better, axis=0)
-    case.bound("the same trials, distributed masses fitted: error after over that before, all trials, at most the "
+    case.bound("the same trials, distributed masses fitted: error after / before, all trials, at most the "
                "published 0.97/10", sums[1] / sums[0], 0.097, source="Marchese 2016",
-               remark=f"{sums[1] / 4:.2g} m a trial are left, which is the markers' noise")
+               remark=f"{sums[1] / 4:.2g} m per trial remain, which is the noise of the markers")
     found, trial = last
     fit = found.records[0]
     figure, (left, right) = plots.axes(2)
@@ -156,7 +156,7 @@ def mismatch(case):
         right.plot(trial.time, 1e3 * residual, color=color, lw=1, label=f"segment {segment}")
     right.set(title="residuals", xlabel="time (s)", ylabel="distance (mm)")
     right.legend(fontsize=8)
-    case.figure(figure, "A lumped arm fitted to the motion of a distributed one: the tip, and what is left.")
+    case.figure(figure, "A lumped arm fitted to the motion of an arm with distributed mass: the tip, and the residual.")
 
 
 def run(case):

@@ -9,13 +9,16 @@ from suite import plots
 from suite.case import REPOSITORY
 
 TITLE = "Conical arm of Ecoflex 00-30 curled under water"
-SETUP = """The arm of examples/arm/underwater.yaml, hanging from its base under water, its cables through tubes of 3 mm radius
-every 10 mm (assumed; the source says nothing of guides): one cable, or two neighbouring ones, pulled by 2 N/s for 1.5 s or until a node of the surface enters the arm elsewhere. Hexahedra
-of 6.5 mm and of half that, Ogden's law, backward Euler at 5 ms. The source computed 21 h and 42 h for these two, and
-tabulates no result; damping and how it took the water are not in it. Assumed: stiffness damping of 10 ms, buoyancy, drag
-of 1.2 on the width, the added mass of an ideal fluid. What water and damping change is shown beside: the same in air without
-gravity, and with a tenth of the damping; and what bare points every 20 mm instead of tubes change, at which the rubber
-dents the more the finer the mesh is. Parts that are within 40 mm at rest do not count as touching. Wall times are of this machine, one thread, and only reported."""
+SETUP = """The arm of examples/arm/underwater.yaml hangs from its base under water. One cable, or two neighbouring ones, are
+pulled by 2 N/s for 1.5 s, or until a surface node enters the arm elsewhere. Hexahedra of 6.5 mm and of half that size,
+Ogden's law, backward Euler at 5 ms. The source computed 21 h and 42 h for these two cases and tabulates no result; it gives
+neither the damping nor its model of the water.
+
+Assumed are cable guides of 3 mm radius every 10 mm (the source does not describe any), stiffness damping of 10 ms, buoyancy,
+a drag coefficient of 1.2 on the width, and the added mass of an ideal fluid. For comparison, the case also runs in air
+without gravity, with a tenth of the damping, and with bare points every 20 mm instead of guides; the finer the mesh, the more
+the rubber dents at bare points. Parts that are within 40 mm of each other at rest do not count as touching. Wall times are
+for one thread of this machine and are reported only."""
 SOURCES = {"published": "the multi-flexible-body simulation of this arm"}
 COST = 400
 PULLED = {"one cable": ("east",), "two cables": ("east", "north")}
@@ -49,7 +52,7 @@ def curl(cables, size, *more, may_end=False):
 
 
 def report_touch(case, name, when):
-    case.report(f"{name}: touches itself within 1.5 s (1) or not (0)", float(when is not None), source="published")
+    case.report(f"{name}: touches itself within 1.5 s: 1, or not: 0", float(when is not None), source="published")
     if when is not None:
         case.report(f"{name}: touches itself after", when, unit="s", source="published")
 
@@ -65,12 +68,12 @@ def run(case):
             case.report(f"{name}, cells of {size}: wall time", wall, unit="s", source="published")
         last = min(len(coarse[0]), len(fine[0])) - 1
         half = min(last, int(0.75 / 0.005))
-        case.report(f"{name}: change of the tip by halving the cells up to 1.5 N, greatest over its path",
+        case.report(f"{name}: largest change of the tip path up to 1.5 N when the cell size is halved",
                     np.linalg.norm(coarse[1][:half] - fine[1][:half], axis=1).max()
                     / np.linalg.norm(np.diff(fine[1][:half], axis=0), axis=1).sum(), source="published")
         travelled = np.linalg.norm(np.diff(fine[1], axis=0), axis=1).sum()
         apart = np.linalg.norm(coarse[1][:last] - fine[1][:last], axis=1).max()
-        case.bound(f"{name}: change of the tip by halving the cells, greatest over its path", apart / travelled, 0.02,
+        case.bound(f"{name}: largest change of the tip path when the cell size is halved", apart / travelled, 0.02,
                    source="published")
         dry = curl(cables, "6.5 mm", "loads.sea.density=0 kg/m^3", "gravity=0 0 0 m/s^2")
         lively = curl(cables, "6.5 mm", "bodies.arm.damping.stiffness=0.001 s")
@@ -80,7 +83,7 @@ def run(case):
         for told, other in (("in air without gravity", dry), ("with a tenth of the damping", lively),
                             ("with bare points", bare)):
             until = min(len(coarse[0]), len(other[0])) - 1
-            case.report(f"{name}: tip apart {told}, greatest",
+            case.report(f"{name}: largest difference of the tip {told}",
                         np.linalg.norm(coarse[1][:until] - other[1][:until], axis=1).max(), unit="mm", source="published")
             report_touch(case, f"{name}, {told}", other[2])
         axis = fine[4]
@@ -89,9 +92,9 @@ def run(case):
         right.plot(fine[0], fine[1][:, 2], color=colour, label=name)
         right.plot(coarse[0], coarse[1][:, 2], ":", color=colour)
         right.plot(dry[0], dry[1][:, 2], "--", color=colour, lw=1, label=f"{name}, in air")
-    left.set(xlabel="aside (mm)", ylabel="below the base (mm)", aspect="equal")
+    left.set(xlabel="aside (mm)", ylabel="depth below the base (mm)", aspect="equal")
     left.invert_yaxis()
     left.legend()
-    right.set(xlabel="time (s)", ylabel="tip below the base (mm)")
+    right.set(xlabel="time (s)", ylabel="tip depth below the base (mm)")
     right.legend()
-    case.figure(figure, "Left: the arm's axis when it touches itself. Right: the tip; dotted, cells of twice the size.")
+    case.figure(figure, "Left: axis of the arm when it touches itself. Right: tip; dotted: cells of twice the size.")

@@ -1,4 +1,4 @@
-"""The bending actuator of one angle: its reduced model against independent ones."""
+"""The bending actuator with one angle: its reduced model compared with independent ones."""
 
 import numpy as np
 from scipy import integrate, optimize
@@ -8,14 +8,16 @@ import sinew
 from suite import plots
 from suite.case import observed_order
 
-TITLE = "Bending actuator: closed-form dynamics against quadrature, ODE solvers and finite elements"
-SETUP = """A fibre-reinforced silicone tube on an inextensible layer, L = 100 mm, r = 6 mm, r_t = 2 mm, 1070 kg/m^3, level,
-full of what is around it (air or water), Rayleigh's beta 5 ms. The source of the published runs (pressures A/2 (1 - cos 2 pi t/T)
-with A = 20, 50, 80, 90 kPa at 0.1 to 0.2 Hz) gives neither lengths nor radii nor densities: these are ours, and so no angle
-of it can be scored. Its modulus E(P) holds from 10 kPa on; below, its value there is taken. The angle is checked against
-SciPy: energies by adaptive quadrature over the section, equilibria by bisection of their differences, motion by an explicit
-method of order 8. A straight beam of finite elements with the same section carries its own weight, of E = 4 G along its axis
-and nu = 0, so that it is the same beam."""
+TITLE = "Bending actuator: closed-form dynamics compared with quadrature, ODE solvers and finite elements"
+SETUP = """A fibre-reinforced silicone tube on an inextensible layer: L = 100 mm, r = 6 mm, r_t = 2 mm, 1070 kg/m^3, level,
+filled with the surrounding medium (air or water), Rayleigh's beta 5 ms. The source of the published runs (pressures A/2 (1 -
+cos 2 pi t/T) with A = 20, 50, 80, 90 kPa at 0.1 to 0.2 Hz) gives neither lengths nor radii nor densities. These are our
+choice, so no angle of the source can be scored. Its modulus E(P) is valid from 10 kPa; below that its value at 10 kPa is
+used.
+
+The angle is checked against SciPy: energies by adaptive quadrature over the section, equilibria by bisection of their
+differences, motion by an explicit method of order 8. For comparison, a straight finite-element beam with the same section
+carries its own weight. It has E = 4 G along its axis and nu = 0, which makes it the same beam."""
 SOURCES = {"SciPy": "adaptive quadrature (QUADPACK), bracketing (Brent) and DOP853",
            "theory": "orders of accuracy; Taylor's remainder in Lagrange's form",
            "beam": "Sinew's finite elements, quadratic tetrahedra of 6 mm",
@@ -83,14 +85,14 @@ def taylor(case):
         found = model.energies(theta, 0.0, 50e3)
         error = abs(found["strain"] - exact["strain"])
         bounds = np.array([model.taylor_error(0.0, t, 50e3)["strain"] for t in theta])
-        case.check(f"order {order}: angles of 80 at which the strain energy is within its bound",
+        case.check(f"order {order}: number of angles, of 80, at which the strain energy is within its bound",
                    int((error[1:] <= bounds[1:] * (1 + 1e-12) + 1e-17).sum()), 80, 0, source="theory", relative=False)
-        case.report(f"order {order}: error of the strain energy at 1 rad over its bound", error[40] / bounds[40], source="theory")
+        case.report(f"order {order}: error of the strain energy at 1 rad / its bound", error[40] / bounds[40], source="theory")
         axis.loglog(theta[1:], error[1:] / exact["strain"][1:], color=colour, label=f"order {order}")
         axis.loglog(theta[1:], bounds[1:] / exact["strain"][1:], ":", color=colour)
-    axis.set(xlabel="angle (rad)", ylabel="error of the strain energy over it", ylim=(1e-12, 1))
+    axis.set(xlabel="angle (rad)", ylabel="relative error of the strain energy", ylim=(1e-12, 1))
     axis.legend()
-    case.figure(figure, "What Taylor's polynomials leave out (solid), and its bound (dotted).", "_taylor")
+    case.figure(figure, "Truncation error of the Taylor polynomials (solid), and its bound (dotted).", "_taylor")
 
 
 def motion(case):
@@ -128,8 +130,8 @@ def motion(case):
         energy = total(run, 40e3)
         # Over the work of the pressure; the start is a pose without energy.
         drifts.append(abs(energy - energy[0]).max() / (40e3 * free.moment_per_pressure * run["angle"].max()))
-    case.check("undamped, 1 s: order of the energy's drift", observed_order(steps, drifts), 2.0, 0.1, relative=False, source="theory")
-    case.report("undamped, 1 s at 0.2 ms: drift over the work of the pressure", 100 * drifts[-1], unit="%", source="theory")
+    case.check("undamped, 1 s: order of the energy drift", observed_order(steps, drifts), 2.0, 0.1, relative=False, source="theory")
+    case.report("undamped, 1 s at 0.2 ms: energy drift / work of the pressure", 100 * drifts[-1], unit="%", source="theory")
 
 
 def beam(case):
@@ -150,12 +152,12 @@ def beam(case):
         "effectors": {"tip": {"body": "beam", "point": [0, 0, length]}}})
     sim.solve_static()
     drop = -sim.effector("tip").position[0]
-    case.report("weight of a round beam: height of the tip by one angle", 1e3 * -model.point(angle)[1], unit="mm",
+    case.report("round beam under its weight: height of the tip with one angle", 1e3 * -model.point(angle)[1], unit="mm",
                 reference=1e3 * drop, source="beam",
-                remark="one angle cannot follow a weight that is spread out: w L^4/(12 E I) where the beam has 1/8")
+                remark="one angle cannot follow a distributed weight: w L^4/(12 E I), where the beam has 1/8")
     exact = density * area * 9.81 * length**4 / (modulus * second)
     small = pcc.BendingActuator(**{**model.parameters, "gravity": 9.81e-3})
-    case.check("a thousandth of the weight: tip over w L^4/(E I)", -small.point(small.equilibrium(0.0))[1] / (exact * 1e-3),
+    case.check("a thousandth of the weight: tip deflection / (w L^4/(E I))", -small.point(small.equilibrium(0.0))[1] / (exact * 1e-3),
                1 / 12, 1e-3, source="theory")
 
 
@@ -173,10 +175,10 @@ def published(case):
                     axis.plot(time, 1e3 * reduced["tip"][:, 1], "--", color=plots.OURS)
                     case.report(f"{name}, {amplitude / 1e3:.0f} kPa, 0.2 Hz: largest angle, exact", exact["angle"].max(),
                                 unit="rad", source="published")
-                case.report(f"{name}, {amplitude / 1e3:.0f} kPa, {1 / period:.1f} Hz: fifth order off by, of the length, mean",
+                case.report(f"{name}, {amplitude / 1e3:.0f} kPa, {1 / period:.1f} Hz: mean error of order 5 / length",
                             100 * errors.mean_of_length, unit="%", source="published")
         axis.set(title=name, xlabel="time (s)", ylabel="height of the tip (mm)")
-    case.figure(figure, "0.2 Hz, 20 to 90 kPa: exact (black) and fifth order (dashed).", "_published")
+    case.figure(figure, "0.2 Hz, 20 to 90 kPa: exact (black) and order 5 (dashed).", "_published")
 
 
 def run(case):

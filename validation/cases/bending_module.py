@@ -7,15 +7,16 @@ from suite import plots
 from suite.case import REPOSITORY
 
 TITLE = "Pneumatic bending module of Ecoflex 00-30 and 00-50"
-SETUP = """The module of examples/finger/module.yaml: diameter 25 mm, length 65 mm, one chamber of radius 3.7 mm
-and 60 mm length, 1.5 mm from its wall to the outside, without gravity, clamped at the chamber's open end; pressure
-0.01 t MPa on Ecoflex 00-30 and 0.1 t MPa on 00-50. Hexahedra, nu_0 = 0.49, backward Euler, 10 ms and 1 ms steps.
-Assumed, since the source leaves it open: one chamber and no others beside it, density 1070 kg/m^3, stiffness
-damping 10 ms. Without published numbers nothing is scored. The coefficients published for Ecoflex 00-50, read
-so that they give its shear modulus of 20.8 kPa, are unstable beyond a stretch of 1.13 (`sinew.material(...).
-stable_range`): that run ends where the chamber's wall goes unstable, at 4 kPa; read the other way they are stable,
-with 167 kPa, and stand beside it."""
-SOURCES = {"published": "the multi-flexible-body study whose measures these are; its curves are not tabulated"}
+SETUP = """The module of examples/finger/module.yaml: diameter 25 mm, length 65 mm, one chamber of 3.7 mm radius and 60 mm
+length, whose wall is 1.5 mm thick at its thinnest. There is no gravity, and the end at which the chamber opens is clamped.
+The pressure is 0.01 t MPa for Ecoflex 00-30 and 0.1 t MPa for 00-50. Hexahedra, nu_0 = 0.49, backward Euler, steps of 10 ms
+and 1 ms. The source leaves some points open; assumed are a single chamber, a density of 1070 kg/m^3 and stiffness damping of
+10 ms. There are no published numbers, so nothing is scored.
+
+In the convention that gives a shear modulus of 20.8 kPa, the published coefficients of Ecoflex 00-50 are unstable beyond a
+stretch of 1.13 (`sinew.material(...).stable_range`). That run ends at 4 kPa, where the chamber's wall becomes unstable. In
+the other convention (167 kPa) they are stable; this run is shown for comparison."""
+SOURCES = {"published": "the multi-flexible-body study with these dimensions; its curves are not tabulated"}
 COST = 40
 STIFF = ("{model: ogden, mu: [107900, 21.47, -87100], alpha: [1.55, 7.86, -1.91], convention: mu-over-alpha, "
          "poisson_ratio: 0.49}")
@@ -52,12 +53,12 @@ def run(case):
             at = int(share * (len(times) - 1))
             case.report(f"{name}: bending angle at {1e3 * rate * times[at]:.3g} kPa", angles[at], unit="degrees",
                         source="published")
-        case.report(f"{name}: greatest speed of the tip", 1e3 * max(speeds), unit="mm/s", source="published")
+        case.report(f"{name}: largest tip speed", 1e3 * max(speeds), unit="mm/s", source="published")
         case.report(f"{name}: pressure at the end", 1e3 * rate * times[-1], unit="kPa", source="published")
-        case.report(f"{name}: chamber's volume then over that at rest (ballooning)", swollen, source="published")
+        case.report(f"{name}: volume of the chamber then / at rest (ballooning)", swollen, source="published")
         left.plot(1e3 * rate * np.array(times), angles, color=colour, label=name)
         right.plot(1e3 * rate * np.array(times), 1e3 * np.array(speeds), color=colour, label=name)
     left.set(xlabel="pressure (kPa)", ylabel="bending angle (degrees)")
     right.set(xlabel="pressure (kPa)", ylabel="speed of the tip (mm/s)")
     left.legend()
-    case.figure(figure, "Bending angle and tip speed over the pressure that rises with time.")
+    case.figure(figure, "Bending angle and tip speed against the pressure, which rises with time.")

@@ -1,4 +1,4 @@
-"""Rigid bodies that strike: restitution by event-driven integration."""
+"""Impacts of rigid bodies: restitution by event-driven integration."""
 
 import numpy as np
 import sinew
@@ -7,12 +7,15 @@ from scipy.special import ellipk
 from suite import plots
 from suite.case import observed_order
 
-TITLE = "Restitution: a ball that bounces until it rests, one with spin, a pendulum that strikes a wall"
-SETUP = """Event-driven integration. (i) A ball whose lowest point is 0.5 m above a floor, level or leaning by 0.3 rad, e = 0.5 and
-0.9, in steps of 20 ms. Across the floor each flight takes e of the last one's time, and the sum of all is sqrt(2 h/g) (1 + e)/(1 -
-e). (ii) A ball with a spin strikes a floor askew, e = 0.6: Newton's law with friction in Moreau's form, sticking and sliding. (iii)
-A ball on a rod, a hinge at its end, strikes a wall at its lowest point, e = 0.8: sin(amplitude/2) falls to e of itself, and the
-next impact follows after half the period of that amplitude."""
+TITLE = "Restitution: a bouncing ball, a ball with spin, a pendulum that strikes a wall"
+SETUP = """Event-driven integration.
+
+- A ball falls through a vertical distance of h = 0.5 m to a floor that is level or inclined by 0.3 rad; e = 0.5 and 0.9,
+  steps of 20 ms. Each flight takes e times as long as the previous one, and all of them together take sqrt(2 h/g) (1 + e)/(1
+  - e).
+- A ball with spin strikes a floor obliquely, e = 0.6: Newton's law with friction in Moreau's form, sticking and sliding.
+- A ball on a rod, hinged at the other end, strikes a wall at its lowest point, e = 0.8: sin(amplitude/2) falls by the factor
+  e, and the next impact follows after half the period of that amplitude."""
 SOURCES = {"flights": "free fall between impacts that each leave e of the velocity: a geometric series",
            "Moreau": "J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988): one coefficient along and across; "
                      "the inertia of a ball's point is 2/7 m across",
@@ -59,10 +62,10 @@ def bounces(case, axis):
                     last = sim.time + (speed + rate) / fall + 2.0 * restitution * speed / fall / (1.0 - restitution)
                 elif rests is None:
                     rests = sim.time
-            name = f"ball, e = {restitution:g}, {'level' if slope == 0.0 else 'leaning'} floor, 20 ms"
-            case.bound(f"{name}: moments of impacts, of the moment", max(errors), 1e-6, source="flights")
-            case.check(f"{name}: comes to rest", last, end, 1e-3, source="flights", unit="s")
-            case.bound(f"{name}: rests later than in the step of that", max(0.0, rests - end - 0.02), 1e-3 * end, source="flights", unit="s")
+            name = f"ball, e = {restitution:g}, {'level' if slope == 0.0 else 'inclined'} floor, 20 ms"
+            case.bound(f"{name}: relative error of the impact times", max(errors), 1e-6, source="flights")
+            case.check(f"{name}: time at which it comes to rest", last, end, 1e-3, source="flights", unit="s")
+            case.bound(f"{name}: rests later than in the step with that time", max(0.0, rests - end - 0.02), 1e-3 * end, source="flights", unit="s")
             if slope == 0.0:
                 axis.plot(times, gaps, ".", ms=3, color=plots.OURS if restitution == 0.9 else plots.SECOND, label=f"e = {restitution:g}, Sinew")
     axis.set(xlabel="time (s)", ylabel="height (m)")
@@ -83,7 +86,7 @@ def spins(case):
         impulse[2] = normal
         after = np.concatenate([before + impulse / MASS, spin + np.cross(arm, impulse) / (0.4 * MASS * RADIUS**2)])
         error = np.abs(np.array(sim.body("ball").velocity) - after).max() / np.abs(after).max()
-        case.bound(f"spinning ball, mu = {friction:g}: velocity and spin after the impact, of the largest", error, 1e-9, source="Moreau")
+        case.bound(f"spinning ball, mu = {friction:g}: error of velocity and spin after the impact / the largest", error, 1e-9, source="Moreau")
 
 
 def swings(case, axis):
@@ -105,9 +108,9 @@ def swings(case, axis):
             body = sim.body("ball")
             found.append(sim.time + np.arctan2(body.position[0], -body.position[2]) / body.velocity[4])
         errors.append(np.abs(np.array(found) / moments - 1.0).max())
-    case.bound("pendulum, 1 ms: moments of four impacts, of the moment", errors[-1], 1e-5, source="pendulum")
-    case.check("pendulum: order of these", observed_order(steps, errors), 2.0, 0.2, source="pendulum", relative=False)
-    axis.loglog(steps, errors, "o-", color=plots.OURS, label="moments of impacts")
+    case.bound("pendulum, 1 ms: relative error of four impact times", errors[-1], 1e-5, source="pendulum")
+    case.check("pendulum: order of the impact times", observed_order(steps, errors), 2.0, 0.2, source="pendulum", relative=False)
+    axis.loglog(steps, errors, "o-", color=plots.OURS, label="impact times")
     axis.set(xlabel="time step (s)", ylabel="relative error")
     axis.legend(fontsize=7)
 
@@ -117,4 +120,4 @@ def run(case):
     bounces(case, left)
     spins(case)
     swings(case, right)
-    case.figure(figure, "Left: the ball's height at the ends of steps of 20 ms. Right: errors of the moments at which the pendulum strikes.")
+    case.figure(figure, "Left: the ball's height at the ends of steps of 20 ms. Right: errors of the pendulum's impact times.")

@@ -1,4 +1,4 @@
-"""Bodies in water: what carries, brakes and follows them."""
+"""Bodies in water: buoyancy, drag and added mass."""
 
 import numpy as np
 import sinew
@@ -6,11 +6,16 @@ import sinew
 from suite import plots
 
 TITLE = "Buoyancy, drag and added mass"
-SETUP = """Bodies of E = 200 kPa that nothing holds, in water of 1000 kg/m^3, under gravity. A block of 20 x 20 x 20 mm as heavy as
-water is let go; a slab of 40 x 40 x 10 mm and 600 kg/m^3 is let go at the surface and settles, its draught over its height; a cylinder of 20 mm and
-200 mm length, 1400 kg/m^3, quadratic tetrahedra, sinks across its axis: its first acceleration by weight, buoyancy and added
-mass, its last speed by drag. Ends of the cylinder have their own drag and added mass, which the references leave out. The
-pressure of water acts face by face, points of integration above the surface feel none."""
+SETUP = """Unsupported bodies of E = 200 kPa in water of 1000 kg/m^3 under gravity:
+
+- a block of 20 x 20 x 20 mm with the density of water, released from rest;
+- a slab of 40 x 40 x 10 mm and 600 kg/m^3, released at the surface, which settles; its draught is compared relative to its
+  height;
+- a cylinder of 20 mm diameter and 200 mm length, 1400 kg/m^3, quadratic tetrahedra, which sinks across its axis; its initial
+  acceleration follows from weight, buoyancy and added mass, its final speed from drag.
+
+The ends of the cylinder have their own drag and added mass, which the references neglect. The water pressure acts face by
+face; integration points above the surface carry none."""
 SOURCES = {"Archimedes": "weight of the displaced water",
            "Lamb": "H. Lamb, Hydrodynamics, 6th ed. 1932, art. 68: added mass of a cylinder across the flow is that of the "
                    "water that it displaces",
@@ -38,7 +43,7 @@ def run(case):
     cube = {"shape": "block", "length": 0.02, "width": 0.02, "height": 0.02, "element_size": 0.01}
     sim = scene(cube, WATER, 0.01)
     sim.step(100)
-    case.check("as heavy as water: moves in 1 s by, over 1/2 g t^2", height(sim) / (0.5 * G), 0.0, 1e-6, relative=False,
+    case.check("as heavy as water: motion in 1 s / (1/2 g t^2)", height(sim) / (0.5 * G), 0.0, 1e-6, relative=False,
                source="Archimedes")
 
     # Flat, so that it floats upright: a cube of this density lies on an edge.
@@ -48,9 +53,9 @@ def run(case):
     body = sim.body("body")
     bottom = np.array(body.rest_positions)[:, 2] < 1e-9
     draught = 0.005 - np.array(body.positions)[bottom, 2].mean()
-    case.check("slab of 600 kg/m^3: draught over its height", draught / 0.01, 0.6, 0.02, source="Archimedes")
+    case.check("slab of 600 kg/m^3: draught / height", draught / 0.01, 0.6, 0.02, source="Archimedes")
     load = np.array(body.load_forces).sum(axis=0)[2]
-    case.check("slab of 600 kg/m^3: what carries it over its weight", load / (600 * 16e-6 * G), 1.0, 0.01,
+    case.check("slab of 600 kg/m^3: buoyancy / weight", load / (600 * 16e-6 * G), 1.0, 0.01,
                source="Archimedes")
 
     length, diameter, density = 0.2, 0.02, 1400.0
@@ -70,13 +75,13 @@ def run(case):
         speeds.append(-np.array(body.velocities)[:, 0].mean())
     first = speeds[5] / times[5]
     expected = (density - WATER) * G / (density + WATER)
-    case.check("sinking cylinder: first acceleration", first, expected, 0.05, unit="m/s^2", source="Lamb")
+    case.check("sinking cylinder: initial acceleration", first, expected, 0.05, unit="m/s^2", source="Lamb")
     last = np.sqrt((density - WATER) * G * np.pi / 4 * diameter / (0.5 * WATER * 1.2))
-    case.check("sinking cylinder: last speed", speeds[-1], last, 0.05, unit="m/s", source="drag")
+    case.check("sinking cylinder: final speed", speeds[-1], last, 0.05, unit="m/s", source="drag")
     figure, axis = plots.axes()
     axis.plot(times, speeds, color=plots.OURS, label="sinking cylinder")
     rate = expected / last
     axis.plot(times, last * np.tanh(rate * np.array(times)), "--", color=plots.REFERENCE, label="rigid, by hand")
     axis.set(xlabel="time (s)", ylabel="speed (m/s)")
     axis.legend()
-    case.figure(figure, "A cylinder sinks: v = v_last tanh(a t/v_last).")
+    case.figure(figure, "A cylinder sinks: v = v_final tanh(a t/v_final).")

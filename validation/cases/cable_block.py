@@ -1,4 +1,4 @@
-"""A cable of constant tension in a straight block, by hand."""
+"""A cable of constant tension in a straight block, compared with a hand calculation."""
 
 import numpy as np
 import sinew
@@ -6,12 +6,12 @@ import sinew
 from suite import plots
 from suite.robots import SOLVER
 
-TITLE = "Constant tension in a straight block against hand calculation"
-SETUP = """A block 200 x 20 x 20 mm, E = 200 kPa, nu = 0, linear, clamped at x = 0, with a straight
-cable that is pulled at the clamp and anchored at the free end: on its axis it shortens the middle
-half uniformly by T/(E A); e = 5 mm off the axis it also bends it to the curvature T e/(E I) of
-Euler and Bernoulli. Strain and curvature are measured over the middle half, away from the ends
-(Saint-Venant). Linear tetrahedra are too stiff in bending; they converge from below."""
+TITLE = "A cable of constant tension in a straight block"
+SETUP = """A block of 200 x 20 x 20 mm, E = 200 kPa, nu = 0, linear material, is clamped at x = 0. A straight cable is pulled
+at the clamp and anchored at the free end. On the axis, it shortens the middle half of the block uniformly by T/(E A). At a
+distance e = 5 mm from the axis, it also bends the block to the curvature T e/(E I) of Euler and Bernoulli. Strain and
+curvature are measured over the middle half, away from the ends (Saint-Venant). Linear tetrahedra are too stiff in bending and
+converge from below."""
 SOURCES = {"Timoshenko 1955": "S. Timoshenko, Strength of Materials I, 3rd ed., Van Nostrand 1955, "
                               "articles 2 and 32 (eccentric compression)"}
 COST = 3
@@ -67,4 +67,4 @@ def run(case):
     axis.axhline(expected, color=plots.REFERENCE, ls="--", lw=1, label="T e / (E I)")
     axis.set(xlabel="1 / cells across", ylabel="curvature (1/m)", xlim=(0, None), ylim=(0, None))
     axis.legend()
-    case.figure(figure, "Curvature under an eccentric cable over the cell size.")
+    case.figure(figure, "Curvature under an eccentric cable against cell size.")

@@ -7,17 +7,18 @@ from reference import calculix
 from suite import plots
 from suite.robots import SOLVER
 
-TITLE = "Falling rubber cantilever against CalculiX"
+TITLE = "Falling rubber cantilever compared with CalculiX"
 SETUP = """A beam, 100 x 20 x 20 mm, clamped at one end, neo-Hookean (mu = 35 kPa, kappa = 80 kPa, nu_0 = 0.31), 1000 kg/m^3,
-is let go straight under gravity and swings by more than half its length for 0.6 s, two periods. Both codes on the
-same mesh, at even steps of 2 ms, with consistent masses and without damping: generalized-alpha of spectral radius
-1 and Newton's method here, the method of Hilber, Hughes and Taylor with alpha = 0 (the trapezoidal rule) there, so
-that steps do not damp. The quantity is the vertical motion of the middle of the end. **tet4** is the same element
-in both codes but for the mass, which CalculiX integrates at the one point of the stiffness: the first frequency of
-both masses with our stiffness, by inverse iteration, says what that makes out. **hex8** (mean dilatation here,
-full integration there, which locks in shear alike but also in volume) and **tet10** (mean dilatation here,
-displacements alone there, and masses at four points) are different elements, which must approach each other as the
-mesh is refined."""
+is released from its straight shape under gravity. It swings by more than half its length for 0.6 s, two periods. Both codes
+use the same mesh, equal steps of 2 ms and consistent masses, without damping. Sinew uses generalized-alpha with spectral
+radius 1 and Newton's method, CalculiX the method of Hilber, Hughes and Taylor with alpha = 0 (the trapezoidal rule), so
+neither damps. The quantity is the vertical displacement at the middle of the end.
+
+- **tet4** is the same element in both codes except for its mass, which CalculiX integrates at one point, as it does the
+  stiffness. To show the effect, the first frequency is computed with both masses and our stiffness, by inverse iteration.
+- **hex8** and **tet10** are different elements. In Sinew both have mean dilatation. In CalculiX, hex8 is fully integrated,
+  which locks in shear like ours but also in volume, and tet10 is a pure displacement element with four-point masses. Both
+  codes must converge to each other as the mesh is refined."""
 SOURCES = {"CalculiX": "G. Dhondt, The Finite Element Method for Three-Dimensional Thermomechanical "
                        "Applications, Wiley 2004; program ccx of Debian's calculix-ccx, 2.20"}
 COST = 300
@@ -109,17 +110,17 @@ def run(case):
         if element == "tet4":
             body = sinew.load(scene(element, sizes[0])).body("beam")
             shift = first_frequency(body, np.full((4, 4), 1 / 16)) / first_frequency(body, (1 + np.eye(4)) / 20) - 1
-            case.report(f"tet4, {1e3 * sizes[0]:g} mm: first frequency with masses of one point, over exact ones, less one",
+            case.report(f"tet4, {1e3 * sizes[0]:g} mm: relative difference of the first frequency with one-point and exact masses",
                         100 * shift, unit="%", source="CalculiX")
             limits = troughs[-1]
             what = f"{1e3 * sizes[-1]:g} mm"
         else:  # second order in the size of cells
             limits = troughs[-1] + (troughs[-1] - troughs[0]) / ((sizes[0] / sizes[-1]) ** 2 - 1)
-            what = "extrapolated to no cell size"
+            what = "extrapolated to zero cell size"
             order = np.log(apart[0] / apart[1]) / np.log(sizes[0] / sizes[1])
-            case.report(f"{element}: order at which the difference falls", order, source="CalculiX")
+            case.report(f"{element}: order of the difference", order, source="CalculiX")
         case.check(f"{element}, {what}: time of the first trough", 1e3 * limits[0, 0], 1e3 * limits[1, 0], 0.01, unit="ms",
                    source="CalculiX")
         case.check(f"{element}, {what}: depth of the first trough", -1e3 * limits[0, 1], -1e3 * limits[1, 1], 0.01,
                    unit="mm", source="CalculiX")
-    case.figure(figure, "Fall of the end by both codes; dashed: the coarser mesh.")
+    case.figure(figure, "Fall of the end with both codes; dashed: the coarser mesh.")

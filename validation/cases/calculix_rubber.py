@@ -7,11 +7,10 @@ from reference import calculix
 from suite import plots
 from suite.robots import SOLVER
 
-TITLE = "Rubber block against CalculiX"
-SETUP = """A block, 60 x 20 x 20 mm, clamped at one end, 80 linear tetrahedra of about 10 mm, with a dead load
-of (50, 20, -400) mN spread evenly over the nodes of its other end, which bends it by a quarter of its
-length. Both codes solve for equilibrium on the same mesh with the same energy, so that they must agree to
-the digits that CalculiX prints, seven. kappa = 200 kPa."""
+TITLE = "Rubber block compared with CalculiX"
+SETUP = """A block, 60 x 20 x 20 mm, clamped at one end, of 80 linear tetrahedra of about 10 mm. A dead load of (50, 20, -400)
+mN, distributed evenly over the nodes of the other end, bends it by a quarter of its length. Both codes solve for equilibrium
+on the same mesh with the same energy, so they must agree to the seven digits that CalculiX prints. kappa = 200 kPa."""
 SOURCES = {"CalculiX": "G. Dhondt, The Finite Element Method for Three-Dimensional Thermomechanical "
                        "Applications, Wiley 2004; program ccx of Debian's calculix-ccx"}
 COST = 8
@@ -57,7 +56,7 @@ def run(case):
         largest = np.linalg.norm(reference, axis=1).max()
         apart = np.linalg.norm(moved - reference, axis=1).max()
         case.report(f"{name}: largest displacement", 1e3 * largest, unit="mm", source="CalculiX")
-        case.bound(f"{name}: largest distance of a node from CalculiX's, over it", apart / largest, 1e-6,
+        case.bound(f"{name}: largest distance of a node from CalculiX's / largest displacement", apart / largest, 1e-6,
                    source="CalculiX")
         end = loads[:, 2] != 0
         tips.append(1e3 * moved[end, 2].mean())
@@ -69,4 +68,4 @@ def run(case):
     axis.set_xticks(places, list(LAWS))
     axis.set(ylabel="mean deflection of the end (mm)")
     axis.legend()
-    case.figure(figure, "Deflection of the end under the same load by four laws.")
+    case.figure(figure, "Deflection of the end under the same load with four laws.")

@@ -7,13 +7,14 @@ from suite import plots
 from suite.robots import SOLVER
 
 TITLE = "Friction of cables: the capstan equation"
-SETUP = """A block of 100 x 100 x 20 mm, E = 1 MPa, held on one side, with a cable that enters it straight, follows an arc of
-40 mm over 45 to 300 degrees and leaves it straight to where it is tied. The cable is pulled by 3 N; its tension behind the
-arc is read from the solution of stick and slip at its points, with the arc as 1 to 32 points. The wrap is the sum of the
-angles by which the deformed cable turns. With mu theta beyond 1.6 so little tension is left behind that the block's own
-shrinking under the front of the arc slackens the rear: those points stick or slide back, and T_1/T_2 rightly stays below
-e^(mu theta); that is reported. Then the pull falls to nothing: the tension at the tied end over the pull makes a
-loop, whose two slopes are Euler's."""
+SETUP = """A block of 100 x 100 x 20 mm, E = 1 MPa, is held on one side. A cable enters it straight, follows an arc of 40 mm
+radius over 45 to 300 degrees, and leaves it straight to its fixed end. The cable is pulled with 3 N. The tension behind the
+arc is read from the stick-slip solution at the points, with the arc divided into 1 to 32 points. The wrap angle is the sum of
+the angles by which the deformed cable turns.
+
+For mu theta above 1.6, little tension is left behind the arc, and the contraction of the block under the front of the arc
+slackens the rear. Those points stick or slide back, and T_1/T_2 correctly stays below e^(mu theta); this is reported. Then
+the pull falls to zero: the tension at the fixed end plotted over the pull forms a loop whose two slopes are Euler's."""
 SOURCES = {"Euler": "L. Euler, Remarques sur l'effet du frottement dans l'equilibre, Mem. Acad. Sci. Berlin 18 (1762): "
                     "T_1/T_2 = e^(mu theta)"}
 COST = 3
@@ -51,14 +52,14 @@ def run(case):
             if friction * rope.wrap < 1.6:  # beyond, see SETUP
                 worst = max(worst, abs(ratio / np.exp(friction * rope.wrap) - 1.0))
             else:
-                case.report(f"mu = {friction}, {degrees} degrees: T_1/T_2 over e^(mu theta)",
+                case.report(f"mu = {friction}, {degrees} degrees: T_1/T_2 / e^(mu theta)",
                             ratio / float(np.exp(friction * rope.wrap)), source="Euler")
             wraps.append(rope.wrap)
             ratios.append(ratio)
         left.semilogy(np.degrees(wraps), ratios, "o", color=color, label=f"mu = {friction}")
         fine = np.linspace(0, 6, 50)
         left.semilogy(np.degrees(fine), np.exp(friction * fine), "-", color=color, lw=1)
-    case.check("T_1/T_2 over e^(mu theta), worst of 10", 1.0 + worst, 1.0, 0.005, source="Euler")
+    case.check("T_1/T_2 / e^(mu theta), worst of 10", 1.0 + worst, 1.0, 0.005, source="Euler")
     for points in (1, 4, 32):
         sim = bollard(0.3, np.pi / 2, points)
         rope = sim.actuator("rope")
@@ -80,9 +81,9 @@ def run(case):
     right.plot([0, PULL], [0, PULL * slope], "--", color=plots.REFERENCE, lw=1, label="e^(-mu theta)")
     right.plot([0, PULL * slope**2], [0, PULL * slope], ":", color=plots.REFERENCE, lw=1, label="e^(mu theta)")
     back = 30 + int(np.argmin(np.abs(pulls[30:90] - 0.5 * PULL * slope**2)))
-    case.check("tied end over pull while the cable slides back", tied[back] / pulls[back], 1.0 / slope, 0.02, source="Euler")
+    case.check("tension at the fixed end / pull while the cable slides back", tied[back] / pulls[back], 1.0 / slope, 0.02, source="Euler")
     left.set(xlabel="wrap (degrees)", ylabel="T_1/T_2")
     left.legend()
-    right.set(xlabel="pull (N)", ylabel="tension at the tied end (N)")
+    right.set(xlabel="pull (N)", ylabel="tension at the fixed end (N)")
     right.legend()
-    case.figure(figure, "Left: tensions before and behind the arc; lines are Euler's. Right: a cycle of pull.")
+    case.figure(figure, "Left: tensions in front of and behind the arc; lines: Euler. Right: a cycle of the pull.")

@@ -7,15 +7,19 @@ from scipy.optimize import linprog
 from suite import plots
 
 TITLE = "Card tents and a card house of three levels"
-SETUP = """Cards of 90 x 60 x 2 mm and 1000 kg/m^3 lean at 60 degrees to the floor, two and two. Thin cards stand iff mu >= cot(60
-deg)/2 = 0.2887: friction at the foot balances half the moment of the weight. (i) Cards are hulls of triangles. Their
-tops are cut upright, so that the two of a tent meet in faces, and level, to carry plates. The right one is 0.1 mm thinner and
-4 mm narrower than the left one, so that its corners lie inside a face. A house has three tents, a plate over all, two tents, a
-plate, and a tent. Do forces in the cones of friction balance all cards? That is a linear program in two dimensions. Below its
-least friction the house must fall; just above it, it stands if it can. (ii) Cards are boxes of equal size, whose upper edges meet, with
-five plates: mu = 0.9 (IPC's house) stands, and mu = 0.2 falls, since less than cot(60 deg)/2 - 2/(2 x 90) = 0.278 holds
-no tent. To stand is to creep by less than 1e-6 of a card's length from 0.1 s to ten seconds, to fall is to move by 0.1 of it.
-Falling gains no energy. Steps are 5 ms of backward Euler."""
+SETUP = """Cards of 90 x 60 x 2 mm and 1000 kg/m^3 lean against each other in pairs at 60 degrees to the floor. Thin cards
+stand if and only if mu >= cot(60 deg)/2 = 0.2887: friction at the foot balances half the moment of the weight.
+
+- *Hulls.* The cards are triangle hulls. Their tops are cut vertically, so that the two cards of a tent meet in faces, and
+  horizontally, to carry plates. The right card is 0.1 mm thinner and 4 mm narrower than the left one, so its corners lie
+  inside a face. A house consists of three tents, a plate across them, two tents, a plate, and one tent. A linear program in
+  two dimensions looks for forces in the friction cones that balance all cards. Below its least friction the house must fall;
+  just above, it can stand.
+- *Boxes.* The cards are boxes of equal size whose upper edges meet, with five plates. With mu = 0.9 (as in the IPC paper) the
+  house stands. With mu = 0.2 it falls, because no tent stands below cot(60 deg)/2 - 2/(2 x 90) = 0.278.
+
+A house stands if it creeps by less than 1e-6 of a card's length between 0.1 s and ten seconds, and falls if it moves by 0.1
+of that length. It must not gain energy while it falls. Steps are 5 ms, backward Euler."""
 SOURCES = {"statics": "a ladder against another: mu = cot(t)/2 for thin cards; with thickness, a linear program",
            "house": "IPC's card house, 60 degrees, mu = 0.9: M. Li et al., Incremental Potential Contact, ACM Trans. Graphics 39 (2020) 49",
            "Coulomb": "contact with friction: no creep at rest; impacts without rebound dissipate"}
@@ -27,7 +31,7 @@ EXPLODES = "surfaces of triangles whose edges cross as they slip: the step has n
 
 
 class Card:
-    """A prism along y over a convex polygon in x and z, counter-clockwise for who looks along y."""
+    """A prism along y over a convex polygon in x and z, counter-clockwise seen along y."""
 
     def __init__(self, name, points, width):
         self.name, self.points, self.width = name, np.array(points), width
@@ -127,7 +131,7 @@ class House:
         return np.array([self.sim.body(name).position for name in self.names])
 
     def watch(self):
-        """Creep from 0.1 s to ten seconds, over the length of a card."""
+        """Creep from 0.1 s to ten seconds / length of a card."""
         self.sim.run(duration=0.1)
         settled, crept = self.places(), 0.0
         while self.sim.time < 10.0 - 1e-6:
@@ -172,7 +176,7 @@ def box_house(levels=3, gap=0.002, pitch=0.102):
 
 
 def falls(case, name, house, axis, label, known=""):
-    """Whether it falls, and what energy it gains in a step, over its weight times a card's length."""
+    """Whether it falls, and the largest energy gain in a step / (its weight times a card's length)."""
     moved, gained, reason = 0.0, 0.0, ""
     first, before = house.places(), 0.0
     try:
@@ -185,9 +189,9 @@ def falls(case, name, house, axis, label, known=""):
     except sinew.Error as error:
         reason, moved = f"stopped: {error.kind}", float("nan")
     weight = G * sum(house.sim.body(body).mass for body in house.names)
-    case.check(f"{name}: it falls; way of a card over its length, counted up to 0.1", min(moved, 0.1) if moved >= 0.1 else moved, 0.1, 1e-9,
+    case.check(f"{name}: it falls; displacement of a card / its length, counted up to 0.1", min(moved, 0.1) if moved >= 0.1 else moved, 0.1, 1e-9,
                source="statics", known_miss=known, remark=reason)
-    case.bound(f"{name}: largest gain of energy in a step of the fall over weight times length", gained / (weight * LENGTH), 1e-9, source="Coulomb",
+    case.bound(f"{name}: largest energy gain in a step of the fall / (weight times length)", gained / (weight * LENGTH), 1e-9, source="Coulomb",
                known_miss=known)
     if axis is not None and moved >= 0.1:
         house.draw(axis, plots.SECOND, label)
@@ -196,13 +200,13 @@ def falls(case, name, house, axis, label, known=""):
 def brackets(case, name, levels, shares, axis, known=""):
     bound = House(levels).least_friction()
     if levels == 1:
-        case.check(f"{name}: least friction by the linear program, over cot(60 deg)/2", 2.0 * np.tan(ANGLE) * bound, 1.0, 0.04, source="statics",
-                   remark="tolerance: thickness over length times tan(60 deg) is 0.038")
+        case.check(f"{name}: least friction by the linear program / (cot(60 deg)/2)", 2.0 * np.tan(ANGLE) * bound, 1.0, 0.04, source="statics",
+                   remark="tolerance: thickness/length times tan(60 deg) is 0.038")
     else:
         case.report(f"{name}: least friction by the linear program", bound, source="statics")
     above, below = shares
     stands = House(levels).load(case.scratch, above * bound)
-    case.bound(f"{name}, {above:g} of the least friction: creep in ten seconds over a card's length", stands.watch(), 1e-6, source="statics")
+    case.bound(f"{name}, {above:g} of the least friction: creep in ten seconds / card length", stands.watch(), 1e-6, source="statics")
     stands.draw(axis, plots.OURS, f"{above:g} of the least friction, ten seconds")
     falls(case, f"{name}, {below:g} of the least friction", House(levels).load(case.scratch, below * bound), axis, f"{below:g} of it", known)
     axis.set(xlabel="x (mm)", ylabel="z (mm)", aspect="equal")
@@ -219,6 +223,6 @@ def run(case):
     figure, (left, right) = plots.axes(2)
     brackets(case, "tent", 1, (1.01, 0.99), left)
     brackets(case, "house of three levels", 3, (1.02, 0.98), right, EXPLODES)
-    case.bound("house of boxes, mu = 0.9: creep in ten seconds over a card's length", BoxHouse(0.9).watch(), 1e-6, source="house")
+    case.bound("house of boxes, mu = 0.9: creep in ten seconds / card length", BoxHouse(0.9).watch(), 1e-6, source="house")
     falls(case, "house of boxes, mu = 0.2", BoxHouse(0.2), None, "")
-    case.figure(figure, "A tent and a house of three levels, with a little more and a little less than the least friction.")
+    case.figure(figure, "A tent and a house of three levels, with slightly more and slightly less than the least friction.")

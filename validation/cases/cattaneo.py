@@ -8,15 +8,17 @@ from suite import plots
 
 from .hertz import E, SPOT, core_cells, in_plane
 
-TITLE = "Cattaneo and Mindlin: a ball that sticks in the middle and slips around"
-SETUP = """The rigid ball of the case hertz, a/R = 0.01, on rubber with nu = 0.49 and mu = 0.5, is pressed down and then
-pushed along x; a half ball of radius 400 a, y >= 0, is meshed. (The theory neglects how normal and tangential tractions
-act on each other, which vanishes at nu = 0.5.) With x = Q/(mu P), a disc of radius c = a (1 - x)^(1/3) sticks and the
-ball moves d_t = 3 mu P S/(16 a) (1 - (1 - x)^(2/3)), S = (2 - nu)/G. P, Q and a, from the second moment of the normal
-forces, 2/5 P a^2, are those of the simulation. The tractions that friction leaves over, mu p - |q|, are theirs of a
-smaller ball over the stick disc: c follows from their second moment, as a does. The disc of the area of sticking nodes
-is reported. Then the ball goes to and fro between +-d_t, and the area of the loop of Q over d_t, by Simpson's rule, is
-compared with the loss of a cycle. The border of the half ball takes about 0.25 % from d_t, which is not corrected."""
+TITLE = "Cattaneo and Mindlin: a ball in partial slip"
+SETUP = """The rigid ball of the case hertz, a/R = 0.01, is pressed on rubber with nu = 0.49 and mu = 0.5 and then pushed
+along x. A half ball of radius 400 a, y >= 0, is meshed. The theory neglects the interaction of normal and tangential
+tractions, which vanishes at nu = 0.5. With x = Q/(mu P), a disc of radius c = a (1 - x)^(1/3) sticks, and the ball moves by
+d_t = 3 mu P S/(16 a) (1 - (1 - x)^(2/3)), S = (2 - nu)/G.
+
+P, Q and a are taken from the simulation, a from the second moment of the normal forces, 2/5 P a^2. The remaining capacity of
+friction, mu p - |q|, is that of a smaller ball on the stick disc, so c follows from its second moment in the same way. The
+disc with the area of the sticking nodes is reported. Then the ball moves to and fro between +-d_t, and the area of the loop
+of Q over d_t, by Simpson's rule, is compared with the theoretical loss per cycle. The boundary of the half ball reduces d_t
+by about 0.25 %, which is not corrected."""
 SOURCES = {"Mindlin": "C. Cattaneo, Rend. Accad. Naz. Lincei 27 (1938) 342; R. D. Mindlin, Compliance of elastic bodies in contact, J. Appl. Mech. "
                       "16 (1949) 259-268; K. L. Johnson, Contact Mechanics, 1985, sec. 7.2",
            "Deresiewicz": "R. D. Mindlin, H. Deresiewicz, Elastic spheres in contact under varying oblique forces, J. Appl. Mech. 20 (1953) "
@@ -29,7 +31,7 @@ PRESS = 3  # steps of 1 s that press the ball down
 
 
 def moved(fraction):
-    """d_t over that of full slip."""
+    """d_t / that of full slip."""
     return 1.0 - (1.0 - fraction)**(2.0 / 3.0)
 
 
@@ -82,7 +84,7 @@ def pushes(case, convergence, stick):
         errors.append([abs(way[1] / theory[1] - 1.0), abs(disc[1] / spot[1] / np.cbrt(1.0 - x[1]) - 1.0)])
         stick.plot(x, disc / spot, "o", ms=2 + cells // 2, mfc="none", color=plots.OURS, label="a/h = 8, tractions" if cells == 8 else None)
     for k in range(3):
-        case.check(f"x = {x[k]:.3f}: way d_t", 1e3 * way[k], 1e3 * theory[k], 0.02, source="Mindlin", unit="mm")
+        case.check(f"x = {x[k]:.3f}: displacement d_t", 1e3 * way[k], 1e3 * theory[k], 0.02, source="Mindlin", unit="mm")
         case.check(f"x = {x[k]:.3f}: stick radius c/a, from tractions", disc[k] / spot[k], np.cbrt(1.0 - x[k]), 0.03, source="Mindlin")
         case.report(f"x = {x[k]:.3f}: c/a from the area of sticking nodes", nodes[k] / spot[k], reference=np.cbrt(1.0 - x[k]), source="Mindlin")
     stick.plot(x, nodes / spot, "x", color=plots.SECOND, label="a/h = 8, sticking nodes")
@@ -112,7 +114,7 @@ def cycles(case, axis):
     x, factor = tangential[last] / limit, 9.0 / 10.0 * limit**2 / spot[last] * SHEAR
     theory = factor * (1.0 - (1.0 - x)**(5.0 / 3.0) - 5.0 * x / 6.0 * (1.0 + (1.0 - x)**(2.0 / 3.0)))
     case.check(f"loss of a cycle between +-Q, x = {x:.3f}, a/h = 6", 1e9 * loss, 1e9 * theory, 0.03, source="Deresiewicz", unit="nJ")
-    case.check("Q after a cycle over Q before", tangential[last] / tangential[first], 1.0, 2e-3, source="Deresiewicz")
+    case.check("Q after a cycle / Q before", tangential[last] / tangential[first], 1.0, 2e-3, source="Deresiewicz")
     full = 3.0 / 16.0 * limit / spot[last] * SHEAR
     fall = np.linspace(x, -x, 100)
     back = full * (2.0 * moved((x - fall) / 2.0) - moved(x))
@@ -127,5 +129,5 @@ def run(case):
     figure, (left, middle, right) = plots.axes(3)
     pushes(case, left, middle)
     cycles(case, right)
-    case.figure(figure, "Left: errors of way and stick radius, 2 to 8 cells over a. Middle: stick radius; larger circles are finer meshes. Right: "
+    case.figure(figure, "Left: errors of displacement and stick radius, 2 to 8 cells over a. Middle: stick radius; larger circles: finer meshes. Right: "
                         "a cycle between +-Q.")

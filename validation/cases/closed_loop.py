@@ -1,4 +1,4 @@
-"""Closed loops on robots that are not their model: errors left, and the largest gain for a delay."""
+"""Closed loops on robots that differ from their model: remaining errors, and the largest gain for a delay."""
 
 import pathlib
 import sys
@@ -9,17 +9,16 @@ from sinew import control
 
 from suite import plots
 
-TITLE = "Closed loops on robots that are not quite their model"
-SETUP = """(i) The trunk of examples/trunk hanging under gravity, eight cables, and a plant that differs from the model: 1369
-nodes for 703, 30 % stiffer or softer, friction of 0.1 at every point of the cables, 20 g hung near the tip, each alone
-and all at once; a camera sees the tip with 0.1 mm of white noise on each coordinate, 20 ms late. Distance of the tip
-(true, not measured) from its target in the last of 2.5 s, mean; open loop (the model alone), resolved rate (6/s) and
-model predictive control over 10 steps, cables commanded by tension or by length. (ii) The finger of the tests with four
-taut cables: the largest gain at which a step of 20 um dies out, by bisection to 0.5 %, for delays of 0 to 8 samples,
-with an exact model and with one that is 1.3 times too stiff, whose plant moves more by the eigenvalue of
-J_real J_model^+."""
+TITLE = "Closed loops on robots that differ from their model"
+SETUP = """- The trunk of examples/trunk hangs under gravity and has eight cables. The plant differs from the model: 1369 instead of 703
+  nodes, 30 % stiffer or softer, friction of 0.1 at every point of the cables, 20 g suspended near the tip, each alone and all
+  together. A camera sees the tip 20 ms late with 0.1 mm of white noise on each coordinate. The quantity is the mean true
+  distance of the tip from its target in the last second of 2.5 s, in open loop (the model alone), with resolved rate (6/s),
+  and with model predictive control over 10 steps. Cables are commanded by tension or by length.
+- A finger with four taut cables: the largest gain at which a step of 20 um decays, by bisection to 0.5 %, for delays of 0 to
+  8 samples. The model is exact, or 1.3 times too stiff; the plant then moves more, by the eigenvalue of J_real J_model^+."""
 SOURCES = {
-    "aim": "what the project asks of itself: 0.2 mm with 0.1 mm of noise at the marker, where the open loop is 5 to 10 mm off",
+    "aim": "our aim: 0.2 mm with 0.1 mm of noise at the marker, where the open loop is 5 to 10 mm off",
     "root locus": "largest root of z^(d+1) - z^d + k = 0 on the unit circle: k = 2 sin(pi/(2 (2 d + 1))) (Levin & May, Theoretical "
                   "Population Biology 9 (1976) 178-187)",
 }
@@ -35,7 +34,7 @@ DELAYS = (0, 1, 2, 4, 8)
 
 
 def example():
-    """The example's module: what it shows is what is validated."""
+    """The example's module, so that this case validates the example."""
     folder = str(ROOT / "examples" / "python")
     if folder not in sys.path:
         sys.path.append(folder)
@@ -87,7 +86,7 @@ CABLES = ["east", "north", "west", "south"]
 
 
 def finger(stiffness=1.0, delay=None):
-    """At rest under 3 N in each cable, seen by a camera with a delay (s) if there is one."""
+    """At rest under 3 N in each cable; with a delay (s), a camera measures it."""
     camera = f"sensors={{camera: {{type: marker, body: finger, point: 0 0 80 mm, delay: {delay} s}}}}"
     sim = sinew.load(ROOT / "python" / "tests" / "scenes" / "finger.yaml",
                      set=[f"bodies.finger.material.young_modulus={400 * stiffness} kPa", *([camera] if delay is not None else [])])
@@ -99,7 +98,7 @@ def finger(stiffness=1.0, delay=None):
 
 
 def dies_out(plant, model, gain):
-    """Whether a step of 20 um towards x does, with a rate of gain/T and tensions commanded."""
+    """Whether a step of 20 um towards x decays, with a rate of gain/T and commanded tensions."""
     start = np.array(plant.effector("tip").position)
     plant, step = plant.clone(), 2e-5
     plant.solve_static()  # the camera has seen it rest
@@ -138,14 +137,14 @@ def gains_and_delays(case, panel):
     for name, stiffness, scale in (("exact model", 1.0, 1.0), ("model too stiff", 1.0 / 1.3, factor)):
         found[name] = [largest_gain(finger(stiffness, delay * model.time_step), model, exact[delay] / scale) for delay in DELAYS]
         for delay, gain in zip(DELAYS, found[name]):
-            case.check(f"{name}: largest rate times sample time, {delay} samples late", gain, exact[delay] / scale, 0.02,
+            case.check(f"{name}: largest product of rate and sample time, {delay} samples late", gain, exact[delay] / scale, 0.02,
                        source="root locus", remark="" if scale == 1.0 else f"over the eigenvalue {scale:.3f} of J_real J_model^+")
     late = np.linspace(0, 8, 200)
     for (name, gains), colour, scale in zip(found.items(), (plots.OURS, plots.SECOND), (1.0, factor)):
         panel.plot(late, 2.0 * np.sin(np.pi / (2.0 * (2.0 * late + 1.0))) / scale, color=plots.REFERENCE, lw=1)
         panel.plot(DELAYS, gains, "o", color=colour, label=name)
     panel.plot(late[5:], np.pi / (2.0 * (late[5:] + 0.5)), ":", color=plots.REFERENCE, label="pi/(2 tau)")
-    panel.set(xlabel="delay (samples)", ylabel="largest rate times sample time", ylim=(0, 2.2))
+    panel.set(xlabel="delay (samples)", ylabel="largest product of rate and sample time", ylim=(0, 2.2))
     panel.legend()
 
 
@@ -153,7 +152,7 @@ def run(case):
     figure, (first, second) = plots.axes(2)
     errors_left(case, example(), first)
     first.axhline(0.2, color=plots.REFERENCE, lw=1)
-    first.set(xlabel="time (s)", ylabel="tip from its target (mm)")
+    first.set(xlabel="time (s)", ylabel="distance of the tip from its target (mm)")
     first.legend(fontsize="x-small")
     gains_and_delays(case, second)
-    case.figure(figure, "Tensions commanded, all errors at once: distance of the tip from its target. Largest gains against the delay.")
+    case.figure(figure, "Left: distance of the tip from its target, commanded tensions, all errors at once. Right: largest gains against delay.")

@@ -1,4 +1,4 @@
-"""W against finite differences of the nonlinear statics, reciprocity, and the corotated tangent."""
+"""W compared with finite differences of the nonlinear statics, reciprocity, and the corotated tangent."""
 
 import numpy as np
 import sinew
@@ -7,11 +7,10 @@ from suite import plots
 from suite.robots import own_trunk, published_trunk
 
 TITLE = "Compliance W: finite differences, reciprocity, and the corotated tangent"
-SETUP = """The trunk of examples/trunk with point forces on its tip, held by one cable's tension at
-several deflections. Each column of W with the exact tangent and the cables' geometric stiffness is
-compared with central differences of static equilibria under efforts changed by 1e-4 of themselves;
-W must be symmetric (Maxwell-Betti). The corotated tangent without geometric stiffness is set
-beside it: how far its tip compliance is off, not scored."""
+SETUP = """The trunk of examples/trunk has point forces on its tip and is bent by the tension of one cable to several
+deflections. Each column of W, with the exact tangent and the cables' geometric stiffness, is compared with central
+differences of static equilibria whose efforts differ by a relative 1e-4. W must be symmetric (Maxwell-Betti). For comparison,
+the error of the tip compliance with the corotated tangent and without geometric stiffness is reported; it is not scored."""
 SOURCES = {
     "differences": "central differences of solve_static, this suite",
     "Betti 1872": "E. Betti, Teoria della elasticita, Il Nuovo Cimento 7 (1872) 5-21, "
@@ -74,19 +73,19 @@ def run(case):
     for tension in TENSIONS:
         worst, bend, w, rough, rows = compare(sim, tension)
         bends.append(1e3 * bend)
-        case.bound(f"W against differences, long_0 at {tension:g} N", worst, 1e-5,
+        case.bound(f"W and differences, long_0 at {tension:g} N", worst, 1e-5,
                    source="differences", remark="largest column error, relative")
         case.identity(f"|W - W^T| / |W| at {tension:g} N", np.linalg.norm(w - w.T)
                       / np.linalg.norm(w), 1e-10, source="Betti 1872")
         exact, fast = tip_block(w, rows), tip_block(rough, rows)
         off.append(100 * np.linalg.norm(fast - exact) / np.linalg.norm(exact))
-        case.report(f"corotated tangent: tip compliance off, tip moved by {1e3 * bend:.0f} mm",
+        case.report(f"corotated tangent: error of the tip compliance at a tip deflection of {1e3 * bend:.0f} mm",
                     off[-1], unit="%", source="corotated tangent")
     published(case)
     figure, axis = plots.axes()
     axis.plot(bends, off, "o-", color=plots.OURS)
-    axis.set(xlabel="deflection of the tip (mm)", ylabel="tip compliance off by (%)")
-    case.figure(figure, "The corotated tangent's error of tip compliance grows with deflection.")
+    axis.set(xlabel="deflection of the tip (mm)", ylabel="error of the tip compliance (%)")
+    case.figure(figure, "The error of the tip compliance with the corotated tangent grows with deflection.")
 
 
 def published(case):

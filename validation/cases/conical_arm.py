@@ -1,4 +1,4 @@
-"""The published conical arm let go under its weight: what three laws make of it."""
+"""The published conical arm released under its weight, with three laws."""
 
 import numpy as np
 import sinew
@@ -7,12 +7,13 @@ from suite import plots
 from suite.case import REPOSITORY
 
 TITLE = "Conical arm of Ecoflex 00-30 under its weight"
-SETUP = """The arm of examples/arm/conical.yaml: 260 mm long, radius 17 to 8 mm, clamped level at its base, in
-hexahedra of mean dilatation, nu_0 = 0.49, density 1070 kg/m^3. Its rest position is found by letting it go
-for 4 s with damping and Newton's method from there. Three laws as published for it; on each the cells are
-halved once. The source compares with an experiment, whose shape it does not tabulate: its Ogden law came
-within 1.26 % of it, the other two within 5.7 %. The Ogden law here has the sign of mu_3 that keeps it stable;
-damping is not in the source and changes no rest position."""
+SETUP = """The arm of examples/arm/conical.yaml is 260 mm long with radii from 17 to 8 mm and clamped level at its base.
+Mean-dilatation hexahedra, nu_0 = 0.49, 1070 kg/m^3. Its equilibrium is found by releasing it for 4 s with damping, followed
+by Newton's method. Three laws are used as published for it, each with one refinement to half the cell size.
+
+The source compares with an experiment, whose shape it does not tabulate: its Ogden law was within 1.26 % of it, the other two
+within 5.7 %. Our Ogden law has the sign of mu_3 that keeps it stable. The source gives no damping; damping does not change
+the equilibrium."""
 SOURCES = {"published": "the multi-flexible-body simulation of this arm; see docs/materials.md and the library's "
                         "entries"}
 COST = 30
@@ -41,18 +42,18 @@ def run(case):
         fine[name], axes[name], elements = rest(law, "3.25 mm")
         motion = np.linalg.norm(fine[name] - start)
         case.report(f"{name}: the tip sinks by", -fine[name][0], unit="mm", source="published")
-        case.report(f"{name}: and comes back towards the base by", LENGTH - fine[name][2], unit="mm",
+        case.report(f"{name}: the tip moves towards the base by", LENGTH - fine[name][2], unit="mm",
                     source="published")
         case.bound(f"{name}: change of the tip by halving 6.5 mm cells ({elements} hexahedra then), over its "
                    "motion", np.linalg.norm(fine[name] - coarse) / motion, 0.02, source="published")
     motion = np.linalg.norm(fine["Ogden"] - start)
     for name in list(LAWS)[1:]:
-        case.report(f"{name}: tip apart from Ogden's, over its motion",
+        case.report(f"{name}: difference of the tip from Ogden's, relative to its motion",
                     np.linalg.norm(fine[name] - fine["Ogden"]) / motion, source="published")
     figure, axis = plots.axes()
     for name, line in axes.items():
         axis.plot(line[:, 2], line[:, 0], label=name)
-    axis.plot([0, LENGTH], [0, 0], color=plots.QUIET, lw=3, label="let go from here")
-    axis.set(xlabel="along the arm as it was held (mm)", ylabel="height (mm)", aspect="equal")
+    axis.plot([0, LENGTH], [0, 0], color=plots.QUIET, lw=3, label="initial shape")
+    axis.set(xlabel="position along the initial axis (mm)", ylabel="height (mm)", aspect="equal")
     axis.legend()
-    case.figure(figure, "The arm's axis at rest, by four laws.")
+    case.figure(figure, "Axis of the arm at rest, with four laws.")

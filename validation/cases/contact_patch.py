@@ -10,22 +10,24 @@ from suite import plots
 from suite.robots import SOLVER
 
 TITLE = "Contact patch test: uniform pressure under a rigid plate, and between two blocks"
-SETUP = """A block of 40 x 40 x 20 mm of 5 x 5 x 3 distorted cells stands on rollers; a rigid surface presses it from
-above, without friction: a plane that moves down by 2 mm, then a rigid plate on a slider that a motor presses with 20 N.
-The Saint Venant-Kirchhoff law, E = 100 kPa, nu = 0.3, gives uniform stress: F = A E l (l^2 - 1)/2, l the stretch. The
-forces of nodes ought to be the loads that belong to a uniform pressure on the faces of the elements, a third of a
-triangle's area to each corner (tet4) or each mid-edge (tet10, nothing to its corners).
-Two blocks of 40 x 40 x 20 mm lie on each other, nu = 0, mu = 0.3; the upper one's top moves down by 4 mm. Their contact
-faces have 4 x 4 cells each, or 4 x 4 and 5 x 5, or 6 x 6 and 7 x 7, which match nowhere. Displacements ought to be linear."""
+SETUP = """A block of 40 x 40 x 20 mm with 5 x 5 x 3 distorted cells stands on rollers. A rigid surface presses on it from
+above without friction: a plane that moves down by 2 mm, then a rigid plate on a slider, pressed by a motor with 20 N. The
+Saint Venant-Kirchhoff law, E = 100 kPa, nu = 0.3, gives uniform stress: F = A E l (l^2 - 1)/2 with the stretch l. The nodal
+forces should be the consistent loads of a uniform pressure on the element faces: a third of a triangle's area to each corner
+(tet4) or to each mid-edge (tet10, none to the corners).
+
+Two blocks of 40 x 40 x 20 mm lie on each other, nu = 0, mu = 0.3. The top of the upper one moves down by 4 mm. Their contact
+faces have 4 x 4 cells each, or 4 x 4 and 5 x 5, or 6 x 6 and 7 x 7, which do not match anywhere. The displacements should be
+linear."""
 SOURCES = {"patch": "uniform stress; consistent loads of a pressure: O. C. Zienkiewicz, R. L. Taylor, The Finite Element Method, 6th ed. 2005, "
                     "sec. 3.3; R. L. Taylor, P. Papadopoulos, On a patch test for contact problems, 1991"}
 COST = 12
-POINTS = "quadratic faces touch as their four flat triangles"
+POINTS = "quadratic faces make contact as four flat triangles"
 SIZE, CELLS, YOUNG = np.array([0.04, 0.04, 0.02]), (5, 5, 3), 1e5
 
 
 def distorted(case, element):
-    """A block whose nodes are moved at random, those of faces within them."""
+    """A block whose nodes are displaced at random; nodes on faces stay in them."""
     counts = np.array(CELLS)
     grid = np.stack(np.meshgrid(*[np.arange(n + 1) for n in counts], indexing="ij"), axis=-1).reshape(-1, 3)
     inside = (grid > 0) & (grid < counts)
@@ -106,8 +108,8 @@ def under_a_plane(case, element):
     share = consistent(case, element, np.asarray(contact.positions))
     sim.step(4)
     forces, wanted = np.asarray(contact.normal_forces), force_of(0.9)
-    case.identity(f"{element}: force under the plane, over the closed form less 1", abs(forces.sum() / wanted - 1.0), 1e-8, source="patch")
-    case.identity(f"{element}: largest error of a node's force, of the largest",
+    case.identity(f"{element}: force under the plane / closed form - 1", abs(forces.sum() / wanted - 1.0), 1e-8, source="patch")
+    case.identity(f"{element}: largest error of a nodal force / largest force",
                   np.abs(forces - share * wanted / share.sum()).max() / forces.max(), 1e-7, source="patch")
     return share, forces
 
@@ -123,10 +125,10 @@ def under_a_plate(case, element, force=20.0):
     sim.step(4)
     way = sim.joint("guide").displacement
     stretch = brentq(lambda stretch: force_of(stretch) - force, 0.7, 1.0)
-    case.identity(f"{element}: way of the plate under its motor, over the closed form less 1", abs(way / ((1.0 - stretch) * SIZE[2]) - 1.0), 1e-8,
+    case.identity(f"{element}: displacement of the plate under its motor / closed form - 1", abs(way / ((1.0 - stretch) * SIZE[2]) - 1.0), 1e-8,
                   source="patch")
     uneven = float(np.ptp(np.asarray(sim.contact("press").positions)[:, 2]))
-    case.bound(f"{element}: unevenness of the face under the plate, over its way", uneven / way, 1e-8, source="patch")
+    case.bound(f"{element}: unevenness of the face under the plate / displacement", uneven / way, 1e-8, source="patch")
 
 
 def half(element, cells, height, face, **more):
@@ -136,7 +138,7 @@ def half(element, cells, height, face, **more):
 
 
 def between_blocks(case, element):
-    """The errors of the displacement, over the way of the top, on meshes that do not match."""
+    """Errors of the displacement / displacement of the top, on meshes that do not match."""
     way, errors = 0.2 * SIZE[2], []
     for cells in ((4, 4), (4, 5), (6, 7)):
         sim = sinew.load({
@@ -154,9 +156,9 @@ def between_blocks(case, element):
             spread = max(spread, np.abs(stress / stress.mean() - 1.0).max())
         known = POINTS if element == "tet10" and cells != (4, 4) else ""
         name = f"{element}, {cells[0]} x {cells[0]} on {cells[1]} x {cells[1]} cells"
-        case.bound(f"{name}: error of the displacement, over the way", displaced, 1e-6, source="patch", known_miss=known)
-        case.bound(f"{name}: spread of the stress, of its mean", spread, 1e-6, source="patch", known_miss=known)
-        case.identity(f"{name}: force, over the closed form less 1", abs(sim.contact("cut").normal_force / force_of(0.9) - 1.0), 2e-6,
+        case.bound(f"{name}: error of the displacement / imposed displacement", displaced, 1e-6, source="patch", known_miss=known)
+        case.bound(f"{name}: spread of the stress / its mean", spread, 1e-6, source="patch", known_miss=known)
+        case.identity(f"{name}: force / closed form - 1", abs(sim.contact("cut").normal_force / force_of(0.9) - 1.0), 2e-6,
                       source="patch", known_miss=known)
         errors.append(displaced)
     return errors
@@ -171,9 +173,9 @@ def run(case):
         blocks.semilogy(range(3), between_blocks(case, element), "o-", ms=4, color=color, label=element)
     area = np.linspace(0.0, 1.1 * share.max(), 2)
     axis.plot(1e6 * area, area * force_of(0.9) / (SIZE[0] * SIZE[1]), color=plots.REFERENCE, lw=1, label="uniform pressure")
-    axis.set(xlabel="area that belongs to a node (mm^2)", ylabel="its force (N)")
+    axis.set(xlabel="area of a node (mm^2)", ylabel="its force (N)")
     axis.legend()
     blocks.axhline(1e-6, color=plots.REFERENCE, lw=1, label="asked")
-    blocks.set(xticks=range(3), xticklabels=("4 on 4", "4 on 5", "6 on 7"), xlabel="cells along a side", ylabel="error of the displacement, over the way")
+    blocks.set(xticks=range(3), xticklabels=("4 on 4", "4 on 5", "6 on 7"), xlabel="cells along a side", ylabel="error of the displacement / imposed displacement")
     blocks.legend()
-    case.figure(figure, "Left: forces of nodes under a plane over their areas. Right: blocks on each other.")
+    case.figure(figure, "Left: nodal forces under a plane against the areas of the nodes. Right: blocks on each other.")

@@ -8,17 +8,19 @@ import sinew
 from suite import plots
 from suite.robots import own_trunk
 
-TITLE = "Inverse control beside a wall: targets reached by touching, and behind it"
-SETUP = """The trunk of examples/trunk with its eight cables, tensions of 0 to 20 N, at most 100 mm/s, and a
-plane 25 mm from its axis, which its tip touches when the trunk bends by about 10 mm. (i) 40 targets that are
-reached by touching: tips of the trunk pulled by random tensions, ramped in 0.5 s and held for 0.5 s, of those
-that press on the wall with more than 50 mN. Each run starts from the rest shape, with the controller's own
-settings, and ends when the status says that the robot is on target or rests, or after 10 s. Without friction
-the target is an equilibrium of the robot and the wall; with mu = 0.3 it depends on the way there, and other
-efforts may hold the tip at the same place. (ii) 10 targets 3 to 10 mm behind what the wall lets the tip reach:
-the tip must rest. (iii) The circle of examples/trunk, whose far side lies behind the wall. In every run the deepest point in the
-wall is kept."""
-SOURCES = {"aim": "what the project asks of itself: 0.05 mm at rest, at most 5 % of the targets held by a local "
+TITLE = "Inverse control beside a wall: targets reached by touching it, and behind it"
+SETUP = """The trunk of examples/trunk with its eight cables (tensions of 0 to 20 N, at most 100 mm/s) hangs beside a plane 25
+mm from its axis. The tip touches the plane when the trunk bends by about 10 mm. The deepest penetration is recorded in every
+run.
+
+- 40 targets that require contact. They are tip positions of the trunk under random tensions, ramped in 0.5 s and held for 0.5
+  s, in which it presses on the wall with more than 50 mN. Each run starts from the rest shape with the controller's default
+  settings. It ends when the status reports that the robot is on target or at rest, or after 10 s. Without friction the target
+  is an equilibrium of robot and wall. With mu = 0.3 it depends on the path, and other efforts may hold the tip at the same
+  position.
+- 10 targets 3 to 10 mm behind the positions that the wall lets the tip reach. The tip must come to rest.
+- The circle of examples/trunk, the far side of which lies behind the wall."""
+SOURCES = {"aim": "our aim: 0.05 mm at rest, at most 5 % of the targets held by a local "
                   "optimum, no point in the wall"}
 COST = 100
 LIMITS = {"tension": {"min": "0 N", "max": "20 N"}, "displacement": {"rate": "100 mm/s"}}
@@ -26,7 +28,7 @@ TARGETS, BEHIND, MOST_STEPS, BLOCK = 40, 10, 1000, 20
 RESTING = ("out-of-reach", "local-optimum")
 WALL = 0.025
 NEAR_BUCKLING = ("tensions of 20 N press the trunk against the wall until it is about to buckle: a linearised step no "
-                 "longer tells where an effort leads, and some runs do not rest")
+                 "longer predicts the effect of an effort, and some runs do not come to rest")
 
 
 def trunk(friction):
@@ -81,9 +83,9 @@ def reached(case, friction, targets):
     errors = np.array([ik.error for _, ik, _, _ in runs])
     statuses = [status for _, _, _, status in runs]
     with_friction = f"mu = {friction}: "
-    case.bound(with_friction + "targets reached by touching: not reached to 0.05 mm",
+    case.bound(with_friction + "targets reached by touching: number not reached to 0.05 mm",
                100 * np.mean(errors > 5e-5), 5.0, unit="%", source="aim")
-    case.bound(with_friction + "deepest point in the wall", -1e6 * min(deepest for _, _, deepest, _ in runs), 0.1, unit="um",
+    case.bound(with_friction + "deepest penetration of the wall", -1e6 * min(deepest for _, _, deepest, _ in runs), 0.1, unit="um",
                source="aim")
     counts = collections.Counter(statuses)
     case.report(with_friction + "targets reached by touching: statuses",
@@ -132,10 +134,10 @@ def circle(case, friction):
         deepest = min(deepest, float(np.min(sim.contact("wall").gaps)))
     path, wanted, forces = np.array(path)[100:], np.array(wanted)[100:], np.array(forces)[100:]
     free = forces == 0.0
-    case.report(f"mu = {friction}: circle: part of the way in touch", 100 * np.mean(~free), unit="%", source="aim")
-    case.report(f"mu = {friction}: circle: distance from the target where it does not touch, median",
+    case.report(f"mu = {friction}: circle: fraction of the path in contact", 100 * np.mean(~free), unit="%", source="aim")
+    case.report(f"mu = {friction}: circle: median distance from the target without contact",
                 1e3 * np.median(np.linalg.norm(path - wanted, axis=1)[free]), unit="mm", source="aim")
-    case.bound(f"mu = {friction}: circle: deepest point in the wall", -1e6 * deepest, 0.1, unit="um", source="aim")
+    case.bound(f"mu = {friction}: circle: deepest penetration of the wall", -1e6 * deepest, 0.1, unit="um", source="aim")
     return path, wanted
 
 
@@ -156,6 +158,6 @@ def run(case):
         right.semilogx(np.sort(1e3 * errors) + 1e-9, np.arange(1, len(errors) + 1) / len(errors), style,
                        color=plots.OURS, label=f"mu = {friction}")
     right.axvline(0.05, color="0.6", ls=":")
-    right.set(xlabel="distance at rest (mm)", ylabel="part of the targets")
+    right.set(xlabel="distance at rest (mm)", ylabel="fraction of the targets")
     right.legend()
-    case.figure(figure, "Left: a circle that a wall cuts. Right: targets that are reached by touching.")
+    case.figure(figure, "Left: a circle cut by a wall. Right: targets reached by touching.")

@@ -1,4 +1,4 @@
-"""The rest of inverse control against the optimum over all equilibria, by derivative-free search."""
+"""Inverse control at rest compared with the optimum over all equilibria, by derivative-free search."""
 
 import warnings
 
@@ -8,16 +8,18 @@ from scipy.optimize import minimize
 
 from suite import plots
 
-TITLE = "Inverse control beside a wall: the optimum over all equilibria"
-SETUP = """A finger (cylinder of 10 mm radius and 80 mm length, 400 kPa, four cables of at most 6 N that may not push) stands
-2 mm beside a frictionless wall, whose normal is 30 degrees from the plane of two cables. Twelve targets: six that the tip reaches, by
-touching or not, and six beyond the reach of the cables or behind the wall. An inverse controller with its own settings is
-stepped to rest, with Newton (the default) and with one linearisation a step. The same problem, the tensions of the
-static equilibrium whose tip is nearest to the target within the limits, is then solved by the method of Powell (Computer J.
-7, 1964) with bounds, and after it by that of Nelder and Mead (Computer J. 7, 1965), from the controller's tensions on; and from
-20 random starts each. Without friction the equilibrium does not depend on its history; each one is solved from the rest shape to 1e-12."""
+TITLE = "Inverse control beside a wall: comparison with the optimum over all equilibria"
+SETUP = """A finger (cylinder of 10 mm radius and 80 mm length, 400 kPa, four cables that pull with at most 6 N) stands 2 mm
+beside a frictionless wall, whose normal is 30 degrees from the plane of two cables. Six targets can be reached, with or
+without touching. Six more lie beyond the reach of the cables or behind the wall. An inverse controller with default settings
+is stepped until it rests, with Newton's method (the default) and with one linearisation per step.
+
+The reference solves the same problem: the tensions within the limits whose static equilibrium has its tip closest to the
+target. It uses the methods of Powell (Computer J. 7, 1964) with bounds and then of Nelder and Mead (Computer J. 7, 1965),
+starting from the controller's tensions and from 20 random points. Without friction an equilibrium does not depend on its
+history; each one is solved from the rest shape to 1e-12."""
 SOURCES = {"Powell": "M. J. D. Powell, Computer Journal 7 (1964) 155-162, as in SciPy",
-           "aim": "what the project asks of itself: no farther than 0.1 mm beyond the optimum found from its answer"}
+           "aim": "our aim: no farther than 0.1 mm beyond the optimum found from its answer"}
 COST = 120
 CABLES, LIMIT, STARTS = ("east", "north", "west", "south"), 6.0, 20
 RESTING = ("on-target", "out-of-reach", "local-optimum")
@@ -61,7 +63,7 @@ class Equilibria:
         return self.sim.effector("tip").position
 
     def search(self, target, start, thorough):
-        """The least distance found (m). Distances below 1 um are as good as none."""
+        """The smallest distance found (m). Distances below 1 um count as zero."""
         distance = lambda t: np.linalg.norm(self.tip(t) - target)  # noqa: E731
         bounds = [(0.0, LIMIT)] * len(CABLES)
         found = minimize(distance, np.clip(start, 0.0, LIMIT), method="Powell", bounds=bounds,
@@ -109,12 +111,12 @@ def run(case):
             rows.append((newton, once, near, min(near, *starts), status))
     newton, once, near, best = (np.array([row[k] for row in rows]) for k in range(4))
     case.bound("targets in reach: distance at rest, largest", 1e3 * newton[:6].max(), 0.1, unit="mm", source="aim")
-    case.bound("targets out of reach: beyond the optimum found from the controller's answer, largest",
+    case.bound("targets out of reach: largest excess over the optimum found from the controller's answer",
                1e3 * (newton - near)[6:].max(), 0.1, unit="mm", source="aim")  # fmt: skip
-    case.report("beyond the best of 20 other starts, largest", 1e3 * (newton - best).max(), unit="mm", source="Powell")
-    case.report("one linearisation a step: beyond Newton's rest, largest", 1e3 * (once - newton).max(), unit="mm", source="aim")
+    case.report("largest excess over the best of 20 other starts", 1e3 * (newton - best).max(), unit="mm", source="Powell")
+    case.report("one linearisation per step: largest excess over the result with Newton's method", 1e3 * (once - newton).max(), unit="mm", source="aim")
     case.report("statuses", ", ".join(row[4] for row in rows), source="aim")
-    case.report("equilibria that the searches solved", equilibria.count, source="Powell")
+    case.report("equilibria solved by the searches", equilibria.count, source="Powell")
     figure, axes = plots.axes()
     place = np.arange(len(rows))
     axes.plot(place, 1e3 * best, "_", ms=18, label="best of all searches")

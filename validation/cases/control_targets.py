@@ -9,17 +9,19 @@ import sinew
 from suite import plots
 from suite.robots import own_trunk
 
-TITLE = "Inverse control at rest: random targets in and out of reach"
-SETUP = """The trunk of examples/trunk with its eight cables, tensions of 0 to 20 N, at most 100 mm/s, and
-the controller's own settings. (i) 200 targets that can be reached: tips of static equilibria of random
-tensions, each cable slack or pulled by up to 18 N, at random. Each run starts from the rest shape and
-ends when the status says that the robot is on target or rests, or after 10 s. (ii) 12 targets in random
-directions, 200 to 320 mm from the base, of which many are out of reach: the tip must rest, and no other
-tensions may bring it nearer. The least distance is the best of three searches over static equilibria,
-from the controller's tensions, from half of them, and from random ones."""
+TITLE = "Inverse control at rest: random targets within and out of reach"
+SETUP = """The trunk of examples/trunk with its eight cables, tensions of 0 to 20 N, at most 100 mm/s, and the controller's
+default settings.
+
+- 200 targets that can be reached: tip positions of static equilibria under random tensions, in which each cable is slack or
+  pulled with up to 18 N. Each run starts from the rest shape. It ends when the status reports that the robot is on target or
+  at rest, or after 10 s.
+- 12 targets in random directions, 200 to 320 mm from the base, many of them out of reach. The tip must come to rest, and no
+  other tensions may bring it closer. The smallest distance is the best of three searches over static equilibria: from the
+  controller's tensions, from half of them, and from random ones."""
 SOURCES = {
-    "aim": "what the project asks of itself: 0.05 mm at rest, at most 2 % of the targets held by a local "
-           "optimum, each of them named by the status",
+    "aim": "our aim: 0.05 mm at rest, at most 2 % of the targets held by a local "
+           "optimum, each of them reported by the status",
     "SciPy": "scipy.optimize.minimize (L-BFGS-B) over solve_static, tensions in [0, 20] N, gradients from "
              "the compliance",
 }
@@ -46,7 +48,7 @@ def settle(sim, tensions):
 
 
 def reachable_targets(sim, rng):
-    """Tips of random equilibria, (n, 3), and how many random tensions had none that was found."""
+    """Tips of random equilibria, (n, 3), and the number of random tensions for which none was found."""
     tips, failed = [], 0
     while len(tips) < IN_REACH:
         tensions = 18.0 * rng.uniform(size=8) * (rng.uniform(size=8) < 0.4)
@@ -77,13 +79,13 @@ def reached(case, scene, targets):
     errors, statuses = np.array(errors), np.array(statuses)
     near = errors < 5e-5
     said = (statuses == "on-target") == (errors < 1e-4)
-    case.bound("targets in reach: not reached to 0.05 mm", 100 * np.mean(~near), 2.0, unit="%",
+    case.bound("targets within reach: number not reached to 0.05 mm", 100 * np.mean(~near), 2.0, unit="%",
                source="aim")
-    case.report("targets in reach: largest distance of those reached", 1e3 * errors[near].max(),
+    case.report("targets within reach: largest distance of those reached", 1e3 * errors[near].max(),
                 unit="mm", source="aim")
-    case.agree("targets in reach: statuses that contradict the distance", int(np.sum(~said)), 0,
+    case.agree("targets within reach: statuses that contradict the distance", int(np.sum(~said)), 0,
                source="aim")
-    case.agree("targets in reach: not reached, and not named so by the status",
+    case.agree("targets within reach: not reached, and not reported by the status",
                int(np.sum(~near & ~np.isin(statuses, RESTING))), 0, source="aim")
     counts = collections.Counter(statuses.tolist())
     case.report("targets in reach: statuses", ", ".join(f"{k} {n}" for k, n in counts.most_common()),
@@ -126,7 +128,7 @@ def beyond(case, scene, probe, rng):
         least = least_distance(probe, goal, [efforts, 0.5 * efforts, rng.uniform(0, 8, size=8)])
         excess.append(error / least - 1.0)
         statuses.append(status)
-    case.bound("targets out of reach: farther than the least distance", 100 * max(excess), 0.1, unit="%",
+    case.bound("targets out of reach: excess over the smallest distance", 100 * max(excess), 0.1, unit="%",
                source="SciPy")
     case.bound("targets out of reach: motion of the tip in 50 steps at rest", 1e6 * max(drift), 1.0,
                unit="um", source="aim")
@@ -140,10 +142,10 @@ def run(case):
     scene, rng = trunk(), np.random.default_rng(2025)
     probe = sinew.load(scene)
     targets, failed = reachable_targets(probe, rng)
-    case.report("random tensions without an equilibrium that was found", failed, source="aim")
+    case.report("random tensions for which no equilibrium was found", failed, source="aim")
     errors = reached(case, scene, targets)
     beyond(case, scene, probe, rng)
     figure, axis = plots.axes()
     axis.semilogy(1e3 * np.linalg.norm(targets[:, :2], axis=1), 1e3 * errors, ".", color=plots.OURS)
     axis.set(xlabel="distance of the target from the axis (mm)", ylabel="distance at rest (mm)")
-    case.figure(figure, "Targets in reach: how far the tip stays from each.")
+    case.figure(figure, "Targets within reach: remaining distance of the tip from each.")

@@ -8,12 +8,13 @@ from suite import plots
 from suite.robots import SOLVER
 
 TITLE = "Cook's membrane, nearly incompressible"
-SETUP = """A tapered panel with corners (0, 0), (48, 44), (48, 60), (0, 44) mm, clamped at the left, E = 70
-N/mm^2, nu = 0.49, in plane strain (one layer of cells, 1 mm thick, on rollers along z), with a shear
-traction of 6.25 N/mm^2 upwards on its right edge. The quantity is the vertical displacement of the corner
-(48, 60). Small strain: a neo-Hookean panel under a ten-thousandth of the load, scaled up. n x n cells;
-tetrahedra are the same cells split in six. At finite strain the whole load is applied to the neo-Hookean
-panel; published values scatter with the form of the volumetric energy, so that it is not scored."""
+SETUP = """A tapered panel with corners (0, 0), (48, 44), (48, 60), (0, 44) mm is clamped at the left, E = 70 N/mm^2, nu =
+0.49, in plane strain (one layer of cells, 1 mm thick, on rollers along z), with a shear traction of 6.25 N/mm^2 upwards on
+its right edge. The quantity is the vertical displacement of the corner (48, 60).
+
+Small strain: a neo-Hookean panel under a ten-thousandth of the load, scaled up. The mesh has n x n cells; for tetrahedra each
+cell is split into six. Finite strain: the neo-Hookean panel under the full load. Published values vary with the form of the
+volumetric energy, so this is not scored."""
 SOURCES = {
     "fine quadratic": "plane-strain meshes of very many quadratic elements converge to about 28.0 mm; locked "
                       "linear elements gave 11.8 (R. D. Cook, J. Struct. Div. ASCE 100 (1974) 1851-1863 for the "
@@ -46,7 +47,7 @@ def panel(folder, n, element):
 
 
 def corner(folder, n, element, scale):
-    """Vertical displacement (mm) of the corner over the share `scale` of the load."""
+    """Vertical displacement (mm) of the corner / fraction `scale` of the load."""
     sim = sinew.load({
         "sinew": 1, "gravity": [0, 0, 0], "solver": SOLVER,
         "bodies": {"panel": {

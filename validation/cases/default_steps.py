@@ -1,4 +1,4 @@
-"""What users get who set nothing: steps with every default against equilibrium and conservation of energy."""
+"""Steps with default settings compared with equilibrium and conservation of energy."""
 
 import pathlib
 import warnings
@@ -8,17 +8,21 @@ import sinew
 
 from suite import plots
 
-TITLE = "Default steps: cables, hung strips, random robots and swings with nothing set"
-SETUP = """No scene here has a `solver` key. (i) The example trunk is pulled by one long cable at 20 mm/s, the others slack, and its tip is
-compared with the equilibrium that `solve_static` finds from there, over the tip's travel. (ii) A strip of 100 x 10 x 4 mm, 100 kPa, hangs and
-feels its weight at once. (iii) 60 random robots: blocks of 60 to 200 mm, 30 kPa to 3 MPa, tet4 or hex8, corotational or neo-Hookean, gravity
-along any axis or none, one to three cables with or without friction, pulled or tensioned at once or within 0.2 to 2 s to 80 % of their limits.
-A step is right when its tip is within 0.5 % of its travel of the equilibrium from there; one that is not has to be flagged, or the run has to
-stop. (iv) A beam of 100 x 20 x 20 mm, 1 MPa, hinged at an edge and let go level, swings for 1 s; energy that it holds beyond that of the
-start is compared with the swing's, and the time at which it passes below its hinge with that of a rigid plate."""
+TITLE = "Default steps: cables, hanging strips, random robots and swings with default settings"
+SETUP = """No scene in this case has a `solver` key.
+
+- One long cable pulls the example trunk at 20 mm/s, the others are slack. The tip is compared with the equilibrium that
+  `solve_static` finds from the same state, relative to the tip's travel.
+- A strip of 100 x 10 x 4 mm, 100 kPa, hangs and gets its weight at once.
+- 60 random robots: blocks of 60 to 200 mm, 30 kPa to 3 MPa, tet4 or hex8, corotational or neo-Hookean, with gravity along any
+  axis or none, and one to three cables with or without friction, pulled or tensioned at once or within 0.2 to 2 s to 80 % of
+  their limits. A step is right if its tip is within 0.5 % of its travel from the equilibrium that is found from there. A step
+  that is not right must be flagged, or the run must stop.
+- A beam of 100 x 20 x 20 mm, 1 MPa, hinged at an edge, is released level and swings for 1 s. Its energy beyond the initial
+  energy is compared with that of the swing, and the time at which it time at which it passes below its hinge with that of a rigid plate."""
 SOURCES = {"statics": "Newton's method to a residual of 1e-10 (`solve_static`), checked against independent finite elements",
            "energy": "conservation of energy",
-           "pendulum": "compound pendulum let go level: the turn over the rate that conservation of energy gives, by quadrature"}
+           "pendulum": "compound pendulum released level: the angle divided by its rate from conservation of energy, by quadrature"}
 COST = 90
 TRUNK = pathlib.Path(__file__).resolve().parents[2] / "examples" / "trunk" / "trunk.yaml"
 RIGHT = 5e-3
@@ -38,12 +42,12 @@ def pull_trunk(case, axis):
         sim.solve_static()
         travel = np.linalg.norm(np.diff(path, axis=0), axis=1).sum()
         off = np.linalg.norm(path[-1] - sim.effector("tip").position)
-        case.bound(f"trunk pulled {1e3 * pulled:.0f} mm: tip off equilibrium, of its travel", off / travel, RIGHT, source="statics")
+        case.bound(f"trunk pulled {1e3 * pulled:.0f} mm: distance of the tip from equilibrium / travel", off / travel, RIGHT, source="statics")
     path = 1e3 * np.array(path)
     axis.plot(np.hypot(path[:, 0], path[:, 1]), path[:, 2], color=plots.OURS, label="steps")
     tip = 1e3 * sim.effector("tip").position
     axis.plot(np.hypot(tip[0], tip[1]), tip[2], "o", mfc="none", color=plots.REFERENCE, label="equilibrium")
-    axis.set(xlabel="tip from the axis (mm)", ylabel="height (mm)")
+    axis.set(xlabel="distance of the tip from the axis (mm)", ylabel="height (mm)")
     axis.legend()
 
 
@@ -56,7 +60,7 @@ def hang_strip(case):
     stepped = sim.effector("tip").position.copy()
     sim.solve_static()
     equilibrium = sim.effector("tip").position
-    case.bound("hung strip after two steps: tip off equilibrium, of its sag",
+    case.bound("hanging strip after two steps: distance of the tip from equilibrium / sag",
                np.linalg.norm(stepped - equilibrium) / abs(equilibrium[2]), RIGHT, source="statics")
 
 
@@ -136,12 +140,12 @@ def random_robots(case, axis, count=60):
             errors.append(error)
     seen = ", ".join(f"{number} {outcome}" for outcome, number in sorted(outcomes.items()))
     told = outcomes.get("flagged", 0) + outcomes.get("stopped", 0) + outcomes.get("flagged though right", 0)
-    case.bound(f"{count} random robots: wrong without a word", outcomes.get("wrong", 0) / count, 0.0, source="statics", remark=seen)
+    case.bound(f"{count} random robots: wrong without a flag", outcomes.get("wrong", 0) / count, 0.0, source="statics", remark=seen)
     case.bound(f"{count} random robots: flagged or stopped", told / count, 0.05, source="statics")
     case.bound(f"{count} random robots: flagged though right", outcomes.get("flagged though right", 0) / count, 0.0, source="statics")
     axis.hist(np.log10(np.maximum(errors, 1e-16)), bins=30, color=plots.OURS)
     axis.axvline(np.log10(RIGHT), color=plots.REFERENCE, ls="--")
-    axis.set(xlabel="log10 of tip off equilibrium over travel", ylabel="robots")
+    axis.set(xlabel="log10 of distance from equilibrium / travel", ylabel="robots")
 
 
 def swing(integrator, element, model):
@@ -181,11 +185,11 @@ def swings(case, axis):
     for element, model in (("tet4", "corotational"), ("hex8", "neo-hookean")):
         for integrator in ("backward-euler", "bdf2", "generalized-alpha"):
             gained, passed, heights = swing(integrator, element, model)
-            case.bound(f"swing, {element}, {integrator}, 10 ms: energy gained, of the swing's", gained, 0.01, source="energy")
-            case.check(f"swing, {element}, {integrator}, 10 ms: passes below its hinge", passed, quarter_period(),
+            case.bound(f"swing, {element}, {integrator}, 10 ms: energy gained / swing energy", gained, 0.01, source="energy")
+            case.check(f"swing, {element}, {integrator}, 10 ms: time at which it passes below its hinge", passed, quarter_period(),
                        0.1 if integrator == "backward-euler" else 0.05, source="pendulum", unit="s")
         axis.plot(0.01 * np.arange(1, len(heights) + 1), 1e3 * np.array(heights), label=element)
-    axis.set(xlabel="time (s)", ylabel="tip's height (mm), generalized-alpha")
+    axis.set(xlabel="time (s)", ylabel="height of the tip (mm), generalized-alpha")
     axis.legend()
 
 

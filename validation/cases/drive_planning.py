@@ -1,4 +1,4 @@
-"""Swings planned in the commands of the cylinders that drive them, against torques planned first and inverted after."""
+"""Swings planned in the commands of drive cylinders, compared with torques that are planned first and then inverted."""
 
 import pathlib
 import sys
@@ -9,15 +9,17 @@ from sinew import identify, pcc, plan
 from suite import plots
 
 TITLE = "Swings planned in the commands of drive cylinders"
-SETUP = """The identified four-segment arm with the actuators (tau = 4e12 V^3, 80 ms late) and drive cylinders (second
-order, 40 rad/s, sampled by 10 ms, limits of command and volume) of examples/fluidic_arm/ilc_plants.json, from hanging
-at rest to the goals of the case on grabs, in 1.6 s, with knots of 32 ms, seven random starts each. One problem: motion,
-volumes and commands together. Two stages: torques with rates within 2 N m/s, their volumes by the actuator's inverse,
-the commands by a quadratic program; with 1 N m/s too, from one start. The commands then go through the whole chain: the
-cylinders' exact steps, the delay, the actuators and the arm, integrated with error control. The same with cylinders of 20 rad/s and,
-in 2 s, 10 rad/s, one start each. Plans in one problem claim 0.2 cm and 0.5 cm/s after the chain, which is the aim."""
+SETUP = """The identified four-segment arm has the actuators (tau = 4e12 V^3, 80 ms delay) and drive cylinders (second order,
+40 rad/s, sampled at 10 ms, with limits on command and volume) of examples/fluidic_arm/ilc_plants.json. It swings from hanging
+at rest to the goals of the case planning in 1.6 s, with knots of 32 ms and seven random starts each.
+
+*One problem* plans motion, volumes and commands together. *Two stages* plans torques with rates within 2 N m/s, inverts the
+actuators for the volumes, and finds the commands by a quadratic program; one start is repeated with 1 N m/s. The commands
+then go through the whole chain: exact steps of the cylinders, delay, actuators, and the arm integrated with error control.
+The same is done with cylinders of 20 rad/s and, in 2 s, of 10 rad/s, with one start each. Plans in one problem promise 0.2 cm
+and 0.5 cm/s after the chain, which is the aim."""
 SOURCES = {
-    "aim": "this project's aim: as good as a plan of torques whose drives are perfect",
+    "aim": "our aim: as accurate as a plan of torques with perfect drives",
     "two stages": "plan.invert_drive, docs/planning.md",
     "simulator": "identify.predict_motion, which reads volumes and delays in its own way",
     "fine": "cylinders exact in steps of 1 ms, commands held for ten, so that nothing is interpolated",
@@ -65,7 +67,7 @@ def two_stages(plant, goal, cylinders, seed, duration, rate=2.0):
 
 
 def otherwise(plant, goal, cylinders, drive):
-    """The tip at the end by the simulator that identification uses, from its own reading of the volumes."""
+    """The final tip by the simulator of the identification, which interpolates the volumes itself."""
     arm, actuators, _ = plant.model()
     volumes = np.stack([c.simulate(u) for c, u in zip(cylinders, drive["command"].T)], axis=1)
     ends = identify.predict_motion(arm, drive["times"], np.zeros(4), inputs=volumes, actuators=actuators,
@@ -74,7 +76,7 @@ def otherwise(plant, goal, cylinders, drive):
 
 
 def finely(plant, goal, drive):
-    """The run with next to no discretisation: the continuous cylinders under held commands."""
+    """The run almost without discretisation: continuous cylinders under held commands."""
     arm, actuators, _ = plant.model()
     task = plan.Task(arm, plant.GOALS[goal])
     given = plant.MODEL["cylinder"]
@@ -84,7 +86,7 @@ def finely(plant, goal, drive):
 
 
 def compare(case, plant, frequency, goal, duration, ways):
-    """What each way leaves of the tip's speed (cm/s), worst of its starts."""
+    """Final tip speed (cm/s) of each method, worst of its starts."""
     cylinders = [plant.cylinder(frequency=frequency / plant.MODEL["cylinder"]["frequency"])] * 3
     speeds = {}
     for name, (way, scored) in ways.items():
@@ -92,7 +94,7 @@ def compare(case, plant, frequency, goal, duration, ways):
         tried = [way(plant, goal, cylinders, seed, duration) for seed in seeds]
         found = [of for of, _, _ in tried if of.found]
         title = f"{frequency} rad/s, {goal}, {name}"
-        case.report(f"{title}: starts that led to a plan", f"{len(found)} of {len(tried)}", source="aim")
+        case.report(f"{title}: starts that lead to a plan", f"{len(found)} of {len(tried)}", source="aim")
         error, speed = (100 * max(getattr(run, what) for _, run, _ in tried) for what in ("tip_error", "tip_speed"))
         change = 1e6 * max(np.abs(np.diff(drive["command"], axis=0)).max() for _, _, drive in tried)
         speeds[name] = speed
@@ -111,10 +113,10 @@ def compare(case, plant, frequency, goal, duration, ways):
 def check(case, plant, title, goal, cylinders, tried):
     least = min(of.objective for of, _, _ in tried)
     same = sum(of.objective < 1.001 * least for of, _, _ in tried)
-    case.report(f"{title}: starts that led to the same cost", f"{same} of {len(tried)}", source="optimum")
+    case.report(f"{title}: starts that lead to the same cost", f"{same} of {len(tried)}", source="optimum")
     _, run, drive = tried[0]
     apart = np.linalg.norm(otherwise(plant, goal, cylinders, drive) - run.tip[-1])
-    case.bound(f"{title}: tip by the identification's simulator, apart", 100 * apart, 0.001, unit="cm",
+    case.bound(f"{title}: tip by the simulator of the identification: difference", 100 * apart, 0.001, unit="cm",
                source="simulator")
     fine = finely(plant, goal, drive)
     case.bound(f"{title}, in continuous time: tip error", 100 * fine.tip_error, 0.3, unit="cm", source="fine")
@@ -148,7 +150,7 @@ def draw(case, plant, speeds):
             right.semilogy(places + 0.2 * (k - 1), values, marker, color=colour, label=name if k == 0 else None,
                            alpha=1.0 - 0.3 * k)
     right.set_xticks(places, list(plant.GOALS))
-    right.set(xlabel="goal; 40, 20, 10 rad/s from left to right", ylabel="tip's speed at the end (cm/s)")
+    right.set(xlabel="goal; 40, 20, 10 rad/s from left to right", ylabel="final speed of the tip (cm/s)")
     right.legend()
-    case.figure(figure, "Left: torque of one segment on the way to A, cylinders of 20 rad/s, planned (dotted) and "
-                        "delivered. Right: what is left of the tip's speed after the chain.")
+    case.figure(figure, "Left: torque of one segment on the swing to A, cylinders of 20 rad/s, planned (dotted) and "
+                        "delivered. Right: final speed of the tip after the chain.")

@@ -9,18 +9,20 @@ from sinew import estimate
 from suite import plots
 from suite.robots import TRUNK_FOLDER
 
-TITLE = "Estimation: forces, their places and the shape of a trunk"
-SETUP = """The trunk of examples/trunk with three markers on its surface, read with 0.1 mm of noise in each coordinate: at its
-upper rim, and at 125 and 60 mm on other sides. Eight cables are held at lengths that encoders read, and load cells
-read their tensions: with 0.1 mm and 50 mN, and with 0.01 mm and 10 mN. A twin of the same mesh and material makes the
-readings, so that noise and nonlinearity are what is tested. **Known place**: 500 forces (100 with the finer sensors)
-on the tip's centre, of 0.1 to 0.5 N, two cables pulled by up to 12 and 8 mm. The force along the trunk is observed
-ten times worse than those across and reported by itself. **Unknown place**: 100 pushes of 0.1 to 2 N at random points
-of 48 patches that move the rim's marker by 5 to 40 mm, within friction's cone of 0.3 about the inward normal of the
-patch; an answer that is refused counts as wrong."""
+TITLE = "Estimation: forces on a trunk, where they act, and its shape"
+SETUP = """The trunk of examples/trunk has three markers on its surface with 0.1 mm of noise on each coordinate: one at its
+upper rim, the others at 125 and 60 mm on other sides. Eight cables are held at lengths that encoders read, and load cells
+read their tensions, with noise of 0.1 mm and 50 mN, or of 0.01 mm and 10 mN. The readings come from a twin with the same mesh
+and material, so the case tests noise and nonlinearity.
+
+- **Known position**: 500 forces (100 with the finer sensors) of 0.1 to 0.5 N on the centre of the tip, with two cables pulled
+  by up to 12 and 8 mm. The force along the trunk is observed ten times less accurately than the lateral forces and is
+  reported separately.
+- **Unknown position**: 100 pushes of 0.1 to 2 N at random points of 48 patches, within a friction cone of 0.3 about the
+  inward normal of the patch, that move the marker at the rim by 5 to 40 mm. A search that gives no answer counts as wrong."""
 SOURCES = {
-    "twin": "the force, place and shape that made the readings",
-    "theory": "chi squared: a 90 % ellipsoid of a Gaussian estimate holds the truth in 90 of 100 cases",
+    "twin": "the force, its position and the shape that produced the readings",
+    "theory": "chi squared: a 90 % ellipsoid of a Gaussian estimate contains the true value in 90 of 100 cases",
     "control": "the inverse controller's step on examples/trunk/circle.yaml, same process, CPU time, median",
 }
 COST = 330
@@ -40,7 +42,7 @@ def twin(unknowns, grade=COARSE, **settings):
 
 
 def read(model, pull, generator):
-    """Noisy readings of the model as it stands."""
+    """Noisy readings of the model in its present state."""
     readings = dict(zip(model.outputs, model.read() + model.noise * generator.standard_normal(len(model.outputs))))
     deviation = {sensor.name: sensor.std for sensor in model.measured}
     for cable, length in zip(CABLES, pull):
@@ -78,19 +80,19 @@ def known_place(case, grade, count, label):
     across, allowed = np.array(across), np.maximum(0.03 * np.array(forces), 0.010)
     whole = np.hypot(across, along)
     within = 100 * np.mean(across <= allowed)
-    case.check(f"known place, {label}: forces across the trunk within 3 % or 10 mN", within, 100, 10, relative=False, unit="%",
-               source="twin", known_miss="the noise of lengths and tensions allows no better, as the ellipsoids show" if within < 90 else "",
+    case.check(f"known position, {label}: forces across the trunk within 3 % or 10 mN", within, 100, 10, relative=False, unit="%",
+               source="twin", known_miss="limited by the noise of lengths and tensions, as the ellipsoids show" if within < 90 else "",
                remark=f"median {1e3 * np.median(across):.2g} mN, 90 % below {1e3 * np.quantile(across, 0.9):.2g} mN")
-    case.report(f"known place, {label}: error of the force along the trunk, median", 1e3 * np.median(along), unit="mN",
+    case.report(f"known position, {label}: median error of the force along the trunk", 1e3 * np.median(along), unit="mN",
                 source="twin", remark=f"{100 * np.mean(whole <= allowed):.0f} % of whole forces are within 3 % or 10 mN")
-    case.bound(f"known place, {label}: RMS error of the shape, largest of all", 1e3 * np.max(shapes), 0.3, unit="mm",
+    case.bound(f"known position, {label}: largest RMS error of the shape", 1e3 * np.max(shapes), 0.3, unit="mm",
                source="twin", remark=f"median {1e3 * np.median(shapes):.2g} mm")
-    case.check(f"known place, {label}: share of 90 % ellipsoids that hold the force", held / count, 0.9, 0.05, relative=False,
+    case.check(f"known position, {label}: fraction of 90 % ellipsoids that contain the force", held / count, 0.9, 0.05, relative=False,
                source="theory", remark=f"{held} of {count}")
 
 
 def push(model, areas, generator):
-    """A random push and its readings; None where it moves the rim too little or too much."""
+    """A random push and its readings; None if it moves the rim too little or too much."""
     k = generator.integers(len(areas))
     area, pull = areas[k], pulled(generator, (0.010, 0.006))
     triangle = area.triangles[generator.integers(len(area.triangles))]
@@ -138,14 +140,14 @@ def unknown_place(case, grade, label):
             errors.append(np.linalg.norm(found.force - force) / np.linalg.norm(force))
         else:
             wrong += 1
-    case.check(f"unknown place, {label}: right of {PUSHES} pushes, {PATCHES} patches", right, 100, 10, relative=False,
+    case.check(f"unknown position, {label}: correct answers of {PUSHES} pushes, {PATCHES} patches", right, 100, 10, relative=False,
                source="twin",
-               known_miss="pushes near the edge of a patch, whose probability says so" if right < 90 else "")
-    case.bound(f"unknown place, {label}: refused", refused, 10, source="twin", known_miss="ambiguous ones" if refused > 10 else "")
+               known_miss="mostly pushes near the edge of a patch; the probability reflects this" if right < 90 else "")
+    case.bound(f"unknown position, {label}: without an answer", refused, 10, source="twin", known_miss="ambiguous ones" if refused > 10 else "")
     said = np.array(said)
-    case.report(f"unknown place, {label}: mean probability that it gives its answer", 100 * said[:, 0].mean(), unit="%", source="twin",
-                reference=100 * said[:, 1].mean(), remark="reference: the share of these answers that are right")
-    case.report(f"unknown place, {label}: error of the force where the patch is right, median", 100 * np.median(errors), unit="%",
+    case.report(f"unknown position, {label}: mean probability of its answer", 100 * said[:, 0].mean(), unit="%", source="twin",
+                reference=100 * said[:, 1].mean(), remark="reference: the fraction of these answers that are correct")
+    case.report(f"unknown position, {label}: median error of the force where the patch is correct", 100 * np.median(errors), unit="%",
                 source="twin")
     figure, axis = plots.axes()
     edges = np.linspace(0.3, 1.0, 8)
@@ -153,10 +155,10 @@ def unknown_place(case, grade, label):
     middle = [said[which == b, 0].mean() for b in range(len(edges) - 1) if (which == b).any()]
     share = [said[which == b, 1].mean() for b in range(len(edges) - 1) if (which == b).any()]
     axis.plot(middle, share, "o", color=plots.OURS, label="patches")
-    axis.plot([0, 1], [0, 1], color=plots.REFERENCE, lw=1, label="as it should be")
-    axis.set(xlabel="probability that the search gives its patch", ylabel="share that is right", xlim=(0.3, 1), ylim=(0, 1.05))
+    axis.plot([0, 1], [0, 1], color=plots.REFERENCE, lw=1, label="ideal")
+    axis.set(xlabel="probability of the patch by the search", ylabel="fraction that is correct", xlim=(0.3, 1), ylim=(0, 1.05))
     axis.legend()
-    case.figure(figure, "Patches of pushes: what the search says and what is true.")
+    case.figure(figure, "Patches of pushes: probability by the search and actual fraction of correct answers.")
 
 
 def duration(case):
@@ -176,8 +178,8 @@ def duration(case):
         control.step()
         ours.append(middle - begin)
         theirs.append(time.process_time() - middle)
-    case.report("known place in time: an estimate over a control step", np.median(ours) / np.median(theirs), reference=1.2,
-                source="control", remark="the step is native, the filter's algebra is Python's; a time decides nothing here")
+    case.report("known position in time: time of an estimate / time of a control step", np.median(ours) / np.median(theirs), reference=1.2,
+                source="control", remark="the step is C++, the algebra of the filter Python; times are not scored here")
 
 
 def run(case):

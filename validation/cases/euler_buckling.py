@@ -7,11 +7,11 @@ from suite import plots
 from suite.robots import SOLVER
 
 TITLE = "Buckling load of a clamped-free column"
-SETUP = """A column of square section, length over side 10, 20 and 40, E = 1 MPa, nu = 0.3, clamped at one end, pressed by an
-axial dead load on the other, in hexahedra (neo-Hookean, four cells across). The load is raised through static equilibria
-until the exact tangent has a negative pivot, and bracketed by bisection to 0.01 %. References: Euler's load, and Haringx'
-for a column that shears, P = G A_s/2 (sqrt(1 + 4 P_E/(G A_s)) - 1), both of the column as it was before it was pressed
-together."""
+SETUP = """A column of square section with a length of 10, 20 and 40 times its side, E = 1 MPa, nu = 0.3, is clamped at one
+end. An axial dead load compresses it at the other. Hexahedra (neo-Hookean), four across. The load increases through static
+equilibria until the exact tangent has a negative pivot, and is bracketed by bisection to 0.01 %. References are Euler's load,
+and that of Haringx for a column with shear, P = G A_s/2 (sqrt(1 + 4 P_E/(G A_s)) - 1), both for the column before
+compression."""
 SOURCES = {"Euler": "P_E = pi^2 E I/(4 L^2)",
            "Haringx": "J. A. Haringx, Proc. Kon. Ned. Akad. Wet. 45 (1942) 533-539; Z. P. Bazant, L. Cedolin, Stability "
                       "of Structures, 2nd ed. 2003, sec. 1.7; shear correction 10 (1 + nu)/(12 + 11 nu)"}
@@ -56,12 +56,12 @@ def run(case):
         load, euler = critical(ratio)
         haringx = shear / 2 * (np.sqrt(1 + 4 * euler / shear) - 1)
         case.check(f"length {ratio} sides: buckling load", 1e3 * load, 1e3 * haringx, 0.03, unit="mN", source="Haringx")
-        case.report(f"length {ratio} sides: over Euler's", load / euler, source="Euler")
+        case.report(f"length {ratio} sides: buckling load / Euler's", load / euler, source="Euler")
         found.append(load / euler)
         simple.append(haringx / euler)
     figure, axis = plots.axes()
     axis.plot(ratios, simple, "--", color=plots.REFERENCE, label="Haringx")
     axis.plot(ratios, found, "o-", color=plots.OURS, label="Sinew")
-    axis.set(xlabel="length over side", ylabel="buckling load over Euler's")
+    axis.set(xlabel="length / side", ylabel="buckling load / Euler's")
     axis.legend()
     case.figure(figure, "Buckling load of the column.")

@@ -9,18 +9,22 @@ from suite import plots
 from suite.case import observed_order
 
 TITLE = "Hertz: a rigid ball and a rigid cylinder pressed on an elastic half space"
-SETUP = """A rigid ball, R = 100 mm, is pressed d = 10 um deep, without friction, on hexahedra of neo-Hookean rubber, E
-= 100 kPa, nu = 0.3 and 0.45: a = sqrt(R d) = 1 mm and a/R = 0.01, so that strains are small. A quarter of a half ball
-of radius L = 50 a, held at its border, stands for the half space; cells are even, h = a/2 to a/8, out to 1.25 a and
-grow from there. Such a half ball gives less than the half space by c F/(4 pi G L), c = 2.37 and 2.58, which is computed
-from harmonic functions (reference/half_space.py): d is 1.4 % smaller for the same force, and is corrected by that. The
-pressure at a node is its force over the deformed area nearest to it; the contact radius follows from the second moment
-of the forces, 2/5 F a^2. Then a cylinder, R = 100 mm, on half a disc in plane strain, by its force per length: a^2 = 4
-F R/(pi E*), p0 = 2 F/(pi a), second moment 1/4 F a^2; its depth depends on the border and is not compared. The same
-with the load of NAFEMS CB1, 35 kN/mm on R = 50 mm: both bodies are elastic there (210 and 70 GPa, nu = 0.3); here the
-block alone has the E* of both, and the case nafems_cb1 has the two of them. The half ball is also split into tetrahedra,
-twelve a cell; tet10 carries no pressure at its corners, so that force and radius are compared. At larger a/R the
-theory, a parabola on a plane at small strain, departs from a ball on rubber; that is plotted."""
+SETUP = """**Ball.** A rigid ball, R = 100 mm, is pressed d = 10 um deep without friction into hexahedra of neo-Hookean
+rubber, E = 100 kPa, nu = 0.3 and 0.45. a = sqrt(R d) = 1 mm, and with a/R = 0.01 strains are small. A quarter of a half ball
+of radius L = 50 a, fixed at its boundary, represents the half space. The cells are uniform, h = a/2 to a/8, out to 1.25 a and
+grow beyond. Such a half ball yields less than the half space by c F/(4 pi G L), c = 2.37 and 2.58, computed from harmonic
+functions (reference/half_space.py). For the same force d is 1.4 % smaller, and is corrected by this amount. The pressure at a
+node is its force divided by the deformed area that belongs to it. The contact radius follows from the second moment of the
+forces, 2/5 F a^2.
+
+**Cylinder.** R = 100 mm on half a disc in plane strain, compared at equal force per length: a^2 = 4 F R/(pi E*), p0 = 2 F/(pi
+a), second moment 1/4 F a^2. Its depth depends on the boundary and is not compared. The same is done with the load of NAFEMS
+CB1, 35 kN/mm on R = 50 mm. There both bodies are elastic (210 and 70 GPa, nu = 0.3); here the block alone has the E* of both.
+The case nafems_cb1 has both bodies.
+
+**Tetrahedra.** Each cell of the half ball is also split into twelve tetrahedra. tet10 carries no pressure at its corners, so
+only force and radius are compared. For larger a/R the theory (a parabola on a plane at small strain) deviates from a ball on
+rubber; this is plotted."""
 SOURCES = {"Hertz": "H. Hertz, Ueber die Beruehrung fester elastischer Koerper, J. reine angew. Math. 92 (1882) 156-171; K. L. Johnson, Contact "
                     "Mechanics, 1985, sec. 4.2: F = 4/3 E* sqrt(R) d^1.5, p0 = 2 E*/pi sqrt(d/R), a = sqrt(R d), E* = E/(1 - nu^2)",
            "NAFEMS CB1": "NAFEMS, Advanced finite element contact benchmarks, 2006, no. 1: half width 6.2146 mm, 3585.4 MPa by Hertz"}
@@ -29,7 +33,7 @@ E, SPOT, LARGE = 1e5, 1e-3, 50.0
 
 
 def pressed(path, poisson, surface, depth, sliding, young=E, nodes=None, **more):
-    """The contact after the surface came `depth` down; nodes on planes of symmetry slide in them."""
+    """The contact after the surface moved down by `depth`; nodes on planes of symmetry slide in them."""
     sim = sinew.load({
         "sinew": 1, "time_step": 0.25, "solver": {"ordering": "metis"},
         "bodies": {"block": {"type": "fem", "mesh": {"file": str(path), "unit": "m"}, "fixed": [{"set": "far"}, *sliding],
@@ -61,7 +65,7 @@ def stretched(at, spacing):
 
 
 class Ball:
-    """Force, peak pressure and contact radius over Hertz's, with `cells` over the contact radius."""
+    """Force, peak pressure and contact radius / Hertz's, with `cells` over the contact radius."""
 
     def __init__(self, case, cells, poisson, slender=0.01, element="hex8"):
         radius, spacing = SPOT / slender, SPOT / cells
@@ -87,7 +91,7 @@ class Ball:
 
 
 class Cylinder:
-    """Peak pressure and half width over Hertz's for the same force per length."""
+    """Peak pressure and half width / Hertz's for the same force per length."""
 
     def __init__(self, case, cells, young=E, radius=0.1, pressed_by=2.2, poisson=0.3):
         spacing = SPOT / cells
@@ -108,9 +112,9 @@ def balls(case, convergence, profile):
     for poisson, color in ((0.3, plots.OURS), (0.45, plots.SECOND)):
         seen = [Ball(case, cells, poisson) for cells in sizes]
         finest = seen[-1]
-        case.check(f"ball, nu = {poisson:g}, 8 cells over a: force over Hertz's", finest.force, 1.0, 0.01, source="Hertz")
-        case.check(f"ball, nu = {poisson:g}, 8 cells over a: peak pressure over Hertz's", finest.peak, 1.0, 0.02, source="Hertz")
-        case.check(f"ball, nu = {poisson:g}, 8 cells over a: contact radius over Hertz's", finest.spot, 1.0, 0.02, source="Hertz")
+        case.check(f"ball, nu = {poisson:g}, 8 cells over a: force / Hertz's", finest.force, 1.0, 0.01, source="Hertz")
+        case.check(f"ball, nu = {poisson:g}, 8 cells over a: peak pressure / Hertz's", finest.peak, 1.0, 0.02, source="Hertz")
+        case.check(f"ball, nu = {poisson:g}, 8 cells over a: contact radius / Hertz's", finest.spot, 1.0, 0.02, source="Hertz")
         for name, mark in (("force", "o-"), ("peak", "s--"), ("spot", "^:")):
             errors = [abs(getattr(ball, name) - 1.0) for ball in seen]
             convergence.loglog([1.0 / n for n in sizes], errors, mark, color=color, label=f"{name}, nu = {poisson:g}")
@@ -123,15 +127,15 @@ def balls(case, convergence, profile):
 def cylinders(case, convergence, profile):
     sizes = (4, 8, 16, 32)
     seen = [Cylinder(case, cells) for cells in sizes]
-    case.check("cylinder, 8 cells over a: peak pressure over Hertz's", seen[1].peak, 1.0, 0.02, source="Hertz")
-    case.check("cylinder, 8 cells over a: half width over Hertz's", seen[1].width, 1.0, 0.02, source="Hertz")
-    case.check("cylinder, 32 cells over a: half width over Hertz's", seen[3].width, 1.0, 2e-3, source="Hertz")
+    case.check("cylinder, 8 cells over a: peak pressure / Hertz's", seen[1].peak, 1.0, 0.02, source="Hertz")
+    case.check("cylinder, 8 cells over a: half width / Hertz's", seen[1].width, 1.0, 0.02, source="Hertz")
+    case.check("cylinder, 32 cells over a: half width / Hertz's", seen[3].width, 1.0, 2e-3, source="Hertz")
     convergence.loglog([1.0 / n for n in sizes], [abs(it.width - 1.0) for it in seen], "^-", color=plots.THIRD, label="spot, cylinder")
     profile.plot(seen[2].distances, seen[2].pressures, "x", color=plots.THIRD, ms=4, label="cylinder")
 
 
 def benchmark(case):
-    """CB1, scaled: half widths of about SPOT, a/R as there."""
+    """CB1, scaled: half widths of about SPOT, a/R as in the benchmark."""
     scale = 6.2146e-3 / SPOT
     young = 1.0 / (1.0 / 210e9 + 1.0 / 70e9)
     wanted, depth = 35e6 / scale, 2.2
@@ -146,12 +150,12 @@ def benchmark(case):
 def split(case, convergence):
     for poisson, color in ((0.3, plots.OURS), (0.45, plots.SECOND)):
         coarse, fine = (Ball(case, cells, poisson, element="tet10") for cells in (2, 4))
-        case.check(f"ball, nu = {poisson:g}, tet10, 4 cells over a: force over Hertz's", fine.force, 1.0, 0.01, source="Hertz")
-        case.check(f"ball, nu = {poisson:g}, tet10, 4 cells over a: contact radius over Hertz's", fine.spot, 1.0, 0.02, source="Hertz")
+        case.check(f"ball, nu = {poisson:g}, tet10, 4 cells over a: force / Hertz's", fine.force, 1.0, 0.01, source="Hertz")
+        case.check(f"ball, nu = {poisson:g}, tet10, 4 cells over a: contact radius / Hertz's", fine.spot, 1.0, 0.02, source="Hertz")
         convergence.loglog([1 / 2, 1 / 4], [abs(coarse.force - 1.0), abs(fine.force - 1.0)], "D-.", ms=4, color=color, mfc="none",
                            label=f"force, tet10, nu = {poisson:g}")
     for element in ("tet4", "tet4-patch"):
-        case.report(f"ball, nu = {poisson:g}, {element}, 4 cells over a: force over Hertz's", Ball(case, 4, poisson, element=element).force,
+        case.report(f"ball, nu = {poisson:g}, {element}, 4 cells over a: force / Hertz's", Ball(case, 4, poisson, element=element).force,
                     reference=1.0, source="Hertz")
 
 
@@ -161,9 +165,9 @@ def departs(case, axis):
     axis.semilogx(slender, [ball.force for ball in seen], "o-", color=plots.OURS, label="force")
     axis.semilogx(slender, [ball.peak for ball in seen], "s--", color=plots.SECOND, label="peak pressure")
     axis.axhline(1.0, color=plots.REFERENCE, lw=1)
-    axis.set(xlabel="a / R", ylabel="over Hertz's, nu = 0.45")
+    axis.set(xlabel="a / R", ylabel="ratio to Hertz's, nu = 0.45")
     axis.legend()
-    case.report("ball of a/R = 0.3 on neo-Hookean rubber: force over Hertz's", seen[-1].force, source="Hertz")
+    case.report("ball of a/R = 0.3 on neo-Hookean rubber: force / Hertz's", seen[-1].force, source="Hertz")
 
 
 def run(case):
@@ -180,5 +184,5 @@ def run(case):
     middle.plot(fine, np.sqrt(1.0 - fine**2), color=plots.REFERENCE, lw=1, label="Hertz")
     middle.set(xlabel="r / a", ylabel="p / p0", xlim=(0.0, 1.4))
     middle.legend()
-    case.figure(figure, "Left: errors of force, peak pressure and contact radius. Middle: pressure, 8 cells over a (cylinder: 16). Right: departure "
+    case.figure(figure, "Left: errors of force, peak pressure and contact radius. Middle: pressure, 8 cells over a (cylinder: 16). Right: deviation "
                         "of a ball on rubber from the theory, 6 cells over a.")

@@ -1,4 +1,4 @@
-"""A heavy rigid ball that hits an elastic half space slowly."""
+"""A heavy rigid ball that slowly hits an elastic half space."""
 
 import numpy as np
 import sinew
@@ -12,13 +12,13 @@ from suite.case import observed_order
 
 from .hertz import E, LARGE, SPOT, core_cells, in_plane
 
-TITLE = "Hertz's impact: a rigid ball, finite elements and time steps"
-SETUP = """A rigid ball, R = 100 mm, on a slider along z, hits the quarter of a half ball of the case hertz (nu = 0.3,
-1000 kg/m^3) at 0.3 mm/s. Its mass lets it go 10 um deep: without waves m d'' = -4/3 E* sqrt(R) d^1.5, which lasts 2.87
-(m^2/(R E*^2 v))^(1/5) = 98 ms, while a wave needs 9 ms to the border and back. The half ball is stiffer than the half
-space by what its border holds back (see hertz); with that the equation is integrated by DOP853. BDF2, 4 cells over the
-contact radius, 40 to 320 steps in the impact. What the ball does not get back is in waves and in what the integrator
-damps: many steps on the way down close a gap, behind which BDF2 starts afresh with backward Euler."""
+TITLE = "Hertz's impact: a rigid ball on an elastic half space"
+SETUP = """A rigid ball, R = 100 mm, on a slider along z hits the quarter of a half ball of the case hertz (nu = 0.3, 1000
+kg/m^3) at 0.3 mm/s. Its mass lets it penetrate by 10 um. Without waves, m d'' = -4/3 E* sqrt(R) d^1.5, which lasts 2.87
+(m^2/(R E*^2 v))^(1/5) = 98 ms; a wave takes 9 ms to the boundary and back. The half ball is stiffer than the half space
+because its boundary is fixed (see hertz); the equation with this correction is integrated by DOP853. BDF2, 4 cells over the
+contact radius, 40 to 320 steps in the impact. The energy that the ball does not get back is in waves, or has been damped by
+the integrator: many steps on the way down close a gap, after which BDF2 restarts with backward Euler."""
 SOURCES = {"Hertz": "H. Hertz 1882; K. L. Johnson, Contact Mechanics, 1985, sec. 11.4: impact of spheres, d = (15 m v^2/(16 E* sqrt(R)))^(2/5)"}
 COST = 28
 POISSON, RADIUS, SPEED, DENSITY = 0.3, 0.1, 3e-4, 1000.0
@@ -47,7 +47,7 @@ def reference():
 
 
 def impact(case, cells, step, duration):
-    """Times, depths, forces and the ball's last speed; a quarter of the ball meets a quarter of the block."""
+    """Times, depths, forces and the final speed of the ball; a quarter of the ball hits a quarter of the block."""
     spacing = SPOT / cells
     path = shapes.half_ball(case.scratch / "half_ball.vtu", core_cells(cells) * spacing, core_cells(cells), LARGE * SPOT)
     sim = sinew.load({
@@ -77,12 +77,12 @@ def run(case):
         left.plot(1e3 * times, 1e6 * depths, "o", ms=2, color=color, label=f"{count} steps")
         middle.plot(1e6 * depths, 1e3 * forces, ".", ms=3, color=color, label=f"{count} steps")
     last = np.flatnonzero(forces > 0.0)[-1]
-    case.check("greatest depth, 320 steps", 1e6 * depths.max(), 1e6 * depth.max(), 0.01, source="Hertz", unit="um")
-    case.check("greatest force, 320 steps", 1e3 * forces.max(), 1e3 * force_at(depth.max()), 0.01, source="Hertz", unit="mN")
+    case.check("largest depth, 320 steps", 1e6 * depths.max(), 1e6 * depth.max(), 0.01, source="Hertz", unit="um")
+    case.check("largest force, 320 steps", 1e3 * forces.max(), 1e3 * force_at(depth.max()), 0.01, source="Hertz", unit="mN")
     case.check("duration, 320 steps", 1e3 * times[last], 1e3 * time[-1], 0.01, source="Hertz", unit="ms",
-               remark="counted in steps, of 0.3 %")
-    case.check("impulse over 2 m v, 320 steps", float(np.sum(forces[1:] * np.diff(times))) / (2.0 * MASS * SPEED), 1.0, 0.01, source="Hertz")
-    case.check("speed after over before, 320 steps", speed / SPEED, 1.0, 0.01, source="Hertz")
+               remark="resolved to one step, 0.3 %")
+    case.check("impulse / (2 m v), 320 steps", float(np.sum(forces[1:] * np.diff(times))) / (2.0 * MASS * SPEED), 1.0, 0.01, source="Hertz")
+    case.check("speed after / before, 320 steps", speed / SPEED, 1.0, 0.01, source="Hertz")
     case.report("order of the lost speed in the step", observed_order([1.0 / n for n in counts], np.array(errors)[:, 1]), source="Hertz")
     left.plot(1e3 * time, 1e6 * depth, color=plots.REFERENCE, lw=1, label="Hertz")
     left.set(xlabel="time (ms)", ylabel="depth (um)")
@@ -95,4 +95,4 @@ def run(case):
     right.set(xlabel="step / duration", ylabel="relative error")
     for axis in (left, middle, right):
         axis.legend(fontsize=7)
-    case.figure(figure, "Left: depth over time. Middle: force over depth, down and up. Right: errors over the time step.")
+    case.figure(figure, "Left: depth over time. Middle: force against depth, down and up. Right: errors against time step.")

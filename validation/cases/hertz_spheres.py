@@ -11,17 +11,21 @@ from suite.case import observed_order
 from .hertz import core_cells, in_plane, stretched
 
 TITLE = "Hertz: two elastic balls pressed on each other"
-SETUP = """The lower half of one ball and the upper half of another are held in z at their mid-planes, and one mid-
-plane moves towards the other: contact of two deformable bodies, without friction. Geometry and material are those of
-SSNV104, R = 50 mm, E = 20 GPa, nu = 0.3, hexahedra of neo-Hookean material. (i) A quarter of both balls, d = 10 um,
-a/R = 0.01: 2 to 6 cells over the contact radius on both balls. (ii) The same depth with balls of 50 and 100 mm, of 20
-and 60 GPa, nu = 0.45 and 0.3, with 5 and 4 cells over the radius, which match nowhere. (iii) SSNV104 itself, d = 4
-mm, a/R = 0.2, and a quarter of that depth, whole half balls, 4 cells. There the theory, half spaces and small strain,
-is off by (a/R)^2 = 4 % at the same force; and at the same depth half balls, whose mid-planes stay plane, are stiffer.
-The forces of nodes are the internal ones, which the contact has to balance: they are unique, unlike those of single
-contact points. The contact radius follows from their second moment, 2/5 F a^2, the peak pressure from the node at the
-pole over the deformed area that belongs to it. Surfaces that touch rest at a separation of 1e-7 of the size; the
-balls begin there, and what they overlap at the end, node over surface, is measured, too."""
+SETUP = """The lower half of one ball and the upper half of another are held in z at their mid-planes, and one mid-plane moves
+towards the other: contact of two deformable bodies without friction. Geometry and material are those of SSNV104, R = 50 mm, E
+= 20 GPa, nu = 0.3, hexahedra of neo-Hookean material.
+
+- A quarter of both balls, d = 10 um, a/R = 0.01: 2 to 6 cells over the contact radius on both balls.
+- The same depth with balls of 50 and 100 mm, of 20 and 60 GPa, nu = 0.45 and 0.3, with 5 and 4 cells over the radius, which
+  do not match anywhere.
+- SSNV104 itself, d = 4 mm, a/R = 0.2, and a quarter of that depth, with whole half balls and 4 cells. Here the theory (half
+  spaces, small strain) is off by about (a/R)^2 = 4 % at the same force. At the same depth, half balls whose mid-planes stay
+  plane are stiffer.
+
+The nodal forces are the internal forces that the contact has to balance; unlike the forces of single contact points they are
+unique. The contact radius follows from their second moment, 2/5 F a^2, the peak pressure from the force at the pole and the
+deformed area that belongs to it. Surfaces in contact rest at a separation of 1e-7 of the size, and the balls start there.
+Their final overlap, node against surface, is measured as well."""
 SOURCES = {"Hertz": "H. Hertz 1882; K. L. Johnson, Contact Mechanics, 1985, sec. 4.2: F = 4/3 E* sqrt(R) d^1.5, a = sqrt(R d), p0 = 2 E*/pi "
                     "sqrt(d/R), 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2, 1/R = 1/R_1 + 1/R_2",
            "SSNV104": "Code_Aster V6.04.104, SSNV104, two elastic spheres under 4 mm: p0 = E/(pi (1 - nu^2)) sqrt(2 d/R) = 2798.3 MPa"}
@@ -36,7 +40,7 @@ def centre_of(height):
 
 
 class Balls:
-    """Force over Hertz's at this depth; peak pressure over that at this depth, contact radius over that at this force."""
+    """Force / Hertz's at this depth; peak pressure over that at this depth, contact radius over that at this force."""
 
     def __init__(self, case, cells, slender=0.01, radii=(RADIUS, RADIUS), young=(YOUNG, YOUNG), poisson=(POISSON, POISSON), whole=False):
         spot = slender * RADIUS
@@ -105,12 +109,12 @@ def convergence(case, axis):
     sizes = (2, 3, 4, 6)
     seen = [Balls(case, (cells, cells)) for cells in sizes]
     finest = seen[-1]
-    case.check("equal balls, 6 cells over a: force over Hertz's", finest.force, 1.0, 0.01, source="Hertz")
-    case.check("equal balls, 6 cells over a: peak pressure over Hertz's", finest.peak, 1.0, 0.02, source="Hertz")
-    case.check("equal balls, 6 cells over a: contact radius over Hertz's at the same force", finest.spot, 1.0, 0.01, source="Hertz")
+    case.check("equal balls, 6 cells over a: force / Hertz's", finest.force, 1.0, 0.01, source="Hertz")
+    case.check("equal balls, 6 cells over a: peak pressure / Hertz's", finest.peak, 1.0, 0.02, source="Hertz")
+    case.check("equal balls, 6 cells over a: contact radius / Hertz's at the same force", finest.spot, 1.0, 0.01, source="Hertz")
     case.check("equal balls: order of the contact radius in h", observed_order([1.0 / n for n in sizes], [ball.spot - 1.0 for ball in seen]), 2.0, 0.5,
                source="Hertz", relative=False)
-    case.bound("equal balls: overlap of the surfaces over d, largest of all meshes", max(ball.overlap / ball.depth for ball in seen), 1e-4, source="Hertz")
+    case.bound("equal balls: overlap of the surfaces / d, largest of all meshes", max(ball.overlap / ball.depth for ball in seen), 1e-4, source="Hertz")
     for name, mark, color in (("force", "o-", plots.OURS), ("peak", "s--", plots.SECOND), ("spot", "^:", plots.THIRD)):
         axis.loglog([1.0 / n for n in sizes], [abs(getattr(ball, name) - 1.0) for ball in seen], mark, color=color, label=name)
     return finest
@@ -118,22 +122,22 @@ def convergence(case, axis):
 
 def unequal(case):
     balls = Balls(case, (5, 4), radii=(RADIUS, 2.0 * RADIUS), young=(YOUNG, 3.0 * YOUNG), poisson=(0.45, 0.3))
-    case.check("unequal balls, 5 and 4 cells over a: force over Hertz's", balls.force, 1.0, 0.02, source="Hertz")
-    case.check("unequal balls, 5 and 4 cells over a: contact radius over Hertz's at the same force", balls.spot, 1.0, 0.02, source="Hertz")
-    case.bound("unequal balls: overlap of the surfaces over d", balls.overlap / balls.depth, 1e-3, source="Hertz")
+    case.check("unequal balls, 5 and 4 cells over a: force / Hertz's", balls.force, 1.0, 0.02, source="Hertz")
+    case.check("unequal balls, 5 and 4 cells over a: contact radius / Hertz's at the same force", balls.spot, 1.0, 0.02, source="Hertz")
+    case.bound("unequal balls: overlap of the surfaces / d", balls.overlap / balls.depth, 1e-3, source="Hertz")
 
 
 def deep(case):
-    for slender, known in ((0.1, ""), (0.2, "mid-planes that stay plane and the neo-Hookean law make the balls stiffer than half spaces at small strain")):
+    for slender, known in ((0.1, ""), (0.2, "plane mid-planes and the neo-Hookean law make the balls stiffer than half spaces at small strain")):
         balls, name = Balls(case, (4, 4), slender=slender, whole=True), f"SSNV104's balls, d = {100.0 * slender**2:g} mm, a/R = {slender:g}"
         case.check(f"{name}: peak pressure", 1e-6 * balls.peak * balls.highest, 2798.3 * slender / 0.2, 0.05, source="SSNV104", unit="MPa",
                    known_miss=known)
-        case.check(f"{name}: peak pressure over Hertz's at the same force", balls.peak / np.cbrt(balls.force), 1.0, 0.04, source="Hertz")
-        case.check(f"{name}: contact radius over Hertz's at the same force", balls.spot, 1.0, 0.04, source="Hertz")
-        case.report(f"{name}: force over Hertz's at the same depth", balls.force, reference=1.0, source="Hertz")
-        case.bound(f"{name}: overlap of the surfaces over d", balls.overlap / balls.depth, 1e-4, source="SSNV104")
+        case.check(f"{name}: peak pressure / Hertz's at the same force", balls.peak / np.cbrt(balls.force), 1.0, 0.04, source="Hertz")
+        case.check(f"{name}: contact radius / Hertz's at the same force", balls.spot, 1.0, 0.04, source="Hertz")
+        case.report(f"{name}: force / Hertz's at the same depth", balls.force, reference=1.0, source="Hertz")
+        case.bound(f"{name}: overlap of the surfaces / d", balls.overlap / balls.depth, 1e-4, source="SSNV104")
     quarter = Balls(case, (4, 4), slender=0.2)
-    case.bound("SSNV104 as a quarter: overlap of the surfaces over d", quarter.overlap / quarter.depth, 1e-4, source="SSNV104")
+    case.bound("SSNV104 as a quarter: overlap of the surfaces / d", quarter.overlap / quarter.depth, 1e-4, source="SSNV104")
 
 
 def run(case):

@@ -7,12 +7,14 @@ from suite import plots
 from suite.robots import SOLVER
 
 TITLE = "Contact with friction: a block on an incline, a slide and a dropped block"
-SETUP = """A block of 40 x 40 x 20 mm of rubber, E = 1 MPa, 1000 kg/m^3, with damping, on a plane of friction mu = 0.5 under gravity
-turned by theta, in backward Euler steps of 1 ms with one linearisation each. Its speed is the mean of its nodes'
-(lumped masses), its acceleration that over the last 0.4 s of 1 s. Below tan theta = mu it sticks: what it still moves in
-the last 0.5 s is compared with zero. Then a block that is pushed off at 0.5 m/s on the level and stops after v^2/(2 mu g),
-for ever smaller steps: the integrator's error is of first order. Last a block of 100 kPa without damping that drops by
-5 mm: its energy from step to step."""
+SETUP = """A rubber block of 40 x 40 x 20 mm, E = 1 MPa, 1000 kg/m^3, with damping, lies on a plane with mu = 0.5. Instead of
+the plane, gravity is inclined by theta. Backward Euler steps of 1 ms, one linearisation each. The speed of the block is the
+mean over its nodes (lumped masses), its acceleration the mean over the last 0.4 s of 1 s. Below tan theta = mu the block
+sticks, and its motion in the last 0.5 s is compared with zero.
+
+Then a block starts at 0.5 m/s on level ground and stops after v^2/(2 mu g), with smaller and smaller steps; the error of the
+integrator is of first order. Finally, a block of 100 kPa without damping is dropped by 5 mm, and its energy is checked in
+every step."""
 SOURCES = {"Coulomb": "C. A. Coulomb, Theorie des machines simples, Mem. Math. Phys. Acad. Sci. 10 (1785); a = g (sin theta - mu cos theta)",
            "Moreau": "J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics, in: Nonsmooth mechanics and "
                      "applications, Springer (1988): balance of forces; impacts without rebound dissipate"}
@@ -51,10 +53,10 @@ def slides(case, axis):
             worst = max(worst, abs(seen[-1] / theory - 1.0))
         else:
             crept = max(crept, float(np.linalg.norm(sim.body("block").positions.mean(axis=0) - at)))
-    case.check("acceleration over g (sin theta - mu cos theta), worst of 6 angles, 27 to 70 degrees", 1.0 + worst, 1.0, 1e-3,
+    case.check("acceleration / (g (sin theta - mu cos theta)), worst of 6 angles, 27 to 70 degrees", 1.0 + worst, 1.0, 1e-3,
                source="Coulomb")
     case.bound("creep in 0.4 s below the friction angle (m), worst of 5 angles up to 26 degrees", crept, 1e-9, source="Coulomb")
-    case.bound("sum of normal forces over the weight's part less 1, all angles", held, 1e-4, source="Moreau")
+    case.bound("sum of normal forces / normal component of the weight - 1, all angles", held, 1e-4, source="Moreau")
     fine = np.linspace(0.0, 1.3, 200)
     axis.plot(np.degrees(fine), np.maximum(0.0, G * (np.sin(fine) - MU * np.cos(fine))), "-", color=plots.REFERENCE, lw=1,
               label="g (sin - mu cos)")
@@ -80,16 +82,16 @@ def stops(case, axis):
         sim.step(round(0.3 / step))
         errors.append(float(push.positions[:, 0].mean() - before) / theory - 1.0)
     order = np.polyfit(np.log(steps), np.log(np.abs(errors)), 1)[0]
-    case.check("way to the stop over v^2/(2 mu g), step 0.25 ms", 1.0 + errors[-1], 1.0, 5e-3, source="Coulomb")
+    case.check("stopping distance / (v^2/(2 mu g)), step 0.25 ms", 1.0 + errors[-1], 1.0, 5e-3, source="Coulomb")
     case.check("order of the error in the step", float(order), 1.0, 0.15, source="Coulomb")
-    axis.loglog(steps, np.abs(errors), "o-", color=plots.OURS, label="way to the stop")
+    axis.loglog(steps, np.abs(errors), "o-", color=plots.OURS, label="stopping distance")
     axis.loglog(steps, np.abs(errors[0]) * np.array(steps) / steps[0], "--", color=plots.REFERENCE, lw=1, label="order 1")
     axis.set(xlabel="time step (s)", ylabel="relative error")
     axis.legend()
 
 
 def nodal_mass(sim):
-    """(n,) kg, lumped: a quarter of each tetrahedron's to each of its nodes."""
+    """(n,) kg, lumped: each node gets a quarter of the mass of its tetrahedra."""
     points = sim.body("block").positions
     tetrahedra = sim.body("block").tetrahedra
     edges = points[tetrahedra[:, 1:]] - points[tetrahedra[:, :1]]
@@ -106,9 +108,9 @@ def drops(case, axis):
         ledger = sim.ledger
         energies.append(ledger["strain_energy"] + ledger["kinetic_energy"] + ledger["gravity_energy"])
     fall = MASS * G * 0.005
-    case.bound("largest gain of energy in a step of an impact, over m g h", max(0.0, float(np.max(np.diff(energies)))) / fall, 1e-9,
+    case.bound("largest energy gain in a step of an impact / (m g h)", max(0.0, float(np.max(np.diff(energies)))) / fall, 1e-9,
                source="Moreau")
-    case.report("energy left of m g h after 0.4 s", 1.0 + energies[-1] / fall, source="Moreau")
+    case.report("remaining fraction of m g h after 0.4 s", 1.0 + energies[-1] / fall, source="Moreau")
     axis.plot(1e-3 * np.arange(1, 401), np.array(energies) / fall, "-", color=plots.OURS)
     axis.set(xlabel="time (s)", ylabel="energy / (m g h)")
 
@@ -118,4 +120,4 @@ def run(case):
     slides(case, left)
     stops(case, middle)
     drops(case, right)
-    case.figure(figure, "Left: acceleration over the incline's angle. Middle: error of the way to the stop. Right: energy of a dropped block.")
+    case.figure(figure, "Left: acceleration against the angle of the incline. Middle: error of the stopping distance. Right: energy of a dropped block.")

@@ -1,4 +1,4 @@
-"""Static equilibria against a Newton solver of corotational tetrahedra and cables written anew."""
+"""Static equilibria compared with an independent Newton solver of corotational tetrahedra and cables."""
 
 import numpy as np
 import sinew
@@ -7,12 +7,12 @@ from reference import statics
 from suite import plots
 from suite.robots import own_trunk
 
-TITLE = "Static equilibrium against an independent solver"
-SETUP = """A clamped beam under gravity with one cable, and the trunk of examples/trunk with two cables
-under tension. The reference (validation/reference/statics.py) has its own element forces (rotations by
-singular values), tangents (central differences), cables, embedding of points and Newton method; it takes
-from Sinew the mesh alone. Both stop at residuals of 1e-11 to 1e-12 of the loads, which bounds their
-difference at about 1e-9 of the deflection: the softest mode moves by the residual over its stiffness."""
+TITLE = "Static equilibrium compared with an independent solver"
+SETUP = """A clamped beam under gravity with one cable, and the trunk of examples/trunk with two tensioned cables. The
+reference (validation/reference/statics.py) has its own element forces (rotations by singular values), tangents (central
+differences), cables, embedding of points and Newton method; it uses only the mesh of Sinew. Both stop at residuals of 1e-11
+to 1e-12 of the loads. This limits their difference to about 1e-9 of the deflection, because the softest mode moves by the
+residual divided by its stiffness."""
 SOURCES = {"reference": "validation/reference/statics.py; corotational law of O. Etzmuss, M. Keckeisen, "
                         "W. Strasser, A fast finite element solution for cloth modelling, Pacific "
                         "Graphics 2003, and M. Mueller, M. Gross, Graphics Interface 2004"}
@@ -53,7 +53,7 @@ def compare(case, what, scene, body_name, tensions, *, young, poisson, gravity, 
     deflection = np.linalg.norm(x - rest, axis=1).max()
     difference = np.linalg.norm(ours - x, axis=1)
     case.report(f"{what}: largest deflection", 1e3 * deflection, unit="mm", source="reference")
-    case.bound(f"{what}: largest distance of a node from the reference's, over the deflection",
+    case.bound(f"{what}: largest distance of a node from the reference / deflection",
                difference.max() / deflection, TOLERANCE, source="reference")
     pulls = {}
     for k, name in enumerate(tensions):
@@ -65,7 +65,7 @@ def compare(case, what, scene, body_name, tensions, *, young, poisson, gravity, 
 
 
 def backwards(case, what, scene, tensions, pulls):
-    """Those lengths prescribed: the tensions must come back."""
+    """With these lengths prescribed, the tensions must result again."""
     sim = sinew.load(scene)
     for name, pull in pulls.items():
         sim.actuator(name).displacement = pull
@@ -85,4 +85,4 @@ def run(case):
               ".", color=plots.OURS)
     axis.set(xlabel="deflection of a node (mm)", ylabel="distance from the reference (mm)",
              yscale="log")
-    case.figure(figure, "The trunk under two cables: every node of ours beside the reference's.")
+    case.figure(figure, "The trunk under two cables: every node compared with the reference.")

@@ -1,4 +1,4 @@
-"""Rigid bodies that lean, slide and leave: ladders, a card tent, balls on a sphere."""
+"""Rigid bodies that lean, slide and lose contact: ladders, a card tent, balls on a sphere."""
 
 import numpy as np
 import sinew
@@ -8,17 +8,18 @@ from scipy.optimize import brentq
 from suite import plots
 from suite.case import observed_order
 
-TITLE = "Leaning and leaving: ladders, a card tent, balls on a sphere"
-SETUP = """(i) A ladder, a capsule of l = 300 mm between the centres of its ends, r = 2 mm, 100 g, leans on a wall, mu =
-0.2 and 0.4, and a floor, mu = 0.4 and 0.3; balance with both contacts at their limits gives the least angle, about
-which it stands 0.1 degrees above, and slides 0.1 below. (ii) A tent of two cards of 100 x 1 mm at 60 degrees stands if
-mu on the floor exceeds cot(60)/2, less a little since thick cards stand on corners. Corner on corner, the normal may be
-any between the faces'; Sinew takes that of a face, 30 degrees off the force, which mu = 0.9 between the cards carries.
-(iii) The ladder without friction, let go at 75 degrees: (m l^2/4 + I) theta'' = -m g l/2 cos(theta), until the wall's
-force is nought at sin(theta) = 2/3 sin(75); then it keeps its horizontal speed. (iv) A ball, r = 20 mm, at rest 0.2 rad
-from the top of a fixed sphere, R = 80 mm: without friction it leaves at cos = 2/3 cos(0.2), with mu = 100 it rolls and
-leaves at 10/17 cos(0.2). The angle at which it leaves is read where the normal force ends, between two steps by a
-straight line."""
+TITLE = "Ladders, a card tent, and balls that leave a sphere"
+SETUP = """- *Ladder with friction.* A capsule of l = 300 mm between the centres of its ends, r = 2 mm, 100 g, leans on a wall with mu =
+  0.2 or 0.4 and a floor with mu = 0.4 or 0.3. Balance with both contacts at their limits gives the least angle. The ladder
+  stands 0.1 degrees above it and slides 0.1 degrees below.
+- *Tent.* Two cards of 100 x 1 mm at 60 degrees stand if mu on the floor exceeds cot(60)/2, minus a small correction because
+  thick cards stand on corners. Where corner meets corner, the normal may have any direction between those of the faces. Sinew
+  takes the normal of a face, 30 degrees from the force, which mu = 0.9 between the cards can carry.
+- *Ladder without friction*, released at 75 degrees: (m l^2/4 + I) theta'' = -m g l/2 cos(theta), until the force on the wall
+  vanishes at sin(theta) = 2/3 sin(75); then it keeps its horizontal speed.
+- *Ball*, r = 20 mm, released 0.2 rad from the top of a fixed sphere, R = 80 mm. Without friction it leaves at cos = 2/3
+  cos(0.2). With mu = 100 it rolls and leaves at 10/17 cos(0.2). The angle at which the normal force vanishes is interpolated
+  linearly between two steps."""
 SOURCES = {"Coulomb": "statics with Coulomb friction at its limits",
            "ladder": "energy: theta'^2 = 3 g/l (sin(start) - sin(theta)), leaves where sin(theta) = 2/3 sin(start)",
            "sphere": "energy and centripetal force: m v^2/(R + r) = m g cos, with v^2 = 2 g (R + r)(cos(start) - cos)/(1 + k), k = 0 or 2/5"}
@@ -67,7 +68,7 @@ def leans(case):
             moved = np.linalg.norm(np.array(sim.body("ladder").position) - start) / LENGTH
             name = f"ladder, mu = {wall:g} and {floor:g}, {abs(aside)} degrees {'above' if aside > 0 else 'below'} {np.degrees(least):.2f}"
             if aside > 0.0:
-                case.bound(f"{name}: motion in 1 s over its length", moved, 1e-6, source="Coulomb")
+                case.bound(f"{name}: motion in 1 s / length", moved, 1e-6, source="Coulomb")
             else:
                 case.agree(f"{name}: it slides", bool(moved > 1e-3), True, source="Coulomb")
 
@@ -89,13 +90,13 @@ def tents(case, length=0.1, thick=0.001, lean=np.radians(60)):
         sim.run(duration=1.0)
         moved = np.linalg.norm(np.array(sim.body("left").position) - start) / length
         if ratio > 1.0:
-            case.bound(f"card tent, mu = {ratio:g} x {least:.5f}: motion in 1 s over a card", moved, 1e-6, source="Coulomb")
+            case.bound(f"card tent, mu = {ratio:g} x {least:.5f}: motion in 1 s / card length", moved, 1e-6, source="Coulomb")
         else:
             case.agree(f"card tent, mu = {ratio:g} x {least:.5f}: it falls", bool(moved > 1e-2), True, source="Coulomb")
 
 
 def leaves(sim, contact, angle, step, duration):
-    """Angles over time, and that at which the normal force, of two steps before it ends, would be nought."""
+    """Angles over time, and the angle at which the normal force, extrapolated from two steps, vanishes."""
     angles, forces = [], []
     for _ in range(round(duration / step)):
         sim.step()
@@ -118,7 +119,7 @@ def slides(case, history, convergence, start=np.radians(75)):
             errors.append(abs(left / leave - 1.0))
         case.check(f"falling ladder, {integrator}, 0.5 ms: angle at which it leaves the wall", np.degrees(left), np.degrees(leave), 5e-3,
                    source="ladder", unit="deg")
-        case.check(f"falling ladder, {integrator}, 0.5 ms: horizontal speed after that", body.velocity[0],
+        case.check(f"falling ladder, {integrator}, 0.5 ms: horizontal speed afterwards", body.velocity[0],
                    np.sqrt(G * LENGTH) * np.sin(start)**1.5 / 3.0, 5e-3, source="ladder", unit="m/s")
         case.check(f"falling ladder, {integrator}: order of the angle", observed_order(steps, errors), order, 0.3, source="ladder", relative=False)
         convergence.loglog(steps, errors, "o-", color=color, label=f"ladder, {integrator}")
@@ -151,7 +152,7 @@ def balls(case, convergence, start=0.2, large=0.08, small=0.02):
                 errors.append(abs(left / leave - 1.0))
             case.check(f"{name} ball, {integrator}, 0.25 ms: angle at which it leaves the sphere", np.degrees(left), np.degrees(leave), 5e-3,
                        source="sphere", unit="deg")
-            case.report(f"{name} ball, {integrator}: order of that", observed_order(steps, errors), source="sphere")
+            case.report(f"{name} ball, {integrator}: order of this angle", observed_order(steps, errors), source="sphere")
             convergence.loglog(steps, errors, "s--" if friction else "^:", color=color, label=f"{name} ball, {integrator}")
 
 
@@ -161,6 +162,6 @@ def run(case):
     tents(case)
     slides(case, left, right)
     balls(case, right)
-    right.set(xlabel="time step (s)", ylabel="relative error of the angle where it leaves")
+    right.set(xlabel="time step (s)", ylabel="relative error of the angle at which it leaves")
     right.legend(fontsize=7)
-    case.figure(figure, "Left: the ladder without friction; the dashed line ends where it leaves the wall. Right: errors over the time step.")
+    case.figure(figure, "Left: the ladder without friction; the dashed line ends where it leaves the wall. Right: errors against time step.")

@@ -1,4 +1,4 @@
-"""Grabs learned from attempt to attempt on arms that are not quite their model."""
+"""Grabs by iterative learning on arms that differ from their model."""
 
 import csv
 import pathlib
@@ -8,23 +8,25 @@ import numpy as np
 
 from suite import plots
 
-TITLE = "Grabs learned from attempt to attempt"
-SETUP = """The lumped model of the identified four-segment arm (masses, k_1 and b as published, lengths of 0.14 m
-assumed), its actuators (tau = c V^3, with a delay) and drive cylinders (two states, limits of command and volume), and
-plants that differ from it: mass distributed along the arm, each mass and the stiffness 10 % off either way, damping and
-c within 10 %, delays of 50 to 120 ms for 80, cylinders 10 % slower or faster and 5 % off in gain, a start 0.01 rad
-off, noise of 1 mm at markers and 0.1 ml at volumes. Errors were fixed before anything was tuned, and the seeds of
-further plants before any was run (examples/fluidic_arm/ilc_plants.json); tuning used other seeds. Identify (before the
-first attempt from 4 s of excitation by the cylinders and one rehearsal, the planned motion at 90 % of its volumes; then
-from the last attempt), plan (torque rates within 2 N m/s), invert, run, repeat. Success: the true tip within 2 cm of
-the ball's centre at the end. Four experiments of 10, 10, 5 and 12 attempts, goals A to D, every attempt counted; and
-four attempts on each of 200 further plants, run once by examples/fluidic_arm/ilc.py --further
-(validation/reference/learning_further.csv; learning_excited.csv without the rehearsal), of which some are run again."""
+TITLE = "Grabs by iterative learning on arms that differ from their model"
+SETUP = """The model is the identified four-segment arm with lumped masses (masses, k_1 and b as published, lengths of 0.14 m
+assumed), its actuators (tau = c V^3, with a delay) and drive cylinders (two states, limits on command and volume). The plants
+differ: mass distributed along the arm, each mass and the stiffness off by 10 % in either direction, damping and c within 10
+%, delays of 50 to 120 ms instead of 80, cylinders 10 % slower or faster and 5 % off in gain, a start that is 0.01 rad off,
+and noise of 1 mm on markers and 0.1 ml on volumes. These errors were fixed before any tuning, and the seeds of the further
+plants before any of them was run (examples/fluidic_arm/ilc_plants.json); tuning used other seeds.
+
+The cycle is: identify, plan (torque rates within 2 N m/s), invert, run, repeat. Before the first attempt, identification uses
+4 s of excitation by the cylinders and one rehearsal, the planned motion at 90 % of its volumes; later it uses the last
+attempt. An attempt succeeds if the true tip is within 2 cm of the ball's centre at the end. There are four experiments of 10,
+10, 5 and 12 attempts with the goals A to D, all attempts counted. In addition there are four attempts on each of 200 further
+plants, run once by examples/fluidic_arm/ilc.py --further (validation/reference/learning_further.csv; learning_excited.csv
+without the rehearsal). Some of these are run again here."""
 SOURCES = {
     "Marchese 2016": "A. D. Marchese, R. Tedrake, D. Rus, Dynamics and trajectory optimization for a soft spatial "
                      "fluidic elastomer manipulator, Int. J. Robotics Research 35 (2016) 1000-1019: 34 of 37 grabs of "
                      "a real arm",
-    "aim": "this project's aim",
+    "aim": "our aim",
     "table": "validation/reference/learning_further.csv and learning_excited.csv; intervals by Wilson (J. American "
              "Statistical Association 22, 1927)",
     "bootstrap": "A. C. Davison, D. V. Hinkley, Bootstrap Methods and their Application, 1997, secs. 3.8 and 5.3: over "
@@ -37,7 +39,7 @@ AGAIN = 4  # of the further plants
 
 
 def example():
-    """The example's module: what it shows is what is validated."""
+    """The example's module, so that this case validates the example."""
     folder = str(HERE.parents[2] / "examples" / "fluidic_arm")
     if folder not in sys.path:
         sys.path.append(folder)
@@ -71,14 +73,14 @@ def run(case):
         x, _, z = ilc.ilc_plant.GOALS[goal]
         right.plot(100 * x, 100 * z, "o", color=colour)
     left.axhline(100 * near, color=plots.REFERENCE, lw=1)
-    left.set(xlabel="attempt", ylabel="tip from the ball's centre (cm)")
+    left.set(xlabel="attempt", ylabel="distance of the tip from the ball's centre (cm)")
     left.legend()
     right.set(xlabel="x (cm)", ylabel="z (cm)", aspect="equal")
     hits = np.array([d < near for _, distances, _ in experiments for d in distances])
     rate(case, ilc, "four experiments: grabs that succeed", hits, "Marchese 2016")
-    case.bound("four experiments: attempts of 37 that miss, at most the published 3", int((~hits).sum()), 3,
+    case.bound("four experiments: number of 37 attempts that miss, at most the published 3", int((~hits).sum()), 3,
                source="Marchese 2016")
-    case.bound("four experiments: share of attempts that miss", 100 * float((~hits).mean()), 3, unit="%", source="aim")
+    case.bound("four experiments: fraction of attempts that miss", 100 * float((~hits).mean()), 3, unit="%", source="aim")
 
     table = read("learning_further.csv")
     further = np.array([distances for _, distances in table.values()]) < near
@@ -86,13 +88,13 @@ def run(case):
         rate(case, ilc, f"further plants, attempt {k + 1}", further[:, k], "table")
     rate(case, ilc, "further plants, all attempts", further, "table")
     low, high = ilc.by_plants(further)
-    case.report("further plants, all attempts: 95 % interval with attempts on a plant kept together",
+    case.report("further plants, all attempts: 95 % interval, attempts clustered by plant",
                 f"{100 * low:.1f} to {100 * high:.1f} %", source="bootstrap")
-    rate(case, ilc, "further plants on which no attempt misses", further.all(axis=1), "table")
-    case.bound("further plants: share of attempts that miss", 100 * float((~further).mean()), 3, unit="%", source="aim")
+    rate(case, ilc, "further plants without a miss", further.all(axis=1), "table")
+    case.bound("further plants: fraction of attempts that miss", 100 * float((~further).mean()), 3, unit="%", source="aim")
     excited = np.array([distances for _, distances in read("learning_excited.csv").values()]) < near
-    rate(case, ilc, "further plants, not rehearsed, attempt 1", excited[:, 0], "table")
-    rate(case, ilc, "further plants, not rehearsed, all attempts", excited, "table")
+    rate(case, ilc, "further plants, without rehearsal, attempt 1", excited[:, 0], "table")
+    rate(case, ilc, "further plants, without rehearsal, all attempts", excited, "table")
 
     # Single distances hang on the start's deviation, and plans on the last bits of numbers; medians do not.
     before, again = [], []
@@ -101,9 +103,9 @@ def run(case):
         before.append(distances)
         again.append(ilc.experiment(seed, goal, len(distances))[0])
     before, again = 100 * np.array(before), 100 * np.array(again)
-    case.check(f"{AGAIN} further plants again: median distance over all attempts", float(np.median(again)),
+    case.check(f"{AGAIN} further plants again: median distance of all attempts", float(np.median(again)),
                float(np.median(before)), 0.3, unit="cm", relative=False, source="table",
                remark="; ".join(", ".join(f"{d:.2f}" for d in distances) for distances in again) + " cm")
     case.bound(f"{AGAIN} further plants again: attempts of {again.size} that miss",
                int((again >= 100 * near).sum()), 1, source="table")
-    case.figure(figure, "Distance of the tip from the ball by attempt, and the tip's path in the last one.")
+    case.figure(figure, "Distance of the tip from the ball in each attempt, and the path of the tip in the last one.")

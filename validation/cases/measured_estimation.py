@@ -1,4 +1,4 @@
-"""Forces and masses estimated from motion capture: a hung weight on a beam, a payload on a tendon-driven trunk."""
+"""Forces and masses estimated from motion capture: a suspended weight on a beam, a payload on a tendon-driven trunk."""
 
 import csv
 
@@ -12,15 +12,16 @@ from suite.case import shared_data
 
 TITLE = "Measured: forces and payloads from markers"
 SETUP = """**Beam**: the silicone beam of the case measured_beam. Young's modulus is fitted to the displacements of three
-markers under gravity (two runs), the density known; then the force of the weight that hangs on its upper edge is estimated
-from the markers of the loaded runs alone, its direction known. Deviations of 0.3 mm stand for what differs from run to run.
-**Trunk**: a trunk of twelve tendons and six motors (StanfordASL/trunk-stack), three disks tracked. Ours: three segments of
-constant curvature in space, a mass each; a motor's pair of tendons is a spring between its angle and the sum of bends up to its
-disk. Stiffness of segments and tendons, transmission and direction of each motor, bends at rest, markers' offsets, lengths
-and pose of the base are fitted to drive_0g (maximum a posteriori, 1 sample in 60, priors in the code); motor angles as
-recorded, statics, no friction. Errors are RMS distances of the tip, 1 sample in 15. The scale of forces: the ratio of weight to
-stiffness is a prior, 0.2 kg of trunk (a length of vacuum hose, three printed disks and a gripper), that fits the 2.70 Hz
-of decay_200g."""
+markers under gravity (two runs) with known density. Then the force of the weight suspended from its upper edge is estimated
+from the markers of the loaded runs alone; its direction is known. Deviations of 0.3 mm represent the variation between runs.
+
+**Trunk**: a trunk with twelve tendons and six motors (StanfordASL/trunk-stack), of which three disks are tracked. Our model
+has three segments of constant curvature in space with one mass each. The pair of tendons of a motor is a spring between its
+angle and the sum of the bends up to its disk. Fitted to drive_0g are the stiffness of segments and tendons, transmission and
+direction of each motor, bends at rest, marker offsets, lengths and pose of the base (maximum a posteriori, 1 sample in 60,
+priors in the code). Motor angles are as recorded; the model is static without friction. Errors are RMS distances of the tip,
+1 sample in 15. The scale of the forces comes from a prior on the ratio of weight to stiffness: a trunk mass of 0.2 kg (a
+length of vacuum hose, three printed disks and a gripper), for which the ratio fits the 2.70 Hz of decay_200g."""
 SOURCES = {
     "measured beam": "M. Dubied et al., IEEE Robot. Autom. Lett. 7 (2022) 5015-5022; data: srl-ethz/diffPD_sim2real",
     "measured trunk": "StanfordASL/trunk-stack, motion capture of drive_0g, drive_200g, decay_200g",
@@ -70,7 +71,7 @@ def beam(case, folder):
     modulus = estimate.Parameter("bodies.beam.material.young_modulus", 270e3, 0.3)
     fitted = estimate.solve(estimate.Twin(beam_scene(270e3), sensors, [modulus], markers=markers), readings("gravity"))
     young = fitted.values[modulus.path]
-    case.report("beam: modulus by the gravity runs", 1e-3 * young, unit="kPa", source="measured beam",
+    case.report("beam: modulus from the gravity runs", 1e-3 * young, unit="kPa", source="measured beam",
                 remark=f"+- {1e-3 * fitted.std[modulus.path]:.2g} kPa")
     loaded = estimate.Twin(beam_scene(young), sensors, [], markers=markers)
     place = np.array(loaded.sim.body("beam").rest_positions)
@@ -81,10 +82,10 @@ def beam(case, folder):
     # The modulus is not known better than its fit: what that is in force adds to the deviation.
     by_modulus = (found.values["weight.0"] + 0.6 * 0.944) * fitted.std[modulus.path] / young
     deviation = np.hypot(found.std["weight.0"], by_modulus)
-    case.check("beam: force of the hung weight", found.values["weight.0"], measured_beam.HUNG, 0.03, unit="N", source="measured beam",
-               known_miss="the sag grows from gravity to load by 2.63, of this model and of the published finite elements by 2.49: the "
-                          "rubber is softer at larger strain, or crept; no modulus meets both",
-               remark=f"deviation {deviation:.2g} N with that of the modulus; chi squared {found.chi_squared:.3g} of {found.degrees}")
+    case.check("beam: force of the suspended weight", found.values["weight.0"], measured_beam.HUNG, 0.03, unit="N", source="measured beam",
+               known_miss="with the load, the measured sag grows by a factor of 2.63, that of this model and of the published finite elements by "
+                          "2.49: the rubber is softer at larger strain, or crept; no modulus fits both",
+               remark=f"deviation {deviation:.2g} N including that of the modulus; chi squared {found.chi_squared:.3g} of {found.degrees}")
 
 
 # The trunk
@@ -240,16 +241,16 @@ def trunk_case(case, folder):
         case.report(f"trunk: tip on drive_0g, weight over stiffness {gravity / 9.81:.2g} of the first fit",
                     error(fits[gravity][0], angles[more], places[more]), unit="mm", reference=10.4, source="quadratic map", remark="fitted to it")
     seen = estimate.observability(jacobian, np.ones(len(jacobian)), np.ones(len(x)), names_of_prior(), len(x))
-    case.report("trunk: directions of parameters that drive_0g does not tell", len(seen.unobservable), source="measured trunk",
-                remark="the least: " + "; ".join(seen.unobservable[-2:]) + "; beside them the weight over the stiffness")
+    case.report("trunk: parameter directions that drive_0g does not determine", len(seen.unobservable), source="measured trunk",
+                remark="the least: " + "; ".join(seen.unobservable[-2:]) + "; in addition the ratio of weight to stiffness")
 
     def scaled(mass):
-        """The fit whose slowest mode is that of the decay, for a trunk of this mass (kg)."""
+        """The fit whose slowest mode agrees with the decay, for a trunk of this mass (kg)."""
         logs = np.log([[gravity, frequency(trunk, mass)] for gravity, (trunk, _) in fits.items()])
         wanted = float(np.exp(np.interp(np.log(DECAY), logs[:, 1], logs[:, 0])))
         return trunk_of(fit(angles[few], places[few], wanted, x)[0], wanted)
     trunk = scaled(TRUNK_MASS)
-    case.report("trunk: slowest mode with 200 g, by the scale chosen", frequency(trunk, TRUNK_MASS), unit="Hz", reference=DECAY,
+    case.report("trunk: slowest mode with 200 g, with the chosen scale", frequency(trunk, TRUNK_MASS), unit="Hz", reference=DECAY,
                 source="measured trunk",
                 remark=f"a trunk of {TRUNK_MASS:g} kg; by the first fit {frequency(fits[9.81][0], TRUNK_MASS):.2g} Hz")
     for mass in (0.1, 0.4):
@@ -259,16 +260,16 @@ def trunk_case(case, folder):
                     remark=f"slowest mode {frequency(other, mass):.2g} Hz")
     ours = error(trunk, loaded_angles[more], loaded[more], PAYLOAD / TRUNK_MASS)
     case.bound("trunk: tip on drive_200g, payload known", ours, 17.0, unit="mm", source="quadratic map",
-               remark="17.0 mm of the quadratic map")
+               remark="17.0 mm with the quadratic map")
     case.bound("trunk: the same, aim", ours, 12.0, unit="mm", source="measured trunk",
-               known_miss="no payload at all gives {:.1f} mm, and the payload that fits best is beside; dry friction leaves "
-                          "5 to 7 mm".format(error(trunk, loaded_angles[more], loaded[more])))
+               known_miss="without any payload the error is {:.1f} mm, and the next line has the payload that fits best; dry friction accounts "
+                          "for 5 to 7 mm".format(error(trunk, loaded_angles[more], loaded[more])))
     best = scipy.optimize.minimize_scalar(lambda m: error(trunk, loaded_angles[few], loaded[few], m / TRUNK_MASS), bounds=(0.0, 1.0),
                                           method="bounded", options={"xatol": 5e-3})
     case.check("trunk: payload estimated from drive_200g", best.x, PAYLOAD, 0.15, unit="kg", source="measured trunk",
-               known_miss="the trunk is softer in slow drives than in the decay, which was recorded with other motors: the scale of forces is "
-                          "not identified by these runs",
-               remark=f"{best.fun:.1f} mm there; what is identified is the payload's weight over the stiffness")
+               known_miss="the trunk is softer in slow drives than in the decay, which was recorded with other motors: these runs do not "
+                          "identify the scale of the forces",
+               remark=f"{best.fun:.1f} mm there; only the ratio of the payload's weight to the stiffness is identified")
 
 
 def names_of_prior():

@@ -9,15 +9,18 @@ from suite import plots
 from suite.case import observed_order
 
 TITLE = "Mechanisms: four-bar linkage, slider-crank, double pendulum and hanging chain"
-SETUP = """Links are boxes of 5 x 5 mm and 100 g, turned and hinged in the x-y plane, gravity along -y. (i) A four-bar
-linkage, crank 40, coupler 120, rocker 80, ground 100 mm, all joints hinges about z (three rows more than the plane
-needs), turned at 10 rad/s: the positions follow from two circles, the motor's torque from the power, M w = d/dt (T +
-V), with T and V of the closed form. (ii) A slider-crank, 50 and 150 mm, piston 200 g, starts from rest under a torque
-of 50 mN m and gravity: I(theta) theta'' + I' theta'^2/2 + V' = M, with one unknown. (iii) Two bars of 200 mm let go
-from the horizontal for 1 s. (ii) and (iii) are integrated by DOP853 to 1e-12. (iv) A chain of 12 bars of 50 mm, whose
-masses grow from 20 to 86 g, hung between two points at one height: a drawing in statics is solved for two unknowns, the
-force at one end; Sinew takes it there by backward Euler steps of 50 ms, which damp the swinging. Integrators are BDF2
-and generalized-alpha where not said."""
+SETUP = """Links are boxes of 5 x 5 mm section and 100 g that turn on hinges in the x-y plane, with gravity along -y.
+Integrators are BDF2 and generalized-alpha unless stated otherwise.
+
+- A four-bar linkage, crank 40, coupler 120, rocker 80, ground link 100 mm. All joints are hinges about z (three redundant
+  rows). The crank turns at 10 rad/s. Positions follow from two circles, the motor's torque from the power, M w = d/dt (T +
+  V), with T and V in closed form.
+- A slider-crank, 50 and 150 mm, piston 200 g, starts from rest under a torque of 50 mN m and gravity: I(theta) theta'' + I'
+  theta'^2/2 + V' = M, with one unknown, integrated by DOP853 to 1e-12.
+- Two bars of 200 mm are released from the horizontal for 1 s; the reference is integrated likewise.
+- A chain of 12 bars of 50 mm, whose masses grow from 20 to 86 g, hangs between two points at equal height. The reference
+  solves the statics for two unknowns, the force at one end. Sinew reaches the equilibrium with backward Euler steps of 50 ms,
+  which damp the swing."""
 SOURCES = {"geometry": "plane kinematics in closed form",
            "Lagrange": "Lagrange's equations in minimal coordinates, integrated by E. Hairer's DOP853 (scipy) to 1e-12",
            "statics": "each bar in balance: tan(angle) = (V_left + V_right)/(2 H); two unknowns by scipy's fsolve"}
@@ -111,8 +114,8 @@ def turns(case, axis):
                 inertia, weight = slopes(four_bar, bars, angle)
                 theory.append(0.5 * RATE**2 * inertia + weight)
             errors.append(np.abs(np.array(torques) - theory).max() / np.abs(theory).max())
-        case.identity(f"four-bar, {integrator}: coupler's position over a turn, of the ground link", apart / GROUND, 1e-9, source="geometry")
-        case.bound(f"four-bar, {integrator}, 1 ms: torque of the motor, largest error of its largest", errors[-1], 5e-3, source="Lagrange")
+        case.identity(f"four-bar, {integrator}: error of the coupler's position in a turn / ground link", apart / GROUND, 1e-9, source="geometry")
+        case.bound(f"four-bar, {integrator}, 1 ms: largest error of the motor's torque / largest torque", errors[-1], 5e-3, source="Lagrange")
         case.check(f"four-bar, {integrator}: order of the torque", np.log2(errors[-2] / errors[-1]), 2.0, 0.25, source="Lagrange",
                    relative=False)
         case.check(f"four-bar, {integrator}: order of the coupler's speed", np.log2(slower / slow) / 2.0, 2.0, 0.25, source="geometry",
@@ -158,7 +161,7 @@ def pistons(case, axis, torque=0.05, mass=0.2, duration=0.5):
 
 
 def converges(case, axis, name, steps, errors, size, color, mark):
-    case.bound(f"{name}: angle at the end, {1e3 * steps[-1]:g} ms, over that travelled", errors[-1] / size, 2e-3, source="Lagrange")
+    case.bound(f"{name}: angle at the end, {1e3 * steps[-1]:g} ms, relative to the angle travelled", errors[-1] / size, 2e-3, source="Lagrange")
     case.check(f"{name}: order", observed_order(steps, errors), 2.0, 0.25, source="Lagrange", relative=False)
     axis.loglog(steps, np.array(errors) / size, mark, color=color, label=name)
 
@@ -211,11 +214,11 @@ def chains(case, axis, count=12, length=0.05, span=0.4):
     sim.step(2000)
     middles = np.array([sim.body(name).position[:2] for name in names[1:-1]])
     wanted = 0.5 * (theory[:-1] + theory[1:])
-    case.bound("chain of 12 bars: largest distance of a bar from its place, over the span", np.abs(middles - wanted).max() / span, 1e-6,
+    case.bound("chain of 12 bars: largest distance of a bar from its reference position / span", np.abs(middles - wanted).max() / span, 1e-6,
                source="statics")
     force = np.asarray(sim.joint("joint_0").force)
     case.check("chain of 12 bars: horizontal force", abs(force[0]), found[0], 1e-6, source="statics", unit="N")
-    case.check("chain of 12 bars: lift at the left end", force[1], found[1], 1e-6, source="statics", unit="N")
+    case.check("chain of 12 bars: vertical force at the left end", force[1], found[1], 1e-6, source="statics", unit="N")
     axis.plot(*theory.T, color=plots.REFERENCE, lw=1, label="statics")
     axis.plot(*middles.T, "o", color=plots.OURS, label="bars, Sinew")
     axis.set(xlabel="x (m)", ylabel="y (m)", aspect="equal")
@@ -230,4 +233,4 @@ def run(case):
     middle.set(xlabel="time step (s)", ylabel="relative error of the angle at the end")
     middle.legend(fontsize=7)
     chains(case, right)
-    case.figure(figure, "Left: torque that turns the four-bar linkage. Middle: errors over the time step. Right: the chain at rest.")
+    case.figure(figure, "Left: torque that turns the four-bar linkage. Middle: errors against time step. Right: the chain at rest.")

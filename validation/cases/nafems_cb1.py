@@ -5,20 +5,22 @@ import sinew
 
 from reference import shapes
 from suite import plots
-from suite.case import observed_order
 
 from .hertz import core_cells, in_plane
 
 TITLE = "NAFEMS CB1: an elastic cylinder on an elastic block, with and without friction"
-SETUP = """Plane strain: the lower half of a cylinder, R = 50 mm, 210 GPa, is pressed with 35 kN/mm on a block of 200 x 200 mm, 70 GPa,
-whose bottom is held; nu = 0.3, hexahedra of neo-Hookean material, half of both for symmetry, one cell thick, 4 to 16 cells over the half
-width on both bodies. The cylinder's mid-plane is moved down until the force is that of the benchmark to 1e-4. Half widths follow from the
-second moment of the nodes' forces, 1/4 F a^2, peak pressures from the node in the middle over the deformed width that belongs to it; forces
-of nodes are the internal ones, which the contact balances. Then mu = 0.1, pressed down in 20 steps: the softer block spreads under the
-cylinder, friction holds it and makes the contact narrower. The references are another code's, with its mesh and at small strain; its stress
-is extrapolated to the node, so that it is held to 5 %. Whether its block's bottom is held or slides is not told, and both laws here, neo-
-Hookean and Saint Venant-Kirchhoff, are stiffer and softer than the linear one in compression: the displacement is held to 1 % and missed,
-and reported for either. 16 and 15 cells match nowhere: forces of nodes then scatter about a smooth pressure, since the vertices of both
+SETUP = """Plane strain. The lower half of a cylinder, R = 50 mm, 210 GPa, is pressed with 35 kN/mm on a block of 200 x 200
+mm, 70 GPa, whose bottom is fixed; nu = 0.3, neo-Hookean hexahedra, one cell thick. By symmetry half of each is meshed, with 4
+to 16 cells over the half width on both bodies. The mid-plane of the cylinder moves down until the force agrees with the
+benchmark to 1e-4. The half width follows from the second moment of the nodal forces, 1/4 F a^2, the peak pressure from the
+middle node's force and the deformed width that belongs to it. Nodal forces are the internal forces that the contact balances.
+
+Then the cylinder is pressed down in 20 steps with mu = 0.1. The softer block spreads under the cylinder; friction resists
+this and makes the contact narrower. The references are from another code, with its own mesh and at small strain. Its stress
+is extrapolated to the node, so the tolerance is 5 %. The source does not say whether the bottom of its block is fixed or
+slides. Both of our laws, neo-Hookean and Saint Venant-Kirchhoff, differ from the linear one in compression: one is stiffer,
+the other softer. The displacement has a tolerance of 1 %, which is missed; it is reported for all combinations. Meshes with
+16 and 15 cells do not match anywhere. Their nodal forces scatter about a smooth pressure, because the vertices of both
 surfaces carry them; this is reported."""
 SOURCES = {"Hertz": "NAFEMS, Advanced finite element contact benchmarks, 2006, no. 1; half width 6.2146 mm, 3585.4 MPa by Hertz",
            "Marc": "Marc demonstration manual, ch. 1: NAFEMS CB1 with mu = 0.1, y displacement -1.30264 mm and stress -3542.7 MPa of the block in the "
@@ -95,31 +97,31 @@ def smooth(case, axis):
     finest = seen[-1]
     case.check("16 cells over a: half width", 1e3 * finest.width, 1e3 * WIDE, 0.01, source="Hertz", unit="mm")
     case.check("16 cells over a: peak pressure", 1e-6 * finest.peak, 1e-6 * PEAK, 0.02, source="Hertz", unit="MPa")
-    case.report("difference of half widths between 4 and 8 cells, over that between 8 and 16",
+    case.report("difference of half widths between 4 and 8 cells / difference between 8 and 16",
                 (seen[0].width - seen[1].width) / (seen[1].width - seen[2].width), source="Hertz")
     case.report("displacement of the block in the middle", 1e3 * finest.sunk, source="Hertz", unit="mm")
     axis.plot(1e3 * finest.profiles[0][0], 1e-6 * finest.profiles[0][1], "o", ms=3, color=plots.OURS, label="mu = 0")
     odd = Press(case, (16, 15))
     case.check("16 on 15 cells: half width", 1e3 * odd.width, 1e3 * WIDE, 0.01, source="Hertz", unit="mm")
     for name, (_, pressure) in zip(("block", "cylinder"), odd.profiles):
-        case.report(f"16 on 15 cells: pressure of the {name}'s middle node", 1e-6 * pressure[0], source="Hertz", unit="MPa", reference=1e-6 * PEAK)
+        case.report(f"16 on 15 cells: pressure at the middle node of the {name}", 1e-6 * pressure[0], source="Hertz", unit="MPa", reference=1e-6 * PEAK)
     return finest
 
 
 def rough(case, axis, smooth_width):
     press = Press(case, (12, 12), friction=0.1)
     case.check("mu = 0.1, 12 cells over a: displacement of the block in the middle", 1e3 * press.sunk, -1.30264, 0.01, source="Marc", unit="mm",
-               known_miss="it depends on the support of the bottom and on the law at strains of 5 %, see the lines below")
+               known_miss="it depends on the support of the bottom and on the law at strains of 5 %; see the following lines")
     for slides, law in ((True, "neo-hookean"), (False, "saint-venant-kirchhoff")):
         other = Press(case, (8, 8), friction=0.1, slides=slides, law=law)
         name = f"mu = 0.1, 8 cells, {law}, bottom {'slides' if slides else 'held'}"
         case.report(f"{name}: displacement", 1e3 * other.sunk, source="Marc", unit="mm", reference=-1.30264)
         case.report(f"{name}: peak pressure", 1e-6 * other.peak, source="Marc", unit="MPa", reference=3542.7)
     case.check("mu = 0.1, 12 cells over a: peak pressure", 1e-6 * press.peak, 3542.7, 0.05, source="Marc", unit="MPa")
-    case.report("mu = 0.1: half width over that without friction", press.width / smooth_width, source="Marc")
+    case.report("mu = 0.1: half width / that without friction", press.width / smooth_width, source="Marc")
     contact = press.sim.contact("press")
     normal, along = np.asarray(contact.normal_forces), np.linalg.norm(np.asarray(contact.friction_forces), axis=1)
-    case.bound("mu = 0.1: largest friction beyond mu times the normal force, over the largest normal force",
+    case.bound("mu = 0.1: largest friction above mu times the normal force / largest normal force",
                max(0.0, (along - 0.1 * normal).max()) / normal.max(), 1e-8, source="Coulomb")
     states = np.array(contact.states)[normal > 0.0]
     case.agree("mu = 0.1: the middle sticks, the rim slips", {"stick", "slip"} <= set(states.tolist()), True, source="Coulomb")

@@ -8,10 +8,10 @@ from suite import plots
 from suite.robots import SOLVER
 
 TITLE = "NAFEMS LE1, elliptic membrane"
-SETUP = """A quarter of a membrane between the ellipses x^2/2^2 + y^2 = 1 and x^2/3.25^2 + y^2/2.75^2 = 1 (m), 0.1 m thick,
-E = 210 GPa, nu = 0.3, plane stress (its faces are free), rollers on both planes of symmetry, with an outward pressure
-of 10 MPa on the outer edge. The quantity is sigma_yy at (2, 0). n x n x 1 hexahedra (Saint Venant-Kirchhoff at a
-thousandth of the load): the stresses of the two innermost elements next to the point, extrapolated to it in a line."""
+SETUP = """A quarter of a membrane between the ellipses x^2/2^2 + y^2 = 1 and x^2/3.25^2 + y^2/2.75^2 = 1 (m), 0.1 m thick, E
+= 210 GPa, nu = 0.3, plane stress (its faces are free), with rollers on both planes of symmetry and an outward pressure of 10
+MPa on the outer edge. The quantity is sigma_yy at (2, 0). n x n x 1 hexahedra (Saint Venant-Kirchhoff at a thousandth of the
+load). The stress is extrapolated linearly from the two innermost elements next to the point."""
 SOURCES = {"NAFEMS": "The Standard NAFEMS Benchmarks, TNSB rev. 3, 1990, test LE1: 92.7 MPa"}
 COST = 10
 CELLS = (8, 16, 32, 64)

@@ -8,12 +8,12 @@ from suite import plots
 from suite.robots import SOLVER
 
 TITLE = "NAFEMS LE10, thick plate under pressure"
-SETUP = """A quarter of a plate between the ellipses of LE1, 0.6 m thick, E = 210 GPa, nu = 0.3, under a pressure of
-1 MPa on its upper face, as consistent forces of the nodes. Rollers on both planes of symmetry; the outer curved face is
-held in x and y, its middle line in z, too. The quantity is sigma_yy at D = (2, 0, 0.6). n x n cells and n/4 through the
-thickness (even), of hexahedra, or each cut in six quadratic tetrahedra (Saint Venant-Kirchhoff at a thousandth of the
-load). Stress at D is that of a plane through the means of the elements with a node within one and a half cells of D, by
-least squares (in the manner of O. C. Zienkiewicz, J. Z. Zhu, Int. J. Numer. Methods Eng. 33 (1992) 1331-1364)."""
+SETUP = """A quarter of a plate between the ellipses of LE1, 0.6 m thick, E = 210 GPa, nu = 0.3, under a pressure of 1 MPa on
+its upper face, applied as consistent nodal forces. Rollers hold both planes of symmetry. The outer curved face is held in x
+and y, and its middle line also in z. The quantity is sigma_yy at D = (2, 0, 0.6). n x n cells, n/4 through the thickness
+(rounded to even), of hexahedra or split into six quadratic tetrahedra each (Saint Venant-Kirchhoff at a thousandth of the
+load). The stress at D is that of a plane through the element means of all elements with a node within one and a half cells of
+D, by least squares (similar to O. C. Zienkiewicz, J. Z. Zhu, Int. J. Numer. Methods Eng. 33 (1992) 1331-1364)."""
 SOURCES = {"NAFEMS": "The Standard NAFEMS Benchmarks, TNSB rev. 3, 1990, test LE10: -5.38 MPa"}
 COST = 40
 CELLS = {"hex8": (8, 16, 24, 32), "tet10": (8, 12, 16, 24)}

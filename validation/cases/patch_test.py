@@ -9,11 +9,10 @@ from suite import plots
 from suite.robots import body_scene
 
 TITLE = "Affine patch test"
-SETUP = """A block of 3 x 3 x 3 cells whose inner nodes are moved at random by up to a quarter of a cell;
-E = 1 MPa, nu = 0.3. Three corners are held, and the outside carries the nodal forces of one constant
-stress, P N on every face. A displacement u = a (n . x) leaves the three corners where they are; every
-node must take it, whatever the mesh. Nine pairs of a and n span all strains. The corotational law is
-tested at 0.1 % and, since it too has a constant stress in an affine motion, at 20 %."""
+SETUP = """A block of 3 x 3 x 3 cells whose inner nodes are displaced at random by up to a quarter of a cell; E = 1 MPa, nu =
+0.3. Three corners are held, and the nodal forces on the outside are those of a uniform stress, P N on every face. A
+displacement u = a (n . x) leaves the three corners in place. Every node must follow it on any mesh. Nine pairs of a and n
+span all strains. The corotational law is tested at 0.1 % and, since its stress is also uniform in an affine motion, at 20 %."""
 SOURCES = {
     "Irons 1972": "B. M. Irons, A. Razzaque, Experience with the patch test for convergence of "
                   "finite elements, in: The Mathematical Foundations of the Finite Element Method, "
@@ -44,7 +43,7 @@ def corners(axis):
 
 
 def patch(path, model, axis, direction, strain):
-    """Largest deviation from the affine motion over the largest displacement."""
+    """Largest deviation from the affine motion / largest displacement."""
     sim = sinew.load(body_scene(path, young=YOUNG, poisson=POISSON, model=model,
                                 fixed=corners(axis)))
     body = sim.body("body")
@@ -71,7 +70,7 @@ def run(case):
         axis.semilogy(range(9), errors, "o", color=colour, label=f"{model}, {strain:.1%}")
     axis.axhline(1e-10, color=plots.REFERENCE, ls="--", lw=1, label="tolerance")
     axis.set(xticks=range(9), ylim=(1e-17, 1e-8), ylabel="largest deviation / largest displacement",
-             xlabel="motion: component of u, then the coordinate it grows with")
+             xlabel="motion: component of u, then the coordinate with which it grows")
     axis.set_xticklabels([f"{'xyz'[a]}{'xyz'[n]}" for n in range(3) for a in range(3)])
     axis.legend(ncol=2)
-    case.figure(figure, "Deviation of every affine motion from the one imposed.")
+    case.figure(figure, "Deviation from every imposed affine motion.")

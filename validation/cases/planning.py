@@ -1,4 +1,4 @@
-"""Grabs out of static reach: plans by direct collocation, carried out in fine steps."""
+"""Swings beyond static reach: plans by direct collocation, simulated in fine steps."""
 
 import numpy as np
 from scipy import integrate
@@ -6,17 +6,20 @@ from sinew import pcc, plan
 
 from suite import plots
 
-TITLE = "Grabs of a fluidic arm out of its static reach"
-SETUP = """The identified four-segment arm (masses, k_1 and b as published; lengths are not: 0.14 m each assumed),
-torques within 0, 0.12, 0.13 and 0.18 N m, from hanging at rest to goals A (-25, -45), B (15, -35), C (20, -40) and
-D (-30, -30) cm (x, z), minimal effort, seven random starts each; tip within 0.2 cm and 0.5 cm/s of the goal at the
-end. Radau with 50 knots of 32 ms to begin with, with torque rates within 2 N m/s and without that limit; backward Euler
-with 30 knots of 80 ms and no correction, as published. Each plan's torque is then put on the arm, integrated with error
-control; the best plan to each goal also by SciPy's Radau. The aim is what plans claim, 0.2 cm and 0.5 cm/s. Out of
-static reach: no equilibrium, stable or not, has its tip within 2 cm, proven by branch and bound. Basin: 40 random starts off by so much (rad in each angle) and arms whose
-masses or stiffnesses are off by 10 %; a grab succeeds with the tip within 2 cm."""
+TITLE = "Swings of a fluidic arm beyond its static reach"
+SETUP = """The identified four-segment arm (masses, k_1 and b as published; the lengths are not, 0.14 m each are assumed) has
+torque limits of 0, 0.12, 0.13 and 0.18 N m. It swings from hanging at rest to the goals A (-25, -45), B (15, -35), C (20,
+-40) and D (-30, -30) cm (x, z) with minimal effort, from seven random starts each. At the end the tip has to be within 0.2 cm
+and 0.5 cm/s of the goal. Radau starts with 50 knots of 32 ms, with torque rates within 2 N m/s and without this limit;
+backward Euler has 30 knots of 80 ms and no correction, as published.
+
+The torque of each plan is then applied to the arm and integrated with error control; for the best plan to each goal this is
+repeated with SciPy's Radau. The aim is the accuracy that the plans promise, 0.2 cm and 0.5 cm/s. *Out of static reach* means
+that no equilibrium, stable or not, has its tip within 2 cm, proven by branch and bound. The basin of a plan is tested with 40
+random starts whose angles are each off by up to the given value (rad), and with arms whose masses or stiffnesses are off by
+10 %. A swing succeeds if the tip comes within 2 cm."""
 SOURCES = {
-    "aim": "this project's aim",
+    "aim": "our aim",
     "published": "the fluidic arm's authors: 0.9 to 1.7 cm and 0.1 to 7.6 cm/s after re-integration",
     "proof": "branch and bound with Taylor bounds, docs/planning.md",
     "optimum": "the best of the seven starts",
@@ -33,7 +36,7 @@ KINDS = {
 
 
 def independent_end(arm, found):
-    """The tip's place (3,) m and speed m/s after the plan's torques, by SciPy."""
+    """Final position (3,) m and speed m/s of the tip under the plan's torques, by SciPy."""
     count = arm.coordinates
     state = np.zeros(2 * count)
     for begin, end in zip(found.times, found.times[1:]):  # torques have kinks at knots
@@ -63,7 +66,7 @@ def grabs(case, arm, limits):
             published = "Euler" in kind
             plans = [task.solve(seed, corrections=0 if published else 6) for seed in SEEDS]
             found = [p for p in plans if p.found or (published and p.status == "not-met-on-replay")]
-            case.report(f"{kind}, {name}: starts that led to a plan", f"{len(found)} of {len(SEEDS)}", source="aim")
+            case.report(f"{kind}, {name}: starts that lead to a plan", f"{len(found)} of {len(SEEDS)}", source="aim")
             if not found:
                 continue
             least = min(found, key=lambda p: p.objective)
@@ -74,10 +77,10 @@ def grabs(case, arm, limits):
                 case.bound(f"{kind}, {name}: tip speed, worst start", speed, 0.5, unit="cm/s", source="aim")
                 at, left = independent_end(arm, least)
                 apart = 100 * np.linalg.norm(at - runs[found.index(least)].tip[-1])
-                case.bound(f"{kind}, {name}: tip by SciPy, apart", apart, 0.001, unit="cm", source="integrator")
+                case.bound(f"{kind}, {name}: tip by SciPy: difference", apart, 0.001, unit="cm", source="integrator")
                 case.bound(f"{kind}, {name}: tip speed by SciPy", 100 * left, 0.5025, unit="cm/s", source="integrator")
                 same = sum(p.objective < 1.001 * least.objective for p in found)
-                case.report(f"{kind}, {name}: starts that led to the same effort", f"{same} of {len(found)}",
+                case.report(f"{kind}, {name}: starts that lead to the same effort", f"{same} of {len(found)}",
                             source="optimum")
                 best.setdefault(name, (task, least))
             else:
@@ -107,7 +110,7 @@ def basin(case, task, found):
             runs = [tracker.run(theta=size * start, feedback=feedback) for start in starts[: 1 if size == 0 else 40]]
             share = np.mean([r.tip_error < 0.02 for r in runs])
             shares[word].append(100 * share)
-            case.report(f"{word}, start off by {size:g} rad: grabs that succeed", 100 * share, unit="%", source="aim")
+            case.report(f"{word}, start off by {size:g} rad: swings that succeed", 100 * share, unit="%", source="aim")
         for label, other in (("masses +10 %", scaled(mass=1.1)), ("masses -10 %", scaled(mass=0.9)),
                              ("stiffness +10 %", scaled(stiffness=1.1)), ("stiffness -10 %", scaled(stiffness=0.9))):
             run = tracker.run(other, feedback=feedback)
@@ -129,6 +132,6 @@ def run(case):
     sizes, shares = basin(case, *best["C"])
     for word, colour in (("open loop", plots.SECOND), ("closed loop", plots.OURS)):
         right.plot(sizes, shares[word], "o-", color=colour, label=word)
-    right.set(xlabel="start off by (rad)", ylabel="grabs of C that succeed (%)")
+    right.set(xlabel="error of the initial angles (rad)", ylabel="successful swings to C (%)")
     right.legend()
-    case.figure(figure, "Paths of the tip to the four goals, and how often a grab succeeds from starts that are off.")
+    case.figure(figure, "Paths of the tip to the four goals, and success rates with errors of the initial angles.")

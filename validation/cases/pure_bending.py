@@ -1,4 +1,4 @@
-"""Pure bending, where theory's order of convergence must be met."""
+"""Pure bending, where the theoretical order of convergence must be reached."""
 
 import numpy as np
 import sinew
@@ -9,11 +9,11 @@ from suite.case import observed_order
 from suite.robots import body_scene, write_block
 
 TITLE = "Pure bending: order of convergence on a smooth solution"
-SETUP = """A cube, 20 x 20 x 20 mm, E = 1 MPa, nu = 0, linear material, bent to the curvature k = 1/m by
-tractions s_xx = -E k z on its end (z from its middle). With nu = 0 the displacement
-u = (-k x z, 0, k x^2/2) is the exact three-dimensional solution and vanishes on the clamped face, so that
-nothing is singular, other than at the clamped block under a transverse load: the error of linear
-tetrahedra in the L2 norm must fall with the square of the cell size, that of the strain energy likewise."""
+SETUP = """A cube, 20 x 20 x 20 mm, E = 1 MPa, nu = 0, linear material, is bent to the curvature k = 1/m by tractions s_xx =
+-E k z on its end (z from the middle). With nu = 0 the displacement u = (-k x z, 0, k x^2/2) is the exact three-dimensional
+solution and vanishes on the clamped face. Unlike the clamped block under a transverse load, this problem has no singularity,
+so the error of linear tetrahedra in the L2 norm and the error of the strain energy must both fall with the square of the cell
+size."""
 SOURCES = {
     "Timoshenko 1970": "S. P. Timoshenko, J. N. Goodier, Theory of Elasticity, 3rd ed., McGraw-Hill "
                        "1970, section 102 (pure bending of prismatical bars)",
@@ -84,4 +84,4 @@ def run(case):
     plots.slope_line(axis, sizes, norm, 2)
     axis.set(xlabel="cell size (m)", ylabel="relative error")
     axis.legend()
-    case.figure(figure, "Errors over cell size in pure bending.")
+    case.figure(figure, "Errors against cell size in pure bending.")

@@ -1,18 +1,23 @@
-"""Rigid bodies that touch: slopes, stacks, a grip, a rocking block."""
+"""Contact between rigid bodies: slopes, stacks, a grip, a rocking block."""
 
 import numpy as np
 import sinew
 
 from suite import plots
 
-TITLE = "Rigid bodies that touch each other"
-SETUP = """Backward Euler, contact between shapes. (i) Balls and rollers, r = 20 mm, are let go for 0.2 s on a slope of a fixed box:
-without slip a = g sin(s)/(1 + k), k = I/(m r^2); they slip where mu < tan(s) k/(1 + k). A ball thrown flat without spin rolls once its speed
-is 1/(1 + k) of the first. (ii) A block of width w and height h on a slope tips where tan(s) > w/h, with friction enough. (iii) Ten cubes
-of 20 mm one on another, and 1 g below 10 kg, for 2 s: forces below are the weights above, and nothing creeps. (iv) Two balls that linear motors press
-on a box with N, beside its centre of mass, carry it where m g < 2 mu N. (v) A block of 20 x 20 x 80 mm rocks from 0.6 of its critical angle: I_o theta'' =
--m g R sin(alpha - theta), and when it lands its rate falls by the factor 1 - 3/2 sin(alpha)^2 (Housner 1963), which assumes that it goes on
-about its other edge; its equation is solved by Runge-Kutta steps."""
+TITLE = "Contact between rigid bodies"
+SETUP = """Backward Euler, contact between exact shapes.
+
+- *Slopes.* Balls and rollers, r = 20 mm, are released for 0.2 s on a slope, a fixed box. Without slip a = g sin(s)/(1 + k), k
+  = I/(m r^2); they slip if mu < tan(s) k/(1 + k). A ball thrown horizontally without spin rolls once its speed has fallen to
+  1/(1 + k) of the initial speed.
+- *Tipping.* A block of width w and height h on a slope tips if tan(s) > w/h, given enough friction.
+- *Stacks.* Ten cubes of 20 mm on each other, and 1 g below 10 kg, for 2 s. The force below each body equals the weight above
+  it, and nothing creeps.
+- *Grip.* Two balls, pressed by linear motors with the force N on a box beside its centre of mass, carry it if m g < 2 mu N.
+- *Rocking.* A block of 20 x 20 x 80 mm rocks from 0.6 of its critical angle: I_o theta'' = -m g R sin(alpha - theta). At each
+  landing its angular rate is multiplied by 1 - 3/2 sin(alpha)^2 (Housner 1963), assuming that it continues about its other
+  edge. The equation is solved by Runge-Kutta steps."""
 SOURCES = {"rolling": "rolling of a rigid round body: g sin(s)/(1 + I/(m r^2))",
            "Coulomb": "statics with Coulomb friction",
            "Housner": "G. W. Housner, The behavior of inverted pendulum structures during earthquakes, Bull. Seismological Soc. America "
@@ -53,7 +58,7 @@ def rolls(case, axis):
         sim = scene({"it": round_body(kind), "table": table()}, {"floor": {"between": ["it", "table"], "friction": friction}},
                     gravity=tilted(angle))
         sim.run(duration=time)
-        case.check(f"{kind}: acceleration where it slips, mu = 0.8 tan(s) k/(1 + k)", sim.body("it").velocity[1] / time,
+        case.check(f"{kind}: acceleration with slip, mu = 0.8 tan(s) k/(1 + k)", sim.body("it").velocity[1] / time,
                    G * (np.sin(angle) - friction * np.cos(angle)), 2e-3, source="Coulomb", unit="m/s^2")
         sim = scene({"it": round_body(kind, velocity={"linear": [0, 0.5, 0]}), "table": table()},
                     {"floor": {"between": ["it", "table"], "friction": 0.2}})
@@ -61,11 +66,11 @@ def rolls(case, axis):
         for _ in range(200):
             sim.step()
             speeds.append(float(sim.body("it").velocity[1]))
-        case.check(f"{kind}: speed once it rolls, thrown flat at 0.5 m/s", speeds[-1], 0.5 / (1 + k), 1e-3, source="rolling", unit="m/s")
+        case.check(f"{kind}: speed once it rolls, thrown horizontally at 0.5 m/s", speeds[-1], 0.5 / (1 + k), 1e-3, source="rolling", unit="m/s")
         time = 1e-3 * np.arange(201)
         line = axis.plot(time, speeds, label=kind)[0]
         axis.plot(time, np.maximum(0.5 - 0.2 * G * time, 0.5 / (1 + k)), "--", color=line.get_color(), lw=1)
-    axis.set(xlabel="time (s)", ylabel="speed (m/s), thrown flat")
+    axis.set(xlabel="time (s)", ylabel="speed (m/s), thrown horizontally")
     axis.legend()
 
 
@@ -95,7 +100,7 @@ def stacks(case):
         worst = max(abs(sim.contact(f"on_{k}").normal_force / (G * sum(masses[k:])) - 1.0) for k in range(len(names)))
         case.bound(f"{title}: largest error of a normal force, relative", worst, 1e-6, source="Coulomb")
         moved = np.abs(np.array([sim.body(name).position for name in names]) - start).max()
-        case.bound(f"{title}: creep in 2 s over the edge", float(moved) / edge, 1e-6, source="Coulomb")
+        case.bound(f"{title}: creep in 2 s / edge", float(moved) / edge, 1e-6, source="Coulomb")
 
 
 def grips(case):
@@ -150,7 +155,7 @@ def rocks(case, axis):
     case.check("rocking block: time of the first landing", time[lows[0]], landings[0], 0.01, source="Housner", unit="s")
     between = ours[lows[0]:lows[1]].max()
     theirs = reference[round(landings[0] / step):round(landings[1] / step)].max()
-    case.check("rocking block: largest angle after that, of alpha", between / alpha, theirs / alpha, 0.02, source="Housner")
+    case.check("rocking block: largest angle afterwards / alpha", between / alpha, theirs / alpha, 0.02, source="Housner")
     axis.plot(time, np.degrees(reference), "--", color=plots.REFERENCE, label="Housner")
     axis.plot(time, np.degrees(ours), color=plots.OURS, label="Sinew")
     axis.set(xlabel="time (s)", ylabel="angle of the rocking block (deg)")
@@ -164,4 +169,4 @@ def run(case):
     stacks(case)
     grips(case)
     rocks(case, right)
-    case.figure(figure, "Left: speed of a ball and a roller that are thrown flat; dashed: Coulomb, then rolling. Right: a rocking block.")
+    case.figure(figure, "Left: speed of a ball and a roller thrown horizontally; dashed: Coulomb, then rolling. Right: a rocking block.")

@@ -7,15 +7,17 @@ from suite import plots
 from suite.robots import SOLVER
 
 TITLE = "Rolling: wheels of points on an incline, and the angular momentum of a spinning block"
-SETUP = """(i) A wheel, r = 20 mm, 10 mm wide, meshed with N points around, stands on a facet on a plane inclined by 10 degrees, mu = 0.6, and is
-let go for 0.4 s (Newton). A round rigid wheel accelerates by g sin(a)/(1 + k), k = I/(m r^2). A rigid wheel of N points turns about
-the point that it stands on, (1 + k) r theta'' = g sin(theta), theta from the vertical, and keeps the part (k + cos b)/(1 + k), b = 2 pi/N, of
-its rate where the next point lands and stops (McGeer 1990); its equation is solved by Runge-Kutta steps between landings. k and r are those
-of the mesh. Wheels of 10 MPa and backward Euler, whose facets stay flat and whose vibrations die away, ought to be the rigid wheel of points;
-soft wheels of 100 kPa and BDF2, whose footprint is as long as their facets, are set beside the round one. Compared is 2 x/t^2.
-(ii) A free block of 40 x 20 x 20 mm, 1 MPa, spins at 20 rad/s for 0.5 s. Its angular momentum is kept by the second-order integrators but
-for their error, and lost by backward Euler as by that of a rigid body under the same method: the turns D of two steps that follow each other
-obey 2 sin(D_f) = sin(D_f + D_i) (see the case backward_euler), L = I sin(D)/h."""
+SETUP = """- A wheel, r = 20 mm, 10 mm wide, with N mesh points around its rim, stands on a facet on a plane inclined by 10 degrees, mu =
+  0.6. It is released for 0.4 s (Newton's method); the compared quantity is 2 x/t^2. A round rigid wheel accelerates by g
+  sin(a)/(1 + k), k = I/(m r^2). A rigid wheel of N points turns about the point on which it stands, (1 + k) r theta'' = g
+  sin(theta), with theta from the vertical, and keeps the fraction (k + cos b)/(1 + k), b = 2 pi/N, of its rate when the next
+  point lands and stops (McGeer 1990). This equation is solved by Runge-Kutta steps between landings, with k and r of the
+  mesh. With 10 MPa and backward Euler the facets stay flat and vibrations decay, so the wheel should behave like the rigid
+  wheel of points. Soft wheels of 100 kPa with BDF2, whose footprint is as long as their facets, are compared with the round
+  wheel.
+- A free block of 40 x 20 x 20 mm, 1 MPa, spins at 20 rad/s for 0.5 s. Second-order integrators should conserve its angular
+  momentum up to their error. Backward Euler should lose as much as with a rigid body, for which the rotations D of successive
+  steps obey 2 sin(D_f) = sin(D_f + D_i) (see the case backward_euler), L = I sin(D)/h."""
 SOURCES = {"round": "rolling of a rigid round wheel: g sin(a)/(1 + I/(m r^2))",
            "McGeer": "T. McGeer, Passive dynamic walking, Int. J. Robotics Research 9 (1990) 62-82: the rimless wheel; "
                      "doi:10.1177/027836499000900206",
@@ -51,7 +53,7 @@ class Wheel:
         self.inertia = float(self.share @ (mesh.nodes[:, :2]**2).sum(axis=1)) / self.radius**2  # k
 
     def way(self):
-        """Of the centre of mass, m, after every step; and the largest gain of energy in a step, of the whole drop."""
+        """Positions of the centre of mass, m, after every step; and the largest energy gain in a step / energy of the whole descent."""
         body, energies, ways = self.sim.body("wheel"), [], [0.0]
         while self.sim.time < TIME - 1e-9:
             self.sim.step()
@@ -97,19 +99,18 @@ def rolls(case, axis, right):
         seen["rigid"].append(wheel.rolled_rigid() / wheel.rolled_round())
         seen["points"].append(wheel.points)
     for points, ours, rigid in zip(seen["points"], seen["stiff"], seen["rigid"]):
-        case.check(f"{points} points, 10 MPa: acceleration over a round wheel's, beside the rigid wheel of points", ours, rigid, 0.05,
-                   source="McGeer")
-    case.check(f"{points} points, 100 kPa: acceleration over a round wheel's", seen["soft"][-1], 1.0, 0.02, source="round")
-    case.report("24 points, 100 kPa: acceleration over a round wheel's", seen["soft"][0], source="round")
-    case.bound("largest gain of energy in a step of backward Euler, of the drop's", gains["stiff"], 1e-4, source="round",
-               remark="not zero: where elements are pressed, their energy is not convex in the turning")
-    case.bound("largest gain of energy in a step of BDF2, of the drop's", gains["soft"], 1e-4, source="round")
+        case.check(f"{points} points, 10 MPa: acceleration / a round wheel's", ours, rigid, 0.05, source="McGeer")
+    case.check(f"{points} points, 100 kPa: acceleration / a round wheel's", seen["soft"][-1], 1.0, 0.02, source="round")
+    case.report("24 points, 100 kPa: acceleration / a round wheel's", seen["soft"][0], source="round")
+    case.bound("largest energy gain in a backward Euler step / energy of the descent", gains["stiff"], 1e-4, source="round",
+               remark="not zero: the energy of compressed elements is not convex in the rotation")
+    case.bound("largest energy gain in a BDF2 step / energy of the descent", gains["soft"], 1e-4, source="round")
     axis.plot(seen["points"], seen["rigid"], "s--", color=plots.REFERENCE, label="rigid wheel of points")
     axis.plot(seen["points"], seen["stiff"], "o-", color=plots.OURS, label="10 MPa")
     axis.plot(seen["points"], seen["soft"], "o-", color=plots.SECOND, label="100 kPa")
-    axis.set(xlabel="points around", ylabel="acceleration / round wheel's", ylim=(0.6, 1.02))
+    axis.set(xlabel="points around", ylabel="acceleration / a round wheel's", ylim=(0.6, 1.02))
     axis.legend()
-    right.set(xlabel="time (s)", ylabel="way (mm), 100 kPa")
+    right.set(xlabel="time (s)", ylabel="distance (mm), 100 kPa")
     right.legend()
 
 
@@ -143,7 +144,7 @@ def spin(integrator, step, rate=20.0, duration=0.5, start=0.05):
 
 
 def rigid_spin(step, rate, count):
-    """The same of a rigid body under backward Euler, `count` steps from its first rate."""
+    """The same for a rigid body under backward Euler, `count` steps from its initial rate."""
     turn, seen = np.arcsin(rate * step), []
     for _ in range(count):
         seen.append(np.sin(turn))
@@ -175,5 +176,5 @@ def run(case):
     figure, (left, middle, right) = plots.axes(3)
     rolls(case, left, middle)
     spins(case, right)
-    case.figure(figure, "Left: acceleration over the number of points around the wheel. Middle: way of soft wheels. Right: angular momentum of a "
+    case.figure(figure, "Left: acceleration against the number of points around the wheel. Middle: distance rolled by soft wheels. Right: angular momentum of a "
                         "spinning block.")

@@ -8,16 +8,19 @@ from suite import plots
 from suite.case import observed_order
 
 TITLE = "Rolling and sliding: a skidding ball, a turntable, a leaning disc, friction oscillators"
-SETUP = """(i) A ball, r = 20 mm, 100 g, is thrown along x at 0.6 m/s with a spin of (25, 10, 0) rad/s, mu = 0.2, so
-that it skids across its way: the direction of the slip u stays, friction is constant, the way a parabola until t = 2
-|u|/(7 mu g), when it rolls at v - 2/7 u. Nothing has a moment about the vertical. (ii) The ball rolls on a turntable of
-1 m at 7 rad/s: in the world it goes round a circle at 2/7 of that, with any velocity. (iii) A disc, r = 30 mm, 4 mm
-thick, rolls on its rim, leaning by 15 degrees, in a circle at 4 rad/s; the steady spin, from Euler's equations, is 11.1
-rad/s about its axis. Lean and energy are constant; watched for 0.2 s. (iv) A box of 1 kg on a spring of 100 N/m, pulled
-out by 50 mm, mu = 0.05: each half period takes 2 mu m g/k from the amplitude until it rests. Then a force of 2 N sin(w
-t), w from 0.45 to 1.4 of the natural one, mu = 0.06: Den Hartog's amplitude of motion without stops, after 25 periods.
-Backward Euler or BDF2; the point that rolls is taken where the step begins, so that rolling is of first order under
-both."""
+SETUP = """Backward Euler or BDF2. The rolling point is located at the start of each step, so rolling is of first order with
+both.
+
+- A ball, r = 20 mm, 100 g, is thrown along x at 0.6 m/s with a spin of (25, 10, 0) rad/s, mu = 0.2, and skids sideways. The
+  direction of the slip u is constant, and so is friction. The path is a parabola until t = 2 |u|/(7 mu g); then the ball
+  rolls at v - 2/7 u. No moment acts about the vertical.
+- The ball rolls on a turntable of 1 m at 7 rad/s. Seen from the world, it moves on a circle at 2/7 of that rate, at any
+  velocity.
+- A disc, r = 30 mm, 4 mm thick, rolls on its rim in a circle at 4 rad/s, leaning by 15 degrees. By Euler's equations its
+  steady spin is 11.1 rad/s about its axis. Lean and energy should be constant; they are recorded for 0.2 s.
+- A box of 1 kg on a spring of 100 N/m is pulled out by 50 mm, mu = 0.05. Each half period reduces the amplitude by 2 mu m g/k
+  until the box rests. Then a force of 2 N sin(w t) acts, with w from 0.45 to 1.4 of the natural frequency, mu = 0.06; the
+  reference is Den Hartog's amplitude of motion without stops, after 25 periods."""
 SOURCES = {"Coulomb": "skidding of a homogeneous ball with Coulomb friction: constant deceleration, then rolling",
            "turntable": "R. H. Romer, Motion of a sphere on a tilted turntable, Am. J. Phys. 49 (1981) 985: 2/7 of the table's rate",
            "Euler": "steady motion of a rolling disc: d/dt of the angular momentum in the frame that precesses; the root by scipy's brentq",
@@ -26,7 +29,7 @@ SOURCES = {"Coulomb": "skidding of a homogeneous ball with Coulomb friction: con
                          "sqrt(V^2 - (mu N/F)^2 U^2), V = 1/(1 - b^2), U = sin(pi/b)/(b (1 + cos(pi/b)))"}
 COST = 15
 G, RADIUS, MASS = 9.81, 0.02, 0.1
-FIRST = "points that roll are followed from where they touch when the step begins, and forces act there at its end: first order"
+FIRST = "a rolling point is located where it touches at the start of the step, and its force acts there at the end: first order"
 
 
 def load(bodies, contacts, step, integrator, **more):
@@ -70,11 +73,11 @@ def skids(case, axis, convergence):
             spins.append(abs(float(sim.body("ball").velocity[5])))
         order = 1.0 if integrator == "backward-euler" else 2.0
         name = f"skidding ball, {integrator}, 0.5 ms"
-        case.check(f"{name}: when it rolls", stuck, rolls, 2.0 * steps[-1] / rolls, source="Coulomb", unit="s")
-        case.bound(f"{name}: velocity then, over the first", np.abs(np.array(sim.body("ball").velocity[:2]) - last).max() / 0.6, 1e-4,
+        case.check(f"{name}: time at which it rolls", stuck, rolls, 2.0 * steps[-1] / rolls, source="Coulomb", unit="s")
+        case.bound(f"{name}: velocity then / initial velocity", np.abs(np.array(sim.body("ball").velocity[:2]) - last).max() / 0.6, 1e-4,
                    source="Coulomb")
-        case.bound(f"{name}: place after 0.2 s, over the way", errors[-1], 1e-3, source="Coulomb")
-        case.check(f"skidding ball, {integrator}: order of the place", observed_order(steps, errors), order, 0.3, source="Coulomb", relative=False)
+        case.bound(f"{name}: error of the position after 0.2 s / distance", errors[-1], 1e-3, source="Coulomb")
+        case.check(f"skidding ball, {integrator}: order of the position", observed_order(steps, errors), order, 0.3, source="Coulomb", relative=False)
         case.bound(f"{name}: spin about the vertical", spins[-1], 1e-6, source="Coulomb", unit="rad/s", known_miss=FIRST)
         convergence.loglog(steps, errors, "o-", color=color, label=f"skid, {integrator}")
     case.check("skidding ball: order of the spin about the vertical", observed_order(steps, spins), 1.0, 0.1, source="Coulomb", relative=False)
@@ -104,8 +107,8 @@ def circles(case, axis, convergence):
             angle = np.unwrap(np.arctan2(seen[:, 1], seen[:, 0]))
             errors.append(abs(np.linalg.norm(seen[-1]) / radius - 1.0))
         rate = (angle[-1] - angle[0]) / (step * (len(angle) - 1))
-        case.check(f"turntable, {integrator}, 0.25 ms: rate of the ball over the table's", rate / turn, 2.0 / 7.0, 1e-3, source="turntable")
-        case.check(f"turntable, {integrator}, 0.25 ms: radius after a turn over the first", 1.0 - errors[-1], 1.0, 0.01, source="turntable")
+        case.check(f"turntable, {integrator}, 0.25 ms: rate of the ball / rate of the table", rate / turn, 2.0 / 7.0, 1e-3, source="turntable")
+        case.check(f"turntable, {integrator}, 0.25 ms: radius after a turn / initial radius", 1.0 - errors[-1], 1.0, 0.01, source="turntable")
         case.check(f"turntable, {integrator}: order of the radius", np.log2(errors[-2] / errors[-1]), 1.0 if color == plots.THIRD else 2.0, 0.2,
                    source="turntable", relative=False, known_miss=FIRST if color == plots.OURS else "")
         convergence.loglog(steps, errors, "s--", color=color, label=f"turntable, {integrator}")
@@ -193,11 +196,11 @@ def decays(case, axis, convergence, pulled=0.05, friction=0.05):
                 seen.append(pulled + float(sim.body("box").position[0]))
             errors.append(abs(seen[-1] - rest) / pulled)
         moving = step * (1 + np.flatnonzero(np.abs(np.diff(seen)) > 1e-12)[-1])
-        case.check(f"oscillator, {integrator}, 0.5 ms: when it stops", moving, halves * np.pi / natural, 5e-3, source="oscillator", unit="s")
+        case.check(f"oscillator, {integrator}, 0.5 ms: time at which it stops", moving, halves * np.pi / natural, 5e-3, source="oscillator", unit="s")
         if integrator == "bdf2":
-            case.bound("oscillator, bdf2, 0.5 ms: place where it rests, over the first", errors[-1], 1e-3, source="oscillator")
+            case.bound("oscillator, bdf2, 0.5 ms: position at rest / initial position", errors[-1], 1e-3, source="oscillator")
         else:
-            case.check("oscillator, backward-euler: order of the place where it rests", observed_order(steps[1:], errors[1:]), 1.0, 0.2,
+            case.check("oscillator, backward-euler: order of the position at rest", observed_order(steps[1:], errors[1:]), 1.0, 0.2,
                        source="oscillator", relative=False)
         case.bound(f"oscillator, {integrator}: creep in the last 0.1 s", abs(seen[-1] - seen[-201]), 1e-12, source="oscillator", unit="m")
         convergence.loglog(steps, errors, "x-", color=color, label=f"rest, {integrator}")
@@ -225,7 +228,7 @@ def forced(case, force=2.0, friction=0.06, step=1e-3):
         hold = np.sin(np.pi / ratio) / (ratio * (1.0 + np.cos(np.pi / ratio)))
         theory = force / SPRING * np.sqrt(gain**2 - (friction * WEIGHT * G / force * hold)**2)
         worst = max(worst, abs(max(seen) / theory - 1.0))
-    case.check(f"forced oscillator, bdf2, 1 ms: amplitude over Den Hartog's, worst of {len(ratios)}", 1.0 + worst, 1.0, 0.01, source="Den Hartog")
+    case.check(f"forced oscillator, bdf2, 1 ms: amplitude / Den Hartog's, worst of {len(ratios)}", 1.0 + worst, 1.0, 0.01, source="Den Hartog")
 
 
 def run(case):
@@ -237,5 +240,5 @@ def run(case):
     forced(case)
     middle.set(xlabel="time step (s)", ylabel="relative error")
     middle.legend(fontsize=6)
-    case.figure(figure, "Left: ways of the skidding ball and of the ball on the turntable, in the finest steps. Middle: errors over the time "
+    case.figure(figure, "Left: paths of the skidding ball and of the ball on the turntable, with the finest steps. Middle: errors against time "
                         "step. Right: the box on its spring comes to rest.")

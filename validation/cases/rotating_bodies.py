@@ -1,4 +1,4 @@
-"""A free body about its middle axis, and a heavy top."""
+"""A free body about its intermediate axis, and a heavy top."""
 
 import numpy as np
 import sinew
@@ -8,13 +8,15 @@ from scipy.special import ellipk
 from suite import plots
 from suite.case import observed_order
 
-TITLE = "Rotating bodies: a box about its middle axis, a heavy top"
-SETUP = """(i) A box of 60 x 40 x 20 mm, 300 g, free of forces, spins at 20 rad/s about its middle axis, 0.5 rad/s about
-the others, for 2 s. The axis turns over again and again (Dzhanibekov): the time between two is 2 K(m)/p in closed form.
-Momentum and energy ought to be kept. (ii) A disc of 200 g, r = 50 mm, 100 mm from the ball joint at the foot of its
-axis, is let go at 60 degrees from the vertical with a spin of 200 rad/s: it falls, precesses and nods. Equations in
-Euler's angles with their two momenta, integrated by DOP853 to 1e-12, tell where the axis points. Errors are the largest
-in the run; drifts are relative."""
+TITLE = "Rotating bodies: a box about its intermediate axis, a heavy top"
+SETUP = """- A box of 60 x 40 x 20 mm, 300 g, free of forces, spins for 2 s at 20 rad/s about its intermediate axis and at 0.5 rad/s
+  about the others. The axis flips repeatedly (Dzhanibekov effect); the time between two flips is 2 K(m)/p in closed form.
+  Momentum and energy should be conserved.
+- A disc of 200 g, r = 50 mm, 100 mm from the ball joint at the foot of its axis, is released at 60 degrees from the vertical
+  with a spin of 200 rad/s. It falls, precesses and nutates. The reference integrates the equations in Euler's angles with
+  their two conserved momenta by DOP853 to 1e-12.
+
+Errors are the largest in the run; drifts are relative."""
 SOURCES = {"Landau": "L. D. Landau, E. M. Lifshitz, Mechanics, 3rd ed. 1976, sec. 37: the asymmetrical top in Jacobi's functions",
            "Goldstein": "H. Goldstein, Classical Mechanics, 2nd ed. 1980, sec. 5-7: the heavy symmetrical top; integrated by DOP853 (scipy)",
            "conserved": "momentum and energy of a body without moments"}
@@ -35,7 +37,7 @@ INERTIA = BOX_MASS / 12.0 * (BOX @ BOX - BOX**2)
 
 
 def flips_every():
-    """Time between two turns over, s."""
+    """Time between two flips, s."""
     first, second, third = INERTIA
     energy, momentum = INERTIA @ SPIN**2, (INERTIA**2) @ SPIN**2  # 2 E, M^2
     if momentum < energy * second:
@@ -45,7 +47,7 @@ def flips_every():
 
 
 def tumbles(integrator, step, duration=2.0):
-    """Times at which the middle axis is normal to the spin, and relative drifts of momentum and energy."""
+    """Times at which the intermediate axis is normal to the spin, and relative drifts of momentum and energy."""
     sim = sinew.load({"sinew": 1, "time_step": step, "integrator": integrator,
                       "bodies": {"box": {"type": "rigid", "shape": {"box": list(BOX)}, "mass": BOX_MASS, "velocity": {"angular": list(SPIN)}}}})
     body, middle, momenta, energies = sim.body("box"), [SPIN[1]], [], []
@@ -78,9 +80,9 @@ def boxes(case, convergence, history):
         convergence.loglog(steps, energies, "s--", color=color, label=f"energy, {integrator}")
         order = ORDERS[integrator]
         if order > 1.0:
-            case.check(f"box, {integrator}, 0.25 ms: time between two turns over", found[-1], period, 1e-3, source="Landau", unit="s")
+            case.check(f"box, {integrator}, 0.25 ms: time between two flips", found[-1], period, 1e-3, source="Landau", unit="s")
             case.report(f"box, {integrator}: order of that time", observed_order(steps, np.array(found) - period), source="Landau",
-                        remark="what it depends on, the energy that remains, is lost at the third order by BDF2")
+                        remark="it depends on the remaining energy, of which BDF2 loses a third-order part")
             case.bound(f"box, {integrator}, 0.25 ms: drift of momentum in 2 s", momenta[-1], 1e-4, source="conserved")
             case.bound(f"box, {integrator}, 0.25 ms: drift of energy in 2 s", energies[-1], 1e-4, source="conserved")
         else:
@@ -89,7 +91,7 @@ def boxes(case, convergence, history):
                    relative=False)
         case.check(f"box, {integrator}: order of the drift of energy", np.log2(energies[-2] / energies[-1]), order, 0.3, source="conserved",
                    relative=False)
-    history.set(xlabel="time (s)", ylabel="spin about the middle axis (rad/s), 0.25 ms")
+    history.set(xlabel="time (s)", ylabel="spin about the intermediate axis (rad/s), 0.25 ms")
     history.legend(fontsize=7)
     convergence.set(xlabel="time step (s)", ylabel="relative drift in 2 s")
     convergence.legend(fontsize=7)
@@ -138,7 +140,7 @@ def tops(case, axis, duration=1.0):
         case.bound(f"top, {integrator}, 0.1 ms: direction of its axis over 1 s (rad)", errors[-1], 1e-3, source="Goldstein")
         case.check(f"top, {integrator}: order", np.log2(errors[-2] / errors[-1]), 2.0, 0.3, source="Goldstein", relative=False)
         lean, wanted = np.degrees(np.arccos(seen[:, 2])), np.degrees(np.arccos(theory[:, 2]))
-        case.check(f"top, {integrator}, 0.1 ms: greatest lean", lean.max(), wanted.max(), 1e-3, source="Goldstein", unit="deg")
+        case.check(f"top, {integrator}, 0.1 ms: largest inclination", lean.max(), wanted.max(), 1e-3, source="Goldstein", unit="deg")
         azimuth = np.degrees(np.unwrap(np.arctan2(seen[:, 1], seen[:, 0])))
         ahead = np.degrees(np.unwrap(np.arctan2(theory[:, 1], theory[:, 0])))
         case.check(f"top, {integrator}, 0.1 ms: azimuth after 1 s", azimuth[-1], ahead[-1], 2e-3, source="Goldstein", unit="deg")
@@ -153,4 +155,4 @@ def run(case):
     figure, (left, middle, right) = plots.axes(3)
     boxes(case, middle, left)
     tops(case, right)
-    case.figure(figure, "Left: spin of the box. Middle: drifts of momentum and energy over the time step. Right: the axis of the top, 0.1 ms.")
+    case.figure(figure, "Left: spin of the box. Middle: drifts of momentum and energy against time step. Right: the axis of the top, 0.1 ms.")

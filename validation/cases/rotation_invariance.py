@@ -8,10 +8,9 @@ from suite import plots
 from suite.robots import body_scene, write_block
 
 TITLE = "Rotation invariance of the corotational force"
-SETUP = """A free block of 3 x 2 x 2 cells, E = 1 MPa, nu = 0.45, turned and moved by 60 random rigid
-motions Q: at rest shape it must be free of force, and strained at random (displacements of up to 20 %
-of a cell) its forces must turn along, f(Q x) = Q f(x); forces and their moments must vanish in sum.
-Errors are relative to the largest nodal force of the strained block."""
+SETUP = """A free block of 3 x 2 x 2 cells, E = 1 MPa, nu = 0.45, is moved by 60 random rigid motions Q. In its rest shape it
+must be free of forces. Strained at random (displacements of up to 20 % of a cell), its forces must turn with it, f(Q x) = Q
+f(x), and the sums of forces and moments must vanish. Errors are relative to the largest nodal force of the strained block."""
 SOURCES = {
     "Truesdell 1965": "C. Truesdell, W. Noll, The Non-Linear Field Theories of Mechanics, Springer "
                       "1965, section 19 (material frame-indifference), "
@@ -54,4 +53,4 @@ def run(case):
     axis.set(xlabel="angle of the rotation (deg)", ylabel="error / largest nodal force",
              ylim=(1e-16, 1e-11))
     axis.legend(ncol=3, loc="upper left", fontsize=9)
-    case.figure(figure, "Errors over the angle of the rigid motion.")
+    case.figure(figure, "Errors against the angle of the rigid motion.")

@@ -11,9 +11,9 @@ from suite import plots
 from suite.case import REPOSITORY, shared_data
 
 TITLE = "Ogden's law fitted to Treloar's rubber"
-SETUP = """Three terms fitted to the uniaxial and equibiaxial tests together, from 20 random starts of seed 1,
-each test weighed by its largest stress, mu alpha >= 0 for every term. The reference is Ogden's own three-term
-fit of 1972 on the same data: the fit ought to be no worse in either test."""
+SETUP = """Three terms are fitted to the uniaxial and equibiaxial tests together, from 20 random starts with seed 1. Each test
+is weighted by its largest stress, and mu alpha >= 0 for every term. The reference is Ogden's own three-term fit of 1972 to
+the same data: our fit should not be worse in either test."""
 SOURCES = {"Ogden": "R. W. Ogden, Proc. R. Soc. A 326 (1972) 565-584: mu = 6.3, 0.012, -0.1 kgf/cm^2, alpha = 1.3, "
                     "5.0, -2.0, whose RMS on these data is 0.341 MPa uniaxial and 0.048 MPa equibiaxial",
            "Treloar": "L. R. G. Treloar, Trans. Faraday Soc. 40 (1944) 59-70"}

@@ -1,4 +1,4 @@
-"""A neo-Hookean trunk whose cable is pulled settles where statics say."""
+"""A neo-Hookean trunk whose cable is pulled settles at its static equilibrium."""
 
 import numpy as np
 import sinew
@@ -7,12 +7,11 @@ from suite import plots
 from suite.robots import own_trunk
 
 TITLE = "A neo-Hookean trunk settles"
-SETUP = """The trunk of examples/trunk of a neo-Hookean material (E 450 kPa, nu_0 0.45), eight cables, no
-gravity, backward Euler at 10 ms; one long cable is pulled by 5, 10, 15 or 20 mm at its rate limit of
-100 mm/s while the others are slack, without damping and with 0.1 s of stiffness damping. One linearisation
-a step. After 8 s the tip must stand where Newton's method finds the equilibrium, within 0.05 mm, without
-lasting oscillation. Large pulls make the cables' geometric stiffness matter; simulators without it have been
-seen to diverge here."""
+SETUP = """The trunk of examples/trunk has a neo-Hookean material (E = 450 kPa, nu_0 = 0.45) and eight cables, no gravity, and
+backward Euler steps of 10 ms with one linearisation each. One long cable is pulled by 5, 10, 15 or 20 mm at its rate limit of
+100 mm/s while the others are slack, without damping and with 0.1 s of stiffness damping. After 8 s the tip must be within
+0.05 mm of the equilibrium found by Newton's method, without lasting oscillation. With large pulls the cables' geometric
+stiffness matters; simulators without it have been seen to diverge here."""
 SOURCES = {"statics": "Simulation.solve_static() of the same body and pull, from the end of the run"}
 COST = 25
 PULLS = (5, 10, 15, 20)  # mm
@@ -20,7 +19,7 @@ STEPS, LAST = 800, 50
 
 
 def pulled(pull, damping):
-    """Tip positions (steps, 3) m of a run, and where statics put it."""
+    """Tip positions (steps, 3) m of a run, and the static equilibrium."""
     scene = own_trunk()
     scene["integrator"] = "backward-euler"
     body = scene["bodies"]["trunk"]
@@ -43,12 +42,12 @@ def run(case):
         for pull in PULLS:
             tips, rest = pulled(pull, damping)
             apart = 1e3 * np.linalg.norm(tips - rest, axis=1)
-            what = f"{pull} mm, {'damped' if damping else 'not damped'}"
-            case.bound(f"{what}: tip from its equilibrium after 8 s", apart[-1], 0.05, unit="mm",
+            what = f"{pull} mm, {'damped' if damping else 'undamped'}"
+            case.bound(f"{what}: distance of the tip from its equilibrium after 8 s", apart[-1], 0.05, unit="mm",
                        source="statics")
             case.bound(f"{what}: largest motion of the tip in the last 0.5 s",
                        1e3 * np.ptp(tips[-LAST:], axis=0).max(), 0.05, unit="mm", source="statics")
             axis.semilogy(times, np.maximum(apart, 1e-9), style, label=what)
-    axis.set(xlabel="time (s)", ylabel="tip from its equilibrium (mm)")
+    axis.set(xlabel="time (s)", ylabel="distance of the tip from its equilibrium (mm)")
     axis.legend(fontsize=7)
     case.figure(figure, "Distance of the tip from its equilibrium over time.")

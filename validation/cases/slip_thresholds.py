@@ -1,4 +1,4 @@
-"""Friction at its limit: blocks on a slope and on a turntable, a little below and a little above the threshold."""
+"""Friction at its limit: blocks on a slope and on a turntable, slightly below and slightly above the threshold."""
 
 import numpy as np
 import sinew
@@ -7,18 +7,18 @@ from scipy.integrate import solve_ivp
 from suite import plots
 from suite.case import observed_order
 
-TITLE = "Thresholds of slip: a slope of tan 0.5 and a turntable"
-SETUP = """(i) A block of 40 x 40 x 20 mm on a slope of tan a = 0.5: it rests where mu > tan a and slides at g (sin a - mu
-cos a) where mu < tan a. It is let go for 2 s with mu = 0.505 and 0.495; the last second gives its creep and its acceleration.
-That is 1 % of the weight's part along the slope, so an error of 1e-4 of it is 1e-6 of the forces that all but cancel. The
-block is a box on a plane of the world and on a fixed box, in steps of 1 and 10 ms with each integrator; a box of triangles
-and its hull; and rubber of 1 MPa in elements of 10 mm, damped. Steps solve the laws to 1e-10 of the forces: a block at rest may
-creep by 1e-9 of its length.
-(ii) A box of 4 mm lies at r = 100 mm on a turntable that a motor turns, or whose motion is given; mu = 0.5. It slips where
-r w^2 > mu g: the ratio is 0.99 and 1.01. The outer edge is pressed harder, but all friction is along the radius, so that
-only the sum counts. Above the threshold a point obeys x'' = -mu g u/|u|, u = x' - w e_z x x. The way out after 0.4 s is of
-first order under backward Euler; its limit is taken from the two shortest steps. The size of the box changes the
-way by (4/100)^2 = 1.6e-3 at most."""
+TITLE = "Slip thresholds: a slope of tan a = 0.5 and a turntable"
+SETUP = """- A block of 40 x 40 x 20 mm on a slope of tan a = 0.5 rests if mu > tan a and slides at g (sin a - mu cos a) if mu < tan a.
+  It is released for 2 s with mu = 0.505 and 0.495; creep and acceleration are measured in the last second. The acceleration
+  comes from only 1 % of the weight's component along the slope, so a relative error of 1e-4 is 1e-6 of the forces that nearly
+  cancel. The block is a box on a plane of the world and on a fixed box, in steps of 1 and 10 ms with each integrator; a box
+  of triangles and its hull; and damped rubber of 1 MPa in elements of 10 mm. Steps satisfy the laws to 1e-10 of the forces,
+  so a block at rest may creep by 1e-9 of its length.
+- A box of 4 mm lies at r = 100 mm on a turntable that is turned by a motor or by a prescribed motion; mu = 0.5. It slips if r
+  w^2 > mu g; the ratio is 0.99 and 1.01. The outer edge carries more pressure, but all friction is radial, so only the sum
+  matters. Above the threshold a point obeys x'' = -mu g u/|u|, u = x' - w e_z x x. The distance moved outwards in 0.4 s is of
+  first order with backward Euler; its limit is extrapolated from the two shortest steps. The size of the box changes the
+  distance by (4/100)^2 = 1.6e-3 at most."""
 SOURCES = {"Coulomb": "C. A. Coulomb, Theorie des machines simples (1785): rest where tan a < mu, else a = g (sin a - mu cos a)",
            "turntable": "a point on a turntable with Coulomb friction: slips where r w^2 > mu g, then by scipy's DOP853 to 1e-11"}
 COST = 10
@@ -45,7 +45,7 @@ def write_box(folder, edges):
 
 
 class Slope:
-    """A block that is let go on a slope."""
+    """A block released on a slope."""
 
     def __init__(self, block, on_box, friction, step, integrator="backward-euler"):
         self.soft = block["type"] == "fem"
@@ -56,7 +56,7 @@ class Slope:
         self.sim = load(bodies, {"floor": {**contact, "friction": friction}}, step, integrator, [G * np.sin(ANGLE), 0.0, -G * np.cos(ANGLE)])
 
     def state(self):
-        """Place and speed along the slope."""
+        """Position and speed along the slope."""
         body = self.sim.body("block")
         if self.soft:
             return float(body.positions[:, 0].mean()), float(body.velocities[:, 0].mean())
@@ -86,13 +86,13 @@ def slides(case, axis):
             for step in (1e-3, 1e-2):
                 crept = max(crept, abs(Slope(box, on_box, REST, step, integrator).watch()[0]))
                 worst = max(worst, abs(Slope(box, on_box, SLIDE, step, integrator).watch()[1] / theory - 1.0))
-        case.bound(f"box, {name}: creep in 1 s at mu = 0.505 over its length, 1 and 10 ms", crept / LENGTH, 1e-9, source="Coulomb")
-        case.check(f"box, {name}: acceleration at mu = 0.495 over g (sin a - mu cos a), 1 and 10 ms", 1.0 + worst, 1.0, 1e-4, source="Coulomb")
+        case.bound(f"box, {name}: creep in 1 s at mu = 0.505 / its length, 1 and 10 ms", crept / LENGTH, 1e-9, source="Coulomb")
+        case.check(f"box, {name}: acceleration at mu = 0.495 / (g (sin a - mu cos a)), 1 and 10 ms", 1.0 + worst, 1.0, 1e-4, source="Coulomb")
     for name, block, on_box, step in (("surface of triangles on a box", surface, True, 2e-3), ("hull on a box", hull, True, 2e-3),
                                       ("hull on a plane", hull, False, 2e-3), ("rubber on a plane", soft, False, 5e-3),
                                       ("rubber on a box", soft, True, 5e-3)):
         crept = abs(Slope(block, on_box, REST, step).watch()[0])
-        case.bound(f"{name}: creep in 1 s at mu = 0.505 over its length", crept / LENGTH, 1e-9, source="Coulomb")
+        case.bound(f"{name}: creep in 1 s at mu = 0.505 / its length", crept / LENGTH, 1e-9, source="Coulomb")
         case.check(f"{name}: acceleration at mu = 0.495", Slope(block, on_box, SLIDE, step).watch()[1], theory, 1e-4, source="Coulomb",
                    unit="m/s^2")
     frictions = np.concatenate([np.linspace(0.4, 0.49, 7), [SLIDE, REST], np.linspace(0.51, 0.6, 7)])
@@ -108,7 +108,7 @@ RADIUS, FRICTION, EDGE, TIME = 0.1, 0.5, 0.004, 0.4
 
 
 def turned(ratio, step, given=False):
-    """How far the box has gone out, after each step."""
+    """Distance that the box has moved outwards, after each step."""
     rate = float(np.sqrt(ratio * FRICTION * G / RADIUS))
     plate, more = {"type": "rigid", "shape": {"cylinder": {"radius": 0.3, "height": 0.02}}, "pose": {"position": [0, 0, -0.01]}}, {}
     if given:
@@ -143,20 +143,20 @@ def turntables(case, axis):
     steps = (4e-3, 2e-3, 1e-3)
     for name, given in (("motor", False), ("motion given", True)):
         held = [np.abs(turned(0.99, step, given)).max() for step in steps]
-        case.bound(f"turntable, {name}: slip in 0.4 s at r w^2 = 0.99 mu g over r, 1 to 4 ms", max(held) / RADIUS, 1e-7, source="turntable")
+        case.bound(f"turntable, {name}: slip in 0.4 s at r w^2 = 0.99 mu g / r, 1 to 4 ms", max(held) / RADIUS, 1e-7, source="turntable")
         slipped = [turned(1.01, step, given) for step in steps]
         ends = np.array([way[-1] for way in slipped])
         theory = point_on_turntable(1.01, [TIME])[0]
-        case.check(f"turntable, {name}: way out in 0.4 s at r w^2 = 1.01 mu g, step to 0", 2.0 * ends[-1] - ends[-2], theory, 5e-3,
+        case.check(f"turntable, {name}: distance moved outwards in 0.4 s at r w^2 = 1.01 mu g, extrapolated to step 0", 2.0 * ends[-1] - ends[-2], theory, 5e-3,
                    source="turntable", unit="m")
-        case.check(f"turntable, {name}: order of the way out", observed_order(steps, ends - theory), 1.0, 0.1, source="turntable", relative=False)
+        case.check(f"turntable, {name}: order of the distance", observed_order(steps, ends - theory), 1.0, 0.1, source="turntable", relative=False)
     times = np.linspace(0.0, TIME, 81)
     axis.plot(times, 1e3 * point_on_turntable(1.01, times), color=plots.REFERENCE, lw=1, label="point, 1.01")
     for step, way in zip(steps, slipped):
         axis.plot(step * np.arange(1, len(way) + 1), 1e3 * way, "--", label=f"box, 1.01, {1e3 * step:g} ms")
     way = turned(0.99, steps[-1])
     axis.plot(steps[-1] * np.arange(1, len(way) + 1), 1e3 * way, color=plots.THIRD, label="box, 0.99")
-    axis.set(xlabel="time (s)", ylabel="way out on a turntable (mm)")
+    axis.set(xlabel="time (s)", ylabel="distance moved outwards on a turntable (mm)")
     axis.legend(fontsize=8)
 
 
@@ -164,4 +164,4 @@ def run(case):
     figure, (left, right) = plots.axes(2)
     slides(case, left)
     turntables(case, right)
-    case.figure(figure, "Left: acceleration of blocks on a slope over the friction. Right: a box on a turntable.")
+    case.figure(figure, "Left: acceleration of blocks on a slope against friction. Right: a box on a turntable.")

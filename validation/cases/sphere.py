@@ -8,13 +8,15 @@ from suite import plots
 from suite.case import observed_order
 from suite.robots import SOLVER
 
-TITLE = "Hollow spheres under inner pressure"
-SETUP = """Shells of hexahedra round the origin, each face of a cube in n x n cells, with the pressure of a
-chamber on their inside; nodes on the planes of symmetry slide in them. **Small strain**: inner radius 1 m,
-outer 2 m, E = 1000 Pa, nu = 0.3, p = 1 Pa; the Saint Venant-Kirchhoff law at a thousandth of that pressure,
-times a thousand. **Finite strain**: neo-Hookean, mu = 1 Pa, nu_0 = 0.4999, outer over inner radius 2 and 1.02;
-the *volume* of the chamber is commanded, so that the curve goes on beyond the pressure's peak. Stretch is that
-of the inner radius, from the chamber's volume, which is that of a polyhedron: its volume at rest cancels."""
+TITLE = "Hollow spheres under internal pressure"
+SETUP = """Shells of hexahedra around the origin, each face of a cube divided into n x n cells, with the pressure of a chamber
+on the inside. Nodes on the planes of symmetry slide in them.
+
+- **Small strain**: inner radius 1 m, outer 2 m, E = 1000 Pa, nu = 0.3, p = 1 Pa. The Saint Venant-Kirchhoff law is used at a
+  thousandth of that pressure, and the result is scaled up.
+- **Finite strain**: neo-Hookean, mu = 1 Pa, nu_0 = 0.4999, outer over inner radius 2 and 1.02. The *volume* of the chamber is
+  commanded, so the curve continues beyond the peak of the pressure. The stretch of the inner radius comes from the volume of
+  the chamber. The chamber is a polyhedron; relative to its volume at rest this cancels."""
 SOURCES = {
     "Lame": "G. Lame 1852; S. P. Timoshenko, J. N. Goodier, Theory of Elasticity, 3rd ed. 1970, art. 136: "
             "u(a) = p a/(E (b^3 - a^3)) ((1 - 2 nu) a^3 + (1 + nu) b^3/2) = 8.0e-4 m",
@@ -89,7 +91,7 @@ def run(case):
     near = np.linspace(1.30, 1.46, 9)
     thin = curve(case, 1.02, 8, 1, near)
     a, b, _ = np.polyfit(near, thin, 2)
-    case.check("finite strain, b/a = 1.02: stretch at the pressure's peak", -b / (2 * a), 7 ** (1 / 6), 0.01,
+    case.check("finite strain, b/a = 1.02: stretch at the peak of the pressure", -b / (2 * a), 7 ** (1 / 6), 0.01,
                source="thin")
     figure, (left, right) = plots.axes(2)
     left.loglog([1 / n for n in sizes], errors, "o-", color=plots.OURS, label="Sinew")
@@ -99,6 +101,6 @@ def run(case):
     fine = np.linspace(1.0, 2.7, 200)
     right.plot(fine, pressure_of(fine, 2.0), color=plots.REFERENCE, lw=1, label="integral")
     right.plot(stretches, thick, "o", color=plots.OURS, label="Sinew, 8 cells")
-    right.set(xlabel="stretch of the inner radius", ylabel="pressure over mu")
+    right.set(xlabel="stretch of the inner radius", ylabel="pressure / mu")
     right.legend()
-    case.figure(figure, "Convergence at small strain; pressure over stretch of the neo-Hookean sphere, b/a = 2.")
+    case.figure(figure, "Convergence at small strain; pressure against stretch of the neo-Hookean sphere, b/a = 2.")

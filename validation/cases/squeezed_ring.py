@@ -7,14 +7,14 @@ from suite import plots
 from suite.case import REPOSITORY
 
 TITLE = "Silicone ring squeezed by shape-memory springs"
-SETUP = """The ring of examples/ring/sma.yaml: outer and inner diameter 40 and 20 mm, height 22 mm, Ecoflex 00-30, two
-springs of wire 0.5 mm, mean diameter 2.4 mm, 10 coils, 8 mm below the top and 6 mm above the bottom, heated until
-all of them is austenite (24.7 GPa: 1.40 N/mm). The source leaves open how the springs lie, where they are hooked and
-how far they are stretched. Assumed: both along one diameter, hooked in the middle of the wall, free length 8 mm (the
-published effective length), no force in the cold; the bottom slides on a plane. Where they are hooked matters most:
-at the bore's wall they only dent it (35 mm smallest diameter), at 14 to 18 mm from the axis they give 27.2 to 24.9
-mm. With free parameters nothing is scored."""
-SOURCES = {"published": "the multi-flexible-body study whose measures these are: its simulation gave a height of 28.96, "
+SETUP = """The ring of examples/ring/sma.yaml: outer and inner diameter 40 and 20 mm, height 22 mm, Ecoflex 00-30. Two springs
+(wire 0.5 mm, mean diameter 2.4 mm, 10 coils), 8 mm below the top and 6 mm above the bottom, are heated until they are fully
+austenitic (24.7 GPa: 1.40 N/mm). The source does not say how the springs are placed, where they are attached and how far they
+are stretched. Assumed: both along one diameter, attached in the middle of the wall, a free length of 8 mm (the published
+effective length), and no force when cold; the bottom slides on a plane. The attachment matters most: at the wall of the bore
+the springs only dent it (smallest diameter 35 mm), at 14 to 18 mm from the axis the diameter is 27.2 to 24.9 mm. Because of
+these free parameters nothing is scored."""
+SOURCES = {"published": "the multi-flexible-body study with these dimensions: its simulation gave a height of 28.96, "
                         "a smallest diameter of 25.55 and a largest one of 46.92 mm; its experiment 28, 26, 47 mm"}
 COST = 15
 

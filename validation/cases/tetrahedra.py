@@ -8,12 +8,14 @@ from suite import plots
 from suite.robots import SOLVER
 
 TITLE = "Tetrahedra near incompressibility"
-SETUP = """Three problems in which linear tetrahedra lock. Cook's membrane of cook_membrane in plane strain, at nu = 0.49
-and 0.4999, the same cells split in six, under a thousandth of the load, scaled up; loads of quadratic
-elements are consistent. The hanging beam of locking. A pneumatic module: a cylinder of 12.5 mm radius and 65 mm
-length with an excentric chamber of 3.7 mm radius, neo-Hookean, E = 72 kPa, nu = 0.49, clamped at one end and
-blown up by 10 Pa; how far the middle of its free end moves aside, over that of hexahedra, extrapolated from
-cells of 1.6 and 0.8 mm."""
+SETUP = """Three problems in which linear tetrahedra lock.
+
+- Cook's membrane of the case cook_membrane in plane strain, at nu = 0.49 and 0.4999, with each cell split into six, under a
+  thousandth of the load, scaled up. Loads of quadratic elements are consistent.
+- The hanging beam of the case locking.
+- A pneumatic module: a cylinder of 12.5 mm radius and 65 mm length with an eccentric chamber of 3.7 mm radius, neo-Hookean, E
+  = 72 kPa, nu = 0.49, clamped at one end and inflated by 10 Pa. The quantity is the lateral displacement at the middle of its
+  free end, relative to that of hexahedra, extrapolated from cells of 1.6 and 0.8 mm."""
 SOURCES = {
     "fine quadratic": "plane-strain meshes of very many quadratic elements converge to about 28.0 mm (R. D. Cook, "
                       "J. Struct. Div. ASCE 100 (1974) 1851-1863 for the problem)",
@@ -26,7 +28,7 @@ EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 
 
 def edge_shares(body, rest):
-    """(n,) shares of a traction on the right edge that nodes bear."""
+    """(n,) fractions of a traction on the right edge that the nodes carry."""
     shares = np.zeros(len(rest))
     right = rest[:, 0] > 0.048 - 1e-9
     cells = body.quadratic_tetrahedra if len(body.quadratic_tetrahedra) else body.tetrahedra
@@ -45,7 +47,7 @@ def edge_shares(body, rest):
 
 
 def corner(folder, n, element, poisson_ratio):
-    """Vertical displacement (mm) of the membrane's corner over the share of the load."""
+    """Vertical displacement (mm) of the membrane's corner / fraction of the load."""
     cells = "hex8" if element == "hex8" else "tet4"
     sim = sinew.load({
         "sinew": 1, "gravity": [0, 0, 0], "solver": SOLVER,

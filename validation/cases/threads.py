@@ -5,8 +5,8 @@ import sinew
 from suite.robots import own_trunk
 
 TITLE = "One thread equals four, bit for bit"
-SETUP = """The trunk of examples/trunk follows a circle for 200 steps on 1, 2 and 4 threads; the hash of
-positions, velocities, efforts and drives is compared. A reset must restore the start."""
+SETUP = """The trunk of examples/trunk follows a circle for 200 steps with 1, 2 and 4 threads. The hashes of positions,
+velocities, efforts and drives are compared. A reset must restore the start."""
 SOURCES = {"determinism": "every sum has one order, whoever computes its parts: docs/conventions.md"}
 COST = 2
 
@@ -21,8 +21,8 @@ def run(case):
             ik.step(200)
             hashes.append(sim.state_hash)
         sim.reset()
-        case.agree(f"{threads} threads: start restored by reset", sim.state_hash == start, True,
+        case.agree(f"start restored by reset, {threads} thread{'s' * (threads > 1)}", sim.state_hash == start, True,
                    source="determinism")
     for threads, value in zip((2, 4), hashes[1:]):
-        case.agree(f"state after 200 steps, {threads} threads as 1", value == hashes[0], True,
+        case.agree(f"state after 200 steps, {threads} threads against one", value == hashes[0], True,
                    source="determinism")

@@ -8,14 +8,17 @@ from suite.case import observed_order
 from suite.robots import SOLVER
 
 TITLE = "Torsion of a rubber cylinder (Rivlin, Poynting)"
-SETUP = """A cylinder of radius and length A = 10 mm, nu_0 = 0.4999, neo-Hookean (C1 = 50 kPa) and Mooney-Rivlin
-(C1 = 37.5 kPa, C2 = 12.5 kPa). Every node of its top is led by three force rows with commanded motions, so that the top
-turns rigidly by psi A radians and stays at its height. **Fixed length**: the bottom is held, and torque and axial force are read from its reactions. **Stretched**:
-both ends are led to the height lambda L and the radius A/sqrt(lambda). **Free length**: lambda is sought by secants until
-the axial force vanishes. n is the number of rings of cells round the axis and of layers: hexahedra of mean dilatation,
-and quadratic tetrahedra with straight edges (P2P0). References, with psi per stretched length, derived anew from
-sigma = -p 1 + 2 C1 B - 2 C2 B^-1 with a free side; the torque is known to the mesh's polygon, the axial force feels the
-pressure, which is one number an element."""
+SETUP = """A cylinder whose radius and length are both A = 10 mm, nu_0 = 0.4999, neo-Hookean (C1 = 50 kPa) and Mooney-Rivlin
+(C1 = 37.5 kPa, C2 = 12.5 kPa). Three force rows with commanded motions prescribe the position of every node of its top, which
+turns rigidly by psi A radians. n is the number of rings of cells around the axis and of layers: mean-dilatation hexahedra,
+and quadratic tetrahedra with straight edges (P2P0).
+
+- **Fixed length**: the bottom is fixed, and torque and axial force are read from its reactions.
+- **Stretched**: both ends are brought to the height lambda L and the radius A/sqrt(lambda).
+- **Free length**: the secant method finds the lambda at which the axial force vanishes.
+
+The references, with psi per stretched length, are derived independently from sigma = -p 1 + 2 C1 B - 2 C2 B^-1 with a free
+side. The torque is exact up to the polygonal mesh; the axial force depends on the pressure, which is one number per element."""
 SOURCES = {
     "Rivlin": "R. S. Rivlin, Phil. Trans. R. Soc. A 242 (1949) 173-195: M = pi psi A^4 (C1 + C2/lambda), "
               "N = 2 pi A^2 (lambda - 1/lambda^2)(C1 + C2/lambda) - pi psi^2 A^4 (C1 + 2 C2/lambda)/2; at lambda = 1 the "
@@ -38,7 +41,7 @@ def exact(law, twist, stretch=1.0):
 
 
 class Rod:
-    """A cylinder whose top, and with `both` also its bottom, is led node by node."""
+    """A cylinder whose top, and with `both` also its bottom, has prescribed nodes."""
 
     def __init__(self, case, element, rings, law, both=False):
         c1, c2 = LAWS[law]
@@ -93,13 +96,13 @@ class Rod:
         return torque, pull
 
     def borne(self):
-        """Torque and axial force of the held bottom, in the signs of the top's."""
+        """Torque and axial force of the fixed bottom, with the signs of the top."""
         at, force = np.array(self.body.positions)[self.bottom], np.array(self.body.reactions)[self.bottom]
         return -np.sum(at[:, 0] * force[:, 1] - at[:, 1] * force[:, 0]), -force[:, 2].sum()
 
 
 def fixed_length(case, element, law):
-    """Torque and axial force over twist on the finest mesh, and the errors at the last twist of all meshes."""
+    """Torque and axial force against twist on the finest mesh, and the errors at the last twist of all meshes."""
     errors = []
     for rings in RINGS[element]:
         rod = Rod(case, element, rings, law)
@@ -109,7 +112,7 @@ def fixed_length(case, element, law):
             found.append(rod.borne())
         expected = exact(law, TURNS[-1] / A)
         errors.append([abs(f / e - 1) for f, e in zip(found[-1], expected)])
-    case.identity(f"{element}, {law}: torque and force on the top against the bottom's, psi A = {TURNS[-1]:g}",
+    case.identity(f"{element}, {law}: torque and force on the top compared with the bottom, psi A = {TURNS[-1]:g}",
                   float(np.max(np.abs(driven / np.array(found[-1]) - 1))), 1e-6, source="equilibrium")
     for turn, pair in zip(TURNS, found):
         torque, force = exact(law, turn / A)
@@ -134,7 +137,7 @@ def stretched(case):
 
 
 def root(function, low, high):
-    """Where a smooth function vanishes, by secants to six digits."""
+    """Root of a smooth function by the secant method, to six digits."""
     a, b = low, high
     fa, fb = function(a), function(b)
     while abs(b - a) > 1e-6:
@@ -183,4 +186,4 @@ def run(case):
     right.set(xlabel="1 / n", ylabel="relative error at psi A = 1")
     left.legend(fontsize=7)
     right.legend(fontsize=7)
-    case.figure(figure, "Torque and axial force over twist at fixed length (lines: Rivlin), and convergence.")
+    case.figure(figure, "Torque and axial force against twist at fixed length (lines: Rivlin), and convergence.")

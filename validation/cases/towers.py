@@ -1,4 +1,4 @@
-"""Rigid bodies on each other: a tower of ten, a pile in a pit, and masses up to a million times that below."""
+"""Rigid bodies on each other: a tower of ten, a pile in a pit, and masses up to a million times that of the body below."""
 
 import numpy as np
 import sinew
@@ -6,17 +6,21 @@ import sinew
 from suite import plots
 
 TITLE = "Towers and piles: ten seconds of rest, mass ratios to 1e6"
-SETUP = """Friction is 0.5, and steps are 5 ms of backward Euler where not said. (i) A tower of ten cubes of 20 mm stands for
-ten seconds: the forces are the weights above, and nothing creeps after the first 0.1 s. The cubes are boxes, in steps of 2, 5
-and 10 ms and with other integrators; hulls of triangles, face on face; and hulls that are displaced along x by 1 mm by turns,
-which leaves their sides in one plane. (ii) Ten blocks of 30 x 25 x 20 mm, turned at random, fall into a pit of 100 x 100 mm,
-twice. Friction leaves many states of rest, and one that a pile has found is to last: creep is watched for ten seconds
-after the first two. Balls would be no test: nothing stops a ball that rolls or spins. (iii) A cube on a cube, r times heavier:
-r m g and (1 + r) m g. The difference is m g. Then seven cubes, each ten times as heavy as the one below. Steps solve the laws to
-1e-10 of the larger forces, which are up to r times the weight of what they move: 1e-10 r of a force is left, at
-most 1e-4; 1e-5 is asked. (iv) A pad of rubber, 80 x 40 x 20 mm, 100 kPa, carries a cube of 0.5 kg and one a million times
-lighter: beside each other, on a ball joint between them, and the heavy one on the light one. After two seconds they rest, and
-forces balance weights. Joints are to hold to 1e-9 of the edge."""
+SETUP = """Friction is 0.5, and steps are 5 ms, backward Euler, unless stated otherwise.
+
+- *Tower.* Ten cubes of 20 mm stand for ten seconds. The forces equal the weights above, and nothing creeps after the first
+  0.1 s. The cubes are boxes, in steps of 2, 5 and 10 ms and with other integrators; triangle hulls, face on face; and hulls
+  that are displaced alternately along x by 1 mm, so that their sides lie in common planes.
+- *Pile.* Ten blocks of 30 x 25 x 20 mm fall in random orientations into a pit of 100 x 100 mm, twice. Friction allows many
+  states of rest; a pile must stay in the one that it has found. Creep is recorded for ten seconds after the first two. Balls
+  are no test, because nothing stops a ball that rolls or spins.
+- *Mass ratios.* A cube carries another one that is r times heavier: the forces are r m g and (1 + r) m g, and their
+  difference is m g. Then seven cubes, each ten times as heavy as the one below. Steps satisfy the laws to 1e-10 of the larger
+  forces, which are up to r times the weight that they move. The remaining error of 1e-10 r is at most 1e-4; the tolerance is
+  1e-5.
+- *Pad.* A rubber pad, 80 x 40 x 20 mm, 100 kPa, carries a cube of 0.5 kg and one that is a million times lighter: beside each
+  other, connected by a ball joint, and the heavy one on the light one. After two seconds they rest, and forces balance
+  weights. The joint must hold to 1e-9 of the edge."""
 SOURCES = {"statics": "balance of forces: a contact carries what is above; rest is exact",
            "Coulomb": "friction within its cone at a velocity of zero: no creep"}
 COST = 40
@@ -63,7 +67,7 @@ class Tower:
         return max(abs(self.sim.contact(f"on_{k}").normal_force / (G * sum(self.masses[k:])) - 1.0) for k in range(len(self.names)))
 
     def watch(self, duration):
-        """Times and the creep since 0.1 s, over the edge."""
+        """Times and the creep since 0.1 s / edge."""
         self.sim.run(duration=0.1)
         start, times, crept = self.places(), [], []
         while self.sim.time < duration - 1e-6:
@@ -79,14 +83,14 @@ def stands(case, axis):
             for name, step in (("backward-euler", 2e-3), ("backward-euler", 5e-3), ("backward-euler", 1e-2), ("bdf2", 5e-3),
                                ("generalized-alpha", 5e-3))]
     runs.append(("hulls", Tower([MASS] * 10, shape=hull)))
-    runs.append(("hulls displaced by turns", Tower([MASS] * 10, shape=hull, offset=1e-3)))
+    runs.append(("hulls displaced alternately", Tower([MASS] * 10, shape=hull, offset=1e-3)))
     for name, tower in runs:
         times, crept = tower.watch(10.0)
-        case.bound(f"tower of ten, {name}: creep in ten seconds over the edge", float(crept[-1]), 1e-6, source="Coulomb")
+        case.bound(f"tower of ten, {name}: creep in ten seconds / edge", float(crept[-1]), 1e-6, source="Coulomb")
         case.bound(f"tower of ten, {name}: largest error of a normal force, relative", tower.forces(), 1e-6, source="statics")
         axis.semilogy(times, np.maximum(crept, 1e-16), label=name)
     axis.axhline(1e-6, color=plots.REFERENCE, ls="--", lw=1)
-    axis.set(xlabel="time (s)", ylabel="creep of the tower over its edge", ylim=(1e-13, 1e-4))
+    axis.set(xlabel="time (s)", ylabel="creep of the tower / edge", ylim=(1e-13, 1e-4))
     axis.legend(fontsize=7)
 
 
@@ -112,12 +116,12 @@ def piles(case, axis):
                 settled = last
         weight = sum(sim.body(name).mass for name in blocks) * G
         carried = -sum(sim.contact(f"all-{part}-{name}").force[2] for part in pit for name in blocks)
-        case.bound(f"pile {seed}: creep from 2 to 12 s over the length of a block", float(np.abs(last - settled).max()) / size[0], 1e-6,
+        case.bound(f"pile {seed}: creep from 2 to 12 s / length of a block", float(np.abs(last - settled).max()) / size[0], 1e-6,
                    source="Coulomb")
         case.bound(f"pile {seed}: floor and walls carry the weight, relative error", carried / weight - 1.0, 1e-6,
                    source="statics")
         axis.semilogy(times, np.maximum(moved, 1e-16), "o-", ms=3, label=f"pile {seed}")
-    axis.set(xlabel="time (s)", ylabel="way in 0.25 s over the length of a block")
+    axis.set(xlabel="time (s)", ylabel="motion in 0.25 s / length of a block")
     axis.legend()
 
 
@@ -129,15 +133,15 @@ def ratios(case):
             name = f"{ratio:.0e} times heavier on 1 g, {integrator}"
             upper, lower = (tower.sim.contact(f"on_{k}").normal_force for k in (1, 0))
             case.bound(f"{name}: largest error of a normal force, relative", tower.forces(), 1e-5, source="statics")
-            case.bound(f"{name}: what is left for the light one, error over m g", (lower - upper) / (1e-3 * G) - 1.0, max(1e-6, 1e-10 * ratio),
+            case.bound(f"{name}: error of the force left for the light one / (m g)", (lower - upper) / (1e-3 * G) - 1.0, max(1e-6, 1e-10 * ratio),
                        source="statics")
-            case.bound(f"{name}: creep in 2 s over the edge", float(crept), 1e-6, source="Coulomb")
+            case.bound(f"{name}: creep in 2 s / edge", float(crept), 1e-6, source="Coulomb")
             overlap = max(0.0, -min(tower.sim.contact(f"on_{k}").gap for k in (0, 1)))
-            case.bound(f"{name}: overlap over the edge", overlap / EDGE, 1e-6, source="statics")
+            case.bound(f"{name}: overlap / edge", overlap / EDGE, 1e-6, source="statics")
     tower = Tower([1e-3 * 10.0**k for k in range(7)])
     crept = tower.watch(2.0)[1][-1]
     case.bound("seven cubes of 1 g to 1 t: largest error of a normal force, relative", tower.forces(), 1e-5, source="statics")
-    case.bound("seven cubes of 1 g to 1 t: creep in 2 s over the edge", float(crept), 1e-6, source="Coulomb")
+    case.bound("seven cubes of 1 g to 1 t: creep in 2 s / edge", float(crept), 1e-6, source="Coulomb")
 
 
 def pads(case, heavy=0.5, ratio=1e6):
@@ -148,7 +152,7 @@ def pads(case, heavy=0.5, ratio=1e6):
     beside = {"heavy": cube(heavy, [-0.02, 0, 0.01]), "light": cube(light, [0.02, 0, 0.01])}
     above = {"light": cube(light, [0, 0, 0.01]), "heavy": cube(heavy, [0, 0, 0.03])}
     pin = {"joints": {"pin": {"type": "ball", "bodies": ["heavy", "light"], "point": [0, 0, 0.01]}}}
-    for name, bodies, under, more in (("beside it", beside, "pad", {}), ("beside it, jointed", beside, "pad", pin), ("below it", above, "light", {})):
+    for name, bodies, under, more in (("beside it", beside, "pad", {}), ("beside it, with a joint", beside, "pad", pin), ("below it", above, "light", {})):
         sim = load({"pad": pad, **bodies}, {"l": {"between": ["light", "pad"], "friction": 0.5}, "h": {"between": ["heavy", under], "friction": 0.5}},
                    **more)
         sim.run(duration=2.0)
@@ -159,13 +163,13 @@ def pads(case, heavy=0.5, ratio=1e6):
             case.bound(f"{title}: error of the force between them, relative", on_heavy / (heavy * G) - 1.0, 1e-6, source="statics")
         elif more:
             pull = float(sim.joint("pin").force[2])
-            case.bound(f"{title}: balance of the light one over its weight", (on_light + pull) / (light * G) - 1.0, 1e-6, source="statics")
-            case.bound(f"{title}: balance of the heavy one over its weight", (on_heavy - pull) / (heavy * G) - 1.0, 1e-6, source="statics")
-            case.bound(f"{title}: gap of the joint over the edge", sim.joint("pin").gap / EDGE, 1e-9, source="statics")
+            case.bound(f"{title}: force imbalance of the light one / its weight", (on_light + pull) / (light * G) - 1.0, 1e-6, source="statics")
+            case.bound(f"{title}: force imbalance of the heavy one / its weight", (on_heavy - pull) / (heavy * G) - 1.0, 1e-6, source="statics")
+            case.bound(f"{title}: gap of the joint / edge", sim.joint("pin").gap / EDGE, 1e-9, source="statics")
         else:
             case.bound(f"{title}: error of the light one's force, relative", on_light / (light * G) - 1.0, 1e-6, source="statics")
             case.bound(f"{title}: error of the heavy one's force, relative", on_heavy / (heavy * G) - 1.0, 1e-6, source="statics")
-        case.bound(f"{title}: overlap over the edge", max(0.0, -min(sim.contact(key).gap for key in "lh")) / EDGE, 1e-6, source="statics")
+        case.bound(f"{title}: overlap / edge", max(0.0, -min(sim.contact(key).gap for key in "lh")) / EDGE, 1e-6, source="statics")
         speed = max(float(np.abs(sim.body(body).velocity[:3]).max()) for body in bodies)
         case.bound(f"{title}: speed at the end", speed, 1e-6, source="Coulomb", unit="m/s")
 

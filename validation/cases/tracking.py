@@ -8,16 +8,18 @@ from suite import plots
 from suite.robots import own_trunk, published_trunk
 
 TITLE = "Inverse control of the trunk: tracking, bias, out of reach"
-SETUP = """The trunk of examples/trunk (and the published one where its mesh is present), eight cables.
-(i) A circle of 30 mm round z = 180 mm in 2 s at 10 ms steps: distance of the tip from the target
-after the first turn. (ii) A target at rest: the bias that each regularisation leaves. (iii) A target
-that no cable pull reaches (tension at most 3 N): the tip must come to rest, the status must say so,
-and the distance must be the least that SciPy finds over static equilibria."""
+SETUP = """The trunk of examples/trunk (and the published one if its mesh is present) with eight cables.
+
+- A circle of 30 mm radius around z = 180 mm in 2 s, with steps of 10 ms: the distance of the tip from the target after the
+  first turn.
+- A target at rest: the bias that each regularisation leaves.
+- A target that no cable pull reaches (tension at most 3 N): the tip must come to rest, the status must report it, and the
+  distance must be the smallest that SciPy finds over static equilibria."""
 SOURCES = {
-    "aim": "what the project asks of itself: under 0.5 mm moving, under 0.05 mm at rest",
+    "aim": "our aim: under 0.5 mm moving, under 0.05 mm at rest",
     "Coevoet 2017": "E. Coevoet, A. Escande, C. Duriez, Optimization-based inverse model of soft "
                     "robots with contact handling, IEEE RA-L 2(3) 2017, 1413-1419, "
-                    "doi:10.1109/LRA.2017.2669367 (eps = 1e-3, efforts drawn to zero)",
+                    "doi:10.1109/LRA.2017.2669367 (eps = 1e-3, efforts penalised)",
     "SciPy": "scipy.optimize.minimize (L-BFGS-B) over solve_static, tensions in [0, 3] N",
 }
 COST = 5
@@ -78,7 +80,7 @@ def out_of_reach(case):
     start = np.clip([probe_tension for probe_tension in ik.efforts], 0, 3) * 0.5
     best = scipy.optimize.minimize(distance, start, jac=True, bounds=[(0, 3)] * len(names),
                                    method="L-BFGS-B", options={"ftol": 1e-14, "gtol": 1e-8})
-    case.check("least distance to the target", 1e3 * distances[-1], 1e3 * np.sqrt(best.fun / 1e4),
+    case.check("smallest distance to the target", 1e3 * distances[-1], 1e3 * np.sqrt(best.fun / 1e4),
                1e-3, unit="mm", source="SciPy")
     return distances
 
@@ -101,11 +103,11 @@ def run(case):
         case.bound("published trunk: largest distance after the first turn",
                    1e3 * errors[times > 2.0].max(), 0.5, unit="mm", source="aim")
         panels[0].semilogy(times, 1e3 * errors, color=plots.SECOND, label="published trunk")
-    case.bound("bias at rest, efforts kept (default)", 1e3 * bias("change", 1e-3), 0.05, unit="mm",
+    case.bound("bias at rest, changes penalised (default)", 1e3 * bias("change", 1e-3), 0.05, unit="mm",
                source="aim")
-    case.report("bias at rest, efforts drawn to zero, eps 1e-3 as published",
+    case.report("bias at rest, efforts penalised, eps 1e-3 as published",
                 1e3 * bias("effort", 1e-3), unit="mm", source="Coevoet 2017")
-    case.report("bias at rest, efforts drawn to zero, eps 1e-5", 1e3 * bias("effort", 1e-5),
+    case.report("bias at rest, efforts penalised, eps 1e-5", 1e3 * bias("effort", 1e-5),
                 unit="mm", source="Coevoet 2017")
     distances = out_of_reach(case)
     panels[0].set(xlabel="time (s)", ylabel="distance to target (mm)")

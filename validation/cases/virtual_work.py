@@ -1,4 +1,4 @@
-"""Virtual work: what actuators put in is what the body stores."""
+"""Virtual work: the work of the actuators equals the stored energy."""
 
 import numpy as np
 import sinew
@@ -7,10 +7,10 @@ from suite import plots
 from suite.case import observed_order
 from suite.robots import own_trunk
 
-TITLE = "Virtual work: sum of lambda . d delta equals the stored energy"
-SETUP = """The trunk of examples/trunk is pulled quasi-statically by two cables (10 mm and 6 mm) and a
-side force on the tip, through equilibria; the work of the actuators by the trapezoidal rule over n
-steps must tend to the strain energy at the end, with second order in 1/n."""
+TITLE = "Virtual work: the sum of lambda . d delta equals the stored energy"
+SETUP = """The trunk of examples/trunk is pulled quasi-statically by two cables (10 mm and 6 mm) and a lateral force on the
+tip, through equilibria. The work of the actuators, by the trapezoidal rule over n steps, must converge to the strain energy
+at the end, with second order in 1/n."""
 SOURCES = {"work-energy": "C. Lanczos, The Variational Principles of Mechanics, 4th ed., Dover 1986, "
                           "chapter III (principle of virtual work)"}
 COST = 2
@@ -55,4 +55,4 @@ def run(case):
     plots.slope_line(axis, [1 / n for n in counts], errors, 2)
     axis.set(xlabel="1 / steps", ylabel="relative error")
     axis.legend()
-    case.figure(figure, "Work of the actuators against strain energy.")
+    case.figure(figure, "Work of the actuators compared with strain energy.")

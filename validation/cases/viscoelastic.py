@@ -6,18 +6,18 @@ import sinew
 from suite import plots
 from suite.robots import SOLVER
 
-TITLE = "Viscoelastic cube: creep, complex compliance, energy dissipated"
-SETUP = """A cube of 20 mm on rollers (8 hexahedra, or tetrahedra in patches) of a neo-Hookean rubber, mu = 20 kPa in
-slow motion, bulk modulus 10^4 mu, pulled by small dead loads (strain about 10^-4), so that every point has the
-uniaxial stress sigma = 3 G * strain. One part of the isochoric stress relaxes, g = 0.4 in 0.2 s (a standard
-linear solid), or three parts do (0.2 in 20 ms, 0.15 in 0.2 s, 0.1 in 2 s).
+TITLE = "Viscoelastic cube: creep, complex compliance, dissipated energy"
+SETUP = """A cube of 20 mm on rollers (8 hexahedra, or tetrahedra in patches) of neo-Hookean rubber with the long-term modulus
+mu = 20 kPa and a bulk modulus of 10^4 mu. It is pulled by small dead loads (strain about 10^-4), so every point has the
+uniaxial stress sigma = 3 G * strain. The isochoric stress relaxes in one branch, g = 0.4 in 0.2 s (a standard linear solid),
+or in three (0.2 in 20 ms, 0.15 in 0.2 s, 0.1 in 2 s).
 
-Creep: a load set on at t = 0 stays; a standard solid's compliance is J(t) = 1/G_slow (1 - (1 - G_slow/G_0)
-exp(-t/tau_c)), tau_c = tau G_0/G_slow. Steps of 5 ms, quasi-static and by three integrators of dynamics, for
-which a density of 1 kg/m^3 makes inertia small, one of them also with adaptive substeps. The load rises within
-the first step, so that the strain lags by up to half a step, 0.75 % of what creeps.
-
-Sinusoidal load: storage and loss compliance of the last of 14 cycles or more, 200 steps each, against 1/G*(omega), and the work put in over a cycle against pi J'' sigma^2/3 times the volume."""
+- **Creep**: a load is applied at t = 0 and stays. The compliance of a standard linear solid is J(t) = 1/G_slow (1 - (1 -
+  G_slow/G_0) exp(-t/tau_c)), tau_c = tau G_0/G_slow. Steps of 5 ms, quasi-static and with three dynamic integrators, one of
+  them also with adaptive substeps; a density of 1 kg/m^3 keeps inertia small. The load rises within the first step, so the
+  strain lags by up to half a step, 0.75 % of the creep.
+- **Sinusoidal load**: storage and loss compliance in the last of at least 14 cycles of 200 steps each are compared with
+  1/G*(omega), and the work put in over a cycle with pi J'' sigma^2/3 times the volume."""
 SOURCES = {"theory": "the series itself: J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., Wiley 1980, "
                      "chapters 1 and 3; J. C. Simo, T. J. R. Hughes, Computational Inelasticity, Springer "
                      "1998, section 10.1"}
@@ -47,7 +47,7 @@ class Cube:
         self.areas = self.shares(body, element)
 
     def shares(self, body, element):
-        """(top,) m^2 of the top face that each of its nodes bears."""
+        """(top,) m^2 of the top face that each of its nodes carries."""
         areas = np.zeros(len(self.rest))
         if element == "hex8":
             edges = [np.isclose(self.rest[self.top, c] % SIDE, 0.0, atol=1e-9) |
@@ -70,7 +70,7 @@ class Cube:
 
 
 def ratio(series, omega):
-    """G*(omega) over the modulus of slow motion."""
+    """G*(omega) / long-term modulus."""
     slow = 1.0 - sum(g for g, _ in series)
     return 1.0 + sum(g / slow * 1j * omega * tau / (1.0 + 1j * omega * tau) for g, tau in series)
 
@@ -100,7 +100,7 @@ def creep(case, axis):
             axis.plot(times[::8], 1e4 * strains[::8], "o", color=plots.OURS, ms=4, label="steps of 5 ms")
     cube.sim.solve_static()
     rest = np.mean(np.array(cube.sim.body("cube").positions)[cube.top, 2]) / SIDE - 1.0
-    case.check("statics: strain of slow motion", 1e4 * rest, 1e4 * LOAD / (3 * SHEAR), 1e-3, unit="1e-4",
+    case.check("statics: long-term strain", 1e4 * rest, 1e4 * LOAD / (3 * SHEAR), 1e-3, unit="1e-4",
                source="theory")
     axis.set(xlabel="time (s)", ylabel="strain (1e-4)")
     axis.legend()
@@ -120,9 +120,9 @@ def cycles(case, axis):
         compliance = 2 / per_cycle * np.sum(last * turn) * 3 * SHEAR / LOAD
         expected = 1 / ratio(THREE, omega)
         found.append(compliance)
-        case.check(f"storage compliance at {omega:g} rad/s, over 1/mu", compliance.real, expected.real, 2e-3,
+        case.check(f"storage compliance at {omega:g} rad/s / (1/mu)", compliance.real, expected.real, 2e-3,
                    source="theory")
-        case.check(f"loss compliance at {omega:g} rad/s, over 1/mu", -compliance.imag, -expected.imag, 5e-3,
+        case.check(f"loss compliance at {omega:g} rad/s / (1/mu)", -compliance.imag, -expected.imag, 5e-3,
                    source="theory")
         force, length = stress[-per_cycle - 1:], strains[-per_cycle - 1:]
         work = np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(length)) * SIDE**3
@@ -135,14 +135,14 @@ def cycles(case, axis):
     axis.semilogx(fine, -exact.imag, color=plots.REFERENCE, lw=1, ls="--", label="loss, theory")
     axis.semilogx(omegas, np.real(found), "o", color=plots.OURS, label="storage")
     axis.semilogx(omegas, -np.imag(found), "s", color=plots.SECOND, label="loss")
-    axis.set(xlabel="angular frequency (rad/s)", ylabel="compliance over that of slow motion")
+    axis.set(xlabel="angular frequency (rad/s)", ylabel="compliance / long-term compliance")
     axis.legend()
 
 
 def run(case):
     figure, axis = plots.axes()
     creep(case, axis)
-    case.figure(figure, "Creep of a standard solid under a load that is set on at once.")
+    case.figure(figure, "Creep of a standard solid under a suddenly applied load.")
     figure, axis = plots.axes()
     cycles(case, axis)
-    case.figure(figure, "Complex compliance over frequency.")
+    case.figure(figure, "Complex compliance against frequency.")

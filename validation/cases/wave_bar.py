@@ -1,4 +1,4 @@
-"""An elastic bar that flies against a rigid wall."""
+"""An elastic bar that hits a rigid wall."""
 
 import numpy as np
 import sinew
@@ -9,14 +9,15 @@ from suite.case import observed_order
 from suite.robots import SOLVER
 
 TITLE = "Impact: an elastic bar against a rigid wall"
-SETUP = """A steel bar, L = 1 m, 3.14 cm^2, E = 210 GPa, nu = 0, 7800 kg/m^3, of n hexahedra in a row with lumped mass,
-flies against a wall at v = 0.1 m/s. A wave runs through it and back: the wall is pressed with rho c v S = 1270.8 N for
-2 L/c = 0.38545 ms, and the bar leaves at v, without vibration. Steps are h/(4 c), a quarter of what the wave needs for
-an element, if not said otherwise. The force at the wall is the mean from a quarter to three quarters of the contact;
-duration is the time with more than half of it. In the first step the wall stops the nodes at the end of the bar: their
-momentum is a peak of force, their energy, 1/(2 n) of all, is lost. What else is lost are waves shorter than an element
-can carry and those that the integrator damps; all of that vanishes with the element. The front is rounded over a length
-of h^(2/3)."""
+SETUP = """A steel bar, L = 1 m, 3.14 cm^2, E = 210 GPa, nu = 0, 7800 kg/m^3, of n hexahedra in a row with lumped mass, hits a
+wall at v = 0.1 m/s. A wave runs through the bar and back. The force on the wall is rho c v S = 1270.8 N for 2 L/c = 0.38545
+ms, and the bar leaves at v without vibration. Steps are h/(4 c) unless stated otherwise, a quarter of the time that the wave
+takes through an element. The force is the mean from a quarter to three quarters of the contact; the duration is the time with
+more than half of that force.
+
+In the first step the wall stops the nodes at the end of the bar. Their momentum is a peak of force; their energy, 1/(2 n) of
+the total, is lost. Other losses are waves shorter than an element can carry, and waves that the integrator damps. All of
+these vanish as the elements shrink. The wave front is rounded over a length of order h^(2/3)."""
 SOURCES = {"wave": "d'Alembert's solution of the wave equation; data of the example ImpactingBar of siconos-tutorials",
            "energy": "a wall at rest does no work, and there is no damping: the sum of kinetic and strain energy may not rise"}
 COST = 15
@@ -66,16 +67,16 @@ def run(case):
     fine = Impact(case, 200, "bdf2")
     first_order = Impact(case, 200, "backward-euler")
     for name, bar in (("BDF2", fine), ("backward Euler", first_order)):
-        known = "" if bar is fine else "backward Euler damps the waves near the front; with the step it goes away"
+        known = "" if bar is fine else "backward Euler damps the waves near the front; this vanishes with the step"
         case.check(f"force at the wall, 200 elements, {name}", bar.plateau, FORCE, 1e-3, source="wave", unit="N")
         case.check(f"duration, 200 elements, {name}", 1e3 * bar.duration, 1e3 * DURATION, 0.01, source="wave", unit="ms", known_miss=known)
-        case.check(f"speed of the rebound over v, 200 elements, {name}", bar.speed[-1] / SPEED, 1.0, 0.01, source="wave", known_miss=known)
-        case.report(f"energy left, 200 elements, {name}", bar.left, reference=1.0, source="wave")
-        case.bound(f"largest gain of energy in a step, {name}", bar.gain, 1e-9, source="energy")
+        case.check(f"rebound speed / v, 200 elements, {name}", bar.speed[-1] / SPEED, 1.0, 0.01, source="wave", known_miss=known)
+        case.report(f"remaining energy, 200 elements, {name}", bar.left, reference=1.0, source="wave")
+        case.bound(f"largest energy gain in a step, {name}", bar.gain, 1e-9, source="energy")
     case.check("order of the lost speed in h, BDF2", observed_order([1.0 / n for n in sizes], [1.0 - bar.speed[-1] / SPEED for bar in seen]),
                2.0 / 3.0, 0.1, source="wave", relative=False)
-    case.bound("largest gain of energy in a step of h/c, BDF2, 50 elements", Impact(case, 50, "bdf2", 1.0).gain, 1e-9, source="energy",
-               known_miss="what BDF2 cannot raise is a norm of two steps, not the energy of one")
+    case.bound("largest energy gain in a step of h/c, BDF2, 50 elements", Impact(case, 50, "bdf2", 1.0).gain, 1e-9, source="energy",
+               known_miss="BDF2 cannot increase a norm of two steps; the energy of a single step is not bounded by it")
     figure, (left, middle, right) = plots.axes(3)
     for name, bar, color in (("BDF2", fine, plots.OURS), ("backward Euler", first_order, plots.SECOND)):
         left.plot(1e3 * bar.time, bar.force, color=color, label=name)
@@ -85,11 +86,11 @@ def run(case):
     middle.plot([0, 0.5 * LENGTH, 0.5 * LENGTH, LENGTH], [0, 0, -SPEED, -SPEED], "--", color=plots.REFERENCE, lw=1, label="wave")
     middle.set(xlabel="x (m)", ylabel="speed (m/s) at L/(2 c)")
     lost = [1.0 - bar.speed[-1] / SPEED for bar in seen]
-    right.loglog([1.0 / n for n in sizes], lost, "o-", color=plots.OURS, label="speed lost, BDF2")
+    right.loglog([1.0 / n for n in sizes], lost, "o-", color=plots.OURS, label="lost speed, BDF2")
     right.loglog([1.0 / n for n in sizes], [abs(bar.duration / DURATION - 1.0) for bar in seen], "s-", color=plots.SECOND, label="duration, BDF2")
     plots.slope_line(right, [1.0 / n for n in sizes], lost, 0.67)
     right.set(xlabel="1 / n", ylabel="relative error, steps of h/(2 c)")
     for axis in (left, middle, right):
         axis.legend()
     case.figure(figure, "Left: force at the wall, 200 elements (the peak of the first step is cut). Middle: the wave halfway through the bar. Right: "
-                        "errors over elements.")
+                        "errors against the number of elements.")

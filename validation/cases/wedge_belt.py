@@ -1,4 +1,4 @@
-"""A block pushed up a wedge, and a belt on a drum: finite elements that slide everywhere."""
+"""A block pushed up a wedge, and a belt on a drum: finite elements in full slip."""
 
 import numpy as np
 import sinew
@@ -9,14 +9,14 @@ from suite.case import observed_order
 from suite.robots import SOLVER
 
 TITLE = "Friction of finite elements: the wedge of CGS-4, a belt on a drum"
-SETUP = """(i) A block of 40 x 40 x 20 mm, 1 MPa, of weight W is pushed up a wedge of slope 0.1 by a horizontal force at
-its centre, whose displacement is commanded, at 20 mm/s in backward Euler steps of 1 ms: F/W = (tan a + mu)/(1 - mu tan
-a) (geometry and loads of NAFEMS CGS-4, one deformable block on a rigid plane). (ii) A belt, 1 MPa, 0.1 to 0.4 mm thick,
-lies on a rigid drum, R = 20 mm, with a straight tail at both ends, of hexahedra in plane strain, one through the
-thickness. One end is held, the other pulled in 20 quasi-static steps until the strain is 0.2 %; all of it slips. T1/T2,
-T2 being the reaction, is e^(mu theta) on a thin belt. Friction acts at R and the tension at R + t/2, so that its moment
-about the axis makes the exponent mu theta R/(R + t/2), which is compared; 60 elements round half the drum, t/R = 0.01,
-if not said otherwise."""
+SETUP = """- A block of 40 x 40 x 20 mm, 1 MPa, of weight W is pushed up a wedge of slope 0.1 by a horizontal force at its centre. The
+  displacement is commanded at 20 mm/s, in backward Euler steps of 1 ms: F/W = (tan a + mu)/(1 - mu tan a) (geometry and loads
+  of NAFEMS CGS-4, with one deformable block on a rigid plane).
+- A belt, 1 MPa, 0.1 to 0.4 mm thick, lies on a rigid drum, R = 20 mm, with a straight tail at both ends. Hexahedra in plane
+  strain, one through the thickness; 60 elements around half the drum and t/R = 0.01 unless stated otherwise. One end is held,
+  the other is pulled in 20 quasi-static steps until the strain is 0.2 %, so that the whole belt slips. On a thin belt T1/T2
+  is e^(mu theta), with T2 the reaction. Friction acts at R and the tension at R + t/2; the balance of moments about the axis
+  gives the exponent mu theta R/(R + t/2), which is compared."""
 SOURCES = {"NAFEMS": "NAFEMS, Benchmark tests for contact and gap elements (CGS-4), by the closed form (tan a + mu)/(1 - mu tan a)",
            "Euler": "L. Euler 1762: T1/T2 = e^(mu theta); with the moment of friction about the axis, dT (R + t/2) = mu T R dtheta"}
 COST = 20
@@ -24,7 +24,7 @@ G, RADIUS, WIDE, YOUNG, STRAIN = 9.81, 0.02, 0.01, 1e6, 2e-3
 
 
 def pushed(friction, slope=0.1):
-    """F over the weight, after 0.6 s."""
+    """F / weight, after 0.6 s."""
     angle = np.arctan(slope)
     along = [np.cos(angle), 0.0, -np.sin(angle)]  # horizontal, in axes of the wedge
     sim = sinew.load({
@@ -77,7 +77,7 @@ class Belt:
         return np.exp(self.friction * self.wrap / (1.0 + 0.5 * self.thick / RADIUS))
 
     def profile(self):
-        """Angles (rad), and tensions behind each over T1, from the sum of friction along the belt."""
+        """Angles (rad), and the tension behind each / T1, from the sum of friction along the belt."""
         drum = self.sim.contact("drum")
         at, force = np.asarray(drum.positions), np.asarray(drum.friction_forces)
         angle = np.arctan2(at[:, 0], at[:, 2]) % (2.0 * np.pi)
@@ -116,7 +116,7 @@ def converge(case, axis):
         axis.loglog(sizes, errors, "o-", color=color, label=f"t/R = {slender:g}")
         if slender == 0.01:
             case.report("belt, t/R = 0.01: order in the element", observed_order([1.0 / n for n in sizes], errors), source="Euler")
-    axis.set(xlabel="elements round half the drum, mu = 0.3", ylabel="relative error of T1/T2")
+    axis.set(xlabel="elements around half the drum, mu = 0.3", ylabel="relative error of T1/T2")
     axis.legend()
 
 

@@ -1,4 +1,4 @@
-"""Two bodies that are welded: against one body, hand calculation and finer meshes."""
+"""Two welded bodies, compared with one body, a hand calculation and finer meshes."""
 
 import numpy as np
 import sinew
@@ -6,14 +6,16 @@ import sinew
 from suite import plots
 
 TITLE = "Welded bodies: a cut beam, two materials, meshes that do not match"
-SETUP = """A cantilever 100 x 20 x 20 mm along x, clamped at x = 0 and cut at its middle into
-two bodies that are welded again; nothing else holds the outer one. *Cut*: both of 200 kPa on meshes that match,
-beside the same beam in one piece, under its weight and a cable that runs through both, with default steps.
-*Two materials*: 200 and 50 kPa, bent by a small force F at its end, against Timoshenko's beam,
-F (7 L^3/(24 E1 I) + L^3/(24 E2 I) + L/(2 kappa G1 A) + L/(2 kappa G2 A)) with kappa = 5/6
-(Cowper 1966 at nu = 0), quadratic tetrahedra. *Weight*: the weld's force and moment against the outer half's weight. *Meshes*:
-the outer half meshed finer or coarser than the inner one, and the error in the deflection against the match of both at
-the finest."""
+SETUP = """A cantilever, 100 x 20 x 20 mm along x, is clamped at x = 0 and cut in the middle into two bodies that are welded
+again. Nothing else holds the outer one.
+
+- *Cut*: both halves have 200 kPa and matching meshes. They are compared with the same beam in one piece, under its weight and
+  a cable that runs through both, with default steps.
+- *Two materials*: 200 and 50 kPa, bent by a small force F at the end, compared with Timoshenko's beam, F (7 L^3/(24 E1 I) +
+  L^3/(24 E2 I) + L/(2 kappa G1 A) + L/(2 kappa G2 A)), kappa = 5/6 (Cowper 1966 at nu = 0), quadratic tetrahedra.
+- *Weight*: force and moment of the weld are compared with the weight of the outer half.
+- *Meshes*: the outer half has a finer or a coarser mesh than the inner one; the error of the deflection is relative to
+  matching meshes at the finest size."""
 SOURCES = {
     "one body": "the same beam without the cut",
     "Cowper 1966": "G. R. Cowper, The shear coefficient in Timoshenko's beam theory, J. Appl. Mech. 33 "
@@ -76,11 +78,11 @@ def cut_and_whole(case):
             path.append(np.array(sim.effector("tip").position))
         tips.append(np.array(path))
     apart = np.abs(tips[0] - tips[1]).max(axis=1)
-    case.check("cut: tip against one body, at rest after 50 default steps", apart[-1], 0.0, 1e-9,
+    case.check("cut: tip compared with one body, at rest after 50 default steps", apart[-1], 0.0, 1e-9,
                source="one body", unit="m", relative=False)
     # What a step leaves for the next one is judged by the sum of all forces, which counts those
     # that the weld carries.
-    case.report("cut: largest distance on the way", apart.max(), unit="m", source="one body")
+    case.report("cut: largest distance in the transient", apart.max(), unit="m", source="one body")
 
 
 def two_materials(case):
@@ -130,7 +132,7 @@ def meshes(case):
                     source="one body")
         rows.append((inner, outer, error))
     matching = abs(rows[0][2])
-    case.check("meshes: outer half refined once, error over that of meshes that match",
+    case.check("meshes: outer half refined once: error / error of matching meshes",
                abs(rows[1][2]) / matching, 0.0, 1.0, source="one body", relative=False)
     return rows
 

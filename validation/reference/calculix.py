@@ -1,9 +1,11 @@
 """CalculiX (Dhondt and Wittig, www.calculix.de; Debian's calculix-ccx) as an independent code.
 
-Statics and dynamics of hyperelastic solids. Its energies are U = U_iso + 1/D (J - 1)^2 (manual, section
+Statics and dynamics of hyperelastic solids. Their energies are U = U_iso + 1/D (J - 1)^2 (manual, section
 6.8.5 of version 2.20, after Abaqus' theory manual), so that D = 2/kappa; Ogden's moduli are those of
 sum 2 mu/alpha^2 (...). Elements: C3D4, C3D10 (four points) and C3D8 (2 x 2 x 2 points, full integration); their node
 order is VTK's. Dynamics are the alpha method of Hilber, Hughes and Taylor with consistent masses.
+
+Statics of thin shells: S6, six nodes, Saint Venant-Kirchhoff's law (*ELASTIC with NLGEOM).
 """
 
 from __future__ import annotations
@@ -119,3 +121,46 @@ def motion(folder: pathlib.Path, nodes, cells, fixed, law: dict, density: float,
         "*DLOAD, AMPLITUDE=AT_ONCE", f"BODY, GRAV, {real(size)}, {toward}",
         "*NODE PRINT, NSET=WATCHED, FREQUENCY=1", "U", "*END STEP"], threads)
     return np.array([time for time, _ in prints]), np.array([rows[0] for _, rows in prints])
+
+
+def shell(folder: pathlib.Path, nodes, triangles, thickness: float, young_modulus: float, poisson_ratio: float, held,
+          *, pressure: float = 0.0, displaced=None, threads: int = 1) -> tuple[np.ndarray, np.ndarray]:
+    """A thin shell of six-node triangles at equilibrium.
+
+    Parameters
+    ----------
+    nodes : (n, 3) array
+        m, at rest.
+    triangles : (m, 6) array
+        Corners, then the middles of edges 01 12 20.
+    thickness, young_modulus, poisson_ratio : float
+        m, Pa, -.
+    held : list
+        Pairs of a mask (n,) of nodes and an axis, 0 to 2: no displacement along it.
+    pressure : float
+        Pa, along the normal from which the triangles turn counter-clockwise; it follows the shell.
+    displaced : tuple
+        Mask (n,), axis and displacement (m), or None.
+
+    Returns
+    -------
+    displacements, reactions : (n, 3) arrays
+        m, and N. RuntimeError where it does not converge.
+    """
+    lines = ["*NODE, NSET=ALL", *[f"{i + 1}, " + ", ".join(real(x) for x in row) for i, row in enumerate(nodes)]]
+    lines += ["*ELEMENT, TYPE=S6, ELSET=FILM", *[f"{i + 1}, " + ", ".join(str(n + 1) for n in row) for i, row in enumerate(triangles)]]
+    lines += ["*MATERIAL, NAME=LAYER", "*ELASTIC", f"{real(young_modulus)}, {real(poisson_ratio)}",
+              "*SHELL SECTION, ELSET=FILM, MATERIAL=LAYER", real(thickness), "*BOUNDARY"]
+    lines += [f"{i + 1}, {axis + 1}, {axis + 1}" for mask, axis in held for i in np.flatnonzero(mask)]
+    # A flat shell yields at first by bending alone: small steps to begin with.
+    lines += ["*STEP, NLGEOM, INC=1000", "*STATIC", "0.001, 1., 1e-6, 0.2", "*CONTROLS, PARAMETERS=FIELD", "1e-7, 1e-7"]
+    if pressure != 0.0:
+        lines += ["*DLOAD", f"FILM, P, {real(pressure)}"]
+    if displaced is not None:
+        mask, axis, distance = displaced
+        lines += ["*BOUNDARY", *[f"{i + 1}, {axis + 1}, {axis + 1}, {real(distance)}" for i in np.flatnonzero(mask)]]
+    lines += ["*NODE PRINT, NSET=ALL, FREQUENCY=1000", "U", "*NODE PRINT, NSET=ALL, FREQUENCY=1000", "RF", "*END STEP"]
+    prints = solve(folder, lines, threads)
+    if abs(prints[-1][0] - 1.0) > 1e-9 or len(prints) != 2:
+        raise RuntimeError((folder / "body.log").read_text(encoding="utf-8")[-500:])
+    return prints[0][1], prints[1][1]

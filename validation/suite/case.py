@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-HELD = "held"
+PASSED = "passed"
 MISSED = "**missed**"
 KNOWN = "**missed**, known"
 REPORTED = "not scored"
@@ -18,7 +18,7 @@ SKIPPED = "skipped"
 
 @dataclass
 class Check:
-    """One line of the scorecard. Numbers are already text, so that they print the same everywhere."""
+    """One line of the scorecard. Numbers are text already, so that they print the same everywhere."""
 
     quantity: str
     ours: str
@@ -32,7 +32,7 @@ class Check:
 
 @dataclass
 class Result:
-    """What a case hands back from its process."""
+    """The result that a case returns from its process."""
 
     name: str
     title: str = ""
@@ -53,9 +53,9 @@ class Case:
     Parameters
     ----------
     name : str
-        The module's name, which figures are called after.
+        The module's name; figures are named after it.
     images, scratch : Path
-        Where figures go, and a folder for meshes that goes away afterwards.
+        The folder of the figures, and a temporary folder for meshes.
     sources : dict
         Short names to full citations, as in the case's SOURCES.
     """
@@ -87,7 +87,7 @@ class Case:
         known_miss: str = "",
         remark: str = "",
     ) -> bool:
-        """Ours against a reference.
+        """Compares our value with a reference.
 
         Parameters
         ----------
@@ -95,11 +95,11 @@ class Case:
         ours, reference : float
             In `unit`.
         tolerance : float
-            Of |ours - reference|, over |reference| when `relative`.
+            Of |ours - reference|, divided by |reference| if `relative`.
         source : str
             A key of the case's SOURCES.
         known_miss : str
-            Why a miss is expected; without it a miss makes the command fail.
+            Why a miss is expected. Without it, a miss makes the command fail.
         """
         self._require(source)
         error = abs(ours - reference)
@@ -130,7 +130,7 @@ class Case:
         known_miss: str = "",
         remark: str = "",
     ) -> bool:
-        """A quantity that ought to be zero and may be `tolerance` at most, in `unit`."""
+        """A quantity whose reference is zero; its magnitude may be at most `tolerance`, in `unit`."""
         self._require(source)
         held = bool(abs(ours) <= tolerance)
         text = number(abs(ours), unit, 3)
@@ -157,7 +157,7 @@ class Case:
         known_miss: str = "",
         remark: str = "",
     ) -> bool:
-        """Something exact but for rounding: the error, relative, is told by its power of ten."""
+        """A quantity that is exact up to rounding: its relative error is given by its power of ten."""
         self._require(source)
         held = bool(abs(error) <= tolerance)
         text = power_of_ten(error)
@@ -177,7 +177,7 @@ class Case:
     def agree(
         self, quantity: str, ours: object, reference: object, *, source: str, remark: str = ""
     ) -> bool:
-        """Two things that must be equal, such as hashes or statuses; shown as text."""
+        """Two values that must be equal, such as hashes or statuses; shown as text."""
         self._require(source)
         held = ours == reference
         self._add(
@@ -203,7 +203,7 @@ class Case:
         reference: float | None = None,
         remark: str = "",
     ) -> None:
-        """A number without a reference that could decide; never a pass."""
+        """A number without a reference that could decide; it never counts as a pass."""
         self._require(source)
         text = ours if isinstance(ours, str) else number(ours, unit)
         told = "none" if reference is None else number(reference, unit)
@@ -212,7 +212,7 @@ class Case:
         )
 
     def skip(self, quantity: str, why: str, *, source: str) -> None:
-        """A check that this machine lacks something for."""
+        """A check for which this machine lacks something."""
         self._require(source)
         self.checks.append(Check(quantity, "", "", "", "", SKIPPED, source, why))
 
@@ -231,7 +231,7 @@ class Case:
             raise KeyError(f"{self.name}: '{source}' is not in SOURCES")
 
     def _add(self, quantity, ours, reference, error, tolerance, held, source, known, remark):
-        verdict = HELD if held else KNOWN if known else MISSED
+        verdict = PASSED if held else KNOWN if known else MISSED
         if known:
             note = known if not held else "a miss was expected: " + known
             remark = f"{remark}; {note}" if remark else note
@@ -241,7 +241,7 @@ class Case:
 
 
 def number(value: float, unit: str = "", digits: int = 5) -> str:
-    """With so many significant digits that rounding of the last bits does not show."""
+    """With few enough significant digits that rounding errors do not show."""
     if not math.isfinite(value):
         return str(value)
     return f"{value:.{digits}g} {unit}".rstrip()
@@ -254,7 +254,7 @@ def percent(value: float) -> str:
 
 
 def power_of_ten(error: float) -> str:
-    """'< 1e-13': the next power of ten, from 1e-15 on."""
+    """'< 1e-13': the next larger power of ten, at least 1e-15."""
     if not math.isfinite(error):
         return str(error)
     if error <= 0.0:
@@ -263,12 +263,12 @@ def power_of_ten(error: float) -> str:
 
 
 def observed_order(steps, errors) -> float:
-    """Slope of log(error) over log(step), by least squares."""
+    """Slope of log(error) against log(step), by least squares."""
     return float(np.polyfit(np.log(steps), np.log(np.abs(errors)), 1)[0])
 
 
 def shared_data(*parts: str) -> pathlib.Path | None:
-    """A file of published data, or None where it is not present: $SINEW_SHARED_DATA, or
+    """A file of published data, or None if it is not present: $SINEW_SHARED_DATA, or
     ../shared/data beside the repository."""
     given = os.environ.get("SINEW_SHARED_DATA")
     folder = pathlib.Path(given) if given else REPOSITORY.parent / "shared" / "data"

@@ -4,26 +4,25 @@ from __future__ import annotations
 
 import pathlib
 
-from .case import HELD, KNOWN, MISSED, REPORTED, SKIPPED, Result
+from .case import PASSED, KNOWN, MISSED, REPORTED, SKIPPED, Result
 
 HEAD = """# Scorecard
 
-Written by `make validate` (`/usr/bin/python3 validation/run.py`); do not edit. What the cases are and
-how they are judged: [validation.md](validation.md). Errors are relative unless they carry a unit;
-`< 1e-13` is a bound by the next power of ten, for what is exact but for rounding. *Not scored* stands
-where there is no reference that could decide. Times stand in [performance.md](performance.md), since
-they depend on the machine.
+Written by `make validate` (`/usr/bin/python3 validation/run.py`); do not edit. [validation.md](validation.md) describes the
+cases. Errors are relative unless they have a unit. `< 1e-13` is used for quantities that are exact up to rounding: the error
+is below this power of ten. *Not scored* marks a number without a reference that could decide. Times depend on the machine and
+are in [performance.md](performance.md).
 
 """
 
 
 def totals(results: list[Result]) -> str:
-    """'120 checks: 118 held, 2 missed, 1 skipped; 4 numbers not scored'."""
+    """'120 checks: 118 passed, 2 missed, 1 skipped; 4 numbers not scored'."""
     def count(*verdicts):
         return sum(result.count(*verdicts) for result in results)
 
-    scored = count(HELD, MISSED, KNOWN)
-    text = f"{scored} checks: {count(HELD)} held, {count(MISSED, KNOWN)} missed"
+    scored = count(PASSED, MISSED, KNOWN)
+    text = f"{scored} checks: {count(PASSED)} passed, {count(MISSED, KNOWN)} missed"
     if count(KNOWN):
         text += f" ({count(KNOWN)} of them known)"
     if count(SKIPPED):
@@ -32,17 +31,17 @@ def totals(results: list[Result]) -> str:
         text += f"; {count(REPORTED)} numbers not scored"
     broken = [result.name for result in results if result.failure]
     if broken:
-        text += f"; stopped by an error: {', '.join(broken)}"
+        text += f"; stopped with an error: {', '.join(broken)}"
     return text
 
 
 def write(results: list[Result], path: pathlib.Path, images: pathlib.Path) -> None:
-    """All cases in alphabetical order of their titles' modules, as given."""
+    """All cases in the given order, which is that of their file names."""
     text = HEAD + f"**{totals(results)}.**\n\n"
-    text += "| case | held | missed | not scored | skipped |\n|---|---|---|---|---|\n"
+    text += "| case | passed | missed | not scored | skipped |\n|---|---|---|---|---|\n"
     for result in results:
         missed = result.count(MISSED, KNOWN)
-        text += (f"| [{result.title}](#{result.name}) | {result.count(HELD)} | "
+        text += (f"| [{result.title}](#{result.name}) | {result.count(PASSED)} | "
                  f"{f'**{missed}**' if missed else 0} | {result.count(REPORTED)} | "
                  f"{result.count(SKIPPED)} |\n")
     for result in results:
@@ -55,10 +54,10 @@ def section(result: Result, folder: pathlib.Path, images: pathlib.Path) -> str:
     """One case."""
     text = f'<a id="{result.name}"></a>\n## {result.title}\n\n{result.setup.strip()}\n\n'
     if result.failure:
-        text += f"**Stopped by an error:** `{result.failure.strip().splitlines()[-1]}`\n\n"
+        text += f"**Stopped with an error:** `{result.failure.strip().splitlines()[-1]}`\n\n"
     remarks: list[str] = []
     if result.checks:
-        text += "| quantity | ours | reference | error | tolerance | verdict | source |\n"
+        text += "| quantity | Sinew | reference | error | tolerance | verdict | source |\n"
         text += "|---|---|---|---|---|---|---|\n"
     for check in result.checks:
         mark = ""

@@ -1,12 +1,13 @@
 // The WebSocket to the program: tries again when it is lost, and matches replies with requests.
-import {decode, Frame, Scene, Status, Surface} from './protocol';
+import {decode, Frame, Interior, Scene, Status, Surface} from './protocol';
 
-const PROTOCOL = 1;
+const PROTOCOL = 2;
 const WAITS = [0.25, 0.5, 1, 2];  // s between tries, then the last one for ever
 
 export interface Listener {
   scene(scene: Scene, mode: string): void;
   surface(surface: Surface): void;
+  interior(interior: Interior): void;
   frame(frame: Frame): void;
   status(status: Status): void;
   connected(yes: boolean, why: string): void;
@@ -91,6 +92,7 @@ export class Connection {
     const message = decode(buffer);
     if (message.generation !== this.generation) return;
     if (message.surface) this.listener.surface(message.surface);
+    if (message.interior) this.listener.interior(message.interior);
     if (message.frame) this.listener.frame(message.frame);
   }
 }

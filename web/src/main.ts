@@ -7,7 +7,7 @@ import {Connection} from './connection';
 import {button, make} from './dom';
 import {JointList} from './joint_list';
 import {Panel} from './panel';
-import {Picked} from './picked';
+import {middle, Picked} from './picked';
 import {Plots} from './plots';
 import type {Frame, Scene, Status} from './protocol';
 import {Robot3d} from './robot3d';
@@ -50,16 +50,17 @@ const robot = new Robot3d(byId('stage'), {
   target: (effector, position) => {
     aimed = {type: 'target', effector: scene!.effectors[effector].name, position};
   },
-  pick,
+  pick: (spot) => picked.choose(spot),
+  inside: (on) => send({type: 'inside', on}),
 });
-const picked = new Picked(() => pick(null));
+const picked = new Picked(pick);
 const viewbar = new Viewbar(robot);
 
-function pick(at: {body: number; vertex: number} | null): void {
-  if (at === null && picked.at === null) return;
-  picked.choose(at);
-  robot.pick(at);
-  send({type: 'pick', body: at ? scene!.bodies[at.body].name : null, vertex: at?.vertex ?? 0});
+// What was picked is marked with its first values.
+function pick(): void {
+  robot.mark(null);
+  const {at} = picked;
+  send({type: 'pick', body: at ? scene!.bodies[at.body].name : null, kind: at?.kind ?? 'node', number: at?.number ?? 0});
 }
 
 const narrow = matchMedia('(max-width: 900px)');
@@ -83,12 +84,12 @@ const title = make('h1', {textContent: 'Sinew'});
 const numbers = make('span', {className: 'numbers'});
 const fields = make('select', {'aria-label': 'Colour by'});
 const maps = make('select', {'aria-label': 'Colour map'}, ...MAPS.map((m) => new Option(m, m)));
-const wire = button('Wire', 'Wireframe (w)', () => { robot.wireframe = wire.classList.toggle('on'); fresh = true; });
+const wire = button('Wire', 'Wireframe (w)', () => { robot.bodies.wireframe = wire.classList.toggle('on'); fresh = true; });
 const follow = button('Follow', 'Follow the effector (o)', () => { robot.follow = follow.classList.toggle('on'); });
 const hands = button('Hand', 'Drag the robot itself, without Shift (h)', () => { robot.hands = hands.classList.toggle('on'); });
 const theme = button('Dark', 'Light or dark (d)', () => setTheme(document.documentElement.dataset.theme !== 'dark'));
 fields.onchange = () => chooseField(fields.value === '' ? null : fields.value);
-maps.onchange = () => { map = maps.value; robot.map(map); legend(); };
+maps.onchange = () => { map = maps.value; robot.bodies.map(map); legend(); };
 byId('top').append(title, make('label', {}, 'Colour ', fields), maps, wire, follow, hands,
                    button('Fit', 'See the whole robot (f)', () => robot.fit()),
                    button('Picture', 'Save a picture (p)', picture), theme,
@@ -105,8 +106,9 @@ function chooseField(name: string | null): void {
   field = name;
   seen = [NaN, NaN];  // until values come
   latest?.fields.clear();
+  latest?.innerFields.clear();
   fields.value = name ?? '';
-  robot.coloured = name !== null;
+  robot.bodies.coloured = name !== null;
   keepRange(null);
   connection.request({type: 'field', name}).catch(() => undefined);
   fresh = true;
@@ -114,6 +116,7 @@ function chooseField(name: string | null): void {
 }
 
 function picture(): void {
+  robot.touch();
   robot.draw();
   const link = make('a', {href: robot.renderer.domElement.toDataURL('image/png'),
                           download: `${scene?.name ?? 'sinew'}.png`});
@@ -161,7 +164,7 @@ function legend(): void {
 
 function measure(frame: Frame): void {
   let a = Infinity, b = -Infinity;
-  for (const {values} of frame.fields.values()) {
+  for (const values of [...[...frame.fields.values()].map((f) => f.values), ...frame.innerFields.values()]) {
     for (const value of values) {
       if (!Number.isFinite(value)) continue;
       if (value < a) a = value;
@@ -218,6 +221,7 @@ const KEYS: [string, string, () => void][] = [
   ['w', 'wireframe', () => wire.click()], ['o', 'follow the effector', () => follow.click()],
   ['h', 'drag the robot itself', () => hands.click()], ['c', 'next field', nextField], ['d', 'light or dark', () => theme.click()],
   ['j', 'show or hide joints', () => joints.toggle()],
+  ['n', 'values of the node or of the element', () => picked.show(picked.kind === 'node' ? 'element' : 'node')],
   ['x', 'look along the x axis', () => robot.look('x')], ['y', 'look along the y axis', () => robot.look('y')],
   ['z', 'look down along the z axis', () => robot.look('z')], ['i', 'look from the front, the right and above', () => robot.look('iso')],
   ['q', 'parallel projection', () => viewbar.parallel.click()],
@@ -235,7 +239,7 @@ function help(): void {
   if (dialog.open) return dialog.close();
   const rows = KEYS.map(([key, what]) => make('tr', {}, make('td', {}, make('kbd', {textContent: key === ' ' ? 'space' : key})),
                                               make('td', {textContent: what})));
-  const mouse = [['click on the robot', 'the values of a node'], ['drag', 'rotate'], ['right drag', 'pan (on the robot: pull)'], ['wheel', 'zoom'],
+  const mouse = [['click on the robot', 'the values of a node or of an element'], ['drag', 'rotate'], ['right drag', 'pan (on the robot: pull)'], ['wheel', 'zoom'],
                  ['Shift drag', 'pull the robot'], ['drag the arrows', 'move the target'],
                  ['click a ball', 'move the arrows to this target'], ['click a joint', 'its displacement, force and moment']];
   rows.push(...mouse.map(([key, what]) => make('tr', {}, make('td', {}, make('kbd', {textContent: key})), make('td', {textContent: what}))));
@@ -280,7 +284,8 @@ const connection = new Connection({
     plots.setScene(next);
     if (field !== null) chooseField(field);
   },
-  surface: (surface) => robot.surface(surface),
+  surface: (surface) => robot.bodies.surface(surface),
+  interior: (interior) => robot.bodies.interior(interior),
   frame: (frame) => {
     const begin = performance.now();
     ++frames;
@@ -288,6 +293,7 @@ const connection = new Connection({
     // A frame that is skipped may be the one with the positions.
     if (fresh && latest) {
       for (const [k, v] of latest.positions) if (!frame.positions.has(k)) frame.positions.set(k, v);
+      for (const [k, v] of latest.inner) if (!frame.inner.has(k)) frame.inner.set(k, v);
       frame.cables ??= latest.cables;
       frame.effectors ??= latest.effectors;
       frame.probes ??= latest.probes;
@@ -296,7 +302,9 @@ const connection = new Connection({
     }
     // One that was under way when another field was chosen.
     for (const [body, {field: shown}] of frame.fields) {
-      if (scene?.fields[shown]?.name !== field) frame.fields.delete(body);
+      if (scene?.fields[shown]?.name === field) continue;
+      frame.fields.delete(body);
+      frame.innerFields.delete(body);
     }
     if (frame.step !== latest?.step) stepTimes.push(signal('time.step', frame));
     latest = frame;
@@ -326,8 +334,10 @@ function tick(now: number): void {
     measure(latest);
     robot.update(latest, ...(range ?? seen));
     panel.follow(scene, latest);
-    const place = robot.pickedPlace();
-    if (place) picked.show(scene, latest, place);
+    if (picked.is(latest.pick)) {
+      robot.mark(latest.pick);
+      picked.update(scene, latest, robot.pressingOn(latest.pick));
+    }
     legend();
   }
   plots.draw(now);
@@ -390,7 +400,11 @@ const view = {
   timeline: () => latest?.timeline ?? null,
   box: () => robot.box(),
   targets: () => robot.targetsShown(),
-  picked: () => ({...latest?.pick, fields: [...latest?.pick?.fields ?? []], ...robot.pickedPlace()}),
+  picked: () => {
+    const pick = latest?.pick;
+    return pick && {...pick, fields: [...pick.fields], position: middle(pick.positions), nodes: pick.positions.length / 3};
+  },
+  section: (body: number) => robot.bodies.cutTold(body),
   force: (body: number, vertex: number) => robot.pressing(body, vertex)?.length() ?? 0,
   screen: (x: number, y: number, z: number) => robot.screen(new Vector3(x, y, z)),
   plain: () => robot.plain(),

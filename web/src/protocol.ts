@@ -22,7 +22,7 @@ export interface Signal {key: string; label: string; unit: string; group: string
 export interface FieldInfo {name: string; label: string; unit: string; description: string}
 export interface Scene {
   name: string; time_step: number; gravity: number[]; bounds: number[][];
-  bodies: {name: string; vertices: number; triangles: number; nodes: number; elements: number}[];
+  bodies: {name: string; vertices: number; triangles: number; nodes: number; elements: number; materials: string[]}[];
   fields: FieldInfo[]; actuators: Actuator[]; effectors: Effector[]; probes: Probe[]; contacts: Contact[];
   joints: Joint[];
   controllers: Controller[];
@@ -42,15 +42,27 @@ export interface SourceStatus {
 }
 export interface Status {clients: number; driver: number | null; source: SourceStatus}
 
-export interface Surface {body: number; rest: Float32Array; triangles: Uint32Array}
+/** `nodes`: of the mesh, of each vertex; `elements`: behind each triangle, NONE without. */
+export interface Surface {body: number; rest: Float32Array; triangles: Uint32Array; nodes: Uint32Array; elements: Uint32Array}
+/** What elements consist of. Vertices of `tetrahedra` (4 s,) are those of the surface, then inner ones, whose `nodes` of the mesh
+ *  are NONE where they are the middle of an element; `elements` (s,) those that the tetrahedra are of. */
+export interface Interior {body: number; nodes: Uint32Array; tetrahedra: Uint32Array; elements: Uint32Array}
+export const NONE = 0xffffffff;
 /** Moments of a live run: their numbers and times, s. `shown` is the latest in the present. */
 export interface Timeline {oldest: number; latest: number; shown: number; oldestTime: number; latestTime: number}
-/** A value of each of the scene's fields at a node; NaN where the body has no such field. */
-export interface Pick {body: number; vertex: number; node: number; fields: Float32Array}
+export type PickKind = 'node' | 'element';
+/** A value of each of the scene's fields at a node or of an element, NaN where there is none; places of the node or the element's
+ *  nodes (3 k,), m; of an element its volume at rest, m^3, and which of the body's materials it is of. */
+export interface Pick {
+  body: number; kind: PickKind; number: number; material: number; volume: number;
+  positions: Float32Array; rest: Float32Array; fields: Float32Array;
+}
 export interface Frame {
   sequence: number; step: number; time: number; hash: string; signals: Float64Array;
   positions: Map<number, Float32Array>; fields: Map<number, {field: number; values: Float32Array}>;
   cables?: Float32Array; effectors?: Float32Array; targets?: Float32Array; pull?: Float32Array;
+  /** Of the inner vertices, where they are asked for. */
+  inner: Map<number, Float32Array>; innerFields: Map<number, Float32Array>;
   probes?: Float32Array; pick?: Pick; timeline?: Timeline;
   /** By contact: position (3) and quaternion (4) of the surface, then of each point position (3), force (3), state. */
   contacts: Map<number, Float32Array>;
@@ -59,15 +71,16 @@ export interface Frame {
 }
 
 const MAGIC = 0x31574e53;
-const SURFACE = 1, FRAME = 2;
+const SURFACE = 1, FRAME = 2, INTERIOR = 3;
 
 /** Reads a binary message; arrays are views of its bytes. */
-export function decode(buffer: ArrayBuffer): {generation: number; surface?: Surface; frame?: Frame} {
+export function decode(buffer: ArrayBuffer): {generation: number; surface?: Surface; frame?: Frame; interior?: Interior} {
   const view = new DataView(buffer);
   if (buffer.byteLength < 8 || view.getUint32(0, true) !== MAGIC) throw new Error('no message of Sinew');
   const kind = view.getUint16(4, true), generation = view.getUint16(6, true);
   if (kind === SURFACE) return {generation, surface: decodeSurface(buffer, view)};
   if (kind === FRAME) return {generation, frame: decodeFrame(buffer, view)};
+  if (kind === INTERIOR) return {generation, interior: decodeInterior(buffer, view)};
   throw new Error(`message of kind ${kind}`);
 }
 
@@ -77,7 +90,27 @@ function decodeSurface(buffer: ArrayBuffer, view: DataView): Surface {
     body: view.getUint32(8, true),
     rest: new Float32Array(buffer, 24, 3 * vertices),
     triangles: new Uint32Array(buffer, 24 + 12 * vertices, 3 * triangles),
+    nodes: new Uint32Array(buffer, 24 + 12 * (vertices + triangles), vertices),
+    elements: new Uint32Array(buffer, 24 + 16 * vertices + 12 * triangles, triangles),
   };
+}
+
+function decodeInterior(buffer: ArrayBuffer, view: DataView): Interior {
+  const nodes = view.getUint32(12, true), tetrahedra = view.getUint32(16, true);
+  return {
+    body: view.getUint32(8, true),
+    nodes: new Uint32Array(buffer, 24, nodes),
+    tetrahedra: new Uint32Array(buffer, 24 + 4 * nodes, 4 * tetrahedra),
+    elements: new Uint32Array(buffer, 24 + 4 * nodes + 16 * tetrahedra, tetrahedra),
+  };
+}
+
+function decodePick(buffer: ArrayBuffer, at: number, bytes: number): Pick {
+  const [body, kind, number, material, nodes] = new Uint32Array(buffer, at, 5);
+  const [volume] = new Float32Array(buffer, at + 20, 1), places = at + 24, fields = places + 24 * nodes;
+  return {body, kind: kind === 1 ? 'element' : 'node', number, material, volume,
+          positions: new Float32Array(buffer, places, 3 * nodes), rest: new Float32Array(buffer, places + 12 * nodes, 3 * nodes),
+          fields: new Float32Array(buffer, fields, (at + bytes - fields) / 4)};
 }
 
 function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
@@ -88,18 +121,18 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
     time: view.getFloat64(24, true),
     hash: view.getBigUint64(32, true).toString(16).padStart(16, '0'),
     signals: new Float64Array(buffer, 40, count),
-    positions: new Map(), fields: new Map(), contacts: new Map(),
+    positions: new Map(), fields: new Map(), contacts: new Map(), inner: new Map(), innerFields: new Map(),
   };
   for (let at = 40 + 8 * count; at + 8 <= buffer.byteLength;) {
     const kind = view.getUint16(at, true), index = view.getUint16(at + 2, true);
     const bytes = view.getUint32(at + 4, true);
     at += 8;
-    if (kind === 2) {
-      frame.fields.set(index, {field: view.getUint32(at, true),
-                               values: new Float32Array(buffer, at + 4, bytes / 4 - 1)});
+    if (kind === 2 || kind === 13) {
+      const values = new Float32Array(buffer, at + 4, bytes / 4 - 1);
+      if (kind === 2) frame.fields.set(index, {field: view.getUint32(at, true), values});
+      else frame.innerFields.set(index, values);
     } else if (kind === 10) {
-      const [body, vertex, node] = new Uint32Array(buffer, at, 3);
-      frame.pick = {body, vertex, node, fields: new Float32Array(buffer, at + 12, bytes / 4 - 3)};
+      frame.pick = decodePick(buffer, at, bytes);
     } else if (kind === 11) {
       const [oldest, latest, shown] = new Uint32Array(buffer, at, 3);
       const [oldestTime, latestTime] = new Float32Array(buffer, at + 12, 2);
@@ -114,6 +147,7 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
       if (kind === 7) frame.probes = values;
       if (kind === 8) frame.contacts.set(index, values);
       if (kind === 9) frame.joints = values;
+      if (kind === 12) frame.inner.set(index, values);
     }
     at += bytes;
   }

@@ -1,28 +1,35 @@
 // The robot in three dimensions: surfaces, cables, effectors, targets, ground, and what the mouse does.
 import {
   AmbientLight, AxesHelper, Box3, BufferAttribute, BufferGeometry, CanvasTexture, Color, DirectionalLight,
-  DoubleSide, GridHelper, HemisphereLight, Line, LineBasicMaterial, Mesh, MeshBasicMaterial,
-  MeshStandardMaterial, Object3D, Plane, Raycaster, Scene as World, SphereGeometry,
+  GridHelper, HemisphereLight, Line, LineBasicMaterial, Mesh, MeshBasicMaterial,
+  Object3D, Plane, Raycaster, Scene as World, SphereGeometry,
   Sprite, SpriteMaterial, Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import {TransformControls} from 'three/addons/controls/TransformControls.js';
 import {Line2} from 'three/addons/lines/Line2.js';
 import {LineGeometry} from 'three/addons/lines/LineGeometry.js';
 import {LineMaterial} from 'three/addons/lines/LineMaterial.js';
+import {LineSegments2} from 'three/addons/lines/LineSegments2.js';
+import {LineSegmentsGeometry} from 'three/addons/lines/LineSegmentsGeometry.js';
+import {Bodies3d} from './bodies3d';
 import {Camera3d, View} from './camera3d';
-import {linearTable, paint, told} from './colours';
+import {told} from './colours';
 import {Contacts3d} from './contacts3d';
 import {Joints3d} from './joints3d';
 import {make} from './dom';
-import type {Place} from './picked';
-import type {Frame, Scene, Surface} from './protocol';
-import {Section3d} from './section3d';
+import {middle} from './picked';
+import type {Spot} from './picked';
+import type {Frame, Pick, Scene} from './protocol';
 
-const BODY_COLOURS = [0xd9a066, 0x7fa6c9, 0x9cb380];  // told apart by lightness too
 const GIZMO = 0.6;  // size of the target's arrows
 const PROBE = 0x009e73;
-const OPACITY = 0.82;  // of a body without colours
 const PICKED = 0xcc79a7;
+// Pairs of an element's nodes that are joined by an edge, by the number of its nodes (VTK's order).
+const ELEMENT_EDGES: Record<number, number[]> = {
+  4: [0, 1, 1, 2, 2, 0, 0, 3, 1, 3, 2, 3],
+  8: [0, 1, 1, 2, 2, 3, 3, 0, 4, 5, 5, 6, 6, 7, 7, 4, 0, 4, 1, 5, 2, 6, 3, 7],
+  10: [0, 4, 4, 1, 1, 5, 5, 2, 2, 6, 6, 0, 0, 7, 7, 3, 1, 8, 8, 3, 2, 9, 9, 3],
+};
 const CLICK = 4;  // px that a click may move
 const SLACK = 0x8a8f98, TAUT = 0x0072b2, STRONG = 0xd55e00;  // Okabe and Ito 2008
 
@@ -30,8 +37,10 @@ export interface Hand {
   pull(body: number, vertices: number[], weights: number[], anchor: number[]): void;
   release(): void;
   target(effector: number, position: number[]): void;
-  /** A click on a body, at one of its vertices; null: beside. */
-  pick(at: {body: number; vertex: number} | null): void;
+  /** A click on a body, or beside: null. */
+  pick(spot: Spot | null): void;
+  /** Whether frames are to have what is inside of bodies. */
+  inside(on: boolean): void;
 }
 
 /** A text that always faces the camera and is never hidden, of the same size on the screen however far. */
@@ -52,20 +61,15 @@ function caption(text: string): Sprite {
   return sprite;
 }
 
-interface Body {
-  mesh: Mesh<BufferGeometry, MeshStandardMaterial>; wire: Mesh<BufferGeometry, MeshBasicMaterial>; colours: Float32Array; rest: Float32Array;
-}
-
 export class Robot3d {
   readonly renderer: WebGLRenderer;
   private world = new World();
   private camera: Camera3d;
-  private section = new Section3d();
   private captions: Sprite[] = [];
   private gizmo: TransformControls;
   private handle = new Object3D();
   private robot = new Object3D();
-  private bodies: Body[] = [];
+  readonly bodies = new Bodies3d();
   private cables: Line2[] = [];
   private cableCounts: number[] = [];
   private cableSignals: number[] = [];
@@ -76,7 +80,6 @@ export class Robot3d {
   readonly joints = new Joints3d();
   private spring = new Line(new BufferGeometry(), new LineBasicMaterial({color: STRONG}));
   private size = 0.2;
-  private table = linearTable('viridis');
   private grabbed: {plane: Plane; body: number; vertices: number[]; weights: number[]} | null = null;
   private dragging = false;
   private steered = -1;
@@ -84,11 +87,10 @@ export class Robot3d {
   private force = make('div', {id: 'force', hidden: true});
   private bounds = new Box3();
   private picked = new Mesh(new SphereGeometry(1, 20, 14), new MeshBasicMaterial({color: PICKED, depthTest: false, transparent: true}));
-  private pickedAt: {body: number; vertex: number} | null = null;
+  private outline = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({color: PICKED, linewidth: 3, depthTest: false, transparent: true}));
+  private stale = true;  // see touch()
   private pressed: [number, number] | null = null;  // px, where a click may begin
   follow = false;
-  wireframe = false;
-  coloured = false;
   hands = false;  // a plain drag on the robot pulls, as on a screen without keys
 
   constructor(private stage: HTMLElement, private hand: Hand) {
@@ -98,7 +100,7 @@ export class Robot3d {
     stage.append(this.renderer.domElement, this.force, this.joints.label);
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
-    canvas.setAttribute('aria-label', 'The robot; drag to turn, Shift and drag on it to pull, click for the values of a node');
+    canvas.setAttribute('aria-label', 'The robot; drag to turn, Shift and drag on it to pull, click for the values of a node or an element');
     this.camera = new Camera3d(canvas);
     this.gizmo = new TransformControls(this.camera.now, canvas);
     this.gizmo.setSize(GIZMO);
@@ -112,9 +114,11 @@ export class Robot3d {
     });
     const helper = this.gizmo.getHelper();
     helper.visible = false;
-    this.picked.renderOrder = 4;
-    this.picked.visible = false;
-    this.world.add(this.robot, this.section.root, this.handle, helper, this.spring, this.picked);
+    for (const mark of [this.picked, this.outline]) {
+      mark.renderOrder = 4;
+      mark.visible = mark.frustumCulled = false;
+    }
+    this.world.add(this.robot, this.bodies.root, this.handle, helper, this.spring, this.picked, this.outline);
     this.world.add(new AmbientLight(0xffffff, 0.5), new HemisphereLight(0xffffff, 0x8090a0, 1.2));
     const sun = new DirectionalLight(0xffffff, 1.8);
     sun.position.set(1, -2, 3);
@@ -123,16 +127,26 @@ export class Robot3d {
     canvas.addEventListener('pointerdown', (event) => this.press(event), true);
     canvas.addEventListener('pointermove', (event) => this.move(event));
     addEventListener('pointerup', (event) => this.letGo(event));
+    // Whatever someone does may be seen, what lies under the pointer included.
+    for (const what of ['pointerdown', 'pointermove', 'pointerup', 'wheel', 'keydown', 'keyup', 'input', 'change', 'click']) {
+      addEventListener(what, () => {
+        this.touch();
+        requestAnimationFrame(() => this.touch());  // what it brings about comes later
+      }, {passive: true, capture: true});
+    }
+    canvas.addEventListener('webglcontextrestored', () => this.touch());
     new ResizeObserver(() => this.resize()).observe(stage);
     this.theme();
   }
 
   theme(): void {
+    this.touch();
     const style = getComputedStyle(document.documentElement);
     this.world.background = new Color(style.getPropertyValue('--stage').trim() || '#ffffff');
   }
 
   private resize(): void {
+    this.touch();
     const {clientWidth: w, clientHeight: h} = this.stage;
     this.renderer.setSize(w, h);
     this.camera.resize(w, h);
@@ -144,13 +158,13 @@ export class Robot3d {
   }
 
   scene(scene: Scene): void {
+    this.touch();
     this.robot.clear();
-    this.section.clear();
-    this.bodies = [];
     this.captions = [];
-    this.pick(null);
+    this.mark(null);
     const [low, high] = scene.bounds.map((p) => new Vector3(...(p as [number, number, number])));
     this.size = low.distanceTo(high);
+    this.bodies.scene(this.size);
     this.bounds.set(low, high);
     this.ground(low, high);
     this.cables = [];
@@ -224,58 +238,10 @@ export class Robot3d {
     this.stage.dataset.cell = told(cell, 'm');
   }
 
-  surface(surface: Surface): void {
-    const geometry = new BufferGeometry();
-    geometry.setAttribute('position', new BufferAttribute(surface.rest.slice(), 3));
-    geometry.setIndex(new BufferAttribute(surface.triangles, 1));
-    const colours = new Float32Array(surface.rest.length);
-    geometry.setAttribute('color', new BufferAttribute(colours, 3));
-    geometry.computeVertexNormals();
-    const color = BODY_COLOURS[surface.body % BODY_COLOURS.length];
-    const material = new MeshStandardMaterial({color, roughness: 0.65, side: DoubleSide,
-                                               transparent: true, opacity: OPACITY});
-    const mesh = new Mesh(geometry, material);
-    this.section.add(geometry, color, this.size);
-    const wire = new Mesh(geometry, new MeshBasicMaterial({color: 0x222222, wireframe: true, transparent: true,
-                                                           opacity: 0.25}));
-    mesh.frustumCulled = wire.frustumCulled = false;
-    wire.visible = this.wireframe;
-    this.bodies[surface.body] = {mesh, wire, colours, rest: surface.rest};
-    this.robot.add(mesh, wire);
-  }
-
-  map(name: string): void { this.table = linearTable(name); }
-
   /** Takes a frame; field values are painted between low and high. */
   update(frame: Frame, low: number, high: number): void {
-    for (const [index, positions] of frame.positions) {
-      const body = this.bodies[index];
-      const attribute = body?.mesh.geometry.getAttribute('position') as BufferAttribute | undefined;
-      if (!body || !attribute || attribute.array.length !== positions.length) continue;
-      (attribute.array as Float32Array).set(positions);
-      attribute.needsUpdate = true;
-      body.mesh.geometry.computeVertexNormals();
-      body.mesh.geometry.boundingSphere = null;
-      body.mesh.geometry.boundingBox = null;
-    }
-    for (const [index, {values}] of frame.fields) {
-      const body = this.bodies[index];
-      if (!body) continue;
-      paint(values, low, high, this.table, body.colours);
-      (body.mesh.geometry.getAttribute('color') as BufferAttribute).needsUpdate = true;
-    }
-    for (const body of this.bodies) {
-      const {material} = body.mesh;
-      if (material.vertexColors !== this.coloured) {
-        material.vertexColors = this.coloured;
-        material.transparent = !this.coloured;  // or what lies behind would change the colours
-        material.opacity = this.coloured ? 1 : OPACITY;
-        material.needsUpdate = true;
-        const index = this.bodies.indexOf(body);
-        material.color.set(this.coloured ? 0xffffff : BODY_COLOURS[index % BODY_COLOURS.length]);
-      }
-      body.wire.visible = this.wireframe;
-    }
+    this.touch();
+    this.bodies.update(frame, low, high);
     if (frame.cables) this.drawCables(frame.cables, frame.signals);
     if (frame.probes) this.drawProbes(frame.probes);
     this.contacts.update(frame.contacts);
@@ -284,41 +250,41 @@ export class Robot3d {
     if (frame.targets) this.place(this.targets, frame.targets);
     this.steer();
     this.drawSpring(frame.pull);
-    if (this.pickedAt) this.picked.position.copy(this.vertex(this.pickedAt.body, this.pickedAt.vertex));
   }
 
-  private vertex(body: number, vertex: number): Vector3 {
-    return new Vector3().fromBufferAttribute(this.bodies[body].mesh.geometry.getAttribute('position') as BufferAttribute, vertex);
+  /** Marks the node or the element that was picked; null: none. */
+  mark(pick: Pick | null): void {
+    this.touch();
+    this.picked.visible = pick?.kind === 'node';
+    this.outline.visible = pick?.kind === 'element';
+    if (!pick) return;
+    if (pick.kind === 'node') {
+      this.picked.position.copy(middle(pick.positions));
+      return;
+    }
+    const ends = ELEMENT_EDGES[pick.positions.length / 3].flatMap((node) => [...pick.positions.subarray(3 * node, 3 * node + 3)]);
+    this.outline.geometry.setPositions(ends);
   }
 
-  /** Marks a vertex of a body; null: none. */
-  pick(at: {body: number; vertex: number} | null): void {
-    this.pickedAt = at;
-    this.picked.visible = at !== null;
-    if (at) this.picked.position.copy(this.vertex(at.body, at.vertex));
-  }
-
-  /** Where the marked vertex is, and what presses on it. */
-  pickedPlace(): Place | null {
-    if (!this.pickedAt) return null;
-    const {body, vertex} = this.pickedAt;
-    const position = this.vertex(body, vertex);
-    return {position, rest: new Vector3().fromArray(this.bodies[body].rest, 3 * vertex), force: this.pressing(body, vertex)};
+  /** The contact force on a node that was picked; null: no contact has it among its points. */
+  pressingOn(pick: Pick): Vector3 | null {
+    return pick.kind === 'node' ? this.contacts.force(pick.body, middle(pick.positions)) : null;
   }
 
   /** The contact force on a vertex of a body; null where no contact has it among its points. */
-  pressing(body: number, vertex: number): Vector3 | null { return this.contacts.force(body, this.vertex(body, vertex)); }
+  pressing(body: number, vertex: number): Vector3 | null { return this.contacts.force(body, this.bodies.vertex(body, vertex)); }
 
   /** Cuts bodies open: see Section3d. */
   cut(axis: number | null, at: number, before: boolean): void {
-    this.section.set(axis, at, before, this.bounds.getCenter(new Vector3()));
-    for (const {mesh, wire} of this.bodies) for (const {material} of [mesh, wire]) this.section.cut(material);
+    this.touch();
+    if (this.bodies.cut(axis, at, before, this.bounds.getCenter(new Vector3()))) this.hand.inside(this.bodies.isCut);
   }
 
   /** For tests: which effectors' targets are drawn. */
   targetsShown(): boolean[] { return this.targets.map((mark) => mark.visible); }
 
   setOrthographic(yes: boolean): void {
+    this.touch();
     this.camera.setOrthographic(yes);
     this.gizmo.camera = this.camera.now;
   }
@@ -364,6 +330,7 @@ export class Robot3d {
   }
 
   steerable(yes: boolean): void {
+    this.touch();
     this.gizmo.enabled = yes;
     if (!yes) this.gizmo.getHelper().visible = false;
   }
@@ -404,20 +371,23 @@ export class Robot3d {
 
   /** What there is to see now: bodies, effectors and targets. */
   box(): Box3 {
-    if (this.bodies.length === 0) return this.bounds.clone();
-    const box = new Box3();
-    for (const {mesh} of this.bodies) {
-      box.union(new Box3().setFromBufferAttribute(mesh.geometry.getAttribute('position') as BufferAttribute));
-    }
+    if (this.bodies.count === 0) return this.bounds.clone();
+    const box = this.bodies.box();
     for (const mark of [...this.effectors, ...this.targets]) if (mark.visible) box.expandByPoint(mark.position);
     return box;
   }
 
   /** Shows all of the robot, beside the panels. */
-  fit(): void { this.camera.fit(this.box()); }
+  fit(): void {
+    this.touch();
+    this.camera.fit(this.box());
+  }
 
   /** Shows all of the robot from one side. */
-  look(view: View): void { this.camera.fit(this.box(), view); }
+  look(view: View): void {
+    this.touch();
+    this.camera.fit(this.box(), view);
+  }
 
   private ray(event: PointerEvent): Raycaster {
     const box = this.renderer.domElement.getBoundingClientRect();
@@ -427,17 +397,8 @@ export class Robot3d {
     return caster;
   }
 
-  /** The first triangle of a body that a ray meets, of what is not cut off. */
-  private hit(caster: Raycaster): {body: number; vertices: number[]; point: Vector3} | null {
-    const hits = caster.intersectObjects(this.bodies.map((b) => b.mesh));
-    const first = hits.find(({face, point}) => face && this.section.shows(point));
-    if (!first?.face) return null;
-    return {body: this.bodies.findIndex((b) => b.mesh === first.object), point: first.point,
-            vertices: [first.face.a, first.face.b, first.face.c]};
-  }
-
   // Shift and drag, or the right button, on the surface: a spring from there to the pointer. A click on
-  // a target or an effector: its arrows; on a joint's marker: what it says; on the surface: the nearest node.
+  // a target or an effector: its arrows; on a joint's marker: what it says; on a body: what is there.
   private press(event: PointerEvent): void {
     this.pressed = null;
     if (this.gizmo.axis !== null && event.button === 0 && !event.shiftKey) return;
@@ -454,11 +415,11 @@ export class Robot3d {
       if (!marked && event.button === 0) this.pressed = [event.clientX, event.clientY];
       return;
     }
-    const found = this.hit(caster);
-    if (!found) return;
+    const found = this.bodies.hit(caster);
+    if (!found || found.cut) return;
     event.stopImmediatePropagation();
     const {body, point, vertices} = found;
-    const [a, b, c] = vertices.map((v) => this.vertex(body, v));
+    const [a, b, c] = vertices.map((v) => this.bodies.vertex(body, v));
     const area = (p: Vector3, q: Vector3, r: Vector3) =>
       new Vector3().crossVectors(q.clone().sub(p), r.clone().sub(p)).length();
     const parts = [area(point, b, c), area(a, point, c), area(a, b, point)];
@@ -489,19 +450,21 @@ export class Robot3d {
   }
 
   private click(event: PointerEvent): void {
-    const found = this.hit(this.ray(event));
-    if (!found) return this.hand.pick(null);
-    const {body, point} = found;
-    const away = (vertex: number) => this.vertex(body, vertex).distanceTo(point);
-    const [vertex] = found.vertices.sort((a, b) => away(a) - away(b));
-    this.hand.pick({body, vertex});
+    const found = this.bodies.hit(this.ray(event));
+    this.hand.pick(found && this.bodies.spot(found));
   }
 
+  /** Something is to be seen that was not drawn yet. */
+  touch(): void { this.stale = true; }
+
+  /** Draws what is to be seen, unless it is in the picture already. */
   draw(): void {
     if (this.follow && this.effectors[0]?.visible) {
       this.camera.orbit.target.lerp(this.effectors[0].position, 0.1);
     }
-    this.camera.orbit.update();
+    if (this.camera.orbit.update()) this.stale = true;
+    if (!this.stale) return;
+    this.stale = false;
     this.joints.draw((point) => this.screen(point));
     for (const text of this.captions) text.scale.set(0.1, 0.025, 1).multiplyScalar(this.camera.captionScale);
     this.renderer.render(this.world, this.camera.now);

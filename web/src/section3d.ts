@@ -1,8 +1,11 @@
 // A plane that cuts bodies open, and the faces of the cut.
 import {
-  AlwaysStencilFunc, BackSide, BufferGeometry, Color, DecrementWrapStencilOp, DoubleSide, FrontSide, Group, IncrementWrapStencilOp,
-  Material, Mesh, MeshBasicMaterial, NotEqualStencilFunc, Plane, PlaneGeometry, ReplaceStencilOp, Side, StencilOp, Vector3,
+  AlwaysStencilFunc, BackSide, BufferAttribute, BufferGeometry, Color, DecrementWrapStencilOp, DoubleSide, FrontSide, Group,
+  IncrementWrapStencilOp, LineBasicMaterial, LineSegments, Material, Mesh, MeshBasicMaterial, NotEqualStencilFunc, Plane, PlaneGeometry,
+  Raycaster, ReplaceStencilOp, Side, StencilOp, Vector3,
 } from 'three';
+import {paint} from './colours';
+import {emptySlice, slice} from './slice';
 
 export const AXES = ['x', 'y', 'z'] as const;
 const SHADE = 0.7;  // of a body's colour on the faces of the cut
@@ -17,22 +20,93 @@ function counter(geometry: BufferGeometry, side: Side, count: StencilOp, plane: 
   return mesh;
 }
 
+/** Colours of a field. */
+export interface Paint {low: number; high: number; table: Float32Array}
+
+/** The faces of a body's elements in the plane. */
+export class Cut {
+  readonly faces: Mesh<BufferGeometry, MeshBasicMaterial>;
+  readonly outlines = new LineSegments(new BufferGeometry(), new LineBasicMaterial({color: 0x222222, transparent: true, opacity: 0.35}));
+  private shape = emptySlice();
+  private colours = new Float32Array(0);
+
+  /** @param tetrahedra (4 s,) vertices that the elements consist of. */
+  constructor(private tetrahedra: Uint32Array, private color: number) {
+    this.faces = new Mesh(new BufferGeometry(), new MeshBasicMaterial({side: DoubleSide}));
+    this.faces.frustumCulled = this.outlines.frustumCulled = false;
+    this.faces.renderOrder = -1;  // before what is transparent
+  }
+
+  /** @param values of the vertices, painted as `colours` says; null: in the body's colour. */
+  update(plane: Plane, points: Float32Array, values: Float32Array | null, colours: Paint | null, outlined: boolean): void {
+    const {shape} = this, {geometry, material} = this.faces;
+    slice(this.tetrahedra, points, values, plane.normal.toArray(), plane.constant, shape);
+    replace(geometry, 'position', shape.positions, 3 * shape.count);
+    const painted = values !== null && colours !== null;
+    if (painted) {
+      if (this.colours.length < shape.positions.length) this.colours = new Float32Array(shape.positions.length);
+      paint(shape.values.subarray(0, 3 * shape.count), colours.low, colours.high, colours.table, this.colours);
+    }
+    replace(geometry, 'color', this.colours, 3 * shape.count);
+    if (material.vertexColors !== painted) {
+      material.vertexColors = painted;
+      material.needsUpdate = true;
+    }
+    material.color.set(painted ? 0xffffff : this.color).multiplyScalar(painted ? 1 : SHADE);
+    geometry.setDrawRange(0, 3 * shape.count);
+    this.outlines.visible = outlined;
+    if (!outlined) return;
+    replace(this.outlines.geometry, 'position', shape.lines, 2 * shape.edges);
+    this.outlines.geometry.setDrawRange(0, 2 * shape.edges);
+  }
+
+  /** Which of the tetrahedra a triangle of the faces is of. */
+  tetrahedron(triangle: number): number { return this.shape.tetrahedra[triangle]; }
+
+  /** For tests: m^2, and the least and largest value. */
+  told(): {area: number; low: number; high: number; triangles: number} {
+    const {positions, values, count} = this.shape;
+    let area = 0, low = Infinity, high = -Infinity;
+    for (let t = 0; t < count; ++t) {
+      const [a, b, c] = [0, 3, 6].map((k) => new Vector3().fromArray(positions, 9 * t + k));
+      area += b.sub(a).cross(c.sub(a)).length() / 2;
+      for (const value of values.subarray(3 * t, 3 * t + 3)) [low, high] = [Math.min(low, value), Math.max(high, value)];
+    }
+    return {area, low, high, triangles: count};
+  }
+}
+
+// An array that has grown is a new attribute; one that has not is sent up to where it is used.
+function replace(geometry: BufferGeometry, name: string, array: Float32Array, used: number): void {
+  let attribute = geometry.getAttribute(name) as BufferAttribute | undefined;
+  if (attribute?.array !== array) {
+    attribute = new BufferAttribute(array, 3);
+    geometry.setAttribute(name, attribute);
+  }
+  attribute.clearUpdateRanges();
+  attribute.addUpdateRange(0, 3 * used);
+  attribute.needsUpdate = true;
+  geometry.boundingSphere = null;
+}
+
 export class Section3d {
   readonly plane = new Plane();
   readonly root = new Group();
   on = false;
-  private faces: Mesh[] = [];
+  private caps: Mesh[] = [];
+  private cuts = new Map<number, Cut>();
 
   constructor() { this.root.visible = false; }
 
   clear(): void {
     this.root.clear();
-    this.faces = [];
+    this.caps = [];
+    this.cuts.clear();
   }
 
-  /** Draws the faces of the cut of one more body; `size`: m, beyond which there is nothing. */
-  add(geometry: BufferGeometry, color: number, size: number): void {
-    const order = -10 + 0.01 * this.faces.length;  // one body after the other, before what is transparent
+  /** Fills the cut of a closed surface that has no elements inside; `size`: m, beyond which there is nothing. */
+  fill(geometry: BufferGeometry, color: number, size: number): void {
+    const order = -10 + 0.01 * this.caps.length;  // one body after the other, before what is transparent
     const material = new MeshBasicMaterial({color: new Color(color).multiplyScalar(SHADE), side: DoubleSide});
     Object.assign(material, {stencilWrite: true, stencilRef: 0, stencilFunc: NotEqualStencilFunc, stencilFail: ReplaceStencilOp,
                              stencilZFail: ReplaceStencilOp, stencilZPass: ReplaceStencilOp});
@@ -40,10 +114,29 @@ export class Section3d {
     face.renderOrder = order + 0.005;
     face.frustumCulled = false;
     face.onAfterRender = (renderer) => renderer.clearStencil();
-    this.faces.push(face);
+    this.caps.push(face);
     this.root.add(counter(geometry, BackSide, IncrementWrapStencilOp, this.plane, order),
                   counter(geometry, FrontSide, DecrementWrapStencilOp, this.plane, order), face);
   }
+
+  /** Cuts the elements of a body. */
+  open(body: number, tetrahedra: Uint32Array, color: number): void {
+    const cut = new Cut(tetrahedra, color);
+    this.cuts.set(body, cut);
+    this.root.add(cut.faces, cut.outlines);
+  }
+
+  /** Until they are opened again, bodies of elements have no faces. */
+  close(): void {
+    for (const {faces, outlines} of this.cuts.values()) {
+      this.root.remove(faces, outlines);
+      faces.geometry.dispose();
+      outlines.geometry.dispose();
+    }
+    this.cuts.clear();
+  }
+
+  of(body: number): Cut | undefined { return this.cuts.get(body); }
 
   /** Cuts off what lies beyond `at`, m, along an axis, or before it; null: nothing. */
   set(axis: number | null, at: number, before: boolean, middle: Vector3): void {
@@ -51,7 +144,7 @@ export class Section3d {
     if (axis === null) return;
     this.plane.normal.set(0, 0, 0).setComponent(axis, before ? 1 : -1);
     this.plane.constant = before ? -at : at;
-    for (const face of this.faces) {
+    for (const face of this.caps) {
       face.position.copy(this.plane.projectPoint(middle, new Vector3()));
       face.lookAt(face.position.clone().add(this.plane.normal));
     }
@@ -61,4 +154,17 @@ export class Section3d {
 
   /** Whether a point is shown. */
   shows(point: Vector3): boolean { return !this.on || this.plane.distanceToPoint(point) >= 0; }
+
+  /** The first face of elements that a ray meets: of which body, and which of its tetrahedra. */
+  hit(caster: Raycaster): {body: number; tetrahedron: number; point: Vector3; distance: number} | null {
+    if (!this.on) return null;
+    let first = null;
+    for (const [body, cut] of this.cuts) {
+      for (const {faceIndex, point, distance} of caster.intersectObject(cut.faces)) {
+        if (first && first.distance <= distance) continue;
+        first = {body, tetrahedron: cut.tetrahedron(faceIndex!), point, distance};
+      }
+    }
+    return first;
+  }
 }

@@ -5,6 +5,7 @@ import {mkdtempSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {test} from 'node:test';
+import {build} from 'esbuild';
 import {ask, drawn, open, PACKAGE, PROGRAM, ROOT, serve, state, stop, until} from '../testing/page.mjs';
 
 const DIRECT = join(ROOT, 'examples/trunk/trunk.yaml');
@@ -119,7 +120,7 @@ test('fitted views hide nothing behind panels, from every side, in both projecti
   }
 });
 
-test('a node tells its values, live and in a recorded run', async (t) => {
+test('a node and an element tell their values, live and in a recorded run', async (t) => {
   const folder = mkdtempSync(join(tmpdir(), 'sinew-view-'));
   t.after(() => rmSync(folder, {recursive: true}));
   execFileSync(PROGRAM, ['run', MODULE, '--duration', '0.1s', '--out', folder, '--quiet']);
@@ -141,7 +142,7 @@ import json, sinew
 sim = sinew.load(${JSON.stringify(MODULE)})
 sim.step(10)
 body = next(iter(sim.bodies.values()))
-node = ${picked.node}
+node = ${picked.number}
 print(json.dumps({"position": body.positions[node].tolist(), "rest": body.rest_positions[node].tolist(),
                   **{name: body.nodal_field(name)[node] for name in sinew.fields.FIELDS}}))`);
     ['x', 'y', 'z'].forEach((axis, k) => assert.ok(near(picked.position[axis], there.position[k], 1e-7), axis));
@@ -150,8 +151,27 @@ print(json.dumps({"position": body.positions[node].tolist(), "rest": body.rest_p
       if (there[name] !== undefined) assert.ok(near(picked.fields[k], there[name], 1e-5 * Math.abs(there[name]) + 1e-9), name);
     });
     const card = await page.locator('#picked').innerText();
-    assert.match(card, new RegExp(`node ${picked.node}`));
+    assert.match(card, new RegExp(`node ${picked.number}`));
     assert.match(card, /Position[\s\S]*mm[\s\S]*Von Mises stress[\s\S]*Pa/);
+    await page.keyboard.press('n');
+    await page.locator('#picked').getByText(', element ').waitFor();
+    const part = await drawn(page, () => window.sinewView.picked());
+    const own = python(`
+import json, sinew
+sim = sinew.load(${JSON.stringify(MODULE)})
+sim.step(10)
+body = next(iter(sim.bodies.values()))
+element = ${part.number}
+nodes = body.hexahedra[element]
+print(json.dumps({"nodes": nodes.tolist(), "position": body.positions[nodes].mean(axis=0).tolist(),
+                  **{name: body.element_field(name)[element] for name in sinew.fields.FIELDS}}))`);
+    assert.equal(part.kind, 'element');
+    assert.ok(own.nodes.includes(picked.number), 'the nearest node is one of its nodes');
+    ['x', 'y', 'z'].forEach((axis, k) => assert.ok(near(part.position[axis], own.position[k], 1e-7), axis));
+    fields.forEach((name, k) => {
+      if (own[name] !== undefined) assert.ok(near(part.fields[k], own[name], 1e-5 * Math.abs(own[name]) + 1e-9), name);
+    });
+    assert.match(await page.locator('#picked').innerText(), /Material\s+hyperelastic, E = [\d.]+ kPa[\s\S]*Volume at rest\s+[\d.]+ \S*l/);
     await page.mouse.click((await places(page)).right - 12, y);  // beside it
     await page.locator('#picked').waitFor({state: 'hidden'});
   }
@@ -176,42 +196,80 @@ print(json.dumps(sorted(forces[forces > 0].tolist())))`);
   forces.forEach((force, k) => assert.ok(near(force, there[k], 1e-5 * there[k]), `${force} ${there[k]}`));
 });
 
-test('a section cuts the robot open', async (t) => {
+/** Which of the colours of a map is that of a pixel, 0 to 1; the distance to it, of 255. */
+async function onMap(map, pixel) {
+  const {outputFiles: [{text}]} = await build({entryPoints: [join(ROOT, 'web/src/colours.ts')], bundle: true, format: 'esm', write: false});
+  const {linearTable} = await import(`data:text/javascript;base64,${Buffer.from(text).toString('base64')}`);
+  const table = [...linearTable(map)].map((x) => 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055));
+  let best = {at: 0, distance: Infinity};
+  for (let k = 0; 3 * k < table.length; ++k) {
+    const distance = Math.max(...[0, 1, 2].map((c) => Math.abs(table[3 * k + c] - pixel[c])));
+    if (distance < best.distance) best = {at: k / (table.length / 3 - 1), distance};
+  }
+  return best;
+}
+
+test('a section cuts the robot open, and its faces have elements and colours', async (t) => {
   const page = await shown(t, MODULE, '--paused');
+  const choose = async (label) => {
+    await page.selectOption('[aria-label="Section across"]', {label});
+    await page.waitForFunction(() => window.sinewView.section(0)?.triangles > 0);
+  };
+  // At rest: a circle with a circular hole; both are polygons of the circles' areas.
+  await choose('section at z');
+  const {area} = await page.evaluate(() => window.sinewView.section(0));
+  assert.ok(near(area, Math.PI * (0.0125 ** 2 - 0.0037 ** 2), 1e-9), String(area));
+  await page.selectOption('[aria-label="Section across"]', '');
+  assert.equal(await page.locator('[aria-label="Where the section is"]').isVisible(), false);
+
+  await ask(page, {type: 'step', count: 60});
+  await until(page, (s) => s.step === 60);
   await page.keyboard.press('q');
   await page.keyboard.press('y');
   const [x, y, middle] = await drawn(page, () => {
     const {min, max} = window.sinewView.box();
     const centre = [(min.x + max.x) / 2, (min.y + max.y) / 2, (min.z + max.z) / 2];
-    const off = centre[0] + 0.3 * (max.x - min.x);  // in the wall
-    return [...window.sinewView.screen(off, centre[1], centre[2]), centre[1]];
+    return [...window.sinewView.screen(centre[0] - 0.15 * (max.x - min.x), centre[1], centre[2]), centre[1]];  // beside the chamber
   });
-  const front = async () => {
+  const pick = async () => {
     await page.mouse.click(x, y);
-    await until(page, () => true);
     await page.locator('#picked').waitFor();
-    return (await drawn(page, () => window.sinewView.picked())).position.y;
+    return drawn(page, () => window.sinewView.picked());
   };
-  const colour = () => page.evaluate(([px, py]) => {
+  assert.ok((await pick()).position.y < middle, 'the near side is seen from y');
+  await choose('section at y');
+  await page.getByRole('button', {name: 'Show the other side of the section'}).click();
+  await page.selectOption('[aria-label="Colour by"]', 'max_stretch');
+  const {range} = await until(page, (s) => s.range[1] > 1);
+  await page.locator('#picked').getByRole('button', {name: 'Values of the element (n)'}).click();
+  const picked = await pick();
+  await page.getByRole('button', {name: 'Close the values'}).click();  // and the marks with them
+  await drawn(page, () => 0);
+  const pixel = await page.evaluate(([px, py]) => {
     const canvas = document.querySelector('#stage canvas'), scale = canvas.width / canvas.clientWidth;
     const copy = Object.assign(document.createElement('canvas'), {width: canvas.width, height: canvas.height});
     const context = copy.getContext('2d');
     context.drawImage(canvas, 0, 0);
-    return [...context.getImageData((px + 12) * scale, py * scale, 1, 1).data];
+    return [...context.getImageData(px * scale, py * scale, 1, 1).data];
   }, [x, y]);
-  assert.ok(await front() < middle, 'the near side is seen from y');
-  const whole = await colour();
-  await page.selectOption('[aria-label="Section across"]', {label: 'section at y'});
-  await page.getByRole('button', {name: 'Show the other side of the section'}).click();
-  await drawn(page, () => 0);
-  const cut = await colour();
-  assert.notDeepEqual(cut, whole);
-  assert.ok(await front() > middle, 'the near side is cut off, and what is behind is picked');
+  const there = python(`
+import json, sinew
+sim = sinew.load(${JSON.stringify(MODULE)})
+sim.step(60)
+body = next(iter(sim.bodies.values()))
+nodes = body.hexahedra[${picked.number}]
+values = body.nodal_field("max_stretch")
+print(json.dumps({"y": body.positions[nodes, 1].tolist(), "values": values[nodes].tolist(), "all": [values.min(), values.max()]}))`);
+  assert.equal(picked.kind, 'element');
+  assert.ok(Math.min(...there.y) < middle && Math.max(...there.y) > middle, 'the plane cuts the element');
+  there.all.forEach((value, k) => assert.ok(near(range[k], value, 1e-5), 'the legend includes the inside'));
+  const {at, distance} = await onMap('viridis', pixel);
+  assert.ok(distance <= 2, `a colour of the legend: ${pixel}`);
+  const value = range[0] + at * (range[1] - range[0]), step = (range[1] - range[0]) / 100;
+  assert.ok(value > Math.min(...there.values) - step && value < Math.max(...there.values) + step, `${value} of ${there.values}`);
   await page.locator('[aria-label="Where the section is"]').fill('0');
-  await drawn(page, () => 0);
-  assert.ok(await front() < middle, 'all of it is seen again');
-  await page.selectOption('[aria-label="Section across"]', '');
-  assert.equal(await page.locator('[aria-label="Where the section is"]').isVisible(), false);
+  await page.waitForFunction(() => window.sinewView.section(0).triangles < 20);
+  assert.ok((await pick()).position.y < middle, 'all of it is seen again');
 });
 
 test('a run goes back, and takes another way from there', async (t) => {

@@ -121,7 +121,7 @@ class ClosedLoop(Loop):
         elif isinstance(gains, tuple) and len(gains) == 2:
             self._gains = Gains(*gains).check("gains")
         else:
-            raise Error("wrong-type", f"{self._place}(gains)", f"{gains!r} are no gains",
+            raise Error("wrong-type", f"{self._place}(gains)", f"{gains!r} are not gains",
                         "give Gains, a Schedule or a rate")
 
     def _choose(self, answer: Answer, standing: Standing, found: Mapping[str, Any]) -> Choice:

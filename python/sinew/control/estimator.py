@@ -1,4 +1,4 @@
-"""The error of a model's Jacobian, estimated from measured motions."""
+"""Estimates the error of a model's Jacobian from measured motions."""
 
 from __future__ import annotations
 
@@ -13,27 +13,26 @@ __all__ = ["JacobianEstimator"]
 
 
 class JacobianEstimator:
-    """Recursive least squares for E in J_real = (I + E) J_model, with a prior and with forgetting towards it.
+    """Recursive least squares for E in J_real = (I + E) J_model, with a prior and with forgetting towards the prior.
 
-    A motion dx that the model makes is measured as dy = (I + E) dx + noise. Before anything is measured, the entries
-    of E are independent with standard deviation `spread`. Row i of E has the information matrix Lambda_i = A_i +
-    I/spread^2 and the vector b_i,
+    A motion dx of the model is measured as dy = (I + E) dx + noise. A priori, the entries of E are independent with
+    standard deviation `spread`. Row i of E has the information matrix Lambda_i = A_i + I/spread^2 and the vector b_i,
 
         A_i <- phi A_i + dx dx^T/r_i,    b_i <- phi b_i + dx (dy - dx)_i/r_i,    E_i = Lambda_i^-1 b_i,
         r_i = 2 noise_i^2 + (spread |dx|)^2.
 
-    The first part of r_i is that dy is a difference of two measurements; the second that E changes along the way,
-    since model and robot bend in different places: one motion, however long, says no more than the prior did.
-    Forgetting goes to the prior and not to no knowledge at all, so that Lambda_i stays bounded while the robot rests
-    (stabilised forgetting: Kulhavy & Zarrop, Int. J. Control 58 (1993) 905-924). The memory lasts 1/(1 - phi)
-    updates.
+    The first term of r_i appears because dy is a difference of two measurements. The second one appears because E changes
+    along the motion (model and robot bend at different places): a single motion, however long, has no more weight than
+    the prior. Forgetting leads back to the prior and not to zero information, so Lambda_i stays bounded while the robot
+    rests (stabilised forgetting: Kulhavy & Zarrop, Int. J. Control 58 (1993) 905-924). The memory is 1/(1 - phi) updates
+    long.
 
-    Only what the robot does shows: E is known in the directions in which it moves, by much more than noise.
+    E is determined only in directions in which the robot moves by much more than the noise.
 
     Parameters
     ----------
     noise : (rows,) array_like
-        m or rad, standard deviation of a measurement.
+        Standard deviation of a measurement, m or rad.
     spread : float
         Standard deviation of the relative error of the model's Jacobian.
     forgetting : float
@@ -59,26 +58,26 @@ class JacobianEstimator:
         self._weighted = np.zeros((count, count))  # b_i, a row each
 
     def clone(self) -> "JacobianEstimator":
-        """Another one that has learned the same."""
+        """A copy with the same information."""
         other = JacobianEstimator(self.noise, spread=self.spread, forgetting=self.forgetting)
         other.restore(self.state())
         return other
 
     def state(self) -> tuple:
-        """What it has learned, as a value."""
+        """The information collected so far, as a value."""
         return self.updates, self._information.copy(), self._weighted.copy()
 
     def restore(self, state: tuple) -> None:
-        """Takes up a state()."""
+        """Restores a state()."""
         self.updates, self._information, self._weighted = state[0], state[1].copy(), state[2].copy()
 
     def update(self, modelled: np.ndarray, measured: np.ndarray) -> None:
-        """Learns from a motion.
+        """Updates the estimate with one motion.
 
         Parameters
         ----------
         modelled, measured : (rows,) m or rad
-            What the model did and what the robot was measured to do at the same commands.
+            Motion of the model, and measured motion of the robot, under the same commands.
         """
         weight = 1.0 / (2.0 * self.noise**2 + self.spread**2 * (modelled @ modelled))
         self._information = self.forgetting * self._information + weight[:, None, None] * np.outer(modelled, modelled)
@@ -86,7 +85,7 @@ class JacobianEstimator:
         self.updates += 1
 
     def error(self) -> np.ndarray:
-        """E (rows, rows), the most likely one."""
+        """Most likely E, (rows, rows)."""
         return np.linalg.solve(self._with_prior(), self._weighted[:, :, None])[:, :, 0]
 
     def std(self, left: np.ndarray, right: np.ndarray) -> float:

@@ -13,15 +13,15 @@ __all__ = ["Gains", "Schedule", "delay_limit"]
 
 
 class Gains(NamedTuple):
-    """The effectors are asked for the velocity v = dr/dt + rate e + integral (time integral of e), with the target r
-    and the measured error e.
+    """Gains of the requested effector velocity v = dr/dt + rate e + integral (time integral of e), with the target r and the
+    measured error e.
 
     Attributes
     ----------
     rate : float
         1/s, > 0: without delay, the error decays as exp(-rate t).
     integral : float
-        1/s^2, >= 0. Without it, a disturbance that grows by d m/s causes the error d/rate; with it, none. The loop is
+        1/s^2, >= 0. Without it, a disturbance that grows by d m/s leaves the error d/rate; with it, none. The loop is
         critically damped at rate^2/4.
     """
 
@@ -29,7 +29,7 @@ class Gains(NamedTuple):
     integral: float = 0.0
 
     def check(self, place: str) -> "Gains":
-        """Itself.
+        """Checks the gains and returns them.
 
         Raises
         ------
@@ -47,8 +47,8 @@ class Gains(NamedTuple):
 class Schedule:
     """Gain schedule over a variable: linear between the points, constant beyond them.
 
-    Gains that change slowly against the loop keep the loop as stable as each of them is (Shamma & Athans, Automatica
-    27 (1991) 559-564); a variable that follows the motion itself at the loop's own rate has no such guarantee.
+    If the gains change slowly compared with the loop, the loop is as stable as with each of them (Shamma & Athans,
+    Automatica 27 (1991) 559-564). There is no such guarantee for a variable that changes as fast as the loop itself.
 
     Parameters
     ----------
@@ -89,19 +89,19 @@ class Schedule:
 def delay_limit(delay: int) -> float:
     """Largest stable rate times sample time, rate * T, of a resolved-rate loop with an exact Jacobian.
 
-    The loop is an integrator with a delay, x[n+1] = x[n] - k x[n-d], whose characteristic polynomial
-    z^(d+1) - z^d + k has its largest root on the unit circle, at z = exp(i pi/(2 d + 1)), for
+    The loop is an integrator with a delay, x[n+1] = x[n] - k x[n-d]. The largest root of its characteristic polynomial
+    z^(d+1) - z^d + k lies on the unit circle, at z = exp(i pi/(2 d + 1)), for
 
         k = 2 sin(pi/(2 (2 d + 1))):
 
-    2 without delay, 1 with one sample, 0.618 with two; for long delays k -> pi/(2 d), that of continuous time,
-    rate < pi/(2 tau) (Levin & May, Theoretical Population Biology 9 (1976) 178-187). With a Jacobian that is off,
-    eigenvalues mu of J_real J_model^+ that are real and positive divide the limit by the largest of them.
+    2 without delay, 1 with one sample, 0.618 with two. For long delays k -> pi/(2 d), the limit rate < pi/(2 tau) of
+    continuous time (Levin & May, Theoretical Population Biology 9 (1976) 178-187). If the Jacobian is inexact and the
+    eigenvalues of J_real J_model^+ are real and positive, divide the limit by the largest of them.
 
     Parameters
     ----------
     delay : int
-        d, samples between a command's effect and the measurement that the loop sees, >= 0.
+        d, number of samples between the effect of a command and the measurement that the loop uses, >= 0.
     """
     if delay < 0:
         raise Error("out-of-range", "delay_limit(delay)", f"it is {delay}", "give samples, 0 or more")

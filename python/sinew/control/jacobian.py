@@ -1,4 +1,4 @@
-"""How effectors follow from commands at equilibrium: the robot's Jacobian."""
+"""Jacobian of a robot: effectors as a function of commands at equilibrium."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ __all__ = ["condensed", "jacobian"]
 
 
 def condensed(w_ea: np.ndarray, w_aa: np.ndarray, by_motion: np.ndarray, slack: np.ndarray) -> np.ndarray:
-    """J (rows, actuators) of the effectors by commands, from W_ea and W_aa.
+    """J (rows, actuators) of the effectors with respect to commands, from W_ea and W_aa.
 
-    Motions s of the actuators M that are commanded a motion, and efforts of the others F, give
+    With motions s of the actuators M that are commanded in motion, and efforts of the others F,
         lambda_M = W_MM^+ (s - W_MF lambda_F),   J_M = W_eM W_MM^+,   J_F = W_eF - J_M W_MF.
-    A slack cable moves nothing: its column is zero. W_MM is scaled to a diagonal of one, and directions whose
-    eigenvalue is below 1e-9 of the largest are left out of W_MM^+: two cables on one line have one motion.
+    A slack cable moves nothing, so its column is zero. W_MM is scaled to a unit diagonal, and W_MM^+ omits directions with
+    eigenvalues below 1e-9 of the largest one: two cables on one line have one motion.
 
     Parameters
     ----------
@@ -46,10 +46,10 @@ def jacobian(
     *,
     command: Union[str, Mapping[str, str], None] = None,
 ) -> np.ndarray:
-    """How effectors of a simulation follow from commands to its actuators at equilibrium, near its present state.
+    """Jacobian of a simulation: motion of effectors per command of actuators, at equilibrium near the present state.
 
-    Inertia has no part in it (Simulation.response(statics=True)). Contact points and cables at guides keep sticking
-    or sliding. In a twin test this is the exact Jacobian of the plant.
+    It contains no inertia (Simulation.response(statics=True)). Contact points and cables at guides keep sticking or
+    sliding. In a twin test this is the exact Jacobian of the plant.
 
     Parameters
     ----------
@@ -58,13 +58,13 @@ def jacobian(
     actuators : list of str, optional
         All by default.
     command : 'motion', 'effort' or dict, optional
-        What they are commanded, see ClosedLoop.
+        Commanded quantity of the actuators, see ClosedLoop.
 
     Returns
     -------
     (rows, actuators) ndarray
-        Rows: directions of the effectors, one after the other. m/m for cables commanded a displacement, m/N for those
-        commanded a tension, and so on.
+        Rows: directions of the effectors, one after the other. m/m for cables commanded in displacement, m/N for those
+        commanded in tension, and so on.
 
     Raises
     ------

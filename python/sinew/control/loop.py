@@ -1,4 +1,4 @@
-"""Common to all loops: the parallel model, measurements and their loss, commands and reports."""
+"""Common part of all loops: the parallel model, measurements and their loss, commands and reports."""
 
 from __future__ import annotations
 
@@ -22,8 +22,9 @@ _TINY = np.finfo(float).tiny
 
 
 class Memory(NamedTuple):
-    """One past step: where the model's effectors were, by which commands, what was measured then, and how many steps
-    before that the samples had been taken."""
+    """One past step: effector positions of the model, the commands that led to them, the measurements at that time, and the
+    age of their samples in steps.
+    """
 
     positions: dict[str, np.ndarray]
     commands: np.ndarray
@@ -49,7 +50,7 @@ def _positive(value: float, place: str, *, zero: bool = False) -> float:
 
 
 class Loop:
-    """Base of ClosedLoop and PredictiveController; the former's docstring has the parameters."""
+    """Base of ClosedLoop and PredictiveController. The docstring of ClosedLoop describes the parameters."""
 
     _observer = 1.0  # part of a new difference between measurement and model that is taken up
 
@@ -105,25 +106,26 @@ class Loop:
 
     @property
     def status(self) -> str:
-        """How the last step served the targets:
+        """Progress towards the targets after the last step:
 
         - 'not-started': no step yet
         - 'on-target': every effector was measured within the tolerance of its target
-        - 'moving': on the way
-        - 'at-limits': on the way, with an active limit of an actuator
+        - 'moving': the errors are above the tolerance, and no limit is active
+        - 'at-limits': the errors are above the tolerance, and a limit of an actuator is active
         - 'limits-conflict': efforts are beyond their limits, and motion limits prevent their return
         - 'condition-violated': no limit is active, and the symmetric part of J_real J_model^+ is not positive definite
-          (`least_eigenvalue` is at most 0, by more than twice its standard deviation where it is estimated)
+          (`least_eigenvalue` is at most 0, by more than twice its standard deviation if it is estimated)
         - 'holding': a measurement is missing; all commands are held
-        - 'open-loop': it has been missing for longer than `hold`; the model, corrected by the last difference,
+        - 'open-loop': the measurement has been missing for longer than `hold`; the model, corrected by the last difference,
           replaces it
         """
         return self._status
 
     @property
     def errors(self) -> dict[str, float]:
-        """Distance (m, or rad) of each effector from its target as last measured, along the directions whose weight is
-        not 0; of one whose measurement stays away as the model has it. NaN before a step."""
+        """Last measured distance (m or rad) of each effector from its target, along the directions with non-zero weight. If the
+        measurement is missing, the model's. NaN before the first step.
+        """
         return dict(self._errors)
 
     @property
@@ -133,9 +135,10 @@ class Loop:
 
     @property
     def least_eigenvalue(self) -> float:
-        """Least eigenvalue of the symmetric part of J_real J_model^+ in the last step, in weighted errors, over the
-        directions in which the actuators can move the effectors; NaN before a step, and while measurements stay away.
-        Above 0 errors fall (docs/closed_loop.md)."""
+        """Least eigenvalue of the symmetric part of J_real J_model^+ in the last step, for weighted errors, over the directions in
+        which the actuators can move the effectors. The errors decrease if it is above 0 (docs/closed_loop.md). NaN before the
+        first step and while a measurement is missing.
+        """
         return self._least
 
     @property
@@ -192,7 +195,7 @@ class Loop:
         """
         item = f"targets['{name}']"
         if name not in self._robot.effectors:
-            raise Error("unknown-name", item, f"this loop does not steer '{name}'",
+            raise Error("unknown-name", item, f"this loop does not control '{name}'",
                         f"it steers {', '.join(self._robot.effectors)}")
         if not isinstance(target, _core.Target):
             target = _vector(target, item, self._robot.effectors[name].unit)
@@ -322,7 +325,7 @@ class Loop:
 
     def _to_estimator(self, noise: float = 1e-4, noise_rotation: float = 1e-3, spread: float = 0.3,
                       forgetting: float = 0.9, window: int = 5) -> tuple[int, JacobianEstimator]:
-        """Of weighted errors."""
+        """Errors with weights, for the estimator."""
         if not (isinstance(window, int) and window >= 1):
             raise Error("out-of-range", f"{self._place}(estimator)['window']", f"it is {window!r}",
                         "give 1 sample or more")
@@ -335,7 +338,7 @@ class Loop:
         return window, JacobianEstimator(scaled[self._row_weights > 0.0], spread=spread, forgetting=forgetting)
 
     def _to_sensors(self, given: Union[Mapping[str, Any], Sequence[Any], None]) -> Optional[dict[str, Any]]:
-        """Of each effector its sensor; None where measurements are given to step()."""
+        """Sensor of each effector; None if measurements are passed to step()."""
         if given is None:
             return None
         place = f"{self._place}(sensors)"
@@ -343,11 +346,11 @@ class Loop:
             try:
                 given = {sensor.name: sensor for sensor in given}
             except (TypeError, AttributeError):
-                raise Error("wrong-type", place, f"{given!r} are no sensors",
+                raise Error("wrong-type", place, f"{given!r} are not sensors",
                             "give a dict such as {'tip': plant.sensor('camera')}, or a list of sensors") from None
         for name in given:
             if name not in self._robot.effectors:
-                raise Error("unknown-name", place, f"this loop does not steer '{name}'",
+                raise Error("unknown-name", place, f"this loop does not control '{name}'",
                             f"it steers {', '.join(self._robot.effectors)}")
         for name, effector in self._robot.effectors.items():
             kind = "orientation" if effector.unit == "rad" else "marker"
@@ -362,7 +365,7 @@ class Loop:
         return max(1.0 / sensor.rate if sensor.rate else 0.0, self.model.time_step)
 
     def _read_sensors(self, measured: Optional[Mapping[str, Any]], time: float) -> dict[str, Any]:
-        """Of each effector the sample that was delivered last, None where the next one should have come."""
+        """Last delivered sample for each effector, None if the next one is overdue."""
         if measured is not None:
             raise Error("bad-argument", "step(measured)", "the loop has sensors", "feed them: sensor.feed(value, time)")
         found: dict[str, Any] = {}
@@ -378,14 +381,14 @@ class Loop:
         return found
 
     def _read(self, measured: Optional[Mapping[str, Any]]) -> dict[str, Any]:
-        """Of each effector the measurement, None where it stays away."""
+        """Measurement of each effector, None if it is missing."""
         if measured is not None and not isinstance(measured, Mapping):
             raise Error("wrong-type", "step(measured)", f"{measured!r} is not a dict",
                         "give a dict from effectors to (3,) arrays")
         measured = measured or {}
         for name in measured:
             if name not in self._robot.effectors:
-                raise Error("unknown-name", "step(measured)", f"this loop does not steer '{name}'",
+                raise Error("unknown-name", "step(measured)", f"this loop does not control '{name}'",
                             f"it steers {', '.join(self._robot.effectors)}")
         found: dict[str, Any] = {}
         for name, effector in self._robot.effectors.items():
@@ -405,25 +408,25 @@ class Loop:
         return _HOLDING if time - self._lost_since < self._hold - 0.5 * self.model.time_step else _OPEN
 
     def _past(self, name: str, step: int, age: int) -> Optional[np.ndarray]:
-        """Where the model had an effector `age` steps before a step of the memory (its length: now)."""
+        """Position of an effector of the model `age` steps before a step of the memory (its length: now)."""
         at = step - age
         if at < 0:
             return None
         return self._memory[at].positions[name] if at < len(self._memory) else self._robot.positions()[name]
 
     def _delayed(self) -> dict[str, np.ndarray]:
-        """The model's effectors when what is measured now was so; at the start, as they were first."""
+        """Effectors of the model at the time of the present samples; before the start, their initial positions."""
         steps = len(self._memory)
         found = {name: self._past(name, steps, min(age, steps)) for name, age in self._ages.items()}
         return {name: value for name, value in found.items() if value is not None}
 
     def _samples(self) -> int:
-        """Steps by which samples are late at most."""
+        """Largest delay of the samples, in steps."""
         late = [(sensor.delay + self._period(sensor)) / self.model.time_step for sensor in (self._sensors or {}).values()]
         return math.ceil(max(late, default=0.0) + 0.5)
 
     def _observe(self, found: Mapping[str, Any]) -> None:
-        """Takes up what is measured less what is modelled, by the part `_observer` of its change."""
+        """Filters the difference between measurement and model: adds the fraction `_observer` of its change."""
         then = self._delayed()
         for name, value in found.items():
             if value is None:
@@ -433,7 +436,7 @@ class Loop:
             self._offsets[name] = self._offsets[name] + part * (offset - self._offsets[name])
 
     def _differences(self, found: Mapping[str, Any], time: float) -> dict[str, np.ndarray]:
-        """(3,) of each effector from where it was measured, or else must be, to its target at a time."""
+        """(3,) from the measured (or else predicted) position of each effector to its target at a time."""
         predicted = self.positions
         now = {name: predicted[name] if value is None else value for name, value in found.items()}
         return {name: self._robot.difference(name, self._target(name, time), value) for name, value in now.items()}
@@ -451,7 +454,7 @@ class Loop:
         return result
 
     def _learn(self, found: Mapping[str, np.ndarray]) -> None:
-        """The estimator learns from measurements a window apart, and from what the model did in the same time."""
+        """Updates the estimator with the difference of measurements a window apart and the motion of the model in that time."""
         window, steps = self._window, len(self._memory)
         if self._real_jacobian != "estimate" or steps % window or steps < window:
             return
@@ -469,7 +472,7 @@ class Loop:
         self._estimator.update((root * modelled)[root > 0.0], (root * measured)[root > 0.0])
 
     def _judge(self, answer: Answer, choice: Choice, mode: str) -> None:
-        """The condition of convergence, and the status."""
+        """Evaluates the condition of convergence and the status."""
         # In weighted errors, e' = Q^1/2 e, along the directions in which some effort moves the effectors.
         counts = self._row_weights > 0.0
         root = np.sqrt(self._row_weights[counts])[:, None]
@@ -505,7 +508,7 @@ class Loop:
             self._status = "condition-violated" if violated else "moving"
 
     def _by_command(self, answer: Answer, changes: np.ndarray) -> np.ndarray:
-        """Changes of commands from those of efforts; (actuators,) or (actuators, k)."""
+        """Converts changes of efforts to changes of commands; (actuators,) or (actuators, k)."""
         by_motion = self._robot.by_motion if changes.ndim == 1 else self._robot.by_motion[:, None]
         return np.where(by_motion, answer.w_aa @ changes, changes)
 
@@ -518,7 +521,7 @@ class Loop:
         self._commands = np.clip(np.clip(wanted, self._commands - reach, self._commands + reach), limits[0], limits[1])
 
     def _advance(self, measured: Optional[dict[str, np.ndarray]], before: np.ndarray) -> None:
-        """Remembers this step, whose effectors follow from the commands `before` it, and moves the model on."""
+        """Stores this step, whose effectors follow from the commands `before` it, and steps the model."""
         self._memory.append(Memory(self._robot.positions(), before, measured, dict(self._ages)))
         keep = max(2 * (self._samples() + self._window) + 2, 4)
         if len(self._memory) > 2 * keep:

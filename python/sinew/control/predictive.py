@@ -17,33 +17,32 @@ __all__ = ["PredictiveController"]
 class PredictiveController(Loop):
     """Brings measured effectors to their targets over a short horizon of linearised steps, within all limits.
 
-    In each step the changes z_1 .. z_N of efforts after the next N steps minimise
+    In each step, the changes z_1 .. z_N of the efforts after the next N steps minimise
 
         sum_j |x + b + W_ea z_j - r_j|^2_Q + s change |z_j - z_(j-1)|^2_W_aa + s relaxation |lambda + z_j|^2_W_aa
 
-    within the limits of efforts, motions and their rates in all steps; z_1 is taken, and the next step begins anew. x
-    are the effectors of the model, which obeys the same commands beside the robot, r_j the targets at the ends of the
-    steps, so that moving ones are seen coming, and b what is measured less what the model had when it was measured,
-    filtered: b <- b + observer (y - x(t - age) - b). A robot and a model that differ by a constant leave no error
-    at rest (dynamic matrix control: Cutler & Ramaker, Joint Automatic Control Conf. 1980; offset-free by the
-    disturbance b: Muske & Badgwell, J. Process Control 12 (2002) 617-632). Steps are those of equilibrium: inertia
-    has no part in them.
+    within the limits of efforts, motions and their rates in all steps. z_1 is applied, and the next step solves the problem
+    anew. x are the effectors of the model, which receives the same commands as the robot. r_j are the targets at the ends of
+    the steps, so moving targets are anticipated. b is the measurement minus the model at the time of the sample, filtered:
+    b <- b + observer (y - x(t - age) - b). A constant difference between robot and model therefore leaves no error at rest
+    (dynamic matrix control: Cutler & Ramaker, Joint Automatic Control Conf. 1980; offset-free by the disturbance b: Muske &
+    Badgwell, J. Process Control 12 (2002) 617-632). The steps are steps of equilibrium, without inertia.
 
-    The delay is part of the prediction and sets no limit of its own while the model is exact: b then does not answer to
-    commands. Errors of the model make it answer; a smaller `observer` bears more of them, and passes less noise.
+    The prediction contains the delay. With an exact model b does not depend on the commands, and the delay sets no limit.
+    Model errors make b depend on them. A smaller `observer` tolerates larger model errors and passes less noise.
 
     Parameters
     ----------
     model, effectors, actuators, sensors, command, weights, tolerance, hold, real_jacobian, estimator
         See ClosedLoop.
     horizon : int
-        N, steps.
+        N, number of steps.
     change : float
-        Weight of changes of efforts between steps: how hard it moves.
+        Weight of the changes of efforts between steps. Larger values give smoother motion.
     relaxation : float
-        Weight of efforts themselves.
+        Weight of the efforts themselves.
     observer : float
-        Above 0, at most 1.
+        Fraction by which b follows a new difference per step; above 0, at most 1.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The quadratic program of a loop's step: changes of efforts over a horizon, within all limits."""
+"""Quadratic program of a loop's step: changes of efforts over a horizon, within all limits."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ __all__ = ["Choice", "Standing", "Weights", "choose"]
 
 
 class Standing(NamedTuple):
-    """Where the actuators are.
+    """Present state of the actuators.
 
     Attributes
     ----------
     efforts, motions : (actuators,)
         Of the model.
     commands : (actuators,)
-        Those given last, motions or efforts.
+        Last commands, motions or efforts.
     slack : (actuators,) bool
     """
 
@@ -32,17 +32,18 @@ class Standing(NamedTuple):
 
 
 class Weights(NamedTuple):
-    """What counts beside the effectors, relative to what a unit of effort's energy moves them.
+    """Weights of the program. `change` and `relaxation` have no unit: they are relative to how far a unit of the efforts'
+    energy moves the effectors.
 
     Attributes
     ----------
     rows : (rows,)
         Of the squared errors of the effectors.
     change : float
-        Of changes of efforts from one step to the next, |du|^2 in W_aa.
+        Of the changes of efforts from step to step, |du|^2 in W_aa.
     relaxation : float
-        Of the efforts themselves, |lambda|^2 in W_aa: among efforts that move the effectors equally, they slowly
-        become the least.
+        Of the efforts themselves, |lambda|^2 in W_aa: among efforts that move the effectors equally, they slowly approach
+        the smallest.
     """
 
     rows: np.ndarray
@@ -51,7 +52,7 @@ class Weights(NamedTuple):
 
     @classmethod
     def checked(cls, rows: np.ndarray, change: float, relaxation: float, place: str) -> "Weights":
-        """Weights. Raises Error: out-of-range."""
+        """Checked weights. Raises Error: out-of-range."""
         for name, value in (("change", change), ("relaxation", relaxation)):
             if not (np.isfinite(value) and value >= 0.0):
                 raise Error("out-of-range", f"{place}({name})", f"it is {value!r}", "give a finite number of 0 or more")
@@ -59,18 +60,18 @@ class Weights(NamedTuple):
 
 
 class Choice(NamedTuple):
-    """What the program chose.
+    """Solution of the program.
 
     Attributes
     ----------
     change : (actuators,)
-        Of efforts in this step.
+        Change of the efforts in this step.
     sensitivity : (actuators, rows)
-        d change / d (wanted motions, the same over the whole horizon), with the active limits staying active.
+        d change / d (wanted motions, equal over the horizon), while the active limits stay active.
     limited : bool
         Whether a limit is active.
     conflict : bool
-        Whether limits contradict each other: those of efforts gave way.
+        Whether limits contradict each other; the limits of efforts are then relaxed.
     """
 
     change: np.ndarray
@@ -80,7 +81,7 @@ class Choice(NamedTuple):
 
 
 def _reachable(limits: np.ndarray, now: np.ndarray, time_step: float) -> tuple[np.ndarray, np.ndarray]:
-    """Within limits (min, max, rate) after a step from `now`; what is outside comes back as fast as it may."""
+    """Range within the limits (min, max, rate) after a step from `now`. A value outside returns as fast as the rate allows."""
     reach = limits[2] * time_step
     lower, upper = np.maximum(limits[0], now - reach), np.minimum(limits[1], now + reach)
     nearest = np.where(now > limits[1], lower, upper)
@@ -88,25 +89,25 @@ def _reachable(limits: np.ndarray, now: np.ndarray, time_step: float) -> tuple[n
 
 
 def _widened(interval: tuple[np.ndarray, np.ndarray], now: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """So that `now` is inside."""
+    """Range widened to contain `now`."""
     return np.minimum(interval[0], now), np.maximum(interval[1], now)
 
 
 def choose(robot: Robot, answer: Answer, standing: Standing, wanted: np.ndarray, weights: Weights,
            time_step: float) -> Choice:
-    """Efforts lambda + z_j after steps j = 1 .. N, z_0 = 0, that minimise
+    """Efforts lambda + z_j after the steps j = 1 .. N, z_0 = 0, that minimise
 
         sum_j |W_ea z_j - w_j|^2_Q + s change |z_j - z_(j-1)|^2_W_aa + s relaxation |lambda + z_j|^2_W_aa
 
-    within limits of efforts, motions m + W_aa z_j and rates; s makes the weights numbers: the mean over the actuators
-    of what their efforts, each scaled to the same energy, move the effectors.
+    within the limits of efforts, motions m + W_aa z_j and rates. s makes the weights dimensionless: it is the mean over the
+    actuators of how far their efforts, each scaled to the same energy, move the effectors.
 
     Parameters
     ----------
     robot, answer, standing
-        Limits, response and where the actuators are.
+        Limits, response, and state of the actuators.
     wanted : (steps, rows)
-        w_j, where the effectors should have moved after each step.
+        w_j, wanted motion of the effectors after each step.
     weights : Weights
     time_step : float
         s.
@@ -154,9 +155,9 @@ def choose(robot: Robot, answer: Answer, standing: Standing, wanted: np.ndarray,
 
 def _motion_rows(robot: Robot, answer: Answer, standing: Standing, steps: int,
                  time_step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Rows over (z_1 .. z_N) for the limits of motions and of their rates, those that are finite alone.
+    """Rows over (z_1 .. z_N) for the finite limits of motions and of their rates.
 
-    A slack cable may be shorter than its way through the body by any length: it has no lower limits.
+    A slack cable may be shorter than its path through the body by any length: it has no lower limits.
     """
     count = len(standing.motions)
     before = np.where(robot.by_motion, standing.commands, standing.motions)

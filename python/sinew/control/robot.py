@@ -1,4 +1,4 @@
-"""A simulation as a loop sees it: chosen effectors and actuators, limits, and how it answers to commands."""
+"""The simulation that a loop uses: chosen effectors and actuators, limits, and the response to commands."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _COMMANDS = ("motion", "effort")
 
 
 class Answer(NamedTuple):
-    """How effectors and actuators move with the efforts of the actuators, near one state.
+    """Response of effectors and actuators to efforts of the actuators, near one state.
 
     Attributes
     ----------
     w_ea : (rows, actuators)
     w_aa : (actuators, actuators)
     jacobian : (rows, actuators)
-        Of effectors by commands, see condensed().
+        Of effectors with respect to commands, see condensed().
     """
 
     w_ea: np.ndarray
@@ -31,16 +31,16 @@ class Answer(NamedTuple):
 
 
 class Robot:
-    """A simulation, some of its effectors and some of its actuators.
+    """A simulation with some of its effectors and actuators.
 
     Parameters
     ----------
     sim : Simulation
     effectors : list of str
     actuators : list of str, optional
-        All that can be controlled by default.
+        By default all that can be controlled.
     command : 'motion', 'effort' or dict, optional
-        What actuators are commanded; None: a motion, but chambers their pressure.
+        Commanded quantity of the actuators; None: motion, for chambers pressure.
     place : str
         For messages.
     """
@@ -78,7 +78,7 @@ class Robot:
         given = {name: command for name in kinds} if isinstance(command, str) else dict(command or {})
         for name, kind in given.items():
             if name not in kinds:
-                raise Error("unknown-name", f"{place}(command)", f"'{name}' is none of its actuators",
+                raise Error("unknown-name", f"{place}(command)", f"'{name}' is not one of its actuators",
                             f"they are {', '.join(kinds)}")
             if kind not in _COMMANDS:
                 raise Error("unknown-choice", f"{place}(command)", f"there is no command {kind!r}",
@@ -87,13 +87,13 @@ class Robot:
         return list(kinds.values())
 
     def on(self, sim: Any) -> "Robot":
-        """The same of another simulation of this robot."""
+        """The same selection on another simulation of this robot."""
         kinds = {name: "motion" if by_motion else "effort" for name, by_motion in zip(self.actuators, self.by_motion)}
         return Robot(sim, list(self.effectors), list(self.actuators), kinds, "clone")
 
     @property
     def quantities(self) -> dict[str, str]:
-        """Of each actuator what it is commanded: "displacement", "pressure" ..."""
+        """Commanded quantity of each actuator: "displacement", "pressure" ..."""
         return {name: (self._motion_names if by_motion else self._effort_names)[k]
                 for k, (name, by_motion) in enumerate(zip(self.actuators, self.by_motion))}
 
@@ -109,19 +109,19 @@ class Robot:
 
     @property
     def slack(self) -> np.ndarray:
-        """(actuators,) bool: cables without tension that are commanded a length."""
+        """(actuators,) bool: cables without tension that are commanded in length."""
         return self.is_cable & self.by_motion & (self.efforts <= 0.0)
 
     def positions(self) -> dict[str, np.ndarray]:
-        """(3,) m, or the rotation vector, rad, of each effector."""
+        """(3,) position (m) or rotation vector (rad) of each effector."""
         return {name: np.array(effector.value) for name, effector in self.effectors.items()}
 
     def difference(self, name: str, to: np.ndarray, start: np.ndarray) -> np.ndarray:
-        """(3,): what takes an effector from one value to another."""
+        """(3,): difference between two values of an effector."""
         return rotations.difference(to, start) if self.effectors[name].unit == "rad" else to - start
 
     def shifted(self, name: str, value: np.ndarray, difference: np.ndarray) -> np.ndarray:
-        """(3,): the value that is farther by a difference."""
+        """(3,): a value of an effector plus a difference."""
         return rotations.product(difference, value) if self.effectors[name].unit == "rad" else value + difference
 
     def rows(self, differences: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -129,19 +129,19 @@ class Robot:
         return np.concatenate([d @ differences[name] for name, d in zip(self.effectors, self.directions)])
 
     def response(self) -> Answer:
-        """At the present state. Raises RunError: singular-matrix."""
+        """Response at the present state. Raises RunError: singular-matrix."""
         found = self.sim.response(list(self.actuators))
         w_ea = np.vstack([found.W_ea[name] for name in self.effectors])
         return Answer(w_ea, found.W_aa, self.jacobian_of(w_ea, found.W_aa))
 
     def jacobian_of(self, w_ea: np.ndarray, w_aa: np.ndarray) -> np.ndarray:
-        """(rows, actuators): of effectors by commands."""
+        """(rows, actuators): of effectors with respect to commands."""
         from .jacobian import condensed
 
         return condensed(w_ea, w_aa, self.by_motion, self.slack)
 
     def send(self, sim: Any, commands: Mapping[str, float]) -> None:
-        """Commands a simulation with these actuators."""
+        """Sends commands to a simulation with these actuators."""
         quantities = self.quantities
         for name, value in commands.items():
             setattr(sim.actuator(name), quantities[name], value)

@@ -28,5 +28,5 @@ def product(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def difference(to: np.ndarray, start: np.ndarray) -> np.ndarray:
-    """(3,) rad: the rotation about the world's axes that takes R(start) to R(to), the shorter way round."""
+    """(3,) rad: the rotation about world axes from R(start) to R(to), the shorter way."""
     return product(to, -start)

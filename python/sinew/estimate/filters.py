@@ -10,6 +10,7 @@ from typing import Any, Optional, Protocol
 
 import numpy as np
 
+from .._core import silent_periods
 from ..errors import Error
 from .quantities import Measured
 
@@ -19,30 +20,30 @@ _TOGETHER = 1e-9  # s: instants nearer than this are one
 
 
 class ProcessModel(Protocol):
-    """What a filter needs of a robot: x(t + h) = advance(x) + w, w of covariance noise(h), and y = read(x) + v.
+    """Model that a filter needs: x(t + h) = advance(x) + w, with w of covariance noise(h), and y = read(x) + v.
 
-    A model may keep more than x to itself (positions of finite elements): save() and restore() carry it. A filter restores an
-    instant before it advances from it, and reads at the instant reached. Where `walks` is true the derivative of advance()
-    is the same everywhere.
+    A model may have further state besides x, such as the positions of finite elements; save() and restore() handle it. A
+    filter restores an instant before it advances from it, and reads at the instant reached. If `walks` is true, the
+    derivative of advance() is constant.
     """
 
     names: list[str]
     sensors: list[Measured]
 
     def start(self) -> tuple[np.ndarray, np.ndarray]:
-        """(n,) mean and (n, n) covariance at the beginning."""
+        """Initial mean (n,) and covariance (n, n)."""
 
     def advance(self, x: np.ndarray, time: float, step: float) -> np.ndarray:
-        """(n,) after `step` s from `time`."""
+        """State (n,) `step` s after `time`."""
 
     def transition(self, x: np.ndarray, time: float, step: float) -> np.ndarray:
         """(n, n) derivative of advance() at x."""
 
     def noise(self, step: float) -> np.ndarray:
-        """(n, n) covariance that `step` s add."""
+        """Covariance (n, n) added in `step` s."""
 
     def read(self, x: np.ndarray, sensor: int) -> np.ndarray:
-        """(m,) what a sensor reads without noise."""
+        """Reading (m,) of a sensor without noise."""
 
     def sensitivity(self, x: np.ndarray, sensor: int) -> np.ndarray:
         """(m, n) derivative of read()."""
@@ -112,7 +113,7 @@ class Filter:
     """
 
     def __init__(self, model: ProcessModel, step: float, *, start: Optional[tuple[np.ndarray, np.ndarray]] = None, time: float = 0.0,
-                 memory: float = 0.5, silence: float = 5.0) -> None:
+                 memory: float = 0.5, silence: float = silent_periods) -> None:
         if not (math.isfinite(step) and step > 0.0):
             raise Error("out-of-range", "Filter(step)", f"{step!r} is not a time step", "give a time > 0, in s")
         for sensor in model.sensors:
@@ -168,8 +169,8 @@ class Filter:
         Parameters
         ----------
         sensors : iterable of Sensor
-            Of a simulation or a robot; what they measure (Measured.by()) is among the model's sensors. Readings of commands
-            are none of these: they are inputs of the model.
+            Of a simulation or a robot. The quantities that they measure (Measured.by()) must be among the sensors of the model.
+            Leave out sensors of commands: these are inputs of the model.
 
         Raises
         ------
@@ -216,7 +217,7 @@ class Filter:
         self._forget()
 
     def _return_to(self, time: float) -> list[Reading]:
-        """Takes back instants at or after a time; their readings."""
+        """Removes instants at or after a time and returns their readings."""
         at = max(bisect.bisect_left([i.time for i in self._past], time - _TOGETHER), 1)
         again = [r for instant in self._past[at:] for r in instant.readings]
         del self._past[at:]
@@ -264,7 +265,7 @@ class Filter:
         raise NotImplementedError
 
     def _seen(self, readings: list[Reading]) -> tuple[np.ndarray, np.ndarray, tuple[int, ...], np.ndarray]:
-        """Numbers that are seen, their variances, the sensors, and which of all their numbers are seen."""
+        """Available numbers, their variances, their sensors, and their positions among all numbers of the sensors."""
         sensors = tuple(r.sensor for r in readings)
         numbers = np.concatenate([r.values for r in readings])
         if sensors not in self._variances:
@@ -274,7 +275,7 @@ class Filter:
         return numbers[mask], self._variances[sensors][mask], sensors, mask
 
     def _answers(self, x: np.ndarray, sensors: tuple[int, ...], mask: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """What is seen at x, and its derivative."""
+        """Predicted available readings at x, and their derivative."""
         if hasattr(self.model, "answers"):
             answer, sensitivity = self.model.answers(x, sensors)
         else:
@@ -315,8 +316,8 @@ class ExtendedKalman(Filter):
 class UnscentedKalman(Filter):
     """The unscented Kalman filter (Julier and Uhlmann, Proc. IEEE 92 (2004) 401-422; Simon sec. 14.3).
 
-    2n sigma points x +- sqrt(n) columns of P's Cholesky factor, equal weights: right to third order for Gaussian x, no
-    derivatives.
+    2n sigma points x +- sqrt(n) times the columns of P's Cholesky factor, with equal weights: exact to third order for
+    Gaussian x, without derivatives.
     """
 
     def _points(self, mean: np.ndarray, covariance: np.ndarray) -> np.ndarray:
@@ -350,25 +351,25 @@ class MovingHorizon(ExtendedKalman):
 
         |x_0 - xbar|^2_(P_0^-1) + sum |x_k+1 - f(x_k)|^2_(Q^-1) + sum |y_k - h(x_k)|^2_(R^-1)
 
-    by Gauss-Newton's method, each iteration one Kalman filter and smoother pass over the horizon about the last trajectory
-    (the iterated smoother is Gauss-Newton: Bell, SIAM J. Optim. 4 (1994) 626-636). xbar, P_0 are the filter's at the
-    beginning of the horizon (its arrival cost). Bounds keep the states where they mean something.
+    by the Gauss-Newton method. Each iteration is one pass of a Kalman filter and smoother over the horizon, linearised about
+    the last trajectory (the iterated smoother is Gauss-Newton: Bell, SIAM J. Optim. 4 (1994) 626-636). xbar and P_0 are the
+    filter's estimate at the beginning of the horizon (arrival cost). Bounds keep the states physical.
 
     Parameters
     ----------
     model, step, start, time, memory, silence
-        As of Filter; the memory is at least the horizon.
+        As for Filter; the memory is at least the horizon.
     horizon : int
-        Instants, >= 1.
+        Number of instants, >= 1.
     iterations : int
-        At most; it ends where the trajectory moves by less than 1e-3 standard deviations.
+        Maximum number; ends earlier if the trajectory moves by less than 1e-3 standard deviations.
     lower, upper : (n,) array_like, optional
         Bounds on the states, enforced by projection at every iteration.
     """
 
     def __init__(self, model: ProcessModel, step: float, *, horizon: int = 10, iterations: int = 5, lower: Optional[Sequence[float]] = None,
                  upper: Optional[Sequence[float]] = None, start: Optional[tuple[np.ndarray, np.ndarray]] = None, time: float = 0.0,
-                 memory: float = 0.5, silence: float = 5.0) -> None:
+                 memory: float = 0.5, silence: float = silent_periods) -> None:
         if horizon < 1:
             raise Error("out-of-range", "MovingHorizon(horizon)", f"{horizon} instants", "give 1 or more")
         super().__init__(model, step, start=start, time=time, memory=max(memory, (horizon + 1) * step), silence=silence)
@@ -397,7 +398,7 @@ class MovingHorizon(ExtendedKalman):
         self.model.restore(now.kept)
 
     def _pass(self, window, about):
-        """Kalman filter over the window linearised about a trajectory, then Rauch-Tung-Striebel backwards."""
+        """Kalman filter over the window, linearised about a trajectory, then Rauch-Tung-Striebel smoothing backwards."""
         means, covariances = [window[0].mean], [window[0].covariance]
         ahead, transitions = [], []
         for before, now, x, y in zip(window, window[1:], about, about[1:]):

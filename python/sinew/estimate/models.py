@@ -19,18 +19,19 @@ _DIFFERENCE = 1e-6
 
 
 class TwinModel:
-    """Any robot in static equilibrium at all times: the state consists of its unknowns, which follow a random walk.
+    """Any robot in static equilibrium at all times. The state consists of its unknowns, which follow a random walk.
 
-    x = (u, e): u(t + h) = u(t) + w, w of covariance walk^2 h, and e the errors of measured commands, white from one
-    instant to the next with the standard deviations of their sensors. y = h(u, command + e), the static equilibrium.
+    x = (u, e): u(t + h) = u(t) + w with w of covariance walk^2 h. e are the errors of measured commands, white in time, with
+    the standard deviations of their sensors. y = h(u, command + e), the static equilibrium.
 
     Parameters
     ----------
     twin : Twin
-        What is measured and unknown. No parameter of the scene and no contact with friction, whose history a filter
-        would have to carry.
+        Measurement model. Parameters of the scene and contacts with friction are not allowed, because a filter would have to
+        carry their history.
     commands : callable, optional
-        time (s) to dict of actuator to commanded value (SI), which may be a reading; by default commands stay as they are.
+        Function of time (s) that returns a dict from actuators to commanded values (SI), which may be readings. By default
+        the commands stay as they are.
 
     Raises
     ------
@@ -43,7 +44,7 @@ class TwinModel:
 
     def __init__(self, twin: Twin, commands: Optional[Callable[[float], Mapping[str, float]]] = None) -> None:
         if any(isinstance(u, Parameter) for u in twin.unknowns):
-            raise Error("bad-argument", "TwinModel", "a number of the scene is unknown, and a filter does not build scenes anew",
+            raise Error("bad-argument", "TwinModel", "a parameter of the scene is unknown, and a filter cannot rebuild the scene",
                         "estimate it from equilibria: solve()")
         self.twin, self.commands = twin, commands
         self.names = twin.inputs
@@ -61,7 +62,7 @@ class TwinModel:
         return mean, np.diag(self._std**2)
 
     def values(self, x: np.ndarray) -> np.ndarray:
-        """(inputs,) of the twin at a state."""
+        """(inputs,) of the twin for a state."""
         return np.concatenate([x[:self.twin.asked], self._commanded + x[self.twin.asked:]])
 
     def advance(self, x, time, step):
@@ -99,7 +100,7 @@ class TwinModel:
         return answer, slope
 
     def answers(self, x, sensors):
-        """(m,) readings of several sensors and their derivative (m, n)."""
+        """(m,) predicted readings of several sensors and their derivative (m, n)."""
         if sensors not in self._which:
             self._which[sensors] = np.array([row for sensor in sensors for row in self.rows[sensor]])
         which = self._which[sensors]
@@ -107,7 +108,7 @@ class TwinModel:
         return answer[which], slope[which]
 
     def state_of(self, estimate: Estimate) -> tuple[np.ndarray, np.ndarray]:
-        """Mean and covariance that a filter starts with, from an estimate of this twin at rest."""
+        """Initial mean and covariance of a filter, from an estimate of this twin at rest."""
         mean = estimate.unknowns.copy()
         mean[self.twin.asked:] -= self._commanded
         return mean, estimate.covariance.copy()
@@ -128,12 +129,12 @@ class TwinModel:
 
 
 class SteppedModel(TwinModel):
-    """The same through the simulation's own steps, one a period: for quasi-static scenes in real time.
+    """The same state as TwinModel, advanced by the simulation's own steps: for quasi-static scenes in real time.
 
-    One step of the scene per advance(), with the unknowns as they were estimated last; readings answer by the step's own
-    linearisation, y = y_step + S (x - x_step), so that an estimate costs one step and no more. Needs readings that are
-    rows, and unknowns that are forces, efforts and motions; begin from an estimate at rest (state_of()), since a step
-    follows the last one.
+    Each advance() makes one step of the scene, with the unknowns as last estimated. Readings are predicted by the
+    linearisation of that step, y = y_step + S (x - x_step), so an estimate costs one step. The readings must be rows, the
+    unknowns forces, efforts or motions. Start from an estimate at rest (state_of()), because each step continues from the
+    previous one.
     """
 
     reading_moves = False
@@ -171,17 +172,17 @@ class SteppedModel(TwinModel):
 
 
 class ArmModel:
-    """An arm of constant curvatures in full: coordinates, their rates, and constant unknowns that change the arm.
+    """Full dynamics of a constant-curvature arm: coordinates, their rates, and unknown parameters of the arm.
 
-    x = (theta, theta_dot, p); theta by the arm's own implicit steps, p a random walk. Derivatives are central differences
-    of these steps.
+    x = (theta, theta_dot, p). theta is advanced by the arm's implicit steps, p is a random walk. Derivatives are central
+    differences of these steps.
 
     Parameters
     ----------
     arm : sinew.pcc.Arm or callable
-        Or p to an Arm: a payload, a stiffness.
+        The arm, or a function that maps p (a payload, a stiffness) to an Arm.
     torque : callable
-        time (s) to (inputs,) N m.
+        Function of time (s) that returns (inputs,) N m.
     points : dict of str to (int, float)
         Markers: segment and fraction of its length, by the sensors' names without ".position".
     measured : list of Measured
@@ -189,12 +190,13 @@ class ArmModel:
     prior : (array_like, array_like), optional
         (n,) mean and standard deviation of (theta, theta_dot, p); by default the equilibrium, 0.3 rad and 1 rad/s.
     unknowns : dict of str to (float, float, float)
-        Names of p to mean, standard deviation and walk per sqrt(s).
+        Names of p with mean, standard deviation, and walk per sqrt(s).
     force_noise : float or (coordinates,) array_like
-        rad/s^2 sqrt(s): white noise of the accelerations, for what the arm's equations leave out.
+        White noise of the accelerations, rad/s^2 sqrt(s), for effects that the arm's equations neglect.
     push : (int, float, float, float), optional
-        An unknown dead force on a point: its segment, the fraction of its length, standard deviation of each component
-        (N) and walk (N/sqrt(s)). Its names are "push.x", "push.y", "push.z". The arm's inputs are its coordinates.
+        An unknown dead force on a point: its segment, the fraction of its length, the standard deviation of each component
+        (N), and the walk (N/sqrt(s)). Its components are "push.x", "push.y", "push.z". The inputs of the arm are its
+        coordinates.
     """
 
     def __init__(self, arm: Any, torque: Callable[[float], Sequence[float]], points: Mapping[str, tuple[int, float]],
@@ -221,7 +223,7 @@ class ArmModel:
         self._prior = prior
 
     def arm(self, p: np.ndarray) -> _core.Arm:
-        """The arm of some values of the unknowns."""
+        """The arm for given values of the unknowns."""
         p = np.asarray(p, float)[:self._constants]
         key = p.tobytes()
         if key not in self._arms:

@@ -32,17 +32,17 @@ class Patch:
     ----------
     body : str
     centre, normal : (3,) ndarray
-        m at rest, by area; the mean outward unit normal at rest.
+        Centre of area (m) and mean outward unit normal, at rest.
     triangles : (k, 3) ndarray of int
         Nodes.
     shares : (k,) ndarray
-        Of the triangles in the area, sum 1.
+        Fraction of the area of each triangle, sum 1.
     nodes, weights : (n,) ndarray
-        A third of the area of the triangles around each node, as shares of the whole.
+        Nodes, and a third of the area of the triangles around each, as a fraction of the total.
     area : float
         m^2 at rest.
     neighbours : tuple of int
-        Numbers of the patches that share a node with it.
+        Indices of the patches that share a node with it.
     """
 
     body: str
@@ -57,7 +57,7 @@ class Patch:
 
 
 def surface(sim: _core.Simulation, body: str) -> np.ndarray:
-    """(k, 3) nodes of the triangles of a body's surface, outwards; those with a fixed node are left out.
+    """(k, 3) nodes of the triangles of a body's surface, oriented outwards, without triangles that have a fixed node.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def surface(sim: _core.Simulation, body: str) -> np.ndarray:
 def patches(sim: _core.Simulation, body: str, count: int = 48) -> list[Patch]:
     """Divides the free surface of a body into patches of about equal area, by Lloyd's iteration on the triangle centres.
 
-    The iteration starts from triangles that are far from each other: the patches of a body are always the same.
+    The iteration starts from triangles that are far from each other, so the patches of a body are always the same.
 
     Parameters
     ----------
@@ -157,17 +157,17 @@ class Search:
     patch : int
         Index of the most probable patch.
     probability : (patches,) ndarray
-        Posterior, where each area has its share of the prior; sums to 1.
+        Posterior, with prior probabilities proportional to area; sums to 1.
     log_evidence : (patches,) ndarray
         log p(readings | a force somewhere on the patch).
     solved : list of int
-        Patches with a nonlinear equilibrium of their own, most probable first; those of others are linear.
+        Patches with a nonlinear equilibrium of their own, most probable first; the others are linearised.
     place : (3,) ndarray
-        m at rest: the most probable point.
+        Most probable point, m at rest.
     force : (3,) ndarray
-        N, world, there.
+        Force at this point, N, in world axes.
     estimate : Estimate
-        There; its unknowns "touch.0", the inward normal force, "touch.1" and "touch.2".
+        Estimate at this point, with the unknowns "touch.0" (inward normal force), "touch.1" and "touch.2" (tangential).
     """
 
     status: str
@@ -180,7 +180,7 @@ class Search:
     estimate: Estimate
 
     def likely(self, share: float = 0.9) -> list[int]:
-        """The fewest patches that hold the force with this probability, most probable first."""
+        """The smallest set of patches that contains the force with this probability, most probable first."""
         order = np.argsort(-self.probability, kind="stable")
         return order[:int(np.searchsorted(np.cumsum(self.probability[order]), share)) + 1].tolist()
 
@@ -199,7 +199,7 @@ class _State:
 
 
 class _Locator:
-    """Points of all patches, each with a prior of the force that may act there."""
+    """Candidate points on all patches, each with a prior of the force that may act there."""
 
     def __init__(self, twin: Twin, readings: Mapping[str, Any], areas: Sequence[Patch], prior: float, friction: float) -> None:
         self.twin, self.readings, self.areas = twin, readings, list(areas)
@@ -214,7 +214,7 @@ class _Locator:
         self.frames = np.array([_frame(a.normal) for a in areas])
 
     def force(self, point: int, normal: float) -> NodalForce:
-        """At a point, with friction in proportion to the normal force that is expected."""
+        """Unknown force at a point; its tangential standard deviation is proportional to the expected normal force."""
         tangent = self.friction * max(abs(normal), 1e-3 * self.prior)
         return NodalForce("touch", self.body, self.nodes[point], self.weights[point], prior=(self.prior, tangent, tangent),
                           directions=self.frames[self.patch[point]])
@@ -223,7 +223,7 @@ class _Locator:
         return self.twin.with_unknowns([*self.twin.unknowns, *([] if point is None else [self.force(point, normal)])])
 
     def solve(self, point: Optional[int], force: np.ndarray, start: Optional[np.ndarray]) -> _State:
-        """The nonlinear estimate with a force at a point, and all points about it."""
+        """Nonlinear estimate with a force at a point, and all candidates linearised about it."""
         model, at = self.model(point, force[0]), self.twin.asked
         if start is not None:
             start = np.concatenate([start[:at], force, start[at:]])
@@ -233,7 +233,7 @@ class _Locator:
         return _State(estimate, evidence, forces)
 
     def known(self, state: _State, point: Optional[int]) -> np.ndarray:
-        """Unknowns apart from the force."""
+        """Unknowns other than the force."""
         at = self.twin.asked
         values = state.estimate.unknowns
         return values if point is None else np.concatenate([values[:at], values[at + 3:]])
@@ -298,12 +298,12 @@ def locate(twin: Twin, readings: Mapping[str, Any], areas: Sequence[Patch], *, p
            candidates: int = 6, probability: float = 0.5, significance: float = 1e-3) -> Search:
     """Locates and estimates an unknown pushing force on a body, with probabilities.
 
-    The columns of all points of the surface come from one factorisation (Linearisation.fields): the motion of every node
-    under the efforts of the measured rows is, by reciprocity, the answer of these rows to a force on any node. The evidence of
-    a point is that of the linear model with a Gaussian force, N(y; h, R + S P S^T) (MacKay, Information Theory, CUP 2003, ch.
-    28), that of a patch its mean over the area. The best point is solved with the nonlinear equilibrium and all others are
-    ranked anew about it, until it stays; then the best point of each likely patch is solved and its patch ranked about
-    it. A push has an inward normal force: points that would have to pull lose.
+    One factorisation gives the columns of all points of the surface (Linearisation.fields): by reciprocity, the motion of all
+    nodes for unit efforts of the measured rows is the response of these rows to a force on any node. The evidence of a point
+    is that of the linear model with a Gaussian force, N(y; h, R + S P S^T) (MacKay, Information Theory, CUP 2003, ch. 28); that
+    of a patch is its mean over the area. The best point is solved with the nonlinear equilibrium and all others are ranked
+    again about this solution, until the best one no longer changes. Then the best point of each likely patch is solved, and its
+    patch is ranked about it. A push has an inward normal force, so points at which the force would have to pull are unlikely.
 
     Parameters
     ----------
@@ -315,7 +315,7 @@ def locate(twin: Twin, readings: Mapping[str, Any], areas: Sequence[Patch], *, p
     prior : float
         Standard deviation of the normal force, N.
     friction : float
-        Standard deviation of each tangential force over the normal force.
+        Standard deviation of each tangential force divided by the normal force.
     candidates : int
         Number of patches to solve nonlinearly.
     probability : float
@@ -330,12 +330,12 @@ def locate(twin: Twin, readings: Mapping[str, Any], areas: Sequence[Patch], *, p
     Raises
     ------
     Error
-        As solve(); wrong-type for bodies without finite elements, bad-argument for readings that are no rows.
+        As solve(); wrong-type for bodies without finite elements, bad-argument for readings that are not rows.
     RunError
         not-converged if there is no equilibrium at any location.
     """
     if not twin.is_linear_in_rows:
-        raise Error("bad-argument", "locate()", "readings of this model are no rows, or follow drives and friction of cables",
+        raise Error("bad-argument", "locate()", "readings of this model are not rows, or follow drives and friction of cables",
                     "measure markers, lengths and tensions, or give the place: Force")
     locator = _Locator(twin, readings, areas, prior, friction)
     base = locator.solve(None, np.zeros(3), None)
@@ -360,7 +360,7 @@ def _try(locator: _Locator, point: int, state: _State, before: Optional[int]) ->
 
 
 def _climb(locator: _Locator, base: _State) -> tuple[int, _State]:
-    """From point to point until the best about its own equilibrium is itself, or all were seen before."""
+    """Moves from point to point until the best one about its own equilibrium is the point itself, or all were visited."""
     state, at, seen = base, None, {}
     for _ in range(8):
         order = np.argsort(-state.evidence, kind="stable")

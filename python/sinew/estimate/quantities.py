@@ -76,7 +76,7 @@ class Measured:
         """
         place = f"Measured.by({sensor.name})"
         if not sensor.std > 0.0:
-            raise Error("out-of-range", place, "the sensor has no noise, and no estimate weighs an exact reading",
+            raise Error("out-of-range", place, "the sensor has no noise, and an exact reading cannot be weighted",
                         "give the sensor a noise or a quantum")
         name = {"marker": f"{sensor.name}.position", "orientation": f"{sensor.name}.rotation"}.get(sensor.kind, sensor.observable)
         if name == f"{sensor.name}.true":
@@ -141,11 +141,11 @@ class Force:
 
     @property
     def actuators(self) -> list[str]:
-        """Of the model: one force actuator for each component."""
+        """Actuators of the model: one force actuator per component."""
         return [component.replace(".", "_") for component in self.components]
 
     def overrides(self) -> dict[str, dict]:
-        """What a scene needs for it: names of actuators to their description."""
+        """Additions to the scene: names of actuators with their descriptions."""
         return {f"actuators.{actuator}": {"type": "force", "body": self.body, "point": [float(x) for x in self.point],
                                           "direction": axis.tolist(), "outside": "nearest", "command": {"force": 0.0}}
                 for actuator, axis in zip(self.actuators, self.axes)}
@@ -253,7 +253,7 @@ class Parameter:
     walk: float = 0.0
 
     def overrides(self, logarithm: float) -> dict[str, float]:
-        """Values of the scene at one value of the unknown."""
+        """Values of the scene for one value of the unknown."""
         factor = math.exp(logarithm)
         return {path: start * factor for path, start in {self.path: self.start, **self.also}.items()}
 
@@ -262,7 +262,7 @@ Unknown = Union[Force, NodalForce, Effort, Motion, Parameter]
 
 
 def names_of(unknown: Unknown) -> list[str]:
-    """Of the unknown's components."""
+    """Names of the components of an unknown."""
     if isinstance(unknown, (Force, NodalForce)):
         return unknown.components
     if isinstance(unknown, Parameter):
@@ -279,7 +279,7 @@ def _spread(value, count: int, place: str) -> np.ndarray:
 
 
 def prior_of(unknown: Unknown) -> tuple[np.ndarray, np.ndarray]:
-    """Mean and standard deviation of the unknown's components."""
+    """Mean and standard deviation of the components of an unknown."""
     names = names_of(unknown)
     mean = 0.0 if isinstance(unknown, Parameter) else unknown.mean
     std = _spread(unknown.prior, len(names), f"{names[0]}: prior")

@@ -26,17 +26,17 @@ _QUANTITIES = ("displacement", "tension", "force", "pressure", "volume_growth", 
 
 
 def measured_of(record: Record, stds: Mapping[str, float], actuators: Sequence[str]) -> tuple[list[Measured], dict[str, str]]:
-    """Sensors of a record's columns, and what its actuators are commanded in.
+    """Sensors for the columns of a record, and the commanded quantities of its actuators.
 
-    A column of a motion of an actuator is its command, and one of an effort where there is none of a motion; with a
-    standard deviation it is a measured command, without one it is exact. Every other column needs a standard deviation to be
-    used.
+    A motion column of an actuator is its command; so is an effort column if there is no motion column. With a standard
+    deviation it is a measured command, without one it is exact. All other columns are used only if they have a standard
+    deviation.
 
     Parameters
     ----------
     record : Record
     stds : dict of str to float
-        SI, by names of columns or patterns ("tip.*", "*.tension"); the last that matches counts.
+        SI, by names of columns or patterns ("tip.*", "*.tension"); the last match counts.
     actuators : list of str
         Of the scene.
 
@@ -65,7 +65,7 @@ def measured_of(record: Record, stds: Mapping[str, float], actuators: Sequence[s
 
 
 def _commands(record: Record, commanded: Mapping[str, str]) -> Callable[[float], dict[str, float]]:
-    """Commands at a time: the last reading, NaN passed over."""
+    """Commands at a time: the last reading that is not NaN."""
     columns = {owner: record.columns[f"{owner}.{quantity}"] for owner, quantity in commanded.items()}
     filled = {}
     for owner, values in columns.items():
@@ -81,13 +81,13 @@ def _commands(record: Record, commanded: Mapping[str, str]) -> Callable[[float],
 
 def settled(twin: Twin, record: Record, commanded: Mapping[str, str],
             progress: Optional[Callable[[int, int], object]] = None) -> tuple[dict[str, np.ndarray], list[Optional[Estimate]]]:
-    """An estimate of every row by itself: the robot is at rest in each.
+    """Estimates every row separately, assuming that the robot is at rest in each.
 
     Returns
     -------
     tuple of dict of str to (n,) ndarray, list of Estimate
         "time [s]", each unknown and its ".std", "chi_squared", "probability", "status" ("converged", "iteration-limit",
-        "no-readings", "not-converged"); NaN where there is none.
+        "no-readings", "not-converged"); NaN without an estimate.
     """
     commands, names = _commands(record, commanded), twin.inputs[:twin.asked]
     rows: list[Optional[Estimate]] = []
@@ -127,7 +127,7 @@ def settled(twin: Twin, record: Record, commanded: Mapping[str, str],
 
 def filtered(twin: Twin, record: Record, commanded: Mapping[str, str], *, kind: str = "extended", step: Optional[float] = None,
              progress: Optional[Callable[[int, int], object]] = None, **options: Any) -> dict[str, np.ndarray]:
-    """Estimates at every row of a record by a filter of equilibria.
+    """Estimates at every row of a record by a filter over equilibria.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def filtered(twin: Twin, record: Record, commanded: Mapping[str, str], *, kind: 
     commanded : dict of str to str
     kind : {"extended", "unscented", "horizon"}
     step : float, optional
-        s; the median of the record's by default.
+        s; by default the median step of the record.
     progress : callable, optional
     options
         Of the filter.
@@ -173,12 +173,12 @@ def filtered(twin: Twin, record: Record, commanded: Mapping[str, str], *, kind: 
 def twin_of(scene: Any, record: Record, stds: Mapping[str, float], unknowns: Sequence[Any], *,
             markers: Optional[Mapping[str, tuple[str, Sequence[float]]]] = None, set: Any = None,
             folder: str = "") -> tuple[Twin, dict[str, str]]:
-    """The model of a scene for a record, and what its actuators are commanded in."""
+    """The model of a scene for a record, and the commanded quantities of its actuators."""
     sim = scene if isinstance(scene, _core.Simulation) else load(scene, set=set, folder=folder)
     sensors, commanded = measured_of(record, stds, list(sim.actuators))
     return Twin(sim, sensors, unknowns, markers=markers, commanded=commanded), commanded
 
 
 def has_parameters(twin: Twin) -> bool:
-    """Whether numbers of the scene are unknown."""
+    """Whether parameters of the scene are unknown."""
     return any(isinstance(u, Parameter) for u in twin.unknowns)

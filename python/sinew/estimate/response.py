@@ -1,4 +1,4 @@
-"""How motions and efforts of rows answer to forces and commands, everything else obeying its law."""
+"""Response of the motions and efforts of rows to forces and commands, with all other laws active."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _SLIDES = 1e-6  # of friction's limit: nearer to it a point slides
 
 
 def has_rows_alone(sim: _core.Simulation) -> bool:
-    """Whether rows obey laws that Response knows: no springs, drives, friction of cables, joints that are driven."""
+    """Whether all rows obey laws that Response knows: no springs, drives, cable friction or driven joints."""
     actuators = sim.actuators
     if any(a.type not in _ROW_TYPES or a.command[0] in ("gas", "liquid", "power", "phase") for a in actuators.values()):
         return False
@@ -31,23 +31,22 @@ def has_rows_alone(sim: _core.Simulation) -> bool:
 
 
 class Response:
-    """Derivatives of a static equilibrium by efforts and held motions, from one linearisation.
+    """Derivatives of a static equilibrium with respect to efforts and held motions, from one linearisation.
 
-    With delta = delta_free + W lambda, rows that hold their motions p (commanded lengths, closed contacts) take
-    the efforts
+    With delta = delta_free + W lambda, rows that hold their motions p (commanded lengths, closed contacts) have the efforts
         dlambda_h = M^-1 (dp - W_hE dlambda_E),    M = W_hh B,
-    where E are rows of given effort and B is the identity, but for a sliding contact, whose friction grows with its
-    normal force, lambda_t = (lambda_t/lambda_n) lambda_n. A slack cable and an open point have no effort. The direction of
-    sliding is held.
+    where E are the rows of given effort. B is the identity except for a sliding contact, whose friction grows with its
+    normal force, lambda_t = (lambda_t/lambda_n) lambda_n, in a fixed direction. A slack cable and an open point have no
+    effort.
 
     Parameters
     ----------
     sim : sinew.Simulation
         In equilibrium.
     linear : sinew.Linearisation
-        Of it.
+        Linearisation of `sim`.
     actuators : list of Drive, optional
-        Of the simulation, where they are known already.
+        Actuators of the simulation, if they are known already.
     """
 
     def __init__(self, sim: _core.Simulation, linear: _core.Linearisation, actuators: Optional[list["DrivenActuator"]] = None) -> None:
@@ -97,7 +96,7 @@ class Response:
                     self._hold(row + k, {row + k: 1.0})
 
     def to_columns(self, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Of all rows' motions and efforts for loads which alone would move the rows by `columns`.
+        """Motions and efforts of all rows for loads that by themselves would move the rows by `columns`.
 
         Parameters
         ----------
@@ -107,19 +106,19 @@ class Response:
         Returns
         -------
         tuple of (rows, k) ndarray
-            Motions, and efforts apart from the loads themselves.
+            Motions, and efforts without the loads themselves.
         """
         held = columns[self.held]
         return columns - self._motions @ held, -self._efforts @ held
 
     def to_efforts(self, rows: list[int]) -> tuple[np.ndarray, np.ndarray]:
-        """(rows, k) motions and efforts of all rows for unit efforts of k rows that are given."""
+        """(rows, k) motions and efforts of all rows for unit efforts of k rows with given efforts."""
         motions, efforts = self.to_columns(self._compliance[:, rows])
         efforts[rows, np.arange(len(rows))] += 1.0
         return motions, efforts
 
     def to_motions(self, rows: list[int]) -> tuple[np.ndarray, np.ndarray]:
-        """The same for unit motions of rows whose motions are commanded; zero for those that are slack or stalled."""
+        """The same for unit motions of rows with commanded motions; zero for slack or stalled ones."""
         count = len(self.linear.effort)
         motions, efforts = np.zeros((count, len(rows))), np.zeros((count, len(rows)))
         for k, row in enumerate(rows):
@@ -130,7 +129,7 @@ class Response:
 
 
 class DrivenActuator(NamedTuple):
-    """An actuator as Response sees it."""
+    """Data of an actuator that Response needs."""
 
     name: str
     is_cable: bool
@@ -139,7 +138,7 @@ class DrivenActuator(NamedTuple):
 
 
 def drives(sim: _core.Simulation) -> list[DrivenActuator]:
-    """Of all actuators, as commanded now."""
+    """All actuators with their present commands."""
     found = []
     for name, actuator in sim.actuators.items():
         most = next((limit.max for quantity, limit in actuator.limits.items() if quantity not in _MOTIONS), math.inf)
@@ -148,7 +147,7 @@ def drives(sim: _core.Simulation) -> list[DrivenActuator]:
 
 
 def _inverse(matrix: np.ndarray) -> np.ndarray:
-    """Where rows repeat each other, as cables on one path do, that which gives efforts of least norm."""
+    """Inverse; if rows repeat each other, as for cables on one path, the one that gives minimum-norm efforts."""
     if len(matrix) == 0:
         return matrix
     size = 1.0 / np.sqrt(np.maximum(np.abs(matrix.diagonal()), 1e-300))
@@ -163,7 +162,7 @@ def _inverse(matrix: np.ndarray) -> np.ndarray:
 
 
 class StandingRows:
-    """The same derivatives for a robot without contacts, whose rows and laws stay: what a filter asks in every step.
+    """The same derivatives for a robot without contacts, whose rows and laws do not change: used by a filter in every step.
 
     Parameters
     ----------
@@ -171,9 +170,9 @@ class StandingRows:
         Of the simulation.
     actuators : list of DrivenActuator
     by_effort, by_motion : list of (int, str)
-        Numbers of the inputs with the rows whose effort or motion they are.
+        Indices of the inputs with the rows whose effort or motion they are.
     motions, efforts : list of (int, str)
-        Numbers of the outputs with the rows whose motion or effort they are.
+        Indices of the outputs with the rows whose motion or effort they are.
     """
 
     def __init__(self, rows: list[str], actuators: list[DrivenActuator], by_effort, by_motion, motions, efforts) -> None:

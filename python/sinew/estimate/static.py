@@ -103,13 +103,14 @@ class Estimate:
     positions: dict[str, np.ndarray]
 
     def holds(self, truth: Sequence[float], share: float = 0.9) -> bool:
-        """Whether a true value is inside of the confidence ellipsoid.
+        """Whether a true value lies inside the confidence ellipsoid.
 
         Parameters
         ----------
         truth : (k,) array_like
             True values of the first k `names`.
         share : float
+            Probability of the ellipsoid, such as 0.9.
         """
         error = np.asarray(truth, float) - self.unknowns[:len(truth)]
         own = self.covariance[:len(truth), :len(truth)]
@@ -123,13 +124,13 @@ class Estimate:
 
 
 def observability(sensitivity: np.ndarray, noise: np.ndarray, prior: np.ndarray, names: Sequence[str], asked: int) -> Observability:
-    """Of the first `asked` unknowns; the others add to the noise.
+    """Observability of the first `asked` unknowns; the others count as noise.
 
     Parameters
     ----------
     sensitivity : (m, k) ndarray
     noise : (m,) ndarray
-        Standard deviations, or (m, m) a covariance.
+        Standard deviations, or a covariance (m, m).
     prior : (k,) ndarray
         Standard deviations.
     names : (k,) list of str
@@ -164,11 +165,11 @@ class _Problem:
         self.cost = math.inf
 
     def residual(self, v: np.ndarray) -> np.ndarray:
-        """(seen,) whitened; moves the model."""
+        """(seen,) whitened residual; moves the model."""
         return np.linalg.solve(self.lower, self.numbers - self.twin.predict(self.mean + self.std * v)[self.seen])
 
     def jacobian(self, v: np.ndarray) -> np.ndarray:
-        """(seen, k) of L^-1 h by v, where the model is."""
+        """(seen, k) derivative of L^-1 h with respect to v at the present state of the model."""
         return np.linalg.solve(self.lower, self.twin.sensitivity(self.mean + self.std * v)[self.seen] * self.std)
 
 
@@ -177,7 +178,7 @@ def _cost(residual: np.ndarray, v: np.ndarray) -> float:
 
 
 def _descend(problem: _Problem, v: np.ndarray, max_iterations: int, tolerance: float):
-    """Gauss-Newton; steps are halved until the cost falls and the equilibrium is found."""
+    """Gauss-Newton; steps are halved until the cost decreases and the equilibrium exists."""
     residual = problem.residual(v)
     cost, status = _cost(residual, v), "iteration-limit"
     for iteration in range(1, max_iterations + 1):  # noqa: B007
@@ -212,14 +213,14 @@ def solve(twin: Twin, readings: Mapping[str, Any], *, start: Optional[Sequence[f
           max_iterations: int = 30, tolerance: float = 1e-3, extra: Optional[np.ndarray] = None) -> Estimate:
     """Maximum a posteriori estimate of the unknowns from readings of a robot at rest.
 
-    Minimises |R^(-1/2) (y - h(u))|^2 + |P_0^(-1/2) (u - u_0)|^2, h the nonlinear equilibrium, by Gauss-Newton's method on the
-    compliance that control uses (Tarantola, Inverse Problem Theory, SIAM 2005, sec. 3.4). The covariance follows from the
-    linearisation at the estimate.
+    Minimises |R^(-1/2) (y - h(u))|^2 + |P_0^(-1/2) (u - u_0)|^2 by the Gauss-Newton method, where h is the nonlinear static
+    equilibrium. Derivatives use the same compliance as control (Tarantola, Inverse Problem Theory, SIAM 2005, sec. 3.4). The
+    covariance follows from the linearisation at the estimate.
 
     Parameters
     ----------
     twin : Twin
-        Afterwards at the estimate: `twin.sim` has the estimated shape.
+        Left at the estimate: `twin.sim` has the estimated shape.
     readings : dict of str to float or array_like
         Readings by name of the sensor. A sensor that is missing or NaN is ignored.
     start : (inputs,) array_like, optional
@@ -251,7 +252,7 @@ def solve(twin: Twin, readings: Mapping[str, Any], *, start: Optional[Sequence[f
     covariance = np.linalg.inv(information) * np.outer(problem.std, problem.std)
     seen = observability(problem.lower @ jacobian / problem.std, problem.noise, problem.std, twin.inputs, twin.asked)
     if unobservable == "refuse" and seen.unobservable:
-        raise Error("unobservable", "solve(readings)", f"the readings do not tell {'; '.join(seen.unobservable)}",
+        raise Error("unobservable", "solve(readings)", f"the readings do not determine {'; '.join(seen.unobservable)}",
                     "add a sensor, ask for less, or take unobservable='report' and the prior's word for it")
     cost = _cost(residual, v)
     evidence = (-cost - 0.5 * np.linalg.slogdet(information)[1] - np.log(np.diag(problem.lower)).sum()
@@ -285,7 +286,7 @@ def shape_std(twin: Twin, estimate: Estimate, body: str) -> np.ndarray:
     twin : Twin
         At the estimate, without parameters among its unknowns.
     estimate : Estimate
-        Of it.
+        Result of solve() for this twin.
     body : str
     """
     response = Response(twin.sim, twin.sim.linearise(fields=True))
@@ -293,7 +294,7 @@ def shape_std(twin: Twin, estimate: Estimate, body: str) -> np.ndarray:
     by_unknown = []
     for one in twin._inputs:
         if isinstance(one.unknown, Parameter):
-            raise Error("bad-argument", "shape_std()", f"'{one.name}' is a number of the scene", "fix it first")
+            raise Error("bad-argument", "shape_std()", f"'{one.name}' is a parameter of the scene", "fix it first")
         by_unknown.append(_field_of(twin, response, field, one))
     motions = np.array(by_unknown)  # (inputs, n, 3)
     lower = np.linalg.cholesky(estimate.covariance)
@@ -304,5 +305,5 @@ def _field_of(twin: Twin, response: Response, field: np.ndarray, one) -> np.ndar
     _, efforts = twin.column(response, one.unknown, one.component)
     moved = np.einsum("r,rij->ij", efforts, field)
     if hasattr(one.unknown, "nodes"):
-        raise Error("bad-argument", "shape_std()", "forces on nodes have no rows", "take a Force at a point")
+        raise Error("bad-argument", "shape_std()", "forces on nodes have no rows", "use a Force at a point")
     return moved

@@ -26,7 +26,7 @@ _STEP = 1e-3  # of a prior's standard deviation: half the difference that gives 
 
 @dataclass(frozen=True)
 class _Output:
-    """One number that is measured and that the model answers."""
+    """One measured number that the model predicts."""
 
     name: str
     of: Measured
@@ -37,7 +37,7 @@ class _Output:
 
 @dataclass(frozen=True)
 class _Input:
-    """One number that is not known: component `component` of `unknown`."""
+    """One unknown number: component `component` of `unknown`."""
 
     name: str
     unknown: Unknown
@@ -174,7 +174,7 @@ class Twin:
         if actuator.command[0] == quantity:
             known = Motion(name, sensor.std) if quantity in _MOTIONS else Effort(name, sensor.std)
             if names_of(known)[0] in [i.name for i in self._inputs]:
-                raise Error("bad-argument", f"Measured({sensor.name!r})", "it is a command and an unknown too",
+                raise Error("bad-argument", f"Measured({sensor.name!r})", "it is both a command and an unknown",
                             "leave one of them out: a measured command is an unknown by itself")
             self._inputs.append(_Input(names_of(known)[0], known, 0, sensor))
             return
@@ -333,7 +333,7 @@ class Twin:
             np.add.at(nodal[unknown.body], np.asarray(unknown.nodes), np.outer(unknown.weights, direction))
 
     def handles(self) -> list[tuple[_core.Actuator, str]]:
-        """Of each input the actuator and what of it is set. Raises Error (bad-argument) for inputs that are none's."""
+        """Actuator of each input, and the quantity that is set. Raises Error (bad-argument) for inputs without an actuator."""
         found = []
         for one in self._inputs:
             if isinstance(one.unknown, (NodalForce, Parameter)):
@@ -359,7 +359,7 @@ class Twin:
             self._start = fresh.state()
 
     def settle(self) -> None:
-        """Brings the model to its static equilibrium; with contacts and friction always from the same start.
+        """Brings the model to its static equilibrium; with contacts and friction always from the same initial state.
 
         Raises
         ------
@@ -375,7 +375,7 @@ class Twin:
                            "take a nearer start, or a tighter prior")
 
     def read(self) -> np.ndarray:
-        """(outputs,) what the sensors would read now, without noise."""
+        """(outputs,) present readings of the sensors, without noise."""
         observed = [o.of.name for o in self._outputs if o.kind == "observable"]
         values = self._observed(list(dict.fromkeys(observed))) if observed else {}
         owners: dict[str, Any] = {}
@@ -395,13 +395,13 @@ class Twin:
     def sensitivity(self, values: Optional[Sequence[float]] = None) -> np.ndarray:
         """(outputs, inputs) derivative of predict() at the present equilibrium.
 
-        By one linearisation where all readings are rows; else, and for parameters, by central differences, which leave the
-        model where it was.
+        From one linearisation if all readings are rows. Otherwise, and for parameters, by central differences, which leave the
+        model in its present state.
 
         Parameters
         ----------
         values : (inputs,) array_like, optional
-            Where the model is: needed for differences.
+            Present values of the inputs: needed for differences.
         """
         result = np.empty((len(self._outputs), len(self._inputs)))
         by_differences = [k for k, i in enumerate(self._inputs) if not self._from_rows or isinstance(i.unknown, Parameter)]
@@ -410,18 +410,18 @@ class Twin:
             self._fill(response, result)
         if by_differences:
             if values is None:
-                raise Error("bad-argument", "sensitivity(values)", "this model is differentiated by differences", "give the values")
+                raise Error("bad-argument", "sensitivity(values)", "this model needs differences about a point", "give the values")
             self._differentiate(np.asarray(values, float), by_differences, result)
         return result
 
     def of_step(self) -> tuple[np.ndarray, np.ndarray]:
-        """(outputs,) readings and (outputs, inputs) their derivative after a step, from its own linearisation, which costs
-        nothing more.
+        """(outputs,) readings and their derivative (outputs, inputs) after a step, from the linearisation of that step, at no
+        additional cost.
 
         Raises
         ------
         Error
-            bad-argument where readings are no rows, or unknowns are parameters or forces on nodes.
+            bad-argument if readings are not rows, or if unknowns are parameters or forces on nodes.
         """
         if not self._from_rows or self._fields or any(isinstance(i.unknown, Parameter) for i in self._inputs):
             raise Error("bad-argument", "of_step()", "a step gives derivatives by efforts and motions of rows only",
@@ -458,7 +458,7 @@ class Twin:
             result[:, k] = self.rows_to_outputs(*self.column(response, self._inputs[k].unknown, self._inputs[k].component), response)
 
     def column(self, response: Response, unknown: Unknown, component: int) -> tuple[np.ndarray, np.ndarray]:
-        """(rows,) motions and efforts of all rows for a unit of one component of an unknown."""
+        """(rows,) motions and efforts of all rows for a unit value of one component of an unknown."""
         if isinstance(unknown, Motion):
             motions, efforts = response.to_motions([response.rows[unknown.actuator]])
             return motions[:, 0], efforts[:, 0]
@@ -472,14 +472,14 @@ class Twin:
         return motions[:, 0], efforts[:, 0]
 
     def nodal_columns(self, response: Response, body: str) -> np.ndarray:
-        """(rows, n, 3) m/N: motion of the rows alone for a unit force on each node of a body."""
+        """(rows, n, 3) m/N: motion of the rows for a unit force on each node of a body."""
         field = response.linear.fields[list(self.sim.bodies).index(body)]
         if field.shape[0] == 0:
             raise Error("wrong-type", f"body('{body}')", "it has no finite elements", "give a Force at a point")
         return field
 
     def rows_to_outputs(self, motions: np.ndarray, efforts: np.ndarray, response: Response) -> np.ndarray:
-        """(outputs, ...) of (rows, ...) motions and efforts."""
+        """(outputs, ...) from (rows, ...) motions and efforts."""
         result = np.empty((len(self._outputs), *motions.shape[1:]))
         for kind, values in (("motion", motions), ("effort", efforts)):
             which = [k for k, o in enumerate(self._outputs) if o.kind == kind]
@@ -501,7 +501,7 @@ class Twin:
         self.predict(values)
 
     def with_unknowns(self, unknowns: Iterable[Unknown], measured: Optional[Iterable[Measured]] = None) -> "Twin":
-        """A model on the same simulation with other unknowns, which need no new rows: no Force that this one has not.
+        """A model on the same simulation with other unknowns. It must need no new rows, hence no new Force.
 
         Parameters
         ----------
@@ -525,8 +525,9 @@ def _row_name(one: _Input) -> str:
 
 
 def _rotation_rate(vector: np.ndarray) -> np.ndarray:
-    """(3, 3): how a rotation vector changes with a small turn about the world's axes, the inverse of the left Jacobian
-    (Sola et al., arXiv 1812.01537, eq. 146)."""
+    """(3, 3): derivative of a rotation vector with respect to a small rotation about world axes, the inverse of the left
+    Jacobian (Sola et al., arXiv 1812.01537, eq. 146).
+    """
     angle = float(np.linalg.norm(vector))
     skew = np.array([[0, -vector[2], vector[1]], [vector[2], 0, -vector[0]], [-vector[1], vector[0], 0]])
     if angle < 1e-6:

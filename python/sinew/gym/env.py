@@ -1,4 +1,4 @@
-"""One environment."""
+"""A single environment."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ __all__ = ["Env"]
 
 
 class Env(EnvBase):
-    """One environment of a task; Gymnasium's interface.
+    """A single environment of a task with Gymnasium's interface.
 
-    It does what environment 0 of a VectorEnv does, bit for bit. After the end of an episode call `reset`.
+    It behaves like environment 0 of a VectorEnv, bit for bit. Call `reset` after the end of an episode.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class Env(EnvBase):
 
     @property
     def np_random(self) -> np.random.Generator:
-        """The generator that everything random is drawn from; from the operating system before the first seed."""
+        """Random generator of the environment, seeded from the operating system until `reset` gets a seed."""
         if self.episode.random is None:
             self.episode.random = np.random.default_rng()
         return self.episode.random
@@ -66,18 +66,18 @@ class Env(EnvBase):
 
     @property
     def _np_random(self) -> Optional[np.random.Generator]:
-        """The name by which Gymnasium's checker asks for it."""
+        """The name that Gymnasium's checker uses."""
         return self.episode.random
 
     def reset(self, *, seed: Optional[int] = None, options: Optional[Mapping[str, Any]] = None) -> tuple[np.ndarray, dict[str, Any]]:
-        """Begins an episode.
+        """Starts an episode.
 
         Parameters
         ----------
         seed : int, optional
             Not negative. Without it, the generator continues.
         options : dict, optional
-            The task's own, such as "goal".
+            Options of the task, such as "goal".
 
         Returns
         -------
@@ -99,19 +99,19 @@ class Env(EnvBase):
         return self._seen.copy(), info
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Takes an action.
+        """Performs an action.
 
         Parameters
         ----------
         action : (actions,) in [-1, 1]
-            What lies outside is clipped.
+            Values outside are clipped.
 
         Returns
         -------
         observation : (size,) float32
         reward : float
         terminated : bool
-            Whether the task, or the simulation, is over; info["failure"] then says what stopped the simulation.
+            Whether the task has ended or the simulation has failed; info["failure"] then gives the reason.
         truncated : bool
             Whether the time limit is reached.
         info : dict
@@ -133,14 +133,14 @@ class Env(EnvBase):
         return self._seen.copy(), float(reward), terminated, truncated, info
 
     def render(self) -> Optional[np.ndarray]:
-        """A picture, (height, width, 3) of uint8, if the render mode is "rgb_array"; else None."""
+        """A picture, (height, width, 3) uint8, if the render mode is "rgb_array"; otherwise None."""
         self._check("render")
         if self.episode.count == 0:
             raise Error("not-reset", "render", "no episode has begun", "call reset()")
         return self._picture.frame(self.episode) if self.render_mode == "rgb_array" else None
 
     def close(self) -> None:
-        """Ends the use of the environment; may be called again."""
+        """Closes the environment. May be called repeatedly."""
         if getattr(self, "_open", False):
             self._open = False
             self._picture.close()

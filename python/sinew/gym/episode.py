@@ -1,4 +1,4 @@
-"""One environment: its generator, its robot and how far it is."""
+"""State of one environment: its generator, its robot and the progress of its episode."""
 
 from __future__ import annotations
 
@@ -15,28 +15,28 @@ __all__ = ["Episode"]
 
 
 class Episode:
-    """An environment of a task, from reset to reset.
+    """One environment of a task, from reset to reset.
 
-    Everything random is drawn from its own generator, so that neither other environments nor threads matter.
+    All random numbers come from its own generator, so results depend neither on other environments nor on threads.
 
     Attributes
     ----------
     task : Task
     random : numpy.random.Generator
     model : TaskModel
-        Of the current episode.
+        Model of the current episode.
     robot : Robot
         The simulation, a clone of the model's.
     goal : (3,) m or None
-        Of the tip.
+        Goal of the tip.
     steps : int
         Actions since the reset.
     commands : (actions,)
-        Of the last step, in the unit of the task's action.
+        Commands of the last step, in the unit of the task's action.
     action : (actions,)
-        The last one that acted, in [-1, 1].
+        Last action that took effect, in [-1, 1].
     count : int
-        Episodes begun.
+        Number of episodes started.
     """
 
     def __init__(self, task: Task, models: Models) -> None:
@@ -51,14 +51,14 @@ class Episode:
         self._late: deque[np.ndarray] = deque()
 
     def reset(self, seed: Optional[int], options: Mapping[str, Any]) -> dict[str, Any]:
-        """Begins an episode; returns its info.
+        """Starts an episode and returns its info.
 
         Parameters
         ----------
         seed : int or None
-            Starts the generator anew; without it, the generator continues, or starts from the operating system.
+            Seeds the generator. Without it, the generator continues, or is seeded from the operating system.
         options : dict
-            Names of Task.options and their values.
+            Names of Task.options with their values.
         """
         if seed is not None or self.random is None:
             self.random = np.random.default_rng(seed)
@@ -80,7 +80,7 @@ class Episode:
         return dict(model.drawn) if self.task.is_randomised else {}
 
     def step(self, action: np.ndarray) -> tuple[float, bool, bool, dict[str, Any]]:
-        """Takes an action: reward, terminated, truncated, info."""
+        """Performs an action and returns reward, terminated, truncated and info."""
         task, robot = self.task, self.robot
         acting = self.late(action)
         if acting is not None:
@@ -100,25 +100,25 @@ class Episode:
         return reward, over, self.steps >= task.episode_steps, info
 
     def late(self, action: np.ndarray) -> Optional[np.ndarray]:
-        """Takes an action: the one that acts now; None before the first one has arrived."""
+        """Stores an action and returns the one that takes effect now; None before the first one does."""
         self._late.append(action)
         return self._late.popleft()
 
     def release(self) -> None:
-        """Hands the robot back."""
+        """Returns the robot to its model."""
         if self.robot is not None:
             self.model.give_back(self.robot)
             self.robot = None
 
     def _put(self, model: TaskModel) -> None:
-        """Takes a robot of the model."""
+        """Use a robot of this model."""
         if self.robot is None or model is not self.model:
             self.release()
             self.model, self.robot = model, model.take()
 
 
 def checked_actions(actions: Any, shape: tuple[int, ...], place: str) -> np.ndarray:
-    """Actions as an array of a shape, clipped to [-1, 1].
+    """Return the actions as an array of the given shape, clipped to [-1, 1].
 
     Raises
     ------
@@ -128,7 +128,7 @@ def checked_actions(actions: Any, shape: tuple[int, ...], place: str) -> np.ndar
     try:
         given = np.asarray(actions, dtype=float)
     except (TypeError, ValueError):
-        raise Error("wrong-type", place, f"{actions!r} are no numbers", f"give an array of shape {shape}") from None
+        raise Error("wrong-type", place, f"{actions!r} are not numbers", f"give an array of shape {shape}") from None
     if given.shape != shape:
         raise Error("wrong-shape", place, f"the actions have shape {given.shape}", f"give an array of shape {shape}, the action space's")
     if np.isnan(given).any():

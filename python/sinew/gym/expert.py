@@ -1,4 +1,4 @@
-"""Experts: the inverse controller, or a script, as a policy."""
+"""Expert policies, based on the inverse controller or on a script."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _has_script(task: type[Task]) -> bool:
 
 
 class _Twin:
-    """A copy of the nominal robot that a controller steers, for one environment."""
+    """A copy of the nominal robot under an inverse controller, for one environment."""
 
     def __init__(self, episode: Any) -> None:
         self.episode = episode
@@ -35,7 +35,7 @@ class _Twin:
         self.count = 0
 
     def action(self) -> np.ndarray:
-        """The increments of tension that the twin makes, in [-1, 1]."""
+        """Tension increments of the twin, in [-1, 1]."""
         episode, robot = self.episode, self.robot
         if self.count != episode.count:
             self.count, self.missed = episode.count, np.zeros(3)
@@ -59,31 +59,32 @@ class _Twin:
 
 
 class _Script:
-    """What the task would do itself, for one environment."""
+    """The task's own scripted policy, for one environment."""
 
     def __init__(self, episode: Any) -> None:
         self.episode = episode
 
     def action(self) -> np.ndarray:
-        """Task.scripted."""
+        """Return the action of Task.scripted."""
         return self.episode.task.scripted(self.episode)
 
 
 class Expert:
-    """Actions by the inverse controller or by a script; made by `expert`.
+    """Policy by the inverse controller or by a script; created by `expert`.
 
-    **Trunks.** Every environment has a twin: a simulation of its robot without pushes and delays, whose inverse controller steers the
-    tip to the goal. The action is the change of tensions that the twin makes. What the environment's tip misses of the
-    twin's shifts the twin's target, half of it a step: so pushes are answered, though the twin does not know them.
+    **Trunks.** Every environment has a twin, a simulation of its robot without pushes and delays, whose inverse controller moves
+    the tip to the goal. The action is the change of tensions of the twin. In every step, the twin's target is shifted by half of
+    the distance between the tips of twin and environment. The policy therefore responds to pushes, although the twin does not
+    know them.
 
-    **Grasp.** The script pulls every cable in by 8 mm within 0.8 s, then moves the feet by what the cup lacks of its height.
+    **Grasp.** The script pulls every cable in by 8 mm within 0.8 s, then moves the feet by the missing height of the cup.
 
     **Crawl.** The script is the open-loop gait, sinew.gym.tasks.crawl.gait: front legs, trunk and rear legs fill one after the
-    other, and empty in the same order, in 2 s.
+    other and empty in the same order, in 2 s.
 
-    **Damp.** The script pulls a cable while it grows longer, in proportion to its rate.
+    **Damp.** The script pulls a cable while it lengthens, in proportion to its rate.
 
-    **Swing-up.** The script turns all torques with the rate of the whole arm, so that each swing gains energy.
+    **Swing-up.** All torques follow the angular rate of the whole arm, so each swing gains energy.
     """
 
     def __init__(self, env: Union[Env, VectorEnv]) -> None:
@@ -93,12 +94,12 @@ class Expert:
         self._each = [kind(episode) for episode in episodes]
 
     def __call__(self, observation: Any = None) -> np.ndarray:
-        """Actions for the environment as it is now.
+        """Actions for the present state of the environment.
 
         Parameters
         ----------
         observation : array, optional
-            Not used: the expert knows the environment.
+            Not used: the expert reads the environment itself.
 
         Returns
         -------
@@ -109,13 +110,14 @@ class Expert:
 
 
 def expert(env: Union[Env, VectorEnv]) -> Expert:
-    """A policy that solves a task by the inverse controller, or by a script.
+    """A policy that solves a task by the inverse controller or by a script.
 
     Parameters
     ----------
     env : Env or VectorEnv
-        Of trunk-reach, trunk-follow or trunk-hold, with the action "tension-increment" and without randomised models; of trunk-damp,
-        arm-swing-up, grasp, crawl or any task that overrides Task.scripted, with the first of its actions.
+        An environment of trunk-reach, trunk-follow or trunk-hold, with the action "tension-increment" and without randomised
+        models; or of trunk-damp, arm-swing-up, grasp, crawl or any task that overrides Task.scripted, with the task's first
+        action.
 
     Returns
     -------
@@ -124,7 +126,7 @@ def expert(env: Union[Env, VectorEnv]) -> Expert:
     Raises
     ------
     Error
-        bad-argument for another task, action, or randomised models.
+        bad-argument for another task or action, or for randomised models.
 
     Examples
     --------
@@ -137,7 +139,7 @@ def expert(env: Union[Env, VectorEnv]) -> Expert:
     task = env.task
     if not isinstance(task, _CONTROLLED) and not _has_script(type(task)):
         known = ", ".join(each.name for each in _TASKS.values() if issubclass(each, _CONTROLLED) or _has_script(each))
-        raise Error("bad-argument", "expert(env)", f"there is no expert of {task.name}",
+        raise Error("bad-argument", "expert(env)", f"there is no expert for {task.name}",
                     f"give one of: {known}; or a task of your own that has scripted()")
     if task.action != task.actions[0] or (task.is_randomised and isinstance(task, _CONTROLLED)):
         without = " and without ranges of material_scale and payload" if isinstance(task, _CONTROLLED) else ""

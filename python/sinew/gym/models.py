@@ -1,9 +1,9 @@
-"""The robots of a task: the models that it draws from, and simulations of each.
+"""Models of a task, and simulations of each.
 
-What domain randomisation changes (the stiffness of a material, a payload, friction) is constant within a model, so a task
-builds a fixed number of models and an episode draws one of them. A simulation of a model is a clone and costs
-`Simulation.memory` bytes. An episode takes a simulation of its model that is free, or a new clone, and hands it back at its
-end; which one it gets does not matter, as a restored state continues bit for bit.
+The quantities of domain randomisation (stiffness of a material, payload, friction) are constant within a model. A task
+therefore builds a fixed number of models, and an episode draws one of them. A simulation of a model is a clone and costs
+`Simulation.memory` bytes. An episode takes a free simulation of its model, or a new clone, and returns it at its end. The
+choice does not matter, because a restored state continues bit for bit.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ __all__ = ["Models", "Robot", "TaskModel"]
 
 
 class Robot:
-    """A simulation with its parts at hand.
+    """A simulation with quick access to its parts.
 
     Attributes
     ----------
@@ -30,9 +30,9 @@ class Robot:
     actuators : list of sinew.Actuator
         In the order of the actions.
     tip : sinew.Effector or None
-        The scene's first.
+        First effector of the scene.
     body : sinew.Body
-        The scene's first.
+        First body of the scene.
     """
 
     def __init__(self, sim: Simulation) -> None:
@@ -43,25 +43,25 @@ class Robot:
         self._alone: Optional[Batch] = None
 
     def read(self, names: Sequence[str]) -> np.ndarray:
-        """Observables now, (1, numbers), as sinew.Batch reads them."""
+        """Present observables, (1, numbers), in the format of sinew.Batch."""
         if self._alone is None:
             self._alone = Batch([self.sim])
         return self._alone.read(names)
 
 
 class TaskModel:
-    """One robot of a task.
+    """One model of a task.
 
     Attributes
     ----------
     drawn : dict of float
-        The model's values of Task.ranges.
+        Values of Task.ranges in this model.
     first : Robot
-        Every simulation of the model is a clone of its own.
+        The simulation of which all others of the model are clones.
     starts : list of sinew.State
-        The states that episodes begin with.
+        Initial states of episodes.
     rest : dict
-        What the task keeps of the model at rest (Task.measure_rest).
+        Quantities at rest that the task stores (Task.measure_rest).
     """
 
     def __init__(self, task: Any, drawn: Mapping[str, float]) -> None:
@@ -77,21 +77,21 @@ class TaskModel:
 
     @property
     def material_scale(self) -> float:
-        """Factor of the stiffness."""
+        """Factor on the stiffness of the material."""
         return self.drawn["material_scale"]
 
     @property
     def payload(self) -> float:
-        """kg."""
+        """Mass of the payload, kg."""
         return self.drawn["payload"]
 
     def take(self) -> Robot:
-        """A free simulation of the model, in any state."""
+        """Return an unused simulation of the model, in any state."""
         with self._lock:
             return self._free.pop() if self._free else Robot(self.first.sim.clone())
 
     def give_back(self, robot: Robot) -> None:
-        """Makes a simulation free again."""
+        """Marks a simulation as free."""
         with self._lock:
             self._free.append(robot)
 
@@ -99,9 +99,9 @@ class TaskModel:
 class Models:
     """All models of a task.
 
-    Without randomisation there is one. With it, model k of K has quantile (k + 1/2) / K of the material scale, log-uniform
-    in its range, and of payload and friction the quantiles frac((k + 1/2) golden ratio) and frac((k + 1/2) sqrt(2)), uniform
-    in their ranges: points that fill the space evenly and that do not depend on any seed.
+    Without randomisation there is one. Otherwise, model k of K has the quantile (k + 1/2) / K of the material scale,
+    log-uniform in its range, and for payload and friction the quantiles frac((k + 1/2) golden ratio) and
+    frac((k + 1/2) sqrt(2)), uniform in their ranges. These points fill the space evenly and do not depend on a seed.
     """
 
     _STRIDES = (0.6180339887498949, 0.4142135623730951)

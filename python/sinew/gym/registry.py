@@ -1,4 +1,4 @@
-"""Tasks by their names."""
+"""Tasks by name."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _TASKS: dict[str, type[Task]] = {
 
 
 def tasks() -> dict[str, str]:
-    """Names of the tasks, and what is to be done.
+    """Names of the tasks with their goals.
 
     Examples
     --------
@@ -31,10 +31,10 @@ def tasks() -> dict[str, str]:
 
 
 def _task(task: Union[str, Task], options: dict[str, Any], own: tuple[str, ...]) -> Task:
-    """A task by its name, or the task itself. `own` are the options that do not go to the task."""
+    """A task by name, or the task itself. `own` are the options that are not passed to the task."""
     if isinstance(task, Task):
         if options:
-            raise Error("bad-argument", "make", f"{', '.join(options)} given with a task that is made", "give them to the task")
+            raise Error("bad-argument", "make", f"{', '.join(options)} given with a Task object", "pass them to its constructor")
         return task
     if task not in _TASKS:
         raise unknown("make", "task", task, list(_TASKS))
@@ -46,7 +46,7 @@ def _task(task: Union[str, Task], options: dict[str, Any], own: tuple[str, ...])
 
 
 def make(task: Union[str, Task], *, render_mode: Optional[str] = None, **options: Any) -> Env:
-    """An environment of a task.
+    """Creates an environment of a task.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def make(task: Union[str, Task], *, render_mode: Optional[str] = None, **options
     render_mode : str, optional
         "rgb_array" or "human".
     **options
-        Of the task: see its class in sinew.gym.tasks, and Task.
+        Options of the task: see its class in sinew.gym.tasks, and Task.
 
     Returns
     -------
@@ -82,7 +82,7 @@ def make_vec(
     render_mode: Optional[str] = None,
     **options: Any,
 ) -> VectorEnv:
-    """Many environments of a task.
+    """Creates many environments of a task.
 
     Parameters
     ----------
@@ -91,13 +91,13 @@ def make_vec(
     num_envs : int
         1 or more.
     threads : int
-        That share the environments; results do not depend on it.
+        Number of threads that share the environments; results do not depend on it.
     autoreset_mode : AutoresetMode or str
         "NEXT_STEP", "SAME_STEP" or "DISABLED": see VectorEnv.
     render_mode : str, optional
         "rgb_array" or "human".
     **options
-        Of the task: see its class in sinew.gym.tasks, and Task.
+        Options of the task: see its class in sinew.gym.tasks, and Task.
 
     Returns
     -------
@@ -117,7 +117,7 @@ def make_vec(
 
 
 def _register() -> None:
-    """Makes the tasks known to Gymnasium, as sinew/NAME."""
+    """Registers the tasks with Gymnasium as sinew/NAME."""
     for name in _TASKS:
 
         def single(*, _name: str = name, **options: Any) -> Env:

@@ -1,4 +1,4 @@
-"""Pictures of environments, without a window, and the live view."""
+"""Pictures of environments without a window, and the live view."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ _SIZE = 400, 400  # pixels
 
 
 def mode_checked(mode: Optional[str]) -> Optional[str]:
-    """The render mode itself; raises unknown-name."""
+    """Returns the render mode. Raises unknown-name."""
     if mode is not None and mode not in MODES:
         raise unknown("render_mode", "render mode", mode, MODES)
     return mode
 
 
 class Picture:
-    """Draws environments in one of the render modes.
+    """Renders environments in one of the render modes.
 
-    "rgb_array" draws when `frame` is called, as sinew.render does, and the goal. "human" shows environment 0 in the browser
+    "rgb_array" draws robot and goal with sinew.render when `frame` is called. "human" shows environment 0 in the browser
     (sinew.view) after every step.
     """
 
@@ -37,7 +37,7 @@ class Picture:
         self._shown: Any = None
 
     def after_reset(self, episode: Any) -> None:
-        """Opens the view, of the robot at hand."""
+        """Opens the view of the current robot."""
         if self._mode == "human":
             if self._shown is not episode.robot:
                 from .._core import view
@@ -48,12 +48,12 @@ class Picture:
             self._view.update()
 
     def after_step(self, episode: Any) -> None:
-        """Shows the state."""
+        """Show the present state."""
         if self._mode == "human":
             self.after_reset(episode)
 
     def close(self) -> None:
-        """Closes the view and lets go of buffers."""
+        """Closes the view and releases buffers."""
         if self._renderer is not None:
             self._renderer.close()
             self._renderer = None
@@ -65,7 +65,7 @@ class Picture:
             self._view = self._shown = None
 
     def frame(self, episode: Any) -> np.ndarray:
-        """(height, width, 3) of uint8. Raises tool-missing."""
+        """(height, width, 3) uint8. Raises tool-missing."""
         sim, task = episode.robot.sim, episode.task
         if self._renderer is None:
             self._renderer = Renderer(sim, _SIZE, task.camera)

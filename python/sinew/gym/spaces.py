@@ -1,7 +1,7 @@
 """Spaces of observations and actions, and the base classes of environments.
 
-Where `gymnasium` is installed, all of them are Gymnasium's own. Elsewhere they are the classes below, which have the
-attributes of Gymnasium's that environments and learners use.
+If `gymnasium` is installed, they are Gymnasium's own. Otherwise they are the classes below, which have those attributes of
+Gymnasium's classes that environments and learners use.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class PlainSpace:
     shape : tuple of int
     dtype : NumPy type
     seed : int, optional
-        Of `sample`; without it, from the operating system.
+        Seed of `sample`; by default from the operating system.
     """
 
     def __init__(self, shape: Sequence[int], dtype: Any, seed: Optional[int] = None) -> None:
@@ -38,21 +38,21 @@ class PlainSpace:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Of every array of the space."""
+        """Shape of every array of the space."""
         return self._shape
 
     @property
     def np_random(self) -> np.random.Generator:
-        """The generator that `sample` draws from."""
+        """Random generator of `sample`."""
         return self._np_random
 
     def seed(self, seed: Optional[int] = None) -> int:
-        """Starts the generator of `sample` anew.
+        """Seeds the generator of `sample`.
 
         Parameters
         ----------
         seed : int, optional
-            Not negative; without it, from the operating system.
+            Not negative; by default from the operating system.
 
         Returns
         -------
@@ -77,17 +77,17 @@ class PlainBox(PlainSpace):
     Parameters
     ----------
     low, high : float or array
-        Least and greatest values; a number holds for the whole array.
+        Bounds; a number applies to the whole array.
     shape : tuple of int, optional
-        By default that of `low` and `high`.
+        By default the shape of `low` and `high`.
     dtype : NumPy type
     seed : int, optional
-        Of `sample`.
+        Seed of `sample`; by default from the operating system.
 
     Raises
     ------
     Error
-        out-of-range where `low` exceeds `high` or is NaN; wrong-shape where bounds and `shape` do not fit.
+        out-of-range if `low` exceeds `high` or is NaN; wrong-shape if bounds and `shape` do not match.
     """
 
     def __init__(
@@ -106,14 +106,14 @@ class PlainBox(PlainSpace):
         self.bounded_below, self.bounded_above = np.isfinite(low), np.isfinite(high)
 
     def is_bounded(self, manner: str = "both") -> bool:
-        """Whether all bounds are finite: "below", "above" or "both"."""
+        """Whether the bounds are finite: "below", "above" or "both"."""
         below, above = bool(self.bounded_below.all()), bool(self.bounded_above.all())
         if manner not in ("below", "above", "both"):
-            raise Error("unknown-name", "Box.is_bounded", f"{manner!r} is not a manner", "give below, above or both")
+            raise Error("unknown-name", "Box.is_bounded", f"{manner!r} is not valid", "give below, above or both")
         return {"below": below, "above": above, "both": below and above}[manner]
 
     def sample(self, mask: None = None) -> np.ndarray:
-        """A random array: uniform between two bounds, exponential from one, normal without any."""
+        """A random array: uniform between two bounds, exponential from one bound, normal without bounds."""
         if mask is not None:
             raise Error("out-of-range", "Box.sample", f"a Box has no mask, and {mask!r} was given", "leave it out")
         below, above, random = self.bounded_below, self.bounded_above, self._np_random
@@ -128,7 +128,7 @@ class PlainBox(PlainSpace):
         return drawn.astype(self.dtype)
 
     def contains(self, x: Any) -> bool:
-        """Whether x is an array of the shape, of a type that casts safely to that of the space, and within the bounds."""
+        """Whether x is an array of this shape, within the bounds, of a type that can be cast safely to that of the space."""
         x = np.asarray(x)
         if not np.can_cast(x.dtype, self.dtype) or x.shape != self.shape:
             return False
@@ -143,7 +143,7 @@ class PlainBox(PlainSpace):
 
 
 class PlainAutoresetMode(enum.Enum):
-    """What a vector environment does with an environment whose episode has ended."""
+    """Treatment of an environment whose episode has ended."""
 
     NEXT_STEP = "NextStep"
     SAME_STEP = "SameStep"
@@ -151,7 +151,7 @@ class PlainAutoresetMode(enum.Enum):
 
 
 class PlainEnv:
-    """What Gymnasium's environments have beside their methods."""
+    """Attributes of Gymnasium's environments in addition to their methods."""
 
     metadata: dict[str, Any] = {"render_modes": []}
     render_mode: Optional[str] = None
@@ -163,7 +163,7 @@ class PlainEnv:
         return self
 
     def close(self) -> None:
-        """Ends the use of the environment."""
+        """Closes the environment."""
 
     def __enter__(self) -> Any:
         return self
@@ -187,7 +187,7 @@ def batched(space: Any, count: int) -> Any:
 
 
 def mode_named(mode: Union[str, Any]) -> Any:
-    """The autoreset mode of a name such as "NEXT_STEP" or "NextStep", or the mode itself.
+    """The autoreset mode for a name such as "NEXT_STEP" or "NextStep", or the mode itself.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What tasks have in common: a scene, actions, observations, rewards and what is drawn for an episode."""
+"""Base of all tasks: scene, actions, observations, rewards and random quantities of an episode."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ Range = Union[float, Sequence[float]]
 
 
 def unknown(place: str, what: str, name: Any, known: Sequence[str]) -> Error:
-    """An error of kind unknown-name that suggests the nearest of the known names."""
+    """Return an error of kind unknown-name that suggests the most similar known name."""
     near = difflib.get_close_matches(str(name), known, n=1, cutoff=0.5)
     remedy = f"did you mean {near[0]!r}? " if near else ""
     return Error("unknown-name", place, f"there is no {what} {name!r}", f"{remedy}there are: {', '.join(known)}")
 
 
 def range_of(item: str, value: Range, least: float, greatest: float, unit: str) -> tuple[float, float]:
-    """(low, high) of a number or a pair, within bounds."""
+    """(low, high) from a number or a pair, within bounds."""
     try:
         low, high = (float(v) for v in (value if np.ndim(value) else (value, value)))
     except (TypeError, ValueError):
@@ -41,36 +41,36 @@ def range_of(item: str, value: Range, least: float, greatest: float, unit: str) 
 
 
 class Task:
-    """A robot, what it may do, what it senses and what it is rewarded for.
+    """A robot with its actions, observations and rewards.
 
-    A task never changes while environments use it; what belongs to one environment is in its Episode. A subclass sets the
-    class attributes and defines `sense`, `reward`, and what else it needs of the methods below. A task whose steps take
-    microseconds names `observables` and defines `sense_rows` and `reward_rows` in their place: VectorEnv then takes all
-    environments at once.
+    A task is immutable while environments use it; the data of one environment are in its Episode. A subclass sets the class
+    attributes, defines `sense` and `reward`, and overrides further methods as needed. A task whose steps take microseconds sets
+    `observables` and defines `sense_rows` and `reward_rows` instead: VectorEnv then processes all environments at once.
 
     Parameters
     ----------
     time_limit : float, optional
-        s of an episode, after which it is truncated; by default the task's own.
+        Duration of an episode, s, after which it is truncated; by default the task's own.
     observe : str
-        "sensors", or "state", which appends the hidden state: see the task.
+        "sensors", or "state", which adds the hidden state. See the task.
     action : str, optional
-        What actions mean, one of `actions`; by default the first.
+        Meaning of the actions, one of `actions`; by default the first.
     material_scale : float or (low, high)
-        Factor of the stiffness of all material, 0.5 to 2, drawn for each episode. A task may say which material.
+        Factor of the stiffness, 0.5 to 2; a range is drawn from for each episode. It applies to all materials unless the task
+        says otherwise.
     payload : float or (low, high)
-        kg fixed to the tip, 0 to 0.05, drawn for each episode.
+        Mass fixed to the tip, kg, 0 to 0.05; a range is drawn from for each episode.
     models : int
-        How many models are built to draw what is a range of, 1 to 64; 1 without a range.
+        Number of models to build for ranges, 1 to 64; 1 without a range.
     action_delay : int or (low, high)
-        Steps by which actions act late, 0 to 10, drawn for each episode.
+        Delay of the actions in steps, 0 to 10; a range is drawn from for each episode.
     set : dict, optional
-        Values of the scene to change, as of sinew.load: {"solver": "one-linearisation"}.
+        Overrides of scene values, as in sinew.load: {"solver": "one-linearisation"}.
 
     Raises
     ------
     Error
-        out-of-range, unknown-name, wrong-type, and what sinew.load raises.
+        out-of-range, unknown-name, wrong-type, and the errors of sinew.load.
     """
 
     name = ""
@@ -116,7 +116,7 @@ class Task:
 
     @property
     def ranges(self) -> dict[str, tuple[float, float]]:
-        """What a model has a value of: the arguments of `randomised`, each with (low, high). The first is log-uniform."""
+        """Randomised quantities of a model: the arguments of `randomised`, each with (low, high). The first is log-uniform."""
         return {"material_scale": self.material_scale, "payload": self.payload}
 
     @property
@@ -126,13 +126,13 @@ class Task:
 
     @staticmethod
     def bounded(item: str, value: float, least: float, greatest: float, unit: str = "") -> float:
-        """A number between two bounds; raises out-of-range and wrong-type."""
+        """A number, checked against two bounds. Raises out-of-range and wrong-type."""
         if np.ndim(value):
             raise Error("wrong-type", item, f"{value!r} is not a number", "give a number")
         return range_of(item, value, least, greatest, unit)[0]
 
     def bind(self, robot: Robot) -> None:
-        """Takes what is the same for all models from the first: time step, limits, spaces."""
+        """Stores what all models have in common, from the first one: time step, limits, spaces."""
         self.time_step = self.substeps * robot.sim.time_step
         if not self._time_limit >= self.time_step:
             raise Error("out-of-range", "time_limit", f"it is {self._time_limit} s",
@@ -148,71 +148,71 @@ class Task:
     # What a subclass may define.
 
     def described(self, folder: Path) -> Union[Path, dict[str, Any]]:
-        """The scene, as sinew.load takes it. A mesh may be written into the folder, which lasts until the scene is loaded."""
+        """The scene, in a form that sinew.load accepts. Meshes may be written to the folder, which exists until the scene is loaded."""
         return self.scene
 
     def randomised(self, material_scale: float, payload: float) -> dict[str, Any]:
-        """Values of the scene for a material and a payload (kg)."""
+        """Scene values for a material scale and a payload (kg)."""
         raise NotImplementedError
 
     def limits(self, robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Least and greatest commands, and their greatest rates (1/s), (actions,) each; by default those of the actuators."""
+        """Lower and upper limits of the commands, and limits on their rates (1/s), (actions,) each; by default those of the actuators."""
         limits = [actuator.limits[self.kind] for actuator in robot.actuators]
         least, greatest, rates = (np.array([getattr(limit, part) for limit in limits]) for part in ("min", "max", "rate"))
         return least, greatest, rates
 
     def prepare(self, robot: Robot) -> list[State]:
-        """States that episodes begin with; the simulation is as loaded."""
+        """Initial states of episodes. The simulation is as loaded."""
         robot.sim.solve_static()
         return [robot.sim.state()]
 
     def picture_points(self, robot: Robot) -> np.ndarray:
-        """(n, 3) m: what a picture shows. By default room round the robot at rest."""
+        """(n, 3) m: points that a picture must show. By default the space around the robot at rest."""
         rest = np.asarray(robot.body.rest_positions)
         low, high = rest.min(axis=0), rest.max(axis=0)
         room = np.where(high - low < np.max(high - low), 0.22, 0.04) * np.max(high - low)
         return np.array(list(itertools.product(*zip(low - room, high + room))))
 
     def measure_rest(self, robot: Robot) -> dict[str, Any]:
-        """What the task keeps of a model; the simulation is in the first of its starts."""
+        """Quantities of a model that the task stores. The simulation is in the first initial state."""
         return {"tip": robot.tip.position}
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """Draws what is random in an episode, from `episode.random`; the robot is in its start."""
+        """Draws the random quantities of an episode from `episode.random`. The robot is in its initial state."""
 
     def commanded(self, robot: Robot) -> np.ndarray:
-        """The commands that a start corresponds to, (actions,); the robot is in it."""
+        """Commands in the initial state, (actions,). The robot is in this state."""
         return np.array([getattr(actuator, self.kind) for actuator in robot.actuators])
 
     def apply(self, episode: Any) -> None:
-        """Passes `episode.commands` on to the robot."""
+        """Sends `episode.commands` to the robot."""
         for actuator, value in zip(episode.robot.actuators, episode.commands.tolist()):
             setattr(actuator, self.kind, value)
 
     def disturb(self, episode: Any) -> None:
-        """Changes the world just before a step."""
+        """Change the environment of the robot just before a step."""
 
     def observation_names(self, robot: Robot) -> list[str]:
-        """What every number of an observation is."""
+        """Name of every number of an observation."""
         raise NotImplementedError
 
     def sense(self, episode: Any, out: np.ndarray) -> None:
-        """Writes an observation into out, (observation size,)."""
+        """Write an observation into out, (observation size,)."""
         self.sense_rows([episode], episode.robot.read(self.observables), out[None])
 
     def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
-        """Reward of the step just taken, whether the task is over, and info."""
+        """Reward of the last step, whether the task has ended, and info."""
         rewards, over, infos = self.reward_rows([episode], episode.robot.read(self.observables), episode.action[None])
         return rewards.item(), bool(over[0]), {key: values[0].item() for key, values in infos.items()}
 
     def sense_rows(self, episodes: Sequence[Any], read: np.ndarray, out: np.ndarray) -> None:
-        """The same as `sense` for many episodes, of tasks with `observables`; it may call no method of the robots.
+        """The same as `sense` for many episodes, for tasks with `observables`. It must not call methods of the robots.
 
         Parameters
         ----------
         episodes : list of n Episode
         read : (n, numbers)
-            The `observables` of their robots, side by side.
+            Values of the `observables` of their robots.
         out : (n, observation size)
         """
         raise NotImplementedError
@@ -220,14 +220,14 @@ class Task:
     def reward_rows(
         self, episodes: Sequence[Any], read: np.ndarray, actions: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
-        """The same as `reward`: rewards, whether the task is over, and infos, arrays (n,).
+        """The same as `reward` for many episodes: rewards, whether the task has ended, and infos, arrays (n,).
 
         Parameters
         ----------
         episodes, read
-            As of `sense_rows`.
+            As for `sense_rows`.
         actions : (n, actions)
-            Those that acted.
+            Actions that took effect.
         """
         raise NotImplementedError
 
@@ -235,26 +235,26 @@ class Task:
     options: Mapping[str, int] = {}
 
     def scripted(self, episode: Any) -> np.ndarray:
-        """What a scripted expert would do now, (actions,) in [-1, 1], for the task's first action. A task may have none."""
+        """Action of a scripted expert in the present state, (actions,) in [-1, 1], for the task's first kind of action. Optional."""
         raise NotImplementedError
 
     def observation_size(self, robot: Robot) -> int:
-        """Numbers of an observation."""
+        """Size of an observation."""
         return len(self.observation_names(robot))
 
     def commands(self, episode: Any, action: np.ndarray) -> np.ndarray:
-        """Commands of the actuators (N, m or N m) for an action in [-1, 1], (actuators,) each."""
+        """Return the actuators' commands (N, m or N m) for an action in [-1, 1]; both are (actuators,)."""
         return self.next_commands(episode.commands, action)
 
     def next_commands(self, commands: np.ndarray, action: np.ndarray) -> np.ndarray:
-        """The same from the last commands, (..., actuators) each."""
+        """The same, starting from the last commands, (..., actuators) each."""
         if self.is_increment:  # np.clip takes four times as long
             return np.minimum(np.maximum(commands + action * self.increment, self.low), self.high)
         return self.low + 0.5 * (action + 1.0) * (self.high - self.low)
 
     @classmethod
     def keywords(cls) -> list[str]:
-        """Names of all keyword arguments of the task."""
+        """Return the names of all keyword arguments of the task."""
         found: list[str] = []
         for base in cls.__mro__:
             if "__init__" in vars(base) and base is not object:

@@ -1,4 +1,4 @@
-"""Episodes whose simulations are stepped with one call."""
+"""Episodes whose simulations are stepped by one call."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ _STATUS = "status"  # of the last step, a number; 0 is "solved"
 
 
 class Together:
-    """Takes actions in many episodes of a task that names `observables`, as Episode.step does in one, bit for bit.
+    """Performs actions in many episodes of a task that names `observables`, with the same bits as Episode.step.
 
-    The simulations are stepped by threads that run no Python; commands, observations and rewards are computed for all at once.
+    Threads without Python step the simulations. Commands, observations and rewards are computed for all episodes at once.
 
     Parameters
     ----------
     task : Task
     episodes : list of Episode
-        They have been reset before the first step.
+        Already reset before the first step.
     threads : int
         1 or more.
     """
@@ -38,19 +38,19 @@ class Together:
         self._commands, self._actions = np.zeros((2, len(episodes), len(task.low)))
 
     def step(self, actions: np.ndarray, acts: np.ndarray, observations: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
-        """Takes an action in the episodes that `acts` chooses.
+        """Performs an action in the episodes selected by `acts`.
 
         Parameters
         ----------
         actions : (n, actions) in [-1, 1]
         acts : (n,) bool
         observations : (n, size) float32
-            Overwritten where an episode acts and does not fail.
+            Overwritten for episodes that act and do not fail.
 
         Returns
         -------
         rewards, terminations, truncations : (n,)
-        infos : dict of arrays (n,) and masks, as VectorEnv gives them
+        infos : dict of arrays (n,) and masks, as in VectorEnv
         """
         task, episodes = self.task, self._episodes
         self._follow_resets()
@@ -93,7 +93,7 @@ class Together:
         infos[key][which], infos[f"_{key}"][which] = values, True
 
     def _follow_resets(self) -> None:
-        """Takes up the robots and commands of episodes that have been reset; their commands and actions are rows from then on."""
+        """Takes over the robots and commands of episodes that were reset; from then on their commands and actions are rows of the arrays."""
         episodes = self._episodes
         for i, episode in enumerate(episodes):
             if self._counts[i] != episode.count:
@@ -105,7 +105,7 @@ class Together:
             self._robots, self._batch = robots, Batch([robot.sim for robot in robots], threads=self._threads)
 
     def _take(self, actions: np.ndarray, acts: np.ndarray) -> None:
-        """The commands of actions that act now."""
+        """Commands of the actions that take effect now."""
         told = acts
         if self.task.action_delay[1] > 0:
             late = [episode.late(action.copy()) if act else None for episode, action, act in zip(self._episodes, actions, acts)]

@@ -1,4 +1,4 @@
-"""Many environments of one task in one process."""
+"""Many environments of a task in one process."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ Arrays = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]
 
 
 class VectorEnv(VectorEnvBase):
-    """Steps many environments of a task, in threads; Gymnasium's vector interface.
+    """Steps many environments of a task in threads; Gymnasium's vector interface.
 
-    The environments share the models of the task (mesh, material, factorisation plan); each has a simulation of its own. A
-    step of the simulation runs without the interpreter lock, so that threads share the work: each has a contiguous block of
-    environments. The simulations of a task with `observables` are stepped by one call (Together). Results are the same, bit for bit, for any number of threads, and an environment does the same alone and
-    among others: environment i has a generator of its own, seeded with s + i.
+    The environments share the models of the task (mesh, material, factorisation plan); each has its own simulation. Steps of the
+    simulation release the interpreter lock, so threads run in parallel. Each thread has a contiguous block of environments. The
+    simulations of a task with `observables` are stepped by one call (Together). Results are the same, bit for bit, for any number
+    of threads, and for an environment alone or among others: environment i has its own generator, seeded with s + i.
 
     Parameters
     ----------
@@ -36,10 +36,10 @@ class VectorEnv(VectorEnvBase):
     threads : int
         1 or more.
     autoreset_mode : AutoresetMode or str
-        What happens when the episode of an environment ends in step k.
-        NEXT_STEP: step k + 1 resets it instead of acting, with reward 0.
+        Treatment of an environment whose episode ends in step k.
+        NEXT_STEP: step k + 1 resets it instead of performing the action, with reward 0.
         SAME_STEP: step k resets it; the last observation and info are in infos["final_obs"] and infos["final_info"].
-        DISABLED: nothing; reset(options={"reset_mask": mask}) must follow.
+        DISABLED: nothing happens; call reset(options={"reset_mask": mask}).
     render_mode : str, optional
         "rgb_array" or "human": see `render`.
 
@@ -47,9 +47,9 @@ class VectorEnv(VectorEnvBase):
     ----------
     num_envs : int
     single_observation_space, single_action_space : Box
-        Of an environment, float32.
+        Of one environment, float32.
     observation_space, action_space : Box
-        Of all, stacked: (num_envs, size).
+        Of all environments, stacked: (num_envs, size).
     metadata : dict
         "render_modes" and "autoreset_mode".
 
@@ -95,20 +95,20 @@ class VectorEnv(VectorEnvBase):
     def reset(
         self, *, seed: Union[int, Sequence[Optional[int]], None] = None, options: Optional[Mapping[str, Any]] = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Begins episodes.
+        """Starts episodes.
 
         Parameters
         ----------
         seed : int or list of int, optional
-            s seeds environment i with s + i; a list has a seed, or None, for each. Without a seed, the generators continue.
+            A number s seeds environment i with s + i; a list has a seed, or None, for each. Without a seed, the generators continue.
         options : dict, optional
-            "reset_mask": (num_envs,) of bool, which environments to reset; all by default. The task's own, such as "goal":
-            a value for all environments, or an array with one more axis, a row for each.
+            "reset_mask": (num_envs,) bool, the environments to reset; all by default. Options of the task, such as "goal": a value
+            for all environments, or an array with one more axis, a row for each.
 
         Returns
         -------
         observations : (num_envs, size) float32
-            Of all environments, also those that were not reset.
+            Of all environments, including those that were not reset.
         infos : dict of arrays
 
         Raises
@@ -134,29 +134,28 @@ class VectorEnv(VectorEnvBase):
         return self._observations.copy(), self._gather(infos)
 
     def step(self, actions: Any) -> Arrays:
-        """Takes an action in every environment.
+        """Performs an action in every environment.
 
         Parameters
         ----------
         actions : (num_envs, actions) in [-1, 1]
-            What lies outside is clipped.
+            Values outside are clipped.
 
         Returns
         -------
         observations : (num_envs, size) float32
         rewards : (num_envs,) float64
         terminations : (num_envs,) bool
-            Where the task, or the simulation, is over; infos["failure"] then says what stopped a simulation.
+            Whether the task has ended or the simulation has failed; infos["failure"] then gives the reason.
         truncations : (num_envs,) bool
-            Where the time limit is reached.
+            Whether the time limit is reached.
         infos : dict of arrays
-            infos["x"][i] is of environment i where infos["_x"][i].
+            infos["x"][i] belongs to environment i where infos["_x"][i] is true.
 
         Raises
         ------
         Error
-            wrong-shape, wrong-type, not-finite; not-reset before a reset, and in the mode DISABLED where an episode has
-            ended.
+            wrong-shape, wrong-type, not-finite; not-reset before a reset, and in the mode DISABLED if an episode has ended.
         """
         self._check_open("step")
         actions = checked_actions(actions, self.action_space.shape, "step(actions)")
@@ -169,13 +168,13 @@ class VectorEnv(VectorEnvBase):
         return self._observations.copy(), rewards, terminations, truncations, infos
 
     def render(self) -> Any:
-        """Pictures of all environments, (height, width, 3) of uint8 each, if the render mode is "rgb_array"; else None."""
+        """Pictures of all environments, (height, width, 3) uint8 each, if the render mode is "rgb_array"; otherwise None."""
         self._check_open("render")
         self._check_begun(ended=True)
         return tuple(self._picture.frame(episode) for episode in self.episodes) if self.render_mode == "rgb_array" else None
 
     def close(self, **kwargs: Any) -> None:
-        """Ends the threads and lets go of the simulations; may be called again."""
+        """Ends the threads and releases the simulations. May be called repeatedly."""
         if getattr(self, "_open", False):
             self._open = False
             if self._executor is not None:
@@ -186,7 +185,7 @@ class VectorEnv(VectorEnvBase):
 
     @property
     def memory(self) -> int:
-        """Bytes of an environment's simulation between steps, without the shared model. It is to be reset before."""
+        """Memory of an environment's simulation between steps without the shared model, bytes. Call `reset` first."""
         self._check_begun(ended=True)
         return self.episodes[0].robot.sim.memory
 
@@ -194,7 +193,7 @@ class VectorEnv(VectorEnvBase):
         return f"VectorEnv({self.task.name!r}, num_envs={self.num_envs}, threads={self.threads}, {self.autoreset_mode.name})"
 
     def _step_each(self, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
-        """Steps one environment after the other in every thread."""
+        """Steps the environments of each thread one after the other."""
         count = self.num_envs
         rewards, terminations, truncations = np.zeros(count), np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
         infos: list[dict[str, Any]] = [{} for _ in range(count)]
@@ -218,7 +217,7 @@ class VectorEnv(VectorEnvBase):
         return rewards, terminations, truncations, self._gather(infos)
 
     def _step_together(self, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
-        """Steps all simulations at once; resets one after the other, which takes microseconds each."""
+        """Steps all simulations at once; resets them one after the other, which takes microseconds each."""
         rewards, terminations, truncations, infos = self._together.step(actions, ~self._ended, self._observations)
         same_step = self.autoreset_mode is AutoresetMode.SAME_STEP
         ended = np.flatnonzero(terminations | truncations if same_step else self._ended).tolist()
@@ -232,7 +231,7 @@ class VectorEnv(VectorEnvBase):
 
     @staticmethod
     def _taken(infos: dict[str, Any], i: int) -> dict[str, Any]:
-        """Takes the info of an environment out of those of all; what no other one has goes."""
+        """Removes the info of one environment from the infos of all, with keys that no other environment has."""
         taken: dict[str, Any] = {}
         for key in [key for key in infos if f"_{key}" in infos and infos[f"_{key}"][i]]:
             values, mask = infos[key], infos[f"_{key}"]
@@ -243,7 +242,7 @@ class VectorEnv(VectorEnvBase):
         return taken
 
     def _each(self, work: Callable[[int], None]) -> None:
-        """Calls work(i) for every environment, each block in a thread; the first in this one."""
+        """Calls work(i) for every environment, one block per thread; the first block in this thread."""
 
         def block(indices: range) -> None:
             for i in indices:
@@ -276,7 +275,7 @@ class VectorEnv(VectorEnvBase):
             gathered[f"_{key}"][i] = True
 
     def _empty(self, key: str, value: Any) -> Any:
-        """What takes up the values of all environments, as in Gymnasium: numbers in arrays, arrays stacked, the rest as objects."""
+        """Storage for the values of all environments, as in Gymnasium: numbers in arrays, arrays stacked, everything else as objects."""
         if isinstance(value, dict):
             return {}
         if isinstance(value, np.ndarray) and key != "final_obs":
@@ -312,7 +311,7 @@ class VectorEnv(VectorEnvBase):
         return given
 
     def _options_of(self, i: int, options: Mapping[str, Any]) -> dict[str, Any]:
-        """Options of one environment: rows of arrays that have one more axis than a value, other values as they are."""
+        """Options of one environment: rows of arrays that have one more axis than a value; other values unchanged."""
         rows = {}
         for name, value in options.items():
             if np.ndim(value) == self.task.options.get(name, np.inf) + 1:
@@ -328,7 +327,7 @@ class VectorEnv(VectorEnvBase):
             raise Error("closed", what, "the environment is closed", "make a new one")
 
     def _check_begun(self, ended: bool = False) -> None:
-        """Raises not-reset where an environment has not begun, or, in the mode DISABLED, has ended."""
+        """Raises not-reset if an environment was not reset, or, in the mode DISABLED, if its episode has ended."""
         waiting = ~self._begun
         if self.autoreset_mode is AutoresetMode.DISABLED and not ended:
             waiting = waiting | self._ended

@@ -73,7 +73,7 @@ def render(sim: Any, size: tuple[int, int] = (640, 480), camera: Union[Camera, s
 
 
 def png(picture: np.ndarray) -> bytes:
-    """A picture (height, width, 3) uint8 as a PNG file. Raises tool-missing without Pillow."""
+    """Encodes a picture (height, width, 3) uint8 as a PNG file. Raises tool-missing without Pillow."""
     import io
 
     from .video import need_pillow
@@ -84,7 +84,7 @@ def png(picture: np.ndarray) -> bytes:
 
 
 class _Callable(types.ModuleType):
-    """A module that is called as the function of its name."""
+    """A module that can be called like the function of its name."""
 
     def __call__(self, sim: Any, size: tuple[int, int] = (640, 480), camera: Union[Camera, str, None] = None, **options: Any) -> np.ndarray:
         return render(sim, size, camera, **options)
@@ -95,7 +95,7 @@ sys.modules[__name__].__class__ = _Callable
 
 
 def _repr_png_(sim: Any) -> Optional[bytes]:
-    """What a notebook shows of a simulation; None, which is its text, where nothing can be drawn."""
+    """PNG of a simulation for a notebook; None (the notebook then shows text) if nothing can be drawn."""
     from ..errors import Error
 
     try:

@@ -52,7 +52,7 @@ def _is_run(source: str) -> bool:
 
 
 def _scene_duration(sim: Any) -> float:
-    """s: the scene's own."""
+    """Duration of the scene, s."""
     told = parsed(sim.to_yaml()).get("duration")
     if told is None:
         raise Error("bad-argument", "--duration", "the scene does not say how long to simulate", "add --duration 5s")

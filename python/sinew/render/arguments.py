@@ -1,4 +1,4 @@
-"""Checks of what a renderer is told."""
+"""Checks of a renderer's arguments."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["checked_range", "checked_size", "goal_points"]
 
 
 def goal_points(goals: Any) -> list[np.ndarray]:
-    """(3,) m each, of an array, a mapping or None. Raises wrong-shape, not-finite."""
+    """(3,) m for each goal of an array, a mapping or None. Raises wrong-shape, not-finite."""
     if goals is None:
         return []
     points = np.asarray(list(goals.values()) if isinstance(goals, Mapping) else goals, dtype=float)

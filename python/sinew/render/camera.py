@@ -1,4 +1,4 @@
-"""From where a scene is seen."""
+"""Cameras and views."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ _MIN_SIZE = 1e-6  # m, of a scene
 
 @dataclasses.dataclass(frozen=True)
 class Camera:
-    """Where the camera is and where it looks.
+    """Position and direction of the camera.
 
     Parameters
     ----------
     position : (3,) array_like
         m.
     target : (3,) array_like
-        What is in the middle of the picture, m.
+        Point in the middle of the picture, m.
     up : (3,) array_like
-        What points up on the picture; any length.
+        Direction that points up in the picture; any length.
     field_of_view : float
         Angle from the lower to the upper edge of the picture, rad.
 
     Raises
     ------
     Error
-        wrong-shape, not-finite, out-of-range (also where `up` is along the line of sight).
+        wrong-shape, not-finite, out-of-range (also if `up` is along the line of sight).
     """
 
     position: tuple[float, float, float]
@@ -62,20 +62,20 @@ class Camera:
                         "choose another up")
 
     def axes(self) -> np.ndarray:
-        """(3, 3): rows point right, up, and out of the picture towards the camera; unit vectors."""
+        """(3, 3) unit vectors: rows point right, up, and out of the picture towards the camera."""
         back = _unit(np.subtract(self.position, self.target))
         right = _unit(np.cross(self.up, back))
         return np.stack([right, np.cross(back, right), back])
 
     def matrix(self, size: tuple[int, int], near: float, far: float) -> np.ndarray:
-        """(4, 4): from (x, y, z, 1), m, to OpenGL's clip coordinates.
+        """(4, 4) matrix from (x, y, z, 1), m, to OpenGL's clip coordinates.
 
         Parameters
         ----------
         size : (int, int)
             Width and height of the picture, pixels.
         near, far : float
-            Distances along the line of sight between which things are drawn, m.
+            Clipping distances along the line of sight, m.
         """
         view = np.eye(4)
         view[:3, :3] = self.axes()
@@ -88,7 +88,7 @@ class Camera:
         return lens @ view
 
     def project(self, points: ArrayLike, size: tuple[int, int]) -> np.ndarray:
-        """Where points are on a picture.
+        """Positions of points in a picture.
 
         Parameters
         ----------
@@ -100,7 +100,7 @@ class Camera:
         Returns
         -------
         (n, 2) ndarray
-            Pixels from the left and from the upper edge; NaN behind the camera. The pixel in row r and column c reaches
+            Pixels from the left and from the upper edge; NaN behind the camera. The pixel in row r and column c extends
             from (c, r) to (c + 1, r + 1).
         """
         seen = (np.asarray(points, dtype=float) - self.position) @ self.axes().T
@@ -110,7 +110,7 @@ class Camera:
 
 
 def axes_of_view(up: np.ndarray) -> np.ndarray:
-    """(3, 3): rows point right, to the front (towards the viewer of "front"), and up; for z up: x, -y and z."""
+    """(3, 3): rows point right, forward (towards the viewer of "front"), and up; for z up: x, -y and z."""
     up = _unit(up)
     # x points right unless it is (nearly) vertical.
     right = np.eye(3)[0] if abs(up[0]) < 0.9 else np.eye(3)[1]
@@ -119,22 +119,22 @@ def axes_of_view(up: np.ndarray) -> np.ndarray:
 
 
 def fit(points: np.ndarray, up: np.ndarray, view: str, size: tuple[int, int], left: float = 0.0, margin: float = 1.2) -> Camera:
-    """The camera that sees all points, as near as it can be.
+    """The closest camera that sees all points.
 
     Parameters
     ----------
     points : (n, 3) ndarray
         m.
     up : (3,) ndarray
-        What points up on the picture.
+        Direction that points up in the picture.
     view : str
         One of VIEWS.
     size : (int, int)
         Width and height of the picture, pixels.
     left : float
-        The share of the picture at its left edge that stays free.
+        Fraction of the picture at its left edge that stays free.
     margin : float
-        How much larger the picture is than what it shows.
+        Size of the picture relative to its content.
     """
     axes = axes_of_view(up)
     back = _unit(np.array(VIEWS[view]) @ axes)
@@ -158,7 +158,7 @@ def fit(points: np.ndarray, up: np.ndarray, view: str, size: tuple[int, int], le
 
 
 def camera_of(camera: Union[Camera, str, None], points: np.ndarray, up: np.ndarray, size: tuple[int, int], left: float = 0.0) -> Camera:
-    """A Camera as it is, and one that fits the points for the name of a view or None. Raises unknown-name, wrong-type."""
+    """A Camera unchanged, or for None or the name of a view one that is fitted to the points. Raises unknown-name, wrong-type."""
     if isinstance(camera, Camera):
         return camera
     if camera is None:

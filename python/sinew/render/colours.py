@@ -1,4 +1,4 @@
-"""Colours of values, and the bar that tells them."""
+"""Colours of values, and the colour bar."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def unknown(item: str, what: str, name: Any, known: Any) -> Error:
 
 @functools.lru_cache(maxsize=None)
 def table(name: str) -> np.ndarray:
-    """(256, 3) uint8 sRGB: the colours of a map, from the least to the largest value. Raises unknown-name."""
+    """(256, 3) uint8 sRGB: the colours of a map, from the smallest to the largest value. Raises unknown-name."""
     if name not in _SAMPLES:
         raise unknown("colour_map", "colour map", name, MAPS)
     samples = np.array(_SAMPLES[name], dtype=float)
@@ -58,7 +58,7 @@ def unit_of(field: str) -> str:
 
 
 def parse(colour: Any, item: str) -> tuple[float, float, float]:
-    """Red, green and blue in 0..1 of "#rrggbb" or of three such numbers. Raises out-of-range."""
+    """Red, green and blue from 0 to 1, from "#rrggbb" or three such numbers. Raises out-of-range."""
     try:
         if isinstance(colour, str) and colour.startswith("#") and len(colour) == 7:
             return tuple(int(colour[k : k + 2], 16) / 255.0 for k in (1, 3, 5))  # type: ignore[return-value]
@@ -71,7 +71,7 @@ def parse(colour: Any, item: str) -> tuple[float, float, float]:
 
 
 def ticks(low: float, high: float, unit: str) -> list[str]:
-    """Texts of five values from high to low, of one prefix, with as many decimals as tell them apart."""
+    """Labels of five values from high to low, with a common prefix and enough decimals to distinguish them."""
     largest = max(abs(low), abs(high))
     scale, prefix = next(((s, p) for s, p in _PREFIXES if unit and largest >= 0.9995 * s), (1.0, ""))
     shown = f"{prefix}{unit}".replace("^3", "³")
@@ -92,7 +92,7 @@ def _font(size: int) -> Any:
 
 @functools.lru_cache(maxsize=32)
 def bar(field: str, low: float, high: float, colour_map: str, height: int, ink: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray]:
-    """The colour bar for a picture of a height: colours (h, w, 3) and opacities (h, w, 1), 0..1.
+    """Colour bar for a picture of a height: colours (h, w, 3) and opacities (h, w, 1), 0 to 1.
 
     Raises
     ------
@@ -128,7 +128,7 @@ def bar(field: str, low: float, high: float, colour_map: str, height: int, ink: 
 
 
 def put_bar(picture: np.ndarray, field: str, low: float, high: float, colour_map: str, background: tuple[float, float, float]) -> None:
-    """Draws the colour bar into the upper left of a picture (height, width, 3) uint8, in ink that is read on the background."""
+    """Draws the colour bar into the upper left of a picture (height, width, 3) uint8, in ink that contrasts with the background."""
     dark = float(np.dot(background, (0.3, 0.6, 0.1))) < 0.45
     shown, opacity = bar(field, low, high, colour_map, picture.shape[0], (228, 232, 236) if dark else (40, 48, 58))
     below = picture[: shown.shape[0], : shown.shape[1]]

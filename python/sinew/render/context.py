@@ -1,4 +1,4 @@
-"""The graphics context of a thread: kept and used again, without a window."""
+"""Graphics context of a thread, without a window; kept and reused."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _own = threading.local()
 
 
 class Context:
-    """Programs and buffers that all pictures of a thread share.
+    """Programs and buffers shared by all pictures of a thread.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class Context:
         try:
             self.gl = moderngl.create_context(standalone=True, backend="egl", require=330)
         except Exception as problem:  # of many kinds, whatever the driver is
-            raise Error("tool-missing", "render", f"no graphics context could be made: {problem}",
+            raise Error("tool-missing", "render", f"no graphics context could be created: {problem}",
                         "install libegl1 and libgl1-mesa-dri, whose software renderer needs no graphics card") from None
         self.body, self.plain, self.mark, self.plane = (
             self.gl.program(vertex_shader=vertex.strip(), fragment_shader=fragment.strip())
@@ -57,7 +57,7 @@ class Context:
         self.patch = self.gl.vertex_array(self.plane, [(self.corners, "2f", "corner")])
 
     def frames(self, size: tuple[int, int]) -> tuple[Any, Any]:
-        """Framebuffers of a size: one that is drawn to, and one of single samples that is read. Raises out-of-range."""
+        """Framebuffers of a size: a multisampled one for drawing and one with single samples for reading. Raises out-of-range."""
         if size not in self._pictures:
             most = self.gl.info["GL_MAX_RENDERBUFFER_SIZE"]
             if max(size) > most:
@@ -94,7 +94,7 @@ def current() -> Optional[Context]:
 
 
 def context() -> Context:
-    """The context of this thread and process, made when it is first asked for.
+    """The context of this thread and process, created at the first call.
 
     Raises
     ------

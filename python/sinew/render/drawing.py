@@ -23,7 +23,7 @@ _SHADE = 0.34  # darkest shadow
 
 
 class Triangles:
-    """The surfaces of all bodies on the graphics card.
+    """Surfaces of all bodies on the graphics card.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class Triangles:
     triangles, edges : (t, 3) and (e, 2) ndarrays of int
         Vertices.
     colours : (v, 3) ndarray
-        sRGB, 0..1, where a vertex has no value.
+        sRGB, 0 to 1, for vertices without a value.
     """
 
     def __init__(self, context: Context, triangles: np.ndarray, edges: np.ndarray, colours: np.ndarray) -> None:
@@ -50,14 +50,14 @@ class Triangles:
         self._buffers = [self._moving, still, sides, lines]
 
     def write(self, points: np.ndarray, normals: np.ndarray, values: np.ndarray) -> None:
-        """Takes positions (v, 3) m, unit normals (v, 3), and values (v,): 0..1 of the colour map, or -1 for none."""
+        """Uploads positions (v, 3) m, unit normals (v, 3), and values (v,): 0 to 1 in the colour map, or -1 for none."""
         self._data[:, :3], self._data[:, 3:6], self._data[:, 6] = points, normals, values
         if len(self._data):
             self._moving.write(self._data.tobytes())
 
     @property
     def points(self) -> np.ndarray:
-        """(v, 3) float32, m: as they were written."""
+        """(v, 3) float32, m: the last uploaded positions."""
         return self._data[:, :3]
 
     def release(self) -> None:
@@ -68,22 +68,22 @@ class Triangles:
 
 @dataclasses.dataclass
 class Patch:
-    """What is seen of a plane.
+    """Visible part of a plane.
 
     Attributes
     ----------
     origin, normal : (3,) ndarrays
-        Where lines of the grid cross, m; unit.
+        A crossing of grid lines, m; unit normal.
     middle : (3,) ndarray
-        Of the patch, on the plane, m.
+        Centre of the patch on the plane, m.
     reach : float
         Half of its side, m.
     cell : float
-        Of the grid, m.
+        Grid spacing, m.
     solid : float
         Opacity of the plane itself.
     first_axis : (3,) ndarray
-        Along lines of the grid, unit.
+        Unit vector along grid lines.
     """
 
     origin: np.ndarray
@@ -97,7 +97,7 @@ class Patch:
 
 @dataclasses.dataclass
 class DrawList:
-    """All that is drawn.
+    """Content of a picture.
 
     Attributes
     ----------
@@ -105,12 +105,12 @@ class DrawList:
     up : (3,) ndarray
     triangles : Triangles
     palette : moderngl.Texture
-        Of the values.
+        Colour map of the values.
     solids, marks : Marks
-        Marks are seen through bodies, faintly.
+        Marks are faintly visible through bodies.
     patches : list of Patch
     lit, edges : bool
-        Whether there is light, or colours as they are; whether to draw the edges of the mesh.
+        Whether to use lighting instead of plain colours; whether to draw the edges of the mesh.
     """
 
     background: tuple[float, float, float]
@@ -125,7 +125,7 @@ class DrawList:
 
 
 def draw(context: Context, draw_list: DrawList, camera: Camera, size: tuple[int, int]) -> np.ndarray:
-    """A picture (height, width, 3) uint8."""
+    """Draws a picture (height, width, 3) uint8."""
     import moderngl
 
     gl = context.gl
@@ -172,7 +172,7 @@ def draw(context: Context, draw_list: DrawList, camera: Camera, size: tuple[int,
 
 
 def _depths(points: list[np.ndarray], patches: list[Patch], camera: Camera) -> tuple[float, float]:
-    """Distances along the line of sight between which all is."""
+    """Clipping distances along the line of sight that contain everything."""
     back = camera.axes()[2]
     depths = [-(part - np.array(camera.position, dtype="f4")) @ back for part in points if len(part)]
     depths += [-(patch.middle - camera.position) @ back + patch.reach * np.array([-1.5, 1.5]) for patch in patches]
@@ -184,7 +184,7 @@ def _depths(points: list[np.ndarray], patches: list[Patch], camera: Camera) -> t
 
 
 def _cast_shadow(context: Context, triangles: Triangles, solids: _Uploaded, sun: np.ndarray) -> Optional[bytes]:
-    """Draws bodies and solids as the sun sees them; the matrix from the world to places on that texture."""
+    """Draws bodies and solids as seen from the light source; returns the matrix from the world to positions on that texture."""
     points = np.concatenate([triangles.points, solids.points])
     if len(points) == 0:
         return None
@@ -230,7 +230,7 @@ def _draw_patch(context: Context, patch: Patch, camera: Camera, shadow: Optional
 
 
 class _Uploaded:
-    """Marks on the graphics card, for as long as a frame is drawn."""
+    """Marks on the graphics card while a frame is drawn."""
 
     def __init__(self, context: Context, marks: Marks) -> None:
         self._program, self._parts = context.mark, []
@@ -257,5 +257,5 @@ class _Uploaded:
 
 
 def _bytes(matrix: np.ndarray) -> bytes:
-    """As GLSL takes it: column after column."""
+    """In GLSL's order, column by column."""
     return np.ascontiguousarray(matrix.T, dtype="f4").tobytes()

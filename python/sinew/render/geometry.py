@@ -21,7 +21,7 @@ _RIM = {3: [[0, 1], [1, 2], [2, 0]], 4: [[0, 1], [1, 2], [2, 3], [3, 0]], 6: [[0
 
 
 def _outer(elements: np.ndarray, faces: np.ndarray, corners: int) -> np.ndarray:
-    """Faces (k, nodes of a face) that belong to one element only."""
+    """Faces (k, nodes of a face) that belong to a single element."""
     own = np.asarray(elements)[:, faces].reshape(-1, faces.shape[1])
     if len(own) == 0:
         return own
@@ -31,7 +31,7 @@ def _outer(elements: np.ndarray, faces: np.ndarray, corners: int) -> np.ndarray:
 
 
 def boundary_of(body: Any) -> tuple[np.ndarray, np.ndarray]:
-    """The surface of a body.
+    """Surface of a body.
 
     Parameters
     ----------
@@ -40,9 +40,9 @@ def boundary_of(body: Any) -> tuple[np.ndarray, np.ndarray]:
     Returns
     -------
     triangles : (t, 3) ndarray of int
-        Nodes, counter-clockwise from outside.
+        Nodes, counter-clockwise seen from outside.
     edges : (e, 2) ndarray of int
-        Nodes of the edges of the mesh there.
+        Nodes of the mesh edges on the surface.
     """
     quadratic = np.asarray(body.quadratic_tetrahedra)
     tetrahedra = (_outer(quadratic, _QUADRATIC, 3) if len(quadratic) else _outer(body.tetrahedra, _TETRAHEDRON, 3))
@@ -55,23 +55,23 @@ def boundary_of(body: Any) -> tuple[np.ndarray, np.ndarray]:
 
 
 class Skin:
-    """The surface of a body, ready to be drawn at any positions of its nodes.
+    """Surface of a body, for drawing at any positions of its nodes.
 
-    A node on a crease has a vertex for each smooth part that meets there, so that edges stay sharp.
+    A node on a crease has a vertex for each smooth part that meets there, so that creases stay sharp.
 
     Parameters
     ----------
     triangles : (t, 3) ndarray of int
         Nodes.
     edges : (e, 2) ndarray of int
-        Nodes; of the mesh, for those who want to see it.
+        Nodes of mesh edges, which can be drawn.
     rest : (n, 3) ndarray
-        Positions of the nodes at rest, m, which decide where creases are.
+        Positions of the nodes at rest, m; they determine the creases.
 
     Attributes
     ----------
     nodes : (v,) ndarray of int
-        The node of each vertex.
+        Node of each vertex.
     triangles : (t, 3) ndarray of int
         Vertices.
     edges : (e, 2) ndarray of int
@@ -102,7 +102,7 @@ class Skin:
         Returns
         -------
         points, normals : (v, 3) ndarrays of float32
-            m; unit, or zero where the surface has no area.
+            m; unit vectors, or zero for surfaces without area.
         """
         points = np.asarray(positions, dtype=float)[self.nodes]
         if len(points) == 0:
@@ -115,13 +115,13 @@ class Skin:
 
 
 def _areas(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """(t, 3): vectors along the outward normals, twice as long as the areas, m^2."""
+    """(t, 3): vectors along the outward normals with twice the area as length, m^2."""
     a, b, c = points[triangles[:, 0]], points[triangles[:, 1]], points[triangles[:, 2]]
     return np.cross(b - a, c - a)
 
 
 def _smooth_parts(triangles: np.ndarray, rest: np.ndarray) -> np.ndarray:
-    """(3 t,): equal numbers for the corners of triangles that share a node and a normal."""
+    """(3 t,): equal numbers for corners of triangles that share a node and a normal."""
     count = len(triangles)
     areas = _areas(rest, triangles)
     normals = areas / np.maximum(np.linalg.norm(areas, axis=1), 1e-300)[:, None]

@@ -13,14 +13,14 @@ _TUBE, _FINE = 8, 20  # sides of tubes, which are thin; of rods and balls
 
 
 class Marks:
-    """Round things of one frame, collected and drawn together.
+    """Round objects of one frame, drawn together.
 
     Attributes
     ----------
     vertices : (v, 9) ndarray of float32
         Position, m, unit normal, and sRGB.
     triangles : (t, 3) ndarray of int32
-        Counter-clockwise from outside.
+        Counter-clockwise seen from outside.
     """
 
     def __init__(self) -> None:
@@ -59,7 +59,7 @@ class Marks:
         self.ball(points[[0, -1]], radius, colour, _TUBE)
 
     def rod(self, first: np.ndarray, last: np.ndarray, radii: tuple[Any, Any], colour: Any) -> None:
-        """Adds cylinders or cones from (k, 3) to (k, 3), m, with a radius at each end, m, closed at the first."""
+        """Adds cylinders or cones from (k, 3) to (k, 3), m, with a radius at each end, m, closed at the first end."""
         k, along = len(first), last - first
         lengths = np.maximum(np.linalg.norm(along, axis=1), 1e-12)
         axis = along / lengths[:, None]
@@ -77,7 +77,7 @@ class Marks:
         self._add(cap.reshape(-1, 3), np.repeat(-axis, _FINE + 1, axis=0), colour, fans)
 
     def arrows(self, points: np.ndarray, vectors: np.ndarray, radius: float, colour: Any) -> None:
-        """Adds arrows from points (k, 3) along vectors (k, 3), m, with shafts of a radius, m, or thinner where they are short."""
+        """Adds arrows from points (k, 3) along vectors (k, 3), m, with shafts of a given radius, m; short arrows are thinner."""
         lengths = np.linalg.norm(vectors, axis=1)
         heads = np.minimum(5.0 * radius, 0.6 * lengths)
         necks = points + vectors * (1.0 - heads / lengths)[:, None]
@@ -99,7 +99,7 @@ def _units(vectors: np.ndarray) -> np.ndarray:
 
 
 def _rings(axis: np.ndarray, aside: np.ndarray, sides: int) -> np.ndarray:
-    """(k, sides, 3): unit vectors round axes (k, 3) from `aside` on."""
+    """(k, sides, 3): unit vectors around axes (k, 3), starting at `aside`."""
     angle = 2.0 * np.pi * np.arange(sides) / sides
     third = np.cross(axis, aside)
     return np.cos(angle)[:, None] * aside[:, None] + np.sin(angle)[:, None] * third[:, None]
@@ -107,7 +107,7 @@ def _rings(axis: np.ndarray, aside: np.ndarray, sides: int) -> np.ndarray:
 
 @functools.lru_cache(maxsize=4)
 def _band(sides: int) -> np.ndarray:
-    """(2 sides, 3): triangles between a ring and the next."""
+    """(2 sides, 3): triangles between two successive rings."""
     k = np.arange(sides)
     n = (k + 1) % sides
     return np.vstack([np.stack([k, n, n + sides], axis=1), np.stack([k, n + sides, k + sides], axis=1)])

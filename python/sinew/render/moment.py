@@ -1,4 +1,4 @@
-"""What is seen of a robot at one moment, of a simulation or of a recorded run."""
+"""State of a robot at one moment, as far as a picture shows it, from a simulation or a recorded run."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["Moment", "between", "moment_of"]
 
 @dataclasses.dataclass
 class Moment:
-    """See the file. All in the world's axes.
+    """The state that a picture shows, in world axes.
 
     Attributes
     ----------
@@ -25,15 +25,15 @@ class Moment:
     positions : dict of str to (n, 3) ndarray
         Of the nodes of each body, m.
     values : dict of str to (n,) ndarray
-        Of a field at the nodes of the bodies that have it.
+        Values of a field at the nodes of the bodies that have it.
     cables : dict of str to (k, 3) ndarray
-        Points, the pull point first, m; of springs, too.
+        Points of cables and springs, the pull point first, m.
     slack : set of str
         Cables without tension.
     poses : dict of str to (3, 4) ndarray
-        Rotation and shift (m) of the surfaces of contacts that move.
+        Rotation and translation (m) of moving contact surfaces.
     touching, forces : (m, 3) ndarrays
-        Points of contacts, m, and the forces on the bodies there, N.
+        Contact points, m, and the forces on the bodies there, N.
     effectors, goals : dict of str to (3,) ndarray
         m.
     """
@@ -51,7 +51,7 @@ class Moment:
 
 
 def moment_of(sim: Any, outline: Outline, field: Optional[str] = None) -> Moment:
-    """A simulation as it is now.
+    """Present state of a simulation.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def moment_of(sim: Any, outline: Outline, field: Optional[str] = None) -> Moment
     outline : Outline
         Of its scene.
     field : str, optional
-        "displacement", or a name of sinew.fields.FIELDS.
+        "displacement", or a name in sinew.fields.FIELDS.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def moment_of(sim: Any, outline: Outline, field: Optional[str] = None) -> Moment
 
 
 def _values(body: Any, field: str) -> Optional[np.ndarray]:
-    """(n,): a field at a body's nodes; None where the body has no such field."""
+    """(n,): a field at a body's nodes; None if the body does not have the field."""
     if field == "displacement":
         return np.linalg.norm(np.asarray(body.positions) - np.asarray(body.rest_positions), axis=1)
     unit_of(field)  # or an error
@@ -104,7 +104,7 @@ def _values(body: Any, field: str) -> Optional[np.ndarray]:
 
 
 def _goals(sim: Any) -> dict[str, np.ndarray]:
-    """(3,) m of each effector that the controller brings to a point."""
+    """(3,) m of each effector that a controller moves to a point."""
     if sim.controller is None:
         return {}
     targets, found = sim.controller.targets, {}
@@ -116,7 +116,7 @@ def _goals(sim: Any) -> dict[str, np.ndarray]:
 
 
 def between(first: Moment, second: Moment, share: float) -> Moment:
-    """The moment at a share of the way from one to another of the same robot; what is no number is of the nearer one."""
+    """Linear interpolation between two moments of a robot; values that are not numbers come from the nearer one."""
 
     def mixed(a: Any, b: Any) -> Any:
         if isinstance(a, dict):

@@ -29,7 +29,7 @@ def need_h5py() -> Any:
 
 
 class Recording:
-    """A run that `sinew run` recorded, opened to be drawn.
+    """A run recorded by `sinew run`, opened for drawing.
 
     Parameters
     ----------
@@ -82,12 +82,12 @@ class Recording:
         return len(self.times)
 
     def at(self, time: float, field: Optional[str] = None) -> Moment:
-        """The robot at a time, s, on a straight line between the two recorded moments round it.
+        """State at a time, interpolated linearly between the two nearest recorded moments.
 
         Parameters
         ----------
         time : float
-            s; before the first and after the last moment, that one.
+            s; times outside the recording give its first or last moment.
         field : str, optional
             None or "displacement".
         """
@@ -127,7 +127,7 @@ class Recording:
         )
 
     def close(self) -> None:
-        """Closes the file; may be called again."""
+        """Closes the file. May be called repeatedly."""
         self._file.close()
 
     def __enter__(self) -> Recording:
@@ -149,9 +149,9 @@ class Recording:
 
 
 class _Thread:
-    """A cable that goes with the bodies it runs through, whose points are not recorded.
+    """A cable that moves with the bodies it runs through, because its points are not recorded.
 
-    Each point is an affine combination of the nodes of the nearest element at the start.
+    Each point is an affine combination of the nodes of the element that is nearest at the start.
     """
 
     def __init__(self, points: np.ndarray, sim: Any, start: Moment, held: bool) -> None:
@@ -168,7 +168,7 @@ class _Thread:
             self._parts.append((k, name, own, _weights(start.positions[name][own], point)))
 
     def points(self, positions: dict[str, np.ndarray]) -> np.ndarray:
-        """(k, 3) m for positions of the bodies' nodes."""
+        """(k, 3) m for given positions of the bodies' nodes."""
         now = self._points.copy()
         for k, name, nodes, weights in self._parts:
             now[k] = weights @ positions[name][nodes]
@@ -176,12 +176,12 @@ class _Thread:
 
 
 def _elements(body: Any) -> list[np.ndarray]:
-    """Nodes of elements, (m, k) for each kind; of a body without elements all nodes as one."""
+    """Nodes of elements, (m, k) for each kind; for a body without elements, all nodes as one."""
     found = [np.asarray(part) for part in (body.tetrahedra, body.hexahedra) if len(part)]
     return found or [np.arange(len(body.positions))[None]]
 
 
 def _weights(nodes: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """The least weights of sum 1 with which nodes (k, 3) give a point."""
+    """Minimum-norm weights with sum 1 with which nodes (k, 3) give a point."""
     middle = nodes.mean(axis=0)
     return 1.0 / len(nodes) + (point - middle) @ np.linalg.pinv(nodes - middle, rcond=1e-6)

@@ -140,12 +140,12 @@ class Renderer:
         self._ground, self._reach = None, 0.0
 
     def frame(self, moment: Optional[Moment] = None) -> np.ndarray:
-        """A picture of the simulation as it is now, or of a moment of a recorded run: (height, width, 3) uint8.
+        """Picture of the present state of the simulation, or of a moment of a recorded run: (height, width, 3) uint8.
 
         Raises
         ------
         Error
-            wrong-shape, not-finite, of goals; closed; simulation-busy.
+            wrong-shape, not-finite for goals; closed; simulation-busy.
         """
         if self._triangles is None:
             raise Error("closed", "Renderer.frame", "the renderer is closed", "make a new one")
@@ -171,9 +171,9 @@ class Renderer:
         return picture
 
     def see(self, points: ArrayLike) -> None:
-        """Fits the camera to points (n, 3) m, such as all places where a robot will be, unless it is a Camera already.
+        """Fits the camera to points (n, 3) m, such as all positions that a robot will reach, unless it is a Camera already.
 
-        The grid lies below them and below the robot at rest.
+        The floor grid lies below these points and below the robot at rest.
         """
         points = np.asarray(points, dtype=float)
         left = min(0.3, 0.2 * self.size[1] / self.size[0]) if self._bar and self.field is not None else 0.0
@@ -183,7 +183,7 @@ class Renderer:
         self._ground = min(float((part @ self.outline.up).min()) for part in (points, self._rest)) * self.outline.up
 
     def extent(self, moment: Moment) -> np.ndarray:
-        """(n, 3) m: points of all that is drawn at a moment, of a plane the one that is nearest to the robot; for see()."""
+        """(n, 3) m: points of everything drawn at a moment, for see(); a plane contributes its point nearest to the robot."""
         solids = Marks()
         for surface in self._surfaces(moment):
             _add_solid(solids, surface)
@@ -197,13 +197,13 @@ class Renderer:
         return everything[np.isfinite(everything).all(axis=1)]
 
     def restart(self, camera: Union[Camera, str, None] = None) -> None:
-        """Forgets the camera, the scale of forces and the range of colours, as if nothing had been drawn."""
+        """Resets the camera, the scale of forces and the colour range to their initial state."""
         self.camera, self._largest_force, self._ground = camera, 0.0, None
         if not self._fixed_range:
             self._range = None
 
     def widen(self, moments: Iterable[Moment]) -> None:
-        """Widens the range of the colours to the values of moments, unless it was given."""
+        """Widens the colour range to the values of moments, unless it was given."""
         for values in (v for moment in moments for v in moment.values.values() if len(v) and not self._fixed_range):
             low, high = float(values.min()), float(values.max())
             self._range = (low, high) if self._range is None else (min(self._range[0], low), max(self._range[1], high))
@@ -226,7 +226,7 @@ class Renderer:
         self.close()
 
     def _write(self, moment: Moment) -> tuple[float, float]:
-        """Moves the surfaces; the range of the colours."""
+        """Moves the surfaces and updates the colour range."""
         self.widen([moment])
         low, high = self._range or (0.0, 0.0)
         count = self._triangles.points.shape[0]
@@ -291,7 +291,7 @@ class Renderer:
 
 
 def _add_solid(solids: Marks, surface: Surface) -> None:
-    """A ball or a capsule; planes are patches."""
+    """Adds a ball or a capsule; planes are patches."""
     if surface.kind == "plane":
         return
     solids.ball(surface.points, surface.radius, _SURFACE)

@@ -1,4 +1,4 @@
-"""What a scene's text says of the picture: gravity, surfaces that are touched, and where cables end."""
+"""Parts of a scene's text that a picture needs: gravity, contact surfaces, and the ends of cables."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Surface:
     kind : str
         "plane", "sphere" or "capsule".
     points : (1 or 2, 3) ndarray
-        A point of the plane, the sphere's centre, or the ends of the capsule's axis, m, where the scene puts them.
+        A point of the plane, the sphere's centre, or the ends of the capsule's axis, m, at their positions in the scene.
     normal : (3,) ndarray
         Of a plane, unit.
     radius : float
@@ -38,7 +38,7 @@ class Surface:
     moves: bool
 
     def moved(self, pose: Optional[np.ndarray]) -> Surface:
-        """The surface after a rotation and shift (3, 4), m, from where the scene puts it; None for none."""
+        """The surface after a rotation and translation (3, 4), m, from its position in the scene; None for none."""
         if pose is None:
             return self
         turn, shift = pose[:, :3], pose[:, 3]
@@ -47,12 +47,12 @@ class Surface:
 
 @dataclasses.dataclass(frozen=True)
 class Outline:
-    """See the file.
+    """Parts of a scene that a picture needs.
 
     Attributes
     ----------
     up : (3,) ndarray
-        Against gravity, unit; +z without gravity.
+        Unit vector opposite to gravity; +z without gravity.
     surfaces : dict of str to Surface
         By the names of the contacts.
     held : set of str
@@ -65,7 +65,7 @@ class Outline:
 
 
 def parsed(text: str) -> dict[str, Any]:
-    """A scene's text as dicts and lists of text. Raises tool-missing without PyYAML."""
+    """Parses a scene's text into dicts and lists of text. Raises tool-missing without PyYAML."""
     try:
         import yaml
     except ImportError:
@@ -106,7 +106,7 @@ def _direction(written: Any) -> np.ndarray:
 
 
 def _vector(written: Any) -> np.ndarray:
-    """(3,), SI, of "0 0 190 mm" or of a list of numbers."""
+    """(3,), SI, from "0 0 190 mm" or a list of numbers."""
     if not isinstance(written, str):
         return np.array([_core._quantity(str(number))[0] for number in written])
     # The unit may stand against the last number.

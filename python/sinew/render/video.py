@@ -1,4 +1,4 @@
-"""Videos: frames into an mp4, an animated WebP or GIF, or a series of PNG."""
+"""Videos: frames as mp4, animated WebP or GIF, or a series of PNG files."""
 
 from __future__ import annotations
 
@@ -41,32 +41,32 @@ def video(
     Parameters
     ----------
     path : path-like
-        NAME.mp4 (needs the program ffmpeg), NAME.webp or NAME.gif (need Pillow, which keeps all frames in memory and makes
-        one long frame of equal ones), or a series of PNG: a name with %04d, or a folder.
+        NAME.mp4 (needs the program ffmpeg), NAME.webp or NAME.gif (need Pillow, which keeps all frames in memory and merges
+        equal consecutive frames), or a series of PNG files: a name with %04d, or a folder.
     source : iterable of arrays, Simulation, Recording or path-like
-        Frames (height, width, 3) uint8 of one size; a simulation, which is stepped and drawn; or a recorded run, or its folder,
-        which is drawn.
+        Frames (height, width, 3) uint8 of one size; a simulation, which is stepped and drawn; or a recorded run or its
+        folder, which is drawn.
     fps : float
-        Frames a second of the video.
+        Frames per second of the video.
     speed : float
-        Simulated seconds a second of the video; not for frames.
+        Simulated seconds per second of the video; not for frames.
     duration : float, optional
-        Of a simulation, s; it must be given. Of a recorded run, from its start, by default all of it.
+        Simulated time, s; required for a simulation. For a recorded run, the time from its start; by default all of it.
     progress : bool
-        Whether to show on a terminal how far it is.
+        Whether to show the progress on a terminal.
     **options
         As for Renderer: size, camera, field ...
 
     Returns
     -------
     Path
-        Of the file, or the folder of the series.
+        The file, or the folder of the series.
 
     Raises
     ------
     Error
-        tool-missing, unknown-format, file-unwritable, out-of-range, bad-argument, wrong-shape; of runs and pictures what
-        Recording and Renderer raise.
+        tool-missing, unknown-format, file-unwritable, out-of-range, bad-argument, wrong-shape; and the errors of Recording
+        and Renderer.
     """
     writer = check_path(path)
     for name, value in (("fps", fps), ("speed", speed)):
@@ -77,7 +77,7 @@ def video(
             return video(path, run, fps, speed=speed, duration=duration, progress=progress, **options)
     if isinstance(source, Simulation):
         if duration is None:
-            raise Error("bad-argument", "video(duration)", "it is not said how long to simulate", "give duration in s")
+            raise Error("bad-argument", "video(duration)", "the duration is missing", "give duration in s")
         count = _count(duration, fps, speed)
         frames = _of_simulation(source, count, speed / fps, options)
     elif isinstance(source, Recording):
@@ -94,7 +94,7 @@ def video(
 
 
 def _count(duration: float, fps: float, speed: float) -> int:
-    """Frames of a duration, its two ends included."""
+    """Number of frames of a duration, including both ends."""
     frames = duration * fps / speed
     if not 0.0 <= frames < _MAX_FRAMES:
         raise Error("out-of-range", "video(duration)", f"{duration:g} s are {frames:g} frames",
@@ -124,7 +124,7 @@ def _of_recording(run: Recording, count: int, interval: float, options: dict[str
 
 
 def _checked(frames: Iterable[np.ndarray]) -> Iterator[np.ndarray]:
-    """The frames, which are of one size."""
+    """Yields the frames and checks that they have one size."""
     shape = None
     for frame in frames:
         frame = np.asarray(frame)
@@ -138,7 +138,7 @@ def _checked(frames: Iterable[np.ndarray]) -> Iterator[np.ndarray]:
 
 
 def _shown(frames: Iterator[np.ndarray], count: int) -> Iterator[np.ndarray]:
-    """The frames; tells on a terminal how many of `count` are done."""
+    """Yields the frames and shows on a terminal how many of `count` are done."""
     shown = count > 0 and sys.stderr.isatty()
     for k, frame in enumerate(frames):
         yield frame
@@ -147,7 +147,9 @@ def _shown(frames: Iterator[np.ndarray], count: int) -> Iterator[np.ndarray]:
 
 
 def check_path(path: Union[str, os.PathLike[str]]) -> Any:
-    """What writes a video of that name: to be called before a long run. Raises tool-missing, unknown-format, file-unwritable."""
+    """Checks that a video of that name can be written; to be called before a long run. Raises tool-missing, unknown-format,
+    file-unwritable.
+    """
     path = pathlib.Path(path)
     folder = path if path.suffix == "" else path.parent
     while not folder.exists() and folder != folder.parent:

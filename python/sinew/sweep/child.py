@@ -1,4 +1,4 @@
-"""Samples with a time limit run in a process of their own, which can be ended with all that it started."""
+"""Samples with a time limit run in a separate process, which can be killed with all processes that it started."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ _LONGEST_WAIT = 3600.0  # s; select() takes no infinity
 
 
 class Child:
-    """A process that runs samples one by one, replaced when one takes too long or ends it.
+    """A process that runs samples one by one. It is replaced if a sample takes too long or ends it.
 
     Parameters
     ----------
     packed : bytes
         The job.
     timeout : float
-        s, of each sample.
+        Limit on each sample, s.
     """
 
     def __init__(self, packed: bytes, timeout: float) -> None:
@@ -53,7 +53,7 @@ class Child:
         return Row(index, "failed", error, time.perf_counter() - begin, {})
 
     def close(self) -> None:
-        """Ends the process and what it started."""
+        """Ends the process and all processes that it started."""
         if self._process is None:
             return
         try:
@@ -102,7 +102,7 @@ class Child:
 
 
 def serve() -> None:
-    """What the process does: reads the job, then samples, until its input ends."""
+    """Main loop of the process: reads the job, then samples, until its input ends."""
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)  # not to outlive the worker
     source, sink = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     # What samples print must not come between the rows, nor may they wait for input.

@@ -1,4 +1,4 @@
-"""Runs the samples of a sweep on Dask's workers and writes what comes back."""
+"""Runs the samples of a sweep on Dask's workers and writes the results."""
 
 from __future__ import annotations
 
@@ -30,19 +30,19 @@ _CONNECT, _FIRST_WORKER = 20.0, 120.0  # s
 
 
 class Batches:
-    """How many samples go together, by the time that they took so far."""
+    """Size of batches of samples, from the times measured so far."""
 
     def __init__(self) -> None:
         self._recent: deque[float] = deque(maxlen=9)  # s a sample
         self._largest = 1
 
     def add(self, rows: Sequence[Row]) -> None:
-        """A batch that was done."""
+        """Takes a finished batch into account."""
         self._recent.append(sum(row.seconds for row in rows) / len(rows))
         self._largest = max(self._largest, len(rows))
 
     def size(self, left: int, workers: int) -> int:
-        """Of the next batch. At the end batches become smaller, so that no worker waits long for the last one."""
+        """Size of the next batch. Batches become smaller towards the end, so that no worker waits long for the last one."""
         if not self._recent:
             return 1
         typical = sorted(self._recent)[len(self._recent) // 2]
@@ -52,12 +52,12 @@ class Batches:
 
 @contextlib.contextmanager
 def connect(scheduler: Any, workers: Optional[int]) -> Iterator[Any]:
-    """A Dask client: of a scheduler that runs, of its address, or of a cluster of processes on this machine.
+    """A Dask client: of a running scheduler, of its address, or of a cluster of processes on this machine.
 
     Raises
     ------
     Error
-        tool-missing without Dask; bad-argument where nobody answers at the address.
+        tool-missing without Dask; bad-argument if no scheduler answers at the address.
     """
     try:
         import dask
@@ -89,15 +89,16 @@ def connect(scheduler: Any, workers: Optional[int]) -> Iterator[Any]:
 
 
 def _close(what: Any, timeout: int) -> None:
-    """A client or a cluster; one that does not answer any more hides nothing of what happened."""
+    """Closes a client or a cluster. One that no longer answers must not hide an earlier error."""
     with contextlib.suppress(OSError, TimeoutError):
         what.close(timeout=timeout)
 
 
 @contextlib.contextmanager
 def _without_interrupts() -> Iterator[None]:
-    """While processes are started: Ctrl-C waits for the end of it. The threads and processes that are started inherit the
-    mask, so that Ctrl-C on a terminal, which goes to all of its processes, reaches the client alone."""
+    """Blocks Ctrl-C while processes are started. The started threads and processes inherit the mask, so Ctrl-C on a terminal,
+    which goes to all of its processes, reaches the client only.
+    """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -116,10 +117,10 @@ def _without_interrupts() -> Iterator[None]:
 
 @contextlib.contextmanager
 def held_interrupts() -> Iterator[Callable[[], None]]:
-    """Ctrl-C, and other signals with handlers, wait for the function that this gives; a second one acts at once.
+    """Delays Ctrl-C, and other signals with handlers, until the returned function is called; a second signal acts at once.
 
-    A handler that raises is lost where Python ignores exceptions, as in the destructors of Dask's futures: the sweep would
-    go on. In another thread than the main one, which gets no signals, the function does nothing.
+    Python ignores exceptions of handlers in some places, such as the destructors of Dask's futures; the sweep would then
+    continue. In threads other than the main one, which get no signals, the function does nothing.
     """
     if threading.current_thread() is not threading.main_thread():
         yield lambda: None
@@ -149,7 +150,7 @@ def held_interrupts() -> Iterator[Callable[[], None]]:
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """Dask tells of lost workers and connections; a sweep tells what they mean."""
+    """Silences Dask's messages about lost workers and connections; the sweep reports their consequences."""
     names = [name for name in logging.root.manager.loggerDict if name.split(".")[0] in ("distributed", "tornado", "asyncio")]
     loggers = [logging.getLogger(name) for name in names]
     before = [logger.level for logger in loggers]
@@ -163,7 +164,7 @@ def _quiet() -> Iterator[None]:
 
 
 class Engine:
-    """Keeps the workers of a client busy with the samples that are left.
+    """Keeps the workers of a client busy with the remaining samples.
 
     Parameters
     ----------
@@ -172,7 +173,7 @@ class Engine:
         The job.
     design : Design
     order : list of int
-        Samples to do.
+        Remaining samples.
     store : Store
     progress : Progress
     """
@@ -188,14 +189,14 @@ class Engine:
         self._answered = time.monotonic()
 
     def run(self) -> None:
-        """Until all samples are rows.
+        """Runs until every sample has a row.
 
         Raises
         ------
         RunError
-            scheduler-lost; rows that are written stay.
+            scheduler-lost; the rows written so far are kept.
         Error
-            Where the workers cannot run samples at all.
+            If the workers cannot run samples at all.
         """
         with held_interrupts() as act:
             self._await_workers(act)
@@ -222,7 +223,7 @@ class Engine:
             time.sleep(_POLL)
 
     def _count_workers(self) -> int:
-        """Threads of all workers, asked for about once a second."""
+        """Number of threads of all workers, updated about once per second."""
         if time.monotonic() - self._counted > 1.0 or self._workers == 0:
             try:
                 # As Client.nthreads(), which waits long for a scheduler that has gone.
@@ -275,19 +276,20 @@ class Engine:
         del self._flying[future]
 
     def _forgotten(self, future: Any) -> None:
-        """The scheduler has lost a batch: it is another one at the same address, or gone."""
+        """Submits a batch again that the scheduler has lost, because it is another one at the same address; ends if it is gone."""
         if self._client.status != "running":
             self._lost("the connection broke")
         self._submit(*self._flying.pop(future))
 
     def _died(self, samples: list[int], apart: bool) -> None:
-        """Workers died with a batch, several times, perhaps of another one that waited beside it: apart from the worker
-        it shows which sample ends its process."""
+        """Handles a batch whose workers died several times, perhaps because of another batch that waited beside it. Run apart from
+        the worker, the sample that ends its process becomes known.
+        """
         if not apart:
             for index in samples:
                 self._submit([index], apart=True)
             return
-        error = "workers died of it, each time again; give their processes more memory [process-died]"
+        error = "the sample ended its worker, also when repeated; give the processes more memory [process-died]"
         nobody = {"version": "", "instruction_set": "", "worker": ""}
         self._write([Row(index, "failed", error, float("nan"), {}) for index in samples], nobody)
 

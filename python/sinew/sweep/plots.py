@@ -20,7 +20,7 @@ _SHOWN = {"m": ("mm", 1e3), "Pa": ("kPa", 1e-3), "m^3": ("ml", 1e6), "J": ("mJ",
 
 
 class _Table:
-    """Good rows of a sweep, and how its columns are shown."""
+    """Valid rows of a sweep, and the format of its columns."""
 
     def __init__(self, folder: _Path) -> None:
         table = load(folder)
@@ -58,7 +58,7 @@ class _Table:
 
 
 def _scatter(plt: Any, table: _Table) -> Any:
-    """Each column against each, histograms on the diagonal."""
+    """Each column against each other, with histograms on the diagonal."""
     names = (table.inputs[: _MAX_PANELS - 1] + table.outputs)[:_MAX_PANELS]
     if len(names) < 2:
         return None
@@ -102,7 +102,7 @@ def _parallel(plt: Any, table: _Table) -> Any:
 
 
 def _surface(plt: Any, table: _Table) -> Any:
-    """Outputs over the first two inputs, as filled contours; over one, as a line."""
+    """Outputs over the first two inputs, as filled contours; over a single input, as a line."""
     if not table.inputs or not table.outputs:
         return None
     names = table.outputs[:6]
@@ -132,7 +132,7 @@ def _surface(plt: Any, table: _Table) -> Any:
 
 
 def _workspace(plt: Any, table: _Table) -> Any:
-    """Where a point goes, seen along the three axes, with the hull of what is seen; the title has the volume of the hull."""
+    """Positions of a point seen along the three axes, with their hulls; the title gives the volume of the hull."""
     found = table.points()
     if found is None:
         return None

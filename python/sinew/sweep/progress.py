@@ -1,4 +1,4 @@
-"""How far a sweep has come: a line on a terminal."""
+"""Progress of a sweep: a line on a terminal."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ _REDRAW, _WIDTH = 0.1, 30
 
 
 class Progress:
-    """Counts samples and tells of them.
+    """Counts samples and reports them.
 
     Parameters
     ----------
     total : int
-        Samples of the sweep.
+        Number of samples of the sweep.
     there : int
-        Those that were there before.
+        Number of samples finished in earlier runs.
     shown : bool or callable, optional
         None: on standard error if it is a terminal. A function is called with (rows, samples) after each batch.
     """
@@ -30,7 +30,7 @@ class Progress:
         self._last = 0.0
 
     def add(self, rows: int, failed: int) -> None:
-        """After a batch."""
+        """Counts a finished batch."""
         self.done += rows
         self.failed += failed
         if self._call is not None:
@@ -43,11 +43,11 @@ class Progress:
 
     @property
     def rate(self) -> float:
-        """Samples a second, of this run."""
+        """Samples per second in this run."""
         return (self.done - self.there) / max(self.seconds, 1e-9)
 
     def draw(self, workers: int) -> None:
-        """At most ten times a second."""
+        """Draws the line, at most ten times per second."""
         if not self._drawn or time.monotonic() - self._last < _REDRAW:
             return
         self._last = time.monotonic()
@@ -61,13 +61,13 @@ class Progress:
         print(f"\r\033[K[{'#' * filled}{'.' * (_WIDTH - filled)}] {100 * share:3.0f} %  {text}", end="", file=sys.stderr, flush=True)
 
     def end(self) -> None:
-        """Takes the line away."""
+        """Removes the line."""
         if self._drawn and self._last > 0.0:
             print("\r\033[K", end="", file=sys.stderr, flush=True)
 
 
 def clock(seconds: Optional[float]) -> str:
-    """As "1:02:03" or "2:03"."""
+    """Formats a time as "1:02:03" or "2:03"."""
     whole = int(round(seconds or 0.0))
     hours, minutes, rest = whole // 3600, whole // 60 % 60, whole % 60
     return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"

@@ -1,4 +1,4 @@
-"""Parameters of a sweep and the samples of their values."""
+"""Parameters of a sweep and their samples."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ class Axis:
     Attributes
     ----------
     key : str
-        As "bodies.trunk.material.young_modulus".
+        Such as "bodies.trunk.material.young_modulus".
     values : tuple
-        Numbers or text, of a grid or a list; empty for a range.
+        Numbers or text of a grid or a list; empty for a range.
     low, high : float
-        Of a range.
+        Ends of a range.
     unit : str
-        SI, as scenes spell it: "Pa"; empty for pure numbers and text.
+        SI unit in the spelling of scenes: "Pa"; empty for pure numbers and text.
     kind : str
         "grid", "range" or "list".
     """
@@ -52,26 +52,26 @@ class Axis:
         return not any(isinstance(value, str) for value in self.values)
 
     def at(self, share: float) -> Value:
-        """The value at a share of its range in [0, 1); of a list, each of its values has an equal part of it."""
+        """Value at a fraction of the range in [0, 1); the values of a list have equal parts of it."""
         if self.kind == "range":
             return self.low + share * (self.high - self.low)
         return self.values[min(int(share * len(self.values)), len(self.values) - 1)]
 
     def spell(self, value: Value) -> str:
-        """A value as a scene's override writes it."""
+        """A value in the form of a scene override."""
         if isinstance(value, str):
             return value
         return f"{value!r} {self.unit}".rstrip()
 
     def describe(self) -> dict[str, Any]:
-        """For the table's attributes, and to tell one sweep from another."""
+        """Description for the attributes of the table, and to distinguish sweeps."""
         if self.kind == "range":
             return {"key": self.key, "from": self.low, "to": self.high, "unit": self.unit}
         return {"key": self.key, "values": list(self.values), "unit": self.unit}
 
 
 class Design:
-    """The samples of a sweep, each a value for every axis.
+    """Samples of a sweep, each with a value for every axis.
 
     Parameters
     ----------
@@ -79,9 +79,9 @@ class Design:
     method : str
         "grid", or one of METHODS.
     count : int
-        Points of the method; unused for a grid.
+        Number of points; unused for a grid.
     seed : int
-        Of the method's random numbers.
+        Random seed.
 
     Raises
     ------
@@ -106,13 +106,13 @@ class Design:
         return [axis.key for axis in self.axes]
 
     def values(self, index: int) -> tuple[Value, ...]:
-        """Of a sample, in the order of the axes; numbers are SI. The last axis of a grid changes fastest."""
+        """Values of a sample in the order of the axes; numbers are SI. The last axis of a grid changes fastest."""
         if self._shares is None:
             return tuple(axis.values[int(k)] for axis, k in zip(self.axes, np.unravel_index(index, self._shape)))
         return tuple(axis.at(float(share)) for axis, share in zip(self.axes, self._shares[index]))
 
     def describe(self) -> dict[str, Any]:
-        """What tells it from another design."""
+        """Data that distinguish it from other designs."""
         return {"vary": [axis.describe() for axis in self.axes], "sample": f"{self.method}:{self.count}", "seed": self.seed}
 
 
@@ -131,7 +131,7 @@ def _shares(method: str, dimensions: int, count: int, seed: int) -> np.ndarray:
 
 
 def design(vary: Mapping[str, Any], sample: Optional[str] = None, seed: int = 1) -> Design:
-    """The samples that `vary` and `sample` ask for: see sinew.sweep.run().
+    """Samples for `vary` and `sample`: see sinew.sweep.run().
 
     Raises
     ------
@@ -173,12 +173,12 @@ def _axis(key: str, spec: Any) -> Axis:
     if hasattr(spec, "tolist"):
         spec = spec.tolist()
     if not isinstance(spec, Iterable) or isinstance(spec, Mapping):
-        raise Error("bad-argument", key, f"{spec!r} says no values", 'give a list, a tuple (low, high), or text such as "1mm:5mm:9"')
+        raise Error("bad-argument", key, f"{spec!r} contains no values", 'give a list, a tuple (low, high), or text such as "1mm:5mm:9"')
     return _list_axis(key, list(spec))
 
 
 def _split(text: str, separator: str) -> list[str]:
-    """At separators outside brackets, braces and quotes, so that YAML maps and lists are values, too."""
+    """Splits at separators outside brackets, braces and quotes, so that values may be YAML maps and lists."""
     parts, depth, quote = [""], 0, ""
     for character in text:
         if quote:
@@ -201,7 +201,7 @@ def _axis_of_text(key: str, text: str) -> Axis:
     if len(ends) == 1:
         return _list_axis(key, _split(text, ","))
     if len(ends) > 3 or "" in ends:
-        raise Error("bad-argument", key, f"'{text}' says no values", "write FROM:TO:N, FROM:TO, or A,B,C")
+        raise Error("bad-argument", key, f"'{text}' contains no values", "write FROM:TO:N, FROM:TO, or A,B,C")
     (low, high), unit = _numbers(key, ends[:2])
     if len(ends) == 2:
         return Axis(key, "range", low=low, high=high, unit=unit)
@@ -242,7 +242,7 @@ def _quantity(value: Any) -> Union[tuple[float, str], Error]:
 
 
 def _numbers(key: str, values: Iterable[Any]) -> tuple[list[float], str]:
-    """In SI, and their one unit; a bare 0 goes with any."""
+    """SI values and their common unit; a bare 0 fits any unit."""
     found = []
     for value in values:
         quantity = _quantity(value)

@@ -35,17 +35,17 @@ class SobolIndices(NamedTuple):
 def saltelli_points(dimensions: int, count: int, seed: int = 1) -> NDArray:
     """Evaluation points for sobol_indices().
 
-    Base points A and B are the two halves of scrambled Sobol points (SciPy) of twice the dimension. At each of them
-    stand, in this order, A, B and, for every input i, A with input i from B.
+    The base points A and B are the two halves of scrambled Sobol points (SciPy) of twice the dimension. For each of them, the
+    result contains A, B and, for every input i, A with input i from B, in this order.
 
     Parameters
     ----------
     dimensions : int
         d, number of inputs.
     count : int
-        Base points; a power of two keeps them balanced.
+        Number of base points; powers of two are best balanced.
     seed : int
-        Of the scrambling.
+        Seed of the scrambling.
 
     Returns
     -------
@@ -69,19 +69,19 @@ def sobol_indices(values: ArrayLike, *, confidence: float = 0.95, resamples: int
     With f centred, N base points and the variance V of f(A) and f(B) together:
     first order (Saltelli et al. 2010, table 2, equation (b), doi:10.1016/j.cpc.2009.09.018)
     S_i = (1/N) sum f(B) (f(A_B^i) - f(A)) / V, total (Jansen 1999, equation (f) there, doi:10.1016/S0010-4655(98)00154-4)
-    T_i = (1/2N) sum (f(A) - f(A_B^i))^2 / V. The error falls about as N^-1/2 for f with jumps and faster for smooth f;
-    estimates near zero may be negative.
+    T_i = (1/2N) sum (f(A) - f(A_B^i))^2 / V. The error decreases about as N^-1/2 for f with jumps, and faster for smooth f.
+    Estimates near zero may be negative.
 
     Parameters
     ----------
     values : (count, d + 2) array_like
-        Base points with a value that is not finite are left out whole.
+        Base points with a value that is not finite are omitted entirely.
     confidence : float
-        Of the bootstrap intervals over the base points, in (0, 1).
+        Level of the bootstrap intervals over the base points, in (0, 1).
     resamples : int
-        Of the bootstrap; 0 gives intervals of NaN.
+        Number of bootstrap samples; 0 gives intervals of NaN.
     seed : int
-        Of the bootstrap.
+        Seed of the bootstrap.
 
     Returns
     -------
@@ -90,14 +90,14 @@ def sobol_indices(values: ArrayLike, *, confidence: float = 0.95, resamples: int
     Raises
     ------
     Error
-        wrong-shape; too-few-points where fewer than two base points are left; out-of-range.
+        wrong-shape; too-few-points if fewer than two base points remain; out-of-range.
     """
     table = np.asarray(values, float)
     if table.ndim != 2 or table.shape[1] < 3:
         raise Error("wrong-shape", "sobol_indices(values)", f"the values have the shape {table.shape}",
                     "give (base points, inputs + 2), as saltelli_points() orders them")
     if not 0.0 < confidence < 1.0:
-        raise Error("out-of-range", "sobol_indices(confidence)", f"the confidence is {confidence:g}", "give a share such as 0.95")
+        raise Error("out-of-range", "sobol_indices(confidence)", f"the confidence is {confidence:g}", "give a fraction such as 0.95")
     table = table[np.isfinite(table).all(axis=1)]
     if len(table) < 2:
         raise Error("too-few-points", "sobol_indices(values)", f"{len(table)} base points have all their values",

@@ -2,12 +2,12 @@
 
     /sample (rows,)            number of the sample; -1: the row is not complete
     /inputs/KEY (rows,)        SI numbers, or text
-    /outputs/NAME (rows, ...)  SI; NaN where the sample failed
+    /outputs/NAME (rows, ...)  SI; NaN if the sample failed
     /status, /error, /seconds, /version, /instruction_set, /worker (rows,)
     /scene                     text
 
-Rows stand in the order in which samples were done. The file is written in HDF5's mode of one writer and many readers
-(SWMR), and /sample after all else of a row: a process that is killed leaves a table that can be read.
+Rows are in the order in which samples finished. The file is written in HDF5's single-writer mode (SWMR), and /sample after
+all other columns of a row, so a killed process leaves a readable table.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def _h5py():
 
 
 def table_path(folder: _Path) -> pathlib.Path:
-    """The file of a sweep's folder."""
+    """The table in the folder of a sweep."""
     return pathlib.Path(folder) / NAME
 
 
@@ -49,17 +49,17 @@ class Store:
     Parameters
     ----------
     folder : path-like
-        Made where it is missing.
+        Created if it does not exist.
     about : dict
-        What the sweep is: text, numbers and what JSON can hold; kept as attributes.
+        Description of the sweep: text, numbers and JSON data; stored as attributes.
     scene : str
-        Kept as text.
+        Stored as text.
     inputs : dict
-        Of every varied key the length of its text; 0: numbers.
+        Length of the text of every varied key; 0: numbers.
     outputs : dict
         Shape of every output known so far; functions may return others.
     rows : Rows, optional
-        To go on from: they are copied into the new file, which takes the place of the old one.
+        Rows to continue from. They are copied to the new file, which replaces the old one.
     """
 
     def __init__(self, folder: _Path, about: Mapping[str, Any], scene: str, inputs: Mapping[str, int],
@@ -74,7 +74,7 @@ class Store:
         self._open(rows)
 
     def _open(self, rows: Optional[Rows]) -> None:
-        """A new file beside the old one, with the rows that are there; then it takes its place."""
+        """Creates a new file beside the old one, with the existing rows, and replaces the old one by it."""
         beside = self.path.with_suffix(".h5.new")
         file = _h5py().File(beside, "w", libver="latest")
         about = {name: value if isinstance(value, (str, int, float)) else json.dumps(value) for name, value in self._about.items()}
@@ -104,9 +104,9 @@ class Store:
         Parameters
         ----------
         rows : list of Row
-            Outputs with new names become columns; rows with another shape than the table's become failed ones.
+            Outputs with new names become columns; rows with a different shape than the table's become failed ones.
         inputs : list
-            Values of the varied keys for each.
+            Values of the varied keys for each row.
         by : dict
             "version", "instruction_set" and "worker".
         """
@@ -152,7 +152,7 @@ class Store:
         self.count = end
 
     def close(self) -> None:
-        """Closes the file; others may go on with it."""
+        """Closes the file; another process may continue it."""
         self._close_file()
         self._lock.close()
 
@@ -163,7 +163,7 @@ class Store:
 
 
 class Rows:
-    """The complete rows of a table, also of one that is being written or whose writer was killed.
+    """Complete rows of a table, which may still be written or whose writer may have been killed.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ class Rows:
     Raises
     ------
     Error
-        file-not-found; malformed-file where it is none of a sweep.
+        file-not-found; malformed-file if the file is not a sweep.
     """
 
     def __init__(self, path: _Path) -> None:
@@ -205,11 +205,11 @@ class Rows:
         return len(self.samples)
 
     def column(self, name: str) -> np.ndarray:
-        """As it is in the file."""
+        """A column as stored in the file."""
         return self.samples if name == "sample" else self._table[name]
 
     def values(self, name: str) -> np.ndarray:
-        """(rows,) or (rows, ...) of a varied key, an output, or one of the rest; text as str."""
+        """(rows,) or (rows, ...) of a varied key, an output, or another column; text as str."""
         for kind, names in (("inputs", self.inputs), ("outputs", self.outputs)):
             if name in names:
                 return _decoded(self.column(f"{kind}/{_slot(name)}"))
@@ -217,7 +217,7 @@ class Rows:
 
 
 def _locked(path: pathlib.Path) -> Any:
-    """Keeps other sweeps from the table for as long as the file that is returned is open."""
+    """Locks the table for other sweeps as long as the returned file is open."""
     lock = open(path.with_suffix(".lock"), "w", encoding="utf-8")
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -228,7 +228,7 @@ def _locked(path: pathlib.Path) -> Any:
 
 
 def _slot(name: str) -> str:
-    """A name as HDF5 may have it: "/" would make a group, and "." is the group itself."""
+    """A name that HDF5 accepts: "/" would create a group, and "." is the group itself."""
     return name.replace("%", "%25").replace("/", "%2F") if name != "." else "%2E"
 
 
@@ -242,7 +242,7 @@ def _decoded(column: np.ndarray) -> np.ndarray:
 
 
 def _checked(row: Row, outputs: Mapping[str, tuple[int, ...]]) -> Row:
-    """As failed where an output has another shape than the table's."""
+    """The row, as failed if an output has a different shape than in the table."""
     for name, value in row.outputs.items():
         if np.shape(value) != tuple(outputs[name]):
             error = (f"'{name}' has the shape {np.shape(value)}, and {tuple(outputs[name])} in a sample before; return one shape from all "

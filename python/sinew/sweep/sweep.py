@@ -137,8 +137,9 @@ def run(
 
 
 def _refuse_import_by_workers() -> None:
-    """Workers of this machine import the main script; one that starts a sweep when imported would start others without
-    end, so a script that never asks for its name is refused before it starts any."""
+    """Raises an error in a script without `if __name__ == "__main__":`. Local workers import the main script, so a script that
+    starts a sweep on import would start further ones without end.
+    """
     script = getattr(sys.modules["__main__"], "__file__", None)
     unguarded = script is not None and pathlib.Path(script).suffix == ".py" and "__name__" not in _source(pathlib.Path(script))
     if unguarded or getattr(multiprocessing.current_process(), "_inheriting", False):
@@ -163,7 +164,7 @@ def _packed(job: Job) -> bytes:
 
 def _job(scene: Any, samples: Design, measure: list[str], function: Any, duration: Optional[float], static: bool, given: scenes.Overrides,
          timeout: Optional[float], seed: int) -> Job:
-    """Checks all that can be checked before any work."""
+    """Makes all checks that are possible before any work."""
     if function is None and scene is None:
         raise Error("bad-argument", "sweep.run()", "there is neither a scene nor a function", "give one of them")
     if function is None and not measure:
@@ -198,7 +199,7 @@ def _job(scene: Any, samples: Design, measure: list[str], function: Any, duratio
 
 
 def _check_duration(sim: _core.Simulation, duration: Optional[float]) -> None:
-    """Raises what run() raises for a duration, after few steps at most."""
+    """Raises the errors of run() for a duration, after at most a few steps."""
 
     class Enough(Exception):
         pass
@@ -216,12 +217,12 @@ def _check_duration(sim: _core.Simulation, duration: Optional[float]) -> None:
 
 
 def _is_command(sim: _core.Simulation, axis: Axis) -> bool:
-    """Whether a loaded simulation takes it: the number that an actuator is told."""
+    """Whether a loaded simulation can take the value: a number that an actuator is commanded."""
     return axis.is_number and bool(_COMMAND.fullmatch(axis.key)) and axis.key.split(".")[1] in sim.actuators
 
 
 def _order(job: Job, samples: Design) -> Sequence[int]:
-    """Samples between which only commands change stand together, since they share a simulation."""
+    """Order of the samples in which those that differ in commands only are adjacent, because they share a simulation."""
     fixed = [k for k in range(len(samples.axes)) if k not in job.commands]
     if not job.commands or not fixed or samples.method != "grid":
         return range(samples.size)
@@ -231,14 +232,14 @@ def _order(job: Job, samples: Design) -> Sequence[int]:
 
 
 def _identity(job: Job, samples: Design) -> dict[str, Any]:
-    """What makes it this sweep and no other."""
+    """Data that distinguish this sweep from all others."""
     how = "function" if job.function else "static" if job.static else "run"
     return {"scene": _scene_hash(job.scene), **samples.describe(), "measure": list(job.measures), "how": how, "duration": job.duration,
             "function": _spell_function(job.function)}
 
 
 def _scene_hash(text: str) -> str:
-    """Of the scene and the files that it names, wherever they lie."""
+    """Hash of the scene and the files that it names, wherever they are."""
 
     def content(found: re.Match) -> str:
         path = pathlib.Path(found[1].strip("\"'"))
@@ -258,7 +259,7 @@ def _spell_function(function: Any) -> str:
 
 
 def _open_store(out: Any, job: Job, samples: Design, what: dict[str, Any], resume: bool) -> tuple[Store, Sequence[int]]:
-    """The table, and the samples that it has."""
+    """The table, and the samples that it contains."""
     path = table_path(out)
     before: Optional[Rows] = None
     if path.exists():

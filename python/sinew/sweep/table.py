@@ -117,7 +117,7 @@ def indices(folder: _Path, column: str, *, confidence: float = 0.95, resamples: 
         raise Error("bad-argument", "sweep.indices(folder)", f"the sweep was sampled by {table.attrs['sample']}",
                     "sample it by saltelli:256")
     if column not in table or table[column].dtype.kind != "f":
-        raise Error("unknown-name", "sweep.indices(column)", f"the table has no numbers '{column}'",
+        raise Error("unknown-name", "sweep.indices(column)", f"the table has no numeric column '{column}'",
                     f"it has {', '.join(name for name in table if table[name].dtype.kind == 'f')}")
     values = table[column].reindex(range(int(count) * (len(keys) + 2))).to_numpy().reshape(int(count), len(keys) + 2)
     found: SobolIndices = sobol_indices(values, confidence=confidence, resamples=resamples)

@@ -1,4 +1,4 @@
-"""What a worker does: samples of one job, in batches."""
+"""A worker: runs samples of one job in batches."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _ALL_STEPS = 1_000_000_000
 
 
 class Row(NamedTuple):
-    """What came of a sample."""
+    """Result of a sample."""
 
     index: int
     status: str  # "done", "flagged", "failed"
@@ -40,26 +40,26 @@ class Row(NamedTuple):
 
 @dataclass(frozen=True)
 class Job:
-    """All that a worker needs to know of a sweep.
+    """Data of a sweep that a worker needs.
 
     Attributes
     ----------
     scene : str
-        YAML with absolute paths; empty where a function needs none.
+        YAML with absolute paths; empty if a function needs none.
     axes : tuple of Axis
     commands : tuple of int
-        Which axes are commands of actuators, which a loaded simulation takes.
+        Indices of axes that are commands of actuators, which a loaded simulation can take.
     measures : tuple of str
     shapes : dict
-        Of each measure.
+        Shape of each measure.
     duration : float, optional
         s.
     static : bool
-        An equilibrium in place of a run.
+        An equilibrium instead of a run.
     function : callable, optional
-        Of a Sample, in place of both.
+        Function of a Sample that replaces both.
     timeout : float, optional
-        s, of each sample.
+        Limit on each sample, s.
     seed : int
     """
 
@@ -76,14 +76,14 @@ class Job:
 
 
 class Sample(Mapping[str, Value]):
-    """One sample, as a function of a sweep gets it: a mapping of varied keys to values in SI, or text.
+    """One sample, as passed to the function of a sweep: a mapping from varied keys to values in SI, or text.
 
     Attributes
     ----------
     index : int
         Number of the sample, from 0.
     seed : int
-        For random numbers of this sample: it depends on the sweep's seed and on the index alone.
+        Seed for random numbers of this sample: it depends only on the sweep's seed and the index.
     """
 
     def __init__(self, index: int, seed: int, values: Mapping[str, Value], load: Callable[..., _core.Simulation]) -> None:
@@ -100,17 +100,17 @@ class Sample(Mapping[str, Value]):
         return len(self._values)
 
     def load(self, *, set: scene.Overrides = None) -> _core.Simulation:  # noqa: A002
-        """The sweep's scene with this sample's values, at its start, on one thread.
+        """Loads the sweep's scene with this sample's values, at its start, on one thread.
 
         Parameters
         ----------
         set : list of str or dict, optional
-            As of sinew.load(), in place of the varied keys: where these are none of the scene's.
+            As in sinew.load(), instead of the varied keys; required if these are not keys of the scene.
 
         Raises
         ------
         Error
-            bad-argument where the sweep has no scene; what sinew.load() raises.
+            bad-argument if the sweep has no scene; the errors of sinew.load().
         """
         return self._load(set)
 
@@ -121,26 +121,26 @@ def check_measures(sim: _core.Simulation, measures: Sequence[str], static: bool)
     Raises
     ------
     Error
-        unknown-name with a suggestion; bad-argument for words, and for works where no step is made.
+        unknown-name with a suggestion; bad-argument for text, and for accumulated work if no step is made.
     """
     shapes = {}
     for name in measures:
         if static and name in LEDGER:
-            raise Error("bad-argument", "sweep(measure)", f"'{name}' counts over steps, and an equilibrium has none",
+            raise Error("bad-argument", "sweep(measure)", f"'{name}' accumulates over steps, and an equilibrium has none",
                         "run for a while, or measure 'strain_energy'")
         try:
             value = measure(sim, [name])[name]
         except Error as error:
             raise Error(error.kind, "sweep(measure)", error.message, error.remedy) from None
         if value.dtype.kind != "f":
-            raise Error("bad-argument", "sweep(measure)", f"'{name}' is a word",
+            raise Error("bad-argument", "sweep(measure)", f"'{name}' is text, not a number",
                         "measure numbers; the status of every sample is in the table anyway")
         shapes[name] = value.shape
     return shapes
 
 
 def measure(sim: _core.Simulation, names: Sequence[str]) -> dict[str, np.ndarray]:
-    """Values of measures now, by their names. Raises Error (unknown-name) with a suggestion."""
+    """Present values of measures by name. Raises Error (unknown-name) with a suggestion."""
     found, observed = {}, []
     for name in names:
         body, _, quantity = name.rpartition(".")
@@ -166,7 +166,7 @@ class Runner:
         self._reusable: Optional[bool] = None if job.commands else False
 
     def row(self, index: int, values: Sequence[Value]) -> Row:
-        """What comes of a sample; whatever fails in it is told in the row."""
+        """Result of a sample; any failure is reported in the row."""
         begin = time.perf_counter()
         try:
             with warnings.catch_warnings(record=True) as told:
@@ -213,7 +213,7 @@ class Runner:
         return self._simulation(values, keep=False) if given is None else self._load(given)
 
     def _simulation(self, values: Sequence[Value], keep: bool) -> _core.Simulation:
-        """At its start. With `keep` it is not handed out, so that reset() gives it back."""
+        """Simulation at its start. With `keep` it is not passed to other code, so that reset() restores it."""
         job = self.job
         fixed = tuple(value for k, value in enumerate(values) if k not in job.commands)
         if self._sim is None or self._of != fixed or self._reusable is False:
@@ -243,7 +243,7 @@ class Runner:
         return True
 
     def _compared(self, sim: _core.Simulation, values: Sequence[Value], keep: bool) -> _core.Simulation:
-        """The first time, a kept simulation must stand as one that is loaded anew, or none is kept."""
+        """At the first use, a kept simulation must equal a newly loaded one; otherwise none is kept."""
         fresh = self._load(self._overrides(values))
         try:
             self._command(sim, values)
@@ -260,7 +260,7 @@ class Runner:
 
 
 def describe(problem: BaseException) -> str:
-    """An exception in a line: what and, where it is none of sinew, in which line of which file."""
+    """An exception in one line: its text and, if it is not from sinew, the file and line."""
     if isinstance(problem, Error):
         return str(problem)
     where = traceback.extract_tb(problem.__traceback__)
@@ -274,7 +274,7 @@ _known: dict[str, Any] = {}  # the last job's digest, and what runs its samples
 
 def run_batch(digest: str, packed: bytes, samples: Sequence[tuple[int, Sequence[Value]]],
               apart: bool = False) -> tuple[dict[str, str], list[Row]]:
-    """Rows of some samples, and who made them. The task that Dask sends.
+    """Rows of some samples, and the worker that computed them. This is the task that Dask sends.
 
     Parameters
     ----------
@@ -284,7 +284,7 @@ def run_batch(digest: str, packed: bytes, samples: Sequence[tuple[int, Sequence[
         The Job.
     samples : list of (index, values)
     apart : bool
-        In a process of their own, also without a time limit: one of them may end its process.
+        Run in a separate process, also without a time limit: a sample may end its process.
     """
     with _turn:  # one simulation, one sample at a time, whatever the number of a worker's threads
         if _known.get("digest") != digest:

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
 
 namespace sinew::estimate {
 
@@ -66,16 +65,6 @@ bool RandomWalkFilter::load(std::span<const double>& memory) {
   std::ranges::copy(memory.subspan(means, all - means), covariance_.data());
   memory = memory.subspan(all);
   return true;
-}
-
-Observability observability(const MatrixX& sensitivity, const VectorX& variance,
-                            const VectorX& prior) {
-  const MatrixX scaled =
-      variance.cwiseSqrt().cwiseInverse().asDiagonal() * sensitivity * prior.asDiagonal();
-  const Eigen::JacobiSVD<MatrixX> svd(scaled, Eigen::ComputeFullV);
-  Observability result{VectorX::Zero(prior.size()), svd.matrixV()};
-  result.singular_values.head(svd.singularValues().size()) = svd.singularValues();
-  return result;
 }
 
 }  // namespace sinew::estimate

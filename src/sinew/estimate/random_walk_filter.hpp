@@ -55,20 +55,4 @@ class RandomWalkFilter {
   MatrixX covariance_;  // of X
 };
 
-/// What measurements tell beyond the prior.
-struct Observability {
-  /// (n,) s of R^(-1/2) S diag(prior), falling: along a direction of value s one measurement lowers
-  /// the deviation to 1/sqrt(1 + s^2) of the prior's.
-  VectorX singular_values;
-  /// (n, n) the directions, columns of unit length, in components over their priors.
-  MatrixX directions;
-
-  /// Of this value and below, the prior says as much as a measurement, or more.
-  static constexpr double kUnobservable = 1.0;
-};
-
-/// @param sensitivity (m, n) S. @param variance (m,) > 0. @param prior (n,) > 0.
-Observability observability(const MatrixX& sensitivity, const VectorX& variance,
-                            const VectorX& prior);
-
 }  // namespace sinew::estimate

@@ -161,6 +161,32 @@ std::vector<double> means(const HasMaterial& body, std::span<const ElementField>
   return sum;
 }
 
+// Means of all fields over the points of some elements, and the volume of these.
+template <typename IsMeant>
+ElementValues mean_over(const HasMaterial& body, const IsMeant& is_meant) {
+  ElementValues result{.fields = std::vector<double>(kFields.size(), 0.0)};
+  visit_points(body, [&](const PointBatch& point) {
+    Lanes weight = lanes(0.0);
+    double share = 0.0;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      if (point.element[lane] < 0 || !is_meant(point, lane)) continue;
+      weight[lane] = point.weight[lane];
+      share += weight[lane];
+    }
+    if (share == 0.0) return;
+    result.volume += share;
+    PointValues value_of(point);
+    for (std::size_t f = 0; f < kFields.size(); ++f) {
+      const Lanes value = value_of(kFields[f].field);
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        if (weight[lane] > 0.0) result.fields[f] += weight[lane] * value[lane];
+      }
+    }
+  });
+  for (double& sum : result.fields) sum /= result.volume;
+  return result;
+}
+
 }  // namespace
 
 std::span<const ElementFieldInfo> element_fields() { return kFields; }
@@ -189,28 +215,20 @@ std::vector<double> all_element_fields(const HasMaterial& body) {
 }
 
 std::vector<double> node_fields(const HasMaterial& body, NodeId node) {
-  std::vector<double> sums(kFields.size(), 0.0);
-  double volume = 0.0;
-  visit_points(body, [&](const PointBatch& point) {
-    Lanes weight = lanes(0.0);  // of the elements round the node
-    for (std::size_t k = 0; k < point.nodes * kLanes; ++k) {
-      const std::size_t lane = k % kLanes;
-      if (point.element[lane] >= 0 && point.node[k] == node) weight[lane] = point.weight[lane];
-    }
-    double share = 0.0;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) share += weight[lane];
-    if (share == 0.0) return;
-    volume += share;
-    PointValues value_of(point);
-    for (std::size_t f = 0; f < kFields.size(); ++f) {
-      const Lanes value = value_of(kFields[f].field);
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        if (weight[lane] > 0.0) sums[f] += weight[lane] * value[lane];
-      }
-    }
+  return mean_over(body,
+                   [node](const PointBatch& point, std::size_t lane) {
+                     for (std::size_t a = 0; a < point.nodes; ++a) {
+                       if (point.node[a * kLanes + lane] == node) return true;
+                     }
+                     return false;
+                   })
+      .fields;
+}
+
+ElementValues element_values(const HasMaterial& body, int element) {
+  return mean_over(body, [element](const PointBatch& point, std::size_t lane) {
+    return point.element[lane] == element;
   });
-  for (double& sum : sums) sum /= volume;
-  return sums;
 }
 
 NodalMean::NodalMean(const FemModel& elements)

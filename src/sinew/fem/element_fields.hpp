@@ -75,6 +75,16 @@ std::vector<double> all_element_fields(const HasMaterial& body);
 /// @param body at its present state. @param node of its mesh.
 std::vector<double> node_fields(const HasMaterial& body, NodeId node);
 
+/// What is known of one element.
+struct ElementValues {
+  double volume = 0.0;         ///< m^3 at rest
+  std::vector<double> fields;  ///< (fields,) in the order of element_fields()
+};
+
+/// All element_fields() of one element, as element_field() gives them, to rounding.
+/// @param body at its present state. @param element as ElementList numbers them.
+ElementValues element_values(const HasMaterial& body, int element);
+
 /// Means at the nodes of what elements have, weighted by their volumes at rest; the smoothing of
 /// Hinton and Campbell, Int. J. Numer. Meth. Engng 8, 1974, in its simplest form.
 class NodalMean {

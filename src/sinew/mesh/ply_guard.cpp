@@ -41,7 +41,7 @@ ScalarType scalar_type(ByteReader& in) {
   for (const auto& [name, type] : kNames) {
     if (name == word) return type;
   }
-  in.fail(ErrorKind::malformed_file, fmt::format("`{}` is no number type", word.substr(0, 40)));
+  in.fail(ErrorKind::malformed_file, fmt::format("`{}` is not a number type", word.substr(0, 40)));
 }
 
 Encoding read_encoding(ByteReader& in) {

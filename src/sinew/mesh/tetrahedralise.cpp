@@ -54,7 +54,7 @@ void check_options(const Surface& surface, const TetrahedraliseOptions& options)
     throw Error(ErrorKind::out_of_range, {.item = "size"},
                 options.size > 0.0
                     ? fmt::format("{} m would give about {:.1e} tetrahedra", options.size, elements)
-                    : fmt::format("{} m is no edge length", options.size),
+                    : fmt::format("{} m is not an edge length", options.size),
                 fmt::format("choose about {:.2g} m, which gives about 3000",
                             std::cbrt(8.5 * volume / 3000.0)));
   }

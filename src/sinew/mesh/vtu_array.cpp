@@ -105,7 +105,7 @@ std::size_t VtuFile::count(pugi::xml_node node, const char* attribute) const {
   std::int64_t value = -1;
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (problem != std::errc{} || end != text.data() + text.size() || value < 0) {
-    fail(ErrorKind::malformed_file, node, fmt::format("{}=\"{}\" is no count", attribute, text));
+    fail(ErrorKind::malformed_file, node, fmt::format("{}=\"{}\" is not a count", attribute, text));
   }
   if (value > std::numeric_limits<std::int32_t>::max()) {
     fail(ErrorKind::size_limit, node, fmt::format("{}=\"{}\" is too large", attribute, text));

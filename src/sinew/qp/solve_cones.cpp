@@ -26,7 +26,7 @@ void check(Eigen::Index rows, Eigen::Index columns, const VectorX& q,
   for (std::size_t k = 0; k < friction.size(); ++k) {
     if (friction[k] >= 0.0 && std::isfinite(friction[k])) continue;
     throw Error(ErrorKind::out_of_range, {.item = fmt::format("friction[{}]", k)},
-                fmt::format("{} is no coefficient of friction", friction[k]), "give one >= 0");
+                fmt::format("{} is not a coefficient of friction", friction[k]), "give one >= 0");
   }
   if (tolerance > 0.0) return;
   throw Error(ErrorKind::out_of_range, {.item = "tolerance"},

@@ -138,7 +138,7 @@ std::string Hdf5Reader::text_attribute(const std::string& name) const {
 Hdf5Handle Hdf5Reader::open(const std::string& dataset) const {
   if (!has(dataset)) fail(fmt::format("{} is missing", dataset));
   Hdf5Handle opened(H5Dopen2(file_.id(), dataset.c_str(), H5P_DEFAULT), H5Dclose);
-  if (!opened.valid()) fail(fmt::format("{} is no array", dataset));
+  if (!opened.valid()) fail(fmt::format("{} is not an array", dataset));
   return opened;
 }
 
@@ -169,7 +169,7 @@ std::string Hdf5Reader::text(const std::string& dataset) const {
   const Hdf5Handle space(H5Dget_space(opened.id()), H5Sclose);
   if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) != 0 ||
       H5Sget_simple_extent_npoints(space.id()) != 1 || H5Tget_size(type.id()) > kMaxText) {
-    fail(fmt::format("{} is no text", dataset));
+    fail(fmt::format("{} is not text", dataset));
   }
   std::string text(H5Tget_size(type.id()), '\0');
   if (H5Dread(opened.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0) {

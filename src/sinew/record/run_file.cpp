@@ -60,7 +60,7 @@ struct RunFile::Content {
     std::uint64_t least = kMaxFrames;
     const auto count = [&](const std::string& series) {
       const Hdf5Reader::Shape shape = file.shape(series);
-      if (shape.empty()) file.fail(fmt::format("{} is no series", series));
+      if (shape.empty()) file.fail(fmt::format("{} is not a series", series));
       least = std::min(least, shape[0]);
     };
     count("/time");
@@ -183,7 +183,7 @@ std::vector<double> RunFile::actuator(std::string_view actuator, std::string_vie
     throw Error(ErrorKind::missing_key, {.file = file.path()}, "the run was " + lacks(),
                 "run its scene again: sinew run");
   }
-  if (file.shape(name).size() != 1) file.fail(name + " is no series of numbers");
+  if (file.shape(name).size() != 1) file.fail(name + " is not a series of numbers");
   return series(name);
 }
 

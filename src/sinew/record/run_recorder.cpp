@@ -48,7 +48,7 @@ void require_writable(const fs::path& folder) {
        {"run.csv", "run.h5", "scene.yaml", "probes.csv", "sensors.csv", "run.png"}) {
     const fs::path file = folder / name;
     if (!fs::exists(file)) continue;
-    if (!fs::is_regular_file(file)) unwritable(file, "it is no regular file");
+    if (!fs::is_regular_file(file)) unwritable(file, "it is not a regular file");
     if (::access(file.c_str(), W_OK) != 0) unwritable(file, std::strerror(errno));
   }
 }

@@ -3,12 +3,15 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/build_parts.hpp"
+#include "sinew/sim/axis_names.hpp"
 #include "sinew/sim/estimator_model.hpp"
 #include "sinew/sim/linearisation.hpp"
 #include "sinew/sim/model.hpp"
@@ -21,7 +24,7 @@ namespace {
 
 constexpr std::array kTypes = {"marker",   "orientation", "cable-length", "cable-tension",
                                "pressure", "volume",      "motor-current"};
-constexpr std::array kAxes = {"x", "y", "z"};
+constexpr const char* kSwitch = "touch";
 // Of what the compliances of two rows allow: less is rounding.
 constexpr double kResponds = 1e-12;
 
@@ -46,15 +49,15 @@ EffectorDescription effector_of(const SensorDescription& sensor) {
   return effector;
 }
 
-std::string actuator_name(const UnknownForceDescription& unknown, std::size_t axis) {
-  return fmt::format("{} force {}", unknown.name, kAxes[axis]);
+std::string force_name(const UnknownDescription& unknown, std::size_t axis) {
+  return fmt::format("{} force {}", unknown.name, sim::kAxisNames[axis]);
 }
 
-void add_forces(SceneDescription& known, const UnknownForceDescription& unknown) {
+void add_forces(SceneDescription& known, const UnknownDescription& unknown) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     ActuatorDescription force;
-    force.name = actuator_name(unknown, axis);
-    force.place = unknown.point_place;
+    force.name = force_name(unknown, axis);
+    force.place = unknown.where_place;
     force.type = ActuatorDescription::Type::force;
     force.body = unknown.body;
     force.body_place = unknown.place;
@@ -67,15 +70,38 @@ void add_forces(SceneDescription& known, const UnknownForceDescription& unknown)
   }
 }
 
-// At rest in each step, with exact sensors.
-SceneDescription known_robot(const SceneDescription& scene, const EstimatorDescription& estimator) {
-  SceneDescription known = scene;
+// An effort that is given: without limits on commands, and without a valve.
+void free_effort(SceneDescription& known, const UnknownDescription& unknown) {
+  ActuatorDescription& actuator =
+      *std::ranges::find(known.actuators, unknown.actuator, &ActuatorDescription::name);
+  actuator.command = {};
+  if (auto* cable = std::get_if<CableDescription>(&actuator.own)) {
+    cable->settings.tension = {.min = 0.0};
+    cable->settings.displacement = {};
+  } else if (auto* chamber = std::get_if<ChamberDescription>(&actuator.own)) {
+    chamber->settings.pressure = chamber->settings.volume_growth = {};
+    if (chamber->settings.gas) chamber->settings.gas->supply.reset();
+    if (chamber->settings.liquid) chamber->settings.liquid->supply.reset();
+  }
+}
+
+bool has_inertia(const SceneDescription& scene, const EstimatorDescription& estimator) {
+  return estimator.inertia && scene.integrator != Integrator::quasi_static;
+}
+
+void take_inertia(SceneDescription& known) {
   known.integrator = Integrator::quasi_static;
   known.restitution = 0.0;
-  known.solver.method = Method::newton;
-  known.solver.adaptive.reset();
   for (BodyDescription& body : known.bodies) body.initial_velocity.reset();
   for (ContactDescription& contact : known.contacts) contact.restitution.reset();
+}
+
+// With exact sensors, and with steps that are solved to the tolerance and never cut.
+SceneDescription known_robot(const SceneDescription& scene, const EstimatorDescription& estimator) {
+  SceneDescription known = scene;
+  if (!has_inertia(scene, estimator)) take_inertia(known);
+  known.solver.method = Method::newton;
+  known.solver.adaptive.reset();
   known.estimators.clear();
   known.controllers.clear();
   known.probes.clear();
@@ -90,10 +116,16 @@ SceneDescription known_robot(const SceneDescription& scene, const EstimatorDescr
   }
   std::erase_if(known.loads, [&](const LoadDescription& load) {
     return std::ranges::find(estimator.unknown_loads, load.name) != estimator.unknown_loads.end() ||
-           std::ranges::find(estimator.unknowns, load.name, &UnknownForceDescription::name) !=
+           std::ranges::find(estimator.unknowns, load.name, &UnknownDescription::name) !=
                estimator.unknowns.end();
   });
-  for (const UnknownForceDescription& unknown : estimator.unknowns) add_forces(known, unknown);
+  for (const UnknownDescription& unknown : estimator.unknowns) {
+    if (unknown.is_force()) {
+      add_forces(known, unknown);
+    } else {
+      free_effort(known, unknown);
+    }
+  }
   return known;
 }
 
@@ -106,7 +138,8 @@ std::shared_ptr<const sim::Model> build_known(const SceneDescription& scene,
     throw Error(ErrorKind::nothing_fixed, estimator.place,
                 fmt::format("the robot of '{}' is at rest in each step: {}", estimator.name,
                             error.message()),
-                "fix a region of every body, or hold it by joints");
+                "fix a region of every body, hold it by joints, or leave `inertia` out in a "
+                "dynamic scene");
   }
 }
 
@@ -117,38 +150,74 @@ bool is_driven(const SceneDescription& scene, const std::string& actuator) {
   });
 }
 
-void check_type(const SceneDescription& scene, const SensorDescription& sensor,
-                const Location& place) {
-  if (std::ranges::find(kTypes, sensor.type) == kTypes.end()) {
-    throw Error(
-        ErrorKind::wrong_type, place,
-        fmt::format("'{}' is of type {}, which estimators do not read", sensor.name, sensor.type),
-        fmt::format("name sensors of type {}", fmt::join(kTypes, ", ")));
+bool is_unknown(const EstimatorDescription& estimator, const std::string& actuator) {
+  return std::ranges::find(estimator.unknowns, actuator, &UnknownDescription::actuator) !=
+         estimator.unknowns.end();
+}
+
+void check_type(const SceneDescription& scene, const EstimatorDescription& estimator,
+                const SensorDescription& sensor, const Location& place) {
+  const bool moves = has_inertia(scene, estimator);
+  const bool fits =
+      moves ? sensor.type != kSwitch : std::ranges::find(kTypes, sensor.type) != kTypes.end();
+  if (!fits) {
+    throw Error(ErrorKind::wrong_type, place,
+                fmt::format("'{}' is of type {}, which {} do not read", sensor.name, sensor.type,
+                            moves ? "estimators" : "estimators with a quasi-static robot"),
+                moves ? "measure the force of the contact"
+                      : fmt::format("name sensors of type {}", fmt::join(kTypes, ", ")));
   }
   if (sensor.type != "cable-length" && sensor.type != "volume") return;
   const auto on = std::ranges::find(scene.actuators, sensor.actuator, &ActuatorDescription::name);
   if (on == scene.actuators.end() || is_driven(scene, on->name)) return;
+  if (is_unknown(estimator, on->name)) return;
   if (on->command.kind != sim::CommandKind::motion) return;
   throw Error(ErrorKind::conflicting_keys, place,
-              fmt::format("'{}' measures what '{}' is commanded, which no force changes",
+              fmt::format("'{}' measures what '{}' is commanded, which nothing unknown changes",
                           sensor.name, on->name),
               sensor.type == "volume" ? "measure its pressure" : "measure its tension");
 }
 
-/// How much rows of the robot at rest move by unknown forces, whatever else acts on it.
+// Of an effort: the actuator has it, and no other unknown.
+void check_efforts(const SceneDescription& scene, const EstimatorDescription& estimator) {
+  std::set<std::string> taken;
+  for (const UnknownDescription& unknown : estimator.unknowns) {
+    if (unknown.is_force()) continue;
+    const auto on =
+        std::ranges::find(scene.actuators, unknown.actuator, &ActuatorDescription::name);
+    const sim::ActuatorWords& words = sim::actuator_words(on->type);
+    const bool found = unknown.quantity == "pressure"
+                           ? on->type == ActuatorDescription::Type::chamber
+                           : on->type == ActuatorDescription::Type::cable;
+    if (!found) {
+      throw Error(ErrorKind::wrong_type, unknown.where_place,
+                  fmt::format("'{}' is of type {}, whose {} is not estimated", on->name, words.type,
+                              unknown.quantity),
+                  unknown.quantity == "pressure" ? "name an actuator of type chamber"
+                                                 : "name an actuator of type cable");
+    }
+    if (taken.insert(unknown.actuator).second) continue;
+    throw Error(ErrorKind::conflicting_keys, unknown.where_place,
+                fmt::format("the {} of '{}' is unknown twice", unknown.quantity, on->name),
+                "keep one of the two");
+  }
+}
+
+/// How much rows of the robot at rest move by unknowns, whatever else acts on it.
 class RestResponse {
  public:
   explicit RestResponse(const std::shared_ptr<const sim::Model>& robot) {
     sim::Simulation simulation(robot);
-    at_rest_ = sim::linearise(simulation);
+    const bool statics = robot->step().integrator == mechanics::Integrator::quasi_static;
+    at_rest_ = sim::linearise(simulation, {.of_statics = statics});
   }
 
-  bool moves(const UnknownForceDescription& unknown) const {
+  bool moves(const UnknownDescription& unknown) const {
     return std::ranges::any_of(rows_of(unknown),
                                [&](Eigen::Index k) { return at_rest_.compliance(k, k) > 0.0; });
   }
 
-  bool responds(const SensorDescription& sensor, const UnknownForceDescription& unknown) const {
+  bool responds(const SensorDescription& sensor, const UnknownDescription& unknown) const {
     const MatrixX& w = at_rest_.compliance;
     for (const Eigen::Index row : rows_of(sensor)) {
       for (const Eigen::Index by : rows_of(unknown)) {
@@ -167,9 +236,9 @@ class RestResponse {
     }
     return rows;
   }
-  std::vector<Eigen::Index> rows_of(const UnknownForceDescription& unknown) const {
-    return rows_named(
-        {actuator_name(unknown, 0), actuator_name(unknown, 1), actuator_name(unknown, 2)});
+  std::vector<Eigen::Index> rows_of(const UnknownDescription& unknown) const {
+    if (!unknown.is_force()) return rows_named({unknown.actuator});
+    return rows_named({force_name(unknown, 0), force_name(unknown, 1), force_name(unknown, 2)});
   }
   std::vector<Eigen::Index> rows_of(const SensorDescription& sensor) const {
     if (!reads_shape(sensor)) return rows_named({sensor.actuator});
@@ -179,17 +248,20 @@ class RestResponse {
   sim::Linearisation at_rest_;
 };
 
-// Contacts pass on forces that they do not at rest.
+// Contacts pass on forces that they do not at rest, and motion forces that one step does not.
 void check_response(const SceneDescription& scene, const EstimatorDescription& estimator,
                     const RestResponse& rest) {
-  for (const UnknownForceDescription& unknown : estimator.unknowns) {
+  for (const UnknownDescription& unknown : estimator.unknowns) {
     if (rest.moves(unknown)) continue;
-    throw Error(ErrorKind::everything_fixed, unknown.point_place,
-                fmt::format("nothing moves where the force '{}' acts on the body '{}'",
-                            unknown.name, unknown.body),
-                "choose a point that can move");
+    throw Error(
+        ErrorKind::everything_fixed, unknown.where_place,
+        unknown.is_force()
+            ? fmt::format("nothing moves where the force '{}' acts on the body '{}'", unknown.name,
+                          unknown.body)
+            : fmt::format("the {} of '{}' moves nothing", unknown.quantity, unknown.actuator),
+        unknown.is_force() ? "choose a point that can move" : "leave it out");
   }
-  if (!scene.contacts.empty()) return;
+  if (!scene.contacts.empty() || has_inertia(scene, estimator)) return;
   for (std::size_t k = 0; k < estimator.sensors.size(); ++k) {
     const SensorDescription& sensor =
         *std::ranges::find(scene.sensors, estimator.sensors[k], &SensorDescription::name);
@@ -197,9 +269,33 @@ void check_response(const SceneDescription& scene, const EstimatorDescription& e
         estimator.unknowns, [&](const auto& unknown) { return rest.responds(sensor, unknown); });
     if (any) continue;
     throw Error(ErrorKind::conflicting_keys, estimator.sensor_places[k],
-                fmt::format("'{}' answers to none of the unknown forces", sensor.name),
-                "leave it out, or put it on a body that they move");
+                fmt::format("'{}' answers to nothing that is unknown", sensor.name),
+                "leave it out, or put it on a body that the unknowns move");
   }
+}
+
+// Forces follow the actuators of the scene, see add_forces().
+std::vector<sim::Unknown> unknowns_of(const SceneDescription& scene,
+                                      const EstimatorDescription& estimator) {
+  std::vector<sim::Unknown> all;
+  auto next = static_cast<int>(scene.actuators.size());
+  for (const UnknownDescription& unknown : estimator.unknowns) {
+    sim::Unknown& one = all.emplace_back();
+    one.name = unknown.name;
+    one.prior = unknown.prior;
+    one.walk = unknown.walk;
+    if (unknown.is_force()) {
+      one.first_actuator = std::exchange(next, next + 3);
+      continue;
+    }
+    const auto on =
+        std::ranges::find(scene.actuators, unknown.actuator, &ActuatorDescription::name);
+    one.kind = sim::Unknown::Kind::effort;
+    one.first_actuator = static_cast<int>(on - scene.actuators.begin());
+    one.command_known = unknown.command_known;
+    one.unit = sim::actuator_words(on->type).effort.unit;
+  }
+  return all;
 }
 
 }  // namespace
@@ -207,21 +303,19 @@ void check_response(const SceneDescription& scene, const EstimatorDescription& e
 void add_estimator(sim::ModelBuilder& builder, const SceneDescription& scene,
                    const EstimatorDescription& estimator) {
   for (std::size_t k = 0; k < estimator.sensors.size(); ++k) {
-    check_type(scene,
+    check_type(scene, estimator,
                *std::ranges::find(scene.sensors, estimator.sensors[k], &SensorDescription::name),
                estimator.sensor_places[k]);
   }
+  check_efforts(scene, estimator);
   sim::EstimatorSettings settings;
   settings.name = estimator.name;
   settings.place = estimator.place;
   settings.robot = build_known(scene, estimator);
   settings.sensors = estimator.sensors;
   settings.sensor_places = estimator.sensor_places;
-  auto first = static_cast<int>(scene.actuators.size());
-  for (const UnknownForceDescription& unknown : estimator.unknowns) {
-    settings.unknowns.push_back({unknown.name, first, unknown.prior, unknown.walk});
-    first += 3;
-  }
+  settings.unknowns = unknowns_of(scene, estimator);
+  settings.rank = estimator.rank;
   for (const sim::LoadModel& load : settings.robot->loads()) {
     const auto same = std::ranges::find(scene.loads, load.name, &LoadDescription::name);
     settings.loads.push_back(static_cast<int>(same - scene.loads.begin()));

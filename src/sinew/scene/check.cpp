@@ -153,7 +153,7 @@ class Checker {
     };
     if (!entry.key.empty() && std::all_of(entry.key.begin(), entry.key.end(), allowed)) return;
     throw Error(ErrorKind::bad_argument, entry.key_place,
-                fmt::format("{} is no name", show(entry.key)),
+                fmt::format("{} is not a name", show(entry.key)),
                 "write names with letters, digits, '_' and '-'");
   }
 

@@ -327,25 +327,32 @@ struct SensorDescription {
   std::shared_ptr<const sim::SensorRecord> record;  ///< of a file
 };
 
-/// A force from outside that is to be found.
-struct UnknownForceDescription {
+/// A force from outside, or the effort of an actuator, that is to be found.
+struct UnknownDescription {
   std::string name;
-  Location place, point_place;
-  std::string body;
+  Location place, where_place;
+  std::string body;                 ///< that the force acts on; empty: it is an effort
   Vector3 point = Vector3::Zero();  ///< m
   mesh::Outside outside = mesh::Outside::error;
-  double prior = 0.0;  ///< N, > 0
-  double walk = 0.0;   ///< N/sqrt(s), > 0; left out: as many as the prior
+  std::string actuator;       ///< whose effort it is
+  std::string quantity;       ///< of the effort: "pressure"
+  bool command_known = true;  ///< see sim::Unknown
+  double prior = 0.0;         ///< N or Pa, > 0
+  double walk = 0.0;          ///< over sqrt(s), > 0; left out: as many as the prior
+
+  bool is_force() const { return actuator.empty(); }
 };
 
-/// What concludes forces from sensors.
+/// What concludes forces and efforts from sensors.
 struct EstimatorDescription {
   std::string name;
   Location place;
   std::vector<std::string> sensors;
   std::vector<Location> sensor_places;
-  std::vector<UnknownForceDescription> unknowns;
+  std::vector<UnknownDescription> unknowns;
   std::vector<std::string> unknown_loads;
+  bool inertia = true;  ///< whether its robot has the integrator of the scene
+  int rank = 12;        ///< see sim::EstimatorModel
 };
 
 /// A surface that points of a body may touch, or two bodies.

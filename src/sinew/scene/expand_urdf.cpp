@@ -107,7 +107,7 @@ void for_each_body_name(SceneDescription& scene, Rename&& rename) {
     for (std::string& body : sensor.electrode_bodies) rename(body, sensor.place);
   }
   for (EstimatorDescription& estimator : scene.estimators) {
-    for (UnknownForceDescription& unknown : estimator.unknowns) rename(unknown.body, unknown.place);
+    for (UnknownDescription& unknown : estimator.unknowns) rename(unknown.body, unknown.place);
   }
   for (ContactDescription& contact : scene.contacts) {
     rename(contact.body, contact.place);

@@ -45,7 +45,7 @@ void read_between(const Fields& fields, const Node& between, ContactDescription&
   contact.between_place = between.place();
   contact.all = between.items().empty();
   for (const char* key : {"surface", "motion"}) {
-    refuse_key(fields, key, "is no part of contact between bodies",
+    refuse_key(fields, key, "does not apply to contact between bodies",
                "leave it out, or name one `body` in place of `between`");
   }
   if (contact.all) {

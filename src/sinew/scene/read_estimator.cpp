@@ -13,24 +13,40 @@ namespace {
 // In an estimator's observables.
 constexpr const char* kTakenName = "status";
 
-UnknownForceDescription read_unknown(const Node::Entry& entry, const Form& form) {
-  UnknownForceDescription unknown;
+void read_force_place(const Fields& force, UnknownDescription& unknown) {
+  force.read("body", unknown.body);
+  force.read("point", unknown.point);
+  unknown.where_place = force.place("point");
+  force.read_choice("outside", unknown.outside,
+                    {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
+}
+
+void read_effort_place(const Fields& effort, UnknownDescription& unknown) {
+  effort.read("actuator", unknown.actuator);
+  unknown.where_place = effort.place("actuator");
+  effort.read_choice("command", unknown.command_known, {{"known", true}, {"unknown", false}});
+}
+
+UnknownDescription read_unknown(const Node::Entry& entry, const std::vector<Form>& forms) {
+  UnknownDescription unknown;
   unknown.name = entry.key;
   unknown.place = entry.key_place;
   if (unknown.name == kTakenName) {
     throw Error(ErrorKind::duplicate_key, unknown.place,
                 "'status' is what the estimator's own status is called", "choose another name");
   }
+  const Form& form = select_form(entry.value, forms, {});
   const Fields fields(entry.value, form);
   fields.read("prior", unknown.prior);
   unknown.walk = unknown.prior;
   fields.read("walk", unknown.walk);
-  const Fields force = fields.below("force");
-  force.read("body", unknown.body);
-  force.read("point", unknown.point);
-  unknown.point_place = force.place("point");
-  force.read_choice("outside", unknown.outside,
-                    {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
+  const Fields where = fields.below(form.telltale);
+  if (form.telltale == "force") {
+    read_force_place(where, unknown);
+  } else {
+    unknown.quantity = form.telltale;
+    read_effort_place(where, unknown);
+  }
   return unknown;
 }
 
@@ -60,7 +76,9 @@ EstimatorDescription read_estimator(const Node::Entry& entry) {
   std::vector<Location> load_places;
   read_names(fields, "sensors", estimator.sensors, estimator.sensor_places);
   read_names(fields, "unknown_loads", estimator.unknown_loads, load_places);
-  const Form& unknown = fields.form("unknowns").items.front();
+  fields.read("inertia", estimator.inertia);
+  fields.read("rank", estimator.rank);
+  const std::vector<Form>& unknown = fields.form("unknowns").items;
   for (const Node::Entry& one : fields.find("unknowns")->entries()) {
     estimator.unknowns.push_back(read_unknown(one, unknown));
   }

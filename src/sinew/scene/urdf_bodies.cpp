@@ -79,7 +79,7 @@ void UrdfBodies::read_starts() {
     if (start.turns ? !turns : !slides) {
       throw Error(
           ErrorKind::unknown_name, start.place,
-          fmt::format("'{}' is no joint that {}", start.joint, start.turns ? "turns" : "slides"),
+          fmt::format("'{}' is not a joint that {}", start.joint, start.turns ? "turns" : "slides"),
           "name a joint of the file");
     }
     starts_[static_cast<std::size_t>(joint - robot_.joints.begin())] = start.value;

@@ -157,7 +157,8 @@ void UrdfTree::check_name(const pugi::xml_node& element,
                           const std::vector<pugi::xml_node>& others) const {
   const std::string_view name = name_of(element);
   if (!is_spelled_well(name)) {
-    throw Error(ErrorKind::bad_argument, place(element), fmt::format("{} is no name", show(name)),
+    throw Error(ErrorKind::bad_argument, place(element),
+                fmt::format("{} is not a name", show(name)),
                 "write names with letters, digits, '_' and '-'");
   }
   const auto same = [&](const pugi::xml_node& other) { return name == name_of(other); };
@@ -235,7 +236,7 @@ void UrdfTree::check_tie(const pugi::xml_node& joint) {
     if (link_number(link) >= 0) continue;
     const std::vector<std::string> known = names_of(links_);
     throw Error(ErrorKind::unknown_name, place(joint),
-                fmt::format("its {} {} is no link", end, show(link)),
+                fmt::format("its {} {} is not a link", end, show(link)),
                 fmt::format("{}the links are {}", did_you_mean(link, known), join(known)));
   }
   const std::string_view child = end_of(joint, "child");

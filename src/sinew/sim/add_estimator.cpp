@@ -50,7 +50,8 @@ EstimatorSensor sensor_of(const ModelData& data, const std::string& name, const 
 int add_estimator(ModelData& data, const EstimatorSettings& settings) {
   check_new_name(data.estimators, &EstimatorModel::name, "estimators", settings.name,
                  settings.place);
-  EstimatorModel estimator{settings.name, settings.robot, {}, settings.unknowns, settings.loads, 0};
+  EstimatorModel estimator{settings.name, settings.robot, {}, settings.unknowns, settings.loads, 0,
+                           settings.rank};
   for (std::size_t k = 0; k < settings.sensors.size(); ++k) {
     const Location& place = settings.sensor_places[k];
     const EstimatorSensor sensor = sensor_of(data, settings.sensors[k], place, *settings.robot);

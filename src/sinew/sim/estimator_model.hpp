@@ -7,17 +7,30 @@
 #include <vector>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
 
 namespace sinew::sim {
 
 class Model;
 
-/// A dead force of unknown size and direction on a point.
-struct UnknownForce {
+/// What an estimator looks for.
+struct Unknown {
+  enum class Kind {
+    force,   ///< a dead force on a point: components along x, y and z of the world
+    effort,  ///< of an actuator: what is added to its commanded effort, see command_known
+  };
   std::string name;
-  int first_actuator = 0;  ///< of the estimator's robot: forces along x, y and z of the world
-  double prior = 1.0;      ///< N, standard deviation of each component before anything is measured
-  double walk = 1.0;       ///< N/sqrt(s), of each component's random walk
+  Kind kind = Kind::force;
+  int first_actuator = 0;  ///< of the estimator's robot: three forces in turn, or the actuator
+  double prior = 1.0;  ///< standard deviation of each component before anything is measured, in its
+                       ///< unit
+  double walk = 1.0;   ///< its unit over sqrt(s), of each component's random walk
+  /// Of an effort: whether the estimator knows the command. It then looks for the difference of
+  /// effort and commanded effort; where it does not know, or no effort is commanded, for the whole.
+  bool command_known = true;
+  const char* unit = "N";
+
+  int size() const { return kind == Kind::force ? 3 : 1; }
 };
 
 /// A sensor that an estimator goes by.
@@ -33,17 +46,29 @@ struct EstimatorSensor {
 /// Immutable part of an estimator.
 struct EstimatorModel {
   std::string name;
-  /// The robot as the estimator knows it, quasi-static: its sensors are those of `sensors`, in
-  /// their order, and its actuators those of the model with the estimator, then the unknown forces.
+  /// The robot as the estimator knows it, quasi-static or with the integrator of the model with the
+  /// estimator: its sensors are those of `sensors`, in their order, and its actuators those of that
+  /// model, then the unknown forces.
   std::shared_ptr<const Model> robot;
   std::vector<EstimatorSensor> sensors;
-  std::vector<UnknownForce> unknowns;
+  std::vector<Unknown> unknowns;
   std::vector<int>
       loads;     ///< (loads of `robot`,) in Model::loads() of the model with the estimator
   int lags = 0;  ///< steps of the longest delay
+  int rank = 0;  ///< columns of the covariance of a robot with inertia, see MotionFilter
 
-  /// (3 unknowns,) "hand.x", "hand.y", "hand.z".
+  Eigen::Index size() const;      ///< n: components of all unknowns
+  Eigen::Index readings() const;  ///< m: numbers that all sensors say
+  /// (n,) "hand.x", "hand.y", "hand.z" of a force, "leak" of an effort.
   std::vector<std::string> component_names() const;
+  /// (n,) a number of the unknown that each component belongs to. @param number prior or walk.
+  VectorX of_components(double Unknown::*number) const;
+  /// (k,) what takes a reading of a sensor to another one: their difference, or of an orientation
+  /// the rotation vector of R_to R_from^T. @param sensor its number among `sensors`.
+  /// @param to,from (k,) of it.
+  VectorX difference(std::size_t sensor, const VectorX& to, const VectorX& from) const;
+  /// (n,) of the estimator's robot, whose effort each component is part of.
+  std::vector<int> actuators() const;
 };
 
 /// What ModelBuilder::add_estimator() is told: sensors by name.
@@ -53,8 +78,9 @@ struct EstimatorSettings {
   std::shared_ptr<const Model> robot;
   std::vector<std::string> sensors;
   std::vector<Location> sensor_places;
-  std::vector<UnknownForce> unknowns;
+  std::vector<Unknown> unknowns;
   std::vector<int> loads;
+  int rank = 0;  ///< see EstimatorModel
 };
 
 }  // namespace sinew::sim

@@ -1,5 +1,6 @@
 #include "sinew/sim/estimators.hpp"
 
+#include "sinew/core/error.hpp"
 #include "sinew/core/named_hash.hpp"
 #include "sinew/sim/estimator_model.hpp"
 #include "sinew/sim/model.hpp"
@@ -15,6 +16,9 @@ double signature_of(const std::vector<EstimatorModel>& estimators) {
   for (const EstimatorModel& one : estimators) {
     hash.add(one.lags, one.robot->fingerprint(), one.unknowns.size());
     for (const EstimatorSensor& sensor : one.sensors) hash.add(sensor.index, sensor.size);
+    for (const Unknown& unknown : one.unknowns) {
+      hash.add(unknown.first_actuator, unknown.size(), unknown.command_known);
+    }
   }
   return static_cast<double>(hash.value() >> 12);
 }
@@ -49,10 +53,11 @@ bool Estimators::load(std::span<const double> memory) {
   if (all_.empty()) return true;
   if (memory.empty() || memory.front() != signature_) return false;
   memory = memory.subspan(1);
-  for (Estimator& one : all_) {
-    if (!one.load(memory)) return false;
-  }
-  return memory.empty();
+  bool good = true;
+  for (Estimator& one : all_) good = good && one.load(memory);
+  if (good && memory.empty()) return true;
+  throw Error(ErrorKind::wrong_length, {.item = "estimators of the state"},
+              "their memory is damaged", "take the state from a simulation of the same model");
 }
 
 }  // namespace sinew::sim

@@ -26,6 +26,7 @@ class Estimators {
   /// All that changes, finite numbers; nothing without estimators.
   void save(std::vector<double>& memory) const;
   /// Takes it up again. @return whether it is of the same estimators; else they have to begin().
+  /// Throws Error(wrong-length) where it is theirs and incomplete.
   bool load(std::span<const double> memory);
 
  private:

@@ -52,9 +52,10 @@ struct Run {
   void finish_step();
   void restart();
 
-  /// Writes the state. Allocates nothing where it has the sizes already.
+  /// Writes the state, but for the memory of estimators, which a step does not touch. Allocates
+  /// nothing where it has the sizes already.
   void keep(State& state) const;
-  /// See Simulation.
+  /// Takes up what keep() writes; see Simulation.
   void restore(const State& state);
   /// To `before`, after what failed or was ended there.
   void go_back();

@@ -63,7 +63,6 @@ void Run::keep(State& state) const {
   state.next_step = next_step;
   state.steps = steps;
   sensors.save(state.sensors);
-  estimators.save(state.estimators);
 }
 
 void Run::restore(const State& state) {
@@ -85,7 +84,6 @@ void Run::restore(const State& state) {
   next_step = state.next_step;
   steps = state.steps;
   if (!sensors.load(state.sensors)) sensors.restart(*this);
-  if (!estimators.load(state.estimators)) estimators.begin(*this);
   step::WithMemory* remembering = attached();
   if (remembering == nullptr) return;
   if (!state.controller.empty() && state.controller.size() == remembering->memory_size()) {

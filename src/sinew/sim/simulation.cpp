@@ -15,6 +15,20 @@
 
 namespace sinew::sim {
 
+namespace {
+
+// Those of another model begin anew, as do damaged ones.
+void load_estimators(Run& run, const State& state) {
+  try {
+    if (!run.estimators.load(state.estimators)) run.estimators.begin(run);
+  } catch (const Error&) {
+    run.estimators.begin(run);
+    throw;
+  }
+}
+
+}  // namespace
+
 Simulation::Simulation(std::shared_ptr<const Model> model, int threads)
     : run_(std::make_unique<Run>(std::move(model), threads)),
       stepper_(std::make_unique<Stepper>(*run_)) {}
@@ -200,11 +214,13 @@ std::span<const step::ActuatorBlock> Simulation::actuator_blocks() const {
 State Simulation::state() const {
   State state;
   run_->keep(state);
+  run_->estimators.save(state.estimators);
   return state;
 }
 
 void Simulation::restore(const State& state) {
   run_->restore(state);
+  load_estimators(*run_, state);
   run_->world.contacts().forget_friction();
 }
 Inputs Simulation::inputs() const { return run_->inputs(); }

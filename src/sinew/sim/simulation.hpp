@@ -172,7 +172,8 @@ class Simulation {
   /// Takes up a state, of this simulation or of another one of the same model. A controller takes
   /// up its memory where the state has it; otherwise it begins anew, as do sensors where those of
   /// the state are others. Commands stay as they are.
-  /// Throws Error(wrong-length) for a state of another model, and is then unchanged.
+  /// Throws Error(wrong-length) for a state of another model, and is then unchanged; and where the
+  /// memory of estimators is damaged, which then begin anew.
   void restore(const State& state);
   /// What acts from outside: commands, load factors, forces, tethers, and where bases are asked to
   /// be.

@@ -13,6 +13,7 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/axis_names.hpp"
 #include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/estimator.hpp"
@@ -27,8 +28,6 @@
 namespace sinew::sim {
 
 namespace {
-
-constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 
 // Takes numbers in the order in which observables list them.
 class Numbers {
@@ -156,7 +155,7 @@ void add_effectors(Observables& list) {
     Observable one =
         of(ObservableKind::effector, name, turns ? "rotation" : "position", effector.unit(), {3});
     one.quantity = "position";
-    for (const char* axis : kAxes) {
+    for (const char* axis : kAxisNames) {
       one.components.push_back(fmt::format("{}.{}{}", name, turns ? "r" : "", axis));
     }
     list.add({std::move(one)}, [&simulation, index](std::span<double> to) {
@@ -289,7 +288,7 @@ void add_contacts(Observables& list) {
     add_sum("force", "N");
     parts.back().shape = {3};
     parts.back().components.clear();
-    for (const char* axis : kAxes) {
+    for (const char* axis : kAxisNames) {
       parts.back().components.push_back(fmt::format("{}.force_{}", name, axis));
     }
     add_sum("normal_force", "N");
@@ -311,7 +310,7 @@ void add_joints(Observables& list) {
     std::vector<Observable> parts;
     const auto add_vector = [&](const char* quantity, const char* unit) {
       parts.push_back(of(ObservableKind::joint, name, quantity, unit, {3}));
-      for (const char* axis : kAxes) {
+      for (const char* axis : kAxisNames) {
         parts.back().components.push_back(fmt::format("{}.{}_{}", name, quantity, axis));
       }
     };
@@ -341,14 +340,18 @@ void add_estimators(Observables& list) {
   for (std::size_t i = 0; i < estimators.size(); ++i) {
     const EstimatorModel& estimator = estimators[i];
     std::vector<Observable> parts;
-    const auto add = [&](const std::string& quantity) {
-      parts.push_back(of(ObservableKind::estimator, estimator.name, quantity, "N", {3}));
-      for (const char* axis : kAxes) {
+    const auto add = [&](const Unknown& unknown, const char* of_it) {
+      const bool vector = unknown.size() == 3;
+      parts.push_back(of(ObservableKind::estimator, estimator.name, unknown.name + of_it,
+                         unknown.unit,
+                         vector ? std::vector<std::size_t>{3} : std::vector<std::size_t>{}));
+      if (!vector) return;
+      for (const char* axis : kAxisNames) {
         parts.back().components.push_back(fmt::format("{}.{}", parts.back().name, axis));
       }
     };
-    for (const UnknownForce& unknown : estimator.unknowns) add(unknown.name);
-    for (const UnknownForce& unknown : estimator.unknowns) add(unknown.name + ".std");
+    for (const Unknown& unknown : estimator.unknowns) add(unknown, "");
+    for (const Unknown& unknown : estimator.unknowns) add(unknown, ".std");
     parts.push_back(of(ObservableKind::estimator, estimator.name, "status", ""));
     for (int code = 0; code < kEstimatorStatuses; ++code) {
       parts.back().words.push_back(
@@ -357,7 +360,7 @@ void add_estimators(Observables& list) {
     list.add(std::move(parts), [&simulation, i](std::span<double> all) {
       const Estimator& one = simulation.estimator(static_cast<int>(i));
       Numbers to(all);
-      for (const double force : one.mean()) to.put(force);
+      for (const double component : one.mean()) to.put(component);
       for (const double deviation : one.deviation()) to.put(deviation);
       to.put(static_cast<double>(one.status()));
     });

@@ -1,6 +1,9 @@
 #include "sinew/sim/step_response.hpp"
 
+#include <algorithm>
+
 #include "sinew/linalg/scratch.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/row_numbering.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/world.hpp"
@@ -12,7 +15,10 @@ StepResponse::StepResponse(Simulation& simulation, std::span<const int> controll
     : simulation_(simulation) {
   World& world = simulation.world();
   for (const int actuator : controlled) {
-    world.problem().actuators[static_cast<std::size_t>(actuator)].owned = true;
+    const auto at = static_cast<std::size_t>(actuator);
+    world.problem().actuators[at].owned = true;
+    rows_.push_back(simulation.model().actuators()[at].row);
+    columns_.push_back(std::ranges::count_if(controlled, [&](int one) { return one < actuator; }));
   }
   linalg::AlignedNumbers effort;
   world.numbering().gather_efforts(simulation.efforts(), effort);
@@ -25,15 +31,17 @@ int StepResponse::row_of(int row) const {
 
 // Rows that are no contact's keep their order and stand together.
 MatrixX StepResponse::motions(int first, int count) const {
-  return response_.compliance().middleRows(row_of(first), count);
+  return response_.compliance().middleRows(row_of(first), count)(Eigen::all, columns_);
 }
 
 MatrixX StepResponse::effort(int row) const {
-  Eigen::RowVectorXd slope =
-      Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(response_.controlled().size()));
+  const auto count = static_cast<Eigen::Index>(columns_.size());
+  const auto own = std::ranges::find(rows_, row);
+  if (own != rows_.end()) return MatrixX::Identity(count, count).row(own - rows_.begin());
+  Eigen::RowVectorXd slope = Eigen::RowVectorXd::Zero(count);
   double offset = 0.0;
   response_.add_effort(row_of(row), 1.0, offset, slope);
-  return slope;
+  return slope(columns_);
 }
 
 }  // namespace sinew::sim

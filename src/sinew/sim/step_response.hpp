@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "sinew/core/types.hpp"
 #include "sinew/step/response.hpp"
@@ -16,7 +17,7 @@ class Simulation;
 class StepResponse {
  public:
   /// @param simulation after a step or solve_static(), whose state stays as it is.
-  /// @param controlled indices of Model::actuators(), ascending.
+  /// @param controlled indices of Model::actuators(), each once.
   StepResponse(Simulation& simulation, std::span<const int> controlled);
 
   /// (rows, controlled) of motions. @param first,count rows of H, none of a contact.
@@ -29,6 +30,8 @@ class StepResponse {
 
   const Simulation& simulation_;
   step::Response response_;
+  std::vector<Eigen::Index> columns_;  // (controlled,) of the response, which has them ascending
+  std::vector<int> rows_;              // (controlled,) of H
 };
 
 }  // namespace sinew::sim

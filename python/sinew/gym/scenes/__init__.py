@@ -1,1 +1,1 @@
-"""The robots of the tasks: scenes as files, and scenes with meshes that are generated when a task is loaded."""
+"""Robots of the tasks: scene files, and scenes whose meshes are generated when a task is loaded."""

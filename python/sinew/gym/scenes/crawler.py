@@ -1,4 +1,4 @@
-"""A quadruped of silicone with five air chambers: bellows on a sole that fabric keeps from lengthening.
+"""A silicone quadruped with five air chambers: bellows on a sole that fabric keeps from stretching.
 
 Seen from above, with x to the right; every letter is a bellow, a void of one cell within walls of one cell:
 
@@ -6,8 +6,8 @@ Seen from above, with x to the right; every letter is a bellow, a void of one ce
           T T
     R R   T T   F F      rear_right, trunk, front_right
 
-The bellows stand on the sole without touching each other. Those of a chamber have the same pressure; the tube between them
-is left out.
+The bellows stand on the sole without touching each other. The bellows of a chamber have the same pressure; the tube between
+them is not modelled.
 """
 
 from __future__ import annotations
@@ -33,15 +33,15 @@ TIME_STEP = 0.04  # s
 
 
 def cells() -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
-    """The grid of the mesh.
+    """Grid of the mesh.
 
     Returns
     -------
     solid : (nx, 7, 3) bool
     chamber : (nx, 7, 3) int
-        Number of the chamber that a void belongs to, from 1 in the order of CHAMBERS; else 0.
+        Number of the chamber that a void belongs to, from 1 in the order of CHAMBERS; otherwise 0.
     edges : three arrays of m
-        Where the planes of the grid are; the body is in the middle of x and y, and stands on z = 0.
+        Positions of the grid planes. The body is centred in x and y and stands on z = 0.
     """
     count = 3 * BELLOWS
     along = np.tile([WALL, AIR, WALL, GAP], count)[:-1]
@@ -61,14 +61,14 @@ def cells() -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
 
 
 def scene(folder: Path, friction: float) -> dict[str, Any]:
-    """The scene; the mesh is written into the folder.
+    """The scene; its mesh is written to the folder.
 
-    Its body is `crawler`, its actuators are CHAMBERS, its contacts with the floor are FEET and `belly`, below the trunk.
+    The body is `crawler`, the actuators are CHAMBERS, and the contacts with the floor are FEET and `belly`, below the trunk.
 
     Parameters
     ----------
     folder : Path
-        It must last while the scene is loaded.
+        It must exist until the scene is loaded.
     friction : float
         Coefficient of all contacts.
     """

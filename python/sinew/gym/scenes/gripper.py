@@ -1,4 +1,4 @@
-"""Three soft fingers with a cable each, and a cup that is soft, too: examples/grasp/grasp.py on a coarser mesh."""
+"""Three soft fingers with one cable each, and a soft cup: examples/grasp/grasp.py on a coarser mesh."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ APART, ABOVE, HELD = 50e-3, 220e-3, 20e-3  # m: feet from the middle and above t
 
 
 def write_cup(path: Path) -> None:
-    """The cup, one hexahedron through its floor and one through its wall; it stands on z = 0 around the z axis."""
+    """Writes the cup, with one hexahedron through its floor and one through its wall, standing on z = 0 around the z axis."""
     hexahedra.write(path, *hexahedra.cup(QUARTER, LAYERS, CUP_RADII, CUP_HEIGHT, CUP_WALL, CUP_FLOOR))
 
 
 def scene(folder: Path, friction: float) -> dict[str, Any]:
-    """The scene; the mesh of the cup is written into the folder.
+    """The scene; the mesh of the cup is written to the folder.
 
-    Bodies: cup, finger_0 to finger_2, around the cup a third of a turn apart, and cable_0 to cable_2 on their inner sides.
+    Bodies: cup, and finger_0 to finger_2 around it, 120 degrees apart, with cable_0 to cable_2 on their inner sides.
     Contacts: table, and grip_0 to grip_2 between a finger (first) and the cup.
 
     Parameters
     ----------
     folder : Path
-        It must last while the scene is loaded.
+        It must exist until the scene is loaded.
     friction : float
         Coefficient of all contacts.
     """

@@ -1,4 +1,4 @@
-"""Meshes of hexahedra, for scenes that generate theirs."""
+"""Hexahedral meshes for scenes that generate their meshes."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ _VTK_HEXAHEDRON = 12
 
 
 def voxels(solid: np.ndarray, edges: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The solid cells of a grid whose planes may be unevenly spaced.
+    """Solid cells of a grid whose planes may be unevenly spaced.
 
     Parameters
     ----------
     solid : (nx, ny, nz) bool
     edges : three arrays, (nx + 1,), (ny + 1,), (nz + 1,) m
-        Where the planes of the grid are.
+        Positions of the grid planes.
 
     Returns
     -------
@@ -28,7 +28,7 @@ def voxels(solid: np.ndarray, edges: Sequence[np.ndarray]) -> tuple[np.ndarray, 
     hexahedra : (m, 8) int
         In VTK's order.
     places : (n, 3) int
-        The planes that a node lies on.
+        Indices of the planes that a node lies on.
     """
     at = (np.argwhere(solid)[:, None, :] + _CORNERS).reshape(-1, 3)
     places, hexahedra = np.unique(at, axis=0, return_inverse=True)
@@ -37,7 +37,7 @@ def voxels(solid: np.ndarray, edges: Sequence[np.ndarray]) -> tuple[np.ndarray, 
 
 
 def _disc(quarter: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A square within a ring: points (n, 2) of the unit disc, quadrilaterals (m, 4), the points of its circle counter-clockwise."""
+    """A square within a ring: points (n, 2) of the unit disc, quadrilaterals (m, 4), and the points of the circle counter-clockwise."""
     grid = np.linspace(-0.55, 0.55, quarter + 1)
     square = np.stack(np.meshgrid(grid, grid, indexing="ij"), axis=-1).reshape(-1, 2)
     at = np.arange((quarter + 1) ** 2).reshape(quarter + 1, quarter + 1)
@@ -91,7 +91,7 @@ def write(path: Path, nodes: np.ndarray, hexahedra: np.ndarray, labels: Optional
     nodes : (n, 3) m
     hexahedra : (m, 8) int
     labels : dict of (n,) int, optional
-        Nodes with the value k of the label "name" are the node set "name:k" of a scene.
+        In a scene, nodes with the value k of the label "name" are the node set "name:k".
     """
     count = len(hexahedra)
     with open(path, "w", encoding="ascii") as file:

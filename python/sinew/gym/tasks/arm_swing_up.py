@@ -1,4 +1,4 @@
-"""An arm above what it can hold."""
+"""Swing-up of an arm whose torques are too weak to hold it up."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ _LENGTHS, _MASSES, _STIFFNESS, _DAMPING = (0.14,) * 4, (0.190, 0.146, 0.090, 0.0
 
 
 class ArmSwingUp(Task):
-    """Swing the tip of a hanging arm of constant curvature as high as possible; 2 ms a step, 20 ms an action, 4 s.
+    """Swing the tip of a hanging constant-curvature arm as high as possible; steps of 2 ms, actions of 20 ms, episodes of 4 s.
 
-    The torques on the lower three of four segments are weak: held at their limits, they raise the tip by less than a swing
-    does. Episodes begin with the arm hanging, a little bent and at rest or moving, drawn from eight states.
+    The torques on the lower three of four segments are weak: constant torques at their limits raise the tip less than a swing
+    does. Episodes begin with the arm hanging, slightly bent and at rest or moving, drawn from eight states.
 
     Action: torques, from -limit to limit (0.12, 0.13, 0.18 N m).
-    Observation: bending angles of the segments (4, over 1 rad), their rates (4, over 10 rad/s), torques (3, over their
-    limits), position of the tip (x and z, over 0.56 m, the arm's length). There is no other state: `observe="state"` is the
-    same.
-    Reward of a step: (height of the tip over where it hangs) / 0.56 m - 0.01 (mean square of the actions). It never
+    Observation: bending angles of the segments (4, unit 1 rad), their rates (4, unit 10 rad/s), torques (3, relative to their
+    limits), position of the tip (x and z, relative to 0.56 m, the length of the arm). There is no hidden state:
+    `observe="state"` is the same.
+    Reward of a step: (height of the tip above its hanging position) / 0.56 m - 0.01 (mean square of the actions). The task never
     terminates.
-    Info: `height` (m), `success` (the tip has been HIGH in the episode).
+    Info: `height` (m), `success` (the tip has reached HIGH in the episode).
     """
 
     name = "arm-swing-up"
@@ -42,7 +42,7 @@ class ArmSwingUp(Task):
     RATE = 3.0  # rad/s, from which the scripted expert pulls with all it has
 
     def randomised(self, material_scale: float, payload: float) -> dict[str, Any]:
-        """Stiffness of all segments; the payload adds to the mass of the last one."""
+        """Stiffness of all segments; the payload is added to the mass of the last one."""
         if material_scale == 1.0 and payload == 0.0:
             return {}
         masses = [*_MASSES[:-1], _MASSES[-1] + payload]
@@ -52,12 +52,12 @@ class ArmSwingUp(Task):
         ]}  # fmt: skip
 
     def picture_points(self, robot: Robot) -> np.ndarray:
-        """All that the tip can reach, across the line of sight."""
+        """All points that the tip can reach, seen along the line of sight."""
         reach = sum(_LENGTHS)
         return reach * np.array([[-1.0, 0.0, -1.0], [-1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0]])
 
     def prepare(self, robot: Robot) -> list[State]:
-        """Eight states: at rest, and 0.1 to 0.5 s after torques of up to 30 % of the limits began to act."""
+        """Eight states: at rest, and 0.1 to 0.5 s after torques of up to 30 % of the limits are applied."""
         start, states, random = robot.sim.state(), [robot.sim.state()], np.random.default_rng(0)
         for _ in range(7):
             robot.sim.restore(start)
@@ -70,27 +70,28 @@ class ArmSwingUp(Task):
         return states
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """Nothing more is drawn."""
+        """Draws nothing further."""
         episode.commands = np.zeros(3)
         episode.memory.update(highest=-np.inf)
 
     def scripted(self, episode: Any) -> np.ndarray:
-        """Pumps energy: all torques push along with the rate at which the whole arm turns, the sum of the segments' rates.
+        """Energy pumping: all torques act in the direction in which the whole arm turns, the sign of the sum of the segments' rates.
 
-        The power of a torque is its size times the rate of its segment. In the lowest mode all segments turn together, and torques in
-        phase with it raise its energy in every half swing, as in the swing-up of a pendulum by energy control (Astrom and Furuta,
-        Automatica 36 (2000) 287-295: control by the sign of the rate). In proportion below RATE, so that higher modes get less. The first action is a push, as an arm at rest has no rate.
+        The power of a torque is the torque times the rate of its segment. In the lowest mode all segments turn together, and torques
+        in phase with it raise its energy in every half swing, as in the swing-up of a pendulum by energy control (Astrom and Furuta,
+        Automatica 36 (2000) 287-295: control by the sign of the rate). Below RATE the torques are proportional to the rate, which
+        excites higher modes less. The first action is a push, because an arm at rest has no rate.
         """
         rate = np.sum(episode.robot.body.rates) / self.RATE
         return np.full(3, np.clip(rate, -1.0, 1.0) if episode.steps > 0 else np.copysign(1.0, rate))
 
     def observation_names(self, robot: Robot) -> list[str]:
-        """What every number of an observation is."""
+        """Name of every number of an observation."""
         return ([f"angle {k} / 1 rad" for k in range(4)] + [f"rate {k} / 10 rad/s" for k in range(4)]
                 + [f"{name} torque / limit" for name in robot.sim.actuators] + ["tip x / 0.56 m", "tip z / 0.56 m"])  # fmt: skip
 
     def sense_rows(self, episodes: Sequence[Any], read: np.ndarray, out: np.ndarray) -> None:
-        """Writes observations."""
+        """Write observations."""
         out[:, :4] = read[:, :4]
         out[:, 4:8] = read[:, 4:8] / 10.0
         out[:, 8:11] = read[:, 8:11] / self.high
@@ -99,7 +100,7 @@ class ArmSwingUp(Task):
     def reward_rows(
         self, episodes: Sequence[Any], read: np.ndarray, actions: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
-        """Height over length, less a little effort."""
+        """Height relative to the length, minus a small penalty on effort."""
         height = read[:, 13] - [episode.model.rest["tip"][2] for episode in episodes]
         effort = np.mean(actions**2, axis=1)
         highest = np.maximum(height, [episode.memory["highest"] for episode in episodes])

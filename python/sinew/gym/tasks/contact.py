@@ -1,4 +1,4 @@
-"""What the tasks with friction have in common."""
+"""Base of the tasks with friction."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ __all__ = ["ContactTask"]
 
 
 class ContactTask(Task):
-    """A task whose robot touches things; its scene is made by Python.
+    """A task whose robot makes contact; Python generates its scene.
 
     Parameters
     ----------
     friction : float or (low, high), optional
-        Coefficient of friction of all contacts, 0 to 2, drawn for each episode; by default the task's own.
+        Coefficient of friction of all contacts, 0 to 2; a range is drawn from for each episode. By default the task's own.
     """
 
     default_friction = 0.5

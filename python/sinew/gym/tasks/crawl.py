@@ -1,4 +1,4 @@
-"""A soft quadruped crawls."""
+"""A crawling soft quadruped."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ _FAR = 0.030  # m, that is a success
 
 
 def gait(time: float) -> np.ndarray:
-    """Shares of the greatest pressures at a time of the open-loop gait, (5,) in [0, 1], in the order of the chambers.
+    """Pressures of the open-loop gait at a time as fractions of their limits, (5,) in [0, 1], in the order of the chambers.
 
-    The front legs fill, then the trunk, then the rear legs; they empty in the same order. With the front first the robot
-    moves forward: docs/locomotion.md, "Crawling", says why.
+    The front legs fill first, then the trunk, then the rear legs; they empty in the same order. In this order the robot moves
+    forward; docs/locomotion.md, "Crawling", explains why.
 
     Parameters
     ----------
     time : float
-        s since the gait began; it is repeated every 2 s.
+        Time since the start of the gait, s; the period is 2 s.
     """
     phase = (time / PERIOD) % 1.0
     begun = phase - _LAG * np.array([_TURN[name] for name in crawler.CHAMBERS])
@@ -38,26 +38,26 @@ def gait(time: float) -> np.ndarray:
 
 
 class Crawl(ContactTask):
-    """Make a quadruped of silicone with five air chambers crawl forward, along x; 40 ms a step, 6 s an episode.
+    """Make a silicone quadruped with five air chambers crawl forward, along x; steps of 40 ms, episodes of 6 s.
 
-    Two front legs, a trunk and two rear legs stand on a sole that fabric keeps from lengthening: pressure in a chamber bends
-    its part upwards in the middle. 57 x 38 x 14 mm, 15 g, 768 nodes; dynamic (backward Euler). Episodes begin at rest, with all
-    chambers empty or with pressures of up to half of the limits, drawn from four states.
+    Two front legs, a trunk and two rear legs stand on a sole that fabric keeps from stretching, so pressure in a chamber arches
+    its part upwards. 57 x 38 x 14 mm, 15 g, 768 nodes; dynamic (backward Euler). Episodes begin at rest, with all chambers empty
+    or with pressures of up to half of the limits, drawn from four states.
 
     Action: change of the pressure in front_left, front_right, trunk, rear_left and rear_right: up to 300 kPa/s within 0 to
     60 kPa in the legs, 200 kPa/s within 0 to 40 kPa in the trunk. `action="pressure"`: the pressures themselves.
-    Observation: pressures (5, over their limits), growth of the chambers' volumes (5, over the volumes at rest), motion of the
-    centre of mass since the start (3, over 50 mm), heading (over 1 rad, counter-clockwise), velocity (3, over 50 mm/s), normal
-    forces of the feet (4, over the weight). `observe="state"` appends displacements (over 50 mm) and velocities (over 0.1 m/s)
-    of all nodes.
-    Reward of a step: (motion forward - half of the growth of |y|) / 1 mm - 0.01 (mean square of the actions). It never
+    Observation: pressures (5, relative to their limits), volume growth of the chambers (5, relative to the volumes at rest),
+    motion of the centre of mass since the start (3, unit 50 mm), heading (unit 1 rad, counter-clockwise), velocity (3, unit
+    50 mm/s), normal forces of the feet (4, relative to the weight). `observe="state"` appends displacements (unit 50 mm) and
+    velocities (unit 0.1 m/s) of all nodes.
+    Reward of a step: (forward motion - half of the growth of |y|) / 1 mm - 0.01 (mean square of the actions). The task never
     terminates.
     Info: `distance` (m, along x since the start), `drift` (m, along y), `heading` (rad), `success` (a distance of 30 mm or more).
-    Randomisation: `material_scale` is of the silicone, `payload` is on the sole below the trunk, `friction` is of the floor
-    (default 0.5). Below a material_scale of 0.95 chambers that are held at their limits may balloon, and the step then fails;
-    the gait fails at none of 0.85 to 1. 10 g of payload leave 40 % of the gait's distance, 50 g nothing.
+    Randomisation: `material_scale` applies to the silicone, `payload` to the sole below the trunk, `friction` to the floor
+    (default 0.5). Below a material_scale of 0.95, chambers held at their limits may balloon, and the step then fails; the gait
+    does not fail from 0.85 to 1. With a payload of 10 g the gait covers 40 % of its distance, with 50 g nothing.
 
-    The open-loop gait goes 12.1 mm in a cycle of 2 s. It goes 12.2 mm with steps of 20 ms, and 11.8 mm with 10 ms.
+    The open-loop gait covers 12.1 mm per cycle of 2 s; with steps of 20 ms it covers 12.2 mm, with 10 ms 11.8 mm.
     """
 
     name = "crawl"
@@ -66,7 +66,7 @@ class Crawl(ContactTask):
     default_time_limit = 6.0
 
     def described(self, folder: Path) -> dict[str, Any]:
-        """The scene, with the least friction; `randomised` sets that of a model."""
+        """The scene with the smallest friction; `randomised` sets the friction of a model."""
         return crawler.scene(folder, self.friction[0])
 
     def randomised(self, material_scale: float, payload: float, friction: float) -> dict[str, Any]:
@@ -79,7 +79,7 @@ class Crawl(ContactTask):
         return changed
 
     def prepare(self, robot: Robot) -> list[State]:
-        """Empty, and three states with pressures of up to half of the limits."""
+        """Empty chambers, and three states with pressures of up to half of the limits."""
         sim, random = robot.sim, np.random.default_rng(0)
         sim.step(10)
         states = [sim.state()]
@@ -94,7 +94,7 @@ class Crawl(ContactTask):
         return states
 
     def measure_rest(self, robot: Robot) -> dict[str, Any]:
-        """Masses of the nodes over the mass, nodes of front and rear legs, volumes (m^3), weight (N), all nodes (m)."""
+        """Nodal masses relative to the total mass, nodes of front and rear legs, volumes (m^3), weight (N), all nodes (m)."""
         body = robot.body
         masses, x = np.array(body.node_masses), np.array(body.rest_positions)[:, 0]
         third = x.max() / 3.0
@@ -103,7 +103,7 @@ class Crawl(ContactTask):
                 "positions": np.array(body.positions)}  # fmt: skip
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """Keeps where the robot starts."""
+        """Stores the initial position of the robot."""
         episode.memory.update(start=self.centre(episode), moved=np.zeros(3))
         episode.memory["heading"] = self.direction(episode)
 
@@ -112,17 +112,17 @@ class Crawl(ContactTask):
         return episode.model.rest["shares"] @ episode.robot.body.positions
 
     def direction(self, episode: Any) -> float:
-        """Angle from x to where the robot looks (rad)."""
+        """Angle from x to the robot's forward direction (rad)."""
         positions, rest = episode.robot.body.positions, episode.model.rest
         ahead = positions[rest["front"]].mean(axis=0) - positions[rest["rear"]].mean(axis=0)
         return math.atan2(ahead[1], ahead[0])
 
     def heading(self, episode: Any) -> float:
-        """By how much the robot has turned since the start (rad), -pi to pi."""
+        """Rotation of the robot since the start (rad), -pi to pi."""
         return math.remainder(self.direction(episode) - episode.memory["heading"], 2.0 * math.pi)
 
     def observation_names(self, robot: Robot) -> list[str]:
-        """What every number of an observation is."""
+        """Name of every number of an observation."""
         names = [f"{name} pressure / limit" for name in robot.sim.actuators] + [f"{name} volume growth" for name in robot.sim.actuators]
         names += [f"moved {axis} / 50 mm" for axis in "xyz"] + ["heading / 1 rad"] + [f"velocity {axis} / 50 mm/s" for axis in "xyz"]
         names += [f"{foot} normal force / weight" for foot in crawler.FEET]
@@ -133,7 +133,7 @@ class Crawl(ContactTask):
         return names
 
     def sense(self, episode: Any, out: np.ndarray) -> None:
-        """Writes an observation."""
+        """Write an observation."""
         robot, rest = episode.robot, episode.model.rest
         out[:5] = [actuator.pressure for actuator in robot.actuators] / self.high
         out[5:10] = [actuator.volume for actuator in robot.actuators] / rest["volumes"] - 1.0
@@ -145,7 +145,7 @@ class Crawl(ContactTask):
             out[21:] = np.concatenate([np.ravel((robot.body.positions - rest["positions"]) / 0.05), np.ravel(robot.body.velocities / 0.1)])
 
     def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
-        """mm forward, less drift and a little effort."""
+        """Forward motion in mm, minus drift and a small penalty on effort."""
         last, moved = episode.memory["moved"], self.centre(episode) - episode.memory["start"]
         episode.memory["moved"] = moved
         gained = moved[0] - last[0] - 0.5 * (abs(moved[1]) - abs(last[1]))

@@ -1,4 +1,4 @@
-"""Three soft fingers lift a soft cup."""
+"""Lifting a soft cup with three soft fingers."""
 
 from __future__ import annotations
 
@@ -23,29 +23,29 @@ _LIFTED, _DOWN = 10e-3, 2e-3  # m: a cup that has been higher than the first is 
 
 
 class Grasp(ContactTask):
-    """Close three soft fingers on a soft cup and lift it to a height; dynamic (backward Euler), 20 ms a step, 3 s an episode.
+    """Close three soft fingers on a soft cup and lift it to a height; dynamic (backward Euler), steps of 20 ms, episodes of 3 s.
 
-    The fingers hang around the cup, 195 mm long, each with a cable on its inner side. The cup stands on a table: 79 mm high,
-    54 g, of rubber, wider at its rim (70 mm) than at its floor (36 mm). Its height is how far its centre of mass has risen.
-    Each episode asks for a height of 25 to 60 mm; `reset(options={"height": m})` sets one, 10 to 75 mm.
+    The fingers hang around the cup, 195 mm long, each with a cable on its inner side. The rubber cup stands on a table: 79 mm
+    high, 54 g, wider at its rim (70 mm) than at its floor (36 mm). Its height is the rise of its centre of mass. Each episode
+    asks for a height of 25 to 60 mm; `reset(options={"height": m})` sets one, 10 to 75 mm.
 
     Action: change of the displacement of each cable (20 mm/s, within 0 to 10 mm), and of the height of the feet (60 mm/s,
-    within 0 to 80 mm). `action="displacement"`: the values themselves; their rates are limited the same.
-    Observation: displacements of the cables (3, over 10 mm), tensions (3, over 10 N), height of the feet (over 50 mm), motion
-    of the cup (3, over 50 mm), its velocity (3, over 0.1 m/s), x and y of its axis, a unit vector (2), normal force of each
-    finger (3, over 0.5 N), upward force of each finger on the cup (3, over 0.2 N), goal less height of the cup (over 50 mm).
-    `observe="state"` appends displacements (over 50 mm) and velocities (over 1 m/s) of all nodes, body by body.
-    Reward of a step: 1 - |goal - height| / goal - (tilt / 30 degrees)^2, at least -1; when the cup is dropped or toppled, -10.
+    within 0 to 80 mm). `action="displacement"`: the values themselves, with the same rate limits.
+    Observation: displacements of the cables (3, unit 10 mm), tensions (3, unit 10 N), height of the feet (unit 50 mm), motion
+    of the cup (3, unit 50 mm), its velocity (3, unit 0.1 m/s), x and y of its axis, a unit vector (2), normal force of each
+    finger (3, unit 0.5 N), upward force of each finger on the cup (3, unit 0.2 N), goal minus height of the cup (unit 50 mm).
+    `observe="state"` appends displacements (unit 50 mm) and velocities (unit 1 m/s) of all nodes, body by body.
+    Reward of a step: 1 - |goal - height| / goal - (tilt / 30 degrees)^2, at least -1; -10 if the cup is dropped or toppled.
     The episode then ends: the cup tilts by more than 45 degrees, or it has been higher than 10 mm and either no finger touches
     it or it is back within 2 mm.
     Info: `height` (m), `tilt` (rad), `success` (within 5 mm of the goal, off the table, tilted by less than 10 degrees).
-    Randomisation: `material_scale` is of the cup, `payload` is in its floor, `friction` is of fingers, cup and table (default
+    Randomisation: `material_scale` applies to the cup, `payload` to its floor, `friction` to fingers, cup and table (default
     0.6; below 0.25 this cup slips).
 
-    The mesh is coarse: 133 nodes a finger, 242 of the cup. A finger grips with 0.41 to 0.42 N when its cable is pulled in by
-    8 mm; in examples/grasp/grasp.py, with 703 and 472 nodes and steps of 10 ms, with 0.40 to 0.41 N (3 % less). Lifted by
-    60 mm the cup rises by 62.1 mm, there by 62.5 mm. Cables pulled in by 10 mm push the fingertips sideways around the cup;
-    there they do so at 9 mm, too.
+    The mesh is coarse: 133 nodes per finger, 242 for the cup. With its cable pulled in by 8 mm, a finger grips with 0.41 to
+    0.42 N; in examples/grasp/grasp.py, with 703 and 472 nodes and steps of 10 ms, it grips with 0.40 to 0.41 N (3 % less). When
+    lifted by 60 mm, the cup rises by 62.1 mm here and by 62.5 mm there. Cables pulled in by 10 mm push the fingertips sideways
+    around the cup; there, this happens at 9 mm.
     """
 
     name = "grasp"
@@ -56,7 +56,7 @@ class Grasp(ContactTask):
     options = {"height": 0}
 
     def described(self, folder: Path) -> dict[str, Any]:
-        """The scene, with the least friction; `randomised` sets that of a model."""
+        """The scene with the smallest friction; `randomised` sets the friction of a model."""
         return gripper.scene(folder, self.friction[0])
 
     def randomised(self, material_scale: float, payload: float, friction: float) -> dict[str, Any]:
@@ -69,7 +69,7 @@ class Grasp(ContactTask):
         return changed
 
     def limits(self, robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of the cables, then of the feet."""
+        """Limits of the cables, then of the feet."""
         least, greatest, rates = super().limits(robot)
         return np.append(least, 0.0), np.append(greatest, _LIFT), np.append(rates, _LIFT_RATE)
 
@@ -79,7 +79,7 @@ class Grasp(ContactTask):
         return [robot.sim.state()]
 
     def measure_rest(self, robot: Robot) -> dict[str, Any]:
-        """Masses of the cup's nodes over its mass, its lowest and highest nodes, centre of mass (m), all nodes (m)."""
+        """Nodal masses of the cup relative to its mass, its lowest and highest nodes, centre of mass (m), all nodes (m)."""
         cup = robot.sim.body("cup")
         height, shares = np.array(cup.rest_positions)[:, 2], np.array(cup.node_masses) / np.sum(cup.node_masses)
         return {"shares": shares, "floor": np.flatnonzero(height < 1e-6), "rim": np.flatnonzero(height > gripper.CUP_HEIGHT - 1e-6),
@@ -97,14 +97,14 @@ class Grasp(ContactTask):
         return wanted
 
     def apply(self, episode: Any) -> None:
-        """Cables and feet."""
+        """Commands cables and feet."""
         super().apply(episode)
         sim, lifted = episode.robot.sim, [0.0, 0.0, float(episode.commands[3])]
         for k in range(gripper.FINGERS):
             sim.body(f"finger_{k}").move_base(lifted)
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """Draws the height."""
+        """Draws the goal height."""
         height = episode.random.uniform(0.025, 0.060)
         if "height" in options:
             given = options["height"]
@@ -115,11 +115,11 @@ class Grasp(ContactTask):
         episode.memory.update(height=height, highest=0.0)
 
     def risen(self, episode: Any) -> np.ndarray:
-        """How far the cup's centre of mass has moved, (3,) m."""
+        """Motion of the cup's centre of mass, (3,) m."""
         return episode.model.rest["shares"] @ episode.robot.body.positions - episode.model.rest["centre"]
 
     def axis(self, episode: Any) -> np.ndarray:
-        """From the middle of the cup's floor to the middle of its rim, a unit vector (3,)."""
+        """Unit vector (3,) from the middle of the cup's floor to the middle of its rim."""
         positions, rest = episode.robot.body.positions, episode.model.rest
         along = positions[rest["rim"]].mean(axis=0) - positions[rest["floor"]].mean(axis=0)
         return along / math.sqrt(along @ along)
@@ -129,7 +129,7 @@ class Grasp(ContactTask):
         return [episode.robot.sim.contact(f"grip_{k}") for k in range(gripper.FINGERS)]
 
     def observation_names(self, robot: Robot) -> list[str]:
-        """What every number of an observation is."""
+        """Name of every number of an observation."""
         cables = list(robot.sim.actuators)
         names = [f"{cable} displacement / 10 mm" for cable in cables] + [f"{cable} tension / 10 N" for cable in cables]
         names += ["feet height / 50 mm"] + [f"cup {axis} / 50 mm" for axis in "xyz"] + [f"cup velocity {axis} / 0.1 m/s" for axis in "xyz"]
@@ -142,7 +142,7 @@ class Grasp(ContactTask):
         return names
 
     def sense(self, episode: Any, out: np.ndarray) -> None:
-        """Writes an observation."""
+        """Write an observation."""
         robot, rest, grips, moved = episode.robot, episode.model.rest, self.grips(episode), self.risen(episode)
         out[0:3] = [actuator.displacement / 0.010 for actuator in robot.actuators]
         out[3:6] = [actuator.tension / 10.0 for actuator in robot.actuators]
@@ -159,7 +159,7 @@ class Grasp(ContactTask):
             out[22:] = np.concatenate([*shifts, *(np.ravel(body.velocities) for body in bodies)])
 
     def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
-        """Share of the goal's height, less tilt."""
+        """Fraction of the goal height, minus a penalty on tilt."""
         memory, height = episode.memory, float(self.risen(episode)[2])
         goal, tilt = memory["height"], math.acos(min(1.0, float(self.axis(episode)[2])))
         memory["highest"] = max(memory["highest"], height)
@@ -170,7 +170,7 @@ class Grasp(ContactTask):
         return reward, over, {"height": height, "tilt": tilt, "success": success}
 
     def scripted(self, episode: Any) -> np.ndarray:
-        """Pulls every cable in by 8 mm within 0.8 s, then moves the feet by what the cup lacks of its height."""
+        """Pulls every cable in by 8 mm within 0.8 s, then moves the feet by the missing height of the cup."""
         cables, feet = episode.commands[:3], 0.0
         if cables.min() > _CLOSE - 1e-9:
             feet = (episode.memory["height"] - self.risen(episode)[2]) / self.increment[3]

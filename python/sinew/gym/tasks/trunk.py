@@ -1,4 +1,4 @@
-"""What the tasks of the trunk have in common."""
+"""Base of the trunk tasks."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SPEED = 1.0  # m/s, that nodes' velocities are divided by
 
 
 def surface(across: Sequence[float]) -> np.ndarray:
-    """The point of the tip's surface at a place across the axis.
+    """Point of the surface on which the tip moves, at a position across the axis.
 
     The tip of the trunk moves near a cap, z = 187 mm - 7.00 r^2/m + 177.5 r^4/m^3, fitted to 400 equilibria under random
     tensions. The equilibria lie within 12 mm of it.
@@ -39,12 +39,11 @@ def surface(across: Sequence[float]) -> np.ndarray:
 
 
 class TrunkTask(Task):
-    """A trunk that hangs from its thick end, with eight cables.
+    """A trunk with eight cables that hangs from its thick end.
 
-    Sensors, 19 numbers and more: displacement of every cable (8, over 10 mm), tension of every cable (8, over its limit of
-    8 N), position of the tip (3, over 0.1 m, from where it hangs at rest). The order of the cables is long_0 to long_3,
-    short_0 to short_3. `observe="state"` appends the displacements of all nodes (over 0.1 m) and, in dynamic tasks, their
-    velocities (over 1 m/s).
+    Sensors, at least 19 numbers: displacement of every cable (8, unit 10 mm), tension of every cable (8, relative to its limit
+    of 8 N), position of the tip relative to rest (3, unit 0.1 m). The cables are ordered long_0 to long_3, short_0 to short_3.
+    `observe="state"` appends the displacements of all nodes (unit 0.1 m) and, in dynamic tasks, their velocities (unit 1 m/s).
     """
 
     scene = SCENES / "trunk.yaml"
@@ -61,13 +60,13 @@ class TrunkTask(Task):
         return changed
 
     def measure_rest(self, robot: Robot) -> dict[str, Any]:
-        """Tip, nodes, and energy of strain and weight (J)."""
+        """Tip, nodes, and the sum of strain and gravity energy (J)."""
         body = robot.body
         return {"tip": robot.tip.position, "positions": body.positions.copy(), "top": np.array(body.node_sets["top"]),
                 "energy": body.strain_energy + body.gravity_energy}  # fmt: skip
 
     def goal_given(self, episode: Any, options: Mapping[str, Any]) -> bool:
-        """Takes the goal from the options of a reset, if it is there."""
+        """Sets the goal from the options of a reset, if they contain one."""
         if "goal" not in options:
             return False
         goal = np.array(options["goal"], dtype=float)
@@ -77,12 +76,12 @@ class TrunkTask(Task):
         return True
 
     def push(self, episode: Any, force: np.ndarray) -> None:
-        """Spreads a force (3,) N over the nodes at the tip, until it is changed."""
+        """Distributes a force (3,) N over the nodes at the tip, until it is changed."""
         top = episode.model.rest["top"]
         episode.robot.body.external_forces[top] = force / len(top)
 
     def observation_names(self, robot: Robot) -> list[str]:
-        """What every number of an observation is."""
+        """Name of every number of an observation."""
         cables = list(robot.sim.actuators)
         names = [f"{cable} displacement / 10 mm" for cable in cables] + [f"{cable} tension / 8 N" for cable in cables]
         names += [f"tip {axis} / 0.1 m" for axis in "xyz"] + self.further_names(cables)
@@ -94,7 +93,7 @@ class TrunkTask(Task):
         return names
 
     def further_names(self, cables: list[str]) -> list[str]:
-        """What the task senses beside cables and tip."""
+        """Names of the sensors of the task besides cables and tip."""
         return []
 
     def sense_further(self, episode: Any) -> np.ndarray:
@@ -118,9 +117,9 @@ class TrunkTask(Task):
                 out[at + nodes :] = (robot.body.velocities / _SPEED).ravel()
 
     def cable_rates(self, episode: Any) -> np.ndarray:
-        """Mean rates of the cables' displacements over the last step, over 0.1 m/s, (8,); zeros after a reset.
+        """Mean rates of the cables' displacements in the last step, unit 0.1 m/s, (8,); zeros after a reset.
 
-        A simulated sensor: it asks for the displacements once a step.
+        A simulated sensor that reads the displacements once per step.
         """
         now = np.array([actuator.displacement for actuator in episode.robot.actuators])
         last = episode.memory.get("displacements")
@@ -129,10 +128,10 @@ class TrunkTask(Task):
         return rates
 
     def toward_goal(self, episode: Any) -> np.ndarray:
-        """From the tip to the goal, over 0.1 m, (3,)."""
+        """Vector from the tip to the goal, unit 0.1 m, (3,)."""
         return (episode.goal - episode.robot.tip.position) / _PLACE
 
     def distance(self, episode: Any) -> float:
-        """m between tip and goal."""
+        """Distance between tip and goal, m."""
         away = episode.goal - episode.robot.tip.position
         return math.sqrt(away @ away)

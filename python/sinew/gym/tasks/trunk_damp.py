@@ -1,4 +1,4 @@
-"""Vibration to rest."""
+"""Damping of a vibration."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ __all__ = ["TrunkDamp"]
 
 
 class TrunkDamp(TrunkTask):
-    """Bring a trunk to rest that has been struck; dynamic (generalized-alpha), 10 ms a step, 1 s an episode.
+    """Bring a struck trunk to rest; dynamic (generalized-alpha), steps of 10 ms, episodes of 1 s.
 
-    A blow acts on the end of the trunk during the first 60 ms: 0.2 to 0.4 N across the axis, in a random direction. The
-    passive trunk swings at about 4 Hz and loses half of its energy in 0.1 s (stiffness damping, 2 ms). The default action
-    is the tension itself: an action of -1 is a slack cable.
+    A lateral blow of 0.2 to 0.4 N in a random direction acts on the end of the trunk during the first 60 ms. The passive trunk
+    swings at about 4 Hz and loses half of its energy in 0.1 s (stiffness damping, 2 ms). The default action is the tension
+    itself: an action of -1 is a slack cable.
 
-    Observation: the sensors of the trunk, then rates of the cables (8, over 0.1 m/s).
-    Reward of a step: -E / 1 mJ with E = kinetic energy + strain energy + gravity energy, less what it is at rest. Cables
-    that are pulled without need store energy, too. It never terminates.
+    Observation: the sensors of the trunk, then rates of the cables (8, unit 0.1 m/s).
+    Reward of a step: -E / 1 mJ, where E is the sum of kinetic, strain and gravity energy minus its value at rest. Cables that
+    are pulled unnecessarily store energy, too. The task never terminates.
     Info: `energy` (J).
     """
 
@@ -34,23 +34,23 @@ class TrunkDamp(TrunkTask):
     RATE, GAIN = 0.1, 15.0  # m/s, that observed rates are divided by; N s/m, of the scripted expert
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """Draws the blow."""
+        """Draw the blow."""
         random = episode.random
         turn, size = random.uniform(0.0, 2.0 * np.pi), random.uniform(0.2, 0.4)
         self.push(episode, size * np.array([np.cos(turn), np.sin(turn), 0.0]))
         episode.memory.update(displacements=None)
 
     def disturb(self, episode: Any) -> None:
-        """Ends the blow."""
+        """End the blow."""
         if episode.steps == round(self.BLOW / self.time_step):
             self.push(episode, np.zeros(3))
 
     def scripted(self, episode: Any) -> np.ndarray:
-        """Tensions that resist the motion: GAIN times the rate at which a cable grows longer, less that of its opposite.
+        """Tensions that resist the motion: GAIN times the rate at which a cable lengthens, minus that of the opposite cable.
 
-        A tension T takes the power T dl/dt out of the trunk, l the length of the cable in it: a cable damps while it grows longer, and
-        gives energy back while it becomes shorter. So it pulls in the one case and is slack in the other. The difference leaves out what
-        lengthens both.
+        A tension T takes the power T dl/dt out of the trunk, where l is the length of the cable inside it. A cable damps while it
+        lengthens and returns energy while it shortens. The script therefore pulls it in the first case and slackens it in the second.
+        The difference cancels motion that lengthens both cables.
         """
         rates = self.RATE * episode.memory["rates"].reshape(2, 4)  # m/s, positive where a cable becomes shorter; long, then short
         tensions = self.GAIN * np.maximum(np.roll(rates, 2, axis=1) - rates, 0.0).ravel()
@@ -65,7 +65,7 @@ class TrunkDamp(TrunkTask):
         return self.cable_rates(episode)
 
     def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
-        """Minus the energy in mJ."""
+        """Return minus the energy in mJ."""
         body = episode.robot.body
         energy = body.kinetic_energy + body.strain_energy + body.gravity_energy - episode.model.rest["energy"]
         return -1e3 * energy, False, {"energy": energy}

@@ -1,4 +1,4 @@
-"""The tip to a point."""
+"""Reaching a point with the tip."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["TrunkReach"]
 
 
 def random_goal(random: np.random.Generator, radius: float = 0.06, depth: float = 0.004) -> np.ndarray:
-    """A goal that the tip reaches, (3,) m: uniform on a disc across the axis and within +-depth of the tip's surface."""
+    """A goal that the tip can reach, (3,) m: uniform on a disc across the axis and within +-depth of the tip's surface."""
     turn, part, off = random.random(3).tolist()  # plain numbers: NumPy's functions take a microsecond each, of a reset of 30
     out = radius * math.sqrt(part)
     goal = surface((out * math.cos(2.0 * math.pi * turn), out * math.sin(2.0 * math.pi * turn)))
@@ -22,13 +22,13 @@ def random_goal(random: np.random.Generator, radius: float = 0.06, depth: float 
 
 
 class TrunkReach(TrunkTask):
-    """Bring the tip to a goal and keep it there; quasi-static, 10 ms a step, 0.5 s an episode.
+    """Bring the tip to a goal and keep it there; quasi-static, steps of 10 ms, episodes of 0.5 s.
 
-    Goals: x and y uniform on a disc of 60 mm around the axis, z within 4 mm of the surface on which the tip moves; all are
-    within reach of the nominal trunk. `reset(options={"goal": (3,) m})` sets one.
+    Goals: x and y uniform on a disc of 60 mm radius around the axis, z within 4 mm of the surface on which the tip moves. The
+    nominal trunk can reach all of them. `reset(options={"goal": (3,) m})` sets a goal.
 
-    Observation: the sensors of the trunk, then from tip to goal (3, over 0.1 m).
-    Reward of a step: -(distance of the tip from the goal) / 50 mm. It never terminates.
+    Observation: the sensors of the trunk, then the vector from tip to goal (3, unit 0.1 m).
+    Reward of a step: -(distance of the tip from the goal) / 50 mm. The task never terminates.
     Info: `distance` (m), `success` (within 5 mm).
     """
 
@@ -38,20 +38,20 @@ class TrunkReach(TrunkTask):
     options = {"goal": 1}
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """Draws the goal."""
+        """Draw the goal."""
         goal = random_goal(episode.random)
         if not self.goal_given(episode, options):
             episode.goal = goal
 
     def further_names(self, cables: list[str]) -> list[str]:
-        """From tip to goal."""
+        """Vector from tip to goal."""
         return [f"goal - tip {axis} / 0.1 m" for axis in "xyz"]
 
     def sense_further(self, episode: Any) -> np.ndarray:
-        """From tip to goal."""
+        """Vector from tip to goal."""
         return self.toward_goal(episode)
 
     def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
-        """Minus the distance over 50 mm."""
+        """Minus the distance, unit 50 mm."""
         distance = self.distance(episode)
         return -distance / 0.05, False, {"distance": distance, "success": distance < 0.005}

@@ -1,0 +1,11 @@
+/// @file
+/// What the world's axes are called.
+#pragma once
+
+#include <array>
+
+namespace sinew::sim {
+
+inline constexpr std::array<const char*, 3> kAxisNames = {"x", "y", "z"};
+
+}  // namespace sinew::sim

@@ -1,0 +1,131 @@
+#include "sinew/sim/equilibrium_filter.hpp"
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+
+#include "sinew/constraint/effector.hpp"
+#include "sinew/sim/estimator_model.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/sensor_source.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/step_response.hpp"
+
+namespace sinew::sim {
+
+EquilibriumFilter::EquilibriumFilter(const EstimatorModel& model, int threads)
+    : EstimatorFilter(model, threads),
+      filter_(model.of_components(&Unknown::prior), model.of_components(&Unknown::walk),
+              model.lags),
+      settled_from_(filter_),
+      controlled_(model.actuators()) {
+  EquilibriumFilter::forget();
+}
+
+void EquilibriumFilter::forget() {
+  filter_.restart();
+  const Eigen::Index count = model().readings(), size = filter_.size();
+  instants_.assign(static_cast<std::size_t>(filter_.lags()) + 1,
+                   {false, VectorX::Zero(size), VectorX::Zero(count), MatrixX::Zero(count, size)});
+}
+
+void EquilibriumFilter::begin_settling() {
+  for (Instant& instant : instants_) instant.known = false;  // what was on its way is forgotten
+  settled_from_ = filter_;
+}
+
+void EquilibriumFilter::predict(const Run& run, double time_step) {
+  filter_.predict(time_step);
+  std::rotate(instants_.begin(), instants_.end() - 1, instants_.end());  // as a range: no clang 14
+  take_up(run, false);
+}
+
+void EquilibriumFilter::predict_rest(const Run& run) {
+  take_up(run, true);
+  filter_ = settled_from_;
+}
+
+void EquilibriumFilter::take_up(const Run& run, bool settles) {
+  Instant& now = instants_.front();
+  now.known = move(run, filter_.mean(), settles);
+  now.unknowns = acted();
+  if (!now.known) return;
+  now.readings = readings();
+  now.sensitivity = sensitivity();
+}
+
+MatrixX EquilibriumFilter::sensitivity() {
+  const StepResponse response(own_robot(), controlled_);
+  const Model& robot = *model().robot;
+  MatrixX all(model().readings(), filter_.size());
+  Eigen::Index first = 0;
+  for (std::size_t k = 0; k < model().sensors.size(); ++k) {
+    const EstimatorSensor& sensor = model().sensors[k];
+    const SensorSource* source = robot.sensors()[k].source.get();
+    const auto row_of = [&](int actuator) {
+      return robot.actuators()[static_cast<std::size_t>(actuator)].row;
+    };
+    auto own = all.middleRows(first, static_cast<Eigen::Index>(sensor.size));
+    if (sensor.effector >= 0) {
+      own = response.motions(robot.effector(sensor.effector).first_row(), 3);
+    } else if (const auto* motion = dynamic_cast<const MotionSource*>(source)) {
+      own = response.motions(row_of(motion->actuator()), 1);
+    } else {
+      const auto& effort = dynamic_cast<const EffortSource&>(*source);
+      own = effort.factor() * response.effort(row_of(effort.actuator()));
+    }
+    first += own.rows();
+  }
+  return all;
+}
+
+VectorX EquilibriumFilter::beyond_path(int lag) const {
+  const Instant& then = at(lag);
+  return then.sensitivity * (filter_.mean(lag) - then.unknowns);
+}
+
+void EquilibriumFilter::correct(int lag, Eigen::Index first, const VectorX& innovation,
+                                const VectorX& variance) {
+  filter_.correct(lag, at(lag).sensitivity.middleRows(first, innovation.size()), innovation,
+                  variance);
+}
+
+estimate::Observability EquilibriumFilter::observability(const VectorX& variance) const {
+  const Instant& now = instants_.front();
+  MatrixX sensitivity = now.sensitivity;
+  if (!now.known) sensitivity.setZero();
+  return estimate::observability(sensitivity, variance, filter_.prior());
+}
+
+// Visitor(number) of a double or a bool.
+template <class Self, class Visitor>
+void EquilibriumFilter::visit_memory(Self& self, Visitor&& visitor) {
+  const auto each = [&](auto& matrix) {
+    for (auto& number : matrix.reshaped()) visitor(number);
+  };
+  for (auto& instant : self.instants_) {
+    visitor(instant.known);
+    each(instant.unknowns);
+    each(instant.readings);
+    each(instant.sensitivity);
+  }
+}
+
+void EquilibriumFilter::save_own(std::vector<double>& memory) const {
+  visit_memory(*this, [&](auto number) { memory.push_back(static_cast<double>(number)); });
+  filter_.save(memory);
+}
+
+bool EquilibriumFilter::load_own(std::span<const double>& memory) {
+  bool good = true;
+  visit_memory(*this, [&](auto& number) {
+    good = good && !memory.empty();
+    if (!good) return;
+    using Number = std::remove_reference_t<decltype(number)>;
+    number = static_cast<Number>(memory.front());
+    memory = memory.subspan(1);
+  });
+  return good && filter_.load(memory);
+}
+
+}  // namespace sinew::sim

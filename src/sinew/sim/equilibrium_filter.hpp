@@ -1,0 +1,64 @@
+/// @file
+/// The filter of an estimator whose robot is in equilibrium in each step.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sinew/estimate/random_walk_filter.hpp"
+#include "sinew/sim/estimator_filter.hpp"
+
+namespace sinew::sim {
+
+/// The readings h_k(u_k) and their derivative S_k = dh_k/du of step k are those of this step of the
+/// robot and its linearisation (StepResponse). With x the unknowns, which wander at random,
+///   y = h_k(u_k) + S_k (x_k - u_k) + v
+/// is what a sample of step k says; estimate::RandomWalkFilter takes it, with u_k = the estimate
+/// before step k. This is the extended Kalman filter (Simon, Optimal State Estimation, Wiley 2006,
+/// sec. 13.2) of equilibria along a random walk; a sample that comes late counts for the step in
+/// which it was taken. Step and sample agree to the step's tolerance, and S to the change of the
+/// tangent by the last Newton correction.
+class EquilibriumFilter : public EstimatorFilter {
+ public:
+  /// See EstimatorFilter. @param model of a quasi-static robot.
+  EquilibriumFilter(const EstimatorModel& model, int threads);
+
+  void begin_settling() override;
+  VectorX mean() const override { return filter_.mean(); }
+  MatrixX covariance() const override { return filter_.covariance(); }
+  bool knows(int lag) const override { return at(lag).known; }
+  const VectorX& path(int lag) const override { return at(lag).readings; }
+  VectorX beyond_path(int lag) const override;
+  void correct(int lag, Eigen::Index first, const VectorX& innovation,
+               const VectorX& variance) override;
+  /// Of one sample of each sensor, taken in the last step.
+  estimate::Observability observability(const VectorX& variance) const override;
+
+ protected:
+  void forget() override;
+  void predict(const Run& run, double time_step) override;
+  void predict_rest(const Run& run) override;
+  void save_own(std::vector<double>& memory) const override;
+  bool load_own(std::span<const double>& memory) override;
+
+ private:
+  // What one step of the robot says.
+  struct Instant {
+    bool known = false;
+    VectorX unknowns;     // (n,) that acted
+    VectorX readings;     // (m,)
+    MatrixX sensitivity;  // (m, n)
+  };
+
+  const Instant& at(int lag) const { return instants_[static_cast<std::size_t>(lag)]; }
+  void take_up(const Run& run, bool settles);
+  MatrixX sensitivity();
+  template <class Self, class Visitor>
+  static void visit_memory(Self& self, Visitor&& visitor);
+
+  estimate::RandomWalkFilter filter_, settled_from_;
+  std::vector<int> controlled_;    // (n,) actuators
+  std::vector<Instant> instants_;  // (lags + 1,) from now back
+};
+
+}  // namespace sinew::sim

@@ -1,0 +1,145 @@
+#include "sinew/sim/estimator_filter.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "sinew/core/error.hpp"
+#include "sinew/sim/estimator_model.hpp"
+#include "sinew/sim/inputs.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/run.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state_numbers.hpp"
+
+namespace sinew::sim {
+
+EstimatorFilter::EstimatorFilter(const EstimatorModel& model, int threads)
+    : model_(model),
+      robot_(std::make_unique<Simulation>(model.robot, threads)),
+      acted_(VectorX::Zero(model.size())) {}
+
+EstimatorFilter::~EstimatorFilter() = default;
+
+void EstimatorFilter::restart(const Run& run) {
+  robot_->reset();
+  keep_time(run);
+  failed_ = false;
+  reason_.clear();
+  acted_.setZero();
+  forget();
+}
+
+void EstimatorFilter::advance(const Run& run, double time_step) {
+  predict(run, time_step);
+  keep_time(run);
+}
+
+void EstimatorFilter::settle(const Run& run) {
+  predict_rest(run);
+  keep_time(run);
+}
+
+// The time of its robot is the run's.
+void EstimatorFilter::keep_time(const Run& run) {
+  if (robot_->steps() == run.steps) return;
+  State state = robot_->state();
+  state.steps = run.steps;
+  robot_->restore(state);
+}
+
+// What the command says of an effort, Pa or N: as far as the limits of the actuator let it. 0 where
+// something else is commanded.
+double EstimatorFilter::told(const Run& run, int actuator) const {
+  const auto at = static_cast<std::size_t>(actuator);
+  const ActuatorState& state = run.actuation.states()[at];
+  if (state.chosen) return state.effort;
+  const Drive* drive = run.model->actuators()[at].drive.get();
+  const bool given = state.command.kind == CommandKind::effort &&
+                     (drive == nullptr || !drive->acts_on(CommandKind::effort));
+  return given ? state.effort : 0.0;
+}
+
+// Forces of scripts and hands are what is to be found.
+Inputs EstimatorFilter::inputs_of(const Run& run, const VectorX& unknowns) {
+  Inputs inputs = run.inputs();
+  const std::vector<ActuatorState>& states = run.actuation.states();
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (states[i].chosen) {
+      inputs.commands[i] = {CommandKind::effort, Signal::constant(states[i].effort)};
+    }
+  }
+  inputs.commands.resize(model_.robot->actuators().size());
+  Eigen::Index k = 0;
+  for (const Unknown& unknown : model_.unknowns) {
+    const bool added = unknown.kind == Unknown::Kind::effort && unknown.command_known;
+    for (int own = 0; own < unknown.size(); ++own, ++k) {
+      const int actuator = unknown.first_actuator + own;
+      const Limits& limits = model_.robot->actuators()[static_cast<std::size_t>(actuator)].effort;
+      const double offset = added ? told(run, actuator) : 0.0;
+      const double wanted = offset + unknowns[k];
+      const double effort = std::clamp(wanted, limits.min, limits.max);
+      acted_[k] = unknowns[k] + (effort - wanted);  // as it is where nothing bounds it
+      inputs.commands[static_cast<std::size_t>(actuator)] = {CommandKind::effort,
+                                                             Signal::constant(effort)};
+    }
+  }
+  std::vector<Signal> loads;
+  for (const int load : model_.loads) loads.push_back(inputs.loads[static_cast<std::size_t>(load)]);
+  inputs.loads = std::move(loads);
+  for (BodyInputs& body : inputs.bodies) {
+    body.external_forces.setZero();
+    body.tether.reset();
+  }
+  return inputs;
+}
+
+// A run does not end because its estimator's robot fails.
+bool EstimatorFilter::move(const Run& run, const VectorX& unknowns, bool settles) {
+  robot_->set_inputs(inputs_of(run, unknowns));
+  failed_ = false;
+  reason_.clear();
+  try {
+    if (settles) {
+      robot_->solve_static();
+    } else {
+      failed_ = robot_->step().status == StepStatus::not_in_equilibrium;
+    }
+  } catch (const Error& error) {
+    failed_ = true;
+    reason_ = error.message();
+  }
+  return !failed_;
+}
+
+VectorX EstimatorFilter::readings() const {
+  VectorX all(model_.readings());
+  Eigen::Index first = 0;
+  for (std::size_t k = 0; k < model_.sensors.size(); ++k) {
+    const std::size_t size = model_.sensors[k].size;
+    robot_->read_sensor_truth(static_cast<int>(k), {all.data() + first, size});
+    first += static_cast<Eigen::Index>(size);
+  }
+  return all;
+}
+
+void EstimatorFilter::save(std::vector<double>& memory) const {
+  memory.push_back(failed_ ? 1.0 : 0.0);
+  memory.insert(memory.end(), acted_.data(), acted_.data() + acted_.size());
+  save_own(memory);
+  append(robot_->state(), memory);
+}
+
+bool EstimatorFilter::load(std::span<const double>& memory) {
+  const auto size = static_cast<std::size_t>(acted_.size());
+  if (memory.size() <= size) return false;
+  failed_ = memory.front() != 0.0;
+  reason_.clear();
+  std::ranges::copy(memory.subspan(1, size), acted_.data());
+  memory = memory.subspan(1 + size);
+  State state = robot_->state();
+  if (!load_own(memory) || !take(state, memory)) return false;
+  robot_->restore(state);
+  return true;
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,62 @@
+#include "sinew/sim/estimator_model.hpp"
+
+#include <numeric>
+
+#include "sinew/constraint/effector.hpp"
+#include "sinew/core/rotation.hpp"
+#include "sinew/sim/axis_names.hpp"
+#include "sinew/sim/model.hpp"
+
+namespace sinew::sim {
+
+Eigen::Index EstimatorModel::size() const {
+  return std::accumulate(unknowns.begin(), unknowns.end(), Eigen::Index{0},
+                         [](Eigen::Index sum, const auto& one) { return sum + one.size(); });
+}
+
+Eigen::Index EstimatorModel::readings() const {
+  return std::accumulate(
+      sensors.begin(), sensors.end(), Eigen::Index{0},
+      [](Eigen::Index sum, const auto& one) { return sum + static_cast<Eigen::Index>(one.size); });
+}
+
+std::vector<std::string> EstimatorModel::component_names() const {
+  std::vector<std::string> names;
+  for (const Unknown& unknown : unknowns) {
+    if (unknown.kind == Unknown::Kind::effort) {
+      names.push_back(unknown.name);
+      continue;
+    }
+    for (const char* axis : kAxisNames) names.push_back(unknown.name + "." + axis);
+  }
+  return names;
+}
+
+VectorX EstimatorModel::of_components(double Unknown::*number) const {
+  VectorX all(size());
+  Eigen::Index first = 0;
+  for (const Unknown& unknown : unknowns) {
+    all.segment(first, unknown.size()).setConstant(unknown.*number);
+    first += unknown.size();
+  }
+  return all;
+}
+
+VectorX EstimatorModel::difference(std::size_t sensor, const VectorX& to,
+                                   const VectorX& from) const {
+  const int effector = sensors[sensor].effector;
+  const bool turns =
+      effector >= 0 && robot->effector(effector).kind() == constraint::EffectorKind::orientation;
+  if (!turns) return to - from;
+  return rotation_vector(rotation_matrix(Vector3(to)) * rotation_matrix(Vector3(from)).transpose());
+}
+
+std::vector<int> EstimatorModel::actuators() const {
+  std::vector<int> all;
+  for (const Unknown& unknown : unknowns) {
+    for (int k = 0; k < unknown.size(); ++k) all.push_back(unknown.first_actuator + k);
+  }
+  return all;
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,62 @@
+/// @file
+/// The filter of an estimator whose robot has inertia.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sinew/estimate/reduced_rank_filter.hpp"
+#include "sinew/sim/estimator_filter.hpp"
+#include "sinew/sim/state.hpp"
+
+namespace sinew::sim {
+
+/// The unknowns u act through the robot's motion, with the integrator of the scene: of all that
+/// moves only they are uncertain, and the start is known. What is estimated is (u, s), s the
+/// numbers that the bodies carry from step to step (positions, velocities, the integrator's
+/// memory), with estimate::ReducedRankFilter: after each sample the robot's s moves with its mean.
+///
+/// A column (du, ds) of the covariance goes through a step by a difference of two steps,
+///   (dy, ds') = (F(s + e ds, u + e du) - F(s, u)) / e,   e = 0.1,
+/// of the robot as it is, with its joints, contacts and drives: the derivative of the step to the
+/// first order in e, and to the step's tolerance over e. One step of the filter therefore takes as
+/// many steps of the robot as there are columns, and one more.
+///
+/// Neglected: columns that are cut (see ReducedRankFilter), second derivatives, and the
+/// uncertainty of numbers that are not the bodies': the gas in chambers, the friction memory of
+/// contacts.
+class MotionFilter : public EstimatorFilter {
+ public:
+  /// See EstimatorFilter. @param model of a robot that is not quasi-static.
+  MotionFilter(const EstimatorModel& model, int threads);
+
+  void begin_settling() override;
+  VectorX mean() const override { return filter_.mean(); }
+  MatrixX covariance() const override { return filter_.covariance(); }
+  bool knows(int lag) const override { return known_[static_cast<std::size_t>(lag)] != 0.0; }
+  const VectorX& path(int lag) const override { return path_[static_cast<std::size_t>(lag)]; }
+  VectorX beyond_path(int lag) const override { return filter_.reading_deviation(lag); }
+  void correct(int lag, Eigen::Index first, const VectorX& innovation,
+               const VectorX& variance) override;
+  /// Of all samples so far: 1/(1 + s^2) are the eigenvalues of the covariance over the priors, or s
+  /// = 0 where they are larger.
+  estimate::Observability observability(const VectorX& variance) const override;
+
+ protected:
+  void forget() override;
+  void predict(const Run& run, double time_step) override;
+  void predict_rest(const Run& run) override;
+  void save_own(std::vector<double>& memory) const override;
+  bool load_own(std::span<const double>& memory) override;
+
+ private:
+  bool move_columns(const Run& run, const State& from, bool settles);
+  VectorX reading_difference(const VectorX& to, const VectorX& from) const;
+
+  estimate::ReducedRankFilter filter_, settled_from_;
+  std::vector<VectorX> path_;  // (lags + 1,) (m,) from now back
+  std::vector<double> known_;  // (lags + 1,) 1: the robot got there
+};
+
+}  // namespace sinew::sim

@@ -1,0 +1,48 @@
+#include "sinew/sim/state_numbers.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "sinew/sim/state.hpp"
+
+namespace sinew::sim {
+
+void append(const State& state, std::vector<double>& numbers) {
+  State::visit(state, [&](std::string_view, const auto& part) {
+    if constexpr (requires { part.size(); }) {
+      numbers.push_back(static_cast<double>(part.size()));
+      numbers.insert(numbers.end(), part.begin(), part.end());
+    } else {
+      numbers.push_back(part);
+    }
+  });
+  numbers.push_back(static_cast<double>(state.steps));
+}
+
+bool take(State& state, std::span<const double>& numbers) {
+  bool good = true;
+  const auto next = [&] {
+    good = good && !numbers.empty();
+    if (!good) return 0.0;
+    const double number = numbers.front();
+    numbers = numbers.subspan(1);
+    return number;
+  };
+  State::visit(state, [&](std::string_view, auto& part) {
+    if constexpr (requires { part.size(); }) {
+      const double size = next();
+      good = good && size >= 0.0 && size <= static_cast<double>(numbers.size());
+      if (!good) return;
+      const auto count = static_cast<std::ptrdiff_t>(size);
+      part.assign(numbers.begin(), numbers.begin() + count);
+      numbers = numbers.subspan(static_cast<std::size_t>(count));
+    } else {
+      part = next();
+    }
+  });
+  state.steps = static_cast<std::int64_t>(next());
+  return good;
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,77 @@
+// Estimators of scenes in states of a run; what they find is tested in Python.
+#include "sinew/sim/estimator.hpp"
+
+#include <string>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/scene/build.hpp"
+#include "sinew/scene/scene.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
+
+namespace sinew::scene {
+namespace {
+
+std::unique_ptr<sim::Simulation> estimating(const std::string& integrator) {
+  const std::string scene = fmt::format(R"(sinew: 1
+time_step: 10 ms
+integrator: {}
+bodies:
+  beam: {{type: fem, mesh: {{shape: block, length: 60 mm, width: 10 mm, height: 10 mm, element_size: 10 mm}},
+         material: {{young_modulus: 200 kPa, poisson_ratio: 0.3}}, mass: 10 g, fixed: {{set: x_min}}}}
+sensors:
+  tip: {{type: marker, body: beam, point: 60 0 0 mm, noise: 0.1 mm, delay: 10 ms}}
+estimators:
+  push: {{type: filter, sensors: [tip], rank: 4, unknowns: {{
+    hand: {{force: {{body: beam, point: 40 0 0 mm}}, prior: 0.01 N}}}}}}
+)",
+                                        integrator);
+  return std::make_unique<sim::Simulation>(build(parse_scene_text(scene, "beam.yaml", ".")).model);
+}
+
+TEST(Estimators, RefuseDamagedMemoryAndBeginAnewOtherwise) {
+  for (const char* integrator : {"quasi-static", "backward-euler"}) {
+    const auto whole = estimating(integrator), other = estimating(integrator);
+    for (int k = 0; k < 3; ++k) whole->step();
+    const sim::State state = whole->state();
+    other->restore(state);
+    EXPECT_EQ(other->estimator(0).mean(), whole->estimator(0).mean());
+    EXPECT_EQ(other->state(), state);
+    for (const std::size_t left : {state.estimators.size() - 1, state.estimators.size() / 2}) {
+      sim::State damaged = state;
+      damaged.estimators.resize(left);
+      try {
+        other->restore(damaged);
+        ADD_FAILURE() << integrator << ": taken with " << left << " numbers";
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::wrong_length);
+        EXPECT_THAT(error.what(), testing::HasSubstr("damaged"));
+      }
+      EXPECT_EQ(other->estimator(0).status(), sim::EstimatorStatus::not_started);
+    }
+    sim::State without = state;
+    without.estimators.clear();
+    other->restore(without);
+    EXPECT_EQ(other->estimator(0).status(), sim::EstimatorStatus::not_started);
+    EXPECT_EQ(other->steps(), state.steps);
+  }
+}
+
+// Of the same samples, by a linearisation and by differences; both stop where an iteration moves
+// the estimate by less than a thousandth of its deviation.
+TEST(Estimators, OfBothKindsAgreeAtRest) {
+  const auto still = estimating("quasi-static"), moving = estimating("backward-euler");
+  still->solve_static();
+  moving->solve_static();
+  EXPECT_LT((still->estimator(0).mean() - moving->estimator(0).mean()).norm(),
+            5e-3 * still->estimator(0).deviation().norm());
+  EXPECT_LT((still->estimator(0).deviation() - moving->estimator(0).deviation()).norm(),
+            1e-2 * still->estimator(0).deviation().norm());
+}
+
+}  // namespace
+}  // namespace sinew::scene
