@@ -169,7 +169,7 @@ std::vector<Feature> list_features() {
       {"kinetic_friction", switched},
       {"force_task", {"none", "force", "limits", "reserve"}},
       {"feedback", switched},
-      {"estimator", {"none", "force", "effort", "quasi-static"}},
+      {"estimator", {"none", "force", "effort"}},
   };
 }
 

@@ -723,13 +723,13 @@ class Drafter {
         fmt::format("{{type: {}, {}, delay: 15 ms, dropout: 20 %}}", kind, what));
   }
 
-  // Of a force that is or is not there, or what an actuator does beside its command. A quasi-static
-  // robot is at rest, unlike a body that flies or swings.
+  // Of a force that is or is not there, or what an actuator does beside its command. The first has
+  // a robot with inertia, the second one at rest, unlike a body that flies or swings.
   void add_estimator() {
     if (!has("estimator")) return;
     const bool held = !flies_ && (!has("link") || of("link") == "weld");
-    const bool statics = of("estimator") == "quasi-static" || of("integrator") == "quasi-static";
-    if (statics && !held) return;
+    const bool moves = of("estimator") == "force" && of("integrator") != "quasi-static";
+    if (!moves && !held) return;
     const Body& on = bodies_.front();
     add("sensors", "seen",
         fmt::format("{{type: marker, {}, noise: 0.1 mm, delay: 5 ms}}", sensed("marker", on)));
@@ -742,8 +742,8 @@ class Drafter {
       unknown += ", leak: {pressure: {actuator: <chamber>, command: unknown}, prior: 0.5 kPa}";
     }
     add("estimators", "guess",
-        fmt::format("{{type: filter, sensors: [<seen>], rank: 5, {}unknowns: {{{}}}}}",
-                    of("estimator") == "quasi-static" ? "inertia: false, " : "", unknown));
+        fmt::format("{{type: filter, sensors: [<seen>], {}, unknowns: {{{}}}}}",
+                    moves ? "rank: 3" : "inertia: false", unknown));
   }
 
   void add_controller() {

@@ -20,7 +20,7 @@ namespace sinew::sim {
 /// tangent by the last Newton correction.
 class EquilibriumFilter : public EstimatorFilter {
  public:
-  /// See EstimatorFilter. @param model of a quasi-static robot.
+  /// See EstimatorFilter; the model has a quasi-static robot.
   EquilibriumFilter(const EstimatorModel& model, int threads);
 
   void begin_settling() override;

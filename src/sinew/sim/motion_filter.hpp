@@ -28,7 +28,7 @@ namespace sinew::sim {
 /// contacts.
 class MotionFilter : public EstimatorFilter {
  public:
-  /// See EstimatorFilter. @param model of a robot that is not quasi-static.
+  /// See EstimatorFilter; the model has a robot that is not quasi-static.
   MotionFilter(const EstimatorModel& model, int threads);
 
   void begin_settling() override;
