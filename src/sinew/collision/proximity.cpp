@@ -20,6 +20,9 @@ constexpr double kBelowRidge = 0.3;
 // Of how far pairs are looked for: points this near to each other are at one place. Of unit normals
 // whose sum is shorter, neither says which way is out.
 constexpr double kSamePlace = 1e-6, kOpposite = 1e-6;
+// Lines farther apart than this times the squared reach, and the second part of the square of what
+// their distance is computed from, are not near, whatever the rounding of their points.
+constexpr double kTooFar = 1.001, kRounding2 = 1e-20;
 // Sine of the angle up to which something lies in a plane.
 constexpr double kParallel = 1e-6;
 
@@ -101,6 +104,7 @@ class PairSearch {
         first_edges_(first, settings.edge_slack.value_or(settings.slack)),
         second_edges_(second, settings.edge_slack.value_or(settings.slack)),
         settings_(settings),
+        reach2_(reach(settings) * reach(settings)),
         same_(&first == &second),
         found_(found) {}
 
@@ -151,10 +155,11 @@ class PairSearch {
                  int edge, bool swapped) {
     const double share = other.share(edge, x);
     if (!LocalMinimum::inside_edge(share, 1.0)) return;
-    const Vector3 outward = other.edge_normal(edge), inward = -own.vertex_normal(node);
-    if (!other.over_edge(edge, x, can_touch(inward))) return;
     const SurfacePoint p = on_vertex(own.surface(), node);
     const SurfacePoint q = on_edge(other.surface(), edge, share);
+    if (!is_near(p.point, q.point)) return;
+    const Vector3 outward = other.edge_normal(edge), inward = -own.vertex_normal(node);
+    if (!other.over_edge(edge, x, can_touch(inward))) return;
     const Vector3 away = direction(x - q.point, inward, outward, [&] {
       return dividing_normal(own.surface(), p, other.surface(), q);
     });
@@ -168,7 +173,7 @@ class PairSearch {
   };
   void consider(const OwnVertex& own, const SurfacePoint& p, const SurfacePoint& q,
                 const Vector3& outward, const Vector3& away, bool swapped) {
-    if (!is_near(p, q)) return;
+    if (!is_near(p.point, q.point)) return;
     const Vector3 inward = -own.of.vertex_normal(own.node);
     const Vector3 normal = signed_normal(away, inward, outward);
     if (!is_pair(p, q, normal)) return;
@@ -182,8 +187,8 @@ class PairSearch {
   }
 
   void vertices(NodeId v, NodeId w) {
+    if (!is_near(first_.surface().at(v), second_.surface().at(w))) return;
     const SurfacePoint p = on_vertex(first_.surface(), v), q = on_vertex(second_.surface(), w);
-    if (!is_near(p, q)) return;
     const Vector3 outward = second_.vertex_normal(w), inward = -first_.vertex_normal(v);
     const Vector3 away = direction(p.point - q.point, inward, outward, [&] {
       return dividing_normal(first_.surface(), p, second_.surface(), q);
@@ -208,14 +213,16 @@ class PairSearch {
     const auto [a0, a1] = ends(first_.surface(), e);
     const auto [b0, b1] = ends(second_.surface(), f);
     const Vector3 u = a1 - a0, v = b1 - b0, c = u.cross(v), w = b0 - a0;
-    const double across2 = c.squaredNorm(), product = u.squaredNorm() * v.squaredNorm();
-    if (!(across2 > 0.0)) return;
+    const double across2 = c.squaredNorm(), height_across = -w.dot(c);
+    const double far2 = kTooFar * reach2_ + kRounding2 * w.squaredNorm();
+    if (!(across2 > 0.0) || height_across * height_across > far2 * across2) return;
+    const double product = u.squaredNorm() * v.squaredNorm();
     const double s = w.cross(v).dot(c) / across2, t = w.cross(u).dot(c) / across2;
     const double sine2 = across2 / product;
     if (!LocalMinimum::inside_edge(s, sine2) || !LocalMinimum::inside_edge(t, sine2)) return;
     const SurfacePoint p = on_edge(first_.surface(), e, s), q = on_edge(second_.surface(), f, t);
-    const double height = -w.dot(c) / std::sqrt(across2);
-    if (!is_near(p, q)) return;
+    const double height = height_across / std::sqrt(across2);
+    if (!is_near(p.point, q.point)) return;
     const Vector3 outward = second_.edge_normal(f), inward = -first_.edge_normal(e);
     const double side = height != 0.0 ? height : between(inward, outward).dot(c);
     const Vector3 normal =
@@ -242,9 +249,8 @@ class PairSearch {
     return passed ? Vector3(-away) : away;
   }
 
-  bool is_near(const SurfacePoint& p, const SurfacePoint& q) const {
-    const double reached = reach(settings_);
-    return (p.point - q.point).squaredNorm() <= reached * reached * (1.0 + 1e-12);
+  bool is_near(const Vector3& p, const Vector3& q) const {
+    return (p - q).squaredNorm() <= reach2_ * (1.0 + 1e-12);
   }
 
   // m. Without a depth normals lead from one point to the other: what is less than 0 is rounding.
@@ -330,6 +336,7 @@ class PairSearch {
 
   LocalMinimum first_, second_, first_edges_, second_edges_;
   const ProximitySettings& settings_;
+  double reach2_;  // m^2
   bool same_;
   std::vector<ProximityPair>& found_;
 };
