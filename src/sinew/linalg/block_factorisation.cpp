@@ -71,7 +71,7 @@ class BlockFactorisation final : public Factorisation {
 
   void condense_transient(const BorderPattern& rows, std::span<const double> values) override {
     check_factor();
-    transient_.condense(numeric_, rows, values);
+    transient_.condense(numeric_, rows, values, pool_);
   }
   const MatrixX& transient_compliance() const override { return transient_.compliance(); }
   const MatrixX& transient_coupling() const override { return transient_.coupling(); }

@@ -121,7 +121,8 @@ void BlockNumeric::apply(const Update& update, const Panel& target, double* pane
   const long leading = target.leading;
   if (runs.size() == 1 && !target.split) {  // rows side by side up to the end of the panel
     const int row = runs[0].target;
-    multiply_subtract(product, update.rows, panel + row + row * leading, leading);
+    multiply(product, 0, update.rows, panel + row + row * leading, leading, Store::subtract,
+             Part::lower);
     return;
   }
   int placed = 0;
@@ -147,7 +148,8 @@ void BlockNumeric::apply(const Update& update, const Panel& target, double* pane
     spread.begin = window->source;
     spread.end = (block_end - 1)->source + std::popcount((block_end - 1)->mask);
     spread.leading_product = (spread.end - spread.begin + kOverrun + 3) / 4 * 4;
-    multiply(product, spread.begin, spread.end, scratch.product.data(), spread.leading_product);
+    multiply(product, spread.begin, spread.end, scratch.product.data(), spread.leading_product,
+             Store::assign, Part::lower);
     spread_rows(spread);
     window = block_end;
   }

@@ -3,50 +3,31 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/linalg/vector_lanes.hpp"
+#include "sinew/linalg/packed_product.hpp"
+#include "sinew/linalg/packed_rows.hpp"
+#include "sinew/linalg/tiles.hpp"
+#include "sinew/linalg/triangle.hpp"
 
 namespace sinew::linalg {
 
 namespace {
 
-/// Columns of a tile: two nodes. With kMaxVectors vectors of rows its sums fill the registers.
-constexpr int kTileColumns = 6;
-constexpr int kMaxVectors = kLanes == 8 ? 4 : 2;
 /// A pivot below this fraction of its original diagonal is taken as zero: what rounding leaves of a
 /// rigid motion is of the order of 1e-15, the softest mode of a slender robot of 1e-9.
 constexpr double kPivotTolerance = 1e-13;
+/// Rows below a diagonal block from which on it is worth a copy.
+constexpr int kMinRowsApart = 96;
 
-/// Calls work.template operator()<V>(row) for pieces of V * kLanes rows that cover [begin, end).
-template <typename Work>
-void for_row_tiles(int begin, int end, Work&& work) {
-  for (int row = begin; row < end;) {
-    const int left = (end - row + kLanes - 1) / kLanes;
-    const int vectors = left <= kMaxVectors      ? left
-                        : left < 2 * kMaxVectors ? (left + 1) / 2
-                                                 : kMaxVectors;
-    switch (vectors) {
-      case 1:
-        work.template operator()<1>(row);
-        break;
-      case 2:
-        work.template operator()<2>(row);
-        break;
-      case 3:
-        work.template operator()<3>(row);
-        break;
-      default:
-        work.template operator()<4>(row);
-        break;
-    }
-    row += vectors * kLanes;
-  }
-}
-
-enum class Store { assign, subtract };
-
+// By itself, where registers are not short of what its callers hold.
 template <int V, int C, Store mode>
-inline void product_tile(const Product& p, int row, int column, double* c, long leading) {
+[[gnu::noinline]] void product_tile(const Product& p, int row, int column, double* c,
+                                    long leading) {
   Lanes sum[C][V] = {};
+  if constexpr (mode == Store::add) {
+    SINEW_UNROLL for (int j = 0; j < C; ++j) {
+      SINEW_UNROLL for (int v = 0; v < V; ++v) sum[j][v] = load(c + j * leading + v * kLanes);
+    }
+  }
   const double* a = p.a + row;
   const double* b = p.b + column;
   for (int left = p.depth; left > 0; --left, a += p.leading_a, b += p.leading_b) {
@@ -60,47 +41,22 @@ inline void product_tile(const Product& p, int row, int column, double* c, long 
   SINEW_UNROLL for (int j = 0; j < C; ++j) {
     SINEW_UNROLL for (int v = 0; v < V; ++v) {
       double* const at = c + j * leading + v * kLanes;
-      store(at, mode == Store::assign ? sum[j][v] : load(at) - sum[j][v]);
+      store(at, mode == Store::subtract ? load(at) - sum[j][v] : sum[j][v]);
     }
   }
 }
 
-enum class Part { lower, whole };
-
-template <Store mode, Part part = Part::lower>
-void product_rows(const Product& p, int row_begin, int row_end, double* c, long leading) {
+template <Store mode>
+void product_rows(const Product& p, int row_begin, int row_end, double* c, long leading,
+                  Part part) {
   const auto strip = [&]<int C>(int column) {
     const int first = part == Part::whole ? row_begin : std::max(row_begin, column);
     for_row_tiles(first, row_end, [&]<int V>(int row) {
-      if constexpr (V <= kMaxVectors) {
-        product_tile<V, C, mode>(p, row, column, c + (row - row_begin) + column * leading, leading);
-      }
+      product_tile<V, C, mode>(p, row, column, c + (row - row_begin) + column * leading, leading);
     });
   };
-  int column = 0;
-  for (; column + kTileColumns <= p.columns; column += kTileColumns) {
-    strip.template operator()<kTileColumns>(column);
-  }
-  if (column < p.columns) strip.template operator()<3>(column);
+  for_strips(p.columns, strip);
 }
-
-/// What the substitution of C columns needs of their triangle: factor[k][j] = S_k L_jk for k < j,
-/// inverse[j] = 1 / (S_j L_jj).
-template <int C>
-struct Triangle {
-  double factor[C][C];
-  double inverse[C];
-
-  Triangle(const DiagonalBlock& block, int column) {
-    for (int j = 0; j < C; ++j) {
-      inverse[j] = block.inverse[column + j] * block.sign[column + j];
-      for (int k = 0; k < j; ++k) {
-        factor[k][j] =
-            block.panel[column + j + (column + k) * block.leading] * block.sign[column + k];
-      }
-    }
-  }
-};
 
 /// Rows of S L for the columns column .. column + C - 1, to multiply with: the panel itself unless
 /// there are negative pivots.
@@ -139,17 +95,9 @@ template <int V, int C>
 inline void solve_tile(const Product& p, const Triangle<C>& t, int row, double* c) {
   Lanes x[C][V];
   load_minus_product<V, C>(p, row, c, x);
+  t.substitute(x);
   SINEW_UNROLL for (int j = 0; j < C; ++j) {
-    SINEW_UNROLL for (int k = 0; k < C; ++k) {
-      if (k >= j) continue;
-      const Lanes y = broadcast(t.factor[k][j]);
-      SINEW_UNROLL for (int v = 0; v < V; ++v) x[j][v] -= x[k][v] * y;
-    }
-    const Lanes y = broadcast(t.inverse[j]);
-    SINEW_UNROLL for (int v = 0; v < V; ++v) {
-      x[j][v] *= y;
-      store(c + j * p.leading_a + v * kLanes, x[j][v]);
-    }
+    SINEW_UNROLL for (int v = 0; v < V; ++v) store(c + j * p.leading_a + v * kLanes, x[j][v]);
   }
 }
 
@@ -198,21 +146,42 @@ inline void factorise_tile(DiagonalBlock& block, const Product& p, int column) {
 
 template <int C>
 void solve_strip(const DiagonalBlock& block, const Product& p, int column, int begin, int end) {
-  const Triangle<C> triangle(block, column);
+  Triangle<C> triangle;
+  triangle.take(block, column);
   double* const c = block.panel + column * block.leading;
-  for_row_tiles(begin, end, [&]<int V>(int row) {
-    if constexpr (V <= kMaxVectors) solve_tile<V, C>(p, triangle, row, c + row);
+  for_row_tiles(begin, end, [&]<int V>(int row) { solve_tile<V, C>(p, triangle, row, c + row); });
+}
+
+/// Rows 0 .. columns-1, and what is below up to row_end.
+void factorise_strips(DiagonalBlock& block, int row_end) {
+  for_strips(block.columns, [&]<int C>(int column) {
+    constexpr int reached = (C + kLanes - 1) / kLanes * kLanes;
+    const Product finished = finished_columns<C>(block, column);
+    factorise_tile<C>(block, finished, column);
+    solve_strip<C>(block, finished, column, column + reached, row_end);
   });
 }
 
-/// Calls work.template operator()<C>(column) for the strips of the columns, forward.
-template <typename Work>
-void for_strips(int columns, Work&& work) {
-  int column = 0;
-  for (; column + kTileColumns <= columns; column += kTileColumns) {
-    work.template operator()<kTileColumns>(column);
+/// Rows 0 .. columns-1 alone, in a copy: tiles run over its end, where the panel has other rows.
+void factorise_apart(DiagonalBlock& block) {
+  constexpr long leading = kMaxPackedBlock + kOverrun;
+  alignas(64) double copy[kMaxPackedBlock * leading + kOverrun];
+  DiagonalBlock apart = block;
+  apart.panel = copy;
+  apart.leading = leading;
+  const int size = block.columns;
+  for (int j = 0; j < size; ++j) {
+    const int above = j % kTileColumns;
+    std::fill_n(copy + j - above + j * leading, above, 0.0);
+    std::copy_n(block.panel + j + j * block.leading, size - j, copy + j + j * leading);
+    std::fill_n(copy + size + j * leading, kOverrun, 0.0);
   }
-  if (column < columns) work.template operator()<3>(column);
+  factorise_strips(apart, size);
+  for (int j = 0; j < size; ++j) {
+    std::copy_n(copy + j + j * leading, size - j, block.panel + j + j * block.leading);
+  }
+  block.negatives = apart.negatives;
+  block.singular = apart.singular;
 }
 
 template <int Bytes>
@@ -265,45 +234,60 @@ inline void forward_strip(const double* panel, long leading, int column, int hei
 
 }  // namespace
 
-void multiply(const Product& product, int row_begin, int row_end, double* w, long leading_w) {
-  product_rows<Store::assign>(product, row_begin, row_end, w, leading_w);
-}
-
-void multiply_whole(const Product& product, int rows, double* w, long leading_w) {
-  product_rows<Store::assign, Part::whole>(product, 0, rows, w, leading_w);
-}
-
-void multiply_subtract(const Product& product, int rows, double* c, long leading_c) {
-  product_rows<Store::subtract>(product, 0, rows, c, leading_c);
+void multiply(const Product& product, int row_begin, int row_end, double* c, long leading,
+              Store store, Part part) {
+  if (worth_packing(product, row_end - row_begin)) {
+    multiply_packed(product, row_begin, row_end, c, leading, store, part);
+    return;
+  }
+  switch (store) {
+    case Store::assign:
+      product_rows<Store::assign>(product, row_begin, row_end, c, leading, part);
+      break;
+    case Store::add:
+      product_rows<Store::add>(product, row_begin, row_end, c, leading, part);
+      break;
+    case Store::subtract:
+      product_rows<Store::subtract>(product, row_begin, row_end, c, leading, part);
+      break;
+  }
 }
 
 void factorise_panel(DiagonalBlock& block, int row_end) {
   block.negatives = 0;
   block.singular = false;
-  for_strips(block.columns, [&]<int C>(int column) {
-    constexpr int reached = (C + kLanes - 1) / kLanes * kLanes;
-    const Product finished = finished_columns<C>(block, column);
-    factorise_tile<C>(block, finished, column);
-    solve_strip<C>(block, finished, column, column + reached, row_end);
-  });
+  if (row_end - block.columns >= kMinRowsApart && worth_packing(block, row_end - block.columns)) {
+    factorise_apart(block);
+    solve_rows_packed(block, block.panel + block.columns, block.leading, row_end - block.columns);
+  } else {
+    factorise_strips(block, row_end);
+  }
 }
 
 void solve_panel_rows(const DiagonalBlock& block, int row_begin, int row_end) {
+  if (worth_packing(block, row_end - row_begin)) {
+    solve_rows_packed(block, block.panel + row_begin, block.leading, row_end - row_begin);
+    return;
+  }
   for_strips(block.columns, [&]<int C>(int column) {
     solve_strip<C>(block, finished_columns<C>(block, column), column, row_begin, row_end);
   });
 }
 
 void solve_rows_apart(const DiagonalBlock& block, double* rows, long leading, int count) {
+  if (worth_packing(block, count)) {
+    solve_rows_packed(block, rows, leading, count);
+    return;
+  }
   for_strips(block.columns, [&]<int C>(int column) {
-    const Triangle<C> triangle(block, column);
+    Triangle<C> triangle;
+    triangle.take(block, column);
     Product finished = finished_columns<C>(block, column);
     finished.a = rows;
     finished.leading_a = leading;
     double* const c = rows + column * leading;
-    for_row_tiles(0, count, [&]<int V>(int row) {
-      if constexpr (V <= kMaxVectors) solve_tile<V, C>(finished, triangle, row, c + row);
-    });
+    for_row_tiles(0, count,
+                  [&]<int V>(int row) { solve_tile<V, C>(finished, triangle, row, c + row); });
   });
 }
 

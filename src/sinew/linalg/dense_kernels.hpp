@@ -1,7 +1,7 @@
 /// @file
 /// The dense arithmetic of the block factorisation: products of panels, and the factorisation and
-/// substitution of one panel. Column-major, sizes multiples of 3, no packing. Every entry is
-/// computed by the same operations in the same order, however rows are cut into pieces.
+/// substitution of one panel. Column-major, sizes multiples of 3. Every entry is computed by the
+/// same operations in the same order, however rows are cut into pieces.
 #pragma once
 
 namespace sinew::linalg {
@@ -19,16 +19,16 @@ struct Product {
   int columns;
 };
 
-/// w(i - row_begin, j) = (A B^T)(i, j) for row_begin <= i < row_end and j < columns, j <= i + 5:
-/// of a square part only the lower triangle is complete. Reads up to 7 rows of A, and writes up to
-/// 7 rows of w, past the end.
-void multiply(const Product& product, int row_begin, int row_end, double* w, long leading_w);
+/// What a product does to the numbers that are there.
+enum class Store { assign, add, subtract };
+/// All of a product, or of a square part the lower triangle: entries (i, j) with j <= i, and
+/// some above.
+enum class Part { lower, whole };
 
-/// w = A B^T, all of it: likewise.
-void multiply_whole(const Product& product, int rows, double* w, long leading_w);
-
-/// c -= A B^T, likewise; up to 7 rows of c past the end change by what A holds there.
-void multiply_subtract(const Product& product, int rows, double* c, long leading_c);
+/// c(i - row_begin, j) = (A B^T)(i, j) for row_begin <= i < row_end and j < columns, or += or -=.
+/// Reads up to 7 rows of A past the end, and changes up to 7 rows of c by what A holds there.
+void multiply(const Product& product, int row_begin, int row_end, double* c, long leading,
+              Store store, Part part = Part::whole);
 
 /// The diagonal block of a panel and what its factorisation L S L^T, S = diag(+-1), leaves.
 struct DiagonalBlock {

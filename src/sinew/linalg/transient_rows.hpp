@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "sinew/core/thread_pool.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/linalg/block_numeric.hpp"
 
@@ -15,16 +16,22 @@ namespace sinew::linalg {
 /// For rows H_t, given anew at every call, X = H_t L^-T S, by panels: a row is zero but in the
 /// panels on the way from its nodes to the root of the elimination tree, so that as much is
 /// computed as if these rows alone were in the border. Then H_t A^-1 H_t^T = X S X^T, and with the
-/// border's rows of L, which are the same of H and b, the columns between. Allocates only for more
-/// rows than ever before.
+/// border's rows of L, which are the same of H and b, the columns between.
+///
+/// Rows are taken in chunks, in the order of elimination of their nodes, so that the rows of a
+/// chunk share most of their way. Chunks are substituted, and pairs of chunks multiplied, apart
+/// from each other: what is at hand stays in the second cache, and threads share them out.
+/// Allocates only for more rows than ever before.
 class TransientRows {
  public:
   /// @param symbolic must outlive this.
   explicit TransientRows(const BlockSymbolic& symbolic);
 
   /// @param numeric factorised. @param rows k groups of three on the same nodes (a point).
-  /// @param values of them, layout of BorderPattern.
-  void condense(BlockNumeric& numeric, const BorderPattern& rows, std::span<const double> values);
+  /// @param values of them, layout of BorderPattern. @param pool as many threads as numeric was
+  /// made for.
+  void condense(BlockNumeric& numeric, const BorderPattern& rows, std::span<const double> values,
+                ThreadPool& pool);
   /// (3 k, 3 k) leading block of H_t A^-1 H_t^T. Only the lower triangle.
   const MatrixX& compliance() const { return compliance_; }
   /// (3 k, border rows + 1) leading rows of H_t A^-1 (H^T, b).
@@ -32,37 +39,66 @@ class TransientRows {
   std::size_t bytes() const;
 
  private:
-  struct Store {
-    std::int64_t offset = 0;       // of a panel's X in values_, column-major
+  /// X of a chunk in one panel.
+  struct Piece {
+    std::int32_t panel = 0;
+    std::int32_t count = 0;        // groups in it
+    std::int32_t leading = 0;      // doubles from column to column
+    std::int64_t offset = 0;       // in values_
     std::size_t first_member = 0;  // in members_
-    std::int32_t count = 0;        // groups in it now
-    std::int32_t leading = 0;
   };
+  struct Chunk {
+    std::int32_t first = 0, groups = 0;  // in order_
+    std::size_t begin = 0, end = 0;      // in pieces_, panels ascending
+  };
+  struct Scratch {
+    AlignedBuffer product, signed_rows, block;
+    std::vector<std::int32_t> piece_of;  // by panel: of the chunk at hand, or -1
+    std::vector<std::int32_t> place;     // of a descendant's groups among the panel's
+    std::vector<std::int32_t> column_place;
+  };
+  struct Rows {
+    const double* values;
+    long leading;
+  };
+
   template <typename Visit>
-  void for_panels(const BorderPattern& rows, std::int32_t group, Visit&& visit);
-  void prepare();
+  void for_panels(const BorderPattern& rows, std::int32_t group, std::int32_t stamp, Visit&& visit);
+  void prepare(int threads);
+  void order(const BorderPattern& rows);
   void list(const BorderPattern& rows);
-  void make_room(std::int32_t groups, std::size_t doubles, std::size_t entries);
-  void fill(int panel, const BorderPattern& rows, std::span<const double> values);
-  void update(BlockNumeric& numeric, int panel);
-  void add_compliance(const BlockNumeric& numeric, int panel);
-  const double* with_signs(const BlockNumeric& numeric, int panel, const double* rows, long leading,
-                           int count);
-  std::span<std::int32_t> members(int panel) {
-    return {members_.data() + stores_[static_cast<std::size_t>(panel)].first_member,
-            static_cast<std::size_t>(stores_[static_cast<std::size_t>(panel)].count)};
+  void list_chunk(const BorderPattern& rows, Chunk& chunk);
+  void substitute(BlockNumeric& numeric, const Chunk& chunk, const BorderPattern& rows,
+                  std::span<const double> values, int thread);
+  void fill(const Chunk& chunk, const Piece& piece, const BorderPattern& rows,
+            std::span<const double> values);
+  void update(const BlockNumeric& numeric, const Piece& piece, Scratch& scratch);
+  void couple(const BlockNumeric& numeric, const Chunk& chunk, const Piece& piece,
+              Scratch& scratch);
+  void multiply_chunks(const BlockNumeric& numeric, const Chunk& left, const Chunk& right,
+                       Scratch& scratch);
+  void place_block(const Chunk& left, const Chunk& right, const double* block, long leading);
+  static Rows with_signs(const BlockNumeric& numeric, const Panel& panel, bool positive, Rows rows,
+                         int count, Scratch& scratch);
+  const double* values_of(const Piece& piece) const { return values_.data() + piece.offset; }
+  double* values_of(const Piece& piece) { return values_.data() + piece.offset; }
+  std::span<const std::int32_t> members(const Piece& piece) const {
+    return {members_.data() + piece.first_member, static_cast<std::size_t>(piece.count)};
   }
 
   const BlockSymbolic* symbolic_;
-  std::int32_t room_ = 0;               // groups that memory is there for
   std::vector<std::int32_t> panel_of_;  // by position in the order of elimination
-  std::vector<std::int32_t> stamp_;     // by panel: the group that was there last
-  std::vector<Store> stores_;
-  std::vector<std::int32_t> members_;  // by panel: which of the groups, ascending
-  std::vector<std::int32_t> place_;    // of a descendant's groups among the panel's
-  std::vector<std::int32_t> column_place_;
-  AlignedBuffer values_, product_, signed_;
+  std::vector<std::int32_t> stamp_;     // by panel: who was there last
+  std::vector<std::int32_t> count_;     // by panel: groups of the chunk that is listed
+  std::vector<std::int32_t> touched_;   // the panels of that chunk
+  std::vector<std::int32_t> order_;     // groups by the elimination of their first node
+  std::vector<std::int32_t> first_position_;
+  std::vector<Chunk> chunks_;
+  std::vector<Piece> pieces_;
+  std::vector<std::int32_t> members_;  // by piece: numbers in the chunk, ascending
+  AlignedBuffer values_;
   MatrixX compliance_, coupling_;
+  std::vector<Scratch> scratch_;
 };
 
 }  // namespace sinew::linalg

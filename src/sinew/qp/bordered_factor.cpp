@@ -74,8 +74,8 @@ bool BorderedFactor::factorise_leading() {
     if (block.singular || block.negatives > 0) return false;
     if (below == padded_) break;
     const double* const factor = panel + width;
-    linalg::multiply_subtract({factor, height_, factor, height_, width, padded_ - below},
-                              rows - below, diagonal(below), height_);
+    linalg::multiply({factor, height_, factor, height_, width, padded_ - below}, 0, rows - below,
+                     diagonal(below), height_, linalg::Store::subtract, linalg::Part::lower);
   }
   return true;
 }
@@ -86,9 +86,8 @@ void BorderedFactor::subtract_product() {
   const double* const left = numbers_.data() + padded_;
   for (int first = 0; first < rest_; first += kStrip) {
     const int width = std::min(kStrip, rest_ - first);
-    linalg::multiply_whole(
-        {left, height_, left + rest_ + first, height_, padded_, whole_nodes(width)}, rest_,
-        product_.data(), leading);
+    linalg::multiply({left, height_, left + rest_ + first, height_, padded_, whole_nodes(width)}, 0,
+                     rest_, product_.data(), leading, linalg::Store::assign);
     corner().middleCols(first, width) -=
         Block(product_.data(), rest_, width, Eigen::OuterStride<>(leading));
   }

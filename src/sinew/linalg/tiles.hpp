@@ -1,0 +1,41 @@
+/// @file
+/// How the dense kernels cut rows and columns into tiles whose sums stay in registers.
+#pragma once
+
+#include "sinew/linalg/vector_lanes.hpp"
+
+namespace sinew::linalg {
+
+/// Columns of a tile: two nodes. With kMaxVectors vectors of rows its sums fill the registers.
+inline constexpr int kTileColumns = 6;
+inline constexpr int kMaxVectors = kLanes == 8 ? 4 : 2;
+
+/// Calls work.template operator()<V>(row) for pieces of V * kLanes rows that cover [begin, end).
+template <typename Work>
+void for_row_tiles(int begin, int end, Work&& work) {
+  for (int row = begin; row < end;) {
+    const int left = (end - row + kLanes - 1) / kLanes;
+    const int vectors = left <= kMaxVectors      ? left
+                        : left < 2 * kMaxVectors ? (left + 1) / 2
+                                                 : kMaxVectors;
+    if constexpr (kMaxVectors > 2) {
+      if (vectors == 4) work.template operator()<4>(row);
+      if (vectors == 3) work.template operator()<3>(row);
+    }
+    if (vectors == 2) work.template operator()<2>(row);
+    if (vectors == 1) work.template operator()<1>(row);
+    row += vectors * kLanes;
+  }
+}
+
+/// Calls work.template operator()<C>(column) for the strips of the columns, forward.
+template <typename Work>
+void for_strips(int columns, Work&& work) {
+  int column = 0;
+  for (; column + kTileColumns <= columns; column += kTileColumns) {
+    work.template operator()<kTileColumns>(column);
+  }
+  if (column < columns) work.template operator()<3>(column);
+}
+
+}  // namespace sinew::linalg
