@@ -153,8 +153,10 @@ def test_a_mesh_bounces_on_a_lift(tmp_path, use):
                              "motion": {"z": {"ramp": {"to": "2 m", "duration": "10 s"}}}}},
          "contacts": {"all": {"between": "all", "friction": 0.3}}}, folder=tmp_path)  # fmt: skip
     first = (-0.2 + np.sqrt(0.04 + 2 * GRAVITY * 0.1)) / GRAVITY
-    while not sim.report.impacts:
+    impacts = 0
+    while not impacts:
         sim.step()
+        impacts = sim.report.impacts
     approach = GRAVITY * first + 0.2
     assert sim.body("brick").velocity[2] == pytest.approx(0.2 + 0.6 * approach - GRAVITY * (sim.time - first), abs=1e-5)
     copy = sim.clone()
@@ -163,7 +165,7 @@ def test_a_mesh_bounces_on_a_lift(tmp_path, use):
     assert sim.state_hash == copy.state_hash
     assert sim.body("brick").position[2] == pytest.approx(sim.body("lift").position[2] + 0.02, abs=1e-6)
     assert sim.body("lift").position[2] == pytest.approx(0.2 * sim.time - 0.01, abs=1e-12)
-    assert sim.body("brick").velocity[2] == pytest.approx(0.2, abs=1e-9)
+    assert sim.body("brick").velocity[2] == pytest.approx(0.2, abs=1e-7)
 
 
 def test_a_step_that_looks_at_contacts_leaves_no_linearisation():

@@ -208,6 +208,21 @@ TEST(EventMesh, CubesThatMeetKeepTheirMomentum) {
   }
 }
 
+// Without rebound they slide on each other, corner on turning face, and round an edge.
+TEST(EventMesh, CubesThatDoNotReboundSlideOff) {
+  const auto simulation = meeting(0.0, 2.0, 5.0, 0.3);
+  const Vector3 linear = linear_momentum(*simulation, 0);
+  double energy = simulation->energies().kinetic;
+  const double start = energy;
+  for (int k = 0; k < 13; ++k) {
+    EXPECT_LT(simulation->step().substeps, 2000);
+    const double now = simulation->energies().kinetic;
+    EXPECT_LE(now, energy + 1e-6 * start) << "at " << simulation->time();
+    energy = now;
+  }
+  EXPECT_LT((linear_momentum(*simulation, 0) - linear).norm(), 1e-6);
+}
+
 TEST(EventMesh, TheOrderOfBodiesDoesNotMatter) {
   const auto one = meeting(0.6, 2.0, 5.0, 0.3), other = meeting(0.6, 2.0, 5.0, 0.3, true);
   for (int k = 0; k < 30; ++k) {
@@ -252,18 +267,18 @@ TEST(EventMesh, AMissIsNone) {
 TEST(EventMesh, StatesGoOnBitForBit) {
   const auto simulation = dropped(Kind::surface, askew(), 10e-3, 0.6, 0.3);
   const std::uint64_t start = simulation->state().hash();
-  for (const int steps : {10, 20, 40, 60}) {
+  for (const int steps : {10, 15}) {
     for (int k = 0; k < steps; ++k) simulation->step();
     const auto copy = std::make_unique<sim::Simulation>(simulation->shared_model(), 2);
     copy->restore(simulation->state());
     const sim::State kept = simulation->state();
-    for (int k = 0; k < 10; ++k) {
+    for (int k = 0; k < 5; ++k) {
       copy->step();
       simulation->step();
     }
     EXPECT_TRUE(copy->state() == simulation->state());
     copy->restore(kept);
-    for (int k = 0; k < 10; ++k) copy->step();
+    for (int k = 0; k < 5; ++k) copy->step();
     EXPECT_TRUE(copy->state() == simulation->state());
   }
   const sim::State end = simulation->state();

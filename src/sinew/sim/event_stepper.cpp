@@ -54,8 +54,8 @@ void EventStepper::make_parts(double begin, double time_step) {
   collide(begin);
   for (double done = 0.0; done < time_step;) {
     if (++report.substeps > kMaxParts) give_up("impacts follow each other too fast");
-    const double left = time_step - done, smooth = points_.next_corner(begin + done) - begin - done;
-    const double length = advance(begin + done, std::min({left, longest_, smooth}));
+    const double left = time_step - done, now = begin + done;
+    const double length = advance(now, std::min({left, longest_, points_.next_corner(now) - now}));
     done = length < left ? done + length : time_step;
     points_.forget_rest();
     collide(begin + done);
@@ -90,7 +90,7 @@ double EventStepper::advance(double time, double left) {
       run_.restore(start_);
       continue;
     }
-    const double free = points_.free_length(length);
+    const double free = points_.free_length(length, run_.report.substeps);
     if (free >= length && !points_.found_rest()) {
       hold(time + length);
       return length;

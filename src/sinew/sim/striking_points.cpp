@@ -22,6 +22,9 @@ constexpr double kUnseen = 1e-6;
 // Of the time step: shorter parts lose the velocity in the rounding of positions. Gaps that close
 // within such a part are closed.
 constexpr double kShortest = 1e-6;
+// Parts of a step after which these become longer: where a vertex goes round an edge, at the
+// distance at which surfaces rest, there is no end of them.
+constexpr double kManyParts = 200.0;
 // Of the time to where surfaces that nobody watched pass each other: they are still apart there.
 constexpr double kBefore = 0.95;
 // Of a body's speed: a point that slides less than this rolls.
@@ -112,7 +115,7 @@ void StrikingPoints::close() {
   }
 }
 
-double StrikingPoints::free_length(double length) {
+double StrikingPoints::free_length(double length, int parts) {
   for (const int contact : contacts_) {
     TouchingSurfaces* surfaces = world_.contacts().surfaces(static_cast<std::size_t>(contact));
     if (surfaces != nullptr) surfaces->look_at_overlaps();
@@ -123,7 +126,8 @@ double StrikingPoints::free_length(double length) {
     least = std::min(least, closing_time(point, gap_at_end(point), length));
   }
   least = least < length ? least : unseen_length(length);
-  return std::max(least, std::min(length, shortest_));
+  const double shortest = shortest_ * std::pow(std::max(1.0, parts / kManyParts), 4.0);
+  return std::max(least, std::min(length, shortest));
 }
 
 double StrikingPoints::gap_at_end(const Point& point) const {

@@ -34,8 +34,9 @@ class StrikingPoints {
 
   /// After a part was made: the length up to which no gap closes, or `length`. Of surfaces, gaps
   /// are looked at anew at the end of the part, and continuous detection tells what they passed.
-  /// @param length s, of the part.
-  double free_length(double length);
+  /// @param length s, of the part. @param parts that the step had so far: after many, shorter ones
+  /// are not made, and what closes in them overlaps a little.
+  double free_length(double length, int parts);
   /// s: when the next part ends at the latest: at the next corner of a motion that carries what may
   /// strike. It is struck there by a change of its velocity. @param time s, now.
   double next_corner(double time) const;
