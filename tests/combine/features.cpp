@@ -182,7 +182,7 @@ int find_feature(std::string_view name) {
 }
 
 // Whether this version refuses two levels beside each other: event-driven integration makes parts
-// of steps several times, by Newton's method, and has no impacts on surfaces that move.
+// of steps several times, by Newton's method.
 bool is_refused(int first, int first_level, int second, int second_level) {
   const auto is = [&](int feature, int chosen, std::string_view name, std::string_view wanted) {
     const Feature& of = features()[static_cast<std::size_t>(feature)];
@@ -196,7 +196,6 @@ bool is_refused(int first, int first_level, int second, int second_level) {
   };
   return both("integrator", "event-driven", "adaptive", "yes") ||
          both("integrator", "event-driven", "method", "one-linearisation") ||
-         both("integrator", "event-driven", "contact_motion", "yes") ||
          both("integrator", "event-driven", "controller", "");
 }
 

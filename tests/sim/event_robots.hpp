@@ -1,6 +1,7 @@
 // Rigid bodies that strike, and what they should do.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <string>
@@ -8,11 +9,14 @@
 
 #include <Eigen/Geometry>
 
+#include "sinew/collision/polyhedron.hpp"
 #include "sinew/collision/shape.hpp"
 #include "sinew/constraint/configuration.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mesh/mesh.hpp"
 #include "sinew/rigid/rigid_settings.hpp"
+#include "sinew/rigid/shape.hpp"
 #include "sinew/sim/contact_settings.hpp"
 #include "sinew/sim/joint_settings.hpp"
 #include "sinew/sim/model.hpp"
@@ -56,11 +60,34 @@ inline void add_floor(sim::ModelBuilder& builder, int body,
   builder.add_contact(contact);
 }
 
-inline void add_pair(sim::ModelBuilder& builder, int first, int second) {
+/// A shape as its triangles. @param convex they touch as their hull.
+inline rigid::Solid triangles(const rigid::Shape& shape, bool convex = false) {
+  rigid::Solid solid;
+  solid.surface = std::make_shared<const mesh::Surface>(rigid::bounding_triangles(shape));
+  if (convex) solid.hull = std::make_shared<const collision::Polyhedron>(solid.surface->nodes);
+  return solid;
+}
+
+/// A fixed one of 1 x 1 x 0.1 m whose upper side is at z = 0, as a shape or as triangles.
+inline int add_slab(sim::ModelBuilder& builder, const std::string& name, bool as_mesh) {
+  rigid::RigidSettings slab;
+  slab.name = name;
+  slab.shape = rigid::Box{{1.0, 1.0, 0.1}};
+  if (as_mesh) slab.shape = triangles(slab.shape);
+  slab.position = Vector3(0.0, 0.0, -0.05);
+  slab.fixed = true;
+  return builder.add_rigid_body(slab);
+}
+
+/// m: so far apart triangles rest on those of the slab, 1e-7 of its diagonal.
+inline const double kApart = 1e-7 * std::sqrt(2.01);
+
+inline void add_pair(sim::ModelBuilder& builder, int first, int second, double friction = 0.0) {
   sim::ContactSettings contact;
   contact.name = "pair_" + std::to_string(first) + std::to_string(second);
   contact.body = first;
   contact.touched = second;
+  contact.friction = friction;
   builder.add_contact(contact);
 }
 

@@ -29,6 +29,30 @@ TEST(Signal, ConstantHoldsForEver) {
   EXPECT_EQ(signal.end_time(), 0.0);
 }
 
+// Against differences to the side that is asked for; corners are where these differ.
+TEST(Signal, RatesOnBothSidesOfCorners) {
+  constexpr auto on_before = Signal::Side::before, on_after = Signal::Side::after;
+  const Signal signals[] = {
+      Signal::ramp({.from = 1.0, .to = 3.0, .start = 0.5, .duration = 2.0}),
+      Signal::sine({.mean = 1.0, .amplitude = 0.3, .period = 0.7, .phase = 0.4}),
+      Signal::sampled({0.2, 0.5, 2.5}, {1.0, 4.0, -1.0}), Signal::constant(2.0),
+      Signal::steps({{0.0, 1.0}, {0.5, 1.0}})};
+  for (const Signal& signal : signals) {
+    for (const double time : {0.0, 0.1, 0.2, 0.5, 1.7, 2.5, 3.0}) {
+      const double far = 1e-6;
+      const double after = (signal.value(time + far) - signal.value(time)) / far;
+      const double before = (signal.value(time) - signal.value(time - far)) / far;
+      EXPECT_NEAR(signal.rate(time, on_after), after, 1e-4) << "at " << time;
+      EXPECT_NEAR(signal.rate(time, on_before), before, 1e-4) << "at " << time;
+    }
+    EXPECT_FALSE(signal.jumps());
+  }
+  EXPECT_EQ(signals[0].next_corner(0.0), 0.5);
+  EXPECT_EQ(signals[0].next_corner(0.5 - 1e-12), 2.5);
+  EXPECT_EQ(signals[2].next_corner(2.5), kInfinity);
+  EXPECT_TRUE(Signal::steps({{0.0, 1.0}, {0.5, 2.0}}).jumps());
+}
+
 TEST(Signal, RampIsStraightAndHeldAtBothEnds) {
   const Signal signal = Signal::ramp({.from = 1.0, .to = 3.0, .start = 0.5, .duration = 2.0});
   EXPECT_EQ(signal.value(0.0), 1.0);

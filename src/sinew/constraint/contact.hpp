@@ -61,6 +61,10 @@ class Contact : public Constraint {
   /// @param point below size(). @param values of the step.
   virtual double gap_now(const Configuration& configuration, const Eigen::Isometry3d& pose,
                          std::size_t point, const mechanics::RowValues& values) const = 0;
+  /// (3,) m/s, of the centre of the body that a point belongs to, likewise relative.
+  /// @param configuration,point see there.
+  virtual Vector3 centre_velocity_beside(const Configuration& configuration,
+                                         std::size_t point) const = 0;
 
   int row(std::size_t point) const { return first_row_ + 3 * static_cast<int>(point); }
   /// Of the point itself, in one of its three rows.

@@ -264,11 +264,23 @@ double ShapeContact::gap_now(const Configuration& configuration, const Eigen::Is
   return distance(surface_, pose.inverse() * position_now(configuration, point, values)).gap;
 }
 
-double ShapeContact::speed(const Configuration& configuration, std::size_t point) const {
-  const mechanics::MaterialPoint& own = own_ ? own_->centre : points_[point];
-  Vector3 velocity = configuration.velocity(own);
+Vector3 ShapeContact::centre_velocity_beside(const Configuration& configuration,
+                                             std::size_t point) const {
+  Vector3 velocity = configuration.velocity(own_ ? own_->centre : points_[point]);
   if (carrier_) velocity -= configuration.velocity(carrier_->centre);
-  return velocity.norm();
+  return velocity;
+}
+
+// Of the centre of roundness along the normal, as the gap's row is.
+Vector3 ShapeContact::shift(const Eigen::Isometry3d& back, const Configuration& configuration,
+                            std::size_t point, const mechanics::RowValues& values) const {
+  Vector3 result;
+  for (int j = 0; j < 3; ++j) {
+    const Vector3 at = own_ ? own_->watched(configuration, entry(point, j), values)
+                            : configuration.position(points_[point]);
+    result[j] = values.direction[entry(point, j)].dot(back * at - at);
+  }
+  return result;
 }
 
 double ShapeContact::deepest(const Configuration& configuration, const Eigen::Isometry3d& pose,

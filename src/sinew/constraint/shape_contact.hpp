@@ -96,12 +96,17 @@ class ShapeContact : public Contact {
                           const mechanics::RowValues& values) const;
   Vector3 velocity_beside(const Configuration& configuration, std::size_t point,
                           const mechanics::RowValues& values) const override;
-  /// m/s: of the body that a point belongs to, relative to what it may touch.
-  double speed(const Configuration& configuration, std::size_t point) const;
+  Vector3 centre_velocity_beside(const Configuration& configuration,
+                                 std::size_t point) const override;
   /// m: the least gap now, of points that a step has found or not; negative where they overlap.
   /// @param configuration,pose,values see gap_now().
   double deepest(const Configuration& configuration, const Eigen::Isometry3d& pose,
                  const mechanics::RowValues& values) const;
+  /// (3,) by normal and tangents, m: how much more the rows of a point would be if its surface of
+  /// the world were moved from where it is in the step. @param back the inverse of that motion.
+  /// @param configuration of the bodies. @param point below size(). @param values of the step.
+  Vector3 shift(const Eigen::Isometry3d& back, const Configuration& configuration,
+                std::size_t point, const mechanics::RowValues& values) const;
   double linear_gap(const Configuration& configuration, std::size_t point,
                     const mechanics::RowValues& values) const override;
   /// (3,) m: a point's motion relative to its surface. @param point below size().

@@ -140,6 +140,14 @@ Vector3 SurfaceContact::velocity_beside(const Configuration& configuration, std:
                   configuration.surface_node_velocities(other_body()), point, values);
 }
 
+Vector3 SurfaceContact::centre_velocity_beside(const Configuration& configuration,
+                                               std::size_t) const {
+  const auto mean = [&](int body) -> Vector3 {
+    return configuration.surface_node_velocities(body).colwise().mean().transpose();
+  };
+  return mean(body()) - mean(other_body());
+}
+
 double SurfaceContact::linear_gap(const Configuration& configuration, std::size_t point,
                                   const mechanics::RowValues& values) const {
   return gap_at(configuration.surface_nodes(body()), configuration.surface_nodes(other_body()),

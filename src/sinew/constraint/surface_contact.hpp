@@ -60,6 +60,9 @@ class SurfaceContact : public Contact {
                        const mechanics::RowValues& values) const override;
   Vector3 velocity_beside(const Configuration& configuration, std::size_t point,
                           const mechanics::RowValues& values) const override;
+  /// Of the mean of all nodes.
+  Vector3 centre_velocity_beside(const Configuration& configuration,
+                                 std::size_t point) const override;
   double linear_gap(const Configuration& configuration, std::size_t point,
                     const mechanics::RowValues& values) const override;
   /// That of its row: places and normal stay through a step. Of a point that is none, its

@@ -63,6 +63,12 @@ void RigidBody::move_base(const std::optional<mechanics::AffineField>& displacem
 
 const std::optional<mechanics::AffineField>& RigidBody::base_input() const { return state_->asked; }
 
+void RigidBody::follow_base() { state_->follow_base(); }
+
+void RigidBody::set_base_rate(const Vector3& linear, const Vector3& angular) {
+  if (model_.has_base()) state_->rate << linear, model_.turning_radius() * angular;
+}
+
 Matrix3 RigidBody::rotation(int) const { return state_->pose.rotation.toRotationMatrix(); }
 
 Vector3 RigidBody::origin() const {

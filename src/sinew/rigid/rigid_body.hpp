@@ -8,6 +8,7 @@
 
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mechanics/rigid_base.hpp"
 
 namespace sinew::rigid {
 
@@ -20,6 +21,7 @@ struct RigidState;
 class RigidBody : public mechanics::Body,
                   public mechanics::HasOrientations,
                   public mechanics::HasBase,
+                  public mechanics::HasRigidBase,
                   public mechanics::HasPose,
                   public mechanics::HasSurfaceNodes {
  public:
@@ -46,6 +48,8 @@ class RigidBody : public mechanics::Body,
   bool base_can_move() const override;
   void move_base(const std::optional<mechanics::AffineField>& displacement) override;
   const std::optional<mechanics::AffineField>& base_input() const override;
+  void follow_base() override;
+  void set_base_rate(const Vector3& linear, const Vector3& angular) override;
 
   Matrix3 rotation(int orientation) const override;
   Vector3 origin() const override;

@@ -142,23 +142,18 @@ bool strikes(ModelData& data, const mechanics::BodyModel& on, const ContactSetti
                 "a deformable body rebounds by its elasticity, and has no restitution",
                 "leave `restitution` out, or make both bodies rigid");
   }
-  const bool moved = std::ranges::any_of(data.base_motions, [&](const BaseMotion& motion) {
-    return motion.body == settings.body || motion.body == settings.touched;
+  const bool strikes = data.step.event_driven() && rigid;
+  const bool jumps = std::ranges::any_of(data.base_motions, [&](const BaseMotion& motion) {
+    return (motion.body == settings.body || motion.body == settings.touched) && motion.jumps();
   });
-  if (data.step.event_driven() && rigid && (settings.motion || moved)) {
-    throw Error(ErrorKind::not_in_this_version, settings.place,
-                "event-driven integration has no impacts on a surface that moves by itself",
-                "let a rigid body with a motor carry the surface, or choose bdf2");
+  if (strikes && (jumps || (settings.motion && settings.motion->jumps()))) {
+    throw Error(
+        ErrorKind::conflicting_keys, settings.place,
+        "a surface that jumps strikes with no velocity, and event-driven integration has no "
+        "impact for it",
+        "write its motion as a ramp or samples in place of steps, or choose bdf2");
   }
-  if (data.step.event_driven() && rigid && touched != nullptr &&
-      touch_by_surfaces(on, *touched, false)) {
-    throw Error(ErrorKind::not_in_this_version, settings.place,
-                fmt::format("event-driven integration has no impacts of meshes, such as those of "
-                            "'{}' and '{}'",
-                            on.name(), touched->name()),
-                "give both a shape, or choose backward-euler or bdf2");
-  }
-  return data.step.event_driven() && rigid;
+  return strikes;
 }
 
 // m; of a deformable body, whose points are many.

@@ -26,6 +26,19 @@ struct BaseMotion {
     return {translation[0].value(time), translation[1].value(time), translation[2].value(time)};
   }
   Vector3 rotation_at(double time) const { return angle.value(time) * axis; }
+
+  /// A rigid motion's rate.
+  struct Rate {
+    Vector3 centre = Vector3::Zero();   ///< (3,) m, of the turn, where it is then
+    Vector3 linear = Vector3::Zero();   ///< (3,) m/s, of that
+    Vector3 angular = Vector3::Zero();  ///< (3,) rad/s
+    /// (3,) m/s of what is at (3,) m then.
+    Vector3 at(const Vector3& place) const { return linear + angular.cross(place - centre); }
+  };
+  /// These are as Signal's. @param time s. @param side of a corner there.
+  Rate rate(double time, Signal::Side side) const;
+  double next_corner(double time) const;
+  bool jumps() const;
 };
 
 /// An axis of unit length. @param axis,place (3,), and where it was written. Throws

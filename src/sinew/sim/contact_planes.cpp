@@ -18,6 +18,16 @@ constexpr double kSamePlane = 1e-6;
 // Rounds of a step in which tangent planes follow the ways of their points.
 constexpr int kMaxTurns = 20;
 
+// (3,) m: of the surface, below the centre of roundness: a point of a body that rolls leaves it.
+Vector3 foot(const constraint::ShapeContact& contact,
+             const constraint::Configuration& configuration, std::size_t point,
+             const mechanics::RowValues& rows, const Vector3& at) {
+  if (!contact.own()) return at;
+  const Vector3 core = contact.own()->watched(configuration, contact.entry(point), rows);
+  const Vector3& normal = rows.direction[contact.entry(point)];
+  return core + normal.dot(at - core) * normal;
+}
+
 }  // namespace
 
 ContactPlanes::ContactPlanes(const Model& model, const constraint::Configuration& configuration,
@@ -26,7 +36,8 @@ ContactPlanes::ContactPlanes(const Model& model, const constraint::Configuration
       configuration_(configuration),
       rows_(rows),
       start_(VectorX::Zero(model.rows().rows())),
-      curvature_(VectorX::Zero(model.rows().rows())) {
+      curvature_(start_),
+      moved_on_(start_) {
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
     const constraint::Contact& contact = model.contact(static_cast<int>(i));
     contacts_.push_back(&contact);
@@ -34,6 +45,7 @@ ContactPlanes::ContactPlanes(const Model& model, const constraint::Configuration
     const auto* touching = dynamic_cast<const constraint::SurfaceContact*>(&contact);
     if (touching == nullptr) continue;
     surfaces_.push_back(std::make_unique<TouchingSurfaces>(*touching, configuration, rows, pool));
+    strikes_.push_back(model.contacts()[i].strikes ? 1 : 0);
   }
   poses_.resize(contacts_.size(), Eigen::Isometry3d::Identity());
 }
@@ -45,32 +57,71 @@ void ContactPlanes::place(double from, double to) {
   curved_ = false;
   carried_.clear();
   time_step_ = to - from;
+  placed_ = to;
+  moved_on_.setZero();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     if (shapes_[i] == nullptr) continue;
     const constraint::ShapeContact& contact = *shapes_[i];
     curved_ |= contact.curved();
     poses_[i] = pose_now(i, to);
-    const Eigen::Isometry3d start = contact.carrier() ? poses_[i] : model_.contacts()[i].pose(from);
+    const ContactModel& own = model_.contacts()[i];
+    const Eigen::Isometry3d start = contact.carrier() ? poses_[i] : own.pose(from);
     contact.begin_step(configuration_, start, poses_[i], to - from, rows_);
-    if (!start.isApprox(poses_[i], 0.0)) {
-      carried_.push_back({&contact, start * poses_[i].inverse()});
+    const bool moves = own.motion && !contact.carrier();
+    if (!moves || (!events_ && start.isApprox(poses_[i], 0.0))) continue;
+    carried_.push_back({&contact, &own, start * poses_[i].inverse(), poses_[i],
+                        own.motion->rate(from, Signal::Side::after)});
+  }
+}
+
+void ContactPlanes::move_on(double time) {
+  for (Carried& surface : carried_) {
+    surface.rate = surface.model->motion->rate(time, Signal::Side::before);
+    const Eigen::Isometry3d back = surface.placed * surface.model->pose(time).inverse();
+    for (std::size_t k = 0; k < surface.contact->size(); ++k) {
+      if (surface.contact->idle(k, rows_)) continue;
+      const int row = surface.contact->row(k);
+      Vector3 shift = Vector3::Zero();
+      if (time != placed_) shift = surface.contact->shift(back, configuration_, k, rows_);
+      const Vector3 more = shift - moved_on_.segment<3>(row);
+      moved_on_.segment<3>(row) = shift;
+      for (VectorX* rows : {&rows_.offset, &rows_.delta, &start_}) rows->segment<3>(row) += more;
     }
   }
 }
 
 Vector3 ContactPlanes::velocity_beside(const constraint::Contact& contact,
                                        std::size_t point) const {
-  Vector3 velocity = contact.velocity_beside(configuration_, point, rows_);
+  return contact.velocity_beside(configuration_, point, rows_) - surface_velocity(contact, point);
+}
+
+Vector3 ContactPlanes::centre_velocity_beside(const constraint::Contact& contact,
+                                              std::size_t point) const {
+  return contact.centre_velocity_beside(configuration_, point) - surface_velocity(contact, point);
+}
+
+Vector3 ContactPlanes::surface_velocity(const constraint::Contact& contact,
+                                        std::size_t point) const {
   for (const Carried& surface : carried_) {
     if (surface.contact != &contact) continue;
     const Vector3 at = contact.position_now(configuration_, point, rows_);
-    velocity += (surface.from_end * at - at) / time_step_;
+    if (events_) return surface.rate.at(foot(*surface.contact, configuration_, point, rows_, at));
+    return (at - surface.from_end * at) / time_step_;
   }
-  return velocity;
+  return Vector3::Zero();
 }
 
 void ContactPlanes::find_points(double reach, std::span<double> effort) {
-  for (const auto& touching : surfaces_) touching->begin_step(reach, effort);
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    const bool again = events_ && strikes_[i] != 0;
+    surfaces_[i]->begin_step(again ? surfaces_[i]->reach() : reach, effort);
+  }
+}
+
+void ContactPlanes::find_striking_points(double reach, std::span<double> effort) {
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    if (strikes_[i] != 0) surfaces_[i]->begin_step(reach, effort);
+  }
 }
 
 void ContactPlanes::forget_points() {
@@ -80,8 +131,9 @@ void ContactPlanes::forget_points() {
 void ContactPlanes::begin() { start_ = rows_.delta; }
 
 void ContactPlanes::keep_gap(int row) {
-  widen(row, -rows_.delta[row]);
-  begin_point(row);
+  const double gap = rows_.reference[row];
+  widen(row, -gap);
+  start_[row] -= gap;
 }
 
 void ContactPlanes::widen(int row, double more) {

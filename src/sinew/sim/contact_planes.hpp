@@ -11,6 +11,7 @@
 
 #include "sinew/core/types.hpp"
 #include "sinew/mechanics/rows.hpp"
+#include "sinew/sim/base_motion.hpp"
 
 namespace sinew {
 class ThreadPool;
@@ -26,6 +27,7 @@ class ShapeContact;
 
 namespace sinew::sim {
 
+struct ContactModel;
 class Model;
 class TouchingSurfaces;
 
@@ -51,6 +53,18 @@ class ContactPlanes {
   /// The points of contacts between surfaces. @param reach m: nearer ones have points.
   /// @param effort (rows,) N of the last step, in and out: points take theirs along.
   void find_points(double reach, std::span<double> effort);
+  /// Those of contacts that strike. find_points() finds these again, as far as here, so that a part
+  /// of a step has the points that were looked at when it began. @param reach,effort see there.
+  void find_striking_points(double reach, std::span<double> effort);
+  /// Once more where a part of an event-driven step has been carried on to: surfaces of the world
+  /// go on to where they are at a time, along the frames that the part has. Back again by its
+  /// middle, for which place() was called. After a measurement of delta. @param time s.
+  void move_on(double time);
+  /// Whether any surface of the world may move in the step.
+  bool moves() const { return !carried_.empty(); }
+  /// Whether impacts are events: in their steps points of striking surfaces are looked for when a
+  /// part begins.
+  void set_events(bool events) { events_ = events; }
   /// Those of contacts between surfaces are forgotten.
   void forget_points();
   /// Of contacts between surfaces.
@@ -71,9 +85,16 @@ class ContactPlanes {
   /// Of the surface now. @param contact of contacts(). @param time s.
   Eigen::Isometry3d pose_now(std::size_t contact, double time) const;
 
-  /// (3,) m/s: how fast a point slides or leaves, also where the surface moves of itself.
+  /// (3,) m/s: how fast a point slides or leaves, also where the surface moves of itself. That
+  /// counts with its mean velocity in the step; where impacts are events, with that which it has
+  /// where the part begins, or has been carried on to.
   /// @param contact of contacts(). @param point below its size().
   Vector3 velocity_beside(const constraint::Contact& contact, std::size_t point) const;
+  /// (3,) m/s: of the centre of the point's body. @param contact,point as above.
+  Vector3 centre_velocity_beside(const constraint::Contact& contact, std::size_t point) const;
+  /// (3,) m/s: of a surface of the world at a point that touches it; zero of one that stands still.
+  /// @param contact,point as above.
+  Vector3 surface_velocity(const constraint::Contact& contact, std::size_t point) const;
 
   /// Planes turn in a bounded number of rounds a step, after which they stay as they are.
   bool may_turn() const { return turns_left_ > 0; }
@@ -125,11 +146,18 @@ class ContactPlanes {
   bool curved_ = false;
   std::vector<Eigen::Isometry3d> poses_;  // (contacts,)
   struct Carried {
-    const constraint::Contact* contact;
+    const constraint::ShapeContact* contact;
+    const ContactModel* model;
     Eigen::Isometry3d from_end;  // to where it was when the step began
+    Eigen::Isometry3d placed;    // where it is in the step
+    BaseMotion::Rate rate;       // where the part begins, or has been carried on to
   };
-  std::vector<Carried> carried_;  // surfaces of the world that move
+  std::vector<Carried> carried_;  // surfaces of the world that may move
+  std::vector<char> strikes_;     // (surfaces,)
   double time_step_ = 0.0;        // s
+  double placed_ = 0.0;           // s, when the planes are where they were placed
+  VectorX moved_on_;              // (rows,) m, what move_on() has added to offsets
+  bool events_ = false;
   int turns_left_ = 0;
 };
 

@@ -300,7 +300,7 @@ bool ContactRows::correct(const step::StepProblem& problem, const RowNumbering& 
   for (std::size_t i = 0; i < planes_.contacts().size(); ++i) {
     if (zones_[i]) {
       spread = correct_zones(*zones_[i], surfaces_[i], problem, numbering, effort) || spread;
-    } else if (surfaces_[i] != nullptr) {
+    } else if (surfaces_[i] != nullptr && !strikes(i)) {
       found = correct_surfaces(*surfaces_[i]) || found;
     }
   }
@@ -501,8 +501,10 @@ void ContactRows::forget_friction() {
 }
 
 bool ContactRows::passed() const {
-  return std::ranges::any_of(planes_.surfaces(),
-                             [](const auto& touching) { return touching->passed(); });
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    if (surfaces_[i] != nullptr && !strikes(i) && surfaces_[i]->passed()) return true;
+  }
+  return false;
 }
 
 double ContactRows::max_penetration_without_force(std::span<const double> effort) const {

@@ -82,10 +82,19 @@ class ContactRows {
   }
   bool leave_points_out() const { return left_out_; }
 
-  /// Of event-driven integration: whether impacts of a contact are events. Of its points, those
-  /// that are closed take part in steps, and keep the gap that they have; others pass through.
+  /// Within an event-driven step contacts may strike; anything else that looks at the robot, such
+  /// as a static solution, takes them as all others.
+  void set_events(bool events) {
+    events_ = events;
+    planes_.set_events(events);
+  }
+  /// Whether impacts of a contact are events now. Of its points, those that are closed take part in
+  /// steps, and keep the gap that they have; others pass through.
   /// @param contact of planes().contacts().
-  bool strikes(std::size_t contact) const { return strikes_[contact] != 0; }
+  bool strikes(std::size_t contact) const { return events_ && strikes_[contact] != 0; }
+  /// With surfaces that touch; null: a shape. @param contact of planes().contacts().
+  TouchingSurfaces* surfaces(std::size_t contact) { return surfaces_[contact]; }
+  const TouchingSurfaces* surfaces(std::size_t contact) const { return surfaces_[contact]; }
   void set_closed(int row, bool closed) { closed_[static_cast<std::size_t>(row)] = closed; }
   bool is_closed(int row) const { return closed_[static_cast<std::size_t>(row)] != 0; }
   /// Whether a point of another contact has a force. @param effort (rows,) N.
@@ -164,6 +173,7 @@ class ContactRows {
   std::vector<char> slides_;             // (rows,) normal rows whose friction is kinetic
   std::vector<Vector3>
       along_;  // (rows,) where those slide to, of any length; empty: no such contact
+  bool events_ = false;
   std::vector<char> strikes_;  // (contacts,)
   std::vector<char> wanted_;   // (contacts,)
   std::vector<char> closed_;   // (rows,) normal rows of contacts that strike

@@ -36,12 +36,26 @@ void EventStepper::step(double begin, double time_step) {
   report.substeps = 0;
   report.error = 0.0;
   longest_ = time_step;
+  moved_bases_ = false;
+  run_.world.contacts().set_events(true);
+  try {
+    make_parts(begin, time_step);
+  } catch (...) {
+    run_.world.contacts().set_events(false);
+    throw;
+  }
+  run_.world.contacts().set_events(false);
+}
+
+void EventStepper::make_parts(double begin, double time_step) {
+  StepReport& report = run_.report;
   points_.forget_rest();
   substep_.read_commands(begin + time_step, time_step);
   collide(begin);
   for (double done = 0.0; done < time_step;) {
     if (++report.substeps > kMaxParts) give_up("impacts follow each other too fast");
-    const double left = time_step - done, length = advance(begin + done, std::min(left, longest_));
+    const double left = time_step - done, now = begin + done;
+    const double length = advance(now, std::min({left, longest_, points_.next_corner(now) - now}));
     done = length < left ? done + length : time_step;
     points_.forget_rest();
     collide(begin + done);
@@ -51,7 +65,8 @@ void EventStepper::step(double begin, double time_step) {
 // Impacts of the present moment, until no point approaches.
 void EventStepper::collide(double time) {
   for (strikes_ = 0;; ++strikes_) {
-    points_.look(time);
+    run_.surroundings.set_base_rates(time, Signal::Side::after);
+    points_.look(time, run_.effort);
     if (!points_.strike()) break;
     if (strikes_ == kMaxImpacts) give_up("impacts of one moment do not end");
     if (strikes_ == 0) run_.keep(struck_);
@@ -75,9 +90,9 @@ double EventStepper::advance(double time, double left) {
       run_.restore(start_);
       continue;
     }
-    const double free = points_.free_length(length);
+    const double free = points_.free_length(length, run_.report.substeps);
     if (free >= length && !points_.found_rest()) {
-      hold();
+      hold(time + length);
       return length;
     }
     ++run_.report.retries;
@@ -90,10 +105,18 @@ double EventStepper::advance(double time, double left) {
   give_up("the moment of an impact is not found");
 }
 
-// What the midpoint rule leaves of velocities along rows that are held.
-void EventStepper::hold() {
-  const bool joins = !run_.world.problem().bilaterals.empty();
-  if (carried_on_ && (joins || points_.drift(run_.effort))) impact_.hold();
+// What the midpoint rule leaves of velocities along rows that are held; and backward Euler, where
+// bodies are held on what moves by itself: it gives them the mean velocity of that.
+void EventStepper::hold(double time) {
+  using mechanics::StepEnd;
+  moved_bases_ |= std::ranges::any_of(run_.world.bodies().ends(), &StepEnd::moved_from_outside);
+  const bool joins = carried_on_ && !run_.world.problem().bilaterals.empty();
+  const bool moves = !run_.model->base_motions().empty() || run_.world.contacts().planes().moves();
+  if (moves) {
+    run_.surroundings.set_base_rates(time, Signal::Side::before);
+    run_.world.contacts().planes().move_on(time);
+  }
+  if (joins || ((carried_on_ || moves) && points_.drift(run_.effort))) impact_.hold();
 }
 
 // Points that rebounded next to nothing stay closed: the impact was an inelastic one.

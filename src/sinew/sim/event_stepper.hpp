@@ -24,7 +24,7 @@ struct Run;
 /// motion says little about the other half: where deformable bodies touch anything or bases move,
 /// where actuators are told motions, joints or cables rub, drives or materials have memories. It
 /// ends in its middle where something else catches a body (a joint's limit, a cable that becomes
-/// taut, a point that stops to slide).
+/// taut, a point that stops to slide), and at the corners of motions that are given.
 ///
 /// A rebound that would rise less than 1e-9 of the robot's size is none: the impact is solved again
 /// without restitution, and the point stays closed. That ends the infinite sequences of rebounds
@@ -36,16 +36,19 @@ class EventStepper {
   /// Advances the run by a time step. @param begin,time_step s. Throws Error; the run is then
   /// somewhere in the step.
   void step(double begin, double time_step);
+  /// Whether a base has moved in it.
+  bool moved_bases() const { return moved_bases_; }
   std::size_t bytes() const { return sizeof(double) * (start_.size() + struck_.size()); }
 
  private:
+  void make_parts(double begin, double time_step);
   void collide(double time);
   double advance(double time, double left);
   double move(double time, double length);
   bool is_smooth(double end, double length);
   bool stays_smooth() const;
   void rest(double time);
-  void hold();
+  void hold(double time);
   [[noreturn]] void give_up(const char* what);
 
   Run& run_;
@@ -57,6 +60,7 @@ class EventStepper {
   int strikes_ = 0;                    // impacts since struck_
   double longest_ = 0.0;               // s, part of the step in hand: others fail
   bool carried_on_ = false;            // the last part, by the midpoint rule
+  bool moved_bases_ = false;           // in some part
   std::vector<double> effort_before_;  // (rows,) N
 };
 

@@ -1,7 +1,9 @@
 #include "sinew/sim/impact.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "sinew/constraint/contact.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/sim/row_motions.hpp"
 #include "sinew/sim/run.hpp"
@@ -36,8 +38,10 @@ void Impact::hold() {
     const bool pressed = run_.effort[static_cast<std::size_t>(row)] > 0.0;
     if (pressed) law_.bilaterals.push_back({block.row, 0.0, 1.0});
   }
+  std::vector<step::ContactBlock> contacts = std::move(law_.contacts);
   law_.contacts.clear();
   find_impulses({}, 0.0);
+  law_.contacts = std::move(contacts);
   apply();
 }
 
@@ -82,8 +86,25 @@ void Impact::form() {
     law_.bilaterals.push_back({block.row, measure(block.row), block.motion_scale});
   }
   for (const step::ContactBlock& block : law_.contacts) {
-    for (int c = 0; c < 3; ++c) measure(block.row + c);
+    before_.segment<3>(block.row) = contact_velocity(world, block.contact, point_of(block));
   }
+}
+
+std::size_t Impact::point_of(const step::ContactBlock& block) const {
+  const int row = run_.world.numbering().model_row_of(block.row);
+  return static_cast<std::size_t>(row - run_.model->contact(block.contact).first_row()) / 3;
+}
+
+// J: what surfaces of the world do that move.
+double Impact::outside() const {
+  const ContactPlanes& planes = run_.world.contacts().planes();
+  double sum = 0.0;
+  for (const step::ContactBlock& block : law_.contacts) {
+    const Eigen::Map<const Vector3> impulse(&impulse_[static_cast<std::size_t>(block.row)]);
+    const constraint::Contact& contact = run_.model->contact(block.contact);
+    sum += (block.frame * impulse).dot(planes.surface_velocity(contact, point_of(block)));
+  }
+  return sum;
 }
 
 double Impact::smallest(std::span<const double> restitution) const {
@@ -128,7 +149,7 @@ void Impact::apply() {
   bodies.add_velocity(change_);
   bodies.residual(run_.effort);  // which bodies remember
   run_.world.forget_solved();
-  run_.ledger.count_impact(-gained_);
+  run_.ledger.count_impact(-gained_, outside());
 }
 
 }  // namespace sinew::sim

@@ -2,6 +2,7 @@
 /// Velocities that change at once.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -21,9 +22,10 @@ struct Run;
 /// One e acts along and across the normal; a point that does not approach has e = 0. With one e for
 /// all points, the kinetic energy changes by
 ///   p.(u+ + u-)/2 = (p.u - (1 - e)/2 p.W p)/(1 + e) <= 0,
-/// since the law has p.u <= 0. With several, it might grow: then the smallest holds for all, or
-/// none. Springs, commanded efforts and bodies' own stiffness are finite forces, which give no
-/// impulse.
+/// since the law has p.u <= 0. Velocities are relative to surfaces that move by themselves: their
+/// work p.v is added to that, and counts as work from outside. With several, it might grow: then
+/// the smallest holds for all, or none. Springs, commanded efforts and bodies' own stiffness are
+/// finite forces, which give no impulse.
 class Impact {
  public:
   /// @param run outlives it.
@@ -41,6 +43,8 @@ class Impact {
   void form();
   void find_impulses(std::span<const double> restitution, double max_restitution);
   double smallest(std::span<const double> restitution) const;
+  std::size_t point_of(const step::ContactBlock& block) const;
+  double outside() const;
   void apply();
 
   Run& run_;

@@ -21,13 +21,25 @@ Midpoint::Midpoint(Run& run) : run_(run), widened_(run.effort.size(), 0.0) {}
 
 void Midpoint::carry_on(Substep& substep, double half) {
   Bodies& bodies = run_.world.bodies();
+  const double middle = run_.now;
   bodies.scale_motion(2.0);
+  place(middle + half);
   for (int round = 0; correct() > kHeld * run_.model->size() && round < kMaxRounds; ++round) {
+    place(middle);
     bodies.scale_motion(0.5);
     substep.solve(half);
     bodies.scale_motion(2.0);
+    place(middle + half);
   }
   release();
+}
+
+// Of rigid bodies and surfaces that are put there.
+void Midpoint::place(double time) {
+  if (run_.model->base_motions().empty() && !run_.world.contacts().planes().moves()) return;
+  run_.surroundings.put_bases(time);
+  run_.world.measure_delta();
+  run_.world.contacts().planes().move_on(time);
 }
 
 // m: what the end lacks. With delta in the middle it is 2 delta and something of second order.

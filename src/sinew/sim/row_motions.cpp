@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "sinew/constraint/contact.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/world.hpp"
 
@@ -16,6 +17,18 @@ double row_velocity(const World& world, int row) {
     rate += world.rows().direction[e].dot(world.configuration().velocity(pattern.site[e]));
   }
   return rate;
+}
+
+Vector3 contact_velocity(const World& world, int contact, std::size_t point) {
+  const constraint::Contact& touching = world.model().contact(contact);
+  const ContactPlanes& planes = world.contacts().planes();
+  const Matrix3 frame = touching.frame(point, world.rows());
+  if (planes.shape(static_cast<std::size_t>(contact)) == nullptr) {
+    return frame.transpose() * planes.velocity_beside(touching, point);
+  }
+  Vector3 rates = -frame.transpose() * planes.surface_velocity(touching, point);
+  for (int j = 0; j < 3; ++j) rates[j] += row_velocity(world, touching.row(point) + j);
+  return rates;
 }
 
 MatrixX row_forces(World& world, std::span<const int> rows) {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
 
 namespace sinew::sim {
 
@@ -117,6 +118,49 @@ double Signal::value(double time) const {
     return sine->mean + sine->amplitude * std::sin(angle);
   }
   return std::get<Table>(form_).value(time);
+}
+
+// Of the piece that holds a moment.
+double Signal::Table::slope(double time) const {
+  const auto after = std::upper_bound(times.begin(), times.end(), time);
+  if (!interpolate || after == times.begin() || after == times.end()) return 0.0;
+  const auto last = static_cast<std::size_t>(after - times.begin()) - 1;
+  return (values[last + 1] - values[last]) / (times[last + 1] - times[last]);
+}
+
+double Signal::rate(double time, Side side) const {
+  const double piece = side == Side::after ? time + kNanosecond : time - kNanosecond;
+  if (const auto* ramp = std::get_if<Ramp>(&form_)) {
+    const bool rises = piece >= ramp->start && piece < ramp->start + ramp->duration;
+    return rises ? (ramp->to - ramp->from) / ramp->duration : 0.0;
+  }
+  if (const auto* sine = std::get_if<Sine>(&form_)) {
+    const double pace = 2.0 * std::numbers::pi / sine->period;
+    return sine->amplitude * pace * std::cos(pace * time + sine->phase);
+  }
+  if (const auto* table = std::get_if<Table>(&form_)) return table->slope(piece);
+  return 0.0;
+}
+
+double Signal::next_corner(double time) const {
+  const double after = time + kNanosecond;
+  if (const auto* ramp = std::get_if<Ramp>(&form_)) {
+    for (const double corner : {ramp->start, ramp->start + ramp->duration}) {
+      if (corner > after) return corner;
+    }
+  }
+  if (const auto* table = std::get_if<Table>(&form_)) {
+    const auto corner = std::upper_bound(table->times.begin(), table->times.end(), after);
+    if (corner != table->times.end()) return *corner;
+  }
+  return kInfinity;
+}
+
+bool Signal::jumps() const {
+  const auto* table = std::get_if<Table>(&form_);
+  if (table == nullptr || table->interpolate) return false;
+  return std::ranges::any_of(table->values,
+                             [&](double value) { return value != table->values.front(); });
 }
 
 void Signal::add_to(ValueHash& hash) const {

@@ -53,6 +53,16 @@ class Signal {
   /// The value at `time` (s).
   double value(double time) const;
 
+  /// On which side of a corner.
+  enum class Side { before, after };
+  /// Its derivative, in the signal's unit per s; 0 where it jumps. @param time s; a corner within a
+  /// nanosecond is there. @param side of that.
+  double rate(double time, Side side) const;
+  /// s: the next corner or jump, later than a nanosecond after `time` (s); infinity: there is none.
+  double next_corner(double time) const;
+  /// Whether the value ever jumps.
+  bool jumps() const;
+
   /// When the signal has shown all it has (s): 0 for a constant, the end of a ramp, one period of a
   /// sine, the last time of steps and samples. A run without a duration lasts this long.
   double end_time() const;
@@ -72,6 +82,7 @@ class Signal {
     std::vector<double> values;
     bool interpolate = false;
     double value(double time) const;
+    double slope(double time) const;
   };
   using Form = std::variant<Constant, Ramp, Sine, Table>;
 

@@ -214,7 +214,9 @@ void Stepper::judge() {
 // A base that moves and forces from outside the ledger put in what is not counted.
 void Stepper::watch_energy() {
   const Bodies& bodies = run_.world.bodies();
-  if (std::ranges::any_of(bodies.ends(), &mechanics::StepEnd::moved_from_outside)) {
+  const bool events = run_.model->step().event_driven();
+  if (events ? events_.moved_bases()
+             : std::ranges::any_of(bodies.ends(), &mechanics::StepEnd::moved_from_outside)) {
     run_.ledger.restart();
     return;
   }

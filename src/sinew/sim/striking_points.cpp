@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "sinew/constraint/shape_contact.hpp"
 #include "sinew/qp/friction_cone.hpp"
@@ -20,6 +19,14 @@ constexpr double kClosed = 1e-9;
 constexpr double kFound = 1e-3;
 // Of the robot's size: an overlap that no watched point has seen coming.
 constexpr double kUnseen = 1e-6;
+// Of the time step: shorter parts lose the velocity in the rounding of positions. Gaps that close
+// within such a part are closed.
+constexpr double kShortest = 1e-6;
+// Parts of a step after which these become longer: where a vertex goes round an edge, at the
+// distance at which surfaces rest, there is no end of them.
+constexpr double kManyParts = 200.0;
+// Of the time to where surfaces that nobody watched pass each other: they are still apart there.
+constexpr double kBefore = 0.95;
 // Of a body's speed: a point that slides less than this rolls.
 constexpr double kRolls = 0.05;
 
@@ -29,91 +36,156 @@ StrikingPoints::StrikingPoints(const Model& model, World& world)
     : model_(model),
       world_(world),
       restitution_(static_cast<std::size_t>(model.rows().rows()), 0.0),
-      rests_(restitution_.size(), 0),
       closed_(kClosed * model.size()),
-      still_(closed_ / model.step().time_step) {
+      still_(closed_ / model.step().time_step),
+      shortest_(kShortest * model.step().time_step) {
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
     if (model.contacts()[i].strikes) contacts_.push_back(static_cast<int>(i));
   }
 }
 
-void StrikingPoints::look(double time) {
+void StrikingPoints::look(double time, std::span<double> effort) {
   if (contacts_.empty()) return;
-  world_.begin_query(time);
+  world_.begin_look(time, effort);
   points_.clear();
   time_ = time;
   found_rest_ = false;
-  for (const int index : contacts_) {
-    const auto& contact = static_cast<const constraint::ShapeContact&>(model_.contact(index));
-    for (std::size_t k = 0; k < contact.size(); ++k) {
-      const int row = contact.row(k);
-      world_.contacts().set_closed(row, false);
-      if (contact.idle(k, world_.rows())) continue;
-      const Matrix3 frame = contact.frame(k, world_.rows());
-      const Vector3 velocity =
-          frame.transpose() * contact.velocity_beside(world_.configuration(), k, world_.rows());
-      Point point{row,         contact.friction(),        world_.delta()[row],
-                  velocity[0], velocity.tail<2>().norm(), contact.speed(world_.configuration(), k)};
-      world_.contacts().set_closed(row, point.gap <= closed_);
-      const bool rests = rests_[static_cast<std::size_t>(row)] != 0;
-      restitution_[static_cast<std::size_t>(row)] =
-          rests ? 0.0 : model_.contacts()[static_cast<std::size_t>(index)].restitution;
-      points_.push_back(point);
-    }
+  for (const int contact : contacts_) look_at(contact);
+  deepest_ = deepest(time);
+}
+
+void StrikingPoints::look_at(int index) {
+  const constraint::Contact& contact = model_.contact(index);
+  const double restitution = model_.contacts()[static_cast<std::size_t>(index)].restitution;
+  for (std::size_t k = 0; k < contact.size(); ++k) {
+    const int row = contact.row(k);
+    world_.contacts().set_closed(row, false);
+    if (contact.idle(k, world_.rows())) continue;
+    const Point point = measure(index, k);
+    world_.contacts().set_closed(row, is_closed(point));
+    restitution_[static_cast<std::size_t>(row)] = rests(point) ? 0.0 : restitution;
+    points_.push_back(point);
   }
-  deepest_ = deepest();
+}
+
+// Edges that wait (TouchingSurfaces) touch where they really do.
+StrikingPoints::Point StrikingPoints::measure(int index, std::size_t number) const {
+  const constraint::Contact& contact = model_.contact(index);
+  const ContactRows& rows = world_.contacts();
+  const TouchingSurfaces* surfaces = rows.surfaces(static_cast<std::size_t>(index));
+  Point point;
+  point.contact = index;
+  point.number = number;
+  point.row = contact.row(number);
+  point.friction = contact.friction();
+  point.gap = world_.delta()[point.row];
+  if (surfaces != nullptr) point.gap += surfaces->slack(number);
+  const Vector3 velocity = contact_velocity(world_, index, number);
+  point.velocity = velocity[0];
+  point.slip = velocity.tail<2>().norm();
+  const bool rubs = is_closed(point) && point.friction.sticking > 0.0;
+  if (rubs) point.speed = rows.planes().centre_velocity_beside(contact, number).norm();
+  return point;
+}
+
+StrikingPoints::Named StrikingPoints::name(const Point& point) const {
+  const TouchingSurfaces* surfaces =
+      world_.contacts().surfaces(static_cast<std::size_t>(point.contact));
+  if (surfaces != nullptr) return {point.contact, surfaces->key(point.number)};
+  return {point.contact, {.first = static_cast<int>(point.number)}};
+}
+
+bool StrikingPoints::rests(const Point& point) const {
+  return !rests_.empty() && std::ranges::find(rests_, name(point)) != rests_.end();
+}
+
+bool StrikingPoints::is_closed(const Point& point) const {
+  return point.gap <= closed_ + shortest_ * std::abs(point.velocity);
 }
 
 bool StrikingPoints::strike() const {
-  return std::ranges::any_of(points_, [&](const Point& point) {
-    return point.gap <= closed_ && point.velocity < -still_;
-  });
+  return std::ranges::any_of(
+      points_, [&](const Point& point) { return is_closed(point) && point.velocity < -still_; });
 }
 
 void StrikingPoints::close() {
   for (const Point& point : points_) {
-    const bool still = std::abs(point.velocity) <= still_;
-    const bool rests = still || rests_[static_cast<std::size_t>(point.row)] != 0;
-    world_.contacts().set_closed(point.row, point.gap <= closed_ && rests);
+    const bool still = std::abs(point.velocity) <= still_ || rests(point);
+    world_.contacts().set_closed(point.row, is_closed(point) && still);
   }
 }
 
-double StrikingPoints::free_length(double length) {
+double StrikingPoints::free_length(double length, int parts) {
+  for (const int contact : contacts_) {
+    TouchingSurfaces* surfaces = world_.contacts().surfaces(static_cast<std::size_t>(contact));
+    if (surfaces != nullptr) surfaces->look_at_overlaps();
+  }
   double least = length;
   for (const Point& point : points_) {
     if (world_.contacts().is_closed(point.row)) continue;
-    const double end = world_.delta()[point.row];
-    least = std::min(least, closing_time(point, end, length));
+    least = std::min(least, closing_time(point, gap_at_end(point), length));
   }
-  if (least < length) return least;
-  const bool unseen = deepest() < std::min(deepest_, 0.0) - kUnseen * model_.size();
+  least = least < length ? least : unseen_length(length);
+  const double shortest = shortest_ * std::pow(std::max(1.0, parts / kManyParts), 4.0);
+  return std::max(least, std::min(length, shortest));
+}
+
+double StrikingPoints::gap_at_end(const Point& point) const {
+  const TouchingSurfaces* surfaces =
+      world_.contacts().surfaces(static_cast<std::size_t>(point.contact));
+  if (surfaces == nullptr) return world_.delta()[point.row];
+  return surfaces->gap_there(point.number) + surfaces->slack(point.number);
+}
+
+// Where bodies overlap, or have passed each other, and no point that is watched has seen it coming:
+// a length at the end of which they are nearer, so that the next look finds the point.
+double StrikingPoints::unseen_length(double length) {
+  const double allowed = kUnseen * model_.size();
+  double first = kInfinity;
+  for (const int contact : contacts_) {
+    TouchingSurfaces* surfaces = world_.contacts().surfaces(static_cast<std::size_t>(contact));
+    if (surfaces != nullptr) first = std::min(first, surfaces->first_passing(allowed));
+  }
+  if (first < kInfinity) return std::max(0.5, kBefore * first) * length;
+  const bool unseen = deepest(time_ + length) < std::min(deepest_, 0.0) - allowed;
   return unseen ? 0.5 * length : length;
+}
+
+double StrikingPoints::next_corner(double time) const {
+  double next = kInfinity;
+  for (const int index : contacts_) {
+    const auto& motion = model_.contacts()[static_cast<std::size_t>(index)].motion;
+    if (motion) next = std::min(next, motion->next_corner(time));
+  }
+  for (const BaseMotion& motion : model_.base_motions()) {
+    next = std::min(next, motion.next_corner(time));
+  }
+  return next;
 }
 
 // Of the parabola with the gap and its rate when the part began and the gap at its end. It is exact
 // for constant accelerations; elsewhere it is drawn anew in the shorter part.
 double StrikingPoints::closing_time(const Point& point, double end, double length) {
-  constexpr double kNever = std::numeric_limits<double>::infinity();
   const double gap = point.gap, rate = point.velocity;
   const double inside = -kFound * closed_;
   const double bend = (end - gap - rate * length) / (length * length);
-  if (gap <= closed_ && rate > 0.0) {  // it rebounds
-    if (end >= inside) return kNever;
+  if (is_closed(point) && rate > 0.0) {  // it rebounds
+    if (end >= inside) return kInfinity;
     if (rate * rate <= 4.0 * std::abs(bend) * closed_) {
-      rests_[static_cast<std::size_t>(point.row)] = 1;
+      rests_.push_back(name(point));
       found_rest_ = true;
     }
     return -rate / bend;
   }
   if (end >= inside) {  // unless it dips in between
     const bool dips = rate < 0.0 && -rate < 2.0 * bend * length;
-    if (!dips || gap - rate * rate / (4.0 * bend) >= inside) return kNever;
+    if (!dips || gap - rate * rate / (4.0 * bend) >= inside) return kInfinity;
   }
   const double root = std::sqrt(std::max(rate * rate - 4.0 * bend * gap, 0.0));
   return 2.0 * gap / (root - rate);
 }
 
-void StrikingPoints::forget_rest() { std::ranges::fill(rests_, 0); }
+void StrikingPoints::forget_rest() { rests_.clear(); }
 
 bool StrikingPoints::caught(std::span<const double> effort) const {
   return std::ranges::any_of(points_, [&](const Point& point) {
@@ -125,20 +197,27 @@ bool StrikingPoints::caught(std::span<const double> effort) const {
 }
 
 bool StrikingPoints::drift(std::span<const double> effort) const {
+  const ContactRows& rows = world_.contacts();
   return std::ranges::any_of(points_, [&](const Point& point) {
     const bool pressed =
-        world_.contacts().is_closed(point.row) && effort[static_cast<std::size_t>(point.row)] > 0.0;
-    return pressed && std::abs(row_velocity(world_, point.row)) > still_;
+        rows.is_closed(point.row) && effort[static_cast<std::size_t>(point.row)] > 0.0;
+    if (!pressed) return false;
+    return std::abs(contact_velocity(world_, point.contact, point.number)[0]) > still_;
   });
 }
 
-double StrikingPoints::deepest() const {
-  double least = std::numeric_limits<double>::infinity();
+double StrikingPoints::deepest(double time) const {
+  double least = kInfinity;
   for (const int index : contacts_) {
-    const auto& contact = static_cast<const constraint::ShapeContact&>(model_.contact(index));
-    const Eigen::Isometry3d pose =
-        world_.contacts().planes().pose_now(static_cast<std::size_t>(index), time_);
-    least = std::min(least, contact.deepest(world_.configuration(), pose, world_.rows()));
+    const auto number = static_cast<std::size_t>(index);
+    if (const TouchingSurfaces* surfaces = world_.contacts().surfaces(number)) {
+      least = std::min(least, surfaces->deepest());
+      continue;
+    }
+    const ContactPlanes& planes = world_.contacts().planes();
+    least =
+        std::min(least, planes.shape(number)->deepest(
+                            world_.configuration(), planes.pose_now(number, time), world_.rows()));
   }
   return least;
 }

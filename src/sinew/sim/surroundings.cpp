@@ -9,6 +9,7 @@
 #include "sinew/fem/of_elements.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mechanics/rigid_base.hpp"
 #include "sinew/sim/bodies.hpp"
 #include "sinew/sim/model.hpp"
 
@@ -36,6 +37,25 @@ void Surroundings::move_bases(double time) {
     mechanics::as<mechanics::HasBase>(body_of(bodies_, motion.body))
         ->move_base(mechanics::rigid_displacement(motion.translation_at(time),
                                                   motion.rotation_at(time), motion.centre));
+  }
+}
+
+void Surroundings::put_bases(double time) {
+  move_bases(time);
+  for (const BaseMotion& motion : model_.base_motions()) {
+    auto* rigid = mechanics::as<mechanics::HasRigidBase>(body_of(bodies_, motion.body));
+    if (rigid != nullptr) rigid->follow_base();
+  }
+}
+
+void Surroundings::set_base_rates(double time, Signal::Side side) {
+  for (const BaseMotion& motion : model_.base_motions()) {
+    mechanics::Body& body = body_of(bodies_, motion.body);
+    auto* rigid = mechanics::as<mechanics::HasRigidBase>(body);
+    if (rigid == nullptr) continue;
+    const BaseMotion::Rate rate = motion.rate(time, side);
+    const Vector3 centre = mechanics::as<mechanics::HasPose>(body)->centre_of_mass();
+    rigid->set_base_rate(rate.at(centre), rate.angular);
   }
 }
 

@@ -172,14 +172,55 @@ bool TouchingSurfaces::add_overlaps() {
 
 // What moved by less than the depth up to which overlaps are found is found (add_overlaps()).
 bool TouchingSurfaces::passed() {
-  if (farthest_way() < contact_.depth()) return false;
+  const double allowed = contact_.depth();
+  if (farthest_way() < allowed) return false;
+  return std::ranges::any_of(find_impacts(),
+                             [&](const auto& impact) { return has_passed(impact, allowed); });
+}
+
+std::span<const collision::SurfaceImpact> TouchingSurfaces::find_impacts() {
   first_.sweep(first_start_, configuration_.surface_nodes(contact_.body()), pool_);
-  if (!contact_.is_within()) {
-    second_.sweep(second_start_, configuration_.surface_nodes(contact_.other_body()), pool_);
+  if (contact_.is_within()) return impacts_.within(first_, 0.0);
+  second_.sweep(second_start_, configuration_.surface_nodes(contact_.other_body()), pool_);
+  return impacts_.between(first_, second_, 0.0);
+}
+
+void TouchingSurfaces::look_at_overlaps() {
+  move_trees(configuration_.surface_nodes(contact_.body()),
+             configuration_.surface_nodes(contact_.other_body()));
+  find(contact_.separation());
+}
+
+// Of several pairs of the same name, as in a groove, that which looks the same way.
+double TouchingSurfaces::gap_there(std::size_t point) const {
+  const Vector3& normal = rows_.direction[contact_.entry(point)];
+  double gap = rows_.delta[contact_.row(point)], nearest = 0.0;
+  auto one = std::ranges::lower_bound(
+      found_, keys_[point], [](const Key& a, const Key& b) { return a < b; }, &Named::key);
+  for (; one != found_.end() && one->key == keys_[point]; ++one) {
+    const double along = normal.dot(one->pair.normal);
+    if (along <= nearest) continue;
+    nearest = along;
+    gap = one->pair.distance - contact_.separation();
   }
-  const auto impacts =
-      contact_.is_within() ? impacts_.within(first_, 0.0) : impacts_.between(first_, second_, 0.0);
-  return std::ranges::any_of(impacts, [&](const auto& impact) { return has_passed(impact); });
+  return gap;
+}
+
+double TouchingSurfaces::deepest() const {
+  double least = kInfinity;
+  for (const Named& one : found_) least = std::min(least, one.pair.distance);
+  return least - contact_.separation();
+}
+
+// Nothing meets where no pair was near enough when the part began.
+double TouchingSurfaces::first_passing(double allowed) {
+  const double way = farthest_way();
+  if (way <= allowed || (keys_.empty() && way < reach_)) return kInfinity;
+  double first = kInfinity;
+  for (const collision::SurfaceImpact& impact : find_impacts()) {
+    if (impact.time < first && has_passed(impact, allowed)) first = impact.time;
+  }
+  return first;
 }
 
 double TouchingSurfaces::farthest_way() const {
@@ -216,12 +257,12 @@ double TouchingSurfaces::height(const collision::SurfaceImpact& impact, const Po
   return across.normalized().dot(at(first, a) - at(second, c));
 }
 
-// Whether what met stands on the other side by more than the depth that is undone.
-bool TouchingSurfaces::has_passed(const collision::SurfaceImpact& impact) const {
+// Whether what met stands on the other side by more than is allowed, m.
+bool TouchingSurfaces::has_passed(const collision::SurfaceImpact& impact, double allowed) const {
   const collision::SurfaceTree& second = contact_.is_within() ? first_ : second_;
   const double before = height(impact, first_.positions(), second.positions());
   const double after = height(impact, first_.end_positions(), second.end_positions());
-  return before * after < 0.0 && std::abs(after) > contact_.depth();
+  return before * after < 0.0 && std::abs(after) > allowed;
 }
 
 void TouchingSurfaces::restart() {

@@ -29,6 +29,16 @@ namespace sinew::sim {
 /// forces alone.
 class TouchingSurfaces {
  public:
+  /// A point's name from step to step: a vertex of the first or of the second surface, or two
+  /// edges.
+  struct Key {
+    int kind = 0, first = -1, second = -1;
+    bool operator==(const Key&) const = default;
+    bool operator<(const Key& other) const {
+      return std::tie(kind, first, second) < std::tie(other.kind, other.first, other.second);
+    }
+  };
+
   /// All must outlive it. @param contact of the surfaces. @param configuration of the bodies.
   /// @param rows gets the points. @param pool shares the work of the search.
   TouchingSurfaces(const constraint::SurfaceContact& contact,
@@ -48,10 +58,22 @@ class TouchingSurfaces {
   /// Whether parts of the surfaces have passed through each other since the step began. Overlaps
   /// that the next step undoes are none.
   bool passed();
+  /// m: how far begin_step() looked last.
+  double reach() const { return reach_; }
+  /// Of event-driven integration, at the end of a part: looks for overlaps there.
+  void look_at_overlaps();
+  /// m: then the gap of a point: with the normal that its surfaces have there, where they overlap.
+  double gap_there(std::size_t point) const;
+  /// m: the least gap of all pairs, of points or not, that were found last.
+  double deepest() const;
+  /// Then: when the first parts of the surfaces passed each other that ended up deeper than
+  /// `allowed`, of the part, from 0 to 1; infinity where none did. @param allowed m.
+  double first_passing(double allowed);
   /// m: the farthest that the gap of a point with a force is from its row's. @param effort (rows,)
   /// N.
   double drift(std::span<const double> effort);
   std::size_t count() const { return keys_.size(); }
+  const Key& key(std::size_t point) const { return keys_[point]; }
   /// Whether a point waits until a motion leads into it: edges that cross where both surfaces are
   /// nearly flat. Vertices keep such parts apart, all but for overlaps at second order. Flat meshes
   /// on each other have more crossings than vertices, and forces of all would not be unique.
@@ -70,14 +92,6 @@ class TouchingSurfaces {
   std::span<const double> load(std::span<const double> from);
 
  private:
-  // A point's name from step to step: a vertex of the first or of the second surface, or two edges.
-  struct Key {
-    int kind = 0, first = -1, second = -1;
-    bool operator==(const Key&) const = default;
-    bool operator<(const Key& other) const {
-      return std::tie(kind, first, second) < std::tie(other.kind, other.first, other.second);
-    }
-  };
   struct Named {
     Key key;
     collision::ProximityPair pair;
@@ -92,9 +106,10 @@ class TouchingSurfaces {
   void add_point(const Named& one);
   void move_trees(const Points& first, const Points& second);
   double farthest_way() const;
+  std::span<const collision::SurfaceImpact> find_impacts();
   double height(const collision::SurfaceImpact& impact, const Points& first,
                 const Points& second) const;
-  bool has_passed(const collision::SurfaceImpact& impact) const;
+  bool has_passed(const collision::SurfaceImpact& impact, double allowed) const;
   void clear_rest();
   void keep_forces(std::span<double> effort);
   void pass_forces_on(std::span<double> effort) const;

@@ -29,8 +29,11 @@ class WorkLedger {
   void count(const Model& model, const World& world, const Actuation& actuation,
              std::span<const double> effort);
 
-  /// An impact. @param lost J.
-  void count_impact(double lost) { sums_.dissipated += lost; }
+  /// An impact. @param lost J. @param outside J, the work of surfaces that move.
+  void count_impact(double lost, double outside) {
+    sums_.dissipated += lost;
+    sums_.outside += outside;
+  }
 
   /// Before the first step that is watched, so that its own gain counts.
   void open(const mechanics::Energies& now);

@@ -61,6 +61,11 @@ void World::begin_query(double at) {
   bodies_.begin_query();
 }
 
+void World::begin_look(double at, std::span<double> effort) {
+  contacts_.planes().find_striking_points(contacts_.reach(model_->step().time_step, 0.0), effort);
+  begin_query(at);
+}
+
 void World::take_closed_points() {
   contacts_.take_closed();
   number_rows();

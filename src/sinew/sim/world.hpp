@@ -47,7 +47,10 @@ class World {
   void begin_query(double at, std::span<double> effort);
   /// The same with every contact point that a step could have a use for.
   void begin_query(double at);
-  /// For an impact at the present state, after begin_query(): the closed points of contacts that
+  /// The same for a look within an event-driven step, for which contacts that strike find their
+  /// points. @param at s. @param effort (rows,) N, see begin_step().
+  void begin_look(double at, std::span<double> effort);
+  /// For an impact at the present state, after begin_look(): the closed points of contacts that
   /// strike, and no others, are in the problem.
   void take_closed_points();
   /// Assembly: every body at its current state.

@@ -1,0 +1,292 @@
+// Impacts of rigid bodies with surfaces of triangles: against closed forms, and against the same
+// bodies as exact shapes.
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sinew/sim/contact_reader.hpp"
+#include "sinew/sim/state.hpp"
+
+#include "event_robots.hpp"
+
+namespace sinew::testing {
+namespace {
+
+constexpr double kEdge = 0.1;    // m, of the cube
+constexpr double kAbove = 0.25;  // m, of its lowest point over the floor
+
+enum class Kind { shape, surface, hull };
+
+rigid::RigidSettings cube(Kind kind) {
+  rigid::RigidSettings body;
+  body.name = "cube";
+  body.shape = rigid::Box{Vector3::Constant(kEdge)};
+  if (kind != Kind::shape) body.shape = triangles(body.shape, kind == Kind::hull);
+  body.mass = 2.0;
+  body.gravity = Vector3(0.0, 0.0, -kGravity);
+  return body;
+}
+
+// On a fixed slab, of triangles unless the cube is a shape.
+std::unique_ptr<sim::Simulation> dropped(Kind kind, const Matrix3& rotation, double h, double e,
+                                         double friction = 0.0) {
+  sim::ModelBuilder builder(events(h, e));
+  rigid::RigidSettings body = cube(kind);
+  body.rotation = rotation;
+  const double low = 0.5 * kEdge * rotation.row(2).cwiseAbs().sum();
+  body.position = Vector3(0.013, -0.021, kAbove + low);
+  const int falling = builder.add_rigid_body(body);
+  add_pair(builder, falling, add_slab(builder, "floor", kind != Kind::shape), friction);
+  return std::make_unique<sim::Simulation>(builder.build());
+}
+
+Matrix3 on_its_corner() {
+  return Eigen::Quaterniond::FromTwoVectors(Vector3::Ones(), Vector3::UnitZ()).toRotationMatrix();
+}
+
+double low(const sim::Simulation& simulation, const Matrix3& rotation) {
+  return pose(simulation, 0).origin()[2] - 0.5 * kEdge * rotation.row(2).cwiseAbs().sum();
+}
+
+struct Fall {
+  Kind kind;
+  bool on_corner;
+};
+
+class FallingCube : public ::testing::TestWithParam<Fall> {
+ protected:
+  Matrix3 rotation() const {
+    return GetParam().on_corner ? on_its_corner() : Matrix3(Matrix3::Identity());
+  }
+};
+
+// Flat or on a corner, it strikes below its centre, and bounces like a ball: each impact leaves e
+// of its speed, and it rests at sqrt(2 h/g) (1 + e)/(1 - e).
+TEST_P(FallingCube, BouncesLikeABall) {
+  const double e = 0.5, h = 10e-3;
+  const auto simulation = dropped(GetParam().kind, rotation(), h, e);
+  const double fall = kAbove - kApart, first = std::sqrt(2.0 * fall / kGravity);
+  double at = fall, rate = 0.0, begin = 0.0;
+  const double end = first * (1.0 + e) / (1.0 - e);
+  while (simulation->time() < 0.95 * end) {
+    simulation->step();
+    for (;;) {
+      const double left = (rate + std::sqrt(rate * rate + 2.0 * kGravity * at)) / kGravity;
+      if (begin + left > simulation->time()) break;
+      rate = e * (kGravity * left - rate);
+      begin += left;
+      at = 0.0;
+    }
+    const double t = simulation->time() - begin;
+    EXPECT_NEAR(low(*simulation, rotation()) - kApart, at + rate * t - 0.5 * kGravity * t * t, 1e-8)
+        << "at " << simulation->time();
+    EXPECT_NEAR(pose(*simulation, 0).linear_velocity()[2], rate - kGravity * t, 1e-6);
+  }
+}
+
+TEST_P(FallingCube, ComesToRestInTime) {
+  const double e = 0.5;
+  const double end = std::sqrt(2.0 * kAbove / kGravity) * (1.0 + e) / (1.0 - e);
+  const int steps = static_cast<int>(std::ceil(end / 20e-3));
+  for (const double part : {0.999, 1.001}) {
+    const auto simulation = dropped(GetParam().kind, rotation(), part * end / steps, e);
+    for (int k = 0; k < steps; ++k) simulation->step();
+    const double rate = pose(*simulation, 0).linear_velocity()[2];
+    const double above = std::max(low(*simulation, rotation()) - 2e-7, 0.0);
+    if (part < 1.0) {
+      EXPECT_GT(std::hypot(rate, std::sqrt(2.0 * kGravity * above)), 1e-4);
+    } else {
+      EXPECT_LT(std::abs(rate), 1e-6);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Falls, FallingCube,
+                         ::testing::Values(Fall{Kind::surface, false}, Fall{Kind::surface, true},
+                                           Fall{Kind::hull, false}));
+
+Matrix3 askew() {
+  return (Eigen::AngleAxisd(0.5, Vector3::UnitX()) * Eigen::AngleAxisd(0.3, Vector3::UnitY()))
+      .toRotationMatrix();
+}
+
+// Askew, with and without friction, it goes as the same cube as a shape, from impact to impact.
+TEST(EventMesh, ACubeTumblesAsTheShapeDoes) {
+  for (const double friction : {0.0, 0.4}) {
+    const auto mesh = dropped(Kind::surface, askew(), 5e-3, 0.5, friction);
+    const auto shape = dropped(Kind::shape, askew(), 5e-3, 0.5, friction);
+    int mesh_impacts = 0, shape_impacts = 0;
+    while (shape->time() < 0.4) {
+      mesh_impacts += mesh->step().impacts;
+      shape_impacts += shape->step().impacts;
+      EXPECT_LT((pose(*mesh, 0).origin() - pose(*shape, 0).origin()).norm(), 2e-6)
+          << "at " << shape->time();
+    }
+    EXPECT_EQ(mesh_impacts, shape_impacts);
+    EXPECT_GE(shape_impacts, 2);
+  }
+}
+
+TEST(EventMesh, ACubeComesToRest) {
+  for (const double e : {0.0, 0.5}) {
+    const auto simulation = dropped(Kind::surface, askew(), 5e-3, e, 0.3);
+    double energy = simulation->energies().total();
+    while (simulation->time() < 3.0) {
+      simulation->step();
+      const double now = simulation->energies().total();
+      EXPECT_LE(now, energy + 1e-6 * 2.0 * kGravity * 0.3) << "at " << simulation->time();
+      energy = now;
+    }
+    EXPECT_NEAR(pose(*simulation, 0).origin()[2], 0.5 * kEdge, 1e-6);
+    EXPECT_LT(pose(*simulation, 0).linear_velocity().norm() +
+                  pose(*simulation, 0).angular_velocity().norm(),
+              1e-5);
+  }
+}
+
+// Two cubes that meet in free flight, each spinning.
+std::unique_ptr<sim::Simulation> meeting(double e, double speed, double spin, double friction,
+                                         bool swapped = false) {
+  sim::ModelBuilder builder(events(10e-3, e));
+  std::vector<rigid::RigidSettings> bodies;
+  for (const double side : {-1.0, 1.0}) {
+    rigid::RigidSettings body = cube(Kind::surface);
+    body.name = side < 0.0 ? "left" : "right";
+    body.mass = side < 0.0 ? 2.0 : 3.0;
+    body.gravity.setZero();
+    body.position = Vector3(0.2 * side, 0.02 * side, 0.01);
+    body.velocity = Vector3(-speed * side, 0.0, 0.0);
+    body.spin = spin * Vector3(1.0, 2.0 * side, -1.0);
+    body.rotation = side < 0.0 ? askew() : Matrix3(Matrix3::Identity());
+    bodies.push_back(body);
+  }
+  if (swapped) std::swap(bodies[0], bodies[1]);
+  for (const rigid::RigidSettings& body : bodies) builder.add_rigid_body(body);
+  add_pair(builder, 0, 1, friction);
+  return std::make_unique<sim::Simulation>(builder.build());
+}
+
+// Of a cube the inertia is a multiple of the identity.
+Vector3 linear_momentum(const sim::Simulation& simulation, int first) {
+  return 2.0 * pose(simulation, first).linear_velocity() +
+         3.0 * pose(simulation, 1 - first).linear_velocity();
+}
+
+Vector3 angular_momentum(const sim::Simulation& simulation) {
+  Vector3 sum = Vector3::Zero();
+  for (const int body : {0, 1}) {
+    const mechanics::HasPose& own = pose(simulation, body);
+    const double mass = body == 0 ? 2.0 : 3.0;
+    sum += mass * own.origin().cross(own.linear_velocity()) +
+           mass * kEdge * kEdge / 6.0 * own.angular_velocity();
+  }
+  return sum;
+}
+
+TEST(EventMesh, CubesThatMeetKeepTheirMomentum) {
+  for (const double e : {0.6, 1.0}) {
+    const auto simulation = meeting(e, 2.0, 5.0, e == 1.0 ? 0.0 : 0.3);
+    const Vector3 linear = linear_momentum(*simulation, 0), turning = angular_momentum(*simulation);
+    double energy = simulation->energies().kinetic;
+    const double start = energy;
+    int impacts = 0;
+    for (int k = 0; k < 30; ++k) {
+      impacts += simulation->step().impacts;
+      const double now = simulation->energies().kinetic;
+      EXPECT_LE(now, energy + 1e-9 * start);
+      energy = now;
+    }
+    EXPECT_GE(impacts, 1);
+    EXPECT_LT((linear_momentum(*simulation, 0) - linear).norm(), 1e-9);
+    EXPECT_LT((angular_momentum(*simulation) - turning).norm(), 1e-7);
+    if (e == 1.0) {
+      EXPECT_NEAR(energy, start, 1e-8 * start);
+    }
+  }
+}
+
+// Without rebound they slide on each other, corner on turning face, and round an edge.
+TEST(EventMesh, CubesThatDoNotReboundSlideOff) {
+  const auto simulation = meeting(0.0, 2.0, 5.0, 0.3);
+  const Vector3 linear = linear_momentum(*simulation, 0);
+  double energy = simulation->energies().kinetic;
+  const double start = energy;
+  for (int k = 0; k < 13; ++k) {
+    EXPECT_LT(simulation->step().substeps, 2000);
+    const double now = simulation->energies().kinetic;
+    EXPECT_LE(now, energy + 1e-6 * start) << "at " << simulation->time();
+    energy = now;
+  }
+  EXPECT_LT((linear_momentum(*simulation, 0) - linear).norm(), 1e-6);
+}
+
+TEST(EventMesh, TheOrderOfBodiesDoesNotMatter) {
+  const auto one = meeting(0.6, 2.0, 5.0, 0.3), other = meeting(0.6, 2.0, 5.0, 0.3, true);
+  for (int k = 0; k < 30; ++k) {
+    one->step();
+    other->step();
+  }
+  for (const int body : {0, 1}) {
+    EXPECT_LT((pose(*one, body).origin() - pose(*other, 1 - body).origin()).norm(), 1e-8);
+  }
+}
+
+// 80 m/s go 0.8 m in a step, through the other cube and far beyond.
+TEST(EventMesh, FastCubesDoNotPass) {
+  for (const double spin : {0.0, 40.0}) {
+    const auto simulation = meeting(0.5, 40.0, spin, 0.3);
+    EXPECT_GE(simulation->step().impacts, 1) << "spin " << spin;
+    EXPECT_LT(pose(*simulation, 0).origin()[0], pose(*simulation, 1).origin()[0]);
+  }
+}
+
+// Corners that pass beside each other, by a hair's breadth.
+TEST(EventMesh, AMissIsNone) {
+  for (const double beside : {-1e-5, 1e-5}) {
+    sim::ModelBuilder builder(events(20e-3, 1.0));
+    rigid::RigidSettings body = cube(Kind::surface);
+    body.gravity.setZero();
+    body.velocity = Vector3(10.0, 0.0, 0.0);
+    body.position = Vector3(-0.5, 0.0, 0.0);
+    builder.add_rigid_body(body);
+    body.name = "other";
+    body.velocity.setZero();
+    body.position = Vector3(0.0, kEdge + beside, 0.5 * kEdge);
+    builder.add_rigid_body(body);
+    add_pair(builder, 0, 1);
+    sim::Simulation simulation(builder.build());
+    int impacts = 0;
+    for (int k = 0; k < 5; ++k) impacts += simulation.step().impacts;
+    EXPECT_EQ(impacts > 0, beside < 0.0);
+  }
+}
+
+TEST(EventMesh, StatesGoOnBitForBit) {
+  const auto simulation = dropped(Kind::surface, askew(), 10e-3, 0.6, 0.3);
+  const std::uint64_t start = simulation->state().hash();
+  for (const int steps : {10, 15}) {
+    for (int k = 0; k < steps; ++k) simulation->step();
+    const auto copy = std::make_unique<sim::Simulation>(simulation->shared_model(), 2);
+    copy->restore(simulation->state());
+    const sim::State kept = simulation->state();
+    for (int k = 0; k < 5; ++k) {
+      copy->step();
+      simulation->step();
+    }
+    EXPECT_TRUE(copy->state() == simulation->state());
+    copy->restore(kept);
+    for (int k = 0; k < 5; ++k) copy->step();
+    EXPECT_TRUE(copy->state() == simulation->state());
+  }
+  const sim::State end = simulation->state();
+  simulation->reset();
+  EXPECT_EQ(simulation->state().hash(), start);
+  for (std::int64_t k = 0; k < end.steps; ++k) simulation->step();
+  EXPECT_TRUE(simulation->state() == end);
+}
+
+}  // namespace
+}  // namespace sinew::testing
