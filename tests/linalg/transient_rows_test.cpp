@@ -84,18 +84,19 @@ void expect_many_points(const BlockSystem& system, int points) {
         solved.transpose() * system.dense_right();
     EXPECT_LT((found.coupling - coupling).norm(), 1e-9 * coupling.norm());
     const Condensed other = condense(*factorisation, backward, system.border.rows());
+    MatrixX turned(forward.rows(), forward.rows());
+    const auto from = [&](Eigen::Index k) { return forward.rows() - 3 - k / 3 * 3 + k % 3; };
     for (Eigen::Index j = 0; j < forward.rows(); ++j) {
       for (Eigen::Index i = 0; i < forward.rows(); ++i) {
-        const auto turned = [&](Eigen::Index k) { return forward.rows() - 3 - k / 3 * 3 + k % 3; };
-        ASSERT_NEAR(other.compliance(turned(i), turned(j)), found.compliance(i, j),
-                    1e-11 * found.compliance.norm());
+        turned(i, j) = other.compliance(from(i), from(j));
       }
     }
+    EXPECT_LT((turned - found.compliance).norm(), 1e-11 * found.compliance.norm());
   }
 }
 
 TEST(TransientRows, ManyPointsAgreeWithSolvesAndForAnyNumberOfThreads) {
-  for (const int points : {49, 130})
+  for (const int points : {49, 100})
     expect_many_points(testing::elastic_block(6, 6, 11, 4), points);
 }
 

@@ -194,22 +194,11 @@ void BodyRows::add_transient_compliance(std::span<const int> problem_row,
       compliance(to, column) += value;
       compliance(column, to) += value;
     }
-  }
-  // Square by square: the rows of a square's transpose are still in the cache for its next column.
-  constexpr Eigen::Index square = 48;
-  for (Eigen::Index left = 0; left < count; left += square) {
-    const Eigen::Index right = std::min(left + square, count);
-    for (Eigen::Index top = left; top < count; top += square) {
-      const Eigen::Index bottom = std::min(top + square, count);
-      for (Eigen::Index j = left; j < right; ++j) {
-        const int column = row_of(j);
-        if (top == left) compliance(column, column) += own(j, j);
-        for (Eigen::Index i = std::max(top, j + 1); i < bottom; ++i) {
-          const int row = row_of(i);
-          compliance(row, column) += own(i, j);
-          compliance(column, row) += own(i, j);
-        }
-      }
+    compliance(column, column) += own(j, j);
+    for (Eigen::Index i = j + 1; i < count; ++i) {
+      const int row = row_of(i);
+      compliance(row, column) += own(i, j);
+      compliance(column, row) += own(i, j);
     }
   }
 }
