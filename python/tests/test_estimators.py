@@ -137,12 +137,12 @@ def test_estimates_are_recorded():
 
 
 def chambered(**unknown):
-    """A finger with a chamber that is inflated and leaks, seen by two markers and a pressure sensor on the command's side."""
+    """A finger with a chamber that is inflated and leaks, seen by two markers."""
     return {
         "sinew": 1, "time_step": "10 ms", "integrator": "quasi-static", "gravity": [0, 0, 0],
-        "bodies": {"finger": {"type": "fem", "mesh": {"shape": "chambered-cylinder", "radius": "12 mm", "height": "60 mm", "chamber_radius": "5 mm",
-                                                      "chamber_offset": "4 mm", "chamber_bottom": "10 mm", "chamber_top": "50 mm",
-                                                      "element_size": "30 mm"}, "element": "tet4",
+        "bodies": {"finger": {"type": "fem", "mesh": {"shape": "chambered-cylinder", "radius": "12 mm", "height": "60 mm",
+                                                      "chamber_radius": "5 mm", "chamber_offset": "4 mm", "chamber_bottom": "10 mm",
+                                                      "chamber_top": "50 mm", "element_size": "30 mm"}, "element": "tet4",
                               "material": {"model": "corotational", "young_modulus": "200 kPa", "poisson_ratio": 0.3},
                               "mass": "30 g", "fixed": {"set": "bottom"}}},
         "actuators": {"air": {"type": "chamber", "body": "finger", "surface": {"inside": "4 0 30 mm"},

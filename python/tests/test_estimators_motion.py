@@ -138,8 +138,8 @@ def flight(force, seed):
                             "initial_velocity": {"linear": "0.5 0 2 m/s", "angular": "2 1 3 rad/s"}}},
         "loads": {"wind": {"type": "force", "body": "cube", "point": "20 15 10 mm", "force": list(force)}},
         "sensors": {"mark": {"type": "marker", "body": "cube", "point": "20 0 0 mm", "noise": "0.5 mm", "seed": seed},
-                    "turn": {"type": "gyroscope", "body": "cube", "at": ["10 10 10 mm", "20 10 10 mm", "10 20 10 mm"], "noise": "0.05 rad/s",
-                             "seed": seed + 1}},
+                    "turn": {"type": "gyroscope", "body": "cube", "at": ["10 10 10 mm", "20 10 10 mm", "10 20 10 mm"],
+                             "noise": "0.05 rad/s", "seed": seed + 1}},
         "estimators": {"air": {"type": "filter", "sensors": ["mark", "turn"], "unknowns": {
             "wind": {"force": {"body": "cube", "point": "20 15 10 mm"}, "prior": "20 mN", "walk": "0.1 mN"}}}},
     }
