@@ -266,10 +266,10 @@ TEST(LiveSource, ShowsSensorsBesideProbes) {
     const auto found = std::ranges::find(description.signals, key, &SignalInfo::key);
     return frame.signals.at(static_cast<std::size_t>(found - description.signals.begin()));
   };
-  const auto start = state.frame(FieldChoice(list_fields().size(), false), 1.0);
+  const auto start = state.frame({}, 1.0);
   EXPECT_TRUE(std::isnan(number(*start, "sensor.eye.measured_x")));  // on its way
   for (int k = 0; k < 4; ++k) state.step();
-  const auto frame = state.frame(FieldChoice(list_fields().size(), false), 1.0);
+  const auto frame = state.frame({}, 1.0);
   const sim::Simulation& simulation = state.simulation();
   EXPECT_EQ(number(*frame, "sensor.eye.measured_x"), simulation.sensor(0).value()[0]);
   EXPECT_EQ(number(*frame, "sensor.eye.true_x"), simulation.effector_value(0).x());

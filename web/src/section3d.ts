@@ -46,8 +46,8 @@ export class Cut {
     if (painted) {
       if (this.colours.length < shape.positions.length) this.colours = new Float32Array(shape.positions.length);
       paint(shape.values.subarray(0, 3 * shape.count), colours.low, colours.high, colours.table, this.colours);
+      replace(geometry, 'color', this.colours, 3 * shape.count);
     }
-    replace(geometry, 'color', this.colours, 3 * shape.count);
     if (material.vertexColors !== painted) {
       material.vertexColors = painted;
       material.needsUpdate = true;
