@@ -74,6 +74,7 @@ contact fclib "$data/fclib" "$data/fclib"
 contact law "" "$data"
 contact lean "$data/trunk/trunk.vtk" "$data"
 contact grasp "$data/grasp/cup.vtk" "$data"
+contact manipulation "$data/grasp/cup.vtk" "$data"
 contact flush_blocks ""
 contact detection ""
 contact heaps "" --heaps 4
