@@ -12,8 +12,8 @@
 namespace sinew::estimate {
 namespace {
 
-constexpr int kMasses = 6, kStates = 2 * kMasses, kSteps = 60, kLags = 3;
-constexpr double kTime = 0.02;  // s a step
+constexpr int kMasses = 6, kStates = 2 * kMasses, kChainSteps = 60, kChainLags = 3;
+constexpr double kChainTime = 0.02;  // s a step
 
 // A chain of masses between springs, held at one end, in steps of backward Euler; forces pull at
 // the last mass and at the middle; two positions are measured.
@@ -30,21 +30,21 @@ struct Chain {
     }
     const double mass = 0.1, damping = 0.05;
     MatrixX left = stiffness;
-    left.diagonal().array() += mass / (kTime * kTime) + damping / kTime;
+    left.diagonal().array() += mass / (kChainTime * kChainTime) + damping / kChainTime;
     const MatrixX inverse = left.inverse();
     MatrixX pull = MatrixX::Zero(kMasses, 2);
     pull(kMasses - 1, 0) = pull(kMasses / 2, 1) = 1.0;
     // q' = A^-1 (m/h^2 q + c/h q + m/h v + f), v' = (q' - q)/h
-    const MatrixX of_place = inverse * (mass / (kTime * kTime) + damping / kTime);
-    const MatrixX of_speed = inverse * (mass / kTime);
+    const MatrixX of_place = inverse * (mass / (kChainTime * kChainTime) + damping / kChainTime);
+    const MatrixX of_speed = inverse * (mass / kChainTime);
     const MatrixX one = MatrixX::Identity(kMasses, kMasses);
-    transition << of_place, of_speed, (of_place - one) / kTime, of_speed / kTime;
-    input << inverse * pull, inverse * pull / kTime;
+    transition << of_place, of_speed, (of_place - one) / kChainTime, of_speed / kChainTime;
+    input << inverse * pull, inverse * pull / kChainTime;
     output(0, kMasses - 1) = output(1, 1) = 1.0;
     std::mt19937 random(11);
     std::normal_distribution<double> normal;
     VectorX state = VectorX::Zero(kStates);
-    for (int k = 0; k < kSteps; ++k) {
+    for (int k = 0; k < kChainSteps; ++k) {
       const VectorX force{{std::sin(0.1 * k), 0.3}};
       state = transition * state + input * force;
       measured.push_back(output * state);
@@ -64,7 +64,7 @@ struct Chain {
     covariance = MatrixX::Zero(all, all);
     covariance.diagonal().head(2) = prior.cwiseAbs2();
     for (const VectorX& own : measured) {
-      covariance.diagonal().head(2) += kTime * walk.cwiseAbs2();
+      covariance.diagonal().head(2) += kChainTime * walk.cwiseAbs2();
       mean = step * mean;
       covariance = step * covariance * step.transpose();
       MatrixX s = seen * covariance * seen.transpose();
@@ -84,12 +84,12 @@ struct Path {
   std::vector<VectorX> readings;
 
   Path(const Chain& of, Eigen::Index rank)
-      : chain(of), filter(of.prior, of.walk, 2, kStates, kLags, rank) {}
+      : chain(of), filter(of.prior, of.walk, 2, kStates, kChainLags, rank) {}
 
   void step() {
     state += filter.state_deviation();
     filter.take_state();
-    filter.begin_step(kTime);
+    filter.begin_step(kChainTime);
     state = chain.transition * state + chain.input * filter.mean();
     readings.push_back(chain.output * state);
     for (Eigen::Index k = 0; k < filter.columns(); ++k) {
@@ -107,7 +107,7 @@ struct Path {
   }
 
   void go(int late) {
-    for (int k = 0; k < kSteps; ++k) {
+    for (int k = 0; k < kChainSteps; ++k) {
       step();
       if (k >= late) take(late);
     }
@@ -120,8 +120,8 @@ TEST(ReducedRankFilter, IsKalmansWithAColumnForEachDimension) {
   VectorX mean;
   MatrixX covariance;
   chain.kalman(mean, covariance);
-  for (const int late : {0, kLags}) {
-    Path run(chain, 2 + kStates + kLags * 2);
+  for (const int late : {0, kChainLags}) {
+    Path run(chain, 2 + kStates + kChainLags * 2);
     run.go(late);
     EXPECT_LT((run.filter.mean() - mean.head(2)).norm(), 1e-9) << late;
     EXPECT_LT((run.state + run.filter.state_deviation() - mean.tail(kStates)).norm(), 1e-9) << late;
@@ -136,7 +136,7 @@ TEST(ReducedRankFilter, FewColumnsComeNear) {
   MatrixX covariance;
   chain.kalman(mean, covariance);
   const VectorX deviation = covariance.diagonal().head(2).cwiseSqrt();
-  for (const auto [rank, part] : {std::pair{6, 0.5}, std::pair{10, 0.05}}) {
+  for (const auto& [rank, part] : {std::pair{6, 0.5}, std::pair{10, 0.05}}) {
     Path run(chain, rank);
     run.go(0);
     EXPECT_EQ(run.filter.columns(), rank);
@@ -173,7 +173,7 @@ TEST(ReducedRankFilter, GoesOnFromItsNumbers) {
   run.go(1);
   std::vector<double> numbers;
   run.filter.save(numbers);
-  ReducedRankFilter other(chain.prior, chain.walk, 2, kStates, kLags, 8);
+  ReducedRankFilter other(chain.prior, chain.walk, 2, kStates, kChainLags, 8);
   std::span<const double> memory(numbers);
   ASSERT_TRUE(other.load(memory));
   EXPECT_TRUE(memory.empty());
