@@ -105,6 +105,7 @@ await draw('docs/images/view_section.png', [join(root, 'examples/finger/module.y
     return window.sinewView.screen(min.x + 0.3 * (max.x - min.x), (min.y + max.y) / 2, min.z + 0.55 * (max.z - min.z));
   });
   await page.mouse.click(x, y);
+  await page.locator('#picked').waitFor({timeout: 60e3});
   await page.locator('#picked').getByRole('button', {name: 'Values of the element (n)'}).click();
   await page.locator('#picked').getByText(', element ').waitFor();
 });

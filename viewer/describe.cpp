@@ -166,7 +166,7 @@ std::string group_of(const sim::Observable& observable) {
     case sim::ObservableKind::sensor:
       return unit.empty() ? "sensor" : "sensor " + unit;
     case sim::ObservableKind::estimator:
-      return unit == "N" ? "estimate" : "estimate " + unit;
+      return unit == "N" || unit.empty() ? "estimate" : "estimate " + unit;
     case sim::ObservableKind::contact:
       return unit == "N" ? "contact" : unit == "m" ? "gap" : "touching";
     case sim::ObservableKind::joint:

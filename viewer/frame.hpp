@@ -102,6 +102,7 @@ struct Frame {
   double time = 0.0;            ///< s
   std::uint64_t hash = 0;       ///< of the state; 0 in a replay
   std::uint64_t shape = 0;      ///< equal numbers: nothing but signals differs
+  bool inside = false;          ///< made with what is inside of bodies
   std::vector<double> signals;  ///< as the description lists them, SI; NaN: no value
   std::vector<BodyFrame> bodies;
   std::vector<float> cables;     ///< (3 points,) m, all cables' points one after the other

@@ -166,6 +166,7 @@ std::shared_ptr<Frame> FrameMaker::make(const FrameWishes& wishes) {
   frame->step = static_cast<std::uint64_t>(simulation_.steps());
   frame->time = simulation_.time();
   frame->hash = simulation_.state().hash();
+  frame->inside = wishes.inside;
   fill_signals(*frame);
   frame->bodies.resize(description_.surfaces.size());
   for (std::size_t b = 0; b < frame->bodies.size(); ++b) fill_body(b, wishes, frame->bodies[b]);

@@ -111,7 +111,9 @@ void GallerySource::submit(const Request& request, std::function<void(Outcome)> 
       publisher_->replace([path, examples = examples_] { return open_example(path, examples); });
     } else if (!std::holds_alternative<Release>(request) &&
                !std::holds_alternative<ChooseField>(request) &&
-               !std::holds_alternative<Pick>(request) && !std::holds_alternative<Ready>(request)) {
+               !std::holds_alternative<Pick>(request) &&
+               !std::holds_alternative<ShowInside>(request) &&
+               !std::holds_alternative<Ready>(request)) {
       throw Error(ErrorKind::not_in_this_version, {}, "the gallery cannot do this",
                   "open an example first");
     }

@@ -406,8 +406,9 @@ void Server::Hub::choose_pick(ViewConnection& view, const Pick& pick) {
 
 void Server::Hub::show_inside(ViewConnection& view, bool on) {
   inside_ += static_cast<int>(on) - static_cast<int>(view.inside());
+  const bool had = view.inside();
   view.show_inside(on);
-  if (!on) return;
+  if (!on || had) return;
   const std::vector<DisplaySurface>& surfaces = source_->description().surfaces;
   for (std::size_t b = 0; b < surfaces.size(); ++b) {
     view.send(std::make_shared<const std::vector<std::byte>>(

@@ -147,7 +147,8 @@ void ViewConnection::pump() {
                              field_,
                              pick_,
                              inside_};
-    last_shape_ = last_frame_->shape;
+    // A frame from before the inside was asked for lacks it: the next one has it, moved or not.
+    last_shape_ = inside_ && !last_frame_->inside ? kNoShape : last_frame_->shape;
     encode_frame(*last_frame_, choice, bytes_);
     socket_.binary(true);
     socket_.async_write(boost::asio::buffer(bytes_.data(), bytes_.size()), done);

@@ -263,20 +263,27 @@ int run(const RunOptions& options) {
   const auto finish = [&] {
     tally.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     records.run->finish();
-    if (records.motion) write_file(options.glb, records.motion->glb());
     if (options.quiet) return;
     auto rows = summary(tally, session);
     rows.push_back({"recorded in", settings.folder.string()});
     fmt::print("{}", format_table(rows));
+  };
+  const auto write_motion = [&] {
+    if (records.motion) write_file(options.glb, records.motion->glb());
   };
   try {
     advance(session, records, steps, options.quiet, tally);
   } catch (const Interrupted&) {  // told of below
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::recording_failed) finish();
+    try {
+      write_motion();
+    } catch (const Error&) {  // what ended the run is told
+    }
     throw;
   }
   finish();
+  write_motion();
   warn(tally);
   if (tally.steps < steps) {
     fmt::print(

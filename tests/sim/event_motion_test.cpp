@@ -107,7 +107,11 @@ TEST_P(MovingTable, StartsAtOnceAndThrowsTheBall) {
   const auto simulation = ball_on(GetParam(), rising(rise, start), events(10e-3, e), 0.0);
   int impacts = 0;
   while (simulation->time() < 0.0549) impacts += simulation->step().impacts;
-  EXPECT_EQ(impacts, GetParam() == Table::mesh ? impacts : 1);
+  if (GetParam() == Table::mesh) {  // corners of one face may strike one after the other
+    EXPECT_GE(impacts, 1);
+  } else {
+    EXPECT_EQ(impacts, 1);
+  }
   EXPECT_NEAR(speed(*simulation), (1.0 + e) * rise - kGravity * (simulation->time() - start), 1e-6);
 }
 

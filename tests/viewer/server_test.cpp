@@ -45,6 +45,7 @@ class FakeSource final : public Source {
     surface.inside.nodes = {0, 0};
     surface.rest.assign(3 * vertices, 0.5F);
     surface.triangles = {0, 1, 2};
+    surface.elements = {-1};
     description_.surfaces = {surface};
     description_.fields = {"displacement"};
     vertices_ = vertices;

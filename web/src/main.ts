@@ -70,7 +70,7 @@ function cover(): void {
   const right = side('panel').width, left = side('plots').width;
   if (mode === 'gallery') robot.cover(0, 0, 0, 0);
   else if (narrow.matches) robot.cover(0, 0, side('top').bottom, side('panel').height);
-  else robot.cover(innerWidth - left - right > 300 ? left : 0, right, side('top').bottom, 0);
+  else robot.cover(innerWidth - left - right > 150 ? left : 0, right, side('top').bottom, 0);
 }
 const joints = new JointList(robot.joints);
 const panel = new Panel(byId('panel'), send, () => connection.client, joints);
@@ -89,7 +89,7 @@ const follow = button('Follow', 'Follow the effector (o)', () => { robot.follow 
 const hands = button('Hand', 'Drag the robot itself, without Shift (h)', () => { robot.hands = hands.classList.toggle('on'); });
 const theme = button('Dark', 'Light or dark (d)', () => setTheme(document.documentElement.dataset.theme !== 'dark'));
 fields.onchange = () => chooseField(fields.value === '' ? null : fields.value);
-maps.onchange = () => { map = maps.value; robot.bodies.map(map); legend(); };
+maps.onchange = () => { map = maps.value; robot.bodies.map(map); fresh = true; legend(); };
 byId('top').append(title, make('label', {}, 'Colour ', fields), maps, wire, follow, hands,
                    button('Fit', 'See the whole robot (f)', () => robot.fit()),
                    button('Picture', 'Save a picture (p)', picture), theme,

@@ -13,7 +13,7 @@ const TITLES: Record<string, string> = {
   'joint N': 'Forces of joints', 'joint N m': 'Moments of joints', 'joint m': 'Gaps and displacements of joints', 'joint rad': 'Angles of joints',
   time: 'Time of a step', solver: 'Solver', 'effort command': 'Commanded effort', 'motion command': 'Commanded motion',
   'torque command': 'Commanded torque', 'angle command': 'Commanded angle', 'pressure command': 'Commanded pressure',
-  'volume command': 'Commanded volume', estimate: 'Estimated forces',
+  'volume command': 'Commanded volume', estimate: 'Estimated forces', 'estimate Pa': 'Estimated pressures',
 };
 
 const SAME = 4e-3;  // of the plot's height: curves that are nowhere farther apart are drawn as one

@@ -89,6 +89,7 @@ export class Robot3d {
   private picked = new Mesh(new SphereGeometry(1, 20, 14), new MeshBasicMaterial({color: PICKED, depthTest: false, transparent: true}));
   private outline = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({color: PICKED, linewidth: 3, depthTest: false, transparent: true}));
   private stale = true;  // see touch()
+  private drawnFrom = new Vector3();  // where the camera was
   private pressed: [number, number] | null = null;  // px, where a click may begin
   follow = false;
   hands = false;  // a plain drag on the robot pulls, as on a screen without keys
@@ -263,6 +264,7 @@ export class Robot3d {
       return;
     }
     const ends = ELEMENT_EDGES[pick.positions.length / 3].flatMap((node) => [...pick.positions.subarray(3 * node, 3 * node + 3)]);
+    this.outline.geometry.dispose();  // or three.js keeps the number of lines, and the old buffer
     this.outline.geometry.setPositions(ends);
   }
 
@@ -462,9 +464,12 @@ export class Robot3d {
     if (this.follow && this.effectors[0]?.visible) {
       this.camera.orbit.target.lerp(this.effectors[0].position, 0.1);
     }
-    if (this.camera.orbit.update()) this.stale = true;
+    // OrbitControls tells only of moves of more than a millimetre.
+    const moved = this.camera.orbit.update() || this.camera.now.position.distanceTo(this.drawnFrom) > 1e-4 * this.camera.span;
+    if (moved) this.stale = true;
     if (!this.stale) return;
     this.stale = false;
+    this.drawnFrom.copy(this.camera.now.position);
     this.joints.draw((point) => this.screen(point));
     for (const text of this.captions) text.scale.set(0.1, 0.025, 1).multiplyScalar(this.camera.captionScale);
     this.renderer.render(this.world, this.camera.now);

@@ -121,6 +121,8 @@ export class Section3d {
 
   /** Cuts the elements of a body. */
   open(body: number, tetrahedra: Uint32Array, color: number): void {
+    const before = this.cuts.get(body);
+    if (before) this.root.remove(before.faces, before.outlines);
     const cut = new Cut(tetrahedra, color);
     this.cuts.set(body, cut);
     this.root.add(cut.faces, cut.outlines);

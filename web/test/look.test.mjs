@@ -261,7 +261,7 @@ nodes = body.hexahedra[${picked.number}]
 values = body.nodal_field("max_stretch")
 print(json.dumps({"y": body.positions[nodes, 1].tolist(), "values": values[nodes].tolist(), "all": [values.min(), values.max()]}))`);
   assert.equal(picked.kind, 'element');
-  assert.ok(Math.min(...there.y) < middle && Math.max(...there.y) > middle, 'the plane cuts the element');
+  assert.ok(Math.min(...there.y) < middle + 1e-6 && Math.max(...there.y) > middle - 1e-6, 'the plane cuts the element');
   there.all.forEach((value, k) => assert.ok(near(range[k], value, 1e-5), 'the legend includes the inside'));
   const {at, distance} = await onMap('viridis', pixel);
   assert.ok(distance <= 2, `a colour of the legend: ${pixel}`);

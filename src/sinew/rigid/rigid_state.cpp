@@ -1,6 +1,7 @@
 #include "sinew/rigid/rigid_state.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sinew/core/rotation.hpp"
 #include "sinew/rigid/rigid_body_model.hpp"
@@ -56,6 +57,8 @@ void RigidState::load(std::span<const double> from) {
   };
   take(pose.centre.data(), 3);
   take(pose.rotation.coeffs().data(), 4);
+  // An estimator adds to it; a saved one stays as it is, bit for bit.
+  if (std::abs(pose.rotation.squaredNorm() - 1.0) > 1e-12) pose.rotation.normalize();
   take(rate.data(), 6);
   for (Vector6& kept : history) take(kept.data(), 6);
   memory.load(next);

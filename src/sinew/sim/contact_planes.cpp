@@ -106,6 +106,8 @@ Vector3 ContactPlanes::surface_velocity(const constraint::Contact& contact,
     if (surface.contact != &contact) continue;
     const Vector3 at = contact.position_now(configuration_, point, rows_);
     if (events_) return surface.rate.at(foot(*surface.contact, configuration_, point, rows_, at));
+    if (time_step_ == 0.0)
+      return surface.rate.at(foot(*surface.contact, configuration_, point, rows_, at));
     return (at - surface.from_end * at) / time_step_;
   }
   return Vector3::Zero();

@@ -22,6 +22,7 @@ Midpoint::Midpoint(Run& run) : run_(run), widened_(run.effort.size(), 0.0) {}
 void Midpoint::carry_on(Substep& substep, double half) {
   Bodies& bodies = run_.world.bodies();
   const double middle = run_.now;
+  std::ranges::fill(widened_, 0.0);  // where an earlier part ended with an error
   bodies.scale_motion(2.0);
   place(middle + half);
   for (int round = 0; correct() > kHeld * run_.model->size() && round < kMaxRounds; ++round) {

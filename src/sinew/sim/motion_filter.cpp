@@ -55,13 +55,16 @@ void MotionFilter::begin_settling() {
 }
 
 void MotionFilter::predict(const Run& run, double time_step) {
-  const State from = moved(own_robot().state(), filter_.state_deviation());
+  const State before = own_robot().state();
+  const State from = moved(before, filter_.state_deviation());
   own_robot().restore(from);
   filter_.take_state();
   filter_.begin_step(time_step);
   std::rotate(path_.begin(), path_.end() - 1, path_.end());
   std::rotate(known_.begin(), known_.end() - 1, known_.end());
   known_.front() = move_columns(run, from, false) ? 1.0 : 0.0;
+  // A correction that the robot cannot take is dropped: every later step would begin there.
+  if (failed() && own_robot().steps() == before.steps) own_robot().restore(before);
   filter_.end_step();
 }
 
@@ -91,7 +94,7 @@ bool MotionFilter::move_columns(const Run& run, const State& from, bool settles)
       const VectorX wanted = unknowns + part * filter_.input_column(k);
       own_robot().restore(moved(settles ? after : from, part * filter_.state_column(k)));
       good = move(run, wanted, settles);
-      return acted() == wanted;
+      return good && acted() == wanted;
     };
     double part = kDifference;
     if (!go(part)) go(part = -part);

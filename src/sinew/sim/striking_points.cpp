@@ -170,7 +170,7 @@ double StrikingPoints::closing_time(const Point& point, double end, double lengt
   const double inside = -kFound * closed_;
   const double bend = (end - gap - rate * length) / (length * length);
   if (is_closed(point) && rate > 0.0) {  // it rebounds
-    if (end >= inside) return kInfinity;
+    if (end >= std::min(gap, inside)) return kInfinity;
     if (rate * rate <= 4.0 * std::abs(bend) * closed_) {
       rests_.push_back(name(point));
       found_rest_ = true;
