@@ -147,7 +147,7 @@ def test_a_mesh_bounces_on_a_lift(tmp_path, use):
         + "\nf 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n")  # fmt: skip
     mesh = {"file": "brick.obj", "unit": "m", "use": use}
     sim = sinew.load(
-        {"sinew": 1, "time_step": "10 ms", "integrator": {"type": "event-driven", "restitution": 0.6},
+        {"sinew": 1, "gravity": [0, 0, -GRAVITY], "time_step": "10 ms", "integrator": {"type": "event-driven", "restitution": 0.6},
          "bodies": {"brick": {"type": "rigid", "mesh": mesh, "density": 1000.0, "pose": {"position": [0, 0, 0.11]}},
                     "lift": {"type": "rigid", "mesh": {**mesh, "scale": [2, 2, 1]}, "fixed": True, "pose": {"position": [0, 0, -0.01]},
                              "motion": {"z": {"ramp": {"to": "2 m", "duration": "10 s"}}}}},
