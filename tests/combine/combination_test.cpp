@@ -16,7 +16,7 @@ namespace {
 
 // Scenes are tried in blocks, which run side by side.
 constexpr std::uint64_t kBlock = 15;
-constexpr int kRandomBlocks = 4;
+constexpr int kRandomBlocks = 2;
 constexpr std::uint64_t kChangedScenes = 30;
 
 // The levels that are named, and of all other features the first.

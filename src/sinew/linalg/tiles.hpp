@@ -10,7 +10,8 @@ namespace sinew::linalg {
 inline constexpr int kTileColumns = 6;
 inline constexpr int kMaxVectors = kLanes == 8 ? 4 : 2;
 
-/// Calls work.template operator()<V>(row) for pieces of V * kLanes rows that cover [begin, end).
+/// Calls work with the template argument V for each piece, V * kLanes rows from `row` on; the
+/// pieces cover [begin, end).
 template <typename Work>
 void for_row_tiles(int begin, int end, Work&& work) {
   for (int row = begin; row < end;) {
@@ -28,7 +29,7 @@ void for_row_tiles(int begin, int end, Work&& work) {
   }
 }
 
-/// Calls work.template operator()<C>(column) for the strips of the columns, forward.
+/// Calls work with the template argument C for each strip, C columns from `column` on, forward.
 template <typename Work>
 void for_strips(int columns, Work&& work) {
   int column = 0;

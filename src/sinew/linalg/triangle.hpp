@@ -7,8 +7,8 @@
 
 namespace sinew::linalg {
 
-/// factor[k][j] = S_k L_jk for k < j, inverse[j] = 1 / (S_j L_jj), of the columns column ..
-/// column + C - 1.
+/// factor[k][j] = S_k L_jk for k < j, inverse[j] = 1 / (S_j L_jj), of C columns that follow each
+/// other.
 template <int C>
 struct Triangle {
   double factor[C][C];

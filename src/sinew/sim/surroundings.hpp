@@ -33,8 +33,8 @@ class Surroundings {
   void move_bases(double time);
   /// The same in the middle of a step: rigid bodies among them are there at once.
   void put_bases(double time);
-  /// Rigid bodies among them get the velocities that the model gives them at a time, s.
-  /// @param side of a corner of the motion there.
+  /// Rigid bodies among them get the velocities that the model gives them.
+  /// @param time s. @param side of a corner of the motion there.
   void set_base_rates(double time, Signal::Side side);
   /// See Simulation::move_base().
   void move_base(int body, const Vector3& translation, const Vector3& rotation,
