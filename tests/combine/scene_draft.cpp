@@ -728,7 +728,9 @@ class Drafter {
   void add_estimator() {
     if (!has("estimator")) return;
     const bool held = !flies_ && (!has("link") || of("link") == "weld");
-    const bool moves = of("estimator") == "force" && of("integrator") != "quasi-static";
+    // Each of its steps is made once a column: two integrators stand for all that move.
+    const bool dynamic = of("integrator") == "bdf2" || of("integrator") == "event-driven";
+    const bool moves = of("estimator") == "force" && dynamic;
     if (!moves && !held) return;
     const Body& on = bodies_.front();
     add("sensors", "seen",
