@@ -85,15 +85,15 @@ def targets(equilibria, rng):
     return np.array(inside), np.array(outside)
 
 
-def steered(method, target):
-    """Distance of the tip at rest (m), the tensions, the status."""
-    sim = sinew.load(scene(method))
+def steered(made, target):
+    """The simulation of a scene, and its controller, which has come to rest as near to the target as it can."""
+    sim = sinew.load(made)
     ik = sinew.InverseController(sim, targets={"tip": target})
     for _ in range(60):
         ik.step(10)
         if ik.status in RESTING and (ik.status != "on-target" or ik.error < 1e-6):
             break
-    return ik.error, ik.efforts, ik.status
+    return sim, ik
 
 
 def run(case):
@@ -104,8 +104,9 @@ def run(case):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", sinew.SinewWarning)
         for target in np.vstack([inside, outside]):
-            newton, efforts, status = steered("newton", target)
-            once, _, _ = steered("one-linearisation", target)
+            _, ik = steered(scene("newton"), target)
+            newton, efforts, status = ik.error, np.array(ik.efforts), ik.status
+            once = steered(scene("one-linearisation"), target)[1].error
             near = min(newton, equilibria.search(target, efforts, True))
             starts = [equilibria.search(target, rng.uniform(0.0, LIMIT, 4), False) for _ in range(STARTS)]
             rows.append((newton, once, near, min(near, *starts), status))

@@ -4,7 +4,7 @@ import warnings
 
 import numpy as np
 import sinew
-from cases.control_optimum import CABLES, LIMIT, RESTING, scene
+from cases.control_optimum import CABLES, LIMIT, scene, steered
 from scipy.optimize import minimize
 
 from suite import plots
@@ -86,17 +86,6 @@ def targets(rests, rng, count=4):
     return np.array(inside + outside)
 
 
-def steered(method, target):
-    """The simulation at rest, the distance of the tip (m), the tensions, the status."""
-    sim = sinew.load(rough(method))
-    ik = sinew.InverseController(sim, targets={"tip": target})
-    for _ in range(60):
-        ik.step(10)
-        if ik.status in RESTING and (ik.status != "on-target" or ik.error < 1e-6):
-            break
-    return sim, ik.error, np.array(ik.efforts), ik.status
-
-
 def run(case):
     rng = np.random.default_rng(11)
     rests = Rests()
@@ -105,9 +94,10 @@ def run(case):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", sinew.SinewWarning)
         for target in targets(rests, rng):
-            sim, newton, efforts, status = steered("newton", target)
+            sim, ik = steered(rough("newton"), target)
+            newton, efforts, status = ik.error, np.array(ik.efforts), ik.status
             touches = sim.contact("wall").normal_force > 0.01
-            _, once, _, _ = steered("one-linearisation", target)
+            once = steered(rough("one-linearisation"), target)[1].error
             rests.leave_from(unloaded, np.zeros(len(CABLES)))
             history = max(history, np.linalg.norm(rests.tip(efforts) - sim.effector("tip").position))
             rests.leave_from(sim.state(), efforts)

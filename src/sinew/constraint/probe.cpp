@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/configuration.hpp"
+#include "sinew/core/axis_names.hpp"
 #include "sinew/core/error.hpp"
 
 namespace sinew::constraint {
@@ -39,7 +40,7 @@ Points centred(const Points& points) { return points.rowwise() - points.colwise(
 std::vector<ProbeComponent> line_components(std::size_t points) {
   std::vector<ProbeComponent> result = {{"length", "m"}};
   for (std::size_t k = 0; k < points; ++k) {
-    for (const char* axis : {"x", "y", "z"}) result.push_back({fmt::format("{}.{}", k, axis), "m"});
+    for (const char* axis : kAxisNames) result.push_back({fmt::format("{}.{}", k, axis), "m"});
   }
   return result;
 }

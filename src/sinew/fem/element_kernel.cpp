@@ -14,6 +14,7 @@ using material::lanes;
 using material::Lanes3x3;
 using material::LanesSymmetric;
 using material::Law;
+using material::sum;
 
 SINEW_INLINE Lanes row(const LaneRow& source) { return material::load(source.value); }
 
@@ -99,11 +100,6 @@ SINEW_INLINE void store_exact(const NodeVectors& h, const material::ExactTangent
   rows[kKappaPosition] = -kappa;
   for (int k = kKappaPosition + 1; k < kExactRecord; ++k) rows[k] = lanes(0.0);
   for (int k = 0; k < kExactRecord; k += 8) store_records(rows + k, records + k, kExactRecord);
-}
-
-SINEW_INLINE double sum(const Lanes& value) {
-  return ((value[0] + value[1]) + (value[2] + value[3])) +
-         ((value[4] + value[5]) + (value[6] + value[7]));
 }
 
 /// F^-T, which takes gradients to the present shape; F of an element that is crushed to less than a

@@ -52,11 +52,6 @@ struct Batch {
   }
 };
 
-SINEW_INLINE double sum(const Lanes& value) {
-  return ((value[0] + value[1]) + (value[2] + value[3])) +
-         ((value[4] + value[5]) + (value[6] + value[7]));
-}
-
 /// Moduli of the dilatation that points share and of their own about it (solid_elements.hpp).
 struct BulkModuli {
   double shared = 0.0;

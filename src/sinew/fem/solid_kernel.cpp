@@ -11,6 +11,7 @@ using material::kLanes;
 using material::Lanes;
 using material::lanes;
 using material::Lanes3x3;
+using material::sum;
 
 /// Stiffness and forces of eight elements, summed over points.
 template <int N>

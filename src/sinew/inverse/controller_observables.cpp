@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/effector.hpp"
+#include "sinew/core/axis_names.hpp"
 #include "sinew/inverse/target_controller.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/observables.hpp"
@@ -44,7 +45,7 @@ void add_effector(sim::Observables& list, const AttachedController& controller, 
   sim::Observable target = of_effector(name, "target", unit),
                   error = of_effector(name, "error", unit);
   target.shape = {3};
-  for (const char* axis : {"x", "y", "z"}) {
+  for (const char* axis : kAxisNames) {
     target.components.push_back(fmt::format("{}.target_{}{}", name, turn, axis));
   }
   error.components = {error.name};

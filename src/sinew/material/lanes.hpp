@@ -54,6 +54,12 @@ SINEW_INLINE Lanes square_root(const Lanes& value) {
   return load(part);
 }
 
+/// Of all lanes, in pairs.
+SINEW_INLINE double sum(const Lanes& value) {
+  return ((value[0] + value[1]) + (value[2] + value[3])) +
+         ((value[4] + value[5]) + (value[6] + value[7]));
+}
+
 SINEW_INLINE Lanes maximum(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
 SINEW_INLINE Lanes absolute(const Lanes& a) { return a < 0.0 ? -a : a; }
 

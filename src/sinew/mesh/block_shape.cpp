@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/core/axis_names.hpp"
 #include "sinew/mesh/shape_cells.hpp"
 #include "sinew/mesh/shape_checks.hpp"
 
@@ -79,14 +80,13 @@ class BoxGrid {
   }
 
   void add_node(Mesh& mesh, const std::array<int, 3>& at) const {
-    constexpr std::array kNames = {"x", "y", "z"};
     const NodeId number = node(at[0], at[1], at[2]);
     for (std::size_t a = 0; a < 3; ++a) {
       mesh.nodes(number, static_cast<Eigen::Index>(a)) =
           planes_[a][static_cast<std::size_t>(at[a])];
-      if (at[a] == 0) mesh.node_sets[std::string(kNames[a]) + "_min"].push_back(number);
+      if (at[a] == 0) mesh.node_sets[std::string(kAxisNames[a]) + "_min"].push_back(number);
       if (at[a] == cells_along(a)) {
-        mesh.node_sets[std::string(kNames[a]) + "_max"].push_back(number);
+        mesh.node_sets[std::string(kAxisNames[a]) + "_max"].push_back(number);
       }
     }
   }

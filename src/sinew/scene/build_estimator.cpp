@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "sinew/core/axis_names.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/build_parts.hpp"
-#include "sinew/sim/axis_names.hpp"
 #include "sinew/sim/estimator_model.hpp"
 #include "sinew/sim/linearisation.hpp"
 #include "sinew/sim/model.hpp"
@@ -50,7 +50,7 @@ EffectorDescription effector_of(const SensorDescription& sensor) {
 }
 
 std::string force_name(const UnknownDescription& unknown, std::size_t axis) {
-  return fmt::format("{} force {}", unknown.name, sim::kAxisNames[axis]);
+  return fmt::format("{} force {}", unknown.name, kAxisNames[axis]);
 }
 
 void add_forces(SceneDescription& known, const UnknownDescription& unknown) {

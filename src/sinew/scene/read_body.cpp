@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/core/axis_names.hpp"
 #include "sinew/material/library.hpp"
 #include "sinew/material/scaled.hpp"
 #include "sinew/scene/check.hpp"
@@ -360,10 +361,9 @@ void refuse_free(const Fields& fields) {
 
 sim::BaseMotion read_motion(const Fields& fields, const ReadContext& context) {
   sim::BaseMotion motion;
-  constexpr std::array kAxes = {"x", "y", "z"};
   for (std::size_t c = 0; c < 3; ++c) {
-    if (fields.find(kAxes[c]) != nullptr) {
-      motion.translation[c] = read_signal(fields, kAxes[c], context);
+    if (fields.find(kAxisNames[c]) != nullptr) {
+      motion.translation[c] = read_signal(fields, kAxisNames[c], context);
     }
   }
   if (fields.find("angle") != nullptr) motion.angle = read_signal(fields, "angle", context);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/core/axis_names.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/scene/readers.hpp"
 
@@ -10,7 +11,7 @@ namespace sinew::scene {
 
 namespace {
 
-const std::vector<std::string> kAxisNames = {"x", "y", "z"};
+std::vector<std::string> axes() { return {kAxisNames.begin(), kAxisNames.end()}; }
 
 // Types differ in their keys.
 bool may_have(const Fields& fields, const char* key) { return fields.table().find(key) != nullptr; }
@@ -87,12 +88,12 @@ std::vector<std::string> read_measured(const Fields& fields, SensorDescription& 
   const std::string& type = sensor.type;
   if (type == "marker") {
     read_marker(fields, sensor, context);
-    return kAxisNames;
+    return axes();
   }
   if (has(fields, "at")) {
     const bool single = fields.form("at").shape == Shape::quantity;
     sensor.points = single ? one_point(fields, "at") : read_points(fields, "at", context);
-    return type == "orientation" ? std::vector<std::string>{"rx", "ry", "rz"} : kAxisNames;
+    return type == "orientation" ? std::vector<std::string>{"rx", "ry", "rz"} : axes();
   }
   if (has(fields, "line")) sensor.points = read_points(fields, "line", context);
   if (type == "curvature") {

@@ -53,7 +53,8 @@ class Estimator {
   VectorX mean() const;        ///< (n,) N or Pa, see EstimatorModel::component_names()
   MatrixX covariance() const;  ///< (n, n) of them
   VectorX deviation() const;   ///< (n,) N or Pa
-  /// Of all sensors together that are not lost, at the last step; zeros before the first.
+  /// What sensors tell beyond the prior, see EstimatorFilter::observability(); zeros before the
+  /// first step.
   const estimate::Observability& observability() const { return observability_; }
   EstimatorStatus status() const;
   /// Which sensors are silent, what they do not observe, or why there is no equilibrium; else

@@ -3,8 +3,8 @@
 #include <numeric>
 
 #include "sinew/constraint/effector.hpp"
+#include "sinew/core/axis_names.hpp"
 #include "sinew/core/rotation.hpp"
-#include "sinew/sim/axis_names.hpp"
 #include "sinew/sim/model.hpp"
 
 namespace sinew::sim {

@@ -26,6 +26,18 @@ bool stops(const step::ActuatorBlock& block) {
   return std::isfinite(block.motion_min) || std::isfinite(block.motion_max);
 }
 
+// Contacts strike while it lives.
+class Events {
+ public:
+  explicit Events(ContactRows& contacts) : contacts_(contacts) { contacts_.set_events(true); }
+  ~Events() { contacts_.set_events(false); }
+  Events(const Events&) = delete;
+  Events& operator=(const Events&) = delete;
+
+ private:
+  ContactRows& contacts_;
+};
+
 }  // namespace
 
 EventStepper::EventStepper(Run& run)
@@ -37,14 +49,8 @@ void EventStepper::step(double begin, double time_step) {
   report.error = 0.0;
   longest_ = time_step;
   moved_bases_ = false;
-  run_.world.contacts().set_events(true);
-  try {
-    make_parts(begin, time_step);
-  } catch (...) {
-    run_.world.contacts().set_events(false);
-    throw;
-  }
-  run_.world.contacts().set_events(false);
+  const Events events(run_.world.contacts());
+  make_parts(begin, time_step);
 }
 
 void EventStepper::make_parts(double begin, double time_step) {

@@ -22,9 +22,8 @@ struct Run;
 ///
 /// A part is a step of the midpoint rule (Midpoint). It is one of backward Euler where half a
 /// motion says little about the other half: where deformable bodies touch anything or their bases
-/// move,
-/// where actuators are told motions, joints or cables rub, drives or materials have memories. It
-/// ends in its middle where something else catches a body (a joint's limit, a cable that becomes
+/// move, where actuators are told motions, joints or cables rub, drives or materials have memories.
+/// It ends in its middle where something else catches a body (a joint's limit, a cable that becomes
 /// taut, a point that stops to slide), and at the corners of motions that are given.
 ///
 /// A rebound that would rise less than 1e-9 of the robot's size is none: the impact is solved again

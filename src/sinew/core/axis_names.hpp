@@ -4,8 +4,8 @@
 
 #include <array>
 
-namespace sinew::sim {
+namespace sinew {
 
 inline constexpr std::array<const char*, 3> kAxisNames = {"x", "y", "z"};
 
-}  // namespace sinew::sim
+}  // namespace sinew
