@@ -25,6 +25,7 @@ namespace sinew::plan {
 namespace {
 
 constexpr double kPlanFraction = 0.4;  // of the tip's tolerance
+constexpr int kMaxRounds = 4;          // of starts
 constexpr double kReplanFraction = 0.95, kReplanForce = 0.5;
 
 // Relative: a point is not held in a direction in which it moves less than this part of its most.
@@ -69,6 +70,22 @@ BraceProblem problem_of(const pcc::Arm& arm, const BraceTask& task, int object,
   return problem;
 }
 
+struct Candidate {
+  int object = 0;
+  BraceProblem problem;
+};
+
+/// Angles, turn (0) and torques with which the free arm gets nearest to the goal; zeros without
+/// any.
+VectorX nearest_to_goal(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& task) {
+  VectorX result = VectorX::Zero(arm->coordinates() + 1 + arm->inputs());
+  const NearestReach reach = nearest_reach(arm, task.limits, task.goal, 5, task.seed);
+  if (!reach.found) return result;
+  result.head(arm->coordinates()) = reach.position;
+  result.tail(arm->inputs()) = reach.torque;
+  return result;
+}
+
 /// The braced point stays where the measured angles put it, along every direction in which they can
 /// move it; of the others, those keep clear that did.
 void hold_as_measured(BraceProblem& problem, const pcc::Arm& arm, double turn,
@@ -98,41 +115,42 @@ void hold_as_measured(BraceProblem& problem, const pcc::Arm& arm, double turn,
 
 }  // namespace
 
-Brace find_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& given, int segments) {
+namespace {
+
+/// Which starts converge depends on the rounding of the machine. Rounds of starts follow each other
+/// until one has found a brace.
+Brace find_brace_in(int rounds, const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& given,
+                    int segments) {
   const BraceTask task = completed(*arm, given);
   if (segments < 1 || segments > arm->segments()) {
     refuse("segments", fmt::format("{}", segments), "give one of the arm's, counted from 1");
   }
   BraceSearch search(arm, task, Reserve::demanded);
-  const auto objects = static_cast<int>(task.objects.size());
-  const auto surface = [&](int object) -> const constraint::SmoothSurface& {
-    return task.objects[static_cast<std::size_t>(object)].surface;
-  };
-  bool any_in_reach = objects == 0;
-  std::optional<VectorX> nearest;
-  for (int object = 0; object < objects; ++object) {
-    any_in_reach = any_in_reach || in_reach(*arm, surface(object), arm->segments());
-    if (!in_reach(*arm, surface(object), segments)) continue;
+  bool any_in_reach = task.objects.empty();
+  std::vector<Candidate> candidates;
+  for (int object = 0; object < static_cast<int>(task.objects.size()); ++object) {
+    const auto& surface = task.objects[static_cast<std::size_t>(object)].surface;
+    any_in_reach = any_in_reach || in_reach(*arm, surface, arm->segments());
+    if (!in_reach(*arm, surface, segments)) continue;
     for (const pcc::ArmPoint& point : brace_points(*arm, task)) {
       if (point.segment != segments - 1) continue;
-      for (const SurfacePatch& patch : patches_of(surface(object))) {
-        const BraceProblem problem = problem_of(*arm, task, object, point, patch);
-        for (int start = 0; start < task.starts; ++start) {
-          VectorX guess = search.random_start(problem);
-          if (start == 0) {
-            // From where the arm gets nearest to the goal by itself.
-            if (!nearest) {
-              const NearestReach reach = nearest_reach(arm, task.limits, task.goal, 5, task.seed);
-              nearest = VectorX::Zero(guess.size());
-              if (reach.found) nearest->head(arm->coordinates()) = reach.position;
-              if (reach.found) nearest->tail(arm->inputs()) = reach.torque;
-            }
-            const double turn = guess[arm->coordinates()];
-            guess = *nearest;
-            guess[arm->coordinates()] = turn;
-          }
-          search.attempt(problem, object, guess);
+      for (const SurfacePatch& patch : patches_of(surface)) {
+        candidates.push_back({object, problem_of(*arm, task, object, point, patch)});
+      }
+    }
+  }
+  std::optional<VectorX> nearest;
+  for (int round = 0; round < rounds && !search.found(); ++round) {
+    for (const Candidate& candidate : candidates) {
+      for (int start = 0; start < task.starts; ++start) {
+        VectorX guess = search.random_start(candidate.problem);
+        if (round == 0 && start == 0) {
+          if (!nearest) nearest = nearest_to_goal(arm, task);
+          const double turn = guess[arm->coordinates()];
+          guess = *nearest;
+          guess[arm->coordinates()] = turn;
         }
+        search.attempt(candidate.problem, candidate.object, guess);
       }
     }
   }
@@ -142,10 +160,19 @@ Brace find_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& gi
   return result;
 }
 
+}  // namespace
+
+Brace find_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& task, int segments) {
+  return find_brace_in(kMaxRounds, arm, task, segments);
+}
+
 Brace find_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& task) {
   Brace result;
-  for (int segments = 1; segments <= arm->segments() && !result.found(); ++segments) {
-    result = find_brace(arm, task, segments);
+  // A brace on a later segment is cheaper to find than proof that an earlier one cannot brace.
+  for (const int rounds : {1, kMaxRounds}) {
+    for (int segments = 1; segments <= arm->segments() && !result.found(); ++segments) {
+      result = find_brace_in(rounds, arm, task, segments);
+    }
   }
   return result;
 }

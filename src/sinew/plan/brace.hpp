@@ -47,7 +47,8 @@ struct BraceTask {
   double force_weight = 1e-3;  ///< 1/N^2, > 0, see BraceProgram
   TouchStiffness arm = kSoftArm;
   double stiffness_ratio = 10.0;  ///< > 0, what k_O >> k_R means
-  int starts = 2;                 ///< >= 1, a candidate
+  /// >= 1, of each candidate. Without a brace after these, up to three times as many follow.
+  int starts = 2;
   std::uint64_t seed = 1;
 };
 

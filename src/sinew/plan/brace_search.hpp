@@ -29,6 +29,8 @@ class BraceSearch {
   void attempt(BraceProblem problem, int object, const VectorX& start);
   /// Within the problem's limits. @param problem of a candidate.
   VectorX random_start(const BraceProblem& problem);
+  /// Whether a brace has been found so far.
+  bool found() const { return best_.found(); }
   /// The best, or with this status the one that came nearest. @param without a brace.
   Brace finish(BraceStatus without) const;
 
