@@ -3,26 +3,15 @@
     SINEW_PROGRAM=build/release/bin/sinew /usr/bin/python3 -m pytest tests/cli
 """
 
-import csv
 import json
-import os
-import pathlib
-import subprocess
 
 import numpy as np
 import pytest
+from program import DONE, FAILED, ROOT, WRONG, rows_of, sinew
 
-PROGRAM = os.environ.get("SINEW_PROGRAM", "build/release/bin/sinew")
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 ARM = ROOT / "examples" / "fluidic_arm" / "arm.yaml"
-DONE, FAILED, WRONG = 0, 1, 2
 TORQUES = [0.12, 0.13, 0.18]  # N m, as in the scene
 ACTUATION = np.vstack([np.zeros(3), np.eye(3)])  # its first segment has no actuator
-
-
-def sinew(*arguments, cwd=None, timeout=300):
-    words = [os.path.abspath(PROGRAM), *map(str, arguments)]
-    return subprocess.run(words, capture_output=True, text=True, cwd=cwd, timeout=timeout, check=False)
 
 
 def needs(command):
@@ -32,11 +21,6 @@ def needs(command):
 
 def module(name):
     return pytest.importorskip(f"sinew.{name}")
-
-
-def rows_of(path):
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
 
 
 def scene_arm(masses=(0.19, 0.146, 0.09, 0.09), stiffness=0.108, damping=4.2e-3, actuation=ACTUATION):

@@ -4,7 +4,6 @@ the combination tests step, save and load in C++.
     SINEW_PROGRAM=... SINEW_COMBINATIONS=build/release/bin/combinations /usr/bin/python3 -m pytest tests/cli
 """
 
-import csv
 import json
 import os
 import pickle
@@ -13,10 +12,10 @@ import warnings
 
 import numpy as np
 import pytest
+from program import DONE, PROGRAM, rows_of
 
-PROGRAM = os.environ.get("SINEW_PROGRAM", "build/release/bin/sinew")
 COMBINATIONS = os.environ.get("SINEW_COMBINATIONS", "build/release/bin/combinations")
-DONE, FLAGGED = 0, 1
+FLAGGED = 1
 NOTICES = ("[bare-points]", "[other-tangent]", "[coarse-contact]", "[locking-element]")
 SAMPLE = range(1, 73, 8)  # of the cover of all pairs
 
@@ -47,8 +46,7 @@ def test_the_program_tells_runs_records_and_plots_it(scene, tmp_path):
     flagged = any("sinew: warning:" in line and not line.endswith(NOTICES) for line in done.stderr.splitlines())
     stopped = "sinew: error:" in done.stderr
     assert (done.returncode == DONE) != (flagged or stopped), done.stderr
-    with open(out / "run.csv") as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(out / "run.csv")
     assert len(rows) >= (1 if stopped else 2)
     for row in rows:
         for heading, cell in row.items():
