@@ -12,8 +12,8 @@ namespace sinew::inverse {
 enum class InverseStatus {
   not_started,      ///< no step yet
   on_target,        ///< every effector is within the tolerance, and the last prediction held
-  moving,           ///< on the way
-  rate_limited,     ///< on the way, and limits on rates bind
+  moving,           ///< moving towards the targets
+  rate_limited,     ///< moving towards the targets, and limits on rates are active
   out_of_reach,     ///< at rest, and limits keep the effectors from coming nearer
   local_optimum,    ///< at rest: no small change of efforts comes nearer, and no limit is active
   limits_conflict,  ///< limits contradict each other in this step; they are violated least
