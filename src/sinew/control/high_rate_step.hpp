@@ -80,9 +80,8 @@ struct HighRateOutput {
 ///    Efforts therefore converge, instead of chattering, where contacts are about to open, close or
 ///    slide. A robot may come to rest a little beside its optimum, which
 ///    inverse::InverseController finds.
-/// 3. The forces that hands feel follow from both. The change of snapshot is blended
-/// (RefreshBlend),
-///    and damping is added (PassivityController).
+/// 3. The forces that hands feel follow from both. Changes of the snapshot are blended
+///    (RefreshBlend), and damping is added (PassivityController).
 ///
 /// **Stale data.** A snapshot older than stale_after describes another state. Driven efforts are
 /// then held, which keeps a resting robot at rest, while hands continue to feel the last snapshot,
