@@ -17,9 +17,8 @@ OnEdge closest_on_edge(const Vector3& point, const Vector3& a, const Vector3& b)
 
 /// The point of a triangle nearest to another point.
 struct OnTriangle {
-  Vector3 weights =
-      Vector3::Zero();  ///< (3,) of the corners, >= 0, sum 1; 0 for corners off the nearest feature
-  Vector3 point = Vector3::Zero();  ///< (3,) m
+  Vector3 weights = Vector3::Zero();  ///< (3,) of the corners, >= 0, sum 1; 0 off the feature
+  Vector3 point = Vector3::Zero();    ///< (3,) m
 };
 /// The point of a triangle nearest to `point`. Regions as in C. Ericson, "Real-Time Collision
 /// Detection", 2005, section 5.1.5: the face if all three weights of the projection are positive,

@@ -93,8 +93,7 @@ ShapeDistance distance(const OrientedBox& box, const Vector3& point) {
 }
 
 ShapeDistance distance(const ConvexSolid& solid, const Vector3& point) {
-  constexpr double kNear =
-      1e-12;  // relative to the size: a nearer point has too few digits for a normal
+  constexpr double kNear = 1e-12;  // relative to the size: nearer points give no accurate normal
   const Vector3 local = solid.axes.transpose() * (point - solid.origin);
   const Polyhedron& hull = *solid.hull;
   double excess = -kInfinity, square = kInfinity;

@@ -27,8 +27,7 @@ struct EdgePass {
 
 /// The cut as one triangle sees it.
 struct CutSide {
-  Place2 from = Place2::Zero(),
-         to = Place2::Zero();  ///< the inside of the other surface is on the left
+  Place2 from = Place2::Zero(), to = Place2::Zero();  ///< inside of the other surface on the left
   EdgePass pass;
 };
 

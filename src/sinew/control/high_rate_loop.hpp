@@ -75,8 +75,7 @@ class HighRateLoop {
   HighRateStep step_;
   std::shared_ptr<Device> device_;
 
-  std::mutex publishing_, setting_,
-      reading_;  // between writers, and between readers; the loop takes none
+  std::mutex publishing_, setting_, reading_;  // between writers, and between readers, not the loop
   TripleBuffer<Snapshot> snapshots_;
   TripleBuffer<HighRateInput> inputs_;
   TripleBuffer<HighRateOutput> outputs_;

@@ -39,9 +39,7 @@ class PassivityController {
   /// @param force (hands,) N, of the hands on the robot; damping is added in place.
   void damp(const MatrixX& stiffness, Eigen::Ref<VectorX> force);
 
-  double created() const {
-    return created_;
-  }  ///< J, by the forces that hands felt, since construction
+  double created() const { return created_; }  ///< J, by the forces felt, since construction
   double budget() const { return budget_; }    ///< J
   double damping() const { return damping_; }  ///< N s/m, added last
   /// Mean damping over the periods in which a hand touched and moved, N s/m.

@@ -11,9 +11,8 @@ namespace sinew::inverse {
 struct RateLimits {
   VectorX effort, motion;          ///< (actuators,) present values, N or Pa, and m or m^3
   VectorX effort_min, effort_max;  ///< (actuators,) limits that efforts always meet
-  VectorX motion_min,
-      motion_max;        ///< (actuators,) limits that motions meet as far as efforts allow
-  VectorX motion_scale;  ///< (actuators,) 1/m or 1/m^3: makes violations comparable
+  VectorX motion_min, motion_max;  ///< (actuators,) limits that motions meet as efforts allow
+  VectorX motion_scale;            ///< (actuators,) 1/m or 1/m^3: makes violations comparable
 };
 
 /// Solution of the program.

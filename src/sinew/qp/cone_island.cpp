@@ -14,8 +14,7 @@ constexpr double kSymmetricCost = 0.6;     // of unknowns whose matrix is symmet
 constexpr double kOffsetRounding = 1e-14;  // of the largest offset
 // Number of unknowns up to which sweeps find the solution soon.
 constexpr double kFew = 96;
-constexpr double kHeldShare =
-    0.3;  // maximum share of slips that hold their directions, above kFew rows
+constexpr double kHeldShare = 0.3;      // of slips that hold their directions, above kFew rows
 constexpr std::size_t kEnoughWays = 2;  // of Newton's method, see ConeSettings::usable
 constexpr double kNearStart = 0.1;      // residual of an initial guess from which Newton is tried
 constexpr Eigen::Index kLarge = 600;    // rows, see ConeSettings::usable

@@ -32,8 +32,7 @@ struct ConeBlock {
 /// Find x with y = matrix x + offset such that the law of every block holds. Rows in no block keep
 /// their x.
 struct ConeProblem {
-  Eigen::Ref<const MatrixX>
-      matrix;  ///< (n, n), symmetric positive semidefinite on the rows of blocks
+  Eigen::Ref<const MatrixX> matrix;  ///< (n, n), symmetric positive semidefinite on rows of blocks
   Eigen::Ref<const VectorX> offset;  ///< (n,)
   std::span<const BoxBlock> boxes;
   std::span<const ConeBlock> cones;
@@ -84,10 +83,8 @@ struct ConeResult {
   /// 1998); the distance is
   /// r - P_K(r - v/w)|. With ConeMeasure::natural_map, it is that measure instead.
   double residual = 0.0;
-  double signorini =
-      0.0;  ///< largest |min(u_n, w r_n)|: penetration, effort across a gap; unit of u
-  double coulomb =
-      0.0;  ///< largest |w r_t - P(w r_t - u_t)|, P onto the disc of radius w mu r_n; unit of u
+  double signorini = 0.0;  ///< largest |min(u_n, w r_n)|: penetration, effort across a gap; as u
+  double coulomb = 0.0;    ///< largest |w r_t - P(w r_t - u_t)|, P onto the disc w mu r_n; as u
   double complementarity = 0.0;  ///< largest |u_n r_n|, unit of u r
   int sweeps = 0;                ///< of the part of the problem that took the most
   int newton_steps = 0;          ///< likewise

@@ -74,10 +74,8 @@ class RigidBodyModel final : public mechanics::BodyModel,
     return placed(settings_.shape, shape_origin(), shape_axes());
   }
   const char* shape_name() const override { return rigid::shape_name(settings_.shape); }
-  const Vector3& centre() const { return mass_.centre; }  ///< (3,) m, at rest, in the world
-  const Matrix3& inertia() const {
-    return mass_.inertia;
-  }  ///< kg m^2, about the centre, at rest, in world axes
+  const Vector3& centre() const { return mass_.centre; }    ///< (3,) m, at rest, in the world
+  const Matrix3& inertia() const { return mass_.inertia; }  ///< kg m^2 about it, at rest, in world
   /// Turning radius s, m: a rotation by an angle moves the body by about s times the angle.
   /// Rotations are multiplied by it, so that all coordinates have the unit m.
   double turning_radius() const { return radius_; }

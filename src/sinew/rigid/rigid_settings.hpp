@@ -22,10 +22,9 @@ struct RigidSettings {
   Matrix3 rotation = Matrix3::Identity();    ///< columns: its axes
   Vector3 shape_position = Vector3::Zero();  ///< m, of the shape's origin, in its own frame
   Matrix3 shape_rotation = Matrix3::Identity();  ///< columns: the shape's axes, in its own frame
-  std::shared_ptr<const mesh::Surface>
-      look;                            ///< displayed surface, in its own frame; none: its shape
-  Vector3 velocity = Vector3::Zero();  ///< m/s, of the centre of mass
-  Vector3 spin = Vector3::Zero();      ///< rad/s, in world axes
+  std::shared_ptr<const mesh::Surface> look;     ///< to display, in its own frame; none: its shape
+  Vector3 velocity = Vector3::Zero();            ///< m/s, of the centre of mass
+  Vector3 spin = Vector3::Zero();                ///< rad/s, in world axes
   bool fixed = false;
   Vector3 gravity = Vector3::Zero();  ///< m/s^2
 };

@@ -32,9 +32,8 @@ struct Cylinder {
 
 /// The solid enclosed by a closed triangle surface.
 struct Solid {
-  std::shared_ptr<const mesh::Surface> surface;  ///< m
-  std::shared_ptr<const collision::Polyhedron>
-      hull;  ///< its hull, if the hull touches; null: the surface touches
+  std::shared_ptr<const mesh::Surface> surface;       ///< m
+  std::shared_ptr<const collision::Polyhedron> hull;  ///< touches; null: the surface does
 };
 
 using Shape = std::variant<Box, Sphere, Capsule, Cylinder, Solid>;

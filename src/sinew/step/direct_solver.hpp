@@ -21,11 +21,10 @@ namespace sinew::step {
 /// iterations. Each runs only if a block requires it:
 ///
 /// 1. Capstans. For given limits of friction, a capstan is a box that the solver below treats
-/// exactly,
-///    stick and slip (Tresca friction). The limits then follow the resulting tensions until they
-///    converge (the fixed point of Necas, Jarusek & Haslinger 1980). For a cable of held length the
-///    iteration contracts by about A/(2 pi), A = mu times its wrap; for a cable under a given
-///    tension it ends after as many rounds as points.
+///    exactly, stick and slip (Tresca friction). The limits then follow the resulting tensions
+///    until they converge (the fixed point of Necas, Jarusek & Haslinger 1980). For a cable of held
+///    length the iteration contracts by about A/(2 pi), A = mu times its wrap; for a cable under a
+///    given tension it ends after as many rounds as points.
 /// 2. Drives. Curves are linearised and eliminated together with the held rows (Followers), and
 ///    linearised again at the result: Newton's method on decreasing curves.
 /// 3. Boxes and cones in the remaining W. Boxes alone are a quadratic program,

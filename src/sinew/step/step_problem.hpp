@@ -23,8 +23,7 @@ namespace sinew::step {
 /// - motion p commanded: delta = p while effort_min < lambda < effort_max; lambda = effort_min with
 ///   delta >= p (a slack cable); lambda = effort_max with delta <= p (a stalled drive);
 /// - effort T commanded: lambda = T while motion_min < delta < motion_max; lambda <= T at
-/// motion_max,
-///   lambda >= T at motion_min, where the motion is held;
+///   motion_max, lambda >= T at motion_min, where the motion is held;
 /// - with a drive: the drive's curve, and no limits;
 /// - owned: a controller chooses the effort, within all limits.
 struct ActuatorBlock {
