@@ -107,8 +107,8 @@ void Cable::linearise(const Configuration& configuration, mechanics::RowValues& 
 }
 
 // Row of via point i: minus the directions of the pull row at all points behind it; at the point
-// itself only the segment behind it counts. Its motion is measured from a common origin, not from
-// rest, since laws use differences only.
+// itself only the segment behind it counts. Its motion is the length behind the point, not its
+// change from rest, since laws use differences only.
 void Cable::linearise_friction(const Configuration& configuration,
                                mechanics::RowValues& values) const {
   const int skip = pull_point_ ? 1 : 0;

@@ -12,19 +12,20 @@ namespace sinew::constraint {
 
 /// A cable: one row for its pull and, with friction, one row for each point between its ends.
 ///
-/// The effort of the first row is the tension T_0 >= 0 (N) at the pull point. Its motion is delta =
-/// L_0 - L (m), the length pulled out there. With u_i the unit vector of segment i, d(delta)/dx_i =
-/// u_i - u_{i-1}: H^T T_0 is the force T_0 (u_i - u_{i-1}) that a taut frictionless cable exerts on
-/// via point i. A segment of length l contributes -(I - u u^T)/l to the Hessian of delta, for the
-/// relative motion of its two ends.
+/// The effort of the first row is the tension T_0 >= 0 (N) at the pull point. Its motion is
+/// delta = L_0 - L (m), the length pulled out there. With u_i the unit vector of segment i,
+/// d(delta)/dx_i = u_i - u_{i-1}: H^T T_0 is the force T_0 (u_i - u_{i-1}) that a taut frictionless
+/// cable exerts on via point i. A segment of length l contributes -(I - u u^T)/l to the Hessian of
+/// delta, for the relative motion of its two ends.
 ///
 /// With friction, each point i that the cable slides through has its own row. The length s_i that
 /// has passed the point towards the pull point is the length that the segments behind it have lost:
 ///   sum_i T_i delta_i = T_0 s_0 - sum_i F_i s_i,   F_i = T_{i-1} - T_i, s_0 = delta.
-/// The effort of the row is the friction force F_i (N) and its motion is -s_i (m). Its directions
-/// are minus those of the cable behind the point. Coulomb's law for a rope around a bollard (Euler
-/// 1762) limits F_i: T_i <= T_{i-1} e^(mu theta_i) and T_{i-1} <= T_i e^(mu theta_i), where theta_i
-/// is the angle by which the cable turns at the point.
+/// The effort of the row is the friction force F_i (N). Its motion is -s_i (m) up to a constant:
+/// the length behind the point. Its directions are minus those of the cable behind the point.
+/// Coulomb's law for a rope around a bollard (Euler 1762) limits F_i: T_i <= T_{i-1} e^(mu theta_i)
+/// and T_{i-1} <= T_i e^(mu theta_i), where theta_i is the angle by which the cable turns at the
+/// point.
 class Cable : public Constraint {
  public:
   /// @param name for messages.
