@@ -84,6 +84,7 @@ class Joint : public Constraint {
   int displacements() const { return displacements_; }
   /// Whether a row holds a rotation: its motion is in rad, its effort in N m.
   bool is_turn(int row) const { return row - first_row_ >= displacements_; }
+  /// Force and moment of a joint.
   struct Load {
     Vector3 force = Vector3::Zero();   ///< N
     Vector3 moment = Vector3::Zero();  ///< N m

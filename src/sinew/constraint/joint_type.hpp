@@ -18,6 +18,7 @@ enum class JointType {
 inline constexpr std::array kJointTypes = {JointType::ball,   JointType::universal,
                                            JointType::hinge,  JointType::weld,
                                            JointType::slider, JointType::cylindrical};
+/// "ball", "universal", "hinge", "weld", "slider", "cylindrical".
 const char* joint_type_name(JointType type);
 
 /// Whether the rotation about its one axis is free.

@@ -38,6 +38,7 @@ class CurvatureProbe : public Probe {
 /// G strain) of a gauge has offset R_0 and gain G R_0 (G: the gauge factor).
 class StretchProbe : public Probe {
  public:
+  /// Offset and gain, in the given unit.
   struct Law {
     double offset = 0.0, gain = 1.0;
     const char* unit = "";
@@ -63,6 +64,7 @@ class StretchProbe : public Probe {
 /// constants are measured on the waveguide.
 class AttenuationProbe : public Probe {
  public:
+  /// Constants of the waveguide.
   struct Loss {
     double per_length = 0.0;  ///< dB/m
     double per_turn = 0.0;    ///< dB/rad

@@ -21,6 +21,7 @@ struct ProbeComponent {
   const char* unit;  ///< "m", "rad", "1/m"; empty for a ratio
 };
 
+/// A quantity measured on the bodies, with named components.
 class Probe {
  public:
   virtual ~Probe() = default;

@@ -24,6 +24,7 @@ namespace sinew::constraint {
 /// Surfaces rest at the separation, so that rounding never takes them through each other.
 class SurfaceContact : public Contact {
  public:
+  /// One of the two surfaces.
   struct Side {
     mechanics::SurfaceSite site;
     std::shared_ptr<const collision::SurfaceTopology> surface;
@@ -32,6 +33,7 @@ class SurfaceContact : public Contact {
     /// Whether all nodes of a surface point are immovable.
     bool holds(const collision::SurfacePoint& place) const;
   };
+  /// Friction and distances.
   struct Settings {
     Friction friction;        ///< coefficients
     double separation = 0.0;  ///< m, >= 0: distance of surfaces in contact

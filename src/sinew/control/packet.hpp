@@ -44,6 +44,7 @@ inline constexpr std::size_t kPacketHeader = 32;  ///< bytes
 /// Bytes of the largest packet, which fits into one Ethernet frame.
 inline constexpr std::size_t kLargestPacket = 1400;
 
+/// Result of reading a packet.
 enum class PacketStatus {
   good,
   wrong_size,     ///< does not match its counts, or has no header

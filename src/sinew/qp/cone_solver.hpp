@@ -73,6 +73,7 @@ struct ConeSettings {
   const Poll* poll = nullptr;  ///< called in every sweep and Newton step; must outlive the solver
 };
 
+/// What ConeSolver found.
 struct ConeResult {
   ConeStatus status = ConeStatus::solved;
   std::vector<ContactState> states;  ///< (cones,)

@@ -22,6 +22,7 @@ class RigidBodyModel final : public mechanics::BodyModel,
                              public mechanics::HasSurface,
                              public mechanics::MayHaveBase {
  public:
+  /// A site on the body.
   struct Attachment {
     enum class Kind { point, orientation, surface };
     Kind kind = Kind::point;

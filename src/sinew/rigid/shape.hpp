@@ -37,6 +37,7 @@ struct Solid {
 };
 
 using Shape = std::variant<Box, Sphere, Capsule, Cylinder, Solid>;
+/// "box", "sphere", "capsule", "cylinder" or "mesh" (a Solid).
 const char* shape_name(const Shape& shape);
 
 /// Mass, centre of mass and inertia.
