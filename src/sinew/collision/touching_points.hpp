@@ -16,7 +16,7 @@ struct TouchingPoint {
   int feature = 0;   ///< identifies the parts of the shapes; the same in the next step
 };
 
-/// A list of fixed capacity.
+/// A list of contact points, of fixed capacity.
 class TouchingPoints {
  public:
   static constexpr std::size_t kMax = 8;

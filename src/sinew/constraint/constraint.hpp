@@ -16,7 +16,8 @@ namespace sinew::constraint {
 
 class Configuration;
 
-/// A set of rows. Immutable once declared; the numbers of a simulation are in its RowValues.
+/// A constraint: a set of rows of H. Immutable once declared; the numbers of a simulation are in
+/// its RowValues.
 class Constraint {
  public:
   virtual ~Constraint() = default;

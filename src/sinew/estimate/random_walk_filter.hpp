@@ -9,9 +9,10 @@
 
 namespace sinew::estimate {
 
-/// Kalman filter of x(t + h) = x(t) + w, w normal with covariance diag(walk^2) h, x(0) normal with
-/// mean zero and covariance diag(prior^2). Measurements are y = c + S x(t_k) + v, v normal with
-/// covariance diag(variance), at any of the last `lags` + 1 instants t_k, k = 0 .. lags (0: now).
+/// Fixed-lag Kalman filter of random-walk parameters. These follow x(t + h) = x(t) + w, w normal
+/// with covariance diag(walk^2) h, and x(0) is normal with mean zero and covariance diag(prior^2).
+/// Measurements are y = c + S x(t_k) + v, v normal with covariance diag(variance), at any of the
+/// last `lags` + 1 instants t_k, k = 0 .. lags (0: now).
 ///
 /// The state is X = (x(t_0), x(t_1), ..., x(t_lags)). A step shifts its blocks and adds w to the
 /// first. A measurement at instant k has the sensitivity (0, ..., S, ..., 0) to X: the fixed-lag

@@ -9,13 +9,13 @@
 
 namespace sinew::estimate {
 
-/// Reduced-rank square root filter (Verlaan & Heemink, Stoch. Hydrol. Hydraul. 11 (1997) 349-368).
-/// Inputs x, as in RandomWalkFilter, act on a model that advances a state s and predicts readings
-/// y. The filter's state is Z = (x, y(t_0), ..., y(t_lags), s(t_0)), t_k k steps before now. Since
-/// it contains the readings of earlier steps, a delayed measurement is one of its components (see
-/// RandomWalkFilter). The covariance is L L^T, where L has few columns, which the caller propagates
-/// through the model one by one. The model itself follows a path; the filter holds the means of y
-/// and s as deviations from this path.
+/// Reduced-rank square root Kalman filter of unknown inputs and of a model's state (Verlaan &
+/// Heemink, Stoch. Hydrol. Hydraul. 11 (1997) 349-368). Inputs x, as in RandomWalkFilter, act on a
+/// model that advances a state s and predicts readings y. The filter's state is Z = (x, y(t_0),
+/// ..., y(t_lags), s(t_0)), t_k k steps before now. Since it contains the readings of earlier
+/// steps, a delayed measurement is one of its components (see RandomWalkFilter). The covariance is
+/// L L^T, where L has few columns, which the caller propagates through the model one by one. The
+/// model itself follows a path; the filter holds the means of y and s as deviations from this path.
 ///
 /// After each step, the columns are rotated so that the first n span the inputs. The others, in
 /// which inputs have no part, are truncated to the principal ones of all numbers over their

@@ -14,7 +14,8 @@ namespace sinew::identify {
 /// Points in a plane, one per row: (n, 2), row-major.
 using PlanePoints = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
-/// A motion in the order of measurement; time stamps may be uneven and have gaps.
+/// A measured motion of a tip, in the order of measurement; time stamps may be uneven and have
+/// gaps.
 struct TipRecord {
   std::string name;
   std::vector<double> time;      ///< (n,) s, increasing

@@ -18,9 +18,9 @@
 
 namespace sinew::inverse {
 
-/// Inverse controller. It owns its actuators from construction to detach() or destruction. Let e be
-/// the rows of effectors, a those of actuators, Q the weights and |x|_Q^2 = x^T Q x. In each step
-/// of the simulation it solves
+/// Controller that chooses the efforts of its actuators by a quadratic program in each step. It
+/// owns its actuators from construction to detach() or destruction. Let e be the rows of effectors,
+/// a those of actuators, Q the weights and |x|_Q^2 = x^T Q x. The program is
 ///   min  1/2 |W_ea lambda + delta_e - target|_Q^2 + eps/2 |lambda - lambda_0|_R^2
 ///   s.t. limits on lambda, and on delta_a = delta_free + W_aa lambda, rates folded in,
 /// with the requirements on contact forces (ForceRows), which come first. lambda_0 is the effort of

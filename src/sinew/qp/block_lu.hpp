@@ -11,12 +11,12 @@
 
 namespace sinew::qp {
 
-/// Multifrontal LU factorisation (Duff & Reid, ACM Trans. Math. Software 9, 1983) on the
-/// elimination tree of the symmetric pattern, ordered by minimum degree. A front is a dense matrix
-/// over the nodes of a supernode and those that are still coupled to them. The rows of the
-/// supernode are eliminated in the front, and the Schur complement is added to the front of its
-/// parent. Rows are exchanged within a supernode only, so the symbolic factorisation does not
-/// depend on the values.
+/// Multifrontal LU factorisation of a block-sparse matrix. It follows the elimination tree of the
+/// symmetric pattern, ordered by minimum degree (Duff & Reid, ACM Trans. Math. Software 9, 1983). A
+/// front is a dense matrix over the nodes of a supernode and those that are still coupled to them.
+/// The rows of the supernode are eliminated in the front, and the Schur complement is added to the
+/// front of its parent. Rows are exchanged within a supernode only, so the symbolic factorisation
+/// does not depend on the values.
 class BlockLu {
  public:
   /// Symbolic factorisation and allocation; does nothing if the pattern is that of the last call.

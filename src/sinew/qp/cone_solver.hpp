@@ -23,14 +23,14 @@ struct BoxBlock {
   double target = 0.0;
 };
 
-/// Three variables (normal, two tangential) at rows `row` .. `row` + 2, see ConeEquation.
+/// Three variables (normal, two tangential) at rows `row` to `row` + 2, see ConeEquation.
 struct ConeBlock {
   int row = 0;
   double friction = 0.0;  ///< >= 0
 };
 
-/// Find x with y = matrix x + offset such that the law of every block holds. Rows in no block keep
-/// their x.
+/// A cone complementarity problem: find x with y = matrix x + offset such that the law of every
+/// block holds. Rows in no block keep their x.
 struct ConeProblem {
   Eigen::Ref<const MatrixX> matrix;  ///< (n, n), symmetric positive semidefinite on rows of blocks
   Eigen::Ref<const VectorX> offset;  ///< (n,)

@@ -24,7 +24,8 @@ struct QuantityName {
   const char* unit = "";
 };
 
-/// A drive. Immutable; the caller owns the state of a run.
+/// A drive, which relates effort and motion of a row by a decreasing curve. Immutable; the caller
+/// owns the state of a run.
 class Drive {
  public:
   virtual ~Drive() = default;
