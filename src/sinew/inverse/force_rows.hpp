@@ -23,9 +23,9 @@ namespace sinew::inverse {
 /// lambda_c, a row is
 ///   lower <= offset + slope . lambda_c <= upper,
 /// in m: forces are multiplied by the compliance W_nn of one point of the contact, its reference.
-/// An open contact is assigned the normal force -gap/W_nn of that point, so that it falls short of
-/// any requested force by what closes the gap, too. A contact without points near the surface has
-/// no rows; only targets bring it there.
+/// An open contact is assigned the normal force -gap/W_nn of that point, so that its shortfall from
+/// a requested force includes what closes the gap. A contact without points near the surface has no
+/// rows; only targets bring it there.
 ///
 /// A contact that slips has friction at its limit whatever its normal force, and letting go would
 /// satisfy the reserve. Let d be the mean motion along the surface in the step, over the points
