@@ -6,11 +6,12 @@ namespace sinew::collision {
 
 namespace {
 
-// Of the way's length: what counts as touching, and how near the least gap is found.
+// Relative to the length of the path: the gap that counts as touching, and the accuracy of the
+// minimum.
 constexpr double kTouches = 1e-12;
-constexpr int kMaxTries = 100;  // a way that grazes a surface halves its distance in each
+constexpr int kMaxTries = 100;  // for a path that grazes a surface, each halves the distance
 
-// The gap along a way, at shares of it.
+// The gap along a path, as a function of the share of its length.
 template <class Kind>
 class GapOnWay {
  public:
@@ -36,7 +37,7 @@ class GapOnWay {
   ShapeDistance here_;
 };
 
-// The least gap lies where its slope, which rises, passes zero.
+// Bisection for the minimum of the gap, where its increasing slope passes zero.
 template <class Kind>
 ShapeApproach nearest_between(GapOnWay<Kind>& gap, double falling, double rising) {
   while (rising - falling > kTouches) {

@@ -1,5 +1,5 @@
 /// @file
-/// Where a point that moves straight on first meets a shape, or passes it.
+/// Where a point on a straight path first meets a shape, or passes it.
 #pragma once
 
 #include <variant>
@@ -8,26 +8,28 @@
 
 namespace sinew::collision {
 
-/// Where a way first meets a shape, or, if it misses it, comes nearest.
+/// Where a path first meets a shape, or, if it misses the shape, comes closest.
 struct ShapeApproach {
-  Vector3 at = Vector3::Zero();  ///< (3,) m, on the way
-  ShapeDistance distance;        ///< there; the gap of a meeting is zero but for rounding
-  bool meets = false;            ///< false: the whole way lies outside
+  Vector3 at = Vector3::Zero();  ///< (3,) m, on the path
+  ShapeDistance distance;        ///< of that point; if it meets, the gap is zero to rounding
+  bool meets = false;            ///< false: the whole path lies outside
 };
-/// Every shape is convex, and so the gap along the way is a convex function of it: Newton's method
-/// from the beginning finds its first zero from the near side, never beyond, and a zero that does
-/// not exist shows in a rising gap, before which the least gap lies. The tangent plane at the
-/// result has the way's beginning on its outer side, and where the way misses the shape, all of it.
+/// Finds where a straight path first meets a shape. Every shape is convex, so the gap is a convex
+/// function along the path. Newton's method from the start of the path converges to the first zero
+/// from the near side and never overshoots. If there is no zero, the gap rises, and its minimum
+/// lies before that point. The tangent plane at the result has the start of the path on its outer
+/// side, and, if the path misses the shape, the whole path.
 /// @param plane the shape, checked().
-/// @param from (3,) m, outside; a way that begins inside meets the shape there, unless it leads
-///   out. @param to (3,) m.
+/// @param from (3,) m, outside; a path that starts inside meets the shape there, unless it leads
+///   out.
+/// @param to (3,) m.
 ShapeApproach approach(const Plane& plane, const Vector3& from, const Vector3& to);
 ShapeApproach approach(const Sphere& sphere, const Vector3& from, const Vector3& to);
 ShapeApproach approach(const Capsule& capsule, const Vector3& from, const Vector3& to);
 ShapeApproach approach(const Cylinder& cylinder, const Vector3& from, const Vector3& to);
 ShapeApproach approach(const OrientedBox& box, const Vector3& from, const Vector3& to);
 ShapeApproach approach(const ConvexSolid& solid, const Vector3& from, const Vector3& to);
-/// @param shape see distance(). @param from,to (3,) m, ends of the way.
+/// @param shape see distance(). @param from,to (3,) m, ends of the path.
 template <class... Kinds>
 ShapeApproach approach(const std::variant<Kinds...>& shape, const Vector3& from,
                        const Vector3& to) {

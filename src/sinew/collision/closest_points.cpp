@@ -9,7 +9,7 @@ namespace sinew::collision {
 
 namespace {
 
-// The nearest of the three edges; an end that two of them share comes out the same from both.
+// The nearest point of the three edges. A corner gives the same bits from both of its edges.
 OnTriangle closest_on_border(const Vector3& point, const std::array<const Vector3*, 3>& corners) {
   OnTriangle best;
   double least = kInfinity;

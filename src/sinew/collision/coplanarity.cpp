@@ -11,23 +11,24 @@ namespace sinew::collision {
 
 namespace {
 
-/// Rounding errors of the coefficients in parts of the sum of absolute products: three of the
-/// differences, two products, and sums of at most 8 terms, 13 units of 2^-53. Doubled.
+/// Relative rounding error of the coefficients, to the sum of absolute products: three units for
+/// the differences, two for products, and those of sums of at most 8 terms make 13 units of 2^-53.
+/// Doubled.
 constexpr double kError = 13.0 * kEpsilon;
-/// Of the part of a cubic between two times, in parts of its largest coefficient: three levels of
-/// interpolation with 4 units each. Doubled.
+/// Relative rounding error of the part of a cubic between two times, to its largest coefficient:
+/// three levels of interpolation with 4 units each. Doubled.
 constexpr double kPartError = 12.0 * kEpsilon;
 constexpr int kMaxClips = 40;
 
 using Coefficients = std::array<double, 4>;
 
-/// Shares of an interval between which the hull of the coefficients falls through zero: before
-/// `first` the cubic is positive, and if the last coefficient is negative, so is it behind `last`.
+/// Shares of an interval between which the hull of the coefficients crosses zero downwards: before
+/// `first` the cubic is positive; after `last` it is negative if the last coefficient is.
 struct Crossings {
   double first = 1.0, last = 0.0;
 };
 
-// The hull is bounded by chords from one coefficient to another.
+// The hull is bounded by chords between coefficients.
 Crossings crossings(const Coefficients& c) {
   Crossings result;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -66,7 +67,7 @@ Coplanarity::Coplanarity(const MovingVector& x, const MovingVector& y, const Mov
 }
 
 Coefficients Coplanarity::part(double from, double to) const {
-  // Blossoms: one argument a level, each `from` or `to`.
+  // Blossoms: one argument per level, each `from` or `to`.
   const auto blossom = [&](double t0, double t1, double t2) {
     const auto& b = bernstein_;
     const auto between = [](double p, double q, double t) { return (1.0 - t) * p + t * q; };
@@ -94,7 +95,7 @@ double Coplanarity::apart_until(double time) const {
     }
     const Crossings hull = crossings(c);
     const double end = time + length * (c[3] < 0.0 ? hull.last : 0.5);
-    // Rounding of the share and of the product, in parts of the length, and that of the sum.
+    // Rounding of the share and of the product, relative to the length, and of the sum.
     const double next = (time + length * hull.first * (1.0 - 4.0 * kEpsilon)) * (1.0 - kEpsilon);
     if (!(next > time)) return time;
     time = next;

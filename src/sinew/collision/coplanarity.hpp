@@ -1,5 +1,5 @@
 /// @file
-/// When four moving points lie in one plane: a cubic function of time with a bound on its errors.
+/// When four moving points are coplanar: a cubic function of time with an error bound.
 #pragma once
 
 #include <array>
@@ -8,14 +8,15 @@
 
 namespace sinew::collision {
 
-/// A vector that moves straight on while time runs from 0 to 1.
+/// A vector that moves linearly while time runs from 0 to 1.
 struct MovingVector {
   Vector3 start, end;  ///< (3,) m
 };
 
-/// p(t) = x.(y x z) of three moving vectors between four points, in Bernstein form; each vector is
-/// the rounded difference of two exact points. A vertex x from a triangle's corner meets the
-/// triangle with edges y and z only where p = 0; of edges y and z, x joins two ends.
+/// The cubic p(t) = x.(y x z) of three moving vectors between four points, in Bernstein form. Each
+/// vector is the rounded difference of two exact points. A vertex at x from a triangle's corner
+/// meets the triangle with edges y and z only where p = 0; for two edges y and z, x joins their
+/// ends.
 class Coplanarity {
  public:
   /// @param x,y,z the vectors of p.
@@ -23,8 +24,8 @@ class Coplanarity {
   Coplanarity(const MovingVector& x, const MovingVector& y, const MovingVector& z,
               double separation);
 
-  /// A time up to which p is certainly not 0: that of the next zero, less rounding; more than 1
-  /// where none follows, `time` where p may be 0 now. @param time from 0 to 1.
+  /// A time up to which p is certainly not 0: that of the next zero, minus rounding; more than 1 if
+  /// no zero follows; `time` if p may be 0 now. @param time from 0 to 1.
   double apart_until(double time) const;
 
  private:

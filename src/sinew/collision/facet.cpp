@@ -9,16 +9,16 @@ namespace sinew::collision {
 
 namespace {
 
-// Sine of the angle at which faces are seen edge-on and left out: what is clipped to a slack lies
-// off such a face by the slack over this.
+// Sine of the angle below which faces are seen edge-on and omitted: a point clipped with a slack
+// lies off such a face by the slack divided by this.
 constexpr double kEdgeOn = 1e-3;
 
-// The shares of a way that are kept, from its first end.
+// The range of shares of a segment that is kept, from its first end.
 struct Range {
   double from = 0.0, to = 1.0;
   int from_cut = -1, to_cut = -1;
 
-  // Keeps what is below 0 of a value that goes straight from `start` to `end`.
+  // Keeps the part where a value that runs linearly from `start` to `end` is below 0.
   // @param side cuts off the rest.
   bool keep_below(double start, double end, double slack, int side) {
     if (start > slack && end > slack) return false;
@@ -109,7 +109,7 @@ void Facets::add_faces(const SymmetricSolid& solid, const Vector3& local) {
     const Vector3 v = solid.half_size[j] * solid.axes.col(j);
     const Vector3 normal = side * solid.axes.col(k);
     const Vector3 centre = solid.centre + solid.half_size[k] * normal;
-    // Corners are named by their signs along the axes, one bit each.
+    // Corners are named by their signs along the axes, one bit per axis.
     const int bi = 1 << i, bj = 1 << j, base = side > 0.0 ? 1 << k : 0;
     add() = {.kind = Facet::Kind::polygon,
              .centre = centre,

@@ -9,14 +9,15 @@ namespace sinew::collision {
 
 namespace {
 
-// What the number of a point of a rim begins with.
+// First numbers of the kinds of points on a rim.
 constexpr int kCut = 0, kCrossing = 4, kAround = 8, kLowest = 12;
 
 bool is_disc(const Facet& facet) { return facet.kind == Facet::Kind::disc; }
 
-// What ends a way over a facet: a side, or one of its corners, where rounding chooses the side.
-// @param at (3,) m, on the facet. @param near m. @param cut see Clipped. @param end 0 or 1, of the
-// way.
+// The part of a facet that cuts a segment: a side, or a corner where rounding would choose the
+// side.
+// @param at (3,) m, on the facet. @param near m. @param cut see Clipped.
+// @param end 0 or 1, of the segment.
 int cutting_part(const Facet& facet, const Vector3& at, double near, int cut, int end) {
   if (cut < 0) return part::kInside;
   if (is_disc(facet)) return part::rim(facet.end, kCut + end);
@@ -74,8 +75,8 @@ void FacetPair::clip_border(const Facet& own, const Facet& other, bool is_first)
   }
 }
 
-// Four points of a rim, in directions that do not turn with the disc's noise, and the one with the
-// least gap, which is well defined where the gaps differ.
+// Adds four points of a rim, in directions that do not turn with noise in the disc's pose, and the
+// point with the smallest gap, which is well defined if the gaps differ.
 void FacetPair::rim_points(const Facet& disc, const Facet& other, bool is_first) {
   const Vector3 v = across_rim(disc, other), u = v.cross(disc.normal);
   const std::array<Vector3, 4> ways = {u, v, -u, -v};
@@ -102,9 +103,9 @@ Vector3 FacetPair::across_rim(const Facet& disc, const Facet& other) const {
   return (a.squaredNorm() > 0.25 ? a : b).normalized();
 }
 
-// Where a rim crosses another one, seen along the normal: by bisection between points that part
-// them. The first of these is towards the other's centre, so that two parts would do for discs that
-// are parallel; those that lean on each other have up to four crossings.
+// Adds the crossings of two rims, seen along the normal, by bisection between points that separate
+// them. The first of these points lies towards the other centre, so that two intervals would
+// suffice for parallel discs; inclined discs have up to four crossings.
 void FacetPair::rim_crossings(const Facet& disc, const Facet& other, bool is_first) {
   constexpr int kParts = 16;
   constexpr double kPart = 2.0 * std::numbers::pi / kParts;

@@ -7,18 +7,20 @@
 
 namespace sinew::collision {
 
-/// Two facets that look at each other along a normal.
+/// Two facets that face each other along a normal.
 class FacetPair {
  public:
-  /// All outlive this. @param first,second of the two shapes; flat ones are not seen edge-on.
+  /// All arguments must outlive this object. @param first,second of the two shapes; flat ones must
+  /// not be seen edge-on.
   /// @param normal (3,) unit length, from the second towards the first.
-  /// @param candidates what clip_both() adds to.
+  /// @param candidates the list to which clip_both() adds.
   FacetPair(const Facet& first, const Facet& second, const Vector3& normal,
             TouchingCandidates& candidates)
       : first_(first), second_(second), normal_(normal), candidates_(candidates) {}
 
-  /// Adds the corners of what is common to both, as far as they are known: of two lines none; of a
-  /// rim the points at which it crosses the other's border, four between and the lowest one.
+  /// Adds the corners of the overlap of both facets. For two lines there are none. For a rim, these
+  /// are its crossings with the border of the other facet, four points between them, and the lowest
+  /// point.
   void clip_both();
 
  private:

@@ -12,10 +12,10 @@ namespace sinew::collision {
 
 namespace {
 
-/// Planes after which a query counts as a meeting. A few are enough but where points turn about
-/// each other while they come as near as `separation` and a thousandth of it, or stay in one plane.
+/// Number of planes after which a query counts as a meeting. A few suffice, except where points
+/// turn about each other within `separation` and a thousandth of it, or stay in one plane.
 constexpr int kMaxPlanes = 256;
-/// Planes that are tried before the time of coplanarity is looked for.
+/// Number of planes that are tried before the time of coplanarity is searched.
 constexpr int kFirstPlanes = 2;
 
 Vector3 to_nearest(const RelativeMotion& motion, double time, bool edges) {
@@ -25,8 +25,8 @@ Vector3 to_nearest(const RelativeMotion& motion, double time, bool edges) {
   return nearest.first_point - nearest.second_point;
 }
 
-// Nearly touching points leave no digits of the direction between them. These come from the edges:
-// across both, and across each in their common plane.
+// The direction between nearly touching points has no digits. These normals come from the edges:
+// one normal to both, and one normal to each in their common plane.
 double separated_by_edges(const RelativeMotion& motion, double time, bool edges) {
   const Vector3 d0 = motion.at(0, time), d1 = motion.at(1, time), d2 = motion.at(2, time);
   const Vector3 u = d1 - d0, v = d2 - d0, normal = u.cross(v);

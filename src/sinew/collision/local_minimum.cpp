@@ -9,8 +9,8 @@ namespace sinew::collision {
 
 namespace {
 
-// Cosine of the angle beyond which normals look the same way: those of a square corner do not. And
-// of a triangle's size, how near to its plane a point lies in it.
+// Cosine of the angle within which normals face the same way; those of a square corner do not. And
+// relative to a triangle's size: the distance from its plane within which a point lies in it.
 constexpr double kSameWay = 0.1, kInPlane = 1e-6;
 
 }  // namespace

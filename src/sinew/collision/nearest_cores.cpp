@@ -10,7 +10,7 @@ namespace sinew::collision {
 
 namespace {
 
-// A vertex of the difference of the two solids, and where it comes from.
+// A vertex of the Minkowski difference of the two solids, and its two points.
 struct Vertex {
   Vector3 difference, on_first, on_second;
 };
@@ -26,7 +26,7 @@ class Simplex {
   }
   void add(const Vertex& vertex) { vertices_[count_++] = vertex; }
 
-  // Drops the vertices that carry no weight. False if the origin is inside.
+  // Drops the vertices without weight. Returns false if the origin is inside.
   bool reduce() {
     if (count_ == 4 && holds_origin()) return false;
     std::array<double, 4> weights{};
@@ -114,7 +114,8 @@ NearestCores nearest_cores(const SymmetricSolid& first, const SymmetricSolid& se
     const Vector3 nearest = outside ? simplex.nearest() : Vector3::Zero().eval();
     const double square = nearest.squaredNorm();
     if (!apart && !(square > 0.0)) return {};
-    // A simplex as flat as rounding gets no nearer, or seems to hold what a plane has parted.
+    // A simplex that is flat to rounding gets no nearer, or seems to contain the origin although a
+    // plane separates it.
     if (!(square > 0.0 && square < least)) {
       simplex = before;
       break;

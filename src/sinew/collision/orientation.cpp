@@ -10,11 +10,11 @@ namespace sinew::collision {
 
 namespace {
 
-/// Error of the determinants over the sum of the absolute products: 7.8e-16 and 3.4e-16 (Shewchuk
-/// 1997, section 4), rounded up.
+/// Error of the determinants relative to the sum of absolute products: 7.8e-16 and 3.4e-16
+/// (Shewchuk 1997, section 4), rounded up.
 constexpr double kErrorInSpace = 1e-15;
 constexpr double kErrorInPlane = 5e-16;
-/// Below this products may have lost digits to underflow.
+/// Below this size, products may have lost digits to underflow.
 constexpr double kMinSize = 1e-250;
 
 /// A value as the exact sum of two doubles.
@@ -32,7 +32,7 @@ Two product(double a, double b) {
   return {high, std::fma(a, b, -high)};
 }
 
-/// A sum without rounding: parts of growing size that do not overlap (Shewchuk 1997, theorem 10).
+/// A sum without rounding, as non-overlapping parts of increasing size (Shewchuk 1997, theorem 10).
 class ExactSum {
  public:
   void add(double value) {
@@ -64,7 +64,7 @@ class ExactSum {
   }
 
  private:
-  std::array<double, 400> parts_;  // 6 triple products of two parts each are at most 192
+  std::array<double, 400> parts_;  // 6 triple products of two-part numbers have at most 192 parts
   std::size_t count_ = 0;
 };
 

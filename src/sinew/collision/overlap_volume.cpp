@@ -14,13 +14,14 @@ namespace {
 
 constexpr int kWindingGrain = 32;
 constexpr int kCutGrain = 32;
-/// Shift of the second surface, in parts of the coordinates: above their rounding, below any use.
+/// Shift of the second surface, relative to the coordinates: above their rounding, below any
+/// relevant length.
 constexpr double kShift = 1e-12;
-/// Its direction: along no line or plane that a mesh is likely to have.
+/// Its direction, which no line or plane of a mesh is likely to have.
 const Vector3 kAside(0.7548776662466927, 0.5698402909980532, 0.3287651092867413);
 
-// Integrals of 1 - u - v, u and v over the triangle (0, 0), p, q, with its sign: what the piece of
-// border from p to q adds.
+// Integrals of 1 - u - v, u and v over the signed triangle (0, 0), p, q: the contribution of the
+// piece of border from p to q.
 Vector3 below(const Place2& p, const Place2& q) {
   const double area = 0.5 * (p[0] * q[1] - p[1] * q[0]);
   const Place2 mean = (p + q) / 3.0;
@@ -78,7 +79,7 @@ void OverlapVolume::compute(const Points& first, const Points& second) {
   for (const Part& part : parts) {
     add(sides_[static_cast<std::size_t>(part.side)], part.triangle, part.moments);
   }
-  // From a point nearby, so that large coordinates cost no digits.
+  // Relative to a nearby point, so that large coordinates lose no digits.
   const Eigen::RowVector3d middle = 0.5 * (box.low + box.high).transpose();
   volume_ = 0.0;
   for (const Side& side : sides_) {
@@ -102,8 +103,9 @@ void OverlapVolume::wind(Side& side, const Side& other) {
   });
 }
 
-// The edge from corner 1 to corner 2, as far as the other surface winds round its beginning; where
-// it passes that surface, the rest of it changes (of_cut()). The other edges go through (0, 0).
+// Adds the edge from corner 1 to corner 2, weighted by the winding number of the other surface at
+// its start; of_cut() corrects the rest of it where it passes that surface. The other edges go
+// through (0, 0) and contribute nothing.
 void OverlapVolume::add_whole_edges(Side& side) const {
   const auto& triangles = side.tree.topology().triangles();
   for (std::size_t t = 0; t < triangles.size(); ++t) {

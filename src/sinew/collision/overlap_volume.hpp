@@ -1,5 +1,5 @@
 /// @file
-/// The volume that two closed surfaces have in common, and how it changes with their nodes.
+/// The volume of the overlap of two closed surfaces, and its derivative by their nodes.
 #pragma once
 
 #include <memory>
@@ -12,37 +12,39 @@
 
 namespace sinew::collision {
 
-/// V = integral of w_A w_B over space, w the winding numbers: the volume of the intersection of
-/// two bodies A and B that do not overlap themselves. When a node moves, the surface around it
-/// sweeps volume where the other body is (Reynolds' transport theorem):
+/// The overlap volume V = integral of w_A w_B over space, w the winding numbers: the volume of the
+/// intersection of two bodies A and B that do not overlap themselves. When a node moves, the
+/// surface around it sweeps volume of the other body (Reynolds' transport theorem):
 ///   dV/dx_i = integral over A's surface of w_B phi_i n dA,   phi_i the node's linear hat function,
-/// likewise for B, and since V is homogeneous of degree 3 in all nodes, V = 1/3 sum x_i.dV/dx_i.
+/// likewise for B. Since V is homogeneous of degree 3 in all nodes, V = 1/3 sum x_i.dV/dx_i.
 ///
 /// On each triangle the integrals of w_B times its three weights are integrals of linear functions
-/// over the part inside B. By the divergence theorem they are sums over that part's border: pieces
-/// of the triangle's edges and the segments in which it meets triangles of B, each with its
-/// direction, in any order; nothing is joined to polygons.
+/// over the part inside B. By the divergence theorem they are sums over the border of that part:
+/// pieces of the triangle's edges, and the directed segments in which it meets triangles of B, in
+/// any order. No polygons need be assembled.
 ///
-/// Which edges pierce which triangles is decided by exact signs (orientation.hpp), so that borders
-/// close. B is shifted by 1e-12 of the largest coordinate first, which parts all features that
-/// touch; V is that of the shifted body, an error of at most that shift times the overlap's area.
+/// Exact signs (orientation.hpp) decide which edges pierce which triangles, so that borders close.
+/// B is first shifted by 1e-12 of the largest coordinate, which separates all features that touch.
+/// V is that of the shifted body, an error of at most that shift times the area of the overlap.
 class OverlapVolume {
  public:
-  /// @param first,second closed. Throws Error(surface-not-closed). @param pool outlives this.
+  /// @param first,second closed. @param pool must outlive this object. Throws Error:
+  ///   surface-not-closed.
   OverlapVolume(std::shared_ptr<const SurfaceTopology> first,
                 std::shared_ptr<const SurfaceTopology> second, ThreadPool& pool);
 
-  /// Sets all that follows. @param first,second (n, 3) m, positions of each surface's nodes.
+  /// Computes volume and gradients. @param first,second (n, 3) m, positions of each surface's
+  /// nodes.
   void compute(const Points& first, const Points& second);
 
-  /// m^3.
+  /// The volume, m^3.
   double volume() const { return volume_; }
-  /// (n, 3) m^2: derivative by the nodes of each surface.
+  /// Derivative by the nodes of each surface, (n, 3) m^2.
   const Points& first_gradient() const { return sides_[0].gradient; }
   const Points& second_gradient() const { return sides_[1].gradient; }
 
  private:
-  /// Integrals of a triangle's weights over a part of it, in its own coordinates.
+  /// Integrals of a triangle's weights over part of it, in its own coordinates.
   struct Part {
     int side, triangle;
     Vector3 moments;

@@ -1,5 +1,5 @@
 /// @file
-/// What lies inside a closed surface, and which triangles cross.
+/// Vertices inside a closed surface, and pairs of triangles that cross.
 #pragma once
 
 #include <span>
@@ -15,26 +15,27 @@ namespace sinew::collision {
 /// A vertex inside another surface.
 struct InsideVertex {
   NodeId node = -1;
-  double depth = 0.0;                 ///< m, >= 0: the distance of the surface
-  Vector3 normal = Vector3::UnitZ();  ///< (3,) unit length: the shortest way out
-  NearestOnSurface nearest;           ///< where it leads to
+  double depth = 0.0;                 ///< m, >= 0: distance from the surface
+  Vector3 normal = Vector3::UnitZ();  ///< (3,) unit length: direction of the shortest way out
+  NearestOnSurface nearest;           ///< the point where that way ends
 };
 
-/// Order and numbers do not depend on the number of threads. Memory of the largest call is kept;
-/// a list is valid until the next call of its kind.
+/// Detects penetration. Order and values do not depend on the number of threads. The memory of the
+/// largest call is kept; a list is valid until the next call of its kind.
 class Penetration {
  public:
-  /// @param pool outlives this.
+  /// @param pool must outlive this object.
   explicit Penetration(ThreadPool& pool);
 
-  /// Vertices of one surface where the winding number of the other one is positive, by number.
-  /// @param own,other as they were moved last; `other` is closed. Throws Error(surface-not-closed).
+  /// Vertices of `own` where the winding number of `other` is positive, in ascending order.
+  /// @param own,other at their last moved positions; `other` is closed. Throws Error:
+  ///   surface-not-closed.
   std::span<const InsideVertex> inside(const SurfaceTree& own, const SurfaceTree& other);
 
-  /// Pairs of triangles that have a point in common, exactly (triangle_intersection.hpp).
-  /// @param first,second as they were moved last.
+  /// Pairs of triangles with a common point, exactly (triangle_intersection.hpp).
+  /// @param first,second at their last moved positions.
   std::span<const TrianglePair> crossing(const SurfaceTree& first, const SurfaceTree& second);
-  /// The same within one surface; triangles that share a node are left out.
+  /// The same within one surface; triangles that share a node are omitted.
   std::span<const TrianglePair> crossing_within(const SurfaceTree& surface);
 
  private:
@@ -46,7 +47,7 @@ class Penetration {
   ThreadLists<TrianglePair> crossing_;
 };
 
-/// Throws Error(surface-not-closed) at `item` unless the surface is closed.
+/// Throws Error: surface-not-closed, naming `item`, unless the surface is closed.
 void require_closed(const SurfaceTopology& topology, const char* item);
 
 }  // namespace sinew::collision

@@ -10,7 +10,7 @@ namespace sinew::collision {
 
 namespace {
 
-/// Branches that wait are at most one a level, and halving makes fewer than 32 levels.
+/// At most one branch per level waits, and halving makes fewer than 32 levels.
 constexpr std::size_t kBranchStack = 64;
 constexpr int kAxis = 0;  // of the ray
 
@@ -28,8 +28,8 @@ void take_nearer(const SurfaceTree& surface, const Vector3& point, int triangle,
   best = {triangle, on.weights, on.point, distance};
 }
 
-// Seen along the ray, whether the edge a b passes the point on one side, counted by its direction:
-// it crosses the height of the point and leaves it on its left. Edges are half-open in height.
+// Signed crossing of the edge a b, seen along the ray: it counts if the edge crosses the height of
+// the point and leaves it on its left. Edges are half-open in height.
 int crossing(const Vector3& a, const Vector3& b, const Vector3& point) {
   constexpr int kHeight = (kAxis + 2) % 3;
   const bool below_a = point[kHeight] < a[kHeight], below_b = point[kHeight] < b[kHeight];
@@ -39,13 +39,13 @@ int crossing(const Vector3& a, const Vector3& b, const Vector3& point) {
   return side < 0 ? -1 : 0;
 }
 
-// What a triangle adds to the winding number: 1 where the ray leaves through it, -1 where it
+// Contribution of a triangle to the winding number: 1 if the ray leaves through it, -1 if it
 // enters.
 int signed_crossing(const Corners& x, const Vector3& point) {
   const int turns =
       crossing(x[0], x[1], point) + crossing(x[1], x[2], point) + crossing(x[2], x[0], point);
   if (turns == 0) return 0;
-  // The ray runs towards the side that the normal points to if it sees the triangle turn left.
+  // If the point sees the triangle turn left, the ray runs towards the side of the normal.
   return orientation(x[0], x[1], x[2], point) * turns < 0 ? turns : 0;
 }
 

@@ -13,17 +13,18 @@ namespace sinew::collision {
 namespace {
 
 constexpr int kProximityGrain = 64;
-// A way out of a body is another one where it is shorter than this part of it: of a vertex, and of
-// features on ridges.
+// A way out of a body is a different one if it is shorter than this part of the depth: for a
+// vertex, and for features on ridges.
 constexpr double kSameWay = 1.0 - 1e-6;
 constexpr double kBelowRidge = 0.3;
-// Of how far pairs are looked for: points this near to each other are at one place. Of unit normals
-// whose sum is shorter, neither says which way is out.
+// Relative to the search distance: points within this of each other coincide. If the sum of two
+// unit normals is shorter, neither defines the outward direction.
 constexpr double kSamePlace = 1e-6, kOpposite = 1e-6;
-// Lines farther apart than this times the squared reach, and the second part of the square of what
-// their distance is computed from, are not near, whatever the rounding of their points.
+// Lines are too far apart, whatever the rounding of their points, if the square of their distance
+// exceeds this times the squared reach plus the second part of the square of the lengths from which
+// it is computed.
 constexpr double kTooFar = 1.001, kRounding2 = 1e-20;
-// Sine of the angle up to which something lies in a plane.
+// Sine of the angle within which a line lies in a plane.
 constexpr double kParallel = 1e-6;
 
 SurfacePoint on_vertex(const SurfaceTree& surface, NodeId node) {
@@ -48,7 +49,7 @@ SurfacePoint on_face(const SurfaceTree& surface, int triangle, const Vector3& we
           unit[0] * x[0] + unit[1] * x[1] + unit[2] * x[2]};
 }
 
-// Of boxes in which there may be a pair.
+// Distance of boxes that may contain a pair.
 double reach(const ProximitySettings& settings) {
   return std::max(settings.distance, settings.depth);
 }
@@ -59,13 +60,13 @@ bool share_node(const SurfacePoint& a, const SurfacePoint& b) {
   });
 }
 
-// Triangles at a vertex or edge.
+// Triangles of a vertex or edge.
 std::span<const int> triangles_at(const SurfaceTopology& topology, const SurfacePoint& place) {
   return place.kind == FeatureKind::vertex ? topology.triangles_of_node(place.number)
                                            : topology.triangles_of_edge(place.number);
 }
 
-// Whether a plane through a point has what is around it of its surface below it.
+// Whether the neighbourhood of a surface point lies below the plane through it.
 bool is_below(const SurfaceTree& surface, const SurfacePoint& place, const Vector3& normal) {
   const SurfaceTopology& topology = surface.topology();
   return std::ranges::all_of(triangles_at(topology, place), [&](int number) {
@@ -77,8 +78,8 @@ bool is_below(const SurfaceTree& surface, const SurfacePoint& place, const Vecto
   });
 }
 
-// Of two points at one place: the sum of the normals of faces between which both surfaces find room
-// there, out of the second one. Zero where there are none.
+// For two coinciding points: the sum of the normals of faces that separate both surfaces there,
+// pointing out of the second one. Zero if there are none.
 Vector3 dividing_normal(const SurfaceTree& first, const SurfacePoint& p, const SurfaceTree& second,
                         const SurfacePoint& q) {
   Vector3 sum = Vector3::Zero();
@@ -94,7 +95,7 @@ Vector3 dividing_normal(const SurfaceTree& first, const SurfacePoint& p, const S
   return sum;
 }
 
-// Looks at the features that two triangles own.
+// Examines the features that two triangles own.
 class PairSearch {
  public:
   PairSearch(const SurfaceTree& first, const SurfaceTree& second, const ProximitySettings& settings,
@@ -125,7 +126,7 @@ class PairSearch {
   }
 
  private:
-  // Own vertices of a triangle over the other triangle and its own edges.
+  // The triangle's own vertices over the other triangle and over its own edges.
   void from_vertices(const LocalMinimum& own, const LocalMinimum& other, int triangle,
                      int other_triangle, bool swapped) {
     for (const NodeId node : own.surface().topology().own_nodes(triangle)) {
@@ -166,7 +167,7 @@ class PairSearch {
     consider({own, node}, p, q, outward, away, swapped);
   }
 
-  // A vertex over a face or an edge. @param away (3,) from the nearest point to it.
+  // A vertex over a face or an edge. @param away (3,) from the nearest point to the vertex.
   struct OwnVertex {
     const LocalMinimum& of;
     NodeId node;
@@ -202,9 +203,10 @@ class PairSearch {
     if (nearest && is_seen(inward, outward, normal)) keep({p, inward}, {q, outward}, normal);
   }
 
-  // The common perpendicular c of two lines a(s) and b(t): s = ((b0 - a0) x v).c / c.c, and t.
-  // The projection of the end a0 on b, seen from a, is at s sin^2: below a border that end stands
-  // for the edge. Edges at less than 3e-5 to each other are all border, as parallel ones are.
+  // With c the common perpendicular of the lines a(s) and b(t), s = ((b0 - a0) x v).c / c.c, and
+  // likewise t. The projection of the end a0 on b, seen from a, is at s sin^2: below the border,
+  // that end stands for the edge. Edges at an angle of less than 3e-5 are all border, like parallel
+  // ones.
   void edges(int e, int f) {
     const auto ends = [](const SurfaceTree& surface, int edge) {
       const Edge& own = surface.topology().edges()[static_cast<std::size_t>(edge)];
@@ -234,8 +236,8 @@ class PairSearch {
                        &second = ridges ? second_ : second_edges_;
     if (!first.edge_is_nearest(e, p.point, q.point, -normal)) return;
     if (!second.edge_is_nearest(f, q.point, p.point, normal)) return;
-    // Edges that lie in a face and cross at a right angle to it, where one body is in the other by
-    // next to nothing, have nothing across them.
+    // Edges in a face that cross at a right angle to it, where one body penetrates the other by
+    // next to nothing, are not separated by anything.
     const double faces = normal.dot(inward) + normal.dot(outward);
     const bool across = !settings_.facing || faces > kParallel;
     if (across && is_seen(inward, outward, normal)) {
@@ -243,7 +245,7 @@ class PairSearch {
     }
   }
 
-  // Of features that have passed each other, the way between them is turned round.
+  // Reverses the direction between features that have passed each other.
   Vector3 signed_normal(const Vector3& away, const Vector3& inward, const Vector3& outward) const {
     const bool passed = settings_.depth > 0.0 && away.dot(inward) < 0.0 && away.dot(outward) < 0.0;
     return passed ? Vector3(-away) : away;
@@ -253,7 +255,8 @@ class PairSearch {
     return (p - q).squaredNorm() <= reach2_ * (1.0 + 1e-12);
   }
 
-  // m. Without a depth normals lead from one point to the other: what is less than 0 is rounding.
+  // Distance along the normal, m. Without a depth, normals lead from one point to the other, so a
+  // negative distance is rounding.
   double distance_along(const Vector3& normal, const SurfacePoint& p, const SurfacePoint& q) const {
     const double along = normal.dot(p.point - q.point);
     return settings_.depth > 0.0 ? along : std::max(0.0, along);
@@ -265,9 +268,9 @@ class PairSearch {
            !(same_ && share_node(p, q));
   }
 
-  // From a point to another one. Of points at one place, across the faces that divide the surfaces
-  // there: where the rims of two blocks lie on each other, across these and not along. Without such
-  // faces, half-way between what both surfaces call outwards.
+  // Direction from one point to the other. For coinciding points, it is normal to the faces that
+  // separate the surfaces there: where the rims of two blocks lie on each other, across these and
+  // not along. Without such faces, it is half-way between the outward directions of both surfaces.
   template <class Divide>
   Vector3 direction(const Vector3& gap, const Vector3& inward, const Vector3& outward,
                     Divide&& divide) const {
@@ -286,14 +289,15 @@ class PairSearch {
     return !settings_.facing || (normal.dot(inward) >= 0.0 && normal.dot(outward) >= 0.0);
   }
 
-  // From which flush triangles do not count. Where nothing may have passed, or sides do not matter,
-  // all do; and on one surface, whose flat parts are flush with themselves.
+  // The inward direction for which flush triangles do not count. All triangles count if nothing may
+  // have passed, if sides do not matter, and on one surface, whose flat parts are flush with
+  // themselves.
   Vector3 can_touch(const Vector3& inward) const {
     return settings_.facing && settings_.depth > 0.0 && !same_ ? inward : Vector3(Vector3::Zero());
   }
 
-  // A point, and a direction (3,) of any length: of the first surface into its body, of the second
-  // one out of it.
+  // A point, and a direction (3,) of any length: into the body for the first surface, out of it for
+  // the second.
   struct Placed {
     const SurfacePoint& point;
     Vector3 direction;
@@ -304,9 +308,9 @@ class PairSearch {
     found_.push_back({p.point, q.point, normal, distance, between_flat});
   }
 
-  // Whether features that have passed each other went no shorter way: beside an edge of a body one
-  // of its faces is near, and the other one is a way through much of it. From below ridges, their
-  // faces are nearer than they are.
+  // Whether features that have passed each other have no shorter way out. Next to an edge of a
+  // body, one of its faces is near, and the other face is a way through much of the body. Seen from
+  // below ridges, the faces of ridges are nearer than the ridges.
   bool leads_out(const Placed& p, const Placed& q, double depth) const {
     const bool p_is_vertex = p.point.kind == FeatureKind::vertex,
                q_is_vertex = q.point.kind == FeatureKind::vertex;
@@ -318,8 +322,8 @@ class PairSearch {
             !has_shorter_way(q.point, p.point, first_, can_touch(-q.direction), shorter));
   }
 
-  // The faces of the edge that a point has passed are none: on a ridge they may pass through it.
-  // Nor are those that are flush with the point.
+  // The faces of the edge that a point has passed do not count: on a ridge they may pass through
+  // it. Neither do those that are flush with the point.
   bool has_shorter_way(const SurfacePoint& point, const SurfacePoint& passed,
                        const LocalMinimum& of, const Vector3& inward, double reach) const {
     const auto& triangles = of.surface().topology().triangles();

@@ -1,5 +1,5 @@
 /// @file
-/// Where two surfaces, or parts of one, come near each other: the local minima of their distance.
+/// Local minima of the distance between two surfaces, or between parts of one.
 #pragma once
 
 #include <array>
@@ -13,64 +13,65 @@
 
 namespace sinew::collision {
 
-/// What a point of a surface lies on.
+/// The kind of feature on which a surface point lies.
 enum class FeatureKind : char { vertex, edge, face };
 
-/// A point of a surface by the nodes that carry it.
+/// A point of a surface, given by the nodes of its feature.
 struct SurfacePoint {
   FeatureKind kind = FeatureKind::vertex;
   int number = -1;                          ///< of the node, edge or triangle
   std::array<NodeId, 3> nodes{-1, -1, -1};  ///< one, two or three; the rest -1
-  Vector3 weights = Vector3::Zero();        ///< (3,) of them, > 0, sum 1
+  Vector3 weights = Vector3::Zero();        ///< (3,) of these nodes, > 0, sum 1
   Vector3 point = Vector3::Zero();          ///< (3,) m
 };
 
-/// A local minimum of the distance of a point of one surface from a point of another.
+/// A local minimum of the distance between a point of one surface and a point of another.
 struct ProximityPair {
   SurfacePoint first, second;
   Vector3 normal = Vector3::UnitZ();  ///< (3,) unit length, from the second surface to the first
   /// m: first.point - second.point = distance normal. Negative where the surfaces overlap.
   double distance = 0.0;
-  /// Whether it is two edges that cross where both surfaces are nearly flat.
+  /// Whether it is a pair of crossing edges where both surfaces are nearly flat.
   bool between_flat = false;
 };
 
-/// What is looked for.
+/// Criteria of the search.
 struct ProximitySettings {
-  double distance = 0.0;  ///< m, >= 0: the farthest pair
-  /// m, >= 0: of pairs that face each other, those are found, too, which have passed each other by
-  /// no more than this. It has to be less than the thickness of either body.
+  double distance = 0.0;  ///< m, >= 0: the largest distance of a pair
+  /// m, >= 0: pairs that face each other are also found if they have passed each other by up to
+  /// this depth. It must be less than the thickness of either body.
   double depth = 0.0;
-  /// Sine of the angle by which a neighbour of the nearest point may lie nearer: 0, local minima
-  /// alone; 1, every vertex over a face or an edge and all edges that cross.
+  /// Sine of the angle by which a neighbour of the nearest point may be nearer. 0: local minima
+  /// only; 1: every vertex over a face or an edge, and all crossing edges.
   double slack = 0.0;
-  /// Of edges that cross, but for ridges of both surfaces; none: the same. Around a crossing of two
-  /// flat parts there are many as near; at the corner of two blocks one crossing is all that there
-  /// is, however little the faces tilt.
+  /// The slack for crossing edges, except where both are ridges; none: `slack`. Around a crossing
+  /// of two flat parts there are many equally near pairs. At the corner of two blocks, one crossing
+  /// is the only pair, however little the faces tilt.
   std::optional<double> edge_slack;
-  /// Only points that see each other from outside, by the normals of their features. Without, a
-  /// thin body's sides see each other through it, and open surfaces have two sides.
+  /// Only points that face each other from outside, by the normals of their features. Without this,
+  /// the two sides of a thin body see each other through it, and open surfaces have two sides.
   bool facing = true;
 };
 
-/// Finds all pairs (p, q) where distance rises to first order, or stays, whichever way p or q
-/// leaves its place. They are told apart by what the points lie on: a vertex or an edge's inside
-/// or a triangle's inside, each over one of these where the other one lets it, and two edges that
-/// cross. Decisions on one border are made by one number, so that each pair is found once: over
-/// an edge between two triangles a vertex has one pair, with the edge. Of features that run along
-/// each other, such as two faces on one another, vertices stand for the whole.
+/// Finds all pairs (p, q) for which the distance does not decrease to first order, however p or q
+/// moves. Pairs are classified by the features on which the points lie: a vertex, or the interior
+/// of an edge or triangle, each over one of these if the other side permits it, and two crossing
+/// edges. Decisions about one border use one number, so that each pair is found once: over an edge
+/// between two triangles, a vertex has one pair, with the edge. Features that run along each other,
+/// such as two parallel faces in contact, are represented by their vertices.
 ///
-/// Order and numbers do not depend on the number of threads. Memory of the largest call is kept.
+/// Order and values do not depend on the number of threads. The memory of the largest call is kept.
 class Proximity {
  public:
-  /// @param pool outlives this.
+  /// @param pool must outlive this object.
   explicit Proximity(ThreadPool& pool);
 
-  /// @param first,second as they were moved last. @param settings see there.
+  /// Pairs between two surfaces. @param first,second at their last moved positions.
+  /// @param settings criteria.
   std::span<const ProximityPair> between(const SurfaceTree& first, const SurfaceTree& second,
                                          const ProximitySettings& settings);
-  /// Of one surface; features that share a node make no pair.
-  /// @param surface as it was moved last. @param settings see there.
+  /// Pairs within one surface; features that share a node form no pair.
+  /// @param surface at its last moved position. @param settings criteria.
   std::span<const ProximityPair> within(const SurfaceTree& surface,
                                         const ProximitySettings& settings);
 

@@ -9,23 +9,24 @@ namespace sinew::collision {
 
 namespace {
 
-/// Rounding errors of n.d in parts of sum |n_k d_k|: one of the difference, one of the product, two
-/// of the sum make 4 units of 2^-53; those of the bound itself are below one more. Doubled.
+/// Rounding error of n.d relative to sum |n_k d_k|: one unit for the difference, one for the
+/// product and two for the sum make 4 units of 2^-53; those of the bound itself are below one more.
+/// Doubled.
 constexpr double kDotError = 5.0 * kEpsilon;
-/// A quotient of two rounded numbers without cancellation is off by 2 units; doubled.
+/// Error of a quotient of two rounded numbers without cancellation: 2 units, doubled.
 constexpr double kQuotientError = 2.0 * kEpsilon;
 
 }  // namespace
 
 bool RelativeMotion::finite() const {
-  // Zero times a number is zero, times infinity it is none.
+  // Zero times a finite number is zero; times infinity it is NaN.
   Lanes zero = Lanes::Zero();
   for (std::size_t k = 0; k < 3; ++k) zero += 0.0 * start_[k] + 0.0 * end_[k];
   return (zero == 0.0).all();
 }
 
 bool RelativeMotion::apart_along_axis() const {
-  // A rounded difference beyond a double has the exact one beyond it, too.
+  // If a rounded difference is beyond a double, so is the exact one.
   for (std::size_t k = 0; k < 3; ++k) {
     if (start_[k].min(end_[k]).minCoeff() > separation_) return true;
     if (start_[k].max(end_[k]).maxCoeff() < -separation_) return true;

@@ -1,6 +1,6 @@
 /// @file
-/// Two convex sets of points that move straight on, seen from one another: separating planes with
-/// bounds on their rounding errors.
+/// Relative motion of two convex sets of linearly moving points: separating planes with bounds on
+/// rounding errors.
 #pragma once
 
 #include <array>
@@ -9,13 +9,13 @@
 
 namespace sinew::collision {
 
-/// Differences d_j of the points of two sets, four of them. The sets meet when the origin is in
-/// the convex hull of the d_j: d_j = v - f_j of a vertex and a triangle (the last one twice),
-/// d = a_i - b_k of two edges. All d_j are linear in the time, which runs from 0 to 1.
+/// The four differences d_j of the points of two sets. The sets meet when the origin is in the
+/// convex hull of the d_j: d_j = v - f_j for a vertex and a triangle (the last one twice),
+/// d = a_i - b_k for two edges. All d_j are linear in the time, which runs from 0 to 1.
 ///
-/// A plane with a fixed normal n separates the sets while n.d_j > 0 for all j. Both ends of each
-/// n.d_j are bounded from below, whatever rounding does; between them the bound is linear, too, so
-/// that it is known exactly how long the plane separates.
+/// A plane with a fixed normal n separates the sets while n.d_j > 0 for all j. Each n.d_j has a
+/// lower bound at both ends, whatever the rounding. Between the ends the bound is linear, too,
+/// which gives exactly how long the plane separates the sets.
 class RelativeMotion {
  public:
   using Lanes = Eigen::Array<double, 4, 1>;
@@ -32,18 +32,18 @@ class RelativeMotion {
     }
   }
 
-  /// Whether all differences are finite; if not, nothing else here holds.
+  /// Whether all differences are finite; if not, the other functions are meaningless.
   bool finite() const;
 
-  /// Whether a plane across an axis separates the sets all the time.
+  /// Whether a plane normal to a coordinate axis separates the sets all the time.
   bool apart_along_axis() const;
 
   /// The time up to which the plane with normal n separates the sets without interruption: more
-  /// than 1 where it does to the end, `time` where it does not even now.
+  /// than 1 if it separates them to the end, `time` if it does not separate them now.
   /// @param normal (3,), of any length. @param time from 0 to 1.
   double separated_until(const Vector3& normal, double time) const;
 
-  /// d_j at a time, m, with rounding.
+  /// d_j at a time, m, subject to rounding.
   Vector3 at(int j, double time) const;
 
  private:

@@ -10,10 +10,10 @@ namespace sinew::collision {
 
 namespace {
 
-// Slabs that are thicker by less count as equal, relative to the solids' reach: faces go before
-// pairs of edges, and these before directions that were iterated.
+// Slabs whose thickness differs by less than this, relative to the solids' reach, count as equal:
+// faces then come before pairs of edges, and these before iterated directions.
 constexpr double kAlike = 1e-12;
-// Cores that are nearer count as overlapping, relative to their reach: the difference of their
+// Cores nearer than this, relative to their reach, count as overlapping: the difference of their
 // points has too few digits for a normal.
 constexpr double kTouching = 1e-9;
 
@@ -39,7 +39,8 @@ class SlabSearch {
     best_.normal = normal;
     return true;
   }
-  // Of cores, at any shift along the normal; what iterations leave is shared by both.
+  // Sets the points from those of the cores, at any shift along the normal. Both share the
+  // iteration error.
   void set_points(const Vector3& on_first, const Vector3& on_second) {
     const Vector3 middle =
         0.5 * (on_first - first_.radius * best_.normal + on_second + second_.radius * best_.normal);
@@ -61,7 +62,7 @@ class SlabSearch {
       }
     }
   }
-  // Out of a cylinder's axis, through the other solid's corners.
+  // Directions from a cylinder's axis through the other solid's corners.
   void radii(const SymmetricSolid& round, const SymmetricSolid& other) {
     if (!(round.rim > 0.0)) return;
     for (int corner = 0; corner < 8; ++corner) {
@@ -79,7 +80,7 @@ class SlabSearch {
   Separation best_;
 };
 
-// Newton's method for the greatest slab, on the unit sphere or on its circle normal to an edge.
+// Newton's method for the thickest slab, on the unit sphere or on its circle normal to an edge.
 class SlabNewton {
  public:
   SlabNewton(const SymmetricSolid& first, const SymmetricSolid& second)
@@ -101,10 +102,10 @@ class SlabNewton {
   }
 
  private:
-  static constexpr int kMax = 5;  // digits double with each
+  static constexpr int kMax = 5;  // each doubles the digits
 
-  // The slab's slope is that of the supports, its curvature that of the rims and of the sphere.
-  // Where it does not curve to a greatest value, the normal stays.
+  // The slope of the slab is that of the supports, its curvature that of the rims and of the
+  // sphere. If the curvature does not belong to a maximum, the normal is kept.
   template <int N>
   Vector3 stepped(const Vector3& normal, const Eigen::Matrix<double, 3, N>& tangents) const {
     using Square = Eigen::Matrix<double, N, N>;
@@ -129,7 +130,7 @@ class SlabNewton {
   const SymmetricSolid& second_;
 };
 
-// Considers what Newton's method makes of a direction.
+// Considers a direction, and what Newton's method makes of it.
 void consider_polished(const SymmetricSolid& first, const SymmetricSolid& second,
                        const Vector3& direction, SlabSearch& search) {
   constexpr double kNear = 0.01;  // sine
@@ -147,11 +148,11 @@ void consider_polished(const SymmetricSolid& first, const SymmetricSolid& second
   }
 }
 
-// The normal and the nearest points of overlapping cores, from those of the same ones moved apart.
+// The normal and the nearest points of overlapping cores, from those of the same cores moved apart.
 void turn_to_least_overlap(const SymmetricSolid& first, const SymmetricSolid& second,
                            SlabSearch& search) {
   constexpr int kMax = 20;
-  constexpr double kParted = 1e-2;  // the less, the fewer turns; rounding bounds it
+  constexpr double kParted = 1e-2;  // the smaller, the fewer turns; bounded by rounding
   const double balls = first.radius + second.radius;
   for (int k = 0; k <= kMax; ++k) {
     const Separation before = search.best();

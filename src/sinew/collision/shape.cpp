@@ -13,9 +13,8 @@ namespace sinew::collision {
 
 namespace {
 
-// The sine of the lean from which on a rim rolls about its axis. The less it leans, the farther
-// away is the point where its normal meets the axis, and the worse does it stand for one that
-// tilts.
+// Sine of the inclination from which on a rim rolls about its axis. For a smaller inclination, the
+// point where its normal meets the axis is farther away, and represents a tilting rim worse.
 constexpr double kRim = 0.3;
 
 ShapeDistance along(const Vector3& point, double gap, const Vector3& normal) {
@@ -29,8 +28,8 @@ ShapeDistance from_axis(const Vector3& axis_point, double radius, const Vector3&
   return along(point, far - radius, far > 0.0 ? (out / far).eval() : otherwise);
 }
 
-// Of a solid whose sides stand on each other at right angles: the excess beyond each side and the
-// sides' outward directions, as columns.
+// For a solid with perpendicular sides: the excess beyond each side, and the outward directions of
+// the sides, as columns.
 template <int N>
 ShapeDistance over_sides(const Vector3& point, const Eigen::Matrix<double, N, 1>& excess,
                          const Eigen::Matrix<double, 3, N>& outward) {
@@ -94,7 +93,7 @@ ShapeDistance distance(const OrientedBox& box, const Vector3& point) {
 }
 
 ShapeDistance distance(const ConvexSolid& solid, const Vector3& point) {
-  constexpr double kNear = 1e-12;  // of the size: a nearer point has too few digits for a normal
+  constexpr double kNear = 1e-12;  // relative to the size: nearer points give no accurate normal
   const Vector3 local = solid.axes.transpose() * (point - solid.origin);
   const Polyhedron& hull = *solid.hull;
   double excess = -kInfinity, square = kInfinity;

@@ -1,5 +1,6 @@
 /// @file
-/// Continuous detection of whole surfaces: which vertices, edges and faces meet along a motion.
+/// Continuous collision detection of whole surfaces: finds the vertices, edges and faces that meet
+/// along a motion.
 #pragma once
 
 #include <optional>
@@ -13,27 +14,28 @@
 
 namespace sinew::collision {
 
-/// A vertex and a face, or two edges, that come too near each other.
+/// A vertex and a face, or two edges, that meet.
 struct SurfaceImpact {
   FeatureKind first_kind = FeatureKind::vertex, second_kind = FeatureKind::face;
-  int first = -1, second = -1;  ///< nodes, edges or triangles of each surface
-  double time = 0.0;            ///< from 0 to 1: a lower bound of the first one (impact.hpp)
+  int first = -1, second = -1;  ///< number of the node, edge or triangle
+  double time = 0.0;            ///< from 0 to 1: a lower bound of the first meeting (impact.hpp)
 };
 
-/// Finds all impacts along a motion, each pair once; none is missed (impact.hpp). Two surfaces
-/// without one that do not meet at the start do not meet at any time. Order and numbers do not
-/// depend on the number of threads. Memory of the largest call is kept.
+/// Finds all impacts along a motion, each pair once; none is missed (impact.hpp). If there are
+/// none, two surfaces that do not meet at the start never meet. Order and values do not depend on
+/// the number of threads. The memory of the largest call is kept.
 class SurfaceImpacts {
  public:
-  /// @param pool outlives this.
+  /// @param pool must outlive this object.
   explicit SurfaceImpacts(ThreadPool& pool);
 
-  /// @param first,second as they were swept last; one that was moved stands still.
+  /// Impacts between two surfaces. @param first,second with their last sweep(); one whose last call
+  /// was move() stands still.
   /// @param separation m, >= 0: the distance that counts as a meeting.
   std::span<const SurfaceImpact> between(const SurfaceTree& first, const SurfaceTree& second,
                                          double separation);
-  /// Of one surface; features that share a node make no pair.
-  /// @param surface as it was swept last. @param separation as above.
+  /// Impacts within one surface; features that share a node form no pair.
+  /// @param surface with its last sweep(). @param separation as above.
   std::span<const SurfaceImpact> within(const SurfaceTree& surface, double separation);
 
  private:
@@ -44,7 +46,7 @@ class SurfaceImpacts {
   ThreadLists<SurfaceImpact> impacts_;
 };
 
-/// The least time of a list, if it has one. @param impacts of SurfaceImpacts.
+/// The earliest time of a list, if it is not empty. @param impacts of SurfaceImpacts.
 std::optional<double> earliest(std::span<const SurfaceImpact> impacts);
 
 }  // namespace sinew::collision

@@ -12,7 +12,7 @@ namespace sinew::collision {
 
 namespace {
 
-// Sine of an angle that is rounding.
+// Sine of an angle at rounding level.
 constexpr double kFlat = 1e-9;
 
 }  // namespace
@@ -45,7 +45,7 @@ SurfaceTopology SurfaceTopology::of_rigid(std::vector<Triangle> triangles, const
     const Triangle& own = result.triangles_[static_cast<std::size_t>(faces[0])];
     const Vector3 corner = at(own[0]);
     const Vector3 normal = (at(own[1]) - corner).cross(at(own[2]) - corner).normalized();
-    double lowest = 0.0;  // of the other triangle, over the first one's plane
+    double lowest = 0.0;  // height of the other triangle over the first one's plane
     double farthest = 0.0;
     for (const NodeId node : result.triangles_[static_cast<std::size_t>(faces[1])]) {
       lowest = std::min(lowest, normal.dot(at(node) - corner));
@@ -76,7 +76,7 @@ void SurfaceTopology::check() const {
 
 void SurfaceTopology::number_edges() {
   std::map<Edge, int> number;
-  std::vector<int> balance;  // passes along an edge less those back
+  std::vector<int> balance;  // number of passes along an edge minus those back
   std::vector<int> owners, entries;
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     auto& own = triangle_edges_.emplace_back();

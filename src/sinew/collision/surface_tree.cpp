@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kLeafSize = 4;
 constexpr int kTriangleGrain = 256;
-/// Changes of cost() that a tree is kept for. One that was built on a crumpled surface is no good
-/// for the smooth one, though cheaper there.
+/// Range of relative changes of cost() within which a tree is kept. A tree that was built on a
+/// crumpled surface is no good for the smooth one, though its cost falls there.
 constexpr double kGrown = 1.5, kFallen = 0.8;
 
 void check_positions(const Points& positions, int nodes) {

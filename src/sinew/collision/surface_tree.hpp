@@ -25,7 +25,7 @@ struct Box {
     low = low.cwiseMin(other.low);
     high = high.cwiseMax(other.high);
   }
-  /// Whether some axis shows a gap of more than `distance`; rounding never makes one.
+  /// Whether the gap along some axis exceeds `distance`; rounding never creates a gap.
   bool is_apart(const Box& other, double distance) const {
     return ((low - other.high).array() > distance).any() ||
            ((other.low - high).array() > distance).any();
@@ -37,33 +37,33 @@ struct Box {
   }
 };
 
-/// Boxes are split in halves of equally many triangles along their longest axis. A move refits
-/// them bottom up. It builds the tree anew when cost() has grown by half, or fallen by a fifth,
-/// since it was built.
+/// A surface with a tree of bounding boxes. Boxes are split along their longest axis into halves
+/// with equally many triangles. A move refits them bottom-up. It rebuilds the tree if cost() has
+/// grown by half, or fallen by a fifth, since the tree was built.
 class SurfaceTree {
  public:
-  /// Children of an inner branch are the next one and `right`; a leaf has the triangles
-  /// order()[begin, end).
+  /// A node of the tree. The children of an inner branch are the next one and `right`; a leaf has
+  /// the triangles order()[begin, end).
   struct Branch {
     Box box;
     int right = -1;  ///< -1: a leaf
     int begin = 0, end = 0;
   };
 
-  /// @param topology shared by all bodies of its kind.
+  /// @param topology may be shared by all bodies of one kind.
   explicit SurfaceTree(std::shared_ptr<const SurfaceTopology> topology);
 
-  /// Takes new positions and refits the boxes. @param positions (n, 3) m. Throws
-  /// Error(wrong-shape, not-finite), as does sweep(). @param pool shares the work.
+  /// Sets new positions and refits the boxes. @param positions (n, 3) m. @param pool shares the
+  /// work. Throws Error: wrong-shape, not-finite, as does sweep().
   void move(const Points& positions, ThreadPool& pool);
-  /// Takes a motion: every box holds its triangle from start to end. @param start,end (n, 3) m.
+  /// Sets a motion: every box encloses its triangle from start to end. @param start,end (n, 3) m.
   /// @param pool shares the work.
   void sweep(const Points& start, const Points& end, ThreadPool& pool);
 
   const SurfaceTopology& topology() const { return *topology_; }
-  /// (n, 3) m: of the last move(), or the start of the last sweep().
+  /// Positions of the last move(), or at the start of the last sweep(), (n, 3) m.
   const Points& positions() const { return start_; }
-  /// (n, 3) m: the same, or the end of the last sweep().
+  /// The same, or those at the end of the last sweep(), (n, 3) m.
   const Points& end_positions() const { return swept_ ? end_ : start_; }
 
   Vector3 at(NodeId node) const { return start_.row(node).transpose(); }
@@ -73,15 +73,15 @@ class SurfaceTree {
     return {at(t[0]), at(t[1]), at(t[2])};
   }
 
-  /// The first one is the root; each stands before its children.
+  /// The branches, root first, each before its children.
   const std::vector<Branch>& branches() const { return branches_; }
   const std::vector<int>& order() const { return order_; }
   /// Box of a triangle, m.
   const Box& box(int triangle) const { return boxes_[static_cast<std::size_t>(triangle)]; }
-  /// Sum of the areas of all boxes over that of the root's: how many of them a random line
-  /// through the root meets (the surface area heuristic, Goldsmith & Salmon 1987).
+  /// Sum of the areas of all boxes over that of the root: the expected number of boxes that a
+  /// random line through the root meets (surface area heuristic, Goldsmith & Salmon 1987).
   double cost() const { return cost_; }
-  /// How often the tree was built.
+  /// Number of times that the tree was built.
   int builds() const { return builds_; }
 
  private:

@@ -1,5 +1,5 @@
 /// @file
-/// A list that threads write together, in an order that does not depend on how many they are.
+/// A list that several threads fill, in an order that does not depend on their number.
 #pragma once
 
 #include <span>
@@ -9,17 +9,19 @@
 
 namespace sinew::collision {
 
-/// Each thread has a contiguous part of the work and a list of its own; the lists joined in the
-/// order of the threads are the list of one thread. Memory of the largest call is kept.
+/// Collects the results of several threads. Each thread has a contiguous part of the work and its
+/// own list; joined in the order of the threads, these are the list of a single thread. The memory
+/// of the largest call is kept.
 template <typename Entry>
 class ThreadLists {
  public:
-  /// @param pool outlives this.
+  /// @param pool must outlive this object.
   explicit ThreadLists(ThreadPool& pool)
       : pool_(pool), parts_(static_cast<std::size_t>(pool.size())) {}
 
-  /// Calls work(begin, end, list) on parts of [0, count); each call appends what it finds for its
-  /// part in order. @param count,grain,work see ThreadPool::for_range(). Valid until the next call.
+  /// Calls work(begin, end, list) on parts of [0, count). Each call appends the results of its part
+  /// in order. @param count,grain,work see ThreadPool::for_range().
+  /// @return the joined list, valid until the next call.
   template <typename Work>
   std::span<const Entry> collect(int count, int grain, const Work& work) {
     for (auto& part : parts_) part.clear();

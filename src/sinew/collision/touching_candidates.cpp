@@ -34,7 +34,7 @@ TouchingPoints TouchingCandidates::reduced() const {
   std::array<double, kMax> far;
   far.fill(kInfinity);
   const bool all = size_ <= TouchingPoints::kMax;
-  // Of both shapes, so that they may change places.
+  // Uses both shapes, so that they may change places.
   const auto middle = [&](std::size_t k) -> Vector3 {
     return 0.5 * (points_[k].on_first + points_[k].on_second);
   };
@@ -49,7 +49,7 @@ TouchingPoints TouchingCandidates::reduced() const {
   return kept;
 }
 
-// Of those equally far, the deepest.
+// Of equally far points, takes the deepest.
 std::size_t TouchingCandidates::farthest(const std::array<double, kMax>& far) const {
   std::size_t best = 0;
   for (std::size_t k = 1; k < size_; ++k) {

@@ -19,12 +19,12 @@ bool has_side(const SymmetricSolid& solid) {
   return solid.half_size[2] > 0.0 && !(solid.half_size[0] > 0.0);
 }
 
-// The ends of a round side beside another one, for the contact of two that lie along each other:
-// the end's point that faces the other axis, and its nearest point of the other shape.
+// Adds the ends of a round side next to another one, for the contact of two that lie along each
+// other: the point of the end that faces the other axis, and its nearest point of the other shape.
 // @param round is the first of the pair if `is_first`.
 void add_ends(const SymmetricSolid& round, const SymmetricSolid& other, const Shape& other_shape,
               bool is_first, TouchingCandidates& candidates) {
-  constexpr double kFacing = 0.5;  // sine: an end that is turned to the other touches with its face
+  constexpr double kFacing = 0.5;  // sine: an end turned towards the other touches with its face
   for (int side = 0; side < 2; ++side) {
     const Vector3 end = round.end(side);
     const OnEdge foot = closest_on_edge(end, other.end(0), other.end(1));
@@ -64,7 +64,7 @@ TouchingPoints of_bounded(const Shape& first_shape, const Shape& second_shape, d
   return candidates.reduced();
 }
 
-// Of a solid as the first.
+// The solid is the first shape.
 TouchingPoints on_plane(const SymmetricSolid& solid, const Plane& plane, double margin) {
   const Vector3& normal = plane.normal;
   const Vector3 lowest = solid.core_support(-normal) - solid.radius * normal;
@@ -90,7 +90,7 @@ class CornersOnPlane {
   void add(std::size_t k, TouchingCandidates& candidates) const {
     candidates.add(at(k), at(k) - gap(k) * plane_.normal, plane_.normal, 1 + static_cast<int>(k));
   }
-  // The near one that is farthest in a direction, or size().
+  // Index of the near corner that is farthest in a direction, or size().
   std::size_t farthest(const Vector3& direction) const {
     std::size_t best = size();
     double most = -kInfinity;
@@ -109,8 +109,8 @@ class CornersOnPlane {
   double margin_;
 };
 
-// All near corners; of many those that are farthest in directions along the plane and slightly or
-// steeply down, so that no upper corner stands for the lower ones.
+// Takes all near corners; if there are many, those that are farthest in directions along the plane
+// and slightly or steeply down, so that no upper corner replaces the lower ones.
 TouchingPoints on_plane(const ConvexSolid& solid, const Plane& plane, double margin) {
   constexpr int kDirections = 32;
   const CornersOnPlane corners(solid, plane, margin);

@@ -1,5 +1,5 @@
 /// @file
-/// Points at which two rigid shapes touch, or are about to.
+/// Contact points of two rigid shapes that touch or are about to.
 #pragma once
 
 #include <array>
@@ -12,11 +12,11 @@ namespace sinew::collision {
 struct TouchingPoint {
   Vector3 on_first = Vector3::Zero(), on_second = Vector3::Zero();  ///< (3,) m
   Vector3 normal = Vector3::UnitZ();  ///< (3,) unit length, from the second towards the first
-  double gap = 0.0;                   ///< m, normal.(on_first - on_second); negative: they overlap
-  int feature = 0;  ///< which parts of the shapes made it; the same in the next step
+  double gap = 0.0;  ///< m, normal.(on_first - on_second); negative if they overlap
+  int feature = 0;   ///< identifies the parts of the shapes; the same in the next step
 };
 
-/// A list of fixed capacity.
+/// A list of contact points, of fixed capacity.
 class TouchingPoints {
  public:
   static constexpr std::size_t kMax = 8;
@@ -33,28 +33,28 @@ class TouchingPoints {
   std::size_t size_ = 0;
 };
 
-/// The pairs of points of two shapes with a gap of at most `margin`, enough of them to hold one
-/// shape on the other. The least gap is the signed distance (see separation()): moved by it along
-/// its normal, shapes that overlap are free. No gap is less.
+/// Finds the contact points of two shapes with a gap of at most `margin`, enough of them to support
+/// one shape on the other. The smallest gap is the signed distance (see separation()): moving one
+/// of two overlapping shapes by it along its normal separates them. No gap is smaller.
 ///
-/// Looking along the normal of that distance, facets that face each other are clipped (C. Ericson,
-/// "Real-Time Collision Detection", 2005, section 5.5): corners of a polygon, ends of lines and
-/// four points of a round end, each with the gap of its own two points. Capsules and the sides of
-/// cylinders that lie along each other touch at the ends of what they share, with normals of their
-/// own. The nearest pair is always there. Of more than eight, the deepest one stays and those
-/// farthest from each other.
+/// Facets that face each other are clipped, seen along the normal of that distance (C. Ericson,
+/// "Real-Time Collision Detection", 2005, section 5.5). This gives the corners of polygons, the
+/// ends of lines and four points of a round end, each with the gap of its own two points. Capsules
+/// and the sides of cylinders that lie along each other touch at the ends of their common part,
+/// with normals of their own. The nearest pair is always included. Of more than eight points, the
+/// deepest one and those farthest from each other are kept.
 ///
-/// The four points of a standing end are in directions that the other shape gives (its sides; of a
-/// plane or a round end the normal's unitOrthogonal()), so that noise does not turn them. A tilted
-/// end has its lowest point, too. A capsule that leans is touched through the balls at its ends:
-/// the upper one's point may be in it.
+/// The four points of a standing end lie in directions given by the other shape (by its sides; for
+/// a plane or a round end, by the normal's unitOrthogonal()), so that noise does not turn them. A
+/// tilted end also has its lowest point. An inclined capsule is touched through the balls at its
+/// ends; the point of the upper one may lie inside it.
 ///
-/// A ConvexSolid is touched by planes alone, at its corners: the lowest one and those farthest out
+/// A ConvexSolid can only touch planes, with its corners: the lowest one and those farthest out
 /// along the plane. With any other shape: Error(not-in-this-version).
 ///
-/// Two planes have no points. Shapes are taken to be checked().
-/// @param first,second the two shapes, where they are.
-/// @param margin m; also a negative one.
+/// Two planes have no contact points. Shapes must be checked().
+/// @param first,second the two shapes, in their poses.
+/// @param margin m; may be negative.
 TouchingPoints touching_points(const Shape& first, const Shape& second, double margin);
 
 }  // namespace sinew::collision

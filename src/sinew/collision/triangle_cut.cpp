@@ -14,7 +14,7 @@ constexpr std::size_t next(std::size_t k) { return (k + 1) % 3; }
 
 using Signs = std::array<int, 3>;
 
-// On which sides of a triangle the corners of another one lie.
+// Sides of a triangle on which the corners of another one lie.
 Signs sides_of(const SurfaceTriangle& triangle, const SurfaceTriangle& other) {
   const Corners& x = triangle.corners;
   Signs signs;
@@ -26,7 +26,7 @@ Signs sides_of(const SurfaceTriangle& triangle, const SurfaceTriangle& other) {
 
 bool all_alike(const Signs& s) { return s[0] == s[1] && s[1] == s[2]; }
 
-// How two directed edges pass each other; zero is decided in the order of the nodes.
+// Sign with which two directed edges pass each other; zero is resolved in the order of the nodes.
 int turn(const SurfaceTriangle& a, std::size_t i, const SurfaceTriangle& b, std::size_t j) {
   const bool a_back = a.nodes[i] > a.nodes[next(i)], b_back = b.nodes[j] > b.nodes[next(j)];
   const std::size_t a0 = a_back ? next(i) : i, a1 = a_back ? i : next(i);
@@ -57,7 +57,7 @@ Place2 place_in(const SurfaceTriangle& triangle, const Vector3& point) {
 }
 
 // Collects the ends of the cut. The border of the part of a triangle inside the other surface runs
-// along an edge after the edge went in, and before it comes out: there the cut ends or begins.
+// along an edge after the edge enters and before it leaves; there the cut ends or begins.
 class CutBuilder {
  public:
   CutBuilder(const SurfaceTriangle& first, const SurfaceTriangle& second)
@@ -67,7 +67,7 @@ class CutBuilder {
     }
   }
 
-  // Edges of one triangle through the other one. @param sides of its corners.
+  // Adds the edges of one triangle that pass through the other. @param sides of its corners.
   void add_edges(std::size_t own, const Signs& sides) {
     for (std::size_t i = 0; i < 3; ++i) {
       if (sides[i] == sides[next(i)] || !passes(own, i)) continue;

@@ -1,5 +1,5 @@
 /// @file
-/// The segment in which two triangles cross, with its direction.
+/// The directed segment in which two triangles cross.
 #pragma once
 
 #include <array>
@@ -10,35 +10,36 @@
 
 namespace sinew::collision {
 
-/// A triangle of a surface: corners, and their nodes, by which edges are told apart.
+/// A triangle of a surface: its corners, and their nodes, which identify edges.
 struct SurfaceTriangle {
   Corners corners;
   Triangle nodes;
 };
 
-/// A place in a triangle: x_0 + u (x_1 - x_0) + v (x_2 - x_0) is (u, v).
+/// Coordinates in a triangle: (u, v) is the point x_0 + u (x_1 - x_0) + v (x_2 - x_0).
 using Place2 = Eigen::Vector2d;
 
-/// Where the edge from corner 1 to corner 2 passes the other triangle.
+/// Where the edge from corner 1 to corner 2 passes through the other triangle.
 struct EdgePass {
   Place2 place = Place2::Zero();
-  int sign = 0;  ///< 1: to the inner side of the other triangle; -1: out; 0: it does not pass
+  int sign = 0;  ///< 1: inwards through the other triangle; -1: outwards; 0: it does not pass
 };
 
-/// A triangle's part in the cut.
+/// The cut as one triangle sees it.
 struct CutSide {
   Place2 from = Place2::Zero(), to = Place2::Zero();  ///< inside of the other surface on the left
   EdgePass pass;
 };
 
-/// The cut of two triangles as each sees it; the directions are opposite.
+/// The cut as each of two triangles sees it, in opposite directions.
 struct TriangleCut {
   std::array<CutSide, 2> sides;
 };
 
-/// Nothing where no edge of one passes the other. All signs are exact; the places are rounded, the
-/// same for triangles that share an edge. A sign of zero counts as positive for an edge and a
-/// triangle or two edges in the order of their nodes, whatever triangle they are seen from.
+/// The cut of two triangles; nothing if no edge of one passes through the other. All signs are
+/// exact. The coordinates are rounded, identically for triangles that share an edge. Zero signs are
+/// resolved as positive for an edge and a triangle, or for two edges in the order of their nodes,
+/// independently of the triangle from which they are seen.
 /// @param first,second of two surfaces.
 std::optional<TriangleCut> cut(const SurfaceTriangle& first, const SurfaceTriangle& second);
 

@@ -8,7 +8,7 @@ namespace sinew::collision {
 
 namespace {
 
-// Of segments in one plane, seen along an axis that is not in it.
+// For segments in one plane, seen along an axis that is not in it.
 bool segments_meet_in_plane(int axis, const Vector3& p, const Vector3& q, const Vector3& a,
                             const Vector3& b) {
   const int pa = orientation_along(axis, a, b, p), qa = orientation_along(axis, a, b, q);
@@ -21,7 +21,7 @@ bool boxes_meet(const Vector3& p, const Vector3& q, const Vector3& a, const Vect
          (a.cwiseMin(b).array() <= p.cwiseMax(q).array()).all();
 }
 
-// The point is known to lie in the triangle's plane, which the axis does not.
+// Requires that the point lies in the triangle's plane and that the axis does not.
 bool in_triangle(int axis, const Vector3& point, const Corners& t) {
   const int first = orientation_along(axis, t[0], t[1], point);
   const int second = orientation_along(axis, t[1], t[2], point);
@@ -29,7 +29,7 @@ bool in_triangle(int axis, const Vector3& point, const Corners& t) {
   return std::min({first, second, third}) >= 0 || std::max({first, second, third}) <= 0;
 }
 
-// An axis along which the triangle has an area; -1: it is flat.
+// An axis along which the triangle has an area; -1 if it is degenerate.
 int seen_along(const Corners& t) {
   for (int axis = 0; axis < 3; ++axis) {
     if (orientation_along(axis, t[0], t[1], t[2]) != 0) return axis;
@@ -45,7 +45,7 @@ bool meets_border(const Vector3& p, const Vector3& q, const Corners& t) {
 }  // namespace
 
 bool segments_meet(const Vector3& p, const Vector3& q, const Vector3& a, const Vector3& b) {
-  // The boxes decide the case of one line, along which they overlap if the segments do.
+  // The boxes decide collinear segments, which overlap exactly if their boxes do.
   if (!boxes_meet(p, q, a, b) || orientation(p, q, a, b) != 0) return false;
   for (int axis = 0; axis < 3; ++axis) {
     const bool shows_area =

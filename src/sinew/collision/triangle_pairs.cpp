@@ -6,10 +6,11 @@ namespace sinew::collision {
 
 namespace {
 
-/// Pairs of branches that threads share: enough to be even, the same for any number of threads.
+/// Number of pairs of branches that threads share: enough for an even load, and the same for any
+/// number of threads.
 constexpr std::size_t kFront = 512;
 constexpr int kMaxLevels = 24;
-/// A pair leaves at most three in its place, and two trees have less than 64 levels together.
+/// A pair is replaced by at most three, and two trees have less than 64 levels together.
 constexpr std::size_t kPairStack = 192;
 
 double extent(const SurfaceTree::Branch& branch) {
@@ -29,7 +30,7 @@ std::span<const TrianglePair> TrianglePairs::within(const SurfaceTree& surface, 
   return find({surface, surface, distance, true});
 }
 
-// From the roots down, until there is work for all.
+// Descends from the roots until there is work for all threads.
 void TrianglePairs::spread(const Search& search) {
   front_.assign(1, {0, 0});
   for (int level = 0; level < kMaxLevels && front_.size() < kFront; ++level) {

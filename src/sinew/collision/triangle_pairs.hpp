@@ -1,5 +1,5 @@
 /// @file
-/// Pairs of triangles that are near each other, by their boxes.
+/// Pairs of triangles whose bounding boxes are near each other.
 #pragma once
 
 #include <array>
@@ -18,18 +18,18 @@ struct TrianglePair {
   bool operator==(const TrianglePair&) const = default;
 };
 
-/// Finds pairs and keeps the memory of the largest call. Their order depends on the trees alone,
-/// not on the number of threads.
+/// Finds pairs of triangles; keeps the memory of the largest call. The order of the pairs depends
+/// on the trees only, not on the number of threads.
 class TrianglePairs {
  public:
-  /// @param pool outlives this.
+  /// @param pool must outlive this object.
   explicit TrianglePairs(ThreadPool& pool);
 
-  /// All pairs whose boxes are nowhere more than `distance` apart along an axis.
+  /// All pairs whose boxes are at most `distance` apart along every axis.
   /// @param first,second may be swept. @param distance m, >= 0.
   std::span<const TrianglePair> between(const SurfaceTree& first, const SurfaceTree& second,
                                         double distance);
-  /// The same within one surface: each pair of two triangles once, neighbours included.
+  /// The same within one surface: each pair of two triangles once, including neighbours.
   std::span<const TrianglePair> within(const SurfaceTree& surface, double distance);
 
  private:

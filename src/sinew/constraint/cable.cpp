@@ -14,7 +14,7 @@ namespace sinew::constraint {
 
 namespace {
 
-// Under this length (m) a segment has no direction; a robot's via points are far apart from it.
+// Below this length (m) a segment has no direction; via points of a robot are much farther apart.
 constexpr double kShortestSegment = 1e-12;
 
 struct Segment {
@@ -106,9 +106,9 @@ void Cable::linearise(const Configuration& configuration, mechanics::RowValues& 
   if (friction_) linearise_friction(configuration, values);
 }
 
-// Row of via point i: minus the direction of the whole cable at all points behind it; at the point
-// itself only the segment behind it counts. Its motion is counted from rest, whose segments are not
-// kept one by one: laws look at differences.
+// Row of via point i: minus the directions of the pull row at all points behind it; at the point
+// itself only the segment behind it counts. Its motion is the length behind the point, not its
+// change from rest, since laws use differences only.
 void Cable::linearise_friction(const Configuration& configuration,
                                mechanics::RowValues& values) const {
   const int skip = pull_point_ ? 1 : 0;
@@ -136,7 +136,7 @@ void Cable::geometric_stiffness(const Configuration& configuration, std::span<co
   for (auto& entry : stiffness_pairs) entry.hessian.setZero();
   const double* lambda = effort.data() + first_row_;
   double tension = lambda[0];
-  // Diagonal pairs of sliding point k stand at 2 k, its pair with the next one at 2 k + 1.
+  // The diagonal pair of sliding point k has index 2 k, its pair with the next point 2 k + 1.
   for (int i = 0; i + 1 < point_count(); ++i) {
     if (friction_ && i > 0) tension -= lambda[i];
     const Segment s = segment(point(configuration, i), point(configuration, i + 1));

@@ -10,29 +10,32 @@
 
 namespace sinew::constraint {
 
-/// First row: effort = tension T_0 >= 0 (N) at the pull point, delta = L_0 - L (m), the length
-/// pulled out there. With u_i the unit vector of segment i, d(delta)/dx_i = u_i - u_{i-1}, so that
-/// H^T T_0 is the force T_0 (u_i - u_{i-1}) which a taut frictionless cable puts on via point i.
-/// The Hessian of the length of a segment of length l is d2(delta) = -(I - u u^T)/l on its two
-/// ends' relative motion.
+/// A cable: one row for its pull and, with friction, one row for each point between its ends.
 ///
-/// With friction, each point i that it slides through has a row more. The length s_i that has
-/// passed the point towards the pull point is what the segments behind it lost, so that
-///   sum_i T_i delta_i = T_0 s_0 - sum_i F_i s_i,   F_i = T_{i-1} - T_i, s_0 = delta:
-/// the row's effort is the friction force F_i (N), its motion -s_i (m), and its directions are
-/// those of the rest of the cable behind the point, with the other sign. What F_i may be is
-/// Coulomb's law at a rope over a bollard (Euler 1762), T_i <= T_{i-1} e^(mu theta_i) and the other
-/// way round, with theta_i the angle by which the cable turns there.
+/// The effort of the first row is the tension T_0 >= 0 (N) at the pull point. Its motion is
+/// delta = L_0 - L (m), the length pulled out there. With u_i the unit vector of segment i,
+/// d(delta)/dx_i = u_i - u_{i-1}: H^T T_0 is the force T_0 (u_i - u_{i-1}) that a taut frictionless
+/// cable exerts on via point i. A segment of length l contributes -(I - u u^T)/l to the Hessian of
+/// delta, for the relative motion of its two ends.
+///
+/// With friction, each point i that the cable slides through has its own row. The length s_i that
+/// has passed the point towards the pull point is the length that the segments behind it have lost:
+///   sum_i T_i delta_i = T_0 s_0 - sum_i F_i s_i,   F_i = T_{i-1} - T_i, s_0 = delta.
+/// The effort of the row is the friction force F_i (N). Its motion is -s_i (m) up to a constant:
+/// the length behind the point. Its directions are minus those of the cable behind the point.
+/// Coulomb's law for a rope around a bollard (Euler 1762) limits F_i: T_i <= T_{i-1} e^(mu theta_i)
+/// and T_{i-1} <= T_i e^(mu theta_i), where theta_i is the angle by which the cable turns at the
+/// point.
 class Cable : public Constraint {
  public:
   /// @param name for messages.
-  /// @param points via points from the pull point's side to the anchored end; the last one is fixed
-  ///   to the body, the others slide.
-  /// @param world_pull_point where the cable enters when that is fixed to the world, (3,) m; absent
-  ///   when points.front() is the pull point itself.
+  /// @param points via points from the pull point to the anchored end. The last one is fixed to the
+  ///   body; the cable slides through the others.
+  /// @param world_pull_point where the cable enters, if that point is fixed to the world, (3,) m;
+  ///   absent if points.front() is the pull point itself.
   /// @param points_at_rest positions of all points at rest, pull point first: (n, 3) m.
-  /// @param friction whether the points that it slides through have rows.
-  /// Throws Error(too_few_points) under two points, Error(degenerate_cable) for coincident ones.
+  /// @param friction whether the points that the cable slides through have rows.
+  /// Throws Error: too-few-points for fewer than two points, degenerate-cable for coincident ones.
   Cable(std::string name, std::vector<mechanics::MaterialPoint> points,
         std::optional<Vector3> world_pull_point, const Points& points_at_rest,
         bool friction = false);
@@ -45,25 +48,26 @@ class Cable : public Constraint {
 
   void add_to(ValueHash& hash) const override { hash.add(pull_point_, rest_length_, friction_); }
 
-  /// While every segment is under tension.
+  /// True while every segment is under tension.
   bool stiffens(std::span<const double> effort) const override;
 
   /// L_0, m.
   double rest_length() const { return rest_length_; }
-  /// L now, m.
+  /// Present length L, m.
   double length(const Configuration& configuration) const;
-  /// Points between its ends.
+  /// Number of points between the ends.
   int via_count() const { return point_count() - 2; }
-  /// The angle by which it turns at one of them, 0 .. via_count() - 1 from the pull point on, rad.
+  /// Angle by which the cable turns at a point between its ends, rad.
+  /// @param configuration of all bodies. @param via 0 .. via_count() - 1, from the pull point.
   double turn(const Configuration& configuration, int via) const;
-  /// Sum of those angles, rad (its wrap).
+  /// Sum of turn() over all points between the ends, rad.
   double wrap(const Configuration& configuration) const;
-  /// Row of the friction at a point between its ends. Only with friction.
+  /// Row of the friction at a point between the ends. Requires friction.
   int friction_row(int via) const { return first_row_ + 1 + via; }
   /// Tension of every segment, pull point first, (via_count() + 1,) N.
   /// @param effort (rows,) of the world.
   std::vector<double> tensions(std::span<const double> effort) const;
-  /// All points now, pull point first; (n, 3) m.
+  /// Present positions of all points, pull point first; (n, 3) m.
   Points points(const Configuration& configuration) const;
 
  private:

@@ -16,7 +16,7 @@ namespace sinew::constraint {
 
 namespace {
 
-// A chamber of less than this part of (its area)^(3/2) is a sheet.
+// A chamber whose volume is below this, relative to area^(3/2), is a sheet.
 constexpr double kFlat = 1e-9;
 
 struct Weighted {
@@ -24,9 +24,10 @@ struct Weighted {
   double weight;
 };
 
-/// The volume under a quadratic triangle, 1/3 integral of x . (x_u x x_v), as a sum of weights / 6
-/// times triple products of its nodes: corners 0 to 2, then the middles behind them. Gauss's rule
-/// on a square with one side drawn together, exact for the degree 4 at hand.
+/// The volume under a quadratic triangle, 1/3 integral of x . (x_u x x_v), as a weighted sum of
+/// triple products of its nodes / 6: corners 0 to 2, then the middles of the edges that start
+/// there. Integrated by Gauss quadrature on a square with one side collapsed, exact for the present
+/// degree 4.
 std::vector<Weighted> quadratic_weights() {
   constexpr std::array kPoint = {0.06943184420297371, 0.33000947820757187, 0.66999052179242813,
                                  0.93056815579702629};

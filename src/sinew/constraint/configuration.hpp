@@ -1,5 +1,5 @@
 /// @file
-/// Where the bodies are when constraints are evaluated.
+/// The configuration of all bodies at which constraints are evaluated.
 #pragma once
 
 #include <memory>
@@ -16,28 +16,28 @@ class HasOrientations;
 
 namespace sinew::constraint {
 
-/// Where the sites of all bodies are now.
+/// The present positions, rotations and velocities of the sites of all bodies.
 class Configuration {
  public:
-  /// @param bodies outlive it.
+  /// @param bodies must outlive this object.
   explicit Configuration(std::span<const std::unique_ptr<mechanics::Body>> bodies);
-  /// (3,) m.
+  /// Position, (3,) m.
   Vector3 position(const mechanics::MaterialPoint& point) const;
-  /// Rotation since rest.
+  /// Rotation from the pose at rest.
   Matrix3 rotation(const mechanics::Orientation& section) const;
-  /// rad or m.
+  /// Value of a coordinate, rad or m.
   double coordinate(const mechanics::Coordinate& coordinate) const;
-  /// (3,) rate of a site's motion: m/s; of an orientation, its angular velocity, rad/s; of a
-  /// coordinate, (rate, 0, 0).
+  /// Velocity of a site, (3,): m/s for a point; angular velocity, rad/s, for an orientation; (rate,
+  /// 0, 0) for a coordinate.
   Vector3 velocity(const mechanics::Site& site) const;
-  /// (n, 3) m and m/s, of the nodes of a body's surface (HasSurface). @param body in the world's
-  /// list.
+  /// Positions (m) and velocities (m/s) of the nodes of a body's surface, (n, 3). The body must
+  /// have the capability HasSurfaceNodes. @param body its index in the world's list.
   const Points& surface_nodes(int body) const;
   const Points& surface_node_velocities(int body) const;
 
  private:
   std::span<const std::unique_ptr<mechanics::Body>> bodies_;
-  std::vector<const mechanics::HasOrientations*> oriented_;  // (bodies,) null: without
+  std::vector<const mechanics::HasOrientations*> oriented_;  // (bodies,) null: has no orientations
 };
 
 }  // namespace sinew::constraint

@@ -1,6 +1,6 @@
 /// @file
-/// Constraints couple material points of one or several bodies by rows of H. A row's effort lambda
-/// (N, Pa) and motion delta (m, m^3) are conjugate: lambda . delta is work done on the bodies.
+/// Constraints couple sites of one or several bodies by rows of H. The effort lambda (N, Pa) and
+/// the motion delta (m, m^3) of a row are conjugate: lambda . ddelta is work done on the bodies.
 #pragma once
 
 #include <span>
@@ -16,32 +16,34 @@ namespace sinew::constraint {
 
 class Configuration;
 
-/// Immutable once declared; the numbers of a simulation live in its RowValues.
+/// A constraint: a set of rows of H. Immutable once declared; the numbers of a simulation are in
+/// its RowValues.
 class Constraint {
  public:
   virtual ~Constraint() = default;
 
-  /// Appends this constraint's rows (and pairs of points that its geometric stiffness couples) to
-  /// the world's and remembers where they start. Called once, when the model is built.
+  /// Appends the rows of this constraint, and the pairs of points that its geometric stiffness
+  /// couples, to those of the world, and remembers where they start. Called once, when the model is
+  /// built.
   virtual void declare(mechanics::RowPattern& rows,
                        std::vector<mechanics::StiffnessPair>& stiffness_pairs) = 0;
-  /// Writes delta of its rows for the current configuration, and the directions that follow it: all
-  /// but the frames of a contact, which its step sets (see Contact).
+  /// Writes delta of its rows for the current configuration, and the directions that depend on the
+  /// configuration: all but the frames of a contact, which are set by its step (see Contact).
   virtual void linearise(const Configuration& configuration,
                          mechanics::RowValues& values) const = 0;
   /// Writes its geometric stiffness for the current configuration: the Hessians of its declared
-  /// pairs. @param configuration of all bodies. @param effort (rows,) N or Pa, of all rows of the
-  /// world.
-  /// @param stiffness_pairs its own, first_stiffness_pair() on.
+  /// pairs.
+  /// @param configuration of all bodies. @param effort (rows,) N or Pa, of all rows of the world.
+  /// @param stiffness_pairs its own pairs, from first_stiffness_pair() on.
   virtual void geometric_stiffness(const Configuration& configuration,
                                    std::span<const double> effort,
                                    std::span<mechanics::StiffnessPair> stiffness_pairs) const;
 
-  /// Whether its geometric stiffness can only stiffen: a taut cable's is of one sign. Asked at the
-  /// efforts of all rows of the world, (rows,) N or Pa.
+  /// Whether its geometric stiffness is positive semidefinite at these efforts, as that of a taut
+  /// cable is. The argument has the efforts of all rows of the world, (rows,) N or Pa.
   virtual bool stiffens(std::span<const double>) const { return false; }
 
-  /// Adds what its rows depend on beside the points that they touch.
+  /// Adds to the hash what its rows depend on, apart from the points that they touch.
   virtual void add_to(ValueHash& hash) const = 0;
 
   const std::string& name() const { return name_; }

@@ -6,7 +6,8 @@
 
 namespace sinew::constraint {
 
-/// One row: effort = generalised force (N m; of an extension N), delta = the coordinate (rad; m).
+/// A generalised force on a coordinate. One row: effort = generalised force (N m; N for an
+/// extension), delta = the coordinate (rad; m).
 class CoordinateForce : public Constraint {
  public:
   /// @param name for messages. @param coordinate where the force acts.
@@ -15,7 +16,7 @@ class CoordinateForce : public Constraint {
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
-  /// As a force along the first axis: fingerprints of saved states stay as they were.
+  /// Hashed as a force along the first axis, so that fingerprints of saved states stay the same.
   void add_to(ValueHash& hash) const override { hash.add(Vector3(1, 0, 0), Vector3(0, 0, 0)); }
 
  private:

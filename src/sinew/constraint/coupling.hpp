@@ -6,10 +6,10 @@
 
 namespace sinew::constraint {
 
-/// The relative motion of two points across the line between them: two rows with directions e_1,
-/// e_2 that make an orthonormal frame with it, delta = e . (x_2 - x_1) = 0. The geometric stiffness
-/// T/l (I - n n^T) of a cable's piece between two bodies is a spring T/l along each (see
-/// step::StiffnessBlock).
+/// The relative motion of two points normal to the line between them. Two rows, whose directions
+/// e_1 and e_2 form an orthonormal frame with the line: delta = e . (x_2 - x_1) = 0. The geometric
+/// stiffness T/l (I - n n^T) of a cable segment between two bodies is a spring of stiffness T/l
+/// along each of them (see step::StiffnessBlock).
 class Coupling : public Constraint {
  public:
   Coupling(mechanics::MaterialPoint first, mechanics::MaterialPoint second);

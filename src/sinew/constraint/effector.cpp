@@ -13,7 +13,7 @@ namespace sinew::constraint {
 
 namespace {
 
-// A triangle whose height is under this part of its base has no reliable normal.
+// A triangle whose height is below this part of its base has no reliable normal.
 constexpr double kFlattest = 1e-6;
 
 // Columns e1, e2, e3 of the frame through a, b, c.
@@ -84,7 +84,8 @@ Vector3 OrientationEffector::value(const Configuration& configuration) const {
 
 void OrientationEffector::target_delta(const Configuration& configuration, const Vector3& target,
                                        Eigen::Ref<VectorX> delta) const {
-  // The rows measure the spin from here on, so the target is "now plus the rotation still to go".
+  // The rows measure the rotation from here on, so the target is the present value plus the
+  // remaining rotation vector.
   const Matrix3 now = rotation(configuration);
   delta = value(configuration) + rotation_vector(rotation_matrix(target) * now.transpose());
 }
@@ -144,7 +145,8 @@ void TriangleOrientation::linearise(const Configuration& configuration,
   const double length = (b - a).norm();
   const double alpha = frame.col(0).dot(c - a);
   const double beta = frame.col(1).dot(c - a);
-  // Rows of omega in the frame (e1, e2, e3) as linear forms of the motions of b - a and c - a.
+  // Components of omega in the frame (e1, e2, e3) as linear forms of the motions of b - a and
+  // c - a.
   Matrix3 by_b = Matrix3::Zero();
   Matrix3 by_c = Matrix3::Zero();
   by_b.row(2) = frame.col(1).transpose() / length;

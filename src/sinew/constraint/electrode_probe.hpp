@@ -1,5 +1,5 @@
 /// @file
-/// The capacitance between two electrodes on bodies. A probe of sensors.
+/// A capacitive sensor: the capacitance between two electrodes on bodies.
 #pragma once
 
 #include <array>
@@ -10,26 +10,27 @@
 
 namespace sinew::constraint {
 
-/// A triangle of an electrode, and the place opposite its middle on the other one.
+/// A triangle of an electrode, and the point of the other electrode opposite its centroid.
 struct ElectrodeTriangle {
   std::array<mechanics::MaterialPoint, 3> corners;
   mechanics::MaterialPoint opposite;
 };
 
-/// C = eps A/d of two electrodes that follow the body, F: for each, the sum over its triangles of
+/// Capacitance C = eps A/d of two electrodes that follow the body, F. Each electrode gives the sum
+/// over its triangles of
 ///   eps area / |n.(opposite - middle)|
-/// with n the triangle's normal, all as they are now; C is the mean of both sums. Exact for
-/// parallel plates of one size without fringes, however they move; where the electrodes bend, the
-/// plates are parallel triangle by triangle. What lies opposite is chosen at rest and stays: the
-/// electrodes are glued to the material.
+/// with n the triangle's normal and middle its centroid, all in the present shape; C is the mean of
+/// both sums. This is exact for parallel plates of equal size without fringe fields, however they
+/// move. Bent electrodes are treated as parallel plates, triangle by triangle. The opposite points
+/// are chosen at rest and stay the same: the electrodes are glued to the material.
 class CapacitanceProbe : public Probe {
  public:
-  /// @param name for headings. @param electrodes both. @param permittivity eps, F/m.
+  /// @param name for headings. @param electrodes both electrodes. @param permittivity eps, F/m.
   CapacitanceProbe(std::string name, std::array<std::vector<ElectrodeTriangle>, 2> electrodes,
                    double permittivity);
   const char* kind() const override { return "capacitance"; }
   void measure(const Configuration& configuration, std::span<double> values) const override;
-  /// The middles of both.
+  /// The area centroids of both electrodes, (2, 3) m.
   Points marks(const Configuration& configuration) const override;
 
  private:

@@ -1,5 +1,5 @@
 /// @file
-/// Joints between bodies with parts that stay rigid, or between such a body and the world.
+/// Joints between two bodies with rigid parts, or between such a body and the world.
 #pragma once
 
 #include <array>
@@ -12,27 +12,27 @@
 
 namespace sinew::constraint {
 
-/// Where a joint stands on a body, or in the world: then no site has a body.
+/// Where a joint is attached to a body, or to the world: then neither site has a body.
 struct JointSide {
   mechanics::MaterialPoint point;
-  mechanics::Orientation orientation;  ///< none: the joint leaves all rotations
-  Vector3 rest = Vector3::Zero();      ///< m, of the point
+  mechanics::Orientation orientation;  ///< without a body: all rotations are free
+  Vector3 rest = Vector3::Zero();      ///< position of the point at rest, m
 };
 
-/// The frames of a joint now, one on each side, which are one at rest: an origin, and axes whose
-/// third is the joint's. Motions of the second are measured in the first.
+/// The present frames of a joint, one on each side: an origin, and axes whose third is the axis of
+/// the joint. The two frames coincide at rest. Motions of the second are measured in the first.
 struct JointFrames {
   std::array<Vector3, 2> origin;
   std::array<Matrix3, 2> axes;
 
   Vector3 offset() const { return origin[1] - origin[0]; }
-  /// rad in (-pi, pi], about the first's third axis.
+  /// Rotation about the third axis of the first frame, rad in (-pi, pi].
   double angle() const;
-  /// m, along it.
+  /// Displacement along that axis, m.
   double slide() const { return axes[0].col(2).dot(offset()); }
 };
 
-/// What both of a joint's constraints stand on.
+/// The two sides of a joint, which Joint and JointMotion share.
 class JointPlace {
  public:
   /// @param first,second its two sides: motions of the second are measured in the first.
@@ -41,11 +41,13 @@ class JointPlace {
   JointFrames frames(const Configuration& configuration) const;
 
   const std::array<JointSide, 2>& sides() const { return sides_; }
-  /// Adds a row that touches points, orientations or both, of the sides that are bodies: the
-  /// second's point, the first's, the second's orientation, the first's.
+  /// Adds a row on the points, the orientations or both, of the sides that are bodies, in the
+  /// order: point of the second, point of the first, orientation of the second, orientation of the
+  /// first.
   int add_row(mechanics::RowPattern& rows, bool points, bool orientations) const;
-  /// Writes directions of such a row, of the sides that are bodies: on the second's point and its
-  /// opposite on the first's; on the second's orientation, and `first` on the first's as it stands.
+  /// Write the directions of such a row, for the sides that are bodies. write_points() writes
+  /// `direction` for the second side's point and its opposite for the first's; write_turns() writes
+  /// `second` and `first` for the orientations, unchanged.
   /// @return the next entry.
   Vector3* write_points(Vector3* entry, const Vector3& direction) const;
   Vector3* write_turns(Vector3* entry, const Vector3& second, const Vector3& first) const;
@@ -57,17 +59,17 @@ class JointPlace {
   Matrix3 axes_;
 };
 
-/// Rows that are held at zero. With r from the first side's point to the second's, and the axes
-/// a_1, a_2, a_3 of the first and b_1, b_2, b_3 of the second,
-/// - displacements: r = 0 along the world's axes, or a_1.r = a_2.r = 0 of what slides;
-/// - turns: a_i.b_j = 0, whose change is (b_j x a_i).(theta_b - theta_a): axes stay normal to one
-///   another (Shabana, Dynamics of Multibody Systems, 2013, sec. 7.4).
-/// Both sides' axes are one at rest, so that all rows are zero there. A universal joint's second
-/// axis is b_1.
+/// A joint: rows that are held at zero. With r from the first side's point to the second's, and the
+/// axes a_1, a_2, a_3 of the first side and b_1, b_2, b_3 of the second,
+/// - displacements: r = 0 along the world's axes, or a_1.r = a_2.r = 0 for a joint that slides;
+/// - rotations: a_i.b_j = 0, with the derivative (b_j x a_i).(theta_b - theta_a): the axes stay
+///   perpendicular (Shabana, Dynamics of Multibody Systems, 2013, sec. 7.4).
+/// The axes of both sides coincide at rest, so all rows are zero there. The second axis of a
+/// universal joint is b_1.
 class Joint : public Constraint {
  public:
-  /// @param name for messages. @param type what it holds.
-  /// @param place whose sides have orientations where the type holds a turn or slides.
+  /// @param name for messages. @param type which motions it holds.
+  /// @param place its sides must have orientations if the type holds a rotation or slides.
   Joint(std::string name, JointType type, const JointPlace& place);
 
   void declare(mechanics::RowPattern& rows,
@@ -77,23 +79,24 @@ class Joint : public Constraint {
 
   JointType type() const { return type_; }
   const JointPlace& place() const { return place_; }
-  /// Of its rows where the bodies are at rest: of displacements, then axes of turns.
+  /// Directions of its rows at rest: those of the displacements, then the axes of the rotations.
   std::vector<Vector3> rest_directions() const;
   int displacements() const { return displacements_; }
-  /// Whether a row holds a turn: its motion is in rad, its effort in N m.
+  /// Whether a row holds a rotation: its motion is in rad, its effort in N m.
   bool is_turn(int row) const { return row - first_row_ >= displacements_; }
+  /// Force and moment of a joint.
   struct Load {
     Vector3 force = Vector3::Zero();   ///< N
     Vector3 moment = Vector3::Zero();  ///< N m
   };
-  /// On the second body, at its point, by the efforts of its rows.
-  /// @param configuration of now. @param effort (row_count(),) N and N m.
+  /// Force and moment on the second body, at its point, due to the efforts of the rows.
+  /// @param configuration the present one. @param effort (row_count(),) N and N m.
   Load load(const Configuration& configuration, std::span<const double> effort) const;
-  /// m: how far apart the two points are, of what slides across the axis.
+  /// Distance between the two points, m; for a joint that slides, measured across its axis.
   double gap(const Configuration& configuration) const;
 
  private:
-  // Of a displacement, or the axis of a turn. row: of its own, from 0.
+  // Direction of a displacement, or axis of a rotation. row: counted from 0 within this joint.
   Vector3 direction(const JointFrames& frames, int row) const;
 
   JointType type_;
@@ -103,8 +106,8 @@ class Joint : public Constraint {
   int first_entry_ = -1;
 };
 
-/// The one motion that a hinge or slider leaves, as a row: its angle, rad, and a moment, or its
-/// displacement, m, and a force. What drives, limits or brakes the joint acts there.
+/// The free motion of a hinge or slider as a row: its angle, rad, with a moment as effort, or its
+/// displacement, m, with a force. Motors, limits and brakes of the joint act on this row.
 class JointMotion : public Constraint {
  public:
   enum class Kind { angle, displacement };

@@ -9,22 +9,23 @@ namespace sinew::constraint {
 /// Which relative motions a joint holds.
 enum class JointType {
   ball,         ///< no displacement
-  universal,    ///< nor a turn about the normal of its two axes
-  hinge,        ///< nor one but about its axis
+  universal,    ///< and no rotation about the normal of its two axes
+  hinge,        ///< no displacement, and rotation about its axis only
   weld,         ///< nothing moves
-  slider,       ///< a displacement along its axis alone
-  cylindrical,  ///< that, and a turn about it
+  slider,       ///< only a displacement along its axis
+  cylindrical,  ///< a displacement along its axis and a rotation about it
 };
 inline constexpr std::array kJointTypes = {JointType::ball,   JointType::universal,
                                            JointType::hinge,  JointType::weld,
                                            JointType::slider, JointType::cylindrical};
+/// "ball", "universal", "hinge", "weld", "slider", "cylindrical".
 const char* joint_type_name(JointType type);
 
-/// Whether it leaves the turn about its one axis.
+/// Whether the rotation about its one axis is free.
 constexpr bool turns_about_axis(JointType type) {
   return type == JointType::hinge || type == JointType::cylindrical;
 }
-/// Whether it leaves the displacement along it.
+/// Whether the displacement along its axis is free.
 constexpr bool slides_along_axis(JointType type) {
   return type == JointType::slider || type == JointType::cylindrical;
 }

@@ -1,5 +1,5 @@
 /// @file
-/// What threads along a line in a body feel: optical fibres and strain gauges. Probes of sensors.
+/// Sensors along a line in a body: optical fibres and strain gauges.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@
 
 namespace sinew::constraint {
 
-/// Curvature at places of a line, 1/m, as a grating in a fibre averages it over its length. Each
-/// place has three points, of which the outer ones are the ends of that length. With a and b from
-/// the first to the second and from the second to the third, the circle through them has
+/// Curvature at places along a line, 1/m, as a fibre grating averages it over its length. Each
+/// place has three points; the outer ones are the ends of that length. With a from the first to the
+/// second point and b from the second to the third, the circle through them has
 ///   kappa = 2 a x b / (|a| |b| |a + b|)
 /// about its axis (Menger's curvature, 4 area/(product of the sides), Math. Ann. 103, 1930), which
-/// is exact on arcs of circles. Without an axis its magnitude; about one, its component along it,
-/// positive for a turn by the right hand along the line.
+/// is exact on circular arcs. Without an axis, the probe measures the magnitude; with an axis, the
+/// component along it, positive for a right-handed turn along the line.
 class CurvatureProbe : public Probe {
  public:
   using Triple = std::array<mechanics::MaterialPoint, 3>;
@@ -33,17 +33,18 @@ class CurvatureProbe : public Probe {
   std::optional<Vector3> about_;
 };
 
-/// A number that grows with the strain of a line: offset + gain (L/L_0 - 1), L the sum of the
-/// distances between its points. Strain itself has gain 1 and offset 0; the resistance of a gauge
-/// R = R_0 (1 + G strain) has offset R_0 and gain G R_0 (G: the gauge factor).
+/// A linear function of the strain of a line: offset + gain (L/L_0 - 1), where L is the sum of the
+/// distances between its points. Strain itself has gain 1 and offset 0; the resistance R = R_0 (1 +
+/// G strain) of a gauge has offset R_0 and gain G R_0 (G: the gauge factor).
 class StretchProbe : public Probe {
  public:
+  /// Offset and gain, in the given unit.
   struct Law {
     double offset = 0.0, gain = 1.0;
     const char* unit = "";
   };
   /// @param name for headings. @param points in order, two or more. @param rest_length L_0, m.
-  /// @param law see there.
+  /// @param law offset, gain and unit.
   StretchProbe(std::string name, std::vector<mechanics::MaterialPoint> points, double rest_length,
                const Law& law);
   const char* kind() const override { return "stretch"; }
@@ -57,17 +58,18 @@ class StretchProbe : public Probe {
   Law law_;
 };
 
-/// What light loses in a waveguide along a line, dB: per_length L + per_turn sum |angle between
-/// neighbouring pieces|. The first term is the law of Beer and Lambert; the second, with the
-/// integral of the curvature's magnitude along the line in place of the sum, is the simplest law of
-/// losses in bends. Both constants are measured on the waveguide.
+/// Attenuation of light in a waveguide along a line, dB: per_length L + per_turn sum |angle between
+/// adjacent segments|. The first term is the Beer-Lambert law. The second discretises the integral
+/// of the magnitude of the curvature along the line, the simplest law of bending losses. Both
+/// constants are measured on the waveguide.
 class AttenuationProbe : public Probe {
  public:
+  /// Constants of the waveguide.
   struct Loss {
     double per_length = 0.0;  ///< dB/m
     double per_turn = 0.0;    ///< dB/rad
   };
-  /// @param name for headings. @param points in order, two or more. @param loss see there.
+  /// @param name for headings. @param points in order, two or more. @param loss both constants.
   AttenuationProbe(std::string name, std::vector<mechanics::MaterialPoint> points,
                    const Loss& loss);
   const char* kind() const override { return "attenuation"; }

@@ -6,8 +6,8 @@
 
 namespace sinew::constraint {
 
-/// One row: effort = force along `direction` (N, either sign), delta = displacement of the point
-/// along it since rest (m).
+/// A force along a fixed direction. One row: effort = force along `direction` (N, either sign),
+/// delta = displacement of the point along it since rest (m).
 class PointForce : public Constraint {
  public:
   /// @param name for messages.

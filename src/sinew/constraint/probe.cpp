@@ -18,12 +18,12 @@ namespace sinew::constraint {
 
 namespace {
 
-// Thickness of a set, relative to its breadth, from which on it has no plane of its own; and
-// breadth relative to length below which it is a line.
+// Thickness of a set relative to its breadth above which it has no best-fit plane, and breadth
+// relative to length below which it is a line.
 constexpr double kThickest = 0.9, kNarrowest = 1e-6;
 // Cosine between a normal and the line between two faces below which the line does not orient it.
 constexpr double kAcross = 0.1;
-// Part of a hull's size below which one of its edges is rounding: two nodes one behind the other.
+// Relative to a hull's size: a shorter edge is rounding, two nodes one behind the other.
 constexpr double kShortestEdge = 1e-9;
 
 Points positions(const Configuration& configuration,
@@ -87,7 +87,7 @@ std::vector<std::size_t> convex_hull(const std::vector<Eigen::Vector2d>& points)
       }
       hull.push_back(*it);
     }
-    hull.pop_back();  // begins the other side
+    hull.pop_back();  // it is the first point of the other side
   };
   add_side(order.begin(), order.end());
   add_side(order.rbegin(), order.rend());
@@ -202,7 +202,7 @@ ExtentProbe::Span ExtentProbe::largest_span(const Points2& points,
   return best;
 }
 
-// The least reach is square to an edge of the hull.
+// The smallest extent is normal to an edge of the hull.
 ExtentProbe::Span ExtentProbe::smallest_span(const Points2& points,
                                              const std::vector<std::size_t>& hull,
                                              const Span& largest) {

@@ -1,6 +1,6 @@
 /// @file
-/// Probes: numbers read off the robot's present shape. They only look: they have no rows, and a run
-/// takes the same bits with and without them.
+/// Probes: quantities measured on the robot's present shape. They have no rows, so a run gives the
+/// same bits with and without them.
 #pragma once
 
 #include <array>
@@ -18,27 +18,27 @@ namespace sinew::constraint {
 /// One number of a probe.
 struct ProbeComponent {
   std::string name;  ///< "x", "length", "3.x"; empty for a probe's only number
-  const char* unit;  ///< "m", "rad", "1/m"; empty of a ratio
+  const char* unit;  ///< "m", "rad", "1/m"; empty for a ratio
 };
 
+/// A quantity measured on the bodies, with named components.
 class Probe {
  public:
   virtual ~Probe() = default;
   const std::string& name() const { return name_; }
-  /// "point", "line", "bend", "distance" or "extent"; others of what sensors measure.
+  /// "point", "line", "bend", "distance" or "extent"; further kinds for quantities of sensors.
   virtual const char* kind() const = 0;
-  /// What measure() writes.
+  /// The numbers that measure() writes.
   const std::vector<ProbeComponent>& components() const { return components_; }
   /// @param configuration of the bodies now. @param values (components,), replaced.
   virtual void measure(const Configuration& configuration, std::span<double> values) const = 0;
-  /// (k, 3) m: points that show where it measures; joined by lines where it is a line or a
-  /// distance.
+  /// Points that show where it measures, (k, 3) m; lines join those of a line or a distance.
   virtual Points marks(const Configuration& configuration) const = 0;
-  /// Rows of marks().
+  /// Number of rows of marks().
   virtual std::size_t mark_count() const { return 2; }
 
  protected:
-  /// @param name of the probe. @param components what it measures.
+  /// @param name of the probe. @param components the numbers that it measures.
   Probe(std::string name, std::vector<ProbeComponent> components)
       : name_(std::move(name)), components_(std::move(components)) {}
 
@@ -47,10 +47,10 @@ class Probe {
   std::vector<ProbeComponent> components_;
 };
 
-/// Where a material point, or the mean of a set attached as one, is: x, y, z, m.
+/// Position of a material point, or of the mean of a set attached as one: x, y, z, m.
 class PointProbe : public Probe {
  public:
-  /// @param name for headings. @param point what is measured.
+  /// @param name for headings. @param point whose position is measured.
   PointProbe(std::string name, mechanics::MaterialPoint point);
   const char* kind() const override { return "point"; }
   void measure(const Configuration& configuration, std::span<double> values) const override;
@@ -61,8 +61,8 @@ class PointProbe : public Probe {
   mechanics::MaterialPoint point_;
 };
 
-/// Material points along a line: its length, the sum of the distances from each to the next, and
-/// every point: length, 0.x, 0.y, 0.z, 1.x, ...; m.
+/// Length and points of a line of material points. The length is the sum of the distances between
+/// neighbours. Order: length, 0.x, 0.y, 0.z, 1.x, ...; m.
 class LineProbe : public Probe {
  public:
   /// @param name for headings. @param points in order, two or more.
@@ -79,7 +79,7 @@ class LineProbe : public Probe {
 /// The distance between two material points, m.
 class DistanceProbe : public Probe {
  public:
-  /// @param name for headings. @param points both.
+  /// @param name for headings. @param points both points.
   DistanceProbe(std::string name, std::array<mechanics::MaterialPoint, 2> points);
   const char* kind() const override { return "distance"; }
   void measure(const Configuration& configuration, std::span<double> values) const override;
@@ -89,27 +89,27 @@ class DistanceProbe : public Probe {
   std::array<mechanics::MaterialPoint, 2> points_;
 };
 
-/// A face or a cross-section: nodes and its normal at rest.
+/// A face or a cross-section: its nodes, and its normal at rest.
 struct ProbeFace {
   std::vector<mechanics::MaterialPoint> points;
   Points rest;                    ///< (n, 3) m
-  std::optional<Vector3> normal;  ///< at rest; none: that of the plane that fits the nodes best
+  std::optional<Vector3> normal;  ///< at rest; none: of the best-fit plane of the nodes
 };
 
-/// The angle between the normals of two faces, rad, 0 to pi; or, about an axis, from the first to
-/// the second by the right hand, -pi to pi, of the normals' parts across that axis. At rest both
-/// normals point from the first face's middle to that of the second; where one lies across this
-/// line, so that it says nothing, to the same side of each other.
+/// Angle between the normals of two faces, rad, 0 to pi. With an axis, the right-handed angle about
+/// it from the first normal to the second, -pi to pi, of the components normal to the axis. At
+/// rest, both normals point from the centre of the first face to that of the second. If one of them
+/// is normal to this line, so that the line cannot orient it, both point to the same side.
 ///
-/// A face's normal now is R n: n is its normal at rest, R the rotation that fits its nodes best,
-/// argmin sum |x - x_mean - R (X - X_mean)|^2 with det R = 1 (Kabsch, Acta Cryst. A32, 1976; the
-/// sign by Umeyama, IEEE PAMI 13, 1991). A plane face may have any shape that is no line; of a
-/// cross-section that warps this is the mean.
+/// The present normal of a face is R n: n is its normal at rest, and R is the rotation that fits
+/// its nodes best, argmin sum |x - x_mean - R (X - X_mean)|^2 with det R = 1 (Kabsch, Acta Cryst.
+/// A32, 1976; sign from Umeyama, IEEE PAMI 13, 1991). A plane face may have any shape but a line.
+/// For a cross-section that warps, R is its mean rotation.
 class BendProbe : public Probe {
  public:
-  /// @param name for headings. @param faces both. @param about the axis, or none.
-  /// Throws Error(degenerate-orientation) for a face that is a line or has no plane of its own, and
-  /// for a normal along the axis.
+  /// @param name for headings. @param faces both faces. @param about the axis, or none.
+  /// Throws Error: degenerate-orientation for a face that is a line or fits no plane better than
+  /// another, and for a normal along the axis.
   BendProbe(std::string name, std::array<ProbeFace, 2> faces, const std::optional<Vector3>& about);
   const char* kind() const override { return "bend"; }
   void measure(const Configuration& configuration, std::span<double> values) const override;
@@ -126,14 +126,15 @@ class BendProbe : public Probe {
   std::optional<Vector3> about_;
 };
 
-/// How far a set of nodes reaches, m: along an axis, the largest coordinate less the smallest; or
-/// across it, the least or the greatest such reach of all directions normal to it. The least is
-/// that of a calliper (Toussaint, Proc. IEEE MELECON, 1983), the greatest the diameter.
+/// Extent of a set of nodes, m: along an axis, the largest coordinate minus the smallest; across
+/// it, the smallest or largest such extent over all directions normal to the axis. The smallest is
+/// the width measured by a calliper (Toussaint, Proc. IEEE MELECON, 1983), the largest the
+/// diameter.
 class ExtentProbe : public Probe {
  public:
   enum class Way { along, smallest_across, largest_across };
-  /// @param name for headings. @param points the nodes. @param axis unit length. @param way see
-  ///   the class.
+  /// @param name for headings. @param points the nodes. @param axis unit length.
+  /// @param way along or across the axis.
   ExtentProbe(std::string name, std::vector<mechanics::MaterialPoint> points, const Vector3& axis,
               Way way);
   const char* kind() const override { return "extent"; }
@@ -141,7 +142,7 @@ class ExtentProbe : public Probe {
   Points marks(const Configuration& configuration) const override;
 
  private:
-  // Two nodes between which it was measured, and the reach.
+  // An extent, and the two nodes between which it was measured.
   struct Span {
     double reach = 0.0;
     std::array<std::size_t, 2> ends{};

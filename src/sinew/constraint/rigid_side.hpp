@@ -15,30 +15,30 @@ namespace sinew::constraint {
 
 class Configuration;
 
-/// It has two entries in each row, of its centre and of its orientation. A row with direction n
-/// watches one of the body's points, at the lever r from the centre: a motion v of the centre and
-/// w of the orientation counts as n.v + (r x n).w.
-/// `entry` below is always that of the centre; the orientation's is the next one.
+/// One rigid body of a contact. It has two entries in each row: its centre and its orientation. A
+/// row with direction n watches one point of the body, at the lever r from the centre: a motion v
+/// of the centre and w of the orientation contributes n.v + (r x n).w.
+/// `entry` is always that of the centre; the entry of the orientation is the next one.
 struct RigidSide {
-  mechanics::MaterialPoint centre;        ///< any of its points
-  mechanics::Orientation turn;            ///< of it
+  mechanics::MaterialPoint centre;        ///< any point of the body
+  mechanics::Orientation turn;            ///< of the body
   Vector3 rest_centre = Vector3::Zero();  ///< (3,) m
   collision::Shape shape;                 ///< at rest, in the world
 
-  /// Where it is now, from rest.
+  /// Transform of the body from its pose at rest to the present one.
   Eigen::Isometry3d pose(const Configuration& configuration) const;
-  /// Watches the body's point that is at (3,) m now.
+  /// Starts watching the point of the body that is now at `at`, (3,) m.
   void watch(const Configuration& configuration, std::size_t entry, const Vector3& at,
              mechanics::RowValues& values) const;
-  /// (3,) m: how far that point has moved since.
+  /// Displacement of the watched point since watch(), (3,) m.
   Vector3 displacement(const Configuration& configuration, std::size_t entry,
                        const mechanics::RowValues& values) const;
-  /// (3,) m: where that point is now.
+  /// Present position of the watched point, (3,) m.
   Vector3 watched(const Configuration& configuration, std::size_t entry,
                   const mechanics::RowValues& values) const;
-  /// (3,) m/s of the body's point that is at (3,) m now.
+  /// Velocity of the point of the body that is now at `at`, (3,) m/s.
   Vector3 velocity(const Configuration& configuration, const Vector3& at) const;
-  /// Levers as they are now, and the entries of a row in (3,) `direction`.
+  /// Writes the present lever and both entries of a row with this (3,) `direction`.
   void write(const Configuration& configuration, std::size_t entry, const Vector3& direction,
              mechanics::RowValues& values) const;
 };

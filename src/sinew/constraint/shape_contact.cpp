@@ -16,12 +16,13 @@ namespace sinew::constraint {
 
 namespace {
 
-// The gap of a point that a step has no use for, m: beyond anything that could come to touch.
+// The gap of an idle point, m: beyond anything that could touch.
 constexpr double kIdle = 1e6;
 
 }  // namespace
 
-// Entries of a row: the point, or a body's centre and turn; then the carrier's.
+// Entries of a row: the point, or the centre and orientation of its body; then those of the
+// carrier.
 ShapeContact::ShapeContact(std::string name, std::vector<mechanics::MaterialPoint> points,
                            collision::Shape surface, Friction friction,
                            std::optional<RigidSide> carrier)
@@ -73,7 +74,7 @@ void ShapeContact::begin_step(const Configuration& configuration, const Eigen::I
   }
 }
 
-// Where the surface moves of itself, the points' frames go with it.
+// If the motion of the surface is prescribed, the frames of the points move with it.
 void ShapeContact::find_points(const Configuration& configuration, const Eigen::Isometry3d& start,
                                const Eigen::Isometry3d& carry, mechanics::RowValues& values) const {
   const collision::TouchingPoints found = collision::touching_points(
@@ -89,8 +90,8 @@ void ShapeContact::find_points(const Configuration& configuration, const Eigen::
   }
 }
 
-// It stays as it is for as long as it has no use, without a lever on either body: what a state
-// remembers of its rows does not tell when it was put away.
+// An idle point keeps this state, without a lever on either body, since the saved state of its rows
+// does not tell when it became idle.
 void ShapeContact::put_away(std::size_t point, mechanics::RowValues& values) const {
   set_frame(point, Vector3::Zero(), collision::tangent_frame(Vector3::UnitZ()), kIdle, values);
   values.delta.segment<3>(row(point)) = values.reference.segment<3>(row(point));
@@ -109,7 +110,7 @@ bool ShapeContact::idle(std::size_t point, const mechanics::RowValues& values) c
   return own_ && values.reference[row(point)] == kIdle;
 }
 
-// The gap's row watches the centres of roundness, which lie on the normal through the point.
+// The gap's row watches the centres of curvature, which lie on the normal through the point.
 void ShapeContact::watch(const Configuration& configuration, std::size_t point, const Vector3& at,
                          mechanics::RowValues& values) const {
   const Vector3 normal = values.direction[entry(point)];
@@ -178,7 +179,7 @@ Vector3 ShapeContact::velocity_beside(const Configuration& configuration, std::s
   return result;
 }
 
-// What rows' efforts do to the bodies: on the carrier, the opposite of what they do to the point.
+// Writes the entries of the bodies: on the carrier, efforts act opposite to those on the point.
 void ShapeContact::write_sides(const Configuration& configuration, std::size_t point,
                                mechanics::RowValues& values) const {
   for (int j = 0; j < 3; ++j) {
@@ -191,7 +192,7 @@ void ShapeContact::write_sides(const Configuration& configuration, std::size_t p
 
 namespace {
 
-// Edges have no principal curvatures; faces have none.
+// Shapes with edges get no principal curvatures.
 collision::PrincipalFrame nearest_frame(const collision::Shape& surface, const Vector3& point) {
   return std::visit(
       [&](const auto& own) -> collision::PrincipalFrame {
@@ -271,7 +272,7 @@ Vector3 ShapeContact::centre_velocity_beside(const Configuration& configuration,
   return velocity;
 }
 
-// Of the centre of roundness along the normal, as the gap's row is.
+// Along the normal, uses the centre of curvature, as the gap's row does.
 Vector3 ShapeContact::shift(const Eigen::Isometry3d& back, const Configuration& configuration,
                             std::size_t point, const mechanics::RowValues& values) const {
   Vector3 result;
@@ -317,7 +318,7 @@ void ShapeContact::load(const double* from, mechanics::RowValues& values) const 
     if (!own_) continue;
     values.arm[entry(k, 1)] = Eigen::Map<const Vector3>(from);
     from += 3;
-    values.reference[row(k)] = 0.0;  // the next step says whether it has a use
+    values.reference[row(k)] = 0.0;  // the next step decides whether it is idle
   }
 }
 

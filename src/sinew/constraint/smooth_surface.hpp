@@ -13,8 +13,8 @@ using collision::distance;
 using collision::Plane;
 using collision::Sphere;
 
-/// Shapes without edges: their tangent planes turn gradually with the point that they are chosen
-/// for, which the rounds of a step rely on (see Contact).
+/// Shapes without edges. Their tangent planes turn continuously with the point for which they are
+/// chosen; the iterations of a step rely on this (see Contact).
 using SmoothSurface = std::variant<Plane, Sphere, Capsule>;
 
 }  // namespace sinew::constraint

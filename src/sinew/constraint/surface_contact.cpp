@@ -12,7 +12,7 @@ namespace sinew::constraint {
 
 namespace {
 
-// Of one contact: more pairs of places never take part in a step.
+// Maximum number of points of one contact.
 constexpr std::size_t kMaxPoints = 4096;
 
 std::size_t vertices_of(const collision::SurfaceTopology& surface) {
@@ -125,7 +125,7 @@ double SurfaceContact::gap_at(const Points& first, const Points& second, std::si
          values.offset[row(point)];
 }
 
-// Half-way between the surfaces. A point that is none stays out of the way, on the body.
+// Half-way between the surfaces. An idle point is placed on the body.
 Vector3 SurfaceContact::position_now(const Configuration& configuration, std::size_t point,
                                      const mechanics::RowValues& values) const {
   if (idle(point, values)) return configuration.surface_nodes(body()).row(0).transpose();

@@ -16,29 +16,32 @@ class SurfaceTrace;
 
 namespace sinew::constraint {
 
-/// Its points are pairs of places on two surfaces, local minima of their distance, which are found
-/// anew in every step (sim::TouchingSurfaces): a vertex over a face, an edge or a vertex, and edges
-/// that cross. Both places are fixed in their materials through a step, and so is the normal n,
-/// from the second surface to the first:
+/// Contact between two deformable surfaces. Its points are pairs of surface points that are local
+/// minima of the distance: a vertex over a face, an edge or a vertex, or two crossing edges. They
+/// are found anew in every step (sim::TouchingSurfaces). Both surface points are fixed in their
+/// materials through a step, and so is the normal n, from the second surface to the first:
 ///   gap = n.(x_1 - x_2) - separation,   slid = (t_1, t_2).(x_1 - x_2) since the step began.
 /// Surfaces rest at the separation, so that rounding never takes them through each other.
 class SurfaceContact : public Contact {
  public:
+  /// One of the two surfaces.
   struct Side {
     mechanics::SurfaceSite site;
     std::shared_ptr<const collision::SurfaceTopology> surface;
     std::shared_ptr<const mechanics::SurfaceTrace> trace;
-    std::vector<char> held;  ///< (nodes,) 1: no force moves it
-    /// Whether no force moves a place.
+    std::vector<char> held;  ///< (nodes,) 1: the node is immovable
+    /// Whether all nodes of a surface point are immovable.
     bool holds(const collision::SurfacePoint& place) const;
   };
+  /// Friction and distances.
   struct Settings {
-    Friction friction;        ///< see there
-    double separation = 0.0;  ///< m, >= 0: the distance of surfaces that touch
-    double depth = 0.0;       ///< m, >= 0: overlaps up to this are undone
+    Friction friction;        ///< coefficients
+    double separation = 0.0;  ///< m, >= 0: distance of surfaces in contact
+    double depth = 0.0;       ///< m, >= 0: overlaps up to this depth are resolved
   };
-  /// @param name for messages. @param first,second of one body: parts of its surface touch.
-  /// @param settings see there. Throws Error: out-of-range.
+  /// @param name for messages. @param first,second the two sides; on one body, two parts of its
+  ///   surface or the same part twice. @param settings friction and distances. Throws Error:
+  ///   out-of-range.
   SurfaceContact(std::string name, Side first, Side second, const Settings& settings);
 
   const Side& first() const { return first_; }
@@ -60,44 +63,46 @@ class SurfaceContact : public Contact {
                        const mechanics::RowValues& values) const override;
   Vector3 velocity_beside(const Configuration& configuration, std::size_t point,
                           const mechanics::RowValues& values) const override;
-  /// Of the mean of all nodes.
+  /// Uses the mean velocity of all nodes of each body.
   Vector3 centre_velocity_beside(const Configuration& configuration,
                                  std::size_t point) const override;
   double linear_gap(const Configuration& configuration, std::size_t point,
                     const mechanics::RowValues& values) const override;
-  /// That of its row: places and normal stay through a step. Of a point that is none, its
-  /// reference: how far points were looked for.
+  /// The value of its linear row, since surface points and normal are fixed through a step. For an
+  /// idle point, its reference: the distance up to which points were searched for.
   double gap_now(const Configuration& configuration, const Eigen::Isometry3d& pose,
                  std::size_t point, const mechanics::RowValues& values) const override;
 
-  /// Makes room in `values`.
+  /// Allocates what this contact needs in `values`.
   void prepare(mechanics::RowValues& values) const;
-  /// Makes a pair one of the points. @param point below size(). @param pair of the two surfaces.
-  /// @param first_nodes,second_nodes (n, 3) m: of the bodies when the step began.
+  /// Stores a pair as one of the contact points. @param point below size().
+  /// @param pair of the two surfaces.
+  /// @param first_nodes,second_nodes (n, 3) m: nodes of the bodies at the start of the step.
   /// @param values gets directions, offset, reference, patches.
   void put(std::size_t point, const collision::ProximityPair& pair, const Points& first_nodes,
            const Points& second_nodes, mechanics::RowValues& values) const;
-  /// m: that of a pair, less the separation. @param pair of the two surfaces.
+  /// Distance of a pair along its normal, minus the separation, m. @param pair of the two surfaces.
   /// @param first_nodes,second_nodes (n, 3) m.
   double gap_of(const collision::ProximityPair& pair, const Points& first_nodes,
                 const Points& second_nodes) const;
-  /// Writes delta of a point. @param configuration now. @param point not idle().
+  /// Writes delta of a point. @param configuration the present one. @param point not idle().
   /// @param values of the step.
   void measure(const Configuration& configuration, std::size_t point,
                mechanics::RowValues& values) const;
-  /// m: the gap's row with the bodies' nodes there. @param first,second (n, 3) m.
+  /// Value of the gap row for these positions of the bodies' nodes, m. @param first,second (n, 3)
+  /// m.
   /// @param point not idle(). @param values of the step.
   double gap_at(const Points& first, const Points& second, std::size_t point,
                 const mechanics::RowValues& values) const;
-  /// A point that is none.
+  /// Makes a point idle.
   void clear(std::size_t point, mechanics::RowValues& values) const;
-  /// What a state remembers of a point.
+  /// Number of values of a point that a saved state holds.
   static constexpr std::size_t kMemory = 21;
-  /// Writes that, for load(). @param point not idle(). @param pair that was put there.
+  /// Writes a point for load(). @param point not idle(). @param pair that was stored there.
   /// @param values of the step. @param to kMemory numbers.
   void save(std::size_t point, const collision::ProximityPair& pair,
             const mechanics::RowValues& values, double* to) const;
-  /// Reads it. @return the places of the pair.
+  /// Reads a point. @return the surface points of the pair.
   collision::ProximityPair load(std::size_t point, const double* from,
                                 mechanics::RowValues& values) const;
 

@@ -1,5 +1,5 @@
 /// @file
-/// Points of one body that stay on points of another.
+/// Ties points of one body to points of another.
 #pragma once
 
 #include <span>
@@ -10,13 +10,14 @@
 
 namespace sinew::constraint {
 
-/// Pairs of material points x_a, x_b that are one at rest and stay so: rows along x, y and z of
-/// each pair,
-///   delta = x_b - x_a = 0,
-/// whose effort is the force on b, and whose opposite acts on a. They are linear in the positions:
-/// no geometric stiffness, and rotations follow from several pairs. With the nodes of one mesh tied
-/// to points in the elements of another this is node-to-element collocation (the finer mesh belongs
-/// on the side of the nodes: Wriggers, Computational Contact Mechanics, 2006, sec. 6.3).
+/// Pairs of material points x_a, x_b that coincide at rest and are held together by rows along x, y
+/// and z,
+///   delta = x_b - x_a = 0.
+/// The effort is the force on b; the opposite force acts on a. The rows are linear in the
+/// positions, so there is no geometric stiffness; several pairs also hold rotations. If the nodes
+/// of one mesh are tied to points in the elements of another, this is node-to-element collocation
+/// (the finer mesh should have the nodes: Wriggers, Computational Contact Mechanics, 2006, sec.
+/// 6.3).
 class Tie : public Constraint {
  public:
   struct Pair {
@@ -34,7 +35,7 @@ class Tie : public Constraint {
   const std::vector<Pair>& pairs() const { return pairs_; }
   /// First of the three rows of a pair.
   int row(std::size_t pair) const { return first_row_ + 3 * static_cast<int>(pair); }
-  /// Largest distance of any pair now, m.
+  /// Largest present distance of any pair, m.
   double largest_gap(const Configuration& configuration) const;
 
  private:

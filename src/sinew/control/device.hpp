@@ -1,17 +1,18 @@
 /// @file
-/// What a high-rate loop reads its input from and writes its output to.
+/// Interface of the devices of a high-rate loop.
 #pragma once
 
 #include "sinew/control/high_rate_step.hpp"
 
 namespace sinew::control {
 
-/// Called in the loop's thread once a period: neither may wait.
+/// A device that measures the input of a loop and applies its output. The loop's thread calls both
+/// functions once per period, so neither may block.
 class Device {
  public:
   virtual ~Device() = default;
-  /// Puts the latest measurement into sensors, hands and driven of an input; targets are not its
-  /// own. @return false where there is none since the last call.
+  /// Writes the latest measurement to the sensors, hands and driven efforts of `input`. Targets do
+  /// not belong to the device. @return false if there is no new measurement since the last call.
   virtual bool read(HighRateInput& input) = 0;
   virtual void write(const HighRateOutput& output) = 0;
 };

@@ -7,9 +7,9 @@ namespace sinew::control {
 
 namespace {
 
-// Part of W's diagonal that makes the regularisation definite.
+// Part of W's diagonal that is added to make the regularisation definite.
 constexpr double kEvenly = 1e-6;
-// Of motions: what is within a limit all the same.
+// Relative tolerance of limits of motions.
 constexpr double kBlur = 1e-9;
 
 double infinity_norm(const MatrixX& matrix) {
@@ -35,8 +35,8 @@ DriveProgram::DriveProgram(const HighRateSettings& settings)
       solver_(static_cast<int>(scale_.size()), static_cast<int>(scale_.size())),
       elastic_(static_cast<int>(scale_.size()), static_cast<int>(scale_.size())) {}
 
-// Calls visit(task, position, value without driven efforts, slope of a column) for those that are
-// asked.
+// Calls visit(task, index, value without driven efforts, slope of a column) for tasks with a
+// target.
 template <typename Visit>
 void DriveProgram::for_each_task(const Asked& asked, Visit&& visit) const {
   const TouchLaw& law = asked.law;
@@ -77,8 +77,8 @@ double DriveProgram::missed(const Asked& asked, const VectorX& driven) const {
   return sum;
 }
 
-// Targets of motions that are too far away for the linearisation, from where it was made. An angle
-// counts as its arc at a distance of the robot's size.
+// Shortens the targets of motions that are too far away for the linearisation, measured from its
+// state. An angle counts as its arc at a distance of the robot's size.
 void DriveProgram::shorten(const Asked& asked) {
   const Snapshot& snapshot = asked.snapshot;
   goal_ = asked.targets;
@@ -114,7 +114,7 @@ void DriveProgram::regularise(const Asked& asked) {
   const double eps = settings_.epsilon * (wanted > 0.0 ? wanted : norm) / norm;
   for (Eigen::Index j = 0; j < count; ++j) {
     for (Eigen::Index i = 0; i < count; ++i) {
-      // Cables with friction leave W unsymmetric: its symmetric part.
+      // Cables with friction make W unsymmetric: uses its symmetric part.
       double part = 0.5 * eps * scale_[i] * (w(i, j) + w(j, i)) * scale_[j];
       if (i == j) part = part > 0.0 ? (1.0 + kEvenly) * part : eps * norm;
       program_.hessian(i, j) += part;
@@ -128,7 +128,7 @@ void DriveProgram::form_limits(const Asked& asked) {
   for (Eigen::Index k = 0; k < count; ++k) {
     const DrivenRow& row = settings_.driven[static_cast<std::size_t>(k)];
     const double most = row.effort_rate * settings_.period, before = asked.before[k];
-    // On its way into its limits a rate still binds.
+    // An effort outside its limits returns to them at a limited rate.
     const double least = std::clamp(row.effort_min, before - most, before + most);
     const double largest = std::clamp(row.effort_max, before - most, before + most);
     program_.lower[k] = least / scale_[k];

@@ -38,7 +38,7 @@ double ForceEstimate::misfit(const TouchLaw& law, const VectorX& driven, const V
   return sum;
 }
 
-// In forces over their priors, which makes the prior's part of the Hessian the identity.
+// The unknowns are forces divided by their priors, so that the prior's Hessian is the identity.
 bool ForceEstimate::solve(const TouchLaw& law, const VectorX& driven, const VectorX& readings,
                           Eigen::Ref<VectorX> unknown) {
   const Eigen::Index count = column_.size();

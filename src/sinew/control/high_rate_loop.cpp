@@ -122,7 +122,7 @@ void HighRateLoop::run(Clock& clock, std::int64_t periods) {
 
 void HighRateLoop::loop(Clock& clock, std::int64_t periods, const void* timeline) {
   double due = clock.now();
-  // Ages go on from run to run; on another clock, without the time between.
+  // Ages continue from run to run. On another clock, the time between runs does not count.
   if (timeline != timeline_) {
     snapshot_seen_ += due - last_begin_;
     input_seen_ += due - last_begin_;
@@ -134,7 +134,7 @@ void HighRateLoop::loop(Clock& clock, std::int64_t periods, const void* timeline
     period(begin);
     const double end = clock.now();
     note(due, begin, end);
-    // What was missed is left out: the next period begins where it would have.
+    // Missed periods are skipped; the next one begins at its regular time.
     const double passed = std::floor((end - due) / settings().period);
     if (passed >= 1.0) count(missed_, static_cast<std::int64_t>(passed));
     due += settings().period * std::max(passed + 1.0, 1.0);

@@ -10,7 +10,7 @@ namespace sinew::control {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-// Least part of the way to what was found: it grows back in twelve periods.
+// Smallest fraction of a step; it recovers in twelve periods.
 constexpr double kMinShare = 1.0 / 4096.0;
 
 Eigen::Index length(const auto& list) { return static_cast<Eigen::Index>(list.size()); }
@@ -113,7 +113,7 @@ const HighRateOutput& HighRateStep::step(Snapshot* fresh, const HighRateInput& i
   return output_;
 }
 
-// Asks both snapshots at the same input.
+// Evaluates both snapshots at the same input.
 void HighRateStep::take(Snapshot& fresh, const HighRateInput& input) {
   if (has_snapshot_) {
     solve(input);

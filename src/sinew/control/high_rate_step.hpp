@@ -1,6 +1,6 @@
 /// @file
-/// One period of a high-rate loop: from the latest snapshot and what was measured to forces and
-/// efforts. Knows no clock, no thread and no device.
+/// One period of a high-rate loop: computes forces and efforts from the latest snapshot and the
+/// measurements. Independent of clocks, threads and devices.
 #pragma once
 
 #include <cstdint>
@@ -17,90 +17,95 @@
 
 namespace sinew::control {
 
-/// What is measured and asked at the beginning of a period.
+/// Measurements and targets at the beginning of a period.
 struct HighRateInput {
   VectorX sensors;  ///< (sensors,) m or rad; not finite: not measured
-  VectorX hands;    ///< (hands,) m along their rows, from rest; not finite: no hand there
-  VectorX targets;  ///< (tasks,) m, rad or N; not finite: nothing is asked
+  VectorX hands;    ///< (hands,) m, displacement along their rows from rest; not finite: no hand
+  VectorX targets;  ///< (tasks,) m, rad or N; not finite: no target
   VectorX driven;   ///< (driven,) N, measured efforts; not finite: those of the last output
 
-  /// Nothing measured, nothing asked.
+  /// No measurements and no targets.
   static HighRateInput none(const HighRateSettings& settings);
 };
 
+/// State of a loop.
 enum class HighRateState {
-  waiting,  ///< no snapshot yet: efforts are those of release, hands feel nothing
+  waiting,  ///< no snapshot yet: efforts are those of release, hands feel no force
   running,
-  holding,    ///< what it works from is stale: driven efforts stay as they are
-  releasing,  ///< and go to those of release along a ramp, hands' forces to zero
-  released,   ///< where they are
+  holding,    ///< snapshot or input is stale: driven efforts are held
+  releasing,  ///< driven efforts ramp to those of release, hand forces to zero
+  released,   ///< the ramp has ended
 };
 /// "waiting", "running", "holding", "releasing", "released".
 std::string_view high_rate_state_name(HighRateState state);
 
-/// What is stale.
+/// The cause of staleness.
 enum class StaleCause { none, snapshot, input, sensors };
 /// "none", "snapshot", "input", "sensors".
 std::string_view stale_cause_name(StaleCause cause);
 
+/// Efforts, estimated forces and diagnostics of a period.
 struct HighRateOutput {
   VectorX driven;         ///< (driven,) N, to be applied in this period
-  VectorX driven_motion;  ///< (driven,) m, foreseen; for drives that are told lengths
+  VectorX driven_motion;  ///< (driven,) m, predicted; for drives that take lengths as commands
   VectorX unknown;        ///< (unknown,) N, estimated
-  VectorX deviation;      ///< (unknown,) N, of it
-  VectorX hands;          ///< (hands,) N, that hands push with: they feel the opposite
-  VectorX tasks;          ///< (tasks,) m, rad or N, foreseen
-  VectorX contacts;       ///< (3 max_contacts,) N; behind those of the snapshot zero
+  VectorX deviation;      ///< (unknown,) N, standard deviation of `unknown`
+  VectorX hands;          ///< (hands,) N, force of the hands on the robot; they feel the opposite
+  VectorX tasks;          ///< (tasks,) m, rad or N, predicted
+  VectorX contacts;       ///< (3 max_contacts,) N; zero after those of the snapshot
   HighRateState state = HighRateState::waiting;
   StaleCause cause = StaleCause::none;
-  bool limits_conflict = false;  ///< limits of motion gave way to those of efforts
-  bool failed = false;           ///< a program had no solution: its part stays as it was
+  bool limits_conflict = false;  ///< limits of motions gave way to those of efforts
+  bool failed = false;           ///< a program had no solution: its output is unchanged
   double law_residual = 0.0;     ///< see TouchLaw::residual()
-  double snapshot_time = 0.0;    ///< s, of the model
-  double snapshot_age = 0.0;     ///< s, since the loop got it
-  double jump = 0.0;             ///< N: largest change of a hand's force by blending in this period
-  double damping = 0.0;          ///< N s/m, that passivity took in this period
-  double energy_created = 0.0;   ///< J, by what hands felt since the start
-  std::int64_t period = 0;       ///< number of this output, from 1
+  double snapshot_time = 0.0;    ///< s, simulation time of the snapshot
+  double snapshot_age = 0.0;     ///< s, since the loop received it
+  double jump = 0.0;     ///< N: largest change of a hand force due to blending in this period
+  double damping = 0.0;  ///< N s/m, added by the passivity controller in this period
+  double energy_created = 0.0;  ///< J, created by the forces that hands felt since the start
+  std::int64_t period = 0;      ///< number of this output, from 1
 
   static HighRateOutput none(const HighRateSettings& settings);
 };
 
-/// In each period, with hands and contacts obeying their laws on the snapshot (TouchLaw):
-/// 1. ForceEstimate: sensors to outside forces, at the efforts that acted.
-///    Where states of contacts change on the way and the forces found explain the readings less
-///    well, the last ones stay, as the efforts of 2 do.
-/// 2. DriveProgram: targets to driven efforts, for contacts and hands in the states that they have.
-///    Where these change on the way, the tasks may end farther from their targets: the last efforts
-///    then stay, and the next period goes half as far, until it serves. Efforts therefore come to
-///    rest among contacts that are about to open, to close or to slide, and do not chatter; a robot
-///    may rest there a little beside its optimum, which inverse::InverseController finds.
-/// 3. What hands feel follows from both. A refresh is blended (RefreshBlend), and damping added
-///    (PassivityController).
+/// One period of the loop. Hands and contacts obey their laws on the snapshot (TouchLaw).
+/// 1. ForceEstimate estimates external forces from the sensors, at the efforts that acted. If
+/// contacts
+///    change state on the way and the new forces explain the readings less well, the last forces
+///    are kept, as in 2.
+/// 2. DriveProgram computes driven efforts from the targets, with contacts and hands in their
+/// present
+///    states. If these states change on the way, the tasks may end farther from their targets. The
+///    last efforts are then kept, and the next period takes half the step, until the tasks improve.
+///    Efforts therefore converge, instead of chattering, where contacts are about to open, close or
+///    slide. A robot may come to rest a little beside its optimum, which
+///    inverse::InverseController finds.
+/// 3. The forces that hands feel follow from both. Changes of the snapshot are blended
+///    (RefreshBlend), and damping is added (PassivityController).
 ///
-/// **Stale.** A snapshot that is older than stale_after describes another state: driven efforts
-/// stay as they are, which keeps a robot that was at rest at rest, while hands go on to feel the
-/// last snapshot, a passive spring. An input older than that, or one in which no sensor of several
-/// speaks, likewise. From twice that age on, driven efforts go to DrivenRow::release and hands'
-/// forces to zero along a ramp of release_time: what acts on a state that nobody knows should end,
-/// and not at once. When it has news again it comes back along the same ramp.
+/// **Stale data.** A snapshot older than stale_after describes another state. Driven efforts are
+/// then held, which keeps a resting robot at rest, while hands continue to feel the last snapshot,
+/// a passive spring. The same holds for an input older than that, and for one in which all sensors
+/// are silent. From twice that age on, driven efforts ramp to DrivenRow::release and hand forces to
+/// zero within release_time: actions on an unknown state should end, but not abruptly. When new
+/// data arrive, the loop returns along the same ramp.
 class HighRateStep {
  public:
-  /// Throws what check() does.
+  /// Throws what check() throws.
   explicit HighRateStep(HighRateSettings settings);
   HighRateStep(const HighRateStep&) = delete;
   HighRateStep& operator=(const HighRateStep&) = delete;
 
   const HighRateSettings& settings() const { return settings_; }
-  /// Ages of what a period works from, s; -1 of an input without sensors and hands, which never is
-  /// stale.
+  /// Ages of the data of a period, s. The age of an input without sensors and hands is -1: it is
+  /// never stale.
   struct Ages {
     double snapshot = 0.0, input = -1.0;
   };
-  /// Allocates nothing, but for a snapshot with more contacts than settings.max_contacts.
-  /// @param fresh a snapshot that has not been seen, whose contents are exchanged with those of the
-  ///   one before; null: none. It must have passed check(). @param input of the right sizes.
-  /// @param ages see there.
+  /// Computes one period. Allocates only for a snapshot with more contacts than
+  /// settings.max_contacts.
+  /// @param fresh a new snapshot, which has passed check(); its contents are exchanged with those
+  ///   of the last one. Null: none. @param input of the right sizes. @param ages of the data.
   const HighRateOutput& step(Snapshot* fresh, const HighRateInput& input, const Ages& ages);
   const HighRateOutput& output() const { return output_; }
   bool has_snapshot() const { return has_snapshot_; }
@@ -128,16 +133,16 @@ class HighRateStep {
   DriveProgram drive_;
   RefreshBlend blend_;
   PassivityController passivity_;
-  VectorX driven_, unknown_, unknown_before_;  // chosen in this period
-  VectorX applied_;                            // (driven,) N, in the last one
-  VectorX held_;                               // (driven,) N, chosen when it last ran
+  VectorX driven_, unknown_, unknown_before_;  // of this period
+  VectorX applied_;                            // (driven,) N, applied in the last period
+  VectorX held_;                               // (driven,) N, chosen in the last running period
   VectorX driving_;                            // (driven + unknown,)
   VectorX answer_, before_, difference_;       // (driven + unknown + hands,)
-  int unchanged_ = 0;                          // periods since a state changed
-  double share_ = 1.0;                         // of the way to the efforts found
-  double belief_ = 1.0;                        // of the way to the forces found
-  double gain_ = 1.0;                          // 0: released
-  double deaf_ = 0.0;                          // s, since a sensor spoke
+  int unchanged_ = 0;                          // number of periods since a state changed
+  double share_ = 1.0;                         // fraction of the step to the efforts found
+  double belief_ = 1.0;                        // fraction of the step to the forces found
+  double gain_ = 1.0;                          // 1: running, 0: released
+  double deaf_ = 0.0;                          // s, since all sensors became silent
 };
 
 }  // namespace sinew::control

@@ -66,7 +66,7 @@ PacketStatus get_header(std::span<const std::byte> bytes, PacketHeader::Kind kin
   return PacketStatus::good;
 }
 
-// Numbers behind the header into the lists; of a bad packet none.
+// Reads the numbers after the header into the lists; reads none of a bad packet.
 PacketStatus get_numbers(std::span<const std::byte> bytes, std::initializer_list<VectorX*> lists) {
   std::size_t size = kPacketHeader;
   for (const VectorX* list : lists) size += sizeof(double) * static_cast<std::size_t>(list->size());

@@ -1,5 +1,5 @@
 /// @file
-/// From one snapshot to the next without a jump.
+/// Blends from one snapshot to the next without a jump.
 #pragma once
 
 #include <cmath>
@@ -8,31 +8,32 @@
 
 namespace sinew::control {
 
-/// At a refresh both snapshots are asked at the same input. What the old one answered beyond the
-/// new one stays as an offset that falls linearly to nothing in n = floor(blend/T) + 1 periods
-/// (bumpless transfer): an nth of the difference comes through in each period, from the refresh on,
-/// and after n - 1 periods, at most `blend`, the answer is that of the new snapshot. Between
-/// refreshes the answer follows its input without delay.
+/// Bumpless transfer between snapshots. At a refresh both snapshots are evaluated at the same
+/// input. The old answer minus the new one becomes an offset, which decreases linearly to zero in
+/// n = floor(blend/T) + 1 periods. One nth of the difference passes in each period, from the
+/// refresh on. After n - 1 periods, at most `blend`, the answer is that of the new snapshot.
+/// Between refreshes the answer follows its input without delay.
 class RefreshBlend {
  public:
-  /// @param size numbers of an answer. @param blend,period s.
+  /// @param size of an answer. @param blend,period s.
   RefreshBlend(Eigen::Index size, double blend, double period)
       : offset_(VectorX::Zero(size)), periods_(static_cast<int>(blend / period + 1e-9) + 1) {}
 
   int periods() const { return periods_; }  ///< n
-  /// @param difference (size,) old answer, offset included, less the new one, at the same input.
+  /// Starts a transfer. @param difference (size,) old answer, including its offset, minus the new
+  /// one, at the same input.
   void begin(const VectorX& difference) {
     offset_ = difference;
     left_ = periods_;
   }
-  /// One period on.
+  /// Advances by one period.
   void advance() {
     moves_ = left_ > 0;
     if (moves_) --left_;
   }
-  /// To be added to an entry of the answer.
+  /// Offset to be added to an entry of the answer.
   double at(Eigen::Index entry) const { return offset_[entry] * left_ / periods_; }
-  /// How much an entry changed by this alone in the present period.
+  /// Change of an entry in the present period due to the offset alone.
   double jump(Eigen::Index entry) const {
     return moves_ ? std::abs(offset_[entry]) / periods_ : 0.0;
   }

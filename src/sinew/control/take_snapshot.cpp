@@ -22,7 +22,7 @@ using step::ActuatorBlock;
 using step::ContactBlock;
 using step::StepProblem;
 
-// The simulation's equations where it is; its state changes.
+// Linearises and condenses the simulation at its present state; changes its state.
 void condense(sim::Simulation& simulation, bool statics) {
   const sim::Model& model = simulation.model();
   sim::World& world = simulation.world();
@@ -39,7 +39,7 @@ void condense(sim::Simulation& simulation, bool statics) {
               "fix a region of every body, or take dynamics into account (statics=False)");
 }
 
-// Contacts that matter most: pressed ones, then near ones.
+// The most relevant contacts: those that carry a force, then the nearest ones.
 std::vector<ContactBlock> nearest_contacts(const StepProblem& problem,
                                            std::span<const double> effort, int most) {
   std::vector<ContactBlock> found;
@@ -98,7 +98,8 @@ class RowList {
   std::vector<int> rows_, actuators_;
 };
 
-// What the loop chooses is owned, contacts' rows included: every other block keeps its state.
+// Marks the rows of the loop as owned, including those of contacts. Every other block keeps its
+// state.
 void own(StepProblem& problem, const sim::Simulation& simulation, std::span<const int> actuators,
          std::span<const ContactBlock> contacts) {
   const auto& models = simulation.model().actuators();

@@ -1,5 +1,5 @@
 /// @file
-/// How often times of so many microseconds occurred.
+/// Histogram of times in microseconds.
 #pragma once
 
 #include <array>
@@ -9,19 +9,20 @@
 
 namespace sinew::control {
 
-/// Bins of one microsecond up to a millisecond, and one for what is longer. One thread adds, any
-/// other may read at the same time.
+/// Histogram with bins of one microsecond up to a millisecond, and one bin for longer times. One
+/// thread adds; other threads may read at the same time.
 class TimeHistogram {
  public:
   static constexpr int kBins = 1000;
 
-  /// @param seconds negative ones count as 0.
+  /// Adds a time. @param seconds negative values count as 0.
   void add(double seconds);
   std::int64_t count() const;
-  /// (kBins + 1,) times within [k, k + 1) us; the last those of a millisecond and more.
+  /// Counts of times within [k, k + 1) us, (kBins + 1,); the last one counts a millisecond and
+  /// more.
   std::vector<std::int64_t> counts() const;
-  /// s: the upper end of the bin in which this part of all times ends; the longest time where that
-  /// is the last bin; 0 without any. @param part 0..1: 0.5 for the median.
+  /// Quantile, s: the upper end of the bin that contains it; the longest time if that is the last
+  /// bin; 0 without any times. @param part 0..1: 0.5 for the median.
   double quantile(double part) const;
   double longest() const { return longest_.load(std::memory_order_relaxed); }  ///< s
 

@@ -9,18 +9,18 @@ namespace sinew::control {
 
 namespace {
 
-// Of the largest effort: how exactly laws have to hold for states to stay.
+// Relative to the largest effort: tolerance of the laws within which states are kept.
 constexpr double kObeys = 1e-8;
-// Over that, of motions: what counts as zero where nothing touches.
+// Times that tolerance: relative motions that count as zero if nothing touches.
 constexpr double kRounding = 1e-4;
-// Steps that follow sliding points as they turn, from how near on, and the turn (rad) beyond which
-// S is made anew.
+// Number of steps that follow sliding points as they turn, the distance from the laws up to which
+// they are tried, and the turn (rad) beyond which S is formed anew.
 constexpr int kTurns = 8;
 constexpr double kNear = 0.3;
 constexpr double kTurned = 0.1;
-// Of a row's own stiffness: how sharply friction may turn.
+// Relative to a row's own stiffness: limit on the derivative of friction with respect to motion.
 constexpr double kSharp = 1e6;
-// Of a row's own compliance: what makes equations of redundant contacts solvable.
+// Relative to a row's own compliance: makes the equations of redundant contacts solvable.
 constexpr double kEvenly = 1e-9;
 
 }  // namespace
@@ -65,7 +65,7 @@ void TouchLaw::begin(const Snapshot& snapshot) {
   form();
 }
 
-// Whether S holds the row's motion; it gives the row's effort otherwise.
+// Whether S prescribes the row's motion; otherwise it prescribes the row's effort.
 bool TouchLaw::holds_motion(int row) const {
   if (row < hands_) {
     return state(row) == Touch::held || (holds_limits_ && is_at_limit(row));
@@ -101,7 +101,7 @@ bool TouchLaw::turns_friction(int row) const {
 
 void TouchLaw::form() {
   ++factorisations_;
-  // What is stored counts hands at their limits as held.
+  // The stored energy treats hands at their limits as held.
   bool limits = false;
   for (int h = 0; h < hands_; ++h) limits = limits || is_at_limit(h);
   if (limits) {
@@ -154,7 +154,7 @@ void TouchLaw::form_stiffness(MatrixX& stiffness) {
   }
 }
 
-// Of a row whose motion S does not hold.
+// Effort of a row whose motion S does not prescribe.
 double TouchLaw::given_effort(int row) const {
   if (row >= hands_) return 0.0;
   if (state(row) == Touch::at_max) return hand(row).max;
@@ -209,7 +209,7 @@ void TouchLaw::settle(const VectorX& driving, const VectorX& hands) {
   note_stored();
 }
 
-// Hands that are there no more. Whether there were any.
+// Releases hands that are absent. Returns whether there were any.
 bool TouchLaw::let_go(const VectorX& hands) {
   bool changed = false;
   for (int h = 0; h < hands_; ++h) {
@@ -221,7 +221,7 @@ bool TouchLaw::let_go(const VectorX& hands) {
   return changed;
 }
 
-// As long as no other state changes.
+// Follows sliding points as they turn, as long as no other state changes.
 void TouchLaw::follow_slip(const VectorX& driving) {
   for (int k = 0; k < kTurns && residual_ > kObeys; ++k) {
     turn(driving);
@@ -235,7 +235,7 @@ void TouchLaw::follow_slip(const VectorX& driving) {
   shift(driving);
 }
 
-// Newton's step with S as it was factorised: friction is turned against the motion, and all other
+// A Newton step with the present factors of S: friction is turned against the motion, and all other
 // efforts follow.
 void TouchLaw::turn(const VectorX& driving) {
   ++turns_;
@@ -251,7 +251,7 @@ void TouchLaw::turn(const VectorX& driving) {
   measure(driving);
 }
 
-// Puts r_0 + R d through the solution, which S of earlier directions does not give.
+// Shifts r_0 so that r_0 + R d passes through the solution, which S of earlier directions misses.
 void TouchLaw::shift(const VectorX& driving) {
   change_.head(rows_) = effort_.head(rows_) - touch_free_.head(rows_);
   change_.head(rows_).noalias() -= touch_slope() * driving;
@@ -259,7 +259,7 @@ void TouchLaw::shift(const VectorX& driving) {
   free_.noalias() += w().block(0, first_, first_, rows_) * change_.head(rows_);
 }
 
-// Whether S is of other directions than those in which points slide, and takes these then.
+// Whether the directions in S differ from those in which points slide; if so, updates them.
 bool TouchLaw::has_turned() {
   bool turned = false;
   for (int k = 0; k < snapshot_->contacts(); ++k) {
@@ -273,7 +273,7 @@ bool TouchLaw::has_turned() {
   return turned;
 }
 
-// Of the laws, relative to the largest effort; see qp::ConeResult::residual.
+// Distance from the laws, relative to the largest effort; see qp::ConeResult::residual.
 double TouchLaw::distance() const {
   if (!effort_.head(rows_).allFinite() || !motion_.head(rows_).allFinite()) return kInfinity;
   double farthest = 0.0, largest = 0.0;
@@ -288,7 +288,8 @@ double TouchLaw::distance() const {
     farthest = std::max(farthest, contact_distance(k) * root);
     largest = std::max(largest, effort_.segment<3>(row).norm() * root);
   }
-  // Where nothing touches, what a distance is of: the motions that efforts of their size make.
+  // If nothing touches, the distance is relative to the efforts that would make the present
+  // motions.
   for (int row = 0; row < rows_; ++row) {
     const double place = row < hands_ && std::isfinite(places_[row]) ? places_[row] : 0.0;
     const double way = std::abs(offset_[row]) + std::abs(place);
@@ -346,7 +347,7 @@ void TouchLaw::read_states() {
   for (int k = 0; k < snapshot_->contacts(); ++k) read_contact(k);
 }
 
-// A sliding point moves against its friction.
+// Reads the state of a contact from its effort. A sliding point moves against its friction.
 void TouchLaw::read_contact(int contact) {
   const Vector3 effort = effort_.segment<3>(contact_row(contact));
   Touch& touch = state(hands_ + contact);
@@ -363,8 +364,9 @@ void TouchLaw::read_contact(int contact) {
   }
 }
 
-// The derivative of r_t = -mu r_n u_t/|u_t|: -mu u_t/|u_t| by r_n and -mu r_n (1 - t t^T)/|u_t| by
-// u_t, t = u_t/|u_t|. A point that hardly moves turns at once: the latter has a limit.
+// Derivatives of r_t = -mu r_n u_t/|u_t|: -mu u_t/|u_t| with respect to r_n, and -mu r_n (1 - t
+// t^T)/|u_t| with respect to u_t, t = u_t/|u_t|. A point that hardly moves turns at once, so the
+// latter is limited.
 void TouchLaw::read_slip(int contact, const Eigen::Vector2d& along) {
   const int row = contact_row(contact);
   const double own = w().diagonal().segment<2>(first_ + row + 1).sum() / 2.0;

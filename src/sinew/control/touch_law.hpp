@@ -1,6 +1,6 @@
 /// @file
-/// Hands and contacts of a snapshot: their efforts by their laws, and how a robot answers to other
-/// efforts while they keep their states.
+/// Efforts of the hands and contacts of a snapshot by their laws, and the response of the robot to
+/// other efforts while they keep their states.
 #pragma once
 
 #include <vector>
@@ -14,52 +14,56 @@
 
 namespace sinew::control {
 
-/// With d the efforts of driven and unknown rows and r those of hands and contacts (the touching
-/// rows t), motions are delta = free + W_d d + W_t r. A hand at x has
-///   delta = x  where its effort is within its limits,
-/// and otherwise its effort at the limit; contacts obey Signorini's and Coulomb's laws. As long as
+/// The laws of hands and contacts. With d the efforts of driven and unknown rows and r those of
+/// hands and contacts (the touching rows t), motions are delta = free + W_d d + W_t r. A hand at x
+/// has
+///   delta = x  if its effort is within its limits,
+/// and otherwise the effort of the limit. Contacts obey Signorini's and Coulomb's laws. As long as
 /// every hand and contact keeps its state, r follows from linear equations S r = b - W_td d:
 ///   delta_n = 0 of a contact that is not open, delta_t = 0 where it sticks,
 ///   r_t = -mu r_n u_t/|u_t| where it slides, linearised, r = 0 where it is open,
-/// so that r = r_0 + R d, and the other motions are affine in d as well. S is factorised when a
-/// state changes. Solutions of S that obey all laws are taken as they are; where points slide in
-/// directions that turn, after some steps of Newton's method with the S that there is; and
-/// qp::ConeSolver finds the states otherwise. Where contacts repeat each other S gets a billionth
-/// of its diagonal.
+/// so that r = r_0 + R d, and the other motions are affine in d, too. S is factorised when a state
+/// changes. A solution of S that obeys all laws is accepted. If sliding points change direction,
+/// some Newton steps with the same S follow. Otherwise qp::ConeSolver finds the states. A billionth
+/// of the compliance is added to the diagonal of S, so that redundant contacts have a solution.
 class TouchLaw {
  public:
-  /// Allocates for settings.max_contacts. @param settings outlive it.
+  /// Allocates for settings.max_contacts. @param settings must outlive this object.
   explicit TouchLaw(const HighRateSettings& settings);
 
-  /// States as its efforts have them. @param snapshot outlives the calls below.
+  /// Starts with a snapshot, with the states of its efforts. @param snapshot must outlive the calls
+  /// below.
   void begin(const Snapshot& snapshot);
-  /// Efforts of hands and contacts at these of all others. Allocates nothing.
-  /// @param driving (driven + unknown,) N. @param hands (hands,) m, where they are; not finite: a
-  /// hand that is not there has no effort.
+  /// Computes the efforts of hands and contacts for given efforts of all other rows. Allocates
+  /// nothing.
+  /// @param driving (driven + unknown,) N.
+  /// @param hands (hands,) m, their positions; not finite: no hand, which has no effort.
   void settle(const VectorX& driving, const VectorX& hands);
-  /// r_0 at other places of the hands, states as they are. @param hands as in settle().
+  /// Updates r_0 for other positions of the hands, with the present states. @param hands as in
+  /// settle().
   void move_hands(const VectorX& hands);
 
-  int rows() const { return rows_; }  ///< touching rows: hands, then three of each contact
-  /// (rows(),) N, of the last settle().
+  int rows() const { return rows_; }  ///< number of touching rows: hands, then three per contact
+  /// Efforts of the last settle(), (rows(),) N.
   Eigen::Map<const VectorX> effort() const { return {effort_.data(), rows_}; }
-  /// (driven + unknown + observed,) m: motions at d = 0, and (rows(),) N: r_0.
+  /// Motions at d = 0, (driven + unknown + observed,) m, and r_0, (rows(),) N.
   const VectorX& free() const { return free_; }
   Eigen::Map<const VectorX> touch_free() const { return {touch_free_.data(), rows_}; }
-  /// How these follow from d, m/N; and R, (rows(), driven + unknown).
+  /// Derivatives of the motions with respect to d, m/N; and R, (rows(), driven + unknown).
   const MatrixX& compliance() const { return compliance_; }
   Eigen::Map<const MatrixX> touch_slope() const { return slope_.view(); }
-  /// (hands, hands) N/m: how efforts of held hands follow from where they are; zero of others.
+  /// Stiffness of the hands, (hands, hands) N/m: derivatives of the efforts of held hands with
+  /// respect to their positions; zero for other hands.
   const MatrixX& hand_stiffness() const { return stiffness_; }
-  /// J: what hands would get back if they withdrew: 1/2 r^T K^-1 r of those that touch, and of
-  /// those at a limit the effort times the way that they are beyond it, too.
+  /// Energy that hands would get back if they withdrew, J: 1/2 r^T K^-1 r for those that touch,
+  /// plus, for hands at a limit, the effort times the distance beyond it.
   double stored() const { return stored_; }
-  /// How far the last settle() is from the laws, relative to the largest effort.
+  /// Distance of the last settle() from the laws, relative to the largest effort.
   double residual() const { return residual_; }
-  /// How many calls of settle() changed the state of a hand or a contact.
+  /// Number of calls of settle() that changed the state of a hand or contact.
   long changes() const { return changes_; }
-  /// Since construction: steps in which friction was turned against the motion; how often S was
-  /// factorised, and how often the cone solver was asked.
+  /// Counters since construction: Newton steps that turned friction against the motion,
+  /// factorisations of S, and calls of the cone solver.
   long turns() const { return turns_; }
   long factorisations() const { return factorisations_; }
   long cone_solutions() const { return cone_solutions_; }
@@ -74,7 +78,7 @@ class TouchLaw {
   int contact_row(int contact) const { return hands_ + 3 * contact; }
   Touch& state(int block) { return states_[static_cast<std::size_t>(block)]; }
   Touch state(int block) const { return states_[static_cast<std::size_t>(block)]; }
-  // Of a sliding point: u_t/|u_t|, and how its friction turns with its motion, N/m.
+  // Of a sliding point: u_t/|u_t|, and the derivative of its friction with respect to u_t, N/m.
   struct Slip {
     Eigen::Vector2d along = Eigen::Vector2d::Zero();
     Eigen::Matrix2d turning = Eigen::Matrix2d::Zero();
@@ -85,7 +89,7 @@ class TouchLaw {
   const Slip& slip_of(int row) const {
     return slips_[static_cast<std::size_t>((row - hands_) / 3)];
   }
-  int axis_of(int row) const { return (row - hands_) % 3 - 1; }          // of its two tangents
+  int axis_of(int row) const { return (row - hands_) % 3 - 1; }  // which of its two tangents
   int tangent_of(int row) const { return first_ + row - axis_of(row); }  // the first of them
   const HandRow& hand(int h) const { return settings_.hands[static_cast<std::size_t>(h)]; }
   bool holds_motion(int row) const;
@@ -132,7 +136,7 @@ class TouchLaw {
   qp::ConeSolver cone_solver_;
   std::vector<qp::BoxBlock> boxes_;
   std::vector<qp::ConeBlock> cones_;
-  bool holds_limits_ = false;  // as if hands at their limits were held
+  bool holds_limits_ = false;  // treats hands at their limits as held
   double stored_ = 0.0, residual_ = 0.0;
   long changes_ = 0, turns_ = 0, factorisations_ = 0, cone_solutions_ = 0;
 };

@@ -1,5 +1,5 @@
 /// @file
-/// The latest value from one thread to another, without locks and without waiting.
+/// Passes the latest value from one thread to another, lock-free and wait-free.
 #pragma once
 
 #include <array>
@@ -7,27 +7,29 @@
 
 namespace sinew::control {
 
-/// Three slots: the writer has one, the reader another, and the third holds the latest value. Each
-/// side exchanges its own for the third in one atomic operation, so that neither ever waits, and
-/// the reader sees whole values, the latest one, each at most once. One writer and one reader.
+/// Buffer with three slots: the writer owns one, the reader another, and the third holds the latest
+/// value. Each side exchanges its own slot with the third in one atomic operation. So neither ever
+/// waits, and the reader sees complete values, always the latest one, each at most once. For one
+/// writer and one reader.
 template <typename Value>
 class TripleBuffer {
  public:
   TripleBuffer() = default;
-  /// All slots are copies of it, so that later assignments of the same size allocate nothing.
+  /// Copies `value` to all slots, so that later assignments of the same size allocate nothing.
   explicit TripleBuffer(const Value& value) : slots_{value, value, value} {}
 
   /// The writer's slot, to be filled before publish().
   Value& slot() { return slots_[writer_]; }
-  /// The writer's slot becomes the latest value.
+  /// Makes the writer's slot the latest value.
   void publish() {
     const unsigned third = third_.exchange(writer_ | kFresh, std::memory_order_acq_rel);
     writer_ = third & kSlot;
   }
 
-  /// The reader's slot; what it holds is the reader's own until the next take().
+  /// The reader's slot, whose value belongs to the reader until the next take().
   Value& value() { return slots_[reader_]; }
-  /// Takes the latest value into the reader's slot. False where there is none since the last call.
+  /// Moves the latest value to the reader's slot. Returns false if there is none since the last
+  /// call.
   bool take() {
     if ((third_.load(std::memory_order_relaxed) & kFresh) == 0) return false;
     reader_ = third_.exchange(reader_, std::memory_order_acq_rel) & kSlot;

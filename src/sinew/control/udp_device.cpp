@@ -16,9 +16,9 @@ namespace sinew::control {
 
 namespace {
 
-// Datagrams looked at in one period: more would be a flood.
+// Maximum number of datagrams read per period, against floods.
 constexpr int kMaxPackets = 64;
-// s of silence after which a device may have started anew, with small numbers.
+// Silence, s, after which a device may have restarted, with small sequence numbers.
 constexpr double kRestart = 1.0;
 
 void count(std::atomic<std::int64_t>& counter) {
@@ -99,7 +99,7 @@ bool UdpDevice::take(std::span<const std::byte> bytes, const sockaddr_in& from,
     count(invalid_);
     return false;
   }
-  // Sequences wrap: the shorter way round tells which is later.
+  // Sequence numbers wrap: the shorter distance tells which one is later.
   const bool later = static_cast<std::int32_t>(header.sequence - last_) > 0;
   if (has_peer_ && !later && silent_ < restarts_after_) {
     count(outdated_);

@@ -17,7 +17,7 @@ Observability observability(const MatrixX& sensitivity, const VectorX& variance,
   return result;
 }
 
-// Eigenvalues ascend, and s falls.
+// Eigenvalues ascend, so s descends.
 Observability observability(const MatrixX& covariance, const VectorX& prior) {
   const auto scale = prior.cwiseInverse().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<MatrixX> own(scale * covariance * scale);

@@ -13,8 +13,8 @@ namespace sinew::estimate {
 
 namespace {
 
-// Numbers whose deviation is less than this part of the largest of their kind weigh less: they are
-// rounding.
+// Numbers whose deviation is below this part of the largest of their kind get less weight, since
+// they are rounding.
 constexpr double kNegligible = 1e-6;
 
 // Divides rows by their norms, and all by the square root of their number.
@@ -93,7 +93,7 @@ void ReducedRankFilter::end_rest(const VectorX& inputs) {
   mean_.tail(rows() - n) = factor_.bottomRows(rows() - n) * part;
 }
 
-// L Q with Q = (Q_1, Q_2) orthogonal, the rows of L_x in the span of Q_1: L_x Q_2 = 0.
+// Forms L Q with Q = (Q_1, Q_2) orthogonal and the rows of L_x in the span of Q_1: L_x Q_2 = 0.
 void ReducedRankFilter::cut() {
   const Eigen::Index n = size(), count = columns();
   if (count <= rank_) return;
@@ -110,9 +110,10 @@ void ReducedRankFilter::cut() {
   factor_.topRows(n).rightCols(rank_ - n).setZero();
 }
 
-// With S = R^(-1/2) L_y = U diag(s) V^T: mean + L S^T (S S^T + 1)^-1 R^(-1/2) innovation, and
-// L (1 + S^T S)^(-1/2) = L (1 - V diag(1 - 1/sqrt(1 + s^2)) V^T), whose square is the covariance
-// after it (Bishop, Etherton & Majumdar, Mon. Weather Rev. 129 (2001) 420-436, sec. 2).
+// With S = R^(-1/2) L_y = U diag(s) V^T, the mean becomes mean + L S^T (S S^T + 1)^-1 R^(-1/2)
+// innovation, and L becomes L (1 + S^T S)^(-1/2) = L (1 - V diag(1 - 1/sqrt(1 + s^2)) V^T), whose
+// square is the corrected covariance (Bishop, Etherton & Majumdar, Mon. Weather Rev. 129 (2001)
+// 420-436, sec. 2).
 void ReducedRankFilter::correct(int lag, Eigen::Index first, const VectorX& innovation,
                                 const VectorX& variance) {
   const VectorX weight = variance.cwiseSqrt().cwiseInverse();

@@ -15,7 +15,7 @@ namespace sinew::identify {
 
 namespace {
 
-/// The volume as the input of a motion without positions.
+/// The volume as the input of a motion record.
 InputSignal signal_of(const ActuatorRecord& record) {
   MotionRecord motion;
   motion.time = record.time;
@@ -77,8 +77,8 @@ ActuatorFit fit_actuator(std::span<const ActuatorRecord> records, bool linear, d
       }
     }
   };
-  // The cost has a minimum for every period of the volume in the delay: the best of a scan is where
-  // to start, with the c that is best there.
+  // The cost has a local minimum in the delay for every period of the volume. The search starts
+  // from the best delay of a scan, with the c that is best there.
   constexpr int kScan = 50;
   double best = std::numeric_limits<double>::infinity(), cubic = 0.0, delay = 0.0, largest = 0.0;
   VectorX unit(model.observations);

@@ -27,7 +27,7 @@ Parameter spread_about(std::string name, double value, double spread, const char
   return {std::move(name), value, (1.0 - spread) * value, (1.0 + spread) * value, unit, false, 0.0};
 }
 
-/// Where each parameter is in the vector, and the models that it stands for.
+/// Maps the parameter vector to models of the arm.
 class ArmParameters {
  public:
   ArmParameters(const ArmModel& model, std::span<const MotionRecord> records,
@@ -71,7 +71,7 @@ class ArmParameters {
                                                                      : VectorX(VectorX::Zero(n))};
   }
 
-  /// By the arm's parameters and a record's own, which come behind them.
+  /// Derivatives with respect to the arm's parameters, followed by those of a record.
   ArmParameterMap map() const {
     const pcc::Arm& arm = *model_.arm;
     ArmParameterMap map(arm, own_ + each());
@@ -91,7 +91,7 @@ class ArmParameters {
     return map;
   }
 
-  /// Parameters of a record, and the first of them.
+  /// Number of parameters of a record, and the first of them.
   Eigen::Index each() const {
     return model_.arm->coordinates() * (settings_.start == RecordStart::moving ? 2 : 1);
   }
@@ -177,7 +177,7 @@ void check(const ArmModel& model, std::span<const MotionRecord> records) {
                          record.position.cols(), segments),
              "give x, y and z of each segment's end; nan where not seen");
     }
-    // A motion of n angles needs 2n numbers to tell its state.
+    // A motion of n angles has a state of 2n numbers.
     const int order = 2 * model.arm->coordinates();
     if (record.samples() <= order) {
       refuse(ErrorKind::too_few_points, record.name,

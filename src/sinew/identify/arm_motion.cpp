@@ -13,7 +13,7 @@ namespace sinew::identify {
 
 namespace {
 
-/// Torques of the inputs at a time, and their derivatives.
+/// The torques of the inputs at a time, and their derivatives.
 class RecordedDrive {
  public:
   RecordedDrive(const ArmModel& model, const MotionRecord& record)
@@ -46,7 +46,7 @@ class RecordedDrive {
     return torque_;
   }
 
-  /// Takes B dtau/dp off.
+  /// Subtracts B dtau/dp.
   void subtract_derivative(double time, const ArmParameterMap& map, MatrixX& result) const {
     if (passive_ || model_.actuators.empty()) return;
     for (Eigen::Index i = 0; i < torque_.size(); ++i) {
@@ -155,7 +155,7 @@ ArmStart first_pose(const pcc::Arm& arm, const MotionRecord& record) {
       weight[k] = 1.0;
     }
   }
-  // Gauss-Newton, damped so that segments without a marker stay straight.
+  // Gauss-Newton, damped so that segments without markers stay straight.
   pcc::ArmEquations equations(std::make_shared<const pcc::Arm>(arm));
   VectorX q = VectorX::Zero(n);
   const double damping = 1e-6 * arm.length() * arm.length();

@@ -23,14 +23,14 @@ using pcc::BendingModulus;
 using pcc::BendingParameters;
 
 constexpr int kMaxDegree = 5;
-constexpr double kAtBound = 1e-6;  // of the start, or of the upper bound
+constexpr double kAtBound = 1e-6;  // relative to the start, or to the upper bound
 
 struct Range {
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -std::numeric_limits<double>::infinity();
 };
 
-/// What is fitted, as parameters of the actuator.
+/// Maps fitted values to parameters of the actuator.
 class Form {
  public:
   Form(const BendingParameters& fixed, const BendingFitSettings& settings, Range pressures)
@@ -51,7 +51,8 @@ class Form {
   }
 
  private:
-  // Monomials through the values at Chebyshev points, solved in P over its largest size.
+  // Monomial coefficients through the values at Chebyshev points, solved in P over its largest
+  // magnitude.
   std::vector<double> polynomial(const double* values) const {
     const int n = nodes();
     const double scale = std::max(std::abs(pressures_.lowest), std::abs(pressures_.highest));
@@ -96,7 +97,7 @@ struct BendingResiduals {
   const Form* form;
   std::span<const TipRecord> records;
   const BendingFitSettings* settings;
-  std::vector<double> scales;  // of the parameters, so that Ceres sees numbers near one
+  std::vector<double> scales;  // of the parameters, so that those of Ceres are near one
   double length;
 
   bool operator()(const double* scaled, double* residuals) const {
@@ -111,7 +112,7 @@ struct BendingResiduals {
         residuals = std::copy(off.data(), off.data() + off.size(), residuals);
       }
     } catch (const Error&) {
-      return false;  // no modulus, or no motion: Ceres tries a shorter step
+      return false;  // invalid modulus or failed motion: Ceres tries a shorter step
     }
     return true;
   }

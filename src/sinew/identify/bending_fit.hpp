@@ -1,5 +1,5 @@
 /// @file
-/// The modulus of a bending actuator from motions of its tip, by bounded least squares.
+/// Fits the modulus of a bending actuator to motions of its tip, by bounded least squares.
 #pragma once
 
 #include <array>
@@ -12,9 +12,9 @@
 
 namespace sinew::identify {
 
-/// How far a tip is from another, over a record.
+/// Distance between two tips over a record.
 struct TipErrors {
-  double mean = 0.0;            ///< m, of the distance
+  double mean = 0.0;            ///< m, mean distance
   double largest = 0.0;         ///< m
   double mean_of_length = 0.0;  ///< mean over the actuator's length
   double largest_of_length = 0.0;
@@ -22,12 +22,14 @@ struct TipErrors {
   std::array<double, 2> root_mean_square{};  ///< RMSE of x and y, m
 };
 
-/// @param found,measured (n, 2) m. @param length m. Throws Error(wrong-length | out-of-range).
+/// Computes the errors of a tip. @param found,measured (n, 2) m. @param length m. Throws Error:
+/// wrong-length, out-of-range.
 TipErrors tip_errors(const PlanePoints& found, const PlanePoints& measured, double length);
 
+/// What fit_bending() fits, and how.
 struct BendingFitSettings {
-  /// Of E(P), 0 to 5; 0 is a constant. Fitted as its values at degree + 1 Chebyshev points of the
-  /// records' pressures, which bounds hold apart from each other.
+  /// Degree of E(P), 0 to 5; 0 is a constant. The polynomial is fitted by its values at degree + 1
+  /// Chebyshev points of the records' pressures, to which bounds apply separately.
   int degree = 0;
   pcc::ModulusKind kind = pcc::ModulusKind::bending;
   double lowest = 1e3, highest = 1e9;  ///< Pa, bounds of those values
@@ -37,25 +39,27 @@ struct BendingFitSettings {
   pcc::BendingMotionSettings motion;
 };
 
+/// A fitted actuator.
 struct BendingFit {
-  pcc::BendingParameters parameters;  ///< those given, with what was fitted in place
-  std::vector<PlanePoints> tips;      ///< of each record, simulated
+  pcc::BendingParameters parameters;  ///< those given, with the fitted ones replaced
+  std::vector<PlanePoints> tips;      ///< simulated tip of each record
   std::vector<TipErrors> errors;      ///< of each record
-  double cost = 0.0;  ///< mean squared distance over the squared length, each record the same
+  double cost = 0.0;  ///< mean squared distance over squared length, equal weight per record
   bool converged = false;
-  bool at_bound = false;  ///< a value sits on its bound, which then decides it
+  bool at_bound = false;  ///< a value is at its bound, which then determines it
 };
 
 /// Minimises the sum over records of the mean squared distance between the measured and the
-/// simulated tip. Every record starts at rest, in the equilibrium of its first pressure. Trust
-/// region with bounds (Ceres), from the modulus that `parameters` have at the mean pressure,
-/// clamped into the bounds. The polynomial found holds for the records' pressures alone.
+/// simulated tip. Every record starts at rest, in the equilibrium of its first pressure. Uses a
+/// trust region with bounds (Ceres), starting from the modulus of `parameters` at the mean
+/// pressure, clamped into the bounds. The fitted polynomial is only valid for the records'
+/// pressures.
 /// @param parameters everything that is not fitted.
 /// @param records each with pressures.
 /// @param settings what to fit, and how.
 /// Throws Error: empty-list (no records), missing-key (a record without pressures), out-of-range,
-/// contradictory-limits (settings), not-converged when no start can be simulated, and what check()
-/// of records and parameters do.
+/// contradictory-limits (settings), not-converged if no start can be simulated, and what check() of
+/// records and of parameters throws.
 BendingFit fit_bending(const pcc::BendingParameters& parameters, std::span<const TipRecord> records,
                        const BendingFitSettings& settings = {});
 

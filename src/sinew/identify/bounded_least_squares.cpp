@@ -11,7 +11,7 @@ namespace {
 
 using Differentiated = std::function<bool(const double* values, double* residuals)>;
 
-/// All values are one block.
+/// A cost function with all values in one block.
 class Cost : public ceres::CostFunction {
  public:
   Cost(const BoundedResiduals& residuals, std::size_t rows, std::size_t values)

@@ -8,7 +8,7 @@ namespace sinew::identify {
 
 namespace {
 
-/// The text in brackets of a column's name, or its last word; case kept.
+/// The text in brackets in a column's name, or its last word, in its original case.
 std::string unit_of(const std::string& name) {
   const std::size_t open = name.find_first_of("[(");
   const std::size_t close = name.find_last_of("])");

@@ -1,5 +1,5 @@
 /// @file
-/// Units in the names of a table's columns.
+/// Units in the column names of a table.
 #pragma once
 
 #include <optional>
@@ -10,12 +10,11 @@
 
 namespace sinew::identify {
 
-/// Small letters, with blanks for _ and -.
+/// The name in lower case, with blanks in place of _ and -.
 std::string plain_name(std::string_view name);
 
-/// SI units of a column called "stress [MPa]", "stress (MPa)" or "stress_MPa"; none when what
-/// stands there is no such unit. @param name of the column. @param dimension that the unit must
-/// have.
+/// Factor to SI units of a column called "stress [MPa]", "stress (MPa)" or "stress_MPa"; none if
+/// its name has no such unit. @param name of the column. @param dimension of the unit.
 std::optional<double> column_unit(const std::string& name, Dimension dimension);
 
 }  // namespace sinew::identify

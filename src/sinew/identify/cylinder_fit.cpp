@@ -48,7 +48,7 @@ void check(std::span<const DriveRecord> records, int least) {
   }
 }
 
-/// (rows, columns) of all records side by side. `from`: sample of the first row.
+/// Writes one record's columns of a Hankel matrix. @param from sample of the first row.
 void put_hankel(const VectorX& signal, Index from, Index rows, Index columns, Index at,
                 Index column, MatrixX& result) {
   for (Index j = 0; j < columns; ++j) {
@@ -56,7 +56,7 @@ void put_hankel(const VectorX& signal, Index from, Index rows, Index columns, In
   }
 }
 
-/// Throws where the inputs cannot tell the 2n + 1 coefficients of a model of order n apart.
+/// Throws if the inputs cannot distinguish the 2n + 1 coefficients of a model of order n.
 void check_excitation(std::span<const DriveRecord> records) {
   constexpr Index kRows = 2 * kOrder + 1;
   Eigen::Matrix<double, kRows, kRows> products = Eigen::Matrix<double, kRows, kRows>::Zero();
@@ -72,7 +72,7 @@ void check_excitation(std::span<const DriveRecord> records) {
          "give a signal of three frequencies or more, fast enough for the sample time");
 }
 
-/// A and C of the past-output MOESP; see the header.
+/// A and C by the past-output MOESP, see the header.
 DriveCylinder observe(std::span<const DriveRecord> records, Index rows) {
   Index columns = 0;
   for (const DriveRecord& record : records) columns += record.input.size() - 2 * rows + 1;
@@ -95,14 +95,14 @@ DriveCylinder observe(std::span<const DriveRecord> records, Index rows) {
   result.c = observability.row(0);
   result.a =
       linalg::least_squares(observability.topRows(rows - 1), observability.bottomRows(rows - 1)).x;
-  // Noise may put a slow pole outside the unit circle: as far inside as it is out.
+  // Noise may put a slow pole outside the unit circle; it is then moved as far inside.
   const double radius = result.spectral_radius();
   if (radius >= 1.0) result.a /= radius * radius * (1.0 + 1e-6);
   result.sample_time = records[0].sample_time;
   return result;
 }
 
-/// B, D and the records' starts, in which the output is linear. starts: (2, records).
+/// B, D and the starts of the records, in which the output is linear. @param starts (2, records).
 void solve_inputs(std::span<const DriveRecord> records, bool feedthrough, DriveCylinder& cylinder,
                   MatrixX& starts) {
   const Index fixed = kOrder + (feedthrough ? 1 : 0);
@@ -142,7 +142,7 @@ DriveCylinder observer_form(const VectorX& p, double sample_time) {
   return result;
 }
 
-/// The output and its derivatives by a1, a2, b1, b2, d and the start.
+/// The output and its derivatives with respect to a1, a2, b1, b2, d and the start.
 void simulate(const DriveCylinder& cylinder, const DriveRecord& record,
               const Eigen::Vector2d& start, Index row, Index own, VectorX& prediction,
               MatrixX* jacobian) {
@@ -176,7 +176,7 @@ CylinderFit fit_cylinder(std::span<const DriveRecord> records,
     refuse(ErrorKind::out_of_range, "block_rows", fmt::format("there are {} block rows", rows),
            "give 3 to 200: more than the two states");
   }
-  // As many columns as rows in the data matrix of each record.
+  // The data matrix of each record needs as many columns as rows.
   check(records, static_cast<int>(6 * rows));
   check_excitation(records);
   CylinderFit result;

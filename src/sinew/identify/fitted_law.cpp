@@ -13,7 +13,7 @@ namespace {
 
 using Random = std::mt19937_64;
 
-constexpr double kSmallestModulus = 1e-6;  // of the scale, where a law needs a positive one
+constexpr double kSmallestModulus = 1e-6;  // relative to the scale, if a law needs a positive one
 
 FitParameter modulus(double value, double lower = -kInfinity) {
   return {value, lower, kInfinity, true};
@@ -78,7 +78,7 @@ FitParameters draw_ogden(Random& random, std::size_t terms) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   FitParameters result;
   for (std::size_t k = 0; k < terms; ++k) {
-    // The first term stretches, others either way.
+    // The first exponent is positive; the others have either sign.
     const bool positive = k == 0 || uniform(random) < 0.6;
     const double size = 0.5 + 9.5 * std::pow(uniform(random), 2.0);
     const double share = std::pow(10.0, -3.0 * uniform(random));
@@ -104,7 +104,7 @@ FittedLaw arruda_boyce(const std::string& model) {
           }};
 }
 
-/// "ogden3" is "ogden" and 3; a name without a number has 0.
+/// Splits "ogden3" into "ogden" and 3; a name without a digit has 0.
 std::pair<std::string, std::size_t> split(const std::string& model) {
   if (model.empty() || model.back() < '1' || model.back() > '9') return {model, 0};
   return {model.substr(0, model.size() - 1), static_cast<std::size_t>(model.back() - '0')};

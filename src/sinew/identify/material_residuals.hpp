@@ -1,5 +1,5 @@
 /// @file
-/// What a law misses tests by. Internal to this folder.
+/// Residuals of a law on tests. Internal to this folder.
 #pragma once
 
 #include <cstddef>
@@ -10,49 +10,51 @@
 
 namespace sinew::identify {
 
-/// A test, and which of its rows count.
+/// A test, and which of its rows are fitted.
 struct CountedTest {
   const RubberTest* test = nullptr;
-  std::vector<char> counts;  ///< of each row
-  std::size_t rows = 0;      ///< that count
-  double largest = 0.0;      ///< Pa, of their stresses
-  double farthest = 0.0;     ///< of their |ln stretch|
+  std::vector<char> counts;  ///< (rows of the test,) 1: fitted
+  std::size_t rows = 0;      ///< number of fitted rows
+  double largest = 0.0;      ///< Pa, largest |stress| of these
+  double farthest = 0.0;     ///< largest |ln stretch| of these
 };
 
-/// Throws Error: empty-list (no tests), too-few-points (fewer than three rows count), out-of-range
-/// (all stresses are zero), contradictory-limits (the range of stretches is empty).
+/// Selects the rows to be fitted. Throws Error: empty-list (no tests), too-few-points (fewer than
+/// three rows), out-of-range (all stresses are zero), contradictory-limits (an empty range of
+/// stretches).
 std::vector<CountedTest> count_rows(std::span<const RubberTest> tests, const FitSettings& settings);
 
-/// Nominal stress along a test, with softening where `mullins` is not null; zero in rows that do
-/// not count, unless softening needs them.
+/// Nominal stress along a test, with softening unless `mullins` is null; zero in rows that are not
+/// fitted, unless softening needs them.
 std::vector<double> predict(const material::Hyperelastic& law, const MullinsEffect* mullins,
                             const CountedTest& test);
 
-/// The softening of parameters. @param softening 1/r, m by the scale, beta. @param scale Pa.
+/// The softening for given parameters. @param softening 1/r, m over the scale, beta. @param scale
+/// Pa.
 MullinsEffect softening_of(const FitParameters& softening, double scale);
 
-/// Residuals of all rows that count, each test's divided by its largest stress and the square root
-/// of its rows, over the parameters. For numeric derivatives.
+/// Residuals of all fitted rows as functions of the parameters, divided by the largest stress of
+/// their test and the square root of its number of rows. For numerical derivatives.
 struct Residuals {
   const FittedLaw* law;
   const std::vector<CountedTest>* tests;
   double scale;     ///< Pa
-  std::size_t own;  ///< parameters of the law; three of the softening follow where asked
+  std::size_t own;  ///< number of parameters of the law; with `mullins`, three of softening follow
   bool mullins;
 
-  /// False where a residual is not finite.
+  /// Returns false if a residual is not finite.
   bool operator()(const double* parameters, double* residuals) const;
 };
 
-/// The same of Ogden's law without softening, a sum over its terms, with exact derivatives.
+/// The same for Ogden's law without softening, a sum over its terms, with exact derivatives.
 struct OgdenResiduals {
   const std::vector<CountedTest>* tests;
   double scale;       ///< Pa
   std::size_t terms;  ///< of two parameters each
 
-  /// False where a residual is not finite. @param parameters (2 terms,) see FittedLaw.
-  /// @param residuals (rows,), of the rows that count.
-  /// @param derivatives (rows, parameters), row-major; null: not wanted.
+  /// Returns false if a residual is not finite. @param parameters (2 terms,) see FittedLaw.
+  /// @param residuals (rows,), of the fitted rows.
+  /// @param derivatives (rows, parameters), row-major; null: not requested.
   bool operator()(const double* parameters, double* residuals, double* derivatives) const;
 };
 

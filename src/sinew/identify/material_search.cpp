@@ -15,11 +15,11 @@ namespace sinew::identify {
 
 namespace {
 
-constexpr int kCandidates = 40;         // exponents of either sign that a new term may begin with
-constexpr std::size_t kTried = 3;       // of them
-constexpr double kSameExponent = 0.02;  // relative: nearer terms are tried as one
-constexpr double kIdleShare = 1e-7;     // of the stress: a term that bears less is tried without
-constexpr double kNoWorse = 1e-6;       // relative change of the cost that counts as none
+constexpr int kCandidates = 40;         // exponents of either sign at which a new term may start
+constexpr std::size_t kTried = 3;       // number of them that are tried
+constexpr double kSameExponent = 0.02;  // relative: nearer terms are merged on trial
+constexpr double kIdleShare = 1e-7;     // relative stress of a term to be removed on trial
+constexpr double kNoWorse = 1e-6;       // relative increase of the cost that counts as zero
 constexpr BoundedSettings kSolver = {.max_iterations = 400};
 
 FitParameters all_parameters(const Attempt& attempt) {
@@ -79,10 +79,10 @@ Attempt MaterialSearch::search(const FittedLaw& law) {
     const std::size_t terms = guess.law.size() / 2;
     consider(solve(law.ogden ? ogden_law(terms) : law, guess));
   }
-  // Over all sums of terms the problem is convex in their shares. Where no further term lessens the
+  // Over all sums of terms the problem is convex in their shares. If no further term reduces the
   // cost, the fewer terms are its solution, and random starts cannot find a better one.
   if (law.ogden && !settings_.mullins && guesses.size() == 1) return best;
-  // Every model has random numbers of its own: its fit does not depend on what else is fitted.
+  // Every model has its own random numbers, so that its fit does not depend on what else is fitted.
   std::seed_seq seed{settings_.seed, static_cast<std::uint64_t>(
                                          std::accumulate(law.model.begin(), law.model.end(), 0))};
   std::mt19937_64 random(seed);
@@ -98,7 +98,8 @@ Attempt MaterialSearch::search(const FittedLaw& law) {
   return best;
 }
 
-/// What the law that this one contains leads to: the same, and of Ogden's law with a further term.
+/// Initial guesses from the contained law: the same law, and for Ogden's law also that with a
+/// further term.
 std::vector<Attempt> MaterialSearch::first_guesses(const FittedLaw& law) {
   const std::string contained = contained_model(law.model);
   if (contained.empty()) return {};
@@ -107,14 +108,14 @@ std::vector<Attempt> MaterialSearch::first_guesses(const FittedLaw& law) {
   std::vector<Attempt> guesses = {same};
   if (!law.ogden) return guesses;
   Attempt base = same;
-  if (law.model == "ogden1") base.law.clear();  // its one term may have any exponent
+  if (law.model == "ogden1") base.law.clear();  // its only term may have any exponent
   for (Attempt& guess : with_new_term(base)) guesses.push_back(std::move(guess));
   return guesses;
 }
 
 // The residual r is linear in the share s of a new term: r = r_0 + s b. The best share is
-// -r_0.b/b.b, if positive, and lessens the cost by (r_0.b)^2/b.b: the exponents where that is most
-// are those to begin with. Where it is nowhere positive, no term helps.
+// -r_0.b/b.b, if positive, and reduces the cost by (r_0.b)^2/b.b. The search starts from the
+// exponents with the largest reduction. If there is none, no term helps.
 std::vector<Attempt> MaterialSearch::with_new_term(const Attempt& simpler) {
   struct Candidate {
     double gain = 0.0, share = 0.0, alpha = 0.0;
@@ -173,8 +174,8 @@ Attempt MaterialSearch::solve(const FittedLaw& law, const Attempt& start) {
   return attempt;
 }
 
-/// Terms with one exponent become one term, and terms that bear nothing go, where the fit does not
-/// suffer.
+/// Merges terms with equal exponents, and removes terms that carry no stress, if the fit does not
+/// get worse.
 Attempt MaterialSearch::without_idle_terms(const Attempt& attempt) {
   Attempt best = attempt;
   for (std::size_t k = 0; k + 1 < best.law.size() && best.law.size() > 2;) {
@@ -218,7 +219,7 @@ bool MaterialSearch::residuals(const FittedLaw& law, const Attempt& at,
                                                                             result.data());
 }
 
-/// All moduli by the one factor that is best: the stress is proportional to them together.
+/// Scales all moduli by the best common factor: the stress is proportional to all of them together.
 void MaterialSearch::scale_moduli(const FittedLaw& law, Attempt& start) const {
   Attempt none = start;
   for (FitParameter& p : none.law) p.value = p.modulus ? 0.0 : p.value;

@@ -1,5 +1,5 @@
 /// @file
-/// The search for the parameters of hyperelastic laws. Internal to this folder.
+/// Search for the parameters of hyperelastic laws. Internal to this folder.
 #pragma once
 
 #include <functional>
@@ -13,28 +13,29 @@
 
 namespace sinew::identify {
 
-/// Parameters that a search ended with.
+/// Result of a search.
 struct Attempt {
-  FitParameters law, softening;                           ///< the second empty without
+  FitParameters law, softening;                           ///< the second is empty without softening
   double cost = std::numeric_limits<double>::infinity();  ///< sum over tests, see fit_material()
   bool converged = false;
 };
 
-/// Finds the best parameters of one model after the other and remembers them: a law that contains
-/// another one starts, beside random starts, from that one's solution, so that it never fits worse.
+/// Finds the best parameters of several models and stores them. A law that contains another one
+/// starts from random starts and from the solution of that one, so that it never fits worse.
 class MaterialSearch {
  public:
-  /// Called after every start. @param model that is being fitted.
+  /// Called after every start. @param model the model that is being fitted.
   using Progress = std::function<void(const std::string& model)>;
 
-  /// @param tests kept by reference. @param settings whose model is not used.
+  /// @param tests must outlive this object. @param settings whose model is ignored.
   /// @param progress may be empty.
   MaterialSearch(const std::vector<CountedTest>& tests, FitSettings settings, Progress progress);
 
-  /// Of Ogden's law without terms that coincide or carry nothing. Throws Error(not-converged).
+  /// The best parameters of a model; for Ogden's law, without terms that coincide or carry no
+  /// stress. Throws Error: not-converged.
   const Attempt& best(const std::string& model);
-  double scale() const { return scale_; }  ///< Pa, the size of a modulus
-  /// How often `progress` will be called for these models.
+  double scale() const { return scale_; }  ///< Pa, typical modulus
+  /// Number of calls of `progress` for these models.
   static int starts(std::span<const std::string> models, const FitSettings& settings);
 
  private:

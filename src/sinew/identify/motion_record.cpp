@@ -36,7 +36,7 @@ Heading heading_of(const std::string& column) {
   while (i < name.size() && name[i] == ' ') ++i;
   if (i < name.size() && std::isdigit(static_cast<unsigned char>(name[i])) != 0) {
     int number = 0;
-    // More digits than any arm has segments are no number of one.
+    // At most four digits: no arm has more segments.
     for (int k = 0; k < 4 && i < name.size() && std::isdigit(static_cast<unsigned char>(name[i]));
          ++k) {
       number = 10 * number + (name[i++] - '0');
@@ -119,7 +119,7 @@ Columns find_columns(const Table& table, int segments) {
   return columns;
 }
 
-/// From the header on, which names a time; lines above are a preamble.
+/// The table from its header on, which names a time; lines above are a preamble.
 std::string_view from_header(std::string_view bytes) {
   std::size_t line = 0;
   while (line < bytes.size()) {

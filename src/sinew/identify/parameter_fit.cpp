@@ -19,7 +19,7 @@ namespace sinew::identify {
 
 namespace {
 
-/// A singular value that is rounding, of the largest.
+/// Relative to the largest singular value: smaller ones are rounding.
 constexpr double kVanishing = 1e-7;
 
 double scale_of(const Parameter& p) {
@@ -68,14 +68,14 @@ void check(const ForwardModel& model, const VectorX& measured,
   }
 }
 
-/// The problem in units of scales, of free parameters and measured observations alone.
+/// The problem in scaled units, restricted to free parameters and measured observations.
 struct Problem {
   const ForwardModel& model;
   const VectorX& measured;
   const std::vector<Parameter>& parameters;
   std::vector<Eigen::Index> free, seen;
   VectorX scale;
-  // What a solve moves, of those free, and where the others are held.
+  // The free parameters that a solve moves, and the values of all others.
   std::vector<Eigen::Index> moving;
   VectorX base;
   mutable VectorX prediction;
@@ -109,12 +109,12 @@ struct Problem {
     VectorX result = base;
     for (std::size_t j = 0; j < moving.size(); ++j) {
       const Eigen::Index k = moving[j];
-      // Bounds hold in the parameters' own units, whatever scaling rounds.
+      // Enforces the bounds in the parameters' own units, whatever scaling rounds.
       result[k] = std::clamp(scale[k] * x[j], parameter(k).lower, parameter(k).upper);
     }
     return result;
   }
-  /// False where the run failed.
+  /// Returns false if the run failed.
   bool evaluate(const VectorX& values, bool derivatives) const {
     prediction.resize(model.observations);
     if (derivatives) jacobian.resize(model.observations, values.size());
@@ -126,7 +126,8 @@ struct Problem {
     }
     return std::ranges::all_of(seen, [&](Eigen::Index i) { return std::isfinite(prediction[i]); });
   }
-  /// Of what moves, for the solver: no exception passes through it, fit_parameters() throws it on.
+  /// Residuals of the moving parameters, for the solver. No exception passes through the solver;
+  /// fit_parameters() rethrows it.
   bool residuals(const double* x, double* result, double* derivatives) const {
     if (failure) return false;
     try {
@@ -156,7 +157,7 @@ struct Descent {
   bool converged = false;
 };
 
-/// Over what moves, within bounds.
+/// Minimises over the moving parameters within bounds.
 BoundedResult descend(Problem& problem, const ParameterFitSettings& settings, int iterations) {
   std::vector<BoundedValue> values;
   for (const Eigen::Index k : problem.moving) {
@@ -184,9 +185,9 @@ bool at_bound(const Parameter& p, double value, double scale) {
   return value - p.lower <= near || p.upper - value <= near;
 }
 
-/// The solver projects its steps on bounds, and then creeps along them. So parameters at a bound
-/// against which the cost's gradient pushes are held there, the others go on alone, and those held
-/// are let go when the gradient turns (active sets; Nocedal & Wright, Numerical Optimization,
+/// The solver projects its steps onto bounds, and then creeps along them. Parameters at a bound
+/// towards which the cost decreases are therefore held there while the others continue alone, and
+/// released when the gradient changes sign (active sets; Nocedal & Wright, Numerical Optimization,
 /// 2006, 16.5).
 Descent solve(Problem& problem, const VectorX& start, const ParameterFitSettings& settings) {
   constexpr int kRound = 20;
@@ -233,7 +234,7 @@ VectorX random_start(const Problem& problem, Random& random) {
   for (const Eigen::Index k : problem.free) {
     const Parameter& p = problem.parameter(k);
     const double scale = problem.scale[k];
-    // Without a bound, as far as its scale.
+    // Without a bound, the range is the scale.
     const double lower = std::isfinite(p.lower) ? p.lower : p.start - scale;
     const double upper = std::isfinite(p.upper) ? p.upper : p.start + scale;
     result[k] = random.uniform(lower, upper);

@@ -9,6 +9,7 @@
 
 namespace sinew::identify {
 
+/// Throws this error.
 [[noreturn]] inline void refuse(ErrorKind kind, const std::string& item, std::string message,
                                 std::string remedy) {
   throw Error(kind, {.item = item}, std::move(message), std::move(remedy));

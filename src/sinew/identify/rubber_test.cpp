@@ -83,7 +83,7 @@ bool is_number(std::string_view cell) {
              std::string::npos;
 }
 
-/// The table from its header on: the last line before the first that is all numbers.
+/// The table from its header on, which is the last line before the first that has only numbers.
 std::string_view without_preamble(std::string_view bytes) {
   std::size_t header = 0, line = 0;
   while (line < bytes.size()) {

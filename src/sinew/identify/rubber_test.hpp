@@ -1,5 +1,5 @@
 /// @file
-/// Tests of rubber by homogeneous deformation, as tables.
+/// Homogeneous deformation tests of rubber, as tables.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace sinew::identify {
 
-/// A curve in the order in which it was measured.
+/// A stress-stretch curve, in the order of measurement.
 struct RubberTest {
   std::string name;
   material::DeformationMode mode = material::DeformationMode::uniaxial;
@@ -25,17 +25,18 @@ struct RubberTest {
 /// "uniaxial", "equibiaxial", "planar".
 std::string_view mode_name(material::DeformationMode mode);
 
-/// Reads a table whose header says what its columns are and in which unit. Strain: a column called
-/// stretch, engineering strain (or strain) or true strain, with % or without unit. Stress: nominal
-/// or engineering (both force by undeformed area), or true stress, in kPa, MPa, psi, ... in the
-/// name, as "stress [MPa]", "stress (MPa)" or "stress_MPa". Of several columns the first that is
-/// not true stress or strain counts. Lines above the header that are not numbers are passed over,
-/// other columns ignored.
+/// Reads a table whose header names quantities and units. Strain: a column called stretch,
+/// engineering strain (or strain) or true strain, in % or without unit. Stress: nominal or
+/// engineering (both force per undeformed area), or true stress, with kPa, MPa, psi, ... in the
+/// name, such as "stress [MPa]", "stress (MPa)" or "stress_MPa". Among several columns, the first
+/// that is not true stress or strain is used. Lines above the header that are not numbers are
+/// skipped, and other columns are ignored.
 /// @param path the table.
-/// @param mode none: what the file's name says (uniaxial, equibiaxial or biaxial, planar or pure
-///   shear), else uniaxial.
-/// Throws what read_csv() does, and Error(wrong-columns) when strain or stress cannot be found,
-/// unknown-unit, out-of-range for a stretch that is not positive, too-few-points under three rows.
+/// @param mode none: by the file's name (uniaxial, equibiaxial or biaxial, planar or pure shear),
+///   else uniaxial.
+/// Throws what read_csv() throws, and Error: wrong-columns if there is no strain, no stress or no
+/// unit of stress, out-of-range for a stretch that is not positive, too-few-points for fewer than
+/// three rows.
 RubberTest read_rubber_test(const std::filesystem::path& path,
                             std::optional<material::DeformationMode> mode = std::nullopt);
 /// The same from memory. @param bytes,name the file and its name. @param mode as above.

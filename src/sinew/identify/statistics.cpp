@@ -13,7 +13,7 @@ namespace sinew::identify {
 namespace {
 
 double normal_quantile(double probability) {
-  // Newton's method on the distribution function, which is convex on either side of zero.
+  // Newton's method on the distribution function, which is convex below zero and concave above.
   double z = 0.0;
   for (int i = 0; i < 60; ++i) {
     const double error = 0.5 * std::erfc(-z / std::numbers::sqrt2) - probability;

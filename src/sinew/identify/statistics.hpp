@@ -1,5 +1,5 @@
 /// @file
-/// Measures of fits.
+/// Statistics of fits.
 #pragma once
 
 #include "sinew/core/types.hpp"
@@ -11,9 +11,9 @@ namespace sinew::identify {
 double student_quantile(double probability, int degrees_of_freedom);
 
 /// Normalised root mean square error |predicted - measured| / |measured - mean|, over all columns
-/// and all entries that were measured (not NaN); each column has its own mean.
-/// Throws Error(wrong-length | out-of-range when the measured do not vary).
-/// @param predicted,measured (samples, columns).
+/// and all measured entries (not NaN); each column has its own mean.
+/// @param predicted,measured (samples, columns). Throws Error: wrong-length, out-of-range if the
+///   measurements do not vary.
 double nrmse(const MatrixX& predicted, const MatrixX& measured);
 
 }  // namespace sinew::identify

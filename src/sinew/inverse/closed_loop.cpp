@@ -21,9 +21,9 @@ namespace sinew::inverse {
 
 namespace {
 
-// Limits hold effectors back where they keep this part of the motion that is asked for.
+// Limits hold effectors back if they prevent this part of the requested motion.
 constexpr double kHeldBack = 1e-2;
-// In place of the age of a sample.
+// Age of a sample that does not exist.
 constexpr double kNever = -1.0;
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
@@ -39,7 +39,7 @@ void check_kind(const sim::SensorModel& sensor, const constraint::Effector& effe
               fmt::format("measure the effector by a sensor of type {}", kind));
 }
 
-// Between two samples that come as they should.
+// Time between two samples of a healthy sensor.
 double period_of(const sim::SensorModel& sensor, double time_step) {
   return sensor.channel.rate > 0.0 ? std::max(1.0 / sensor.channel.rate, time_step) : time_step;
 }
@@ -124,7 +124,7 @@ VectorX ClosedLoop::efforts() const {
   return efforts;
 }
 
-// Whether any sensor is silent now.
+// Updates silent_; returns whether any sensor is silent now.
 bool ClosedLoop::note_silence() {
   const double now = simulation_.time();
   for (Eigen::Index t = 0; t < silent_.size(); ++t) {
@@ -139,13 +139,13 @@ bool ClosedLoop::note_silence() {
   return (silent_.array() != 0.0).any();
 }
 
-// A winch is told lengths and a regulator pressures.
+// Winches take lengths as commands; pressure regulators take pressures.
 bool ClosedLoop::is_told_motion(std::size_t actuator) const {
   const auto& model = simulation_.model().actuators()[at(settings_.actuators[actuator])];
   return model.type != sim::ActuatorType::chamber;
 }
 
-// What takes the effector from a measured value to its target at a time.
+// Motion from a measured value of the effector to its target at a time.
 Vector3 ClosedLoop::difference(int task, double time, const Vector3& from) const {
   const EffectorTask& asked = settings_.tasks[at(task)];
   const Vector3 to = asked.target.at(time);
@@ -174,8 +174,8 @@ double ClosedLoop::measured_error(int task) const {
   return rows.norm();
 }
 
-// (rows,) from where the effectors must be by now, by their samples and what was commanded since
-// these were taken, to their targets.
+// Error e of the class, (rows,): from the predicted present position, which is the sample plus the
+// motion commanded since it was taken, to the target.
 VectorX ClosedLoop::error_now() const {
   VectorX error(weights_.size());
   const std::int64_t now = simulation_.steps(), kept = foreseen_.cols();
@@ -194,7 +194,7 @@ VectorX ClosedLoop::error_now() const {
   return error;
 }
 
-// (rows,) how far targets move in the step.
+// Motion of the targets in the step, (rows,).
 VectorX ClosedLoop::lead() const {
   VectorX rows(weights_.size());
   const double now = simulation_.time();
@@ -207,7 +207,7 @@ VectorX ClosedLoop::lead() const {
   return rows;
 }
 
-// Limits of motions let every actuator stay where it is, and a slack cable be shorter than its way
+// Limits of motions always admit the present motion, and let a slack cable be shorter than its path
 // through the body by any length.
 RateLimits ClosedLoop::limits() const {
   const auto count = std::ssize(settings_.actuators);
@@ -315,7 +315,7 @@ std::string ClosedLoop::conflict() const {
   return text;
 }
 
-// First come: whether it has commanded, and the status.
+// The memory begins with started_ and the status.
 template <class Self, class Visitor>
 void ClosedLoop::visit_memory(Self& self, Visitor&& visitor) {
   for (auto& number : self.integral_) visitor(number);
@@ -344,7 +344,7 @@ void ClosedLoop::load_memory(std::span<const double> memory) {
   push_commands();
 }
 
-// Commands stay: they are the scene's again after a reset, and else hold the robot.
+// Commands stay: after a reset they are those of the scene again, otherwise they hold the robot.
 void ClosedLoop::forget() {
   started_ = false;
   status_ = InverseStatus::not_started;

@@ -1,5 +1,5 @@
 /// @file
-/// Feedback on measured effectors: resolved rate and PI, with the delay of sensors made up for.
+/// Feedback control on measured effectors: resolved-rate and PI control with delay compensation.
 #pragma once
 
 #include <cstddef>
@@ -14,35 +14,38 @@
 
 namespace sinew::inverse {
 
-/// What a computer beside the robot does: before each step of T seconds it takes the samples y that
-/// its sensors have delivered, asks effectors with targets r for the velocity
-///   v = dr/dt + gain e + integral (time integral of e),   e = r - y - (motion since the sample),
-/// and commands actuators delta_a + W_aa u, chambers and other pressures lambda + u, where
-/// choose_change() finds the changes of efforts u for W_ea u = v T within all limits. W is the
-/// compliance of equilibrium at the robot's present state (sim::controlled_response()), without
-/// inertia: d delta_e = J d delta_a with J = W_ea W_aa^+ (Zhang, Dequidt, Kruszewski, Largilliere
-/// and Duriez, IROS 2016).
+/// Closed-loop controller, as it runs on a computer beside the robot. Before each step of T seconds
+/// it takes the samples y that its sensors have delivered. For effectors with targets r it asks for
+/// the velocity
+///   v = dr/dt + gain e + integral (time integral of e),   e = r - y - (motion since the sample).
+/// choose_change() finds the changes of efforts u that give W_ea u = v T within all limits.
+/// Chambers are commanded lambda + u, and all other actuators delta_a + W_aa u. W is the compliance
+/// of equilibrium at the robot's present state (sim::controlled_response()), without inertia: d
+/// delta_e = J d delta_a with J = W_ea W_aa^+ (Zhang, Dequidt, Kruszewski, Largilliere and Duriez,
+/// IROS 2016).
 ///
-/// The motion since the sample was taken is the sum of W_ea u of the steps since then (Smith, Chem.
-/// Eng. Prog. 53 (1957) 217): with an exact W a delay leaves the gain's limit of stability where it
-/// is, 2/T. Nothing else of the simulation's state is used, so outside forces show in the samples
-/// alone.
+/// The motion since the sample was taken is the sum of W_ea u over the steps since then (Smith
+/// predictor, Chem. Eng. Prog. 53 (1957) 217). With an exact W, a delay therefore does not change
+/// the stability limit of the gain, 2/T. Nothing else of the simulation's state is used, so
+/// external forces show in the samples only.
 ///
-/// What limits keep from the effectors is taken off the integral (back-calculation).
+/// Anti-windup: the part of the motion that limits prevent is subtracted from the integral
+/// (back-calculation).
 ///
-/// While a sample is older than its sensor's delay and Feedback::timeout, or than the sensor's own
-/// timeout, and before the first one, all commands and the integral are held: `holding`.
+/// All commands and the integral are held (status `holding`) before the first sample, and while a
+/// sample is older than its sensor's delay plus Feedback::timeout, or than the sensor's own
+/// timeout.
 class ClosedLoop : public TargetController, public sim::Commander {
  public:
   /// @param simulation must outlive the controller. @param settings with feedback.
-  /// Throws what check_settings() does, and Error: wrong-length (sensors), wrong-type (a sensor
-  /// that does not measure what the effector is), out-of-range (gain, integral, timeout; a sensor
-  /// whose samples are farther apart than the timeout).
+  /// Throws what check_settings() throws, and Error: wrong-length (sensors), wrong-type (a sensor
+  /// of another kind than its effector), out-of-range (gain, integral, timeout; a sensor whose
+  /// sampling period exceeds the timeout).
   ClosedLoop(sim::Simulation& simulation, InverseSettings settings);
   ~ClosedLoop() override;
 
   void detach() override;
-  /// Those that the actuators have.
+  /// Present efforts of the actuators.
   VectorX efforts() const override;
   double measured_error(int task) const override;
   std::string conflict() const override;
@@ -72,11 +75,11 @@ class ClosedLoop : public TargetController, public sim::Commander {
   std::vector<Eigen::Index> first_;  // (tasks,) rows
   VectorX weights_;                  // (rows,) Q
   VectorX integral_;                 // (rows,) of the error, m s
-  MatrixX foreseen_;                 // (rows, k): W_ea u of the last k steps, step n in n mod k
-  VectorX commands_;                 // (actuators,)
+  MatrixX foreseen_;  // (rows, k): W_ea u of the last k steps, step n in column n mod k
+  VectorX commands_;  // (actuators,)
   VectorX
-      silent_;  // (tasks,) s, how old a sample that was too old was; 0: none, -1: there was none
-  bool started_ = false;  // whether it has commanded
+      silent_;  // (tasks,) s, age of a sample that is too old; 0: not too old, -1: no sample yet
+  bool started_ = false;  // whether it has sent a command
 };
 
 }  // namespace sinew::inverse

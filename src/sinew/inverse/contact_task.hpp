@@ -1,5 +1,5 @@
 /// @file
-/// What a controller is asked of the forces of a contact.
+/// A requirement on the forces of a contact, for a controller.
 #pragma once
 
 #include <limits>
@@ -7,14 +7,14 @@
 
 namespace sinew::inverse {
 
-/// Forces of all points of one contact together. They come before targets: of an effector's error
-/// as much is left as they need (see kForceWeight in force_rows.cpp).
+/// Requirement on the total force of one contact. It comes before targets: they give way as far as
+/// the forces need (see kForceWeight in force_rows.cpp).
 struct ContactTask {
-  int contact = 0;  ///< of sim::Model::contacts()
-  /// N, limits of the sum of the normal forces; equal for a force that is asked for.
+  int contact = 0;  ///< index in sim::Model::contacts()
+  /// N, limits of the sum of the normal forces; equal limits ask for one force.
   double normal_min = 0.0, normal_max = std::numeric_limits<double>::infinity();
-  /// The resultant stays within the friction cone less this part: |F_t| <= (1 - reserve) mu F_n,
-  /// 0 <= reserve < 1. None: it may slip.
+  /// The resultant stays within the reduced friction cone |F_t| <= (1 - reserve) mu F_n,
+  /// 0 <= reserve < 1. None: the contact may slip.
   std::optional<double> reserve;
 };
 

@@ -17,12 +17,12 @@ using step::LawStatus;
 using step::Response;
 using step::StepProblem;
 
-// Part of W's diagonal that makes the regularisation definite.
+// Part of W's diagonal that is added to make the regularisation definite.
 constexpr double kEvenly = 1e-6;
-// A limit holds effectors back where it resists this part of what the gap could pull with.
+// A limit holds effectors back if its multiplier exceeds this part of the pull of the gap.
 constexpr double kHolds = 1e-3;
 
-// 1/2 x^T A x by A's lower triangle, which is all of a program's Hessian that counts.
+// 1/2 x^T A x from the lower triangle of A, the only one that a program reads.
 double half_square(const MatrixX& a, const VectorX& x) {
   double sum = 0.0;
   for (Eigen::Index j = 0; j < x.size(); ++j) {
@@ -117,7 +117,7 @@ void EffortProgram::form(const StepProblem& problem, const Response& response,
   left_ = 0.5 * residual.dot(weights_.cwiseProduct(residual));
 }
 
-// Where friction slides R would be unsymmetric, and keeps its diagonal alone.
+// If friction slides, W_aa is unsymmetric; R then keeps its diagonal only.
 void EffortProgram::regularise(const StepProblem& problem, const Response& response,
                                const EffortPull& pull) {
   const Eigen::Index count = scale_.size();
@@ -132,12 +132,12 @@ void EffortProgram::regularise(const StepProblem& problem, const Response& respo
     const auto slope = program_.rows.bottomLeftCorner(forces_.count(), count);
     asked = forces_.weight() * slope.squaredNorm();
   }
-  // So that curvatures along efforts and along what forces lack compare.
+  // Makes the curvatures along efforts and along slacks comparable.
   const bool compares = asked > 0.0 && forces_.count() > 0;
   slack_scale_ = compares ? std::sqrt(asked / forces_.weight()) : problem.size;
   const double eps = pull.epsilon * (asked > 0.0 ? asked : norm) / norm;
-  // Where an effector is as far as an actuator takes it, W_ea goes to zero. What was the largest so
-  // far keeps to be the measure of how far a step may go (More 1978, see StepDamping, section 6).
+  // Where an effector is as far as an actuator can take it, W_ea goes to zero. The largest value so
+  // far remains the measure of how far a step may go (More 1978, see StepDamping, section 6).
   largest_asked_ = std::max(largest_asked_, asked);
   const double stiffer = asked > 0.0 ? largest_asked_ / asked : 1.0;
   const double damps = stiffer * (pull.damping - 1.0);
@@ -149,7 +149,7 @@ void EffortProgram::regularise(const StepProblem& problem, const Response& respo
     const double before = problem.effort_before[static_cast<std::size_t>(row)] / scale_[j];
     for (Eigen::Index i = 0; i < count; ++i) {
       double weight = eps * scale_[i] * program_.rows(i, j);
-      // What moves nothing is held by others: a drive, or the clamp.
+      // An effort that moves nothing is held by a drive or a clamp.
       if (i == j) weight = weight > 0.0 ? (1.0 + kEvenly) * weight : eps * norm;
       if (i != j && response.is_unsymmetric()) weight = 0.0;
       pull_hessian_(i, j) = (1.0 + damps + stay) * weight;
@@ -197,13 +197,14 @@ void EffortProgram::form_forces(qp::QuadraticProgram& program) const {
   program.row_upper.segment(scale_.size(), rows) = forces_.upper() - forces_.offset();
 }
 
-// Rows for guards are made for more than there are: others are empty.
+// Allocates more guard rows than needed; the others are empty.
 LawStatus EffortProgram::solve_guarded(const StepProblem& problem, const Response& response,
                                        bool tight, std::span<double> effort) {
   const Eigen::Index count = program_.gradient.size();
   const auto guards = static_cast<Eigen::Index>(response.guards().size());
   if (guarded_.rows.rows() < count + guards || guarded_.gradient.size() != count) {
-    // A multiple of the widest vectors: how many rows are empty changes no bit of the others.
+    // A multiple of the widest vectors, so that the number of empty rows changes no bit of the
+    // result.
     const auto rows = static_cast<int>((count + guards + guards / 2 + 32) / 16 * 16);
     guarded_ = qp::QuadraticProgram::sized(static_cast<int>(count), rows);
     guarded_solver_ = qp::QpSolver(static_cast<int>(count), rows);
@@ -251,7 +252,7 @@ LawStatus EffortProgram::solve(const sim::Model& model, const StepProblem& probl
   }
   if (result.status != qp::QpStatus::infeasible) return LawStatus::failed;
   const qp::ElasticResult& nearest = elastic_.solve(program_);
-  // One that was not finished keeps the efforts' limits.
+  // An unfinished solution meets the limits of efforts.
   const bool usable = nearest.status == qp::ElasticStatus::optimal ||
                       nearest.status == qp::ElasticStatus::relaxed ||
                       nearest.status == qp::ElasticStatus::iteration_limit;

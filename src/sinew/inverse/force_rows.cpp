@@ -16,12 +16,13 @@ using step::ContactBlock;
 using step::Response;
 using step::StepProblem;
 
-// Of the largest weight of a target: a target that lacks 1 mm moves a force by what moves its
-// point by 0.1 um.
+// Relative to the largest weight of a target: a target that misses by 1 mm changes a force by what
+// moves its point by 0.1 um.
 constexpr double kForceWeight = 1e4;
 constexpr int kSides = 8;  // of the polygon in a friction cone
-// Of what would hold a point that is free of all others. Joints and other contacts make it stiffer:
-// pressing is to serve where it lessens the slip by more than a tenth of (mu - grip)/mu of that.
+// Relative to what would hold a point that is coupled to no other. Joints and other contacts make
+// it stiffer: pressing must help if it reduces the slip by more than a tenth of (mu - grip)/mu of
+// that.
 constexpr double kSlip = 10.0;
 
 double beyond(double value, double lower, double upper) {
@@ -42,7 +43,7 @@ ForceRows::ForceRows(std::vector<ContactTask> tasks, double weight)
   upper_.setConstant(rows, kInfinity);
 }
 
-// The point that carries most, or the nearest.
+// Chooses the point with the largest force, or the nearest one if none carries force.
 void ForceRows::choose_reference(const StepProblem& problem, std::size_t task) {
   Reference& reference = references_[task];
   reference = {};
@@ -73,12 +74,12 @@ void ForceRows::begin(const StepProblem& problem, double largest) {
         reference.compliance * normal_force(task, problem, problem.delta, problem.effort_before);
     lower_[first] = std::min(reference.compliance * tasks_[task].normal_min, now + largest);
     upper_[first] = std::max(reference.compliance * tasks_[task].normal_max, now - largest);
-    // Nobody pulls at an open contact that is asked for nothing.
+    // A contact with no minimum force may stay open.
     if (!(tasks_[task].normal_min > 0.0)) lower_[first] = -kInfinity;
   }
 }
 
-// An outward normal of a side of the cone: what it gives with a force is to be negative.
+// Outward normal of a side of the cone: its product with an admissible force is not positive.
 Vector3 ForceRows::cone_side(std::size_t task, int side) const {
   const Reference& reference = references_[task];
   const double angle = 2.0 * std::numbers::pi * side / kSides;
@@ -118,7 +119,7 @@ void ForceRows::form(const StepProblem& problem, const Response& response) {
   }
 }
 
-// What a point adds to the sides of the cone: its force where it has one, and its slip.
+// Adds a point's contribution to the sides of the cone: its force, if closed, and its slip.
 void ForceRows::form_friction(const StepProblem& problem, const Response& response,
                               std::size_t task, const ContactBlock& block) {
   const bool closed = response.follows(block.row);
@@ -137,7 +138,7 @@ void ForceRows::form_friction(const StepProblem& problem, const Response& respon
   }
 }
 
-// The part of a contact's normal force that a point carried before.
+// Fraction of a contact's normal force that a point carried before the step.
 double ForceRows::carries(std::size_t task, const StepProblem& problem,
                           const ContactBlock& block) const {
   const double all = references_[task].carried;
@@ -145,7 +146,7 @@ double ForceRows::carries(std::size_t task, const StepProblem& problem,
   return all > 0.0 ? std::max(0.0, own) / all : 0.0;
 }
 
-// d of the class, m, in the world's axes.
+// Mean slip d of the class, m, in world axes.
 Vector3 ForceRows::slip(std::size_t task, const StepProblem& problem, const VectorX& motion) const {
   Vector3 mean = Vector3::Zero();
   for (const ContactBlock& block : problem.contacts) {
@@ -156,7 +157,8 @@ Vector3 ForceRows::slip(std::size_t task, const StepProblem& problem, const Vect
   return mean;
 }
 
-// An effort that does not reach the contact must not be chosen by rounding, see step::Response.
+// Sets entries at rounding level to zero: an effort without effect on the contact must not be
+// chosen by rounding, see step::Response.
 void ForceRows::clear_rounding(const StepProblem& problem, const Response& response,
                                std::size_t task) {
   const Eigen::Index rows = 1 + (tasks_[task].reserve ? kSides : 0);
@@ -182,7 +184,7 @@ double ForceRows::normal_force(std::size_t task, const StepProblem& problem, con
   return sum > 0.0 || reference.row < 0 ? sum : -motion[reference.row] / reference.compliance;
 }
 
-// Of an open contact that carried force before, the normal force that normal_force() gives it.
+// An open contact that carried force before has the normal force of normal_force().
 Vector3 ForceRows::resultant(std::size_t task, const StepProblem& problem, const VectorX& motion,
                              std::span<const double> effort) const {
   Vector3 sum = Vector3::Zero();

@@ -1,5 +1,5 @@
 /// @file
-/// Contact forces as rows of a controller's program.
+/// Requirements on contact forces as rows of a controller's quadratic program.
 #pragma once
 
 #include <optional>
@@ -17,60 +17,62 @@ struct StepProblem;
 
 namespace sinew::inverse {
 
-/// One row for the normal force of each task, and eight for a reserve of friction: the octagon
-/// around a circle of radius (1 - reserve) mu cos(pi/8) F_n, whose corners lie on the cone that is
-/// asked for. As a function of the controlled efforts lambda_c a row is
+/// Rows for the contact forces of a controller's tasks. Each task has one row for its normal force.
+/// A reserve of friction adds eight rows: the octagon around a circle of radius (1 - reserve) mu
+/// cos(pi/8) F_n, whose corners lie on the requested cone. As a function of the controlled efforts
+/// lambda_c, a row is
 ///   lower <= offset + slope . lambda_c <= upper,
-/// in m: forces are multiplied by the compliance W_nn of a point of the contact, its reference. A
-/// contact that is open has the normal force -gap/W_nn of that point: it is less than any that is
-/// asked for by what closes the gap. A contact without points near the surface has no rows, and
-/// only targets bring it there.
+/// in m: forces are multiplied by the compliance W_nn of one point of the contact, its reference.
+/// An open contact is assigned the normal force -gap/W_nn of that point, so that its shortfall from
+/// a requested force includes what closes the gap. A contact without points near the surface has no
+/// rows; only targets bring it there.
 ///
-/// A contact that slips has friction at its limit whatever its normal force is, and letting go
-/// would meet the reserve. With d the motion along the surface in the step, the mean over the
-/// points that carried force before, by their forces, the rows of a reserve hold therefore
+/// A contact that slips has friction at its limit whatever its normal force, and letting go would
+/// satisfy the reserve. Let d be the mean motion along the surface in the step, over the points
+/// that carried force before and weighted by these forces. The rows of a reserve therefore limit
 ///   F_t - kSlip d/W_nn
-/// in place of F_t, the force that would hold the contact: more pull serves where it lessens the
-/// slip, and letting go does not. Where all points stick, it is F_t.
+/// in place of F_t, as an estimate of the friction that would hold the contact: pressing harder
+/// helps if it reduces the slip, and letting go does not. If all points stick, it equals F_t.
 ///
-/// What lies beyond the limits by v costs kForceWeight w v^2/2, w the largest weight of a target.
+/// A violation v of the limits costs kForceWeight w v^2/2, where w is the largest weight of a
+/// target.
 class ForceRows {
  public:
   ForceRows() = default;
-  /// @param tasks of different contacts. @param weight w, see the class.
+  /// @param tasks each of another contact. @param weight w, see the class.
   ForceRows(std::vector<ContactTask> tasks, double weight);
 
   const std::vector<ContactTask>& tasks() const { return tasks_; }
-  /// How many rows all tasks have.
+  /// Number of rows of all tasks.
   Eigen::Index count() const { return lower_.size(); }
-  /// Of v^2/2, see the class; 1 (no unit).
+  /// Factor of v^2/2, see the class; dimensionless.
   double weight() const { return weight_; }
 
-  /// What is asked in all choices of a law's solution: forces change by no more than what moves
-  /// their points by a length. @param problem of the step. @param largest m.
+  /// Forms the limits for all choices of one step. The limits change a force by no more than what
+  /// moves its point by `largest`. @param problem of the step. @param largest m.
   void begin(const step::StepProblem& problem, double largest);
-  /// @param problem,response of the step, the same problem as in begin().
+  /// Forms the rows. @param problem,response of the step, the same problem as in begin().
   void form(const step::StepProblem& problem, const step::Response& response);
   const MatrixX& slope() const { return slope_; }    ///< (count, controlled) m/N
   const VectorX& offset() const { return offset_; }  ///< (count,) m
   const VectorX& lower() const { return lower_; }    ///< (count,) m
   const VectorX& upper() const { return upper_; }    ///< (count,) m
 
-  /// The cost of what lies beyond the limits of begin(). @param problem as there.
+  /// Cost of the violation of the limits of begin(). @param problem of the step.
   /// @param motion (rows,) m. @param effort (rows,) N.
   double cost(const step::StepProblem& problem, const VectorX& motion,
               std::span<const double> effort) const;
-  /// N: how far a task's forces are beyond the limits of the task itself, the farthest.
-  /// @param task position in tasks(). @param problem,motion,effort as for cost().
+  /// Largest violation of the task's own limits, N.
+  /// @param task index in tasks(). @param problem,motion,effort as for cost().
   double miss(std::size_t task, const step::StepProblem& problem, const VectorX& motion,
               std::span<const double> effort) const;
 
  private:
   struct Reference {
-    int row = -1;             // of the normal; none: no point is near
+    int row = -1;             // of the normal; -1: no point is near
     double compliance = 0.0;  // W_nn, m/N
     double friction = 0.0;
-    double carried = 0.0;                 // N, by all points of the contact before
+    double carried = 0.0;                 // N, total normal force before the step
     Matrix3 frame = Matrix3::Identity();  // normal, two tangents
   };
 

@@ -22,14 +22,14 @@ using step::LawStatus;
 using step::Response;
 using step::StepProblem;
 
-// A limit is taken to bind when the solution comes this near, relative to its size.
+// A limit is active if the solution is this near, relative to its size.
 constexpr double kActive = 1e-9;
-// At rest nothing moves by more than this part of the tolerance in a step, so that what still
-// creeps towards an optimum goes less than a hundredth of the tolerance in fifty steps.
+// At rest nothing moves by more than this part of the tolerance in a step, so that a slow approach
+// to an optimum covers less than a hundredth of the tolerance in fifty steps.
 constexpr double kStill = 2e-4;
-// And forces balance to this part of their size.
+// At rest, forces balance to this part of their size.
 constexpr double kBalanced = 1e-3;
-// Of a contact force that is asked for: one this near is as asked.
+// Relative tolerance of a requested contact force.
 constexpr double kForceTolerance = 1e-2;
 
 bool near(double value, double limit) {
@@ -87,9 +87,9 @@ InverseStatus InverseController::step() {
   return status_;
 }
 
-// Of a step, whose law may be solved several times. First: what became of the step before, and what
-// is asked in this one. Later: what became of the last choice, where the robot has been linearised
-// anew since.
+// The law of a step may be solved several times. On the first call of a step, evaluates the outcome
+// of the previous step and sets the targets of this one. On later calls, after the robot has been
+// linearised anew, evaluates the outcome of the last choice.
 void InverseController::look_back(const StepProblem& problem, const Response& response) {
   if (!(problem.time > time_)) return review_choice(problem, response);
   inner_damping_.set(1.0);
@@ -109,7 +109,7 @@ void InverseController::look_back(const StepProblem& problem, const Response& re
   gap_linearised_ = gap_;
 }
 
-// Within a step the damping only grows: choices that go back and forth come to rest.
+// Within a step the damping only grows, so that alternating choices converge.
 void InverseController::review_choice(const StepProblem& problem, const Response& response) {
   if (!tried_) return;
   measure_gap(problem);
@@ -120,11 +120,11 @@ void InverseController::review_choice(const StepProblem& problem, const Response
   tried_ = false;
 }
 
-// A quasi-static step moves effectors as foreseen, since it is linear. That they go another way
-// from there on shows by W_ea: by the trapezoidal rule the step's change d of efforts gains
+// A quasi-static step moves effectors as predicted, since it is linear. W_ea shows that they move
+// differently from there on: by the trapezoidal rule, the change d of efforts gains
 //   1/2 (W_ea d - W_ea' d)^T Q gap
-// less than foreseen. It is the second derivatives' part that least squares leave out, as J. E.
-// Dennis, D. M. Gay & R. E. Welsch, ACM Trans. Math. Software 7 (1981) 348-368, section 3, find it.
+// less than predicted. This is the second-derivative term that least squares omit, estimated as in
+// J. E. Dennis, D. M. Gay & R. E. Welsch, ACM Trans. Math. Software 7 (1981) 348-368, section 3.
 void InverseController::review(StepDamping& damping, const Response& response,
                                const VectorX& before) const {
   const double foreseen = objective(foreseen_);
@@ -164,8 +164,9 @@ double InverseController::negligible_objective() const {
   return 0.5 * weight * still * still;
 }
 
-// However often the step is linearised, its goal stays: the part of the gap at its start that one
-// step may close. An angle counts as its arc at a distance of the robot's size.
+// The goal of a step does not change when the step is linearised again: it is the part of the gap
+// at its start that one step may close. An angle counts as its arc at a distance of the robot's
+// size.
 void InverseController::form_residual(const StepProblem& problem, const Response& response) {
   measure_gap(problem);
   double to_go = 0.0;
@@ -260,8 +261,8 @@ bool InverseController::forces_hold() const {
   return true;
 }
 
-// What the linearisation says of the step's end: the gaps that stay, and the farthest that an
-// effector or an actuator moves in the step, m.
+// Predicts the end of the step from the linearisation: the gaps that remain. Returns the largest
+// motion of an effector or actuator in the step, m.
 double InverseController::foresee(const StepProblem& problem, const Response& response,
                                   const VectorX& motion) {
   double moved = 0.0;
@@ -288,7 +289,7 @@ InverseStatus InverseController::judge(const StepProblem& problem, const Respons
     return surprise_ <= settings_.tolerance ? InverseStatus::on_target : InverseStatus::moving;
   }
   if (rate_binds(problem, response, motion, effort)) return InverseStatus::rate_limited;
-  // A step that was damped would have gone so much farther.
+  // Without damping, the step would have gone farther by this factor.
   const bool still = moved * damping_.value() <= kStill * settings_.tolerance;
   const bool rests = still && surprise_ <= settings_.tolerance &&
                      simulation_.report().relative_residual <= kBalanced;

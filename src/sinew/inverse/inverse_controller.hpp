@@ -1,5 +1,6 @@
 /// @file
-/// Inverse control by quadratic programming: which efforts take the effectors to their targets?
+/// Inverse control by quadratic programming: finds the efforts that take the effectors to their
+/// targets.
 #pragma once
 
 #include <cstddef>
@@ -17,19 +18,21 @@
 
 namespace sinew::inverse {
 
-/// Owns its actuators from construction to detach() or destruction. In each step of the simulation,
-/// with e the rows of effectors, a those of actuators, Q the weights and |x|_Q^2 = x^T Q x,
+/// Controller that chooses the efforts of its actuators by a quadratic program in each step. It
+/// owns its actuators from construction to detach() or destruction. Let e be the rows of effectors,
+/// a those of actuators, Q the weights and |x|_Q^2 = x^T Q x. The program is
 ///   min  1/2 |W_ea lambda + delta_e - target|_Q^2 + eps/2 |lambda - lambda_0|_R^2
 ///   s.t. limits on lambda, and on delta_a = delta_free + W_aa lambda, rates folded in,
-/// and those of contact forces (ForceRows), which come first,
-/// where lambda_0 is the last step's effort (Regularisation::change) or zero, and R is W_aa with a
-/// millionth of its diagonal added: cables on one path, which W_aa cannot tell apart, share their
-/// changes evenly. StepDamping adds a term that keeps lambda near the last step's where the robot
-/// did not do what was foreseen. W and delta_free are those of step::Response: actuators that it
-/// does not own obey their commands, springs, gas, contacts and friction their laws.
+/// with the requirements on contact forces (ForceRows), which come first. lambda_0 is the effort of
+/// the previous step (Regularisation::change) or zero. R is W_aa with a millionth of its diagonal
+/// added: cables on one path, which W_aa cannot distinguish, share their changes evenly.
+/// StepDamping adds a term that keeps lambda near that of the previous step if the robot did not
+/// respond as predicted. W and delta_free are those of step::Response: actuators that the
+/// controller does not own obey their commands, and springs, gas, contacts and friction obey their
+/// laws.
 class InverseController : public TargetController, public step::Controller {
  public:
-  /// @param simulation must outlive the controller. @param settings see there.
+  /// @param simulation must outlive the controller. @param settings tasks and options.
   /// Throws Error: no-effectors, no-actuators, actuator-owned, wrong-length (weights),
   /// out-of-range, suspicious-unit.
   InverseController(sim::Simulation& simulation, InverseSettings settings);
@@ -39,7 +42,7 @@ class InverseController : public TargetController, public step::Controller {
   InverseStatus step();
   void detach() override;
 
-  /// Those that it chose last.
+  /// The efforts that it chose last.
   VectorX efforts() const override { return efforts_; }
   double force_error(int task) const override {
     return force_errors_.at(static_cast<std::size_t>(task));
@@ -94,30 +97,30 @@ class InverseController : public TargetController, public step::Controller {
 
   bool attached_ = false;
 
-  std::vector<int> effector_rows_;  // rows of H, all tasks one after the other
+  std::vector<int> effector_rows_;  // rows of H, task by task
   std::vector<char> row_turns_;     // whether a row is an angle
-  VectorX row_weights_;             // Q, as many
+  VectorX row_weights_;             // (effector rows,) Q
   VectorX residual_;                // delta_free_e - target, shortened to largest_step
-  VectorX gap_;                     // of the tasks' rows: what delta should be, less delta
+  VectorX gap_;                     // (effector rows,) the target's delta minus delta
   StepDamping damping_;
-  StepDamping inner_damping_;  // of the choices of one step
+  StepDamping inner_damping_;  // over the choices of one step
   VectorX last_choice_;        // (controlled,) efforts
   bool tried_ = false;         // whether the robot has followed it
-  VectorX gap_linearised_;     // where it was linearised for that choice
-  VectorX change_;             // (controlled,) of efforts by that choice
-  VectorX expected_;           // (effector rows,) m, how the change was to move the effectors
+  VectorX gap_linearised_;     // gap at which that choice was linearised
+  VectorX change_;             // (controlled,) change of efforts by that choice
+  VectorX expected_;  // (effector rows,) m, predicted motion of the effectors due to the change
   EffortProgram program_;
   VectorX efforts_;
   double predicted_error_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> force_errors_;  // (contacts,)
   std::optional<step::Certificate> certificate_;
 
-  double time_ = -std::numeric_limits<double>::infinity();  // the end of the step at hand, s
-  std::vector<Vector3> asked_;                              // the targets then
-  VectorX gap_before_;                                      // when the step began
-  VectorX for_later_;  // of that, what the step leaves to the next ones
-  VectorX foreseen_;   // the gap after the step, by the linearisation
-  double surprise_ = std::numeric_limits<double>::infinity();  // how far it was off last time, m
+  double time_ = -std::numeric_limits<double>::infinity();  // end of the present step, s
+  std::vector<Vector3> asked_;                              // the targets at that time
+  VectorX gap_before_;                                      // gap at the start of the step
+  VectorX for_later_;  // the part of it that the step leaves to the next ones
+  VectorX foreseen_;   // gap after the step, by the linearisation
+  double surprise_ = std::numeric_limits<double>::infinity();  // error of the last prediction, m
 };
 
 }  // namespace sinew::inverse

@@ -1,4 +1,4 @@
-// What a controller remembers from step to step, as numbers of a saved state.
+// The state of a controller between steps, as numbers of a saved state.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,13 +9,13 @@ namespace sinew::inverse {
 
 namespace {
 
-// First come: steps known (0, 1, or 2 for more), time, surprise, prediction, damping, status,
-// the largest of what efforts do to effectors.
+// The first numbers: steps known (0, 1, or 2 for more), time, surprise, prediction, damping,
+// status, largest_asked().
 constexpr std::size_t kKnown = 7;
 
 }  // namespace
 
-// All that a step leaves to the next one, but for what infinity says.
+// All that a step leaves to the next one, apart from the numbers that may be infinite or NaN.
 template <class Self, class Visitor>
 void InverseController::visit_memory(Self& self, Visitor&& visitor) {
   for (auto& target : self.asked_) {
@@ -28,7 +28,7 @@ void InverseController::visit_memory(Self& self, Visitor&& visitor) {
   for (auto& effort : self.efforts_) visitor(effort);
 }
 
-// Infinite and undefined numbers stand for "not yet known": before the first step and after it.
+// Infinity and NaN stand for "not yet known": before the first step, and after it until the next.
 void InverseController::forget() {
   program_.forget();
   damping_.set(1.0);

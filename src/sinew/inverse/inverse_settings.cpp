@@ -14,9 +14,9 @@ namespace sinew::inverse {
 
 namespace {
 
-// In sizes of the robot.
+// Relative to the size of the robot.
 constexpr double kFarthest = 100.0;
-// Later ones would drown in rounding.
+// Later priorities would be lost in rounding.
 constexpr int kLastPriority = 3;
 
 void check_contact(const sim::Model& model, const ContactTask& task) {

@@ -1,5 +1,5 @@
 /// @file
-/// Which actuators' limits contradict each other, in words.
+/// Describes which limits of actuators contradict each other.
 #pragma once
 
 #include <string>
@@ -19,13 +19,12 @@ class Response;
 
 namespace sinew::inverse {
 
-/// "displacement of 'east' leaves -0.01..0.01 m by 0.003 m; tension of 'east' is at its
-/// limit, 3 N".
-/// @param model of the robot. @param response of the actuators that have the program's variables
-/// and
-///   rows, one each.
+/// Describes a conflict of limits, such as "displacement of 'east' leaves -0.01..0.01 m by 0.003 m;
+/// tension of 'east' is at its limit, 3 N".
+/// @param model of the robot. @param response of the controlled actuators; each has one variable
+///   and one row of the program.
 /// @param program with efforts over `scale` as variables. @param scale (controlled,) N or Pa, > 0.
-/// @param nearest its solution: rows that are relaxed, and the bounds that stand against them.
+/// @param nearest its solution: the relaxed rows, and the bounds that prevent them from being met.
 std::string describe_conflict(const sim::Model& model, const step::Response& response,
                               const qp::QuadraticProgram& program, const VectorX& scale,
                               const qp::ElasticResult& nearest);

@@ -11,14 +11,14 @@ namespace sinew::inverse {
 namespace {
 
 // Weights of changes of efforts, and of efforts: too small to keep effectors from their targets,
-// and large enough for redundant actuators to share evenly and let go in time.
+// but large enough for redundant actuators to share evenly and to relax in time.
 constexpr double kChange = 1e-5;
 constexpr double kRelaxation = 1e-7;
-// Makes the program definite where actuators have no compliance.
+// Makes the program definite if actuators have no compliance.
 constexpr double kDefinite = 1e-9;
 constexpr double kTiny = std::numeric_limits<double>::min();
 
-// Efforts whose unit is sqrt(J): over 1/sqrt of their own compliance.
+// Scales of efforts, 1/sqrt of their own compliance, so that scaled efforts have the unit sqrt(J).
 VectorX scales(const MatrixX& w_aa) {
   VectorX scale = VectorX::Ones(w_aa.rows());
   for (Eigen::Index k = 0; k < scale.size(); ++k) {

@@ -12,7 +12,7 @@ constexpr double kGrowth = 4.0;
 constexpr double kDecay = 0.5;
 constexpr double kBad = 0.75;
 constexpr double kGood = 0.25;
-// Changes of the objective below this part of it are too small to judge by.
+// Relative changes of the objective below this are too small to judge by.
 constexpr double kNegligible = 1e-6;
 
 }  // namespace

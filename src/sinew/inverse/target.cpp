@@ -13,7 +13,7 @@ namespace sinew::inverse {
 
 namespace {
 
-// Below this sine of the angle between x axis and normal, the y axis starts the circle.
+// Below this sine of the angle between x axis and normal, e1 is made from the y axis.
 constexpr double kTooParallel = 0.42;
 
 void require_positive(double value, const char* what, const char* unit) {

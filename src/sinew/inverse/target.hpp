@@ -1,5 +1,5 @@
 /// @file
-/// Where an effector is asked to be at each moment: a place, or a path travelled at constant speed.
+/// Target of an effector over time: a fixed position, or a path travelled at constant speed.
 #pragma once
 
 #include <utility>
@@ -10,19 +10,19 @@
 
 namespace sinew::inverse {
 
-/// centre + radius (cos(a) e1 + sin(a) e2), a = start_angle + 2 pi t / period, counter-clockwise
-/// about `normal`. e1 is the world's x axis made perpendicular to the normal (its y axis when x is
-/// within 25 degrees of the normal); e2 = normal x e1.
+/// A circle: centre + radius (cos(a) e1 + sin(a) e2), a = start_angle + 2 pi t / period,
+/// counter-clockwise about `normal`. e1 is the projection of the world's x axis normal to `normal`
+/// (of its y axis if x is within 25 degrees of `normal`); e2 = normal x e1.
 struct Circle {
   Vector3 centre = Vector3::Zero();   ///< m
   double radius = 0.0;                ///< m, > 0
-  Vector3 normal = Vector3::UnitZ();  ///< any length but zero
-  double period = 1.0;                ///< s a turn, > 0
+  Vector3 normal = Vector3::UnitZ();  ///< of any length above zero
+  double period = 1.0;                ///< s per turn, > 0
   double start_angle = 0.0;           ///< rad
 };
 
-/// Straight lines through `points` at constant speed. An open path is travelled once and its end
-/// held; a closed one returns to its first point and repeats for ever.
+/// Straight lines through `points` at constant speed. An open path is travelled once and ends at
+/// its last point; a closed one returns to its first point and repeats for ever.
 struct Polyline {
   Points points;        ///< (n, 3) m, n >= 2
   double period = 0.0;  ///< s for the whole path once, > 0
@@ -30,38 +30,39 @@ struct Polyline {
 };
 
 /// A position over time. Immutable; reading it allocates nothing and is thread-safe. For an
-/// orientation effector the three numbers are a rotation vector (rad) instead of a position.
+/// orientation effector, the three numbers are a rotation vector (rad) instead.
 class Target {
  public:
   /// The origin for ever.
   Target() : form_(Fixed{Vector3::Zero()}) {}
 
-  /// One position for ever. Throws Error(not-finite).
+  /// A constant position. Throws Error: not-finite.
   static Target fixed(const Vector3& position);
-  /// Throws Error(out-of-range) for a radius or period that is not positive or a zero normal,
-  /// Error(not-finite).
+  /// A circle. Throws Error: out-of-range for a radius or period that is not positive or a zero
+  /// normal, not-finite.
   static Target circle(const Circle& circle);
-  /// Throws Error(too-few-points) for fewer than two points, Error(out-of-range) for a period that
-  /// is not positive or a path of zero length, Error(not-finite). Repeated points are allowed.
+  /// A polyline. Throws Error: too-few-points for fewer than two points, out-of-range for a period
+  /// that is not positive or a path of zero length, not-finite. Repeated points are allowed.
   static Target polyline(const Polyline& polyline);
-  /// Straight lines between samples; the first position holds before, the last one after.
+  /// Straight lines between samples. Before the first sample and after the last one, their
+  /// positions are held.
   /// @param times (n,) s, increasing, >= 0.
   /// @param positions (n, 3) m.
-  /// Throws Error(too-few-points), Error(wrong-length), Error(non-monotonic-time),
-  /// Error(not-finite).
+  /// Throws Error: too-few-points, wrong-length, non-monotonic-time, not-finite.
   static Target trajectory(std::vector<double> times, Points positions);
 
-  /// The length of a polyline (m), closing line included: period = length / speed.
+  /// Length of a polyline (m), including the closing line: period = length / speed.
   static double length(const Points& points, bool closed);
 
   /// The position at `time` (s): (3,) m.
   Vector3 at(double time) const;
 
-  /// The largest distance (m) that it ever has from a point, (3,) m; of a circle, a bound on it.
+  /// Largest distance (m) of the target from a point, (3,) m, over all time; an upper bound for a
+  /// circle.
   double farthest_from(const Vector3& point) const;
 
-  /// When the target has shown all it has (s): 0 when fixed, one turn of a circle or closed
-  /// polyline, the end of an open polyline or trajectory.
+  /// Time at which the target has completed its path (s): 0 if fixed, one turn of a circle or
+  /// closed polyline, the end of an open polyline or trajectory.
   double end_time() const;
 
  private:

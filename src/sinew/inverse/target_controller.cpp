@@ -28,7 +28,8 @@ void TargetController::set_target(int task, Target target) {
   settings_.tasks.at(static_cast<std::size_t>(task)).target = std::move(target);
 }
 
-// Of the present configuration, which may be a restored one whose rows no step has formed yet.
+// Evaluates the present configuration, which may be a restored one whose rows no step has formed
+// yet.
 double TargetController::error(int task) const {
   const EffectorTask& asked = settings_.tasks.at(static_cast<std::size_t>(task));
   const auto& effector = simulation_.model().effector(asked.effector);

@@ -1,5 +1,5 @@
 /// @file
-/// What all controllers of effectors have in common: targets, status and errors.
+/// Interface of all controllers of effectors: targets, status and errors.
 #pragma once
 
 #include <memory>
@@ -13,8 +13,8 @@
 
 namespace sinew::inverse {
 
-/// Owns its actuators from construction to detach() or destruction, and acts in each step of the
-/// simulation.
+/// Base class of the controllers of effectors. It owns its actuators from construction to detach()
+/// or destruction, and acts in each step of the simulation.
 class TargetController {
  public:
   virtual ~TargetController() = default;
@@ -22,8 +22,8 @@ class TargetController {
   TargetController& operator=(const TargetController&) = delete;
 
   virtual void detach() = 0;
-  /// Replaces a task's target. @param task position in the settings. @param target (3,) m or rad,
-  ///   or a path over the simulation's time. Throws Error(suspicious-unit), see check_target().
+  /// Replaces the target of a task. @param task index in the settings. @param target (3,) m or rad,
+  /// or a path over the simulation's time. Throws Error: suspicious-unit, see check_target().
   void set_target(int task, Target target);
 
   const InverseSettings& settings() const { return settings_; }
@@ -31,27 +31,30 @@ class TargetController {
   InverseStatus status() const { return status_; }
   /// Efforts (actuators,) N after the last step, in the order of settings().actuators.
   virtual VectorX efforts() const = 0;
-  /// Distance of a task's effector from its target now, along the effector's directions whose
-  /// weight is not zero; m or rad.
+  /// Present distance of a task's effector from its target, along the directions of the effector
+  /// with nonzero weight; m or rad.
   double error(int task) const;
   /// The largest error() of all tasks.
   double error() const;
-  /// The same by the sample that was delivered last; NaN without sensors, and before the first.
+  /// The same error, by the last sample delivered; NaN without sensors, and before the first
+  /// sample.
   virtual double measured_error(int task) const;
-  /// N: by how much the forces of a contact are beyond what is asked of them, by the last step's
-  /// linearisation; NaN before a step. @param task position in settings().contacts.
+  /// Violation of the requirement on a contact's forces, N, by the linearisation of the last step;
+  /// NaN before the first step. @param task index in settings().contacts.
   virtual double force_error(int task) const;
-  /// With settings().certify, of the last step's linearisation; none before a step.
+  /// Certificate of the last step's linearisation, if settings().certify; none before the first
+  /// step.
   virtual const std::optional<step::Certificate>& certificate() const;
-  /// What the last step's linearisation left, m or rad, all tasks together; NaN before a step.
+  /// Error that remains by the linearisation of the last step, m or rad, over all tasks; NaN before
+  /// the first step.
   virtual double predicted_error() const;
-  /// With limits-conflict: which limits of which actuators contradict each other. With holding:
-  /// which sensors are silent. Else empty.
+  /// With limits-conflict: the limits that contradict each other. With holding: the sensors that
+  /// are silent. Otherwise empty.
   virtual std::string conflict() const;
 
  protected:
-  /// @param simulation must outlive the controller. @param settings see check_settings(), which
-  /// throws.
+  /// @param simulation must outlive the controller. @param settings checked by check_settings(),
+  ///   which throws.
   TargetController(sim::Simulation& simulation, InverseSettings settings);
 
   sim::Simulation& simulation_;
@@ -59,8 +62,8 @@ class TargetController {
   InverseStatus status_ = InverseStatus::not_started;
 };
 
-/// A ClosedLoop where the settings have feedback, else an InverseController.
-/// @param simulation,settings as for these, which throw.
+/// Makes a ClosedLoop if the settings have feedback, else an InverseController.
+/// @param simulation,settings as for their constructors, which throw.
 std::unique_ptr<TargetController> make_controller(sim::Simulation& simulation,
                                                   InverseSettings settings);
 

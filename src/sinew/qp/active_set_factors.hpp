@@ -1,55 +1,57 @@
 /// @file
-/// The factors that a dual active-set method carries along: J and R of Goldfarb and Idnani.
+/// Factors of a dual active-set method: J and R of Goldfarb and Idnani.
 #pragma once
 
 #include "sinew/core/types.hpp"
 
 namespace sinew::qp {
 
-/// With G = L L^T and N (n, q) the normals of the active constraints, keeps
+/// Factors that are updated as the active set changes. With G = L L^T and N (n, q) the normals of
+/// the active constraints, they are
 ///
 ///     J = L^-T Q  (n, n)   and   R  (q, q) upper triangular,   J^T N = [R; 0],
 ///
 /// so that J J^T = G^-1, J1 (the first q columns) spans G^-1 N, and J2 (the rest) spans the
-/// directions in which no active constraint changes. Normals join by a Householder reflection and
-/// leave by Givens rotations, each O(n^2). Allocates in the constructor only.
+/// directions along which no active constraint changes. Normals are added by a Householder
+/// reflection and removed by Givens rotations, in O(n^2) operations each. Allocates in the
+/// constructor only.
 /// Source: Goldfarb and Idnani, Math. Programming 27 (1983) 1-33, section 4.
 class ActiveSetFactors {
  public:
   explicit ActiveSetFactors(int variables);
 
-  /// J = L^-T, no active constraint. Reads the lower triangle of `hessian` (n, n).
-  /// @returns false when it is not positive definite to working precision.
+  /// Sets J = L^-T, with no active constraint. Reads the lower triangle of `hessian` (n, n).
+  /// @return false if it is not positive definite to working precision.
   bool factorise(const MatrixX& hessian);
 
   int active() const { return active_; }
 
-  /// d = J^T normal, the start of every operation with one constraint; `normal` has `stride()`
-  /// entries, those from n on zero.
+  /// Computes d = J^T normal, the first step of every operation with a constraint. `normal` has
+  /// stride() entries; those from n on are zero.
   void project(const double* normal);
   /// The same for the unit vector e_i, the normal of a bound.
   void project_unit(int i);
 
-  /// z = J2 d2 (written to direction()) and r = R^-1 d1 (written to exchange()): when the
-  /// multiplier of the projected constraint grows by t, x moves by t z and the multipliers of the
-  /// active ones by -t r.
+  /// Computes z = J2 d2 (direction()) and r = R^-1 d1 (exchange()). If the multiplier of the
+  /// projected constraint grows by t, x moves by t z and the multipliers of the active constraints
+  /// by -t r.
   void compute_directions();
   const double* direction() const { return direction_.data(); }
   const double* exchange() const { return exchange_.data(); }
-  /// |d2|^2 = normal . z, and |d|^2: their ratio says how independent the constraint is.
+  /// d2|^2 = normal . z, and |d|^2. Their ratio measures the linear independence of the constraint.
   double independent_part() const { return independent_part_; }
   double whole_part() const { return whole_part_; }
 
-  /// Makes the projected constraint the last active one; compute_directions() comes before.
+  /// Makes the projected constraint the last active one. Requires compute_directions().
   void add();
-  /// Removes the active constraint at `position`; later ones move up by one.
+  /// Removes the active constraint at `position`; later ones move forward by one.
   void drop(int position);
 
-  /// Minimises 1/2 x^T G x + gradient^T x with N^T x = values:
-  /// x (stride()) and the multipliers (q) of G x + gradient = N multipliers.
+  /// Minimises 1/2 x^T G x + gradient^T x subject to N^T x = values. Writes x (stride()) and the
+  /// multipliers (q) of G x + gradient = N multipliers.
   void solve_equality(const double* gradient, const double* values, double* x, double* multipliers);
 
-  /// |J^T v|, the length of v (n) in the metric of G^-1.
+  /// J^T v|, the norm of v (n) in the metric of G^-1.
   double dual_norm(const double* v) const;
 
   /// Length of a column in memory: n rounded up to whole vector registers, padded with zeros.

@@ -10,7 +10,7 @@ namespace sinew::qp {
 
 namespace {
 
-// Small fronts cost more than the zeros that joining them stores.
+// Small fronts cost more than the stored zeros of merged ones.
 constexpr linalg::SupernodeSettings kSupernodes{.zero_blocks = 24, .zero_fraction = 0.0};
 
 using linalg::at;

@@ -45,7 +45,7 @@ void BlockMatrix::assign(std::span<const BlockNode> nodes, const Eigen::SparseMa
   lower_row_.clear();
   lower_column_.clear();
   lower_values_.clear();
-  // place_: of a row its node, then of a node its entry in the present column.
+  // place_: first the node of each row, then the entry of each node in the present column.
   const auto rows = static_cast<std::size_t>(a.rows());
   place_.assign(rows + nodes.size(), -1);
   for (int i = 0; i < this->nodes(); ++i) {
@@ -75,7 +75,7 @@ void BlockMatrix::assign(std::span<const BlockNode> nodes, const Eigen::SparseMa
   mirror();
 }
 
-// Sorts the lower triangle into columns, each with the transposed blocks of the upper one.
+// Sorts the lower triangle into columns, and adds the transposed blocks of the upper one.
 void BlockMatrix::mirror() {
   const std::size_t count = nodes_.size(), lower = lower_row_.size();
   start_.assign(count + 1, 0);

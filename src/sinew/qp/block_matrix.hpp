@@ -1,6 +1,6 @@
 /// @file
-/// A sparse symmetric matrix of small dense blocks, one row and column of blocks a node, and the
-/// parts into which it falls.
+/// A sparse symmetric matrix of small dense blocks, with one block row and column per node, and the
+/// connected components of its graph.
 #pragma once
 
 #include <span>
@@ -13,30 +13,31 @@
 
 namespace sinew::qp {
 
-/// Rows of a matrix that stand together: a contact's three, or a single one.
+/// Consecutive rows of a matrix that form a node: the three of a contact, or a single one.
 struct BlockNode {
-  int row = 0;   ///< the first
+  int row = 0;   ///< first row
   int size = 3;  ///< 1 or 3
 };
 
-/// Both triangles by columns of blocks, the diagonal included: entry e in start[j] .. start[j+1]-1
-/// is the block (row[e], j), a 3x3 matrix with zeros where a node has one row.
+/// Block-sparse matrix: both triangles, by block columns, with the diagonal. Entry e in start[j] ..
+/// start[j+1]-1 is the block (row[e], j), a 3x3 matrix padded with zeros where a node has one row.
 class BlockMatrix {
  public:
-  /// The blocks of A on the nodes' rows that are not zero; the lower triangle of blocks is read.
-  /// Allocates only for more nodes or blocks than ever before.
-  /// @param nodes disjoint, in the order that blocks get. @param a (n, n).
+  /// Copies the nonzero blocks of A on the rows of the nodes. Reads the lower triangle of blocks.
+  /// Allocates only if there are more nodes or blocks than ever before.
+  /// @param nodes disjoint, in the order of the blocks. @param a (n, n).
   void assign(std::span<const BlockNode> nodes, const Eigen::Ref<const MatrixX>& a);
   /// @param nodes as above. @param a (n, n), compressed.
   void assign(std::span<const BlockNode> nodes, const Eigen::SparseMatrix<double>& a);
-  /// The blocks between some nodes of another matrix, with rows 0, 1, .. of its own.
+  /// Copies the blocks between some nodes of another matrix. Rows are numbered 0, 1, ...
   /// @param whole the other matrix.
-  /// @param members ascending; all neighbours of each are among them.
-  /// @param number (whole.nodes(),) of each member its place in `members`.
+  /// @param members ascending; all neighbours of each member are members.
+  /// @param number (whole.nodes(),) the index of each member in `members`.
   void assign(const BlockMatrix& whole, std::span<const int> members, std::span<const int> number);
 
-  /// Fills a dense matrix with the blocks between some nodes. @param members,number as above,
-  /// of this matrix. @param own (members,) their rows in the dense one. @param a (k, k).
+  /// Fills a dense matrix with the blocks between some nodes of this matrix.
+  /// @param members,number as above. @param own (members,) their rows in the dense matrix.
+  /// @param a (k, k).
   void gather(std::span<const int> members, std::span<const int> number,
               std::span<const BlockNode> own, Eigen::Map<MatrixX> a) const;
 
@@ -53,8 +54,8 @@ class BlockMatrix {
     return block(diagonal_[static_cast<std::size_t>(j)]);
   }
   bool all_finite() const;
-  /// y += A(:, columns of node j) by, on rows as the nodes give them. @param j below nodes().
-  /// @param by (3,), as many as the node has. @param y (n,).
+  /// y += A(:, columns of node j) by, in the row numbering of the nodes. @param j below nodes().
+  /// @param by (3,); a node with one row uses the first entry only. @param y (n,).
   void add_column(int j, const Vector3& by, Eigen::Ref<VectorX> y) const;
 
  private:
@@ -63,23 +64,23 @@ class BlockMatrix {
   std::vector<BlockNode> nodes_;
   std::vector<int> start_, row_, diagonal_;
   linalg::AlignedNumbers values_;
-  // The lower triangle on its way in, and places in the columns.
+  // The lower triangle during assign(), and positions in the columns.
   std::vector<int> lower_row_, lower_column_, place_;
   linalg::AlignedNumbers lower_values_;
 };
 
-/// The connected parts of a matrix's graph.
+/// Connected components of the graph of a matrix.
 class BlockIslands {
  public:
   void find(const BlockMatrix& matrix);
   int count() const { return static_cast<int>(start_.size()) - 1; }
-  /// Nodes of a part, ascending.
+  /// Nodes of a component, ascending.
   std::span<const int> members(int island) const {
     const auto i = static_cast<std::size_t>(island);
     return std::span(order_).subspan(static_cast<std::size_t>(start_[i]),
                                      static_cast<std::size_t>(start_[i + 1] - start_[i]));
   }
-  /// Of each node its place among the members of its part.
+  /// Index of each node among the members of its component.
   std::span<const int> numbers() const { return number_; }
 
  private:

@@ -13,7 +13,7 @@ namespace sinew::qp {
 namespace {
 
 constexpr int kNode = 3;    // the kernels take columns by threes
-constexpr int kPanel = 96;  // columns whose product with the rows below stays in the cache
+constexpr int kPanel = 96;  // columns whose product with the rows below fits the cache
 constexpr int kStrip = 24;  // columns of D at a time
 
 using linalg::at;
@@ -31,7 +31,7 @@ void BorderedFactor::reshape(int leading, int rest) {
   corner_ = numbers_.data() + std::ptrdiff_t{padded_} * height_;
 }
 
-// For every shape with so many rows.
+// Allocates for every shape with this many rows.
 void BorderedFactor::reserve(int size) {
   if (pivot_.size() >= at(size)) return;
   const int room = std::max(size, 3 * static_cast<int>(pivot_.size()) / 2);

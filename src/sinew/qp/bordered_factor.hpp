@@ -1,5 +1,5 @@
 /// @file
-/// Factors of a dense matrix whose leading block is symmetric, in storage that grows and is kept.
+/// Factorisation of a dense matrix whose leading block is symmetric. Storage is reused.
 #pragma once
 
 #include <vector>
@@ -9,25 +9,24 @@
 
 namespace sinew::qp {
 
-/// A = [S C; R D] with S symmetric positive definite. Cholesky's method on S, S = L L^T, carries R
-/// and C^T along, and LU factorises what is left of D, its Schur complement D - (R L^-T)(L^-1 C)
-/// (Golub & Van Loan 2013, sections 3.2 and 4.2). Where S is most of A, this takes half the
-/// operations of LU, and needs no pivots.
+/// Factorisation of A = [S C; R D] with S symmetric positive definite. The Cholesky factorisation
+/// S = L L^T carries R and C^T along; LU then factorises the Schur complement D - (R L^-T)(L^-1 C)
+/// (Golub & Van Loan 2013, sections 3.2 and 4.2). If S is most of A, this takes half the operations
+/// of LU and needs no pivoting.
 class BorderedFactor {
  public:
-  /// Shape of the matrix to come, whose entries are then undefined. Allocates only where it has
-  /// more rows than all before.
-  /// @param leading rows of S. @param rest rows of D.
+  /// Sets the shape of the next matrix, whose entries are then undefined. Allocates only if it has
+  /// more rows than any before. @param leading rows of S. @param rest rows of D.
   void reshape(int leading, int rest);
 
   using Block = Eigen::Map<MatrixX, 0, Eigen::OuterStride<>>;
-  Block leading() { return part(0, leading_); }           ///< S, of which the lower triangle
-  Block left() { return part(padded_, rest_); }           ///< R, (rest, leading)
-  Block right() { return part(padded_ + rest_, rest_); }  ///< C^T, (rest, leading)
+  Block leading() { return part(0, leading_); }                     ///< S, lower triangle
+  Block left() { return part(padded_, rest_); }                     ///< R, (rest, leading)
+  Block right() { return part(padded_ + rest_, rest_); }            ///< C^T, (rest, leading)
   Eigen::Map<MatrixX> corner() { return {corner_, rest_, rest_}; }  ///< D, (rest, rest)
 
-  /// @return false where S is not positive definite, or a pivot of the rest vanishes. The entries
-  /// are lost.
+  /// Factorises in place; the entries are lost. @return false if S is not positive definite, or if
+  /// a pivot of the Schur complement vanishes.
   bool factorise();
   /// right <- A^-1 right. @param right (leading + rest,).
   void solve(Eigen::Ref<VectorX> right);
@@ -41,8 +40,8 @@ class BorderedFactor {
   void reserve(int size);
 
   int leading_ = 0, rest_ = 0;
-  int padded_ = 0;  // leading_, filled up with rows of the unit matrix to whole nodes
-  int height_ = 0;  // of the panel [S; R; C^T], with numbers behind that the kernels may touch
+  int padded_ = 0;  // leading_, padded with rows of the unit matrix to whole nodes
+  int height_ = 0;  // of the panel [S; R; C^T], with the overrun that the kernels may access
   linalg::AlignedNumbers numbers_;  // the panel, then D
   double* corner_ = nullptr;
   std::vector<int> pivot_;  // of D

@@ -9,10 +9,10 @@ namespace sinew::qp {
 
 namespace {
 
-// A pivot under this part of the entry's own diagonal is rounding.
+// A pivot below this part of the entry's own diagonal is rounding.
 constexpr double kNothing = 1e-11;
-// In [1/2, 3/2), different for neighbours: the fractional parts of multiples of the golden ratio
-// (Knuth, The Art of Computer Programming 3, 1998, 6.4).
+// Values in [1/2, 3/2) that differ between neighbours: fractional parts of multiples of the golden
+// ratio (Knuth, The Art of Computer Programming 3, 1998, 6.4).
 double scattered(Eigen::Index entry) {
   const double multiple = 0.6180339887498949 * static_cast<double>(entry + 1);
   return 0.5 + multiple - std::floor(multiple);
@@ -29,7 +29,7 @@ ComplementaryPath::ComplementaryPath(MatrixX matrix, VectorX slope, const std::v
       held_(held.size(), 0) {
   for (Eigen::Index i = 0; i < value_.size(); ++i) {
     if (held[static_cast<std::size_t>(i)] == 0) continue;
-    if (moves(i)) exchange(i);  // or it is held by others already
+    if (moves(i)) exchange(i);  // otherwise others hold it already
   }
   lift(blur);
 }
@@ -46,7 +46,7 @@ void ComplementaryPath::lift(double blur) {
   }
 }
 
-// The principal pivotal transform: entry i of y changes places with that of z.
+// The principal pivotal transform: exchanges entry i of y and z.
 void ComplementaryPath::exchange(Eigen::Index entry) {
   const double pivot = 1.0 / matrix_(entry, entry);
   const VectorX column = matrix_.col(entry);

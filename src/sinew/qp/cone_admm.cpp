@@ -1,11 +1,11 @@
 // The alternating direction method of multipliers on a sparse part: with D the diagonal of the w
 // and one factorisation of W + rho D,
 //   (W + rho D) x = rho D (z - y) - offset - mu |v_t| n,   z = P(x + y),   y <- x + y - z,
-// v = -rho D y, P the projection onto cones and boxes (for contacts: Acary, Bremond & Huber 2018,
-// ch. 10, and Carpentier, Le Lidec & Montaut 2024; the normals' share of De Saxce's change of
-// variables follows one iteration behind). Where most contacts stick, as in towers, a few of these
-// do what Newton's method does with as many factorisations; elsewhere it is slow, and is left at
-// once.
+// v = -rho D y, where P projects onto cones and boxes (for contacts: Acary, Bremond & Huber 2018,
+// ch. 10, and Carpentier, Le Lidec & Montaut 2024; the normal part of De Saxce's change of
+// variables is one iteration behind). If most contacts stick, as in towers, a few iterations
+// achieve what Newton's method needs as many factorisations for. Elsewhere the method is slow and
+// stops at once.
 #include <algorithm>
 #include <cmath>
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kPenalty = 1e-3;  // rho, of the diagonal
 constexpr int kMaxAlternations = 12;
-constexpr double kSlow = 0.5;  // an iteration that leaves more of the residual is the last
+constexpr double kSlow = 0.5;  // stop if an iteration leaves more of the residual
 
 }  // namespace
 

@@ -9,17 +9,17 @@ namespace sinew::qp {
 namespace {
 
 constexpr double kConeProximal = 1e-12;    // of the diagonal
-constexpr double kNewtonShare = 0.3;       // of the cost of a step of Newton's
+constexpr double kNewtonShare = 0.3;       // of the cost of a Newton step
 constexpr double kSymmetricCost = 0.6;     // of unknowns whose matrix is symmetric
 constexpr double kOffsetRounding = 1e-14;  // of the largest offset
-// Unknowns up to which sweeps find the solution soon.
+// Number of unknowns up to which sweeps find the solution soon.
 constexpr double kFew = 96;
-constexpr double kHeldShare = 0.3;      // up to which slips hold their directions, above kFew rows
-constexpr std::size_t kEnoughWays = 2;  // of Newton's, see ConeSettings::usable
-constexpr double kNearStart = 0.1;      // residual of a start that Newton may go on from
+constexpr double kHeldShare = 0.3;      // of slips that hold their directions, above kFew rows
+constexpr std::size_t kEnoughWays = 2;  // of Newton's method, see ConeSettings::usable
+constexpr double kNearStart = 0.1;      // residual of an initial guess from which Newton is tried
 constexpr Eigen::Index kLarge = 600;    // rows, see ConeSettings::usable
-// Efforts that are larger, times what the free motion asks of one block alone, measure nothing:
-// they grow without limit where no motion can obey all blocks.
+// Efforts larger than this, relative to what the free motion demands of a single block, do not
+// scale the residual: they grow without limit if no motion can obey all blocks.
 constexpr double kMaxEffort = 1e4;
 
 }  // namespace
@@ -88,7 +88,7 @@ bool ConeIsland::is_usable(const ConePart& part) const {
   return part.blocks == nullptr && x_.size() > kLarge && result_.residual <= settings_.usable;
 }
 
-// What the last step's efforts start is often a step of Newton's away from its solution.
+// The efforts of the last step are often one Newton step away from the solution.
 bool ConeIsland::start_with_newton(const ConePart& part) {
   if (static_cast<double>(x_.size()) <= kFew) return false;
   const Unknowns count = unknowns(part);
@@ -97,11 +97,11 @@ bool ConeIsland::start_with_newton(const ConePart& part) {
   return residual <= settings_.tolerance || (residual <= kNearStart && newton_early(part));
 }
 
-// One of Newton's steps costs about (2/3) n^3 for n unknowns, a sweep 2 n of the problem's rows, a
-// fourth of the speed: Newton gets its turn when the sweeps so far cost as much as a few of its
-// steps. Where most cones hold their directions it is cheap long before the sweeps have told which
-// of them are open: it may then try and give up soon. A sparse factorisation costs little more than
-// a sweep.
+// A Newton step costs about (2/3) n^3 for n unknowns; a sweep costs 2 n of the problem's rows, at a
+// quarter of the speed. Newton is tried when the sweeps so far cost as much as a few of its steps.
+// If most cones hold their directions, its steps are cheap long before the sweeps have decided
+// which cones are open: it may then try and give up soon. A sparse factorisation costs little more
+// than a sweep.
 bool ConeIsland::newton_if_it_pays(const ConePart& part) {
   if (part.blocks != nullptr) return newton(part);
   const Unknowns count = unknowns(part);
@@ -212,7 +212,7 @@ void ConeIsland::sweep_cone(const ConePart& part, std::size_t number) {
   x_.segment<3>(row) = next;
 }
 
-// How far the iterate is from the laws; `motion_` is up to date.
+// Distance of the iterate from the laws. Requires an up-to-date `motion_`.
 double ConeIsland::judge(const ConePart& part) {
   const ConeProblem& problem = part.problem;
   miss_ = {};
@@ -229,7 +229,7 @@ double ConeIsland::judge(const ConePart& part) {
   if (miss_.distance <= floor_) miss_.distance = 0.0;
   result_.residual = miss_.distance / std::max(miss_.effort, 1e-300);
   if (settings_.measure == ConeMeasure::natural_map) {
-    // A part may miss by its share of what the whole may.
+    // The allowed error of a part is its share of that of the whole.
     const double share = static_cast<double>(x_.size()) / part.scales.rows;
     const double unit = part.scales.natural_unit * std::sqrt(share);
     result_.residual = std::sqrt(miss_.natural) / std::max(unit, 1e-300);
@@ -270,7 +270,7 @@ void ConeIsland::judge_box(const BoxBlock& box, double offset, double scale) {
 }
 
 void ConeIsland::classify(const ConePart& part) {
-  // Times sqrt(w) the least motion that the residual lets one tell from none.
+  // The smallest motion, relative to sqrt(w), that the residual can tell from zero.
   const double relative = miss_.distance / std::max(miss_.effort, 1e-300);
   const double resolved = 10.0 * std::max(settings_.tolerance, relative) * miss_.effort;
   for (std::size_t k = 0; k < part.problem.cones.size(); ++k) {

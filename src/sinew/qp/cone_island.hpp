@@ -1,6 +1,5 @@
 /// @file
-/// Gauss-Seidel and Newton on one part of a cone problem, all of whose blocks hang together: what
-/// ConeSolver works with.
+/// Gauss-Seidel and Newton on one connected part of a cone problem, the core of ConeSolver.
 #pragma once
 
 #include <span>
@@ -15,36 +14,38 @@
 
 namespace sinew::qp {
 
-/// Sizes of the whole problem, against which its parts are measured.
+/// Sizes of the whole problem, which scale the residuals of its parts.
 struct ConeScales {
-  double largest_offset = 0.0;  ///< of all cones, as u
-  double natural_unit = 0.0;    ///< |offset| of all blocks
+  double largest_offset = 0.0;  ///< largest |entry| of the offset over all cones, unit of u
+  double natural_unit = 0.0;    ///< norm of the offset over all blocks
   int rows = 0;                 ///< of all blocks
 };
 
-/// A part of a problem. With `blocks`, the matrix is sparse and problem.matrix is empty; nodes are
-/// the boxes, then the cones, with the rows that these have.
+/// One part of a problem. If `blocks` is given, the matrix is sparse and problem.matrix is empty;
+/// the nodes are the boxes, then the cones, with their rows.
 struct ConePart {
   ConeProblem problem;
   const BlockMatrix* blocks = nullptr;
   BlockLu* lu = nullptr;              ///< for the sparse matrix
   std::span<const double> box_scale;  ///< (boxes,) diagonal; 0: nothing can move here
-  std::span<const double> scale;      ///< (cones,) w; 0 likewise, and x is 0
+  std::span<const double> scale;      ///< (cones,) w; 0 likewise, and x = 0
   ConeScales scales;
 };
 
-/// How far a part is from its laws.
+/// Distance of a part from its laws.
 struct ConeMiss {
   double distance = 0.0;  ///< largest |r - P_K(r - v/w)| sqrt(w)
-  double effort = 0.0;    ///< what it is measured against
+  double effort = 0.0;    ///< the size to which `distance` is relative
   double natural = 0.0;   ///< sum of squares of |r - P_K(r - v)|
 };
 
+/// Solver of one connected part.
 class ConeIsland {
  public:
   explicit ConeIsland(const ConeSettings& settings) : settings_(settings) {}
 
-  /// x: in, where to start from; out, the solution. result().states is that of the part's cones.
+  /// Solves one part. x is the initial guess on input and the solution on output. result().states
+  /// has the cones of the part.
   ConeStatus solve(const ConePart& part, std::span<double> x);
   const ConeResult& result() const { return result_; }
   const ConeMiss& miss() const { return miss_; }
@@ -77,7 +78,7 @@ class ConeIsland {
   static constexpr int kMaxTurnSteps = 15;
   static constexpr double kTurnTolerance = 1e-4;
   struct Unknowns {
-    double all = 0.0, solved = 0.0;  // of a dense system; the latter without what holds
+    double all = 0.0, solved = 0.0;  // of a dense system; `solved`: with held directions eliminated
   };
   Unknowns unknowns(const ConePart& part) const;
   bool start_with_newton(const ConePart& part);
@@ -86,7 +87,7 @@ class ConeIsland {
   bool newton(const ConePart& part);
   bool newton_early(const ConePart& part);
   bool newton_step(const ConePart& part, double proximal);
-  // How many steps, in all and one after the other without a lesser residual.
+  // Maximum number of steps in all, and in succession without a smaller residual.
   struct Patience {
     int steps, vain;
   };
@@ -105,12 +106,12 @@ class ConeIsland {
   void fill_dense(const ConePart& part, int symmetric, int count, double proximal);
   void turn_slips(const ConePart& part, int count);
   bool solve_sparse(const ConePart& part, int count, double proximal);
-  // What is added to a diagonal entry. @param row_scale 1/sqrt(w).
+  // The proximal term of a diagonal entry. @param row_scale 1/sqrt(w).
   static double proximal_term(double own, double row_scale, double proximal);
 
   bool usable(std::size_t cone) const { return scale_[cone] > 0.0; }
-  /// The equations of a cone that is not open, linearised: A du + B dr = right; with `holds` as
-  /// cone_linear.cpp has them.
+  /// Linearised equations of a cone that is not open: A du + B dr = right; for `holds`, see
+  /// cone_linear.cpp.
   struct Branch {
     Eigen::Matrix2d across;     // (mu s_n/|s_t|)(I - e e^T)
     Eigen::Vector2d direction;  // e
@@ -120,10 +121,10 @@ class ConeIsland {
     Eigen::Vector2d effort;  // r_t
     Vector3 right, motion;   // motion: u, where it is linearised
     bool slips = false;      // else A = 1, B = 0
-    bool holds = false;      // its direction: the normal effort is all that is unknown
+    bool holds = false;      // holds its direction: the normal effort is its one unknown
     bool symmetric() const { return !slips || (holds && friction == 0.0); }
     int unknowns() const { return holds ? 1 : 3; }
-    Eigen::Vector2d along() const { return friction * direction; }  // tangential by normal effort
+    Eigen::Vector2d along() const { return friction * direction; }  // tangential per normal effort
     Vector3 act(const Vector3& du) const;                           // A du
     Matrix3 own() const;                                            // B
   };
@@ -136,7 +137,7 @@ class ConeIsland {
   Eigen::Map<VectorX> x_{nullptr, 0}, motion_{nullptr, 0};  // (n,)
   std::vector<ConeEquation> equations_;
   std::span<const double> box_scale_, scale_;         // the part's
-  double largest_ = 0.0, floor_ = 0.0, asked_ = 0.0;  // of the blocks judged so far
+  double largest_ = 0.0, floor_ = 0.0, asked_ = 0.0;  // over the blocks judged so far
   double rounding_ = 0.0;
 
   BorderedFactor factor_;
@@ -144,20 +145,20 @@ class ConeIsland {
   std::vector<int> factored_row_;  // of the unknowns of factor_
   int factored_symmetric_ = 0;
   linalg::Gmres gmres_{kMaxTurnSteps, kTurnTolerance};
-  double held_share_ = 0.0;        // up to which slips hold their directions
-  std::vector<int> turning_;       // cones that hold them
-  std::vector<std::size_t> last_;  // cones whose equations are not symmetric
+  double held_share_ = 0.0;        // value of `share` up to which slips hold their directions
+  std::vector<int> turning_;       // cones that hold their directions
+  std::vector<std::size_t> last_;  // cones with unsymmetric equations
   linalg::ScratchMatrix effort_, moved_, answer_, turns_;
   std::vector<Branch> branches_;  // (cones,)
   std::size_t newton_tries_ = 0;
   VectorX right_;                 // (unknowns,) and more
   linalg::AlignedNumbers best_;   // (n,)
   linalg::AlignedNumbers start_;  // (n,) of follow_regularised()
-  double shift_ = 0.0;            // of the regularised problem, in parts of the diagonal
+  double shift_ = 0.0;            // of the regularised problem, relative to the diagonal
   VectorX step_, dual_;           // (n,) of a sparse matrix
   VectorX row_scale_;             // (unknowns,) 1/sqrt(w), by which rows and columns are scaled
   std::vector<int> unknown_row_;  // (count,) row of every unknown
-  int symmetric_ = 0;             // the first of them, whose equations are symmetric
+  int symmetric_ = 0;             // number of leading unknowns with symmetric equations
   std::vector<int> box_at_, cone_at_;  // position among the unknowns, or -1
 };
 

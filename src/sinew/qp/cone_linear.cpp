@@ -1,9 +1,10 @@
-// The linear systems of Newton's method. Of a cone that slides far, only the direction e of the
-// friction changes, and little: with share = mu s_n/|s_t| (cone_newton.cpp) and p normal to e, the
+// The linear systems of Newton's method. If a cone slides far, only the direction e of its friction
+// changes, and only a little: with share = mu s_n/|s_t| (cone_newton.cpp) and p normal to e, the
 // linearised laws are
 //   du_n = -u_n,   r_t = mu r_n e + g p,   g = -share/(1 - share) p.(r_t + du_t/w)
-// with r_t before the step. The normal effort is its one unknown of the dense system, and the turns
-// g solve (I - K) g = g_0, K of the size of the shares, by a few products with W.
+// with r_t from before the step. The normal effort is its only unknown in the dense system. The
+// turns g of the directions solve (I - K) g = g_0 with K of the size of the shares, which takes a
+// few products with W.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -15,11 +16,11 @@ namespace sinew::qp {
 
 namespace {
 
-// Rows whose diagonal is under this part of w take the proximal term from w.
+// Rows whose diagonal is below this part of w take the proximal term from w.
 constexpr double kStiff = 1e-12;
-// Up to so many unknowns a factorisation costs so little that symmetry gains nothing.
+// Up to this many unknowns, a factorisation is so cheap that symmetry gains nothing.
 constexpr int kFewUnknowns = 96;
-// Turns that are found no better than this are not to be had: less share is left to them.
+// If the turns are not found to this accuracy, smaller shares only are treated in this way.
 constexpr double kUsableTurns = 0.1;
 
 Eigen::Vector2d normal_to(const Eigen::Vector2d& direction) {
@@ -40,7 +41,7 @@ bool ConeIsland::solve_dense(const ConePart& part, int count, double proximal) {
   return true;
 }
 
-// Whether the factors of the step before serve again, see kMuchGained.
+// Whether the factors of the previous step can be reused, see kMuchGained.
 bool ConeIsland::has_factors(int count) const {
   return keeps_factors_ && factored_symmetric_ == symmetric_ &&
          std::ranges::equal(factored_row_, std::span(unknown_row_).first(linalg::at(count)));
@@ -59,7 +60,7 @@ bool ConeIsland::factorise_dense(const ConePart& part, int count, double proxima
   return true;
 }
 
-// @param symmetric how many of the unknowns, the first, have symmetric equations.
+// @param symmetric number of leading unknowns whose equations are symmetric.
 void ConeIsland::fill_dense(const ConePart& part, int symmetric, int count, double proximal) {
   const int rest = count - symmetric;
   factor_.reshape(symmetric, rest);
@@ -111,8 +112,8 @@ void ConeIsland::fill_dense(const ConePart& part, int symmetric, int count, doub
   for (int j = 0; j < rest; ++j) corner.col(j).array() *= rest_scale[j] * rest_scale;
 }
 
-// The turns of the cones that hold their directions: x takes their efforts, and the right side
-// loses their motion. With the factors at hand.
+// Computes the turns of the cones that hold their directions: x takes their efforts, and their
+// motion is subtracted from the right-hand side. Uses the present factors.
 void ConeIsland::turn_slips(const ConePart& part, int count) {
   if (turning_.empty()) return;
   const auto turns = static_cast<Eigen::Index>(turning_.size());
@@ -125,7 +126,7 @@ void ConeIsland::turn_slips(const ConePart& part, int count) {
   auto effort = effort_.shape(x_.size(), 1).col(0);
   auto moved = moved_.shape(x_.size(), 1).col(0);
   auto answer = answer_.shape(count, 1).col(0);
-  // The efforts of turns g, their motion, and its right side.
+  // The efforts of the turns g, and the right-hand side due to their motion.
   const auto take_turns = [&](const Eigen::Ref<const VectorX>& g) {
     effort.setZero();
     each([&](Eigen::Index i, std::size_t, int row, const Eigen::Vector2d& p) {
@@ -141,7 +142,7 @@ void ConeIsland::turn_slips(const ConePart& part, int count) {
     }
     answer.array() *= row_scale_.head(count).array();
   };
-  // The motion of the answer and of the turns that it belongs to.
+  // Solves for `answer`, and computes the motion due to it and to its friction.
   const auto answer_them = [&] {
     factor_.solve(answer);
     for (int j = 0; j < count; ++j) {
@@ -181,7 +182,8 @@ void ConeIsland::turn_slips(const ConePart& part, int count) {
   });
 }
 
-// The rows of blocks with a given x are those of the unit matrix, so that the pattern stays.
+// Rows of blocks with a given x become those of the unit matrix, so that the pattern stays the
+// same.
 bool ConeIsland::solve_sparse(const ConePart& part, int count, double proximal) {
   const BlockMatrix& w = *part.blocks;
   const std::size_t boxes = part.problem.boxes.size();

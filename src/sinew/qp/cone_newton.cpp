@@ -4,11 +4,11 @@
 //   s_n > 0, |s_t| <= mu s_n:     u = 0
 //   s_n > 0, |s_t| >  mu s_n:     u_n = 0,  r_t - mu s_n s_t/|s_t| = 0
 // (Alart & Curnier 1991, with the projection of the augmented normal effort), and a box
-//   its limit, where x - (y - target)/w is beyond it, else y = target.
-// Blocks with a given x leave the system; the others' equations are linearised. The residual may
-// rise while blocks change their branch, and x may leave the cones: projecting it onto them in
-// between would take away what makes the steps Newton's. The proximal term a D (cone_solver.hpp)
-// is added to the matrix alone, since it is zero at the present iterate.
+//   x = its limit, if x - (y - target)/w is beyond it, else y = target.
+// Blocks with a given x leave the system; the equations of the others are linearised. The residual
+// may rise while blocks change branch, and x may leave the cones: projecting it back in between
+// would spoil Newton's steps. The proximal term a D (cone_solver.hpp) is added to the matrix only,
+// since it is zero at the present iterate.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -21,23 +21,23 @@ namespace sinew::qp {
 namespace {
 
 constexpr int kMaxNewtonSteps = 30, kMaxVainSteps = 20, kMaxEarlyVain = 3, kMaxUsableVain = 4;
-// The proximal term, in parts of the diagonal: a share of the relative residual, and at least so
-// much that what redundant contacts leave undetermined does not grow out of rounding. More of it
-// takes more steps and fails less often. Where W is regular but stiff, next to nothing is best.
+// The proximal term relative to the diagonal: a multiple of the relative residual, and at least so
+// much that the undetermined part of redundant contacts does not grow out of rounding. A larger
+// term takes more steps and fails less often. If W is regular but stiff, next to nothing is best.
 struct Proximal {
   double share, least, most;
   double operator()(double residual) const { return std::clamp(share * residual, least, most); }
 };
-// After a step that left no more than this of the residual, the next one takes its factors, if it
+// After a step that left at most this part of the residual, the next step reuses its factors if it
 // has the same unknowns: only the proximal term and the directions of slips differ.
 constexpr double kMuchGained = 0.1;
 constexpr double kMinSmoothing = 1e-9;
 constexpr Proximal kProximal[] = {
     {0.1, 1e-6, 1e-2}, {1.0, 1e-6, 0.1}, {10.0, 1e-6, 0.1}, {1.0, kMinSmoothing, 0.1}};  // in turn
-// Up to so many rows, so many steps with the least are tried first: they are cheap.
+// Up to this many rows, this many steps with the smallest term are tried first: they are cheap.
 constexpr int kPlainRows = 96, kPlainSteps = 12;
-// Regularised problems: the term, from this part of the diagonal on, goes down to kLastShift by
-// kNextShift each, less where Newton does not follow. What each may miss, in parts of it.
+// Regularised problems: the term decreases to kLastShift of the diagonal by the factor kNextShift
+// each, or by less if Newton fails to converge. The tolerance of each is relative to its term.
 constexpr double kLastShift = 1e-12, kNextShift = 0.1, kMaxFactor = 0.8;
 constexpr double kShiftTolerance = 1e-3;
 constexpr int kMaxShiftedSteps = 20;
@@ -59,14 +59,14 @@ bool ConeIsland::newton(const ConePart& part) {
                       kProximal[tries % std::size(kProximal)]);
 }
 
-// While its steps are cheap or the start is near: it ends where they do not gain.
+// For cheap steps or a start near the solution: stops when steps gain nothing.
 bool ConeIsland::newton_early(const ConePart& part) {
   return newton_steps(part, {kMaxNewtonSteps, kMaxEarlyVain}, settings_.tolerance, kProximal[0]);
 }
 
-// Tikhonov's way: the problems with W + a D have one solution each, which Newton finds from that
-// of the larger a; with a -> 0 they lead to a solution of least size, whatever the order of the
-// contacts. It takes more steps than the proximal way, and succeeds where that goes in circles.
+// Tikhonov regularisation: each problem with W + a D has one solution, which Newton finds from that
+// of the larger a. As a -> 0 they lead to a solution of least size, whatever the order of the
+// contacts. This takes more steps than the proximal method, and succeeds where that one cycles.
 bool ConeIsland::follow_regularised(const ConePart& part) {
   linalg::grow(start_, best_.size());
   std::copy_n(x_.data(), x_.size(), start_.data());
@@ -123,8 +123,8 @@ void ConeIsland::add_shifted(const ConePart& part) {
   }
 }
 
-// At most so many steps; without success the iterate is the best of them. @param proximal its size
-// for a relative residual.
+// Takes Newton steps. Without success the iterate is the best of them.
+// @param proximal function of the relative residual: the proximal term.
 bool ConeIsland::newton_steps(const ConePart& part, Patience patience, double tolerance,
                               auto&& proximal) {
   const auto keep = [&] { std::copy_n(x_.data(), x_.size(), best_.data()); };
@@ -177,7 +177,8 @@ bool ConeIsland::newton_step(const ConePart& part, double proximal) {
   return true;
 }
 
-// Puts blocks with a given x there; the others' rows are the unknowns, those of slips the last.
+// Sets x of the blocks that leave the system. The rows of the others are the unknowns, those of
+// slips last.
 int ConeIsland::choose_unknowns(const ConePart& part) {
   const ConeProblem& problem = part.problem;
   int count = 0;
@@ -224,8 +225,8 @@ int ConeIsland::add_unknowns(const ConeProblem& problem, std::size_t number, int
 }
 
 // d(r_t - mu s_n e) = dr_t - mu e ds_n - (mu s_n/|s_t|)(I - e e^T) ds_t, e = s_t/|s_t|,
-// ds = dr - du/w; times w, so that all rows are motions.
-// Its last part is small where a cone slides far: the direction is then held for a step.
+// ds = dr - du/w; multiplied by w, so that all rows are motions.
+// The last term is small if a cone slides far: its direction is then held during a step.
 ConeIsland::Branch ConeIsland::branch(const ConePart& part, std::size_t number) const {
   const int row = part.problem.cones[number].row;
   const double mu = part.problem.cones[number].friction, w = scale_[number];

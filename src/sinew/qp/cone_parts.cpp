@@ -10,9 +10,9 @@ namespace sinew::qp {
 
 namespace {
 
-// A block whose diagonal is under this part of the largest cannot move.
+// A block whose diagonal is below this part of the largest cannot move.
 constexpr double kFixed = 1e-14;
-// Parts of more rows with less than this part of their blocks are left sparse.
+// Parts with more rows than this and less than this part of their blocks are kept sparse.
 constexpr int kDenseRows = 96;
 constexpr double kSparse = 0.4;
 
@@ -90,7 +90,8 @@ void ConeParts::free_motion(const Problem& problem, std::span<const double> x) {
   }
 }
 
-// What the parts are measured against. @param own_block of a box or a cone, by its number.
+// Computes the scales of the blocks and of the whole problem. @param own_block diagonal block of a
+// box or a cone, by its number.
 template <class Problem>
 ConeStatus ConeParts::measure(const Problem& problem, auto&& own_block) {
   const int boxes = static_cast<int>(problem.boxes.size());

@@ -1,6 +1,6 @@
 /// @file
-/// A cone problem part by part: blocks that have no entry of the matrix in common, not even through
-/// others, are solved apart.
+/// Splits a cone problem into its connected parts and solves them one by one. Two blocks belong to
+/// one part if entries of the matrix couple them, directly or through other blocks.
 #pragma once
 
 #include <memory>
@@ -15,20 +15,21 @@
 
 namespace sinew::qp {
 
+/// Splits, solves and collects the parts of a cone problem.
 class ConeParts {
  public:
   explicit ConeParts(const ConeSettings& settings)
       : measure_(settings.measure), island_(settings) {}
 
-  /// In one piece, with the dense matrix as it stands.
+  /// Solves the problem as a whole, with the given dense matrix.
   const ConeResult& solve_whole(const ConeProblem& problem, std::span<double> x);
-  /// Part by part.
+  /// Solve the problem part by part.
   const ConeResult& solve(const ConeProblem& problem, std::span<double> x);
   const ConeResult& solve(const SparseConeProblem& problem, std::span<double> x);
   const ConeResult& result() const { return whole_result_ ? island_.result() : result_; }
 
  private:
-  /// A part with few blocks: its matrix and plan, kept for the next problem.
+  /// A sparse part: its matrix and symbolic factorisation, kept for the next problem.
   struct Sparse {
     BlockMatrix matrix;
     BlockLu lu;
@@ -54,17 +55,17 @@ class ConeParts {
   ConeMeasure measure_;
   ConeIsland island_;
   ConeResult result_;          // of all parts
-  bool whole_result_ = false;  // there is but one, the island's
+  bool whole_result_ = false;  // solved as a whole: the result is that of island_
   ConeMiss miss_;              // of all parts
   ConeScales scales_;
   std::vector<double> box_scale_, scale_;
   std::vector<BlockNode> nodes_;  // boxes, then cones
   std::vector<char> in_block_;    // (rows,)
-  VectorX free_;                  // offset, and the motion of rows in no block
+  VectorX free_;                  // offset plus the motion due to the x of rows in no block
   BlockMatrix whole_;
   BlockIslands islands_;
 
-  // The part at hand.
+  // The present part.
   std::vector<BlockNode> part_nodes_;
   std::vector<BoxBlock> part_boxes_;
   std::vector<ConeBlock> part_cones_;

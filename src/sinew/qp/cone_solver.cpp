@@ -13,9 +13,10 @@ namespace sinew::qp {
 
 namespace {
 
-// Problems of up to so many rows are solved in one piece.
+// Problems with up to this many rows are solved as a whole.
 constexpr Eigen::Index kWholeRows = 96;
-// A matrix with more than this part of its blocks is one piece, too; so many columns tell.
+// A matrix with more than this part of its blocks is solved as a whole, too; so many columns are
+// sampled to find out.
 constexpr double kFull = 0.7;
 constexpr int kSampledColumns = 8;
 

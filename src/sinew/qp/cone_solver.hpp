@@ -1,7 +1,7 @@
 /// @file
-/// Complementarity problems over a compliance whose blocks are friction cones and boxes: block
-/// Gauss-Seidel with exact local solutions, and a proximal Newton's method to finish. Knows no
-/// physics beyond the cone.
+/// Complementarity problems on a compliance matrix whose blocks are friction cones and boxes.
+/// Solved by block Gauss-Seidel with exact local solutions, followed by a proximal Newton method.
+/// Independent of physics beyond the cone.
 #pragma once
 
 #include <memory>
@@ -15,24 +15,24 @@
 
 namespace sinew::qp {
 
-/// One variable between limits: y = target strictly between, y >= target at `lower`, y <= target at
-/// `upper`.
+/// One variable between limits: y = target strictly between them, y >= target at `lower`,
+/// y <= target at `upper`.
 struct BoxBlock {
   int row = 0;
   double lower = 0.0, upper = 0.0;  ///< may be infinite; lower <= upper
   double target = 0.0;
 };
 
-/// Three variables (normal, two tangential) at rows `row` .. `row` + 2, see ConeEquation.
+/// Three variables (normal, two tangential) at rows `row` to `row` + 2, see ConeEquation.
 struct ConeBlock {
   int row = 0;
   double friction = 0.0;  ///< >= 0
 };
 
-/// Find x with y = matrix x + offset such that every block's law holds. Rows in no block keep the x
-/// that they have.
+/// A cone complementarity problem: find x with y = matrix x + offset such that the law of every
+/// block holds. Rows in no block keep their x.
 struct ConeProblem {
-  Eigen::Ref<const MatrixX> matrix;  ///< (n, n), symmetric positive semidefinite on blocks' rows
+  Eigen::Ref<const MatrixX> matrix;  ///< (n, n), symmetric positive semidefinite on rows of blocks
   Eigen::Ref<const VectorX> offset;  ///< (n,)
   std::span<const BoxBlock> boxes;
   std::span<const ConeBlock> cones;
@@ -40,10 +40,10 @@ struct ConeProblem {
 
 struct SparseConeProblem;  // sparse_cone_problem.hpp
 
-/// What a tolerance is of.
+/// Which residual the tolerance limits.
 enum class ConeMeasure {
-  per_block,    ///< ConeResult::residual as it is defined there: for efforts of several units
-  natural_map,  ///< |x - P(x - v)|/|offset|, norms over all blocks: as published benchmarks have it
+  per_block,    ///< ConeResult::residual, largest over blocks: for efforts of several units
+  natural_map,  ///< |x - P(x - v)|/|offset|, norms over all blocks, as in published benchmarks
 };
 
 /// How a solve ended.
@@ -59,65 +59,70 @@ std::string_view cone_status_name(ConeStatus status);
 /// How ConeSolver works.
 struct ConeSettings {
   double tolerance = 1e-10;  ///< of `residual`
-  int max_sweeps = 2000;     ///< of Gauss-Seidel
-  int first_sweeps = 4;      ///< before Newton's method is tried; doubled at every further try
-  /// Unknowns of a dense matrix (three of a contact with friction, one without); more are left to
-  /// Gauss-Seidel, which surfaces that touch all over on fine meshes can make crawl. 6000 take
-  /// 290 MB and some seconds a step.
+  int max_sweeps = 2000;     ///< Gauss-Seidel sweeps
+  int first_sweeps = 4;  ///< sweeps before Newton's method is tried; doubled for every further try
+  /// Maximum number of unknowns of a dense Newton system (three for a contact with friction, one
+  /// without). Larger problems are left to Gauss-Seidel, which is slow for surfaces of fine meshes
+  /// that touch all over. 6000 unknowns take 290 MB and some seconds per step.
   int newton_limit = 6000;
-  /// Of dense problems with more than 600 rows: where the residual is no more than this after
-  /// Newton's method was tried in two of its ways, the solver stops (iteration-limit). What is left
-  /// is mostly which of redundant contacts slide, and costs as much again for each further try.
+  /// For dense problems with more than 600 rows: the solver stops (iteration-limit) if the residual
+  /// is at most this after two variants of Newton's method. What then remains undecided is mostly
+  /// which of the redundant contacts slide, and each further try costs as much again.
   double usable = 0.0;
   ConeMeasure measure = ConeMeasure::per_block;
-  const Poll* poll = nullptr;  ///< called in every sweep and step of Newton's; outlives the solver
+  const Poll* poll = nullptr;  ///< called in every sweep and Newton step; must outlive the solver
 };
 
+/// What ConeSolver found.
 struct ConeResult {
   ConeStatus status = ConeStatus::solved;
   std::vector<ContactState> states;  ///< (cones,)
-  /// Largest distance of any block from its law, of the largest effort, each times sqrt(w): w a
-  /// third of the trace of the block of the matrix, so that efforts of different units compare.
-  /// With De Saxce's change of variables v = (u_n + mu |u_t|, u_t), Signorini's and Coulomb's laws
-  /// together are K contains r _|_ v in K* (De Saxce & Feng 1998); the distance is |r - P_K(r -
-  /// v/w)|. With ConeMeasure::natural_map that measure.
+  /// Largest distance of any block from its law, relative to the largest effort. Both are
+  /// multiplied by sqrt(w), where w is a third of the trace of the block of the matrix, so that
+  /// efforts of different units compare. With De Saxce's change of variables v = (u_n + mu |u_t|,
+  /// u_t), Signorini's and Coulomb's laws together are K contains r _|_ v in K* (De Saxce & Feng
+  /// 1998); the distance is
+  /// r - P_K(r - v/w)|. With ConeMeasure::natural_map, it is that measure instead.
   double residual = 0.0;
   double signorini = 0.0;  ///< largest |min(u_n, w r_n)|: penetration, effort across a gap; as u
-  double coulomb = 0.0;    ///< largest |w r_t - P(w r_t - u_t)|, P onto the disc of w mu r_n; as u
-  double complementarity = 0.0;  ///< largest |u_n r_n|, as u times r
-  int sweeps = 0;                ///< of the part of the problem that took most
+  double coulomb = 0.0;    ///< largest |w r_t - P(w r_t - u_t)|, P onto the disc w mu r_n; as u
+  double complementarity = 0.0;  ///< largest |u_n r_n|, unit of u r
+  int sweeps = 0;                ///< of the part of the problem that took the most
   int newton_steps = 0;          ///< likewise
 };
 
-/// Each sweep solves block after block exactly, all others held (Jean 1999's nonsmooth contact
-/// dynamics; local solutions as in Bonnefon & Daviet 2011). Gauss-Seidel is robust, and slow where
-/// many contacts hold one stiff body; its iterate then starts Newton's method on the equations that
-/// the projection leaves (Alart & Curnier 1991), whose steps are kept where they lessen the
-/// residual.
+/// Solver of complementarity problems with friction cones and boxes.
 ///
-/// **Redundant contacts.** Rigid bodies on more contacts than they have coordinates make the matrix
-/// W singular: Newton's step is then one of many, as far away as rounding pleases, and the branches
-/// of the laws change for ever. The proximal point method (Rockafellar 1976; for contacts Acary,
-/// Bremond & Huber 2018, ch. 10) solves a sequence of problems with W + a D, D the diagonal of the
-/// w, and offset - a D x_k, x_k the last solution; each is well posed, and where x_k stays both
-/// have the same solution. Its inner problem needs no solution of its own: here x_k is the present
-/// iterate, so that each of Newton's steps is
+/// Each sweep solves one block after another exactly, with all others held (nonsmooth contact
+/// dynamics, Jean 1999; local solutions as in Bonnefon & Daviet 2011). Gauss-Seidel is robust, but
+/// slow if many contacts hold one stiff body. Its iterate is then the initial guess of Newton's
+/// method on the equations that the projection leaves (Alart & Curnier 1991). Newton's steps are
+/// kept if they reduce the residual.
+///
+/// **Redundant contacts.** If rigid bodies have more contacts than coordinates, the matrix W is
+/// singular. Newton's step is then one of many and is determined by rounding alone, and the
+/// branches of the laws keep changing. The proximal point method (Rockafellar 1976; for contacts
+/// Acary, Bremond & Huber 2018, ch. 10) solves a sequence of problems with W + a D and offset - a D
+/// x_k, where D is the diagonal of the w and x_k the last solution. Each of them is well posed, and
+/// a fixed point x_k solves the original problem. The inner problems need not be solved to the end:
+/// here x_k is the present iterate, so each Newton step is
 ///     J(W + a D) dx = -F(x),
-/// a Levenberg-Marquardt method. With a in proportion to the residual its convergence stays
-/// quadratic where the distance from the solutions is bounded by the residual (Yamashita &
-/// Fukushima 2001; Fan & Yuan 2005), also where solutions are many. In small problems a few steps
-/// with a next to nothing are tried first: they take the shortest way where W is regular. Where the
-/// branches still change for ever, the problems with W + a D, without x_k, are solved one after the
-/// other with a from 0.1 to nothing (Tikhonov & Arsenin 1977), each from the last one's solution:
-/// many more steps, and the solution of least size whatever the order of the contacts.
+/// a Levenberg-Marquardt method. With a proportional to the residual, convergence stays quadratic
+/// where the residual bounds the distance from the solutions (Yamashita & Fukushima 2001; Fan &
+/// Yuan 2005), even if there are many solutions. Small problems first try a few steps with a
+/// negligible a, which is the shortest way if W is regular. If the branches keep changing, the
+/// problems with W + a D, without x_k, are solved one after another with a from 0.1 down to nothing
+/// (Tikhonov & Arsenin 1977), each from the solution of the last. This takes many more steps, and
+/// leads to the solution of least size whatever the order of the contacts.
 ///
-/// **Many contacts.** With more than 96 unknowns Newton's method is tried at once where x is near
-/// (a residual of 0.1), and gives up as soon as a few steps gain nothing. In a dense matrix of more
-/// than 96 rows a contact that slides far has one unknown instead of three, see cone_linear.cpp.
+/// **Many contacts.** With more than 96 unknowns, Newton's method is tried at once if x is near a
+/// solution (a residual of 0.1), and gives up as soon as a few steps gain nothing. In a dense
+/// matrix of more than 96 rows, a contact that slides far has one unknown instead of three, see
+/// cone_linear.cpp.
 ///
-/// **Sparse matrices.** From 96 rows on, what has no block of W in common is solved apart, and a
-/// part with few blocks by sparse factorisations (BlockLu), first for a few iterations by
-/// alternating directions (cone_admm.cpp), which is all that a tower needs.
+/// **Sparse matrices.** From 96 rows on, connected parts of W are solved separately. A part with
+/// few blocks uses sparse factorisations (BlockLu). It is first solved by a few iterations of the
+/// alternating direction method (cone_admm.cpp), which suffice for a tower of blocks.
 class ConeSolver {
  public:
   explicit ConeSolver(ConeSettings settings = {});
@@ -125,10 +130,10 @@ class ConeSolver {
   ConeSolver(ConeSolver&&) noexcept;
   ConeSolver& operator=(ConeSolver&&) noexcept;
 
-  /// Allocates only where a problem, or a part of it, is larger than all before, and for a sparse
-  /// part whose pattern is not that of the last solve. @param problem see there. @param x (n,) in:
-  /// where to start from; out: the solution, each block inside its cone or box exactly. Throws
-  /// Error(wrong-shape), and what settings.poll throws: x is then of no use.
+  /// Allocates only if a problem, or a part of it, is larger than any before, and for a sparse part
+  /// whose pattern differs from that of the last solve. @param problem the problem.
+  /// @param x (n,) in: initial guess; out: the solution, with each block exactly inside its cone or
+  ///   box. Throws Error: wrong-shape, and whatever settings.poll throws; x is then undefined.
   const ConeResult& solve(const ConeProblem& problem, std::span<double> x);
   const ConeResult& solve(const SparseConeProblem& problem, std::span<double> x);
   const ConeResult& result() const;

@@ -7,16 +7,17 @@
 
 namespace sinew::qp {
 
-/// Constraint c < n is the bound of x_c, constraint n + i is row i of C. Each has a normal, two
-/// limits, and a weight 1 / |D^-1 normal| with D^2 = diag G, which makes violations of constraints
-/// in different units comparable. Holds a transposed copy of C so that normals are contiguous.
+/// A numbered list of constraints: constraint c < n is the bound of x_c, constraint n + i is row i
+/// of C. Each has a normal, two limits, and a weight 1 / |D^-1 normal| with D^2 = diag G, which
+/// makes violations of constraints in different units comparable. Keeps a transposed copy of C, so
+/// that normals are contiguous.
 class ConstraintRows {
  public:
   ConstraintRows(int variables, int constraints);
 
-  /// Takes over the problem's rows and limits. `problem` must outlive the use of this object.
-  /// Throws Error(wrong-shape) and Error(contradictory-limits).
-  /// @returns false when a number is NaN, or infinite where it must be finite.
+  /// Loads the rows and limits of a problem. `problem` must outlive the use of this object. Throws
+  /// Error: wrong-shape, contradictory-limits.
+  /// @return false if a number is NaN, or infinite where it must be finite.
   bool load(const QuadraticProgram& problem);
 
   int count() const { return variables_ + constraints_; }
@@ -28,12 +29,12 @@ class ConstraintRows {
   /// sqrt(G_ii).
   double variable_scale(int i) const { return scale_[i]; }
 
-  /// The normal of row constraint c >= n, padded to the columns' stride.
+  /// Normal of row constraint c >= n, padded to the stride of the columns.
   const double* normal(int c) const {
     return normals_.data() + static_cast<Eigen::Index>(c - variables_) * stride_;
   }
 
-  /// normal . x, and sum |normal_j x_j|, the size that its rounding errors are relative to.
+  /// normal . x, and sum |normal_j x_j|, to which its rounding errors are relative.
   double value(int c, const double* x) const;
   double magnitude(int c, const double* x) const;
 

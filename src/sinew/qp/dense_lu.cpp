@@ -79,7 +79,8 @@ class LuElimination {
     }
   }
 
-  // `end`: of the columns that are up to date; those right of it are swapped when they are reached.
+  // `end` of the up-to-date columns; rows of those to the right are exchanged when they are
+  // reached.
   bool factor_panel(int first, int end) {
     for (int k = first; k < first + width(first); ++k) {
       Eigen::Index below = 0;
@@ -130,7 +131,7 @@ class LuElimination {
     }
   }
 
-  // U_12 = L_11^-1 A_12 of a whole panel, some columns at a time, so that none waits for another.
+  // U_12 = L_11^-1 A_12 of a whole panel, several columns at a time to hide latency.
   void solve_rows(int first, int begin, int end) {
     using Column = Eigen::Matrix<double, kPanel, 1>;
     Eigen::Matrix<double, kPanel, kPanel> lower = a_.block<kPanel, kPanel>(first, first);

@@ -1,5 +1,5 @@
 /// @file
-/// LU factorisation with partial pivoting in storage that grows and is kept.
+/// LU factorisation with partial pivoting. Storage is reused.
 #pragma once
 
 #include <span>
@@ -9,28 +9,31 @@
 
 namespace sinew::qp {
 
-/// Eliminates the first `pivot.size()` rows and columns of a square matrix in place: P A = L U
-/// there (Golub & Van Loan 2013, algorithm 3.4.1), and in the rest A_22 - L_21 U_12. Pivots are
-/// taken by rows among the eliminated ones. Works by columns of a cache's size from left to right,
-/// each by panels; how columns are grouped changes no bit. @param a (n, n). @param pivot (k,) out:
-/// the row that row i was swapped with. @return false where a pivot vanishes.
+/// Eliminates the first `pivot.size()` rows and columns of a square matrix in place. These become P
+/// A = L U (Golub & Van Loan 2013, algorithm 3.4.1); the rest becomes the Schur complement
+/// A_22 - L_21 U_12. Pivots are chosen among the eliminated rows. The algorithm goes from left to
+/// right over groups of columns that fit the cache, each by panels; the grouping does not change a
+/// bit of the result. @param a (n, n).
+/// @param pivot (k,) out: the row with which row i was exchanged.
+/// @return false if a pivot vanishes.
 bool eliminate(const Eigen::Map<MatrixX>& a, std::span<int> pivot);
 
-/// right <- A^-1 right, with the factors of a whole matrix. @param lu (n, n) and @param pivot (n,)
-/// of eliminate(). @param right (n,).
+/// right <- A^-1 right, with the factors of a whole matrix.
+/// @param lu (n, n) factors and @param pivot (n,) row exchanges, both from eliminate().
+/// @param right (n,).
 void substitute(const Eigen::Ref<const MatrixX>& lu, std::span<const int> pivot,
                 Eigen::Ref<VectorX> right);
 
-/// The factors of a whole matrix.
+/// LU factors of a whole matrix.
 class DenseLu {
  public:
-  /// @param size unknowns of the systems to come.
+  /// @param size number of unknowns to allocate for.
   explicit DenseLu(int size) { reserve(size); }
-  /// Memory for systems of this size. What matrix() held is lost where it grows.
+  /// Allocates for systems of this size. The contents of matrix() are lost if it grows.
   void reserve(int size);
-  /// (size, size) to be filled before factorise().
+  /// The matrix, (size, size), to be filled before factorise().
   Eigen::Map<MatrixX> matrix(int size) { return {storage_.data(), size, size}; }
-  /// @return false where the matrix is singular to working precision.
+  /// Factorises the matrix in place. @return false if it is singular to working precision.
   bool factorise(int size);
   /// right <- A^-1 right. @param right (size,).
   void solve(Eigen::Ref<VectorX> right) const;

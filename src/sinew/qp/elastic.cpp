@@ -14,12 +14,12 @@ namespace sinew::qp {
 
 namespace {
 
-/// Weight of the proximal term against the violation: steps reach 1/kElasticProximal times the
-/// distance in which the steepest row would lose its violation.
+/// Weight of the proximal term relative to the violation: steps reach 1/kElasticProximal times the
+/// distance over which the steepest row would lose its violation.
 constexpr double kElasticProximal = 1e-3;
-/// After this many steps, four steps with a term ever weaker stand between two steps with the full
-/// one, for the long way along a nearly level edge; only full steps tell the end, since weak ones
-/// are rounded more.
+/// After this many steps, four steps with an ever weaker term come between two steps with the full
+/// one, to move far along a nearly level edge. Only full steps decide termination, since weak ones
+/// have larger rounding errors.
 constexpr int kFullSteps = 3;
 constexpr int kCycle = 5;
 /// A proximal step shorter than this, relative to that distance, ends the search.
@@ -45,8 +45,8 @@ std::string_view elastic_status_name(ElasticStatus status) {
   return kNames.at(static_cast<std::size_t>(status));
 }
 
-/// The linear program has variables (x, t): one t for `worst`, one a row for `sum`, and 2 m rows
-/// w_i C_i x + t >= w_i lower_i and w_i C_i x - t <= w_i upper_i; frozen rows go without t.
+/// The linear program has variables (x, t), with one t for `worst` and one per row for `sum`, and
+/// 2 m rows w_i C_i x + t >= w_i lower_i and w_i C_i x - t <= w_i upper_i; frozen rows have no t.
 struct ElasticSolver::Workspace {
   Workspace(int n, int m, const ElasticSettings& chosen);
 
@@ -63,7 +63,7 @@ struct ElasticSolver::Workspace {
   ElasticStatus relax(const QuadraticProgram& problem);
   bool relax_worst(const QuadraticProgram& problem);
   bool relax_sum(const QuadraticProgram& problem);
-  /// Minimises the violation of the rows not frozen, from `point` on; moves `point`.
+  /// Minimises the violation of the rows that are not frozen, from `point` on; moves `point`.
   bool minimise_violation();
   void load_bounds(const QuadraticProgram& problem);
   void load_rows();
@@ -83,7 +83,7 @@ struct ElasticSolver::Workspace {
   VectorX point;             ///< (n) best point so far
   VectorX slacks;            ///< (1 or m) its t
   VectorX bound_multiplier, row_multipliers;
-  std::vector<std::uint8_t> frozen;  ///< (m) row takes part in no further stage
+  std::vector<std::uint8_t> frozen;  ///< (m) 1: the row is in no further stage
   double steepest = 1.0;             ///< max |w_i D^-1 C_i|
   double violation_size = 1.0;       ///< worst violation at the start of the stage
 };
@@ -186,8 +186,8 @@ ElasticStatus ElasticSolver::Workspace::relax(const QuadraticProgram& problem) {
                                                : ElasticStatus::iteration_limit;
 }
 
-// Rows with a multiplier stand in each other's way: no point is better in one without being worse
-// in another. They keep this violation; the other rows go on to the next stage.
+// Rows with a multiplier are in conflict: no point is better in one without being worse in another.
+// They keep this violation; the other rows go on to the next stage.
 bool ElasticSolver::Workspace::relax_worst(const QuadraticProgram& problem) {
   double first = 0.0;
   for (int stage = 0; stage < constraints; ++stage) {
@@ -212,8 +212,8 @@ bool ElasticSolver::Workspace::relax_worst(const QuadraticProgram& problem) {
 }
 
 // The points of least sum are those complementary to the multipliers (any of them): rows with a
-// multiplier of one lie at or beyond their limit, of less on it, of zero within; variables with a
-// multiplier stay where they are.
+// multiplier of one are at or beyond their limit, those with less are at it, those with zero
+// within; variables with a multiplier do not change.
 bool ElasticSolver::Workspace::relax_sum(const QuadraticProgram& problem) {
   if (!minimise_violation()) return false;
   for (int i = 0; i < constraints; ++i) {

@@ -96,7 +96,7 @@ Vector3 ConeEquation::slip(const Vector3& q) const {
           -across_change / (across * across) + normal_change / (friction_ * r_n * r_n);
       next = s - value / slope;
     }
-    // Outside the bracket: its middle, by magnitude where it spans several.
+    // Outside the bracket: takes its middle, the geometric mean if it spans orders of magnitude.
     const bool inside = next > low && next < high;
     s = inside ? next : (low > 0.0 ? std::sqrt(low * high) : 0.5 * high);
     if (!inside && low == 0.0) s = std::min(s, std::max(values_[1], kRounding * high));

@@ -8,7 +8,7 @@ namespace sinew::qp {
 
 namespace {
 
-/// Sizes that make the conditions free of units, in the variables D x with D^2 = diag G, 1 where
+/// Sizes that make the conditions dimensionless, in the variables D x with D^2 = diag G, 1 where
 /// that is 0.
 struct Scales {
   VectorX variable;       ///< D
@@ -20,8 +20,8 @@ double relative(double value, double scale) {
   return value == 0.0 ? 0.0 : std::abs(value) / std::max(scale, std::numeric_limits<double>::min());
 }
 
-/// How far `value` is from meeting lower <= value <= upper together with its multiplier: violation,
-/// multiplier of the wrong sign, and complementarity as min(slack, multiplier), all relative.
+/// Violation of lower <= value <= upper together with its multiplier: infeasibility, wrong sign of
+/// the multiplier, and complementarity as min(slack, multiplier), all relative.
 double limit_residual(double value, double lower, double upper, double multiplier,
                       double value_scale, double multiplier_scale) {
   const auto slack = [&](double distance, double limit) {

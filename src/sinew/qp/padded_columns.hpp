@@ -1,6 +1,6 @@
 /// @file
-/// Loops over short contiguous columns. Column lengths are padded to whole registers, so that the
-/// compiler needs no tails.
+/// Loops over short contiguous columns, whose lengths are padded to whole registers, so that the
+/// compiler needs no remainder loops.
 #pragma once
 
 #include "sinew/core/types.hpp"

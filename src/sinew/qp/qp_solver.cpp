@@ -67,7 +67,7 @@ void QpSolver::Workspace::solve_semidefinite(const QuadraticProgram& problem) {
   semidefinite->solve(problem, &result);
 }
 
-// Says not_convex where the Hessian is not positive definite; it may be semidefinite.
+// Returns not_convex if the Hessian is not positive definite; it may still be semidefinite.
 QpStatus QpSolver::Workspace::load_and_factorise(const QuadraticProgram& problem) {
   if (!constraints.load(problem)) return QpStatus::not_finite;
   if (!factors.factorise(problem.hessian)) {

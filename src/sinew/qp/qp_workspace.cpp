@@ -10,10 +10,10 @@ namespace sinew::qp {
 
 namespace {
 
-/// A constraint whose normal has a smaller share than this outside the span of the active ones
-/// depends on them; its square is compared with squares.
+/// A constraint is dependent on the active ones if its normal has a smaller share than this outside
+/// their span; its square is compared with squares.
 constexpr double kDependent = 1e-11;
-/// The same for a constraint taken over from the last solve, where leaving out costs little.
+/// The same for a constraint of the last active set, which costs little to leave out.
 constexpr double kWarmDependent = 1e-7;
 /// An exchange coefficient below this, normals scaled to one, is rounding error.
 constexpr double kPivot = 1e-12;
@@ -133,7 +133,7 @@ void QpSolver::Workspace::measure_iterate() {
   iterate_size = objective_size + largest;
 }
 
-// Which limit, if any, c violates by more than tolerance and rounding: +1 lower, -1 upper.
+// The limit that c violates by more than tolerance and rounding: +1 lower, -1 upper, 0 none.
 int QpSolver::Workspace::violated_side(int c, double* violation) const {
   const double value = constraints.value(c, x.data());
   const double below = constraints.lower(c) - value;
@@ -200,8 +200,8 @@ QpSolver::Workspace::Addition QpSolver::Workspace::add_constraint(int c, int sid
   return Addition::out_of_iterations;
 }
 
-// The first active inequality whose multiplier reaches zero as the one of c grows; among ties the
-// one with the largest coefficient, which keeps R well conditioned.
+// The first active inequality whose multiplier reaches zero as that of c grows; among ties, the one
+// with the largest coefficient, which keeps R well conditioned.
 int QpSolver::Workspace::blocking_multiplier(int c, int side, double* step) const {
   constexpr double kTie = 1e-12;
   int blocking = -1;
@@ -223,9 +223,9 @@ int QpSolver::Workspace::blocking_multiplier(int c, int side, double* step) cons
   return blocking;
 }
 
-// Farkas: the normal of c is the combination N r of active ones, with signs such that their limits
-// bound normal . x away from the limit of c. The gap between the two must exceed what rounding in
-// the limits and the part of the normal that N r misses can explain.
+// Farkas' lemma: the normal of c is a combination N r of active normals, with signs such that their
+// limits keep normal . x away from the limit of c. The gap between the two must exceed what
+// rounding of the limits and the remainder of the normal outside N r can explain.
 bool QpSolver::Workspace::is_contradiction(int c, int side) {
   residual.setZero();
   constraints.add_normal(c, 1.0, residual.data());

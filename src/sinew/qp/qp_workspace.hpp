@@ -1,5 +1,5 @@
 /// @file
-/// The dual active-set method itself: working set, iterate and the steps between them.
+/// The dual active-set method: working set, iterate and steps.
 #pragma once
 
 #include <cstdint>
@@ -13,19 +13,19 @@
 
 namespace sinew::qp {
 
-/// A constraint that holds as an equality at the moment.
+/// A constraint that presently holds as an equality.
 struct ActiveConstraint {
   int constraint = 0;
-  int side = 0;  ///< +1 at the lower limit, -1 at the upper one, 0 for an equality: any sign
+  int side = 0;  ///< +1 at the lower limit, -1 at the upper one, 0 for an equality (any sign)
   bool violates(double multiplier) const { return side * multiplier < 0.0; }
 };
 
-/// The state between the steps of the method is always a "solution pair": x minimises the objective
-/// over the active constraints taken as equalities, and all their multipliers have the right sign.
-/// A step takes up the most violated constraint and restores a pair with a larger objective, so no
-/// active set comes twice. A warm start makes a pair from the last active set by leaving out what
-/// has become dependent and dropping what has a multiplier of the wrong sign; in the worst case
-/// nothing is left and the start is cold.
+/// The dual active-set method. Between its steps, the state is always a "solution pair": x
+/// minimises the objective over the active constraints taken as equalities, and all their
+/// multipliers have the right sign. A step adds the most violated constraint and restores a pair
+/// with a larger objective, so no active set occurs twice. A warm start makes a pair from the last
+/// active set: it leaves out constraints that have become dependent and drops those with a
+/// multiplier of the wrong sign. In the worst case none is left and the start is cold.
 /// Source: Goldfarb and Idnani, Math. Programming 27 (1983) 1-33, sections 3 and 4.
 struct QpSolver::Workspace {
   Workspace(int variables, int constraints, QpSettings chosen);
@@ -38,13 +38,14 @@ struct QpSolver::Workspace {
   QpResult result;
 
  private:
-  /// What became of a constraint that was to be added.
+  /// Outcome of adding a constraint.
   enum class Addition { added, redundant, infeasible, out_of_iterations };
 
   QpStatus load_and_factorise(const QuadraticProgram& problem);
   QpStatus run(const QuadraticProgram& problem);
   void start_from_last_set();
-  /// Makes a solution pair of the active set, dropping what is on the wrong side; then refines it.
+  /// Makes a solution pair from the active set, dropping constraints whose multiplier has the wrong
+  /// sign; then refines it.
   void settle(const QuadraticProgram& problem, bool refine);
   void solve_subproblem();
   void refine_subproblem(const QuadraticProgram& problem);
@@ -65,16 +66,16 @@ struct QpSolver::Workspace {
   ConstraintRows constraints;
   ActiveSetFactors factors;
   std::vector<ActiveConstraint> active;
-  std::vector<ActiveConstraint> last_set;  ///< (n) the active set that a warm start goes through
+  std::vector<ActiveConstraint> last_set;  ///< (n) the active set from which a warm start begins
   std::vector<std::uint8_t> state;  ///< per constraint: 0 idle, 1 active, 2 met within rounding
   VectorX x;                        ///< (stride)
   VectorX gradient;                 ///< (stride) g, padded
   VectorX multipliers;              ///< (stride) of the active constraints, in their order
   VectorX values;                   ///< (stride) limits of the active constraints
   VectorX residual, correction, multiplier_correction;
-  std::unique_ptr<SemidefiniteSolver> semidefinite;  ///< made by the first singular Hessian
+  std::unique_ptr<SemidefiniteSolver> semidefinite;  ///< created for the first singular Hessian
   double objective_size = 0.0;                       ///< |L^-1 g|
-  double iterate_size = 0.0;  ///< |L^-1 g| + max |x_i| sqrt(G_ii): what rounding is relative to
+  double iterate_size = 0.0;  ///< |L^-1 g| + max |x_i| sqrt(G_ii), to which rounding is relative
   int iterations = 0;
   int iteration_limit = 0;
 };

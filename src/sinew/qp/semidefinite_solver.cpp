@@ -10,17 +10,17 @@ namespace sinew::qp {
 
 namespace {
 
-/// Of the largest eigenvalue. The first is small enough that a few steps suffice, however far the
-/// point is and however limits couple the null space with the rest; it costs half of the digits.
-/// Steps with the second one give them back.
+/// Proximal weights relative to the largest eigenvalue. The first is so small that a few steps
+/// suffice, however far the point is and however limits couple the null space with the rest; it
+/// costs half of the digits. Steps with the second one restore them.
 constexpr double kLongSteps = 1e-8;
 constexpr double kExactSteps = 1.0;
 /// A gradient in the null space below this part of the whole one is rounding.
 constexpr double kFlat = 1e-10;
-/// Relative stationarity at which proximal steps end, and what passes when they end early.
+/// Relative stationarity at which proximal steps end, and that which is accepted if they end early.
 constexpr double kStationary = 1e-14;
 constexpr double kAccepted = 1e-10;
-/// A direction changes a limited quantity when it does so by more than this, relative.
+/// Relative change of a limited quantity below which a direction does not change it.
 constexpr double kRay = 1e-7;
 constexpr int kMaxSteps = 60;
 
@@ -94,7 +94,7 @@ void SemidefiniteSolver::load_weight(double weight) {
   }
 }
 
-// One proximal step from point_; how far from stationary it ends, relative.
+// One proximal step from point_; writes the relative distance from stationarity.
 QpStatus SemidefiniteSolver::take_step(double weight, double* stationarity) {
   const auto null_space = eigen_.vectors().leftCols(nullity_);
   proximal_.gradient = gradient_;
@@ -169,7 +169,7 @@ void SemidefiniteSolver::lessen_effort() {
   least_.rows.row(constraints_ + variables_) = gradient_.transpose();
   fix(variables_, falls_);
   const QpResult& least = least_solver_.solve(least_);
-  // Where rounding leaves no room at all, the optimal point at hand is the only one.
+  // If rounding leaves no feasible point, the present optimal point is the only one.
   if (least.status == QpStatus::optimal) point_ = least.x;
 }
 

@@ -7,17 +7,18 @@
 
 namespace sinew::qp {
 
-/// With D^2 = diag G (1 where that is zero), the program in y = D x has the Hessian
-/// D^-1 G D^-1 = U M U^T. N are the columns of U whose eigenvalue is rounding.
+/// Solver of convex quadratic programs with a singular Hessian. With D^2 = diag G (1 where that is
+/// zero), the program in y = D x has the Hessian D^-1 G D^-1 = U M U^T. N are the columns of U
+/// whose eigenvalue is zero to rounding.
 ///
 /// 1. Proximal steps in the null space only,
 ///      y_{k+1} = argmin f(y) + rho/2 |N^T (y - y_k)|^2   over the constraints,
-///    end at an optimal point (Rockafellar, SIAM J. Control Optim. 14 (1976) 877-898). Each is a
-///    strictly convex program for QpSolver. Where the objective falls without end, the steps
-///    become a ray of the feasible set along which G does not change and g falls.
+///    converge to an optimal point (Rockafellar, SIAM J. Control Optim. 14 (1976) 877-898). Each is
+///    a strictly convex program for QpSolver. If the objective is unbounded below, the steps become
+///    a ray of the feasible set along which G does not change and g decreases.
 /// 2. All optimal points share G y and g^T y (Mangasarian, Oper. Res. Lett. 7 (1988) 21-26), and
-///    any multipliers of one are multipliers of all. Among them the one with the least |y| is
-///    found, again a strictly convex program.
+///    any multipliers of one are multipliers of all. The one with the least |y| among them is the
+///    solution of another strictly convex program.
 class SemidefiniteSolver {
  public:
   SemidefiniteSolver(int variables, int constraints, const QpSettings& settings);
@@ -34,7 +35,7 @@ class SemidefiniteSolver {
   void load(const QuadraticProgram& problem);
   void load_weight(double weight);
   QpStatus take_step(double weight, double* stationarity);
-  /// Ends at an optimal point, or says why there is none.
+  /// Converges to an optimal point, or returns why there is none.
   QpStatus approach();
   bool is_ray(const VectorX& direction) const;
   /// Moves point_ to the optimal point of least effort.
@@ -45,10 +46,10 @@ class SemidefiniteSolver {
   linalg::SymmetricSpectrum eigen_;
   VectorX scale_;         ///< (n) D
   MatrixX scaled_;        ///< (n, n) D^-1 G D^-1
-  int nullity_ = 0;       ///< eigenvalues that are rounding; they come first
+  int nullity_ = 0;       ///< number of eigenvalues that are zero to rounding; they come first
   double largest_ = 0.0;  ///< largest eigenvalue, 1 when G is zero
-  VectorX gradient_;      ///< (n) D^-1 g without what is rounding in the null space
-  bool falls_ = false;    ///< the gradient has a part in the null space
+  VectorX gradient_;      ///< (n) D^-1 g without rounding errors in the null space
+  bool falls_ = false;    ///< the gradient has a component in the null space
   VectorX point_, step_;  ///< (n) y and the last proximal step
   QuadraticProgram proximal_, least_;
   QpSolver proximal_solver_, least_solver_;

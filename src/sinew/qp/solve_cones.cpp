@@ -33,7 +33,7 @@ void check(Eigen::Index rows, Eigen::Index columns, const VectorX& q,
               fmt::format("{} is not above 0", tolerance), "give a positive one, as 1e-8");
 }
 
-// Of a matrix and its transpose; nothing where it is zero or not finite.
+// Relative asymmetry of a matrix; 0 if the matrix is zero or not finite.
 double asymmetry_of(double difference, double largest) {
   return largest > 0.0 ? difference / largest : 0.0;
 }

@@ -10,7 +10,7 @@
 
 namespace sinew::qp {
 
-/// As ConeProblem; both triangles of the matrix are there, compressed by columns.
+/// As ConeProblem, with both triangles of the matrix stored, compressed by columns.
 struct SparseConeProblem {
   const Eigen::SparseMatrix<double>& matrix;
   Eigen::Ref<const VectorX> offset;

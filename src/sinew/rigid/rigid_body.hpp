@@ -1,5 +1,5 @@
 /// @file
-/// The state of a rigid body.
+/// A rigid body in a simulation.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@ class RigidNodes;
 class RigidStep;
 struct RigidState;
 
-/// Its state, and RigidStep for its steps.
+/// A rigid body: it owns its state, and the RigidStep that advances it.
 class RigidBody : public mechanics::Body,
                   public mechanics::HasOrientations,
                   public mechanics::HasBase,

@@ -19,9 +19,9 @@ namespace sinew::rigid {
 
 namespace {
 
-// A point so far outside, of the body's size, is on its surface.
+// Relative to the body's size: a point this far outside is on its surface.
 constexpr double kSlack = 1e-9;
-// Principal moments of a solid obey the triangle's inequality; by so much may rounding break it.
+// Relative rounding error with which principal moments may break the triangle inequality.
 constexpr double kInertiaSlack = 1e-9;
 
 void check_inertia(const RigidSettings& settings, const Matrix3& inertia) {
@@ -41,7 +41,7 @@ void check_inertia(const RigidSettings& settings, const Matrix3& inertia) {
   throw Error(kind, {.item = "body '" + settings.name + "'"}, what, remedy);
 }
 
-// What fixed bodies without a mass have, which counts nowhere.
+// Mass properties of fixed bodies without a mass, which have no effect.
 MassProperties stand_in(const mesh::Surface& surface) {
   const Vector3 low = surface.nodes.colwise().minCoeff().transpose();
   const Vector3 edges = surface.nodes.colwise().maxCoeff().transpose() - low;
@@ -51,7 +51,8 @@ MassProperties stand_in(const mesh::Surface& surface) {
   return result;
 }
 
-// Of the shape, in the body's own frame; of any mass where the scene gives all that depends on it.
+// Mass properties of the shape, in the body's own frame; arbitrary if the scene gives all that
+// depends on them.
 MassProperties shape_mass(const RigidSettings& settings) {
   const auto* solid = std::get_if<Solid>(&settings.shape);
   const bool given = settings.mass && settings.inertia && settings.centre_of_mass;
@@ -68,7 +69,7 @@ MassProperties shape_mass(const RigidSettings& settings) {
   return own;
 }
 
-// At the pose of the start, in the world's axes.
+// Mass properties in the initial pose, in world axes.
 MassProperties placed_mass(const RigidSettings& settings) {
   MassProperties own = shape_mass(settings);
   if (settings.mass) {
@@ -89,7 +90,7 @@ MassProperties placed_mass(const RigidSettings& settings) {
   return own;
 }
 
-// In the body's own frame.
+// The skin in the body's own frame.
 mesh::Mesh own_skin(const RigidSettings& settings) {
   if (settings.look != nullptr) return skin(Solid{settings.look});
   mesh::Mesh result = skin(settings.shape);
@@ -177,7 +178,7 @@ mechanics::TouchingPart RigidBodyModel::touching_part() const {
   return solid->hull != nullptr ? hull : surface;
 }
 
-// Of flat triangles.
+// The trace of flat triangles.
 std::shared_ptr<const mechanics::SurfaceTrace> RigidBodyModel::surface_trace() const {
   static const auto linear = std::make_shared<const mechanics::SurfaceTrace>();
   return linear;

@@ -1,5 +1,5 @@
 /// @file
-/// A rigid body as a BodyModel.
+/// The model of a rigid body.
 #pragma once
 
 #include <memory>
@@ -15,20 +15,22 @@
 
 namespace sinew::rigid {
 
+/// Model of a rigid body: its shape, mass and attached sites.
 class RigidBodyModel final : public mechanics::BodyModel,
                              public mechanics::AttachesOrientations,
                              public mechanics::HasShape,
                              public mechanics::HasSurface,
                              public mechanics::MayHaveBase {
  public:
+  /// A site on the body.
   struct Attachment {
     enum class Kind { point, orientation, surface };
     Kind kind = Kind::point;
     Vector3 arm = Vector3::Zero();  ///< m, from the centre of mass, at rest in the world's axes
   };
 
-  /// Throws Error: out-of-range for a size, a mass or an inertia that cannot be, missing-mass where
-  /// a body that moves has none, what mesh::require_solid() does where the mass needs a solid.
+  /// Throws Error: out-of-range for an impossible size, mass or inertia; missing-mass if a movable
+  /// body has none; what mesh::require_solid() throws if the mass requires a solid.
   explicit RigidBodyModel(RigidSettings settings);
 
   const std::string& name() const override { return settings_.name; }
@@ -74,14 +76,14 @@ class RigidBodyModel final : public mechanics::BodyModel,
   }
   const char* shape_name() const override { return rigid::shape_name(settings_.shape); }
   const Vector3& centre() const { return mass_.centre; }    ///< (3,) m, at rest, in the world
-  const Matrix3& inertia() const { return mass_.inertia; }  ///< the same, about the centre
-  /// m: a turn by an angle moves the body by about this times it. Turns are counted in metres of
-  /// it, so that all coordinates are of one unit.
+  const Matrix3& inertia() const { return mass_.inertia; }  ///< kg m^2 about it, at rest, in world
+  /// Turning radius s, m: a rotation by an angle moves the body by about s times the angle.
+  /// Rotations are multiplied by it, so that all coordinates have the unit m.
   double turning_radius() const { return radius_; }
   const Attachment& attachment(int site) const {
     return attachments_[static_cast<std::size_t>(site)];
   }
-  /// Of the many points of a heap few touch.
+  /// True, since few of the many contact points of a heap touch.
   bool leaves_rows_out() const override { return true; }
   const mechanics::OwnRows& own_rows() const { return own_rows_; }
 
@@ -96,8 +98,8 @@ class RigidBodyModel final : public mechanics::BodyModel,
   MassProperties mass_;
   double radius_ = 1.0;
   mesh::Mesh skin_;
-  std::unique_ptr<collision::SurfaceTree> surface_;             // of a Solid, in its own frame
-  std::shared_ptr<const collision::SurfaceTopology> touching_;  // where surfaces touch
+  std::unique_ptr<collision::SurfaceTree> surface_;  // surface of a Solid, in its own frame
+  std::shared_ptr<const collision::SurfaceTopology> touching_;  // the surface that touches others
   Points touching_nodes_ = Points(0, 3);                        // m, at rest, in the world
   int surface_site_ = -1;
   std::vector<Attachment> attachments_;

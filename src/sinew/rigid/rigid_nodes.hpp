@@ -1,5 +1,5 @@
 /// @file
-/// Where points that move with a rigid body are.
+/// Positions of points that move with a rigid body.
 #pragma once
 
 #include <optional>
@@ -8,12 +8,13 @@
 
 namespace sinew::rigid {
 
-/// Points of a body in a pose. @param model of it. @param rest (n, 3) m, at rest, in the world.
-/// @param pose of the body now. @param nodes (n, 3) m, written.
+/// Computes the points of a body in a pose. @param model of the body.
+/// @param rest (n, 3) m, at rest, in the world. @param pose of the body.
+/// @param nodes (n, 3) m, written.
 void place_nodes(const RigidBodyModel& model, const Points& rest, const RigidPose& pose,
                  Points& nodes);
 
-/// The nodes of one body's skin or touching surface, made anew when it has moved.
+/// The nodes of a body's skin or touching surface, updated when the body has moved.
 class RigidNodes {
  public:
   /// @param state,rest must outlive this; see place_nodes().
@@ -25,7 +26,7 @@ class RigidNodes {
  private:
   const RigidState& state_;
   const Points& rest_;
-  std::optional<RigidPose> pose_;  // of the positions
+  std::optional<RigidPose> pose_;  // pose of the positions
   Points positions_ = Points(0, 3), velocities_ = Points(0, 3);
 };
 

@@ -57,7 +57,7 @@ void RigidState::load(std::span<const double> from) {
   };
   take(pose.centre.data(), 3);
   take(pose.rotation.coeffs().data(), 4);
-  // An estimator adds to it; a saved one stays as it is, bit for bit.
+  // An estimator adds to it, so it is normalised; a saved one keeps its bits.
   if (std::abs(pose.rotation.squaredNorm() - 1.0) > 1e-12) pose.rotation.normalize();
   take(rate.data(), 6);
   for (Vector6& kept : history) take(kept.data(), 6);

@@ -1,5 +1,5 @@
 /// @file
-/// What a rigid body carries from step to step.
+/// The state of a rigid body between steps.
 #pragma once
 
 #include <cstddef>
@@ -20,42 +20,44 @@ class RigidBodyModel;
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
+/// Position and rotation of a rigid body.
 struct RigidPose {
-  Vector3 centre;               ///< m, of mass
+  Vector3 centre;               ///< m, centre of mass
   Eigen::Quaterniond rotation;  ///< since rest
 
-  /// Moved by a displacement (m) and a turn about the world's axes (rad).
+  /// The pose after a displacement (m) and a rotation vector in world axes (rad).
   RigidPose moved(const Vector3& displacement, const Vector3& turn) const;
 };
 
-/// One for a body, which its parts look at. Motions and rates have six numbers: of the centre of
-/// mass, m, and turns about the world's axes times the model's turning radius, m.
+/// State of a rigid body, which its parts share. Motions and rates have six numbers: those of the
+/// centre of mass, m, and rotation vectors in world axes times the model's turning radius, m.
 struct RigidState {
   /// @param model must outlive this. @param histories see mechanics::history_count().
   RigidState(const RigidBodyModel& model, int histories);
 
   void restart();
-  /// Of all but the start of the step in hand.
+  /// Number of values of the state, without the start of the present step.
   std::size_t size() const;
   void save(std::span<double> to) const;    ///< (size(),)
   void load(std::span<const double> from);  ///< (size(),)
 
-  /// From the start of the step to now. The turn is the one that leads from one rotation to the
-  /// other: over a step of length h it is the integral of the angular velocity but for O(h^3)
-  /// (Magnus, Comm. Pure Appl. Math. 7, 1954), so that integrators of second order keep theirs.
+  /// Motion from the start of the step to now. The rotation vector is that of the relative
+  /// rotation. Over a step of length h it is the integral of the angular velocity up to O(h^3)
+  /// (Magnus, Comm. Pure Appl. Math. 7, 1954), so that integrators of second order keep their
+  /// order.
   Vector6 motion() const;
-  /// A combination of that motion and of what was before it.
+  /// A linear combination of this motion, the rate and the history.
   Vector6 combine(const mechanics::Combination& weights) const;
 
-  /// Where a fixed body goes when the next step begins: a displacement from rest. An input.
+  /// Input of a fixed body: its displacement from rest when the next step begins.
   std::optional<mechanics::AffineField> asked;
-  /// Goes there.
+  /// Moves a fixed body there.
   void follow_base();
 
   RigidPose pose, start;
   Vector6 rate;
   const RigidBodyModel& model;
-  std::vector<Vector6> history;  ///< what the integrator keeps
+  std::vector<Vector6> history;  ///< history of the integrator
   mechanics::RowMemory memory;
 };
 

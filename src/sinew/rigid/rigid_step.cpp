@@ -13,8 +13,8 @@ namespace sinew::rigid {
 
 namespace {
 
-// Residuals are not judged by forces that accelerate a body by less than this many of its radii
-// per second squared.
+// Lower bound of the force scale of residuals: an acceleration of this many body radii per second
+// squared.
 constexpr double kMinAcceleration = 1e-6;
 
 }  // namespace
@@ -69,7 +69,7 @@ void RigidStep::add_inertia(const mechanics::StepWeights& weights, VectorX& righ
   matrix.bottomRightCorner<3, 3>() = (by_turn * turning + by_pose) / (s * s);
 }
 
-// m, at rest, from the centre of mass.
+// Lever from the centre of mass at rest, m.
 Vector3 RigidStep::arm_of(const mechanics::Patch& patch) const {
   return patch.mean(state_.model.rest_surface_nodes()) - state_.model.centre();
 }
@@ -77,12 +77,13 @@ Vector3 RigidStep::arm_of(const mechanics::Patch& patch) const {
 // A force f at r = R r_0 has the moment r x f, which changes by (w x r) x f = [f] [r] w. A moment
 // keeps its axis.
 //
-// The derivative of the moment M of a potential by a turn is symmetric but for [M]/2 (Simo, Comput.
-// Methods Appl. Mech. Eng. 96, 1992, 189). Those halves of all forces, moments and the inertia add
-// up to that of the residual, which vanishes; the moments' own are not in A. What is left of skew
-// parts would only lag an iteration behind, since W takes symmetric ones (add_compliance): a
-// bracket of a gram under newtons took tens of them. A single linearisation keeps the derivative,
-// on which its order hangs, and so does a body that nothing loads, for its gyroscopic moment.
+// The derivative of the moment M of a potential with respect to rotation is symmetric except for
+// [M]/2 (Simo, Comput. Methods Appl. Mech. Eng. 96, 1992, 189). These halves of all forces, moments
+// and the inertia sum to that of the residual, which vanishes; those of the moments themselves are
+// not in A. The remaining skew parts would only slow the iteration, since W takes symmetric parts
+// (add_compliance): a bracket of a gram under newtons took tens of iterations. A single
+// linearisation keeps the exact derivative, on which its order depends. So does a body without
+// loads, for its gyroscopic moment.
 void RigidStep::add_row_stiffness(MatrixX& matrix) {
   const RigidBodyModel& model = state_.model;
   if (!model.is_free()) return;
@@ -132,7 +133,7 @@ void RigidStep::add_proposed_motion(Points& nodes) const {
               from_.moved(motion().head<3>(), turn), nodes);
 }
 
-// Positions are known to eps |x|, and turns to eps.
+// Positions are accurate to eps |x|, and rotations to eps.
 double RigidStep::rounding_floor() const {
   if (size() == 0) return 0.0;
   const double at =
@@ -174,7 +175,7 @@ mechanics::StepEnd RigidStep::end_step(const mechanics::StepWeights& weights) {
     state_.history[1] = second;
   }
   state_.rate = rate;
-  if (size() == 0) return end;  // it goes where it is put
+  if (size() == 0) return end;  // its motion is prescribed
   end.error = weights.error_jump * jump;
   return end;
 }

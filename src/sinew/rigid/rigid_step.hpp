@@ -1,5 +1,5 @@
 /// @file
-/// A rigid body in a step.
+/// The step of a rigid body.
 #pragma once
 
 #include "sinew/mechanics/dense_step.hpp"
@@ -7,12 +7,13 @@
 
 namespace sinew::rigid {
 
-/// Newton's and Euler's equations at the end of the step, in the world's axes (Featherstone, Rigid
-/// Body Dynamics Algorithms, 2008, sec. 2.15),
+/// The step equations of a rigid body: the Newton-Euler equations at the end of the step, in world
+/// axes (Featherstone, Rigid Body Dynamics Algorithms, 2008, sec. 2.15),
 ///   m a = m g + forces,   J alpha + omega x J omega = moments about the centre,   J = R J_0 R^T,
-/// with a and alpha the integrator's combinations. Unknowns are the six numbers of a motion. A turn
-/// by w after the one by theta since the step's start changes that by D w (rotation_vector_rate),
-/// and J by [w] J - J [w]; the matrix is the derivative, exact and unsymmetric.
+/// where a and alpha are the integrator's combinations. The unknowns are the six numbers of a
+/// motion. A rotation by w after the rotation vector theta since the start of the step changes
+/// theta by D w (rotation_vector_rate), and J by [w] J - J [w]. The matrix is the exact derivative,
+/// unsymmetric.
 class RigidStep : public mechanics::DenseStep {
  public:
   /// @param state must outlive this.
@@ -40,7 +41,7 @@ class RigidStep : public mechanics::DenseStep {
   void add_inertia(const mechanics::StepWeights& weights, VectorX& right, MatrixX& matrix) const;
 
   RigidState& state_;
-  RigidPose from_;  // that the motion starts from
+  RigidPose from_;  // the pose from which the motion starts
 };
 
 }  // namespace sinew::rigid

@@ -24,8 +24,8 @@ struct Overloaded : Visitors... {
 template <class... Visitors>
 Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
-constexpr int kCellsAcross = 8;  // of a round skin
-constexpr int kSides = 48;       // of what stands for a circle: 1 - cos(pi/48) = 0.2 % inside it
+constexpr int kCellsAcross = 8;  // cells across a round skin
+constexpr int kSides = 48;  // sides of a polygon for a circle, 1 - cos(pi/48) = 0.2 % inside it
 
 Matrix3 diagonal(double x, double y, double z) { return Vector3(x, y, z).asDiagonal(); }
 
@@ -51,8 +51,8 @@ MassProperties of(const Cylinder& cylinder, double density) {
   return {mass, Vector3::Zero(), diagonal(across, across, 0.5 * mass * square)};
 }
 
-// A half sphere's centre of mass stands 3/8 r from its plane; about that centre its inertia across
-// the axis is (2/5 - 9/64) m r^2.
+// The centre of mass of a hemisphere is 3/8 r from its plane; its inertia across the axis about
+// that centre is (2/5 - 9/64) m r^2.
 MassProperties of(const Capsule& capsule, double density) {
   const double r = capsule.radius;
   MassProperties result = of(Cylinder{r, capsule.length}, density);
@@ -77,7 +77,7 @@ mesh::Mesh cells(const Vector3& edges, const std::array<int, 3>& count) {
 
 mesh::Mesh mesh_of(const Box& box) { return cells(box.edges, {1, 1, 1}); }
 
-// A cube whose shells of equal |x|_max become spheres.
+// A cube whose shells of equal |x|_max are mapped to spheres.
 mesh::Mesh mesh_of(const Sphere& sphere) {
   mesh::Mesh ball =
       cells(2.0 * sphere.radius * Vector3::Ones(), {kCellsAcross, kCellsAcross, kCellsAcross});
@@ -98,7 +98,7 @@ mesh::Mesh mesh_of(const Cylinder& cylinder) {
   return result;
 }
 
-// A ball that is cut in its middle and drawn apart.
+// A ball that is cut in the middle and pulled apart.
 mesh::Mesh mesh_of(const Capsule& capsule) {
   mesh::Mesh result = mesh_of(Sphere{capsule.radius});
   for (Eigen::Index i = 0; i < result.nodes.rows(); ++i) {
@@ -133,7 +133,7 @@ mesh::Surface triangles_of(const collision::Polyhedron& hull) {
   return result;
 }
 
-// Rings about z, from a pole or a lid's middle below to one above.
+// Builds a surface from rings about z, from a pole or the centre of a lid below to one above.
 class Lathe {
  public:
   Lathe() { add(Vector3::Zero()); }  // the lower end, placed by close()
@@ -177,10 +177,10 @@ class Lathe {
   NodeId rings_ = 0;
 };
 
-// A ball that is cut in its middle and drawn apart by a length.
+// A ball that is cut in the middle and pulled apart by a length.
 mesh::Surface round_surface(double radius, double length) {
   Lathe lathe;
-  constexpr int kBelow = kSides / 4;  // rings of half a ball, its equator counted
+  constexpr int kBelow = kSides / 4;  // rings of half a ball, including its equator
   const auto ring = [&](int k, double z) {
     const double angle = 0.5 * pi * k / kBelow;
     lathe.ring(radius * std::cos(angle), z + radius * std::sin(angle));

@@ -1,5 +1,5 @@
 /// @file
-/// Shapes of rigid bodies, and their mass.
+/// Shapes of rigid bodies, and their mass properties.
 #pragma once
 
 #include <memory>
@@ -11,54 +11,61 @@
 
 namespace sinew::rigid {
 
-// All but a solid are centred on the origin.
+// All shapes but Solid are centred on the origin.
+
+/// A box.
 struct Box {
-  Vector3 edges;  ///< (3,) m, whole
+  Vector3 edges;  ///< (3,) m, full edge lengths
 };
+/// A ball.
 struct Sphere {
   double radius = 0.0;  ///< m
 };
-/// A cylinder along z with half spheres at its ends.
+/// A cylinder along z with hemispheres at its ends.
 struct Capsule {
-  double radius = 0.0, length = 0.0;  ///< m; of the cylinder, ends not counted
+  double radius = 0.0, length = 0.0;  ///< m; length of the cylinder without its ends
 };
+/// A cylinder along z.
 struct Cylinder {
   double radius = 0.0, height = 0.0;  ///< m, along z
 };
 
-/// What a closed triangle surface encloses.
+/// The solid enclosed by a closed triangle surface.
 struct Solid {
   std::shared_ptr<const mesh::Surface> surface;       ///< m
-  std::shared_ptr<const collision::Polyhedron> hull;  ///< what touches; null: the surface does
+  std::shared_ptr<const collision::Polyhedron> hull;  ///< touches; null: the surface does
 };
 
 using Shape = std::variant<Box, Sphere, Capsule, Cylinder, Solid>;
+/// "box", "sphere", "capsule", "cylinder" or "mesh" (a Solid).
 const char* shape_name(const Shape& shape);
 
+/// Mass, centre of mass and inertia.
 struct MassProperties {
   double mass = 0.0;                          ///< kg
-  Vector3 centre = Vector3::Zero();           ///< m, of mass
+  Vector3 centre = Vector3::Zero();           ///< m, centre of mass
   Matrix3 inertia = Matrix3::Identity() * 0;  ///< kg m^2, about the centre
 };
 
-/// Of a homogeneous solid. @param shape m, in its own frame. @param density kg/m^3. Throws what
-/// mesh::require_solid() does.
+/// Mass properties of a homogeneous solid. @param shape m, in its own frame. @param density kg/m^3.
+/// Throws what mesh::require_solid() throws.
 MassProperties mass_properties(const Shape& shape, double density);
 
-/// The same as a shape of collision, in its own frame; of a Solid its hull. Throws
-/// Error(zero-volume) where that has none.
+/// The shape as a collision shape, in its own frame; for a Solid, its hull. Throws Error:
+/// zero-volume if a Solid has no hull.
 collision::Shape solid(const Shape& shape);
-/// That shape elsewhere. @param shape see solid(). @param position (3,) m, of its origin.
-/// @param rotation (3, 3), of its axes.
+/// The collision shape in a pose. @param shape see solid(). @param position (3,) m, of its origin.
+/// @param rotation (3, 3), columns: its axes.
 collision::Shape placed(const Shape& shape, const Vector3& position, const Matrix3& rotation);
 
-/// The triangles that bound it, a Solid's hull's where it touches with that; in its own frame.
-/// Round shapes have their corners on the surface, and triangles up to 0.2 % of the radius below.
+/// The triangles that bound a shape, in its own frame; those of the hull for a Solid that touches
+/// with it. The corners on round shapes lie on the surface, and the triangles up to 0.2 % of the
+/// radius below it.
 mesh::Surface bounding_triangles(const Shape& shape);
-/// m, of a ball or a capsule; others, which have edges, 0.
+/// Radius of a ball or capsule, m; 0 for shapes with edges.
 double smooth_radius(const Shape& shape);
 
-/// A mesh that shows the shape: of volume elements, but of triangles for a Solid.
+/// A mesh for display: of volume elements, or of triangles for a Solid.
 mesh::Mesh skin(const Shape& shape);
 
 }  // namespace sinew::rigid

@@ -12,13 +12,13 @@ namespace sinew::step {
 
 namespace {
 
-// Of the largest effort over its unit: a limit that is nearer than this is reached.
+// Relative to the largest scaled effort: a guard within this is tight.
 constexpr double kTight = 1e-6;
-// Of the largest multiplier: less is none.
+// Relative to the largest multiplier: smaller ones are zero.
 constexpr double kNoMultiplier = 1e-6;
-// Of the largest effort: a choice that moves less stays.
+// Relative to the largest effort: a choice that moves less stays.
 constexpr double kStays = 1e-5;
-// Of the objective: a gain below it is rounding.
+// Relative to the objective: a smaller gain is rounding.
 constexpr double kGain = 1e-9;
 
 VectorX motion_of(const StepProblem& problem, std::span<const double> effort) {
@@ -26,7 +26,7 @@ VectorX motion_of(const StepProblem& problem, std::span<const double> effort) {
   return problem.delta_free + problem.compliance * all;
 }
 
-// sqrt(J): the largest effort, as guards measure them.
+// The largest effort in the unit of guards, sqrt(J).
 double size_of(const StepProblem& problem, std::span<const double> effort) {
   double largest = 0.0;
   for (std::size_t row = 0; row < effort.size(); ++row) {
@@ -63,7 +63,7 @@ class Certifier {
   }
 
  private:
-  // A block at the limits of two states: its guard here, and the state beyond.
+  // A block at the limits of two states, and the state beyond.
   struct Between {
     int block;
     BlockState beyond;
@@ -83,7 +83,7 @@ class Certifier {
     return std::ranges::find(between_, block, &Between::block);
   }
 
-  // Whether the best choice that keeps all of them at both limits is the one that was made.
+  // Whether the best choice that keeps all these blocks at both limits is the choice that was made.
   bool stays(const Response& response, double Between::*multiplier) {
     std::vector<double> choice = own_;
     if (controller_.choose(problem_, response, Guards::tight, choice) == LawStatus::failed) {
@@ -94,7 +94,7 @@ class Certifier {
       const Guard& guard = response.guards()[g];
       const auto block = find(guard.block);
       if (!guard.tight || block == between_.end()) continue;
-      // Of several planes of a cone the one that pushes most.
+      // Of several planes of a cone, takes the one with the largest multiplier.
       double& kept = (*block).*multiplier;
       if (std::abs(multipliers[g]) > std::abs(kept)) kept = multipliers[g];
     }

@@ -1,5 +1,5 @@
 /// @file
-/// What chooses the efforts of some actuators in place of their commands.
+/// Interface of controllers that choose the efforts of actuators within a step.
 #pragma once
 
 #include <span>
@@ -14,53 +14,57 @@ class Response;
 struct Certificate;
 struct StepProblem;
 
-/// Whether the guards of a response hold a choice.
+/// Whether the guards of a response constrain a choice.
 enum class Guards {
   none,
   kept,   ///< each has a slack >= 0
-  tight,  ///< and those that are tight have none
+  tight,  ///< as kept, and tight guards have zero slack
 };
 
+/// A controller whose efforts are part of the solution of a step.
 class Controller : public WithMemory {
  public:
-  /// How well efforts serve what the controller wants. First the limits of its actuators count,
-  /// then its objective.
+  /// Merit of efforts for the controller. The violation of the limits of its actuators counts
+  /// first, then its objective.
   struct Merit {
-    double excess = 0.0;  ///< the farthest beyond a limit, of its size; 0 within all
+    double excess = 0.0;  ///< largest violation, relative to a limit's size; 0 within all
     double value = 0.0;   ///< the objective
   };
 
-  /// Called when the law of a step is about to be solved: what is asked is the same in all choices
-  /// until the next call. @param problem of the step. @param response of the robot to start from.
+  /// Called before the law of a step is solved. The goal then stays the same for all choices until
+  /// the next call. @param problem of the step. @param response of the robot to start from.
   virtual void begin_choices(const StepProblem& problem, const Response& response) = 0;
-  /// @param problem of the step. @param response of the robot to the efforts to choose.
-  /// @param guards whether the response's hold the choice.
-  /// @param effort (controlled,) N, in the order of response.controlled(): problem.effort_before's
-  ///   on entry, the chosen ones on return. Failed: there are none within all guards and limits.
+  /// Chooses the efforts. @param problem of the step.
+  /// @param response of the robot to the efforts to be chosen.
+  /// @param guards whether the guards of the response constrain the choice.
+  /// @param effort (controlled,) N, in the order of response.controlled(): on entry those of
+  ///   problem.effort_before, on return the chosen ones. @return failed if no efforts meet all
+  ///   guards and limits.
   virtual LawStatus choose(const StepProblem& problem, const Response& response, Guards guards,
                            std::span<double> effort) = 0;
-  /// Of the last choose(): the objective that it foresees.
+  /// Predicted objective of the last choose().
   virtual double foreseen() const = 0;
-  /// (guards,) >= 0, or of either sign where tight, of the last choose() with guards: how much the
-  /// objective would fall for each unit that a guard gave way.
+  /// Multipliers of the guards in the last choose() with guards, (guards,), >= 0, or of either sign
+  /// for tight ones: the decrease of the objective per unit by which a guard is relaxed.
   virtual std::span<const double> guard_multipliers() const = 0;
-  /// @param problem of the step. @param motion (rows,) delta at the end of the step.
-  /// @param own (controlled,) N. @param effort (rows,) N, those among them.
+  /// Evaluates efforts. @param problem of the step. @param motion (rows,) delta at the end of the
+  /// step.
+  /// @param own (controlled,) N. @param effort (rows,) N, including those.
   virtual Merit merit(const StepProblem& problem, const VectorX& motion,
                       std::span<const double> own, std::span<const double> effort) const = 0;
-  /// A lesser gain of Merit::value is not worth a change of efforts.
+  /// A smaller gain of Merit::value does not justify a change of efforts.
   virtual double negligible_gain() const { return 0.0; }
-  /// Whether it wants to know more of its choices, see take_certificate().
+  /// Whether its choices get a certificate, see take_certificate().
   virtual bool certifies() const { return false; }
-  /// Of what accept() was told.
+  /// Receives the certificate of the efforts given to accept().
   virtual void take_certificate(const Certificate&) {}
-  /// What came of choose(). @param motion (rows,) delta, as everything on the robot obeys its law.
-  /// @param problem,response as for choose(). @param own,effort as for merit(); they may differ
-  /// from those chosen.
+  /// Receives the outcome of choose(). @param motion (rows,) delta, with everything on the robot
+  /// obeying its law. @param problem,response as for choose().
+  /// @param own,effort as for merit(); they may differ from those chosen.
   virtual void accept(const StepProblem& problem, const Response& response, const VectorX& motion,
                       std::span<const double> own, std::span<const double> effort) = 0;
-  /// Called before each step: what helped to solve the last one is forgotten, so that a step
-  /// follows from state and inputs alone.
+  /// Called before each step. Discards all warm starts of the last step, so that a step is
+  /// determined by state and inputs alone.
   virtual void begin_step() = 0;
 };
 

@@ -11,19 +11,19 @@ namespace {
 
 // Relative size of the term that shares tension among redundant cables.
 constexpr double kRedundancy = 1e-12;
-// Of a row's own compliance: the rounding that what held rows leave of it may have.
+// Relative to a row's own compliance: rounding of what held rows leave of it.
 constexpr double kCancelled = 1e-14;
-// Motions that agree within this (m) agree.
+// Tolerance of motions, m.
 constexpr double kMotionTolerance = 1e-12;
-// A solution of contacts that misses the tolerance by rounding or slow convergence is one up to
-// here.
+// Residual up to which a contact solution is used although it misses the tolerance by rounding or
+// slow convergence.
 constexpr double kUsableResidual = 1e-6;
 
-// Of a row's own compliance: what is less is rounding.
+// Relative to a row's own compliance: smaller values are rounding.
 constexpr double kDecided = 1e-10;
 
 constexpr int kMaxDriveRounds = 60;
-// Of the effort and of what the robot's compliance allows.
+// Relative to the effort and to what the robot's compliance allows.
 constexpr double kDriveTolerance = 1e-13;
 
 constexpr int kMaxFrictionRounds = 300;
@@ -46,8 +46,7 @@ LawStatus DirectSolver::solve(const StepProblem& problem, std::span<double> effo
                                   : solve_with_friction(problem, effort);
 }
 
-// Which rows are given, which follow, and which are unknown. free_ has the motion that the given
-// ones leave.
+// Sorts rows into given, following and unknown ones. free_ is the motion due to the given ones.
 void DirectSolver::sort(const StepProblem& problem, std::span<double> effort) {
   followers_.clear();
   boxes_.clear();
@@ -104,8 +103,9 @@ void DirectSolver::sort_actuator(const StepProblem& problem, int index, std::spa
   if (own != 0.0) free_ += own * problem.compliance.col(block.row);
 }
 
-// Of a row whose motion no effort changes: at a limit on either side of the motion asked for, the
-// least there. Infinite where no limit stands on its side. @param gap m, beyond what is asked for.
+// Effort of a row whose motion no effort changes: the lower limit above the commanded motion, the
+// upper limit below it, and the least effort at it. Infinite without such a limit.
+// @param gap m, motion minus commanded motion.
 double DirectSolver::idle_effort(const Box& box, double gap) {
   const bool stays = std::abs(gap) <= kMotionTolerance;
   return std::clamp(stays ? 0.0 : gap > 0.0 ? box.lower : box.upper, box.lower, box.upper);
@@ -121,7 +121,7 @@ DirectSolver::Box DirectSolver::box_of(const ActuatorBlock& block, int index) co
       box.motion = block.motion_min;
       box.stop = -1;
     } else {
-      // Without a limit of its motion nothing but the command itself is possible.
+      // Without a limit of its motion only the command itself is possible.
       const bool stops = !std::isinf(block.motion_max);
       if (!stops) box.lower = block.value;
       box.upper = block.value;
@@ -143,7 +143,8 @@ LawStatus DirectSolver::solve_with_friction(const StepProblem& problem, std::spa
   return LawStatus::solved;
 }
 
-// Whether the limits are those of the tensions; if not, they go `share` of the way there.
+// Returns whether the limits agree with the tensions; if not, moves them the fraction `share`
+// there.
 bool DirectSolver::follow_tensions(const StepProblem& problem, std::span<const double> effort,
                                    double share) {
   const std::span<Box> capstans = std::span(boxes_).subspan(first_capstan_, limits_.size());
@@ -188,9 +189,9 @@ LawStatus DirectSolver::solve_with_drives(const StepProblem& problem, std::span<
   return LawStatus::solved;
 }
 
-// Rows that repeat each other (a hinge's motor, brake and limit) do so in what held rows leave,
-// where each has its own rounding: of a bracket that hangs on a weld 1e-5 of W is left, and a motor
-// and a brake would be an indefinite matrix.
+// Redundant rows (a hinge's motor, brake and limit) stay redundant after the elimination of held
+// rows, but each has its own rounding: for a bracket on a weld 1e-5 of W is left, and a motor and a
+// brake would form an indefinite matrix.
 void DirectSolver::unite_twins(const StepProblem& problem, Eigen::Map<MatrixX> compliance,
                                Eigen::Map<MatrixX> motion) {
   const VectorX& free = problem.delta_free;
@@ -209,26 +210,27 @@ void DirectSolver::unite_twins(const StepProblem& problem, Eigen::Map<MatrixX> c
   }
 }
 
-// Where held rows move a row by themselves (a brake beside a motor that holds the same hinge), of
-// its compliance rounding is left. Its effort then moves nothing, and follows from where it is: at
-// a limit on either side of its motion, the least there.
+// If held rows determine the motion of a row (a brake beside a motor that holds the same hinge),
+// only rounding is left of its compliance. Its effort then moves nothing, and follows from its
+// motion, see idle_effort().
 void DirectSolver::settle_decided(const StepProblem& problem, Eigen::Map<MatrixX> compliance,
                                   Eigen::Map<MatrixX> motion) {
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
     Box& box = boxes_[i];
     const auto k = static_cast<Eigen::Index>(i);
-    // Negative where an anchor stands for what only joints hold.
+    // Negative if an anchor replaces the missing stiffness of a body held only by joints.
     const double alone = std::abs(problem.compliance(box.row, box.row));
     box.rounding = kCancelled * alone;
     box.decided = compliance(k, k) <= kDecided * alone;
     if (!box.decided) continue;
     const double gap = motion(k, 0) - box.motion;
     const double effort = idle_effort(box, gap);
-    if (!std::isfinite(effort)) {  // nothing can be done: what is held is beyond a stop
+    if (!std::isfinite(effort)) {  // no solution: the held motion is beyond a stop
       box.decided = false;
       continue;
     }
-    // A problem of its own, whose solution that is, well beyond a limit where it is one.
+    // Replaces the row by an uncoupled problem with this solution, well beyond a limit if it is
+    // one.
     const bool stays = std::abs(gap) <= kMotionTolerance;
     const double beyond = stays ? 0.0 : std::copysign(problem.size, gap);
     compliance.row(k).setZero();
@@ -249,9 +251,9 @@ LawStatus DirectSolver::solve_blocks(const StepProblem& problem) {
   return LawStatus::failed;
 }
 
-// A commanded effort whose motion is limited is given until the motion passes the limit: a stop far
-// away on a row that something else moves as well (a brake, a motor of the same joint) would leave
-// the program nearly singular, with a gradient beside which the others are rounding.
+// A commanded effort with a limited motion is treated as given until the motion passes the limit. A
+// distant stop on a row that something else moves as well (a brake, a motor of the same joint)
+// would make the program nearly singular, with a gradient beside which the others are rounding.
 LawStatus DirectSolver::solve_boxes(const Eigen::Map<const MatrixX>& compliance) {
   if (boxes_.empty()) return LawStatus::solved;
   for (Box& box : boxes_) box.waits = box.stop != 0 && box.lower < box.upper;
@@ -273,8 +275,8 @@ LawStatus DirectSolver::solve_boxes(const Eigen::Map<const MatrixX>& compliance)
   return LawStatus::solved;
 }
 
-// Efforts that are given stand on the right side: the compliance of their rows, which may be that
-// of a cable that moves nothing, decides nothing.
+// Given efforts go to the right-hand side: the compliance of their rows, which may be that of a
+// cable that moves nothing, has no influence.
 LawStatus DirectSolver::solve_program(const Eigen::Map<const MatrixX>& compliance) {
   const auto count = static_cast<Eigen::Index>(boxes_.size());
   if (program_.gradient.size() != count) {
@@ -309,7 +311,7 @@ LawStatus DirectSolver::solve_program(const Eigen::Map<const MatrixX>& complianc
   if (result.status != qp::QpStatus::optimal) return LawStatus::failed;
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    // Scaling must not blur a limit: a slack cable's tension is zero, not nearly so.
+    // Scaling must not blur a limit: the tension of a slack cable is exactly zero.
     x_[i] = scale_[k] * result.x[k];
     if (is_given(k)) {
       x_[i] = given(boxes_[i]);
@@ -322,8 +324,8 @@ LawStatus DirectSolver::solve_program(const Eigen::Map<const MatrixX>& complianc
   return LawStatus::solved;
 }
 
-// Rounding has made the Hessian indefinite. What makes it definite again moves what is held, and
-// one proximal step (Rockafellar, SIAM J. Control Optim. 14 (1976) 877) squares the error.
+// Rounding has made the Hessian indefinite. The term that makes it definite again moves held rows;
+// one proximal step (Rockafellar, SIAM J. Control Optim. 14 (1976) 877) squares that error.
 void DirectSolver::solve_rounded_program() {
   const auto weight = [&](std::size_t i) {
     const double scale = scale_[static_cast<Eigen::Index>(i)];
@@ -357,7 +359,7 @@ LawStatus DirectSolver::solve_cones(const Eigen::Map<const MatrixX>& compliance)
   return usable ? LawStatus::solved : LawStatus::failed;
 }
 
-// A commanded effort whose motion passed the far limit changes branch.
+// Switches the branch of a commanded effort whose motion passed the far limit.
 bool DirectSolver::switch_branches(const StepProblem& problem,
                                    const Eigen::Map<const MatrixX>& compliance) {
   const auto motion = motion_.view();
@@ -384,7 +386,7 @@ bool DirectSolver::switch_branches(const StepProblem& problem,
 
 namespace {
 
-// (3n, 3n) without its blocks of zeros.
+// A (3n, 3n) matrix without its blocks of zeros.
 Eigen::SparseMatrix<double> without_zeros(const Eigen::Ref<const MatrixX>& dense) {
   const Eigen::Index count = dense.rows();
   Eigen::SparseMatrix<double> sparse(count, count);
@@ -413,7 +415,8 @@ Eigen::SparseMatrix<double> without_zeros(const Eigen::Ref<const MatrixX>& dense
 
 }  // namespace
 
-// Followers are taken out of compliance_ and motion_ already; boxes that hold a motion are here.
+// Followers are already eliminated from compliance_ and motion_; boxes that hold a motion are
+// eliminated here.
 ContactProblem DirectSolver::contact_problem() const {
   const auto count = static_cast<Eigen::Index>(3 * cones_.size());
   ContactProblem result{

@@ -1,8 +1,7 @@
 /// @file
-/// What stands between a command and an effort where that is more than a limit: a volume of gas, a
-/// supply that lets only so much through, a spring. A drive relates effort and motion of its row by
-/// a falling curve that is solved together with the robot, so that its stiffness does not limit the
-/// time step.
+/// Drives: devices between a command and an effort, such as a volume of gas, a supply of limited
+/// flow, or a spring. A drive relates effort and motion of its row by a decreasing curve that is
+/// solved together with the robot, so that its stiffness does not limit the time step.
 #pragma once
 
 #include <array>
@@ -12,56 +11,60 @@
 
 namespace sinew::step {
 
+/// The quantity that a command prescribes.
 enum class CommandKind {
   effort,  ///< tension or force (N), pressure (Pa)
   motion,  ///< displacement (m), growth of volume (m^3)
-  input,   ///< of the drive: see Drive::input(); of a motor, its velocity
+  input,   ///< input of a drive, see Drive::input(); velocity of a motor
 };
 
-/// The name of a number and its SI unit.
+/// The name of a quantity and its SI unit.
 struct QuantityName {
   const char* name = "";
   const char* unit = "";
 };
 
-/// Immutable; the numbers of a run are the caller's.
+/// A drive, which relates effort and motion of a row by a decreasing curve. Immutable; the caller
+/// owns the state of a run.
 class Drive {
  public:
   virtual ~Drive() = default;
 
-  /// Numbers of its state that a drive may have.
+  /// Maximum size of a drive's state.
   static constexpr std::size_t kMaxStates = 2;
 
-  /// What a step asks; a value, so that a step's problem is one.
+  /// Arguments of a step; a value, so that a step problem is one, too.
   struct Step {
     CommandKind kind = CommandKind::effort;
     double command = 0.0;
-    double time_step = 0.0;      ///< s; infinity asks for what is reached in the long run
-    double motion_before = 0.0;  ///< at the start of the step
-    std::array<double, kMaxStates> state{};  ///< at the start of the step, state_size() of them
+    double time_step = 0.0;                  ///< s; infinity: the steady state
+    double motion_before = 0.0;              ///< at the start of the step
+    std::array<double, kMaxStates> state{};  ///< at the start of the step, state_size() numbers
   };
+  /// A point of the curve and its tangent.
   struct Response {
     double effort = 0.0;
     double slope = 0.0;  ///< d effort / d motion, <= 0
   };
 
-  /// Numbers that a run keeps, <= kMaxStates.
+  /// Size of the state, <= kMaxStates.
   virtual int state_size() const = 0;
-  /// Those of a robot at rest.
+  /// Writes the state of a robot at rest.
   virtual void rest(std::span<double> state) const = 0;
-  /// What CommandKind::input commands.
+  /// The quantity that CommandKind::input commands.
   virtual QuantityName input() const = 0;
-  /// Whether the drive shapes the effort under commands of this kind; else the actuator obeys them
-  /// itself. A passive one, with a command or without, always does.
+  /// Whether the drive acts under commands of this kind; else the actuator obeys them directly. A
+  /// passive drive always acts, with or without a command.
   virtual bool acts_on(CommandKind kind) const = 0;
-  /// Whether a controller may choose the effort in its place.
+  /// Whether a controller may choose the effort in place of the drive.
   virtual bool controllable() const = 0;
-  /// Effort at the end of a step that ends with `motion`.
+  /// Effort and slope at the end of a step that ends with `motion`.
   virtual Response respond(const Step& step, double motion) const = 0;
-  /// The state at the end of a step that ended with `motion` and `effort`, whoever chose it.
+  /// State at the end of a step that ended with `motion` and `effort`, even if a controller chose
+  /// them.
   virtual void advance(const Step& step, double motion, double effort,
                        std::span<double> state) const = 0;
-  /// Adds all that its curve depends on.
+  /// Adds to the hash all that its curve depends on.
   virtual void add_to(ValueHash& hash) const = 0;
 };
 

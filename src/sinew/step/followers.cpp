@@ -7,9 +7,9 @@ namespace sinew::step {
 
 namespace {
 
-// A curve that is flat beside the robot's compliance: its effort does not change.
+// Relative to the robot's compliance: a flatter curve counts as a constant effort.
 constexpr double kFlat = 1e-14;
-// Where held rows leave nothing to move, what is left of W is rounding, of either sign.
+// If held rows leave no motion, the rest of W is rounding of this relative size, of either sign.
 constexpr double kRounding = 16.0 * kEpsilon;
 
 }  // namespace

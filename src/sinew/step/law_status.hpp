@@ -1,13 +1,13 @@
 /// @file
-/// How the law of a step was solved.
+/// Status of the solution of a step's law.
 #pragma once
 
 namespace sinew::step {
 
-/// How solving went.
+/// Status of the solution of a step's law.
 enum class LawStatus {
   solved,
-  limits_conflict,  ///< limits contradict each other in this step; the least violation was taken
+  limits_conflict,  ///< limits contradict each other in this step; they are violated least
   failed,           ///< no efforts could be found
 };
 

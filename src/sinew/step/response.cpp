@@ -12,9 +12,9 @@ namespace sinew::step {
 
 namespace {
 
-// Friction of a cable within this part of the tension of its limit is at it.
+// Friction of a cable is at its limit if it is within this part of the tension.
 constexpr double kSlides = 1e-7;
-// Around a cone: they lie outside it by up to 8 %, and the law says where it really slips.
+// Number of planes around a cone. They lie outside it by up to 8 %; the law decides where it slips.
 constexpr int kPlanes = 8;
 
 }  // namespace
@@ -75,7 +75,7 @@ void Response::collect(const StepProblem& problem) {
   for (const ContactBlock& block : problem.contacts) collect_contact(problem, block);
 }
 
-// The state of the block that comes next: the one that is given, or the one that was read.
+// The state of the next block: the given one, or the one that was read.
 BlockState Response::next_state(BlockState read) {
   const BlockState state = keeps_ ? kept_[states_.size()] : read;
   states_.push_back(state);
@@ -100,7 +100,7 @@ void Response::collect_actuator(const StepProblem& problem, int index) {
   switch (state) {
     using enum BlockState;
     case curve: {
-      // The tangent where the efforts have taken it.
+      // The tangent at the motion due to the efforts.
       const double motion = motion_of(problem, block.row);
       const auto at = block.drive->respond(block.drive_step, motion);
       const double compliance = -1.0 / at.slope;
@@ -132,7 +132,7 @@ void Response::collect_actuator(const StepProblem& problem, int index) {
   if (effort != 0.0) free_ += effort * problem.compliance.col(block.row);
 }
 
-// By its effort.
+// Reads the state of an actuator from its effort.
 BlockState Response::actuator_state(const StepProblem& problem, const ActuatorBlock& block) {
   using enum BlockState;
   const double effort = effort_[static_cast<std::size_t>(block.row)];
@@ -187,7 +187,7 @@ void Response::guard_actuator(const StepProblem& problem, const ActuatorBlock& b
   }
 }
 
-// Whether the motion of a row is that of a controlled one: |W_ij|^2 = W_ii W_jj.
+// Whether the motion of a row is determined by a controlled one: |W_ij|^2 = W_ii W_jj.
 bool Response::decides(const StepProblem& problem, int row) {
   const double own = problem.compliance(row, row);
   return std::ranges::any_of(problem.actuators, [&](const ActuatorBlock& block) {
@@ -201,7 +201,7 @@ bool Response::decides(const StepProblem& problem, int row) {
 void Response::collect_capstans(const StepProblem& problem) {
   using enum BlockState;
   for_each_guide(problem, effort_, [&](const CapstanBlock& block, const GuideTension& tension) {
-    // Before the guide: the cable's effort less what was lost so far.
+    // Tension before the guide: the cable's effort minus the losses so far.
     if (tension.first) {
       tension_.assign(1, {problem.actuators[static_cast<std::size_t>(block.cable)].row, 1.0});
     }
@@ -240,9 +240,9 @@ void Response::collect_capstans(const StepProblem& problem) {
   });
 }
 
-// A point that slips obeys, with e the direction of its slip s = |u_t| and mu its coefficient,
-//   mu r_n + e.r_t = 0,   s (r_t across e) + mu r_n (u_t across e) = 0,
-// the second of which turns friction with the slip.
+// With e the direction of its slip, s = |u_t| and mu its coefficient, a slipping point obeys
+//   mu r_n + e.r_t = 0,   s (r_t across e) + mu r_n (u_t across e) = 0.
+// The second equation turns friction with the slip.
 void Response::collect_contact(const StepProblem& problem, const ContactBlock& block) {
   using enum BlockState;
   holds_for_all_ = false;
@@ -289,8 +289,8 @@ void Response::collect_contact(const StepProblem& problem, const ContactBlock& b
   if (turns) bends_ = true;
 }
 
-// A point that sticks is kept in the cone by planes around it, one of which touches the cone where
-// its force is next to it.
+// Planes around the cone keep a sticking point in it. One of them touches the cone nearest to the
+// force.
 void Response::guard_contact(const StepProblem& problem, const ContactBlock& block,
                              BlockState state, const Eigen::Vector2d& along) {
   using enum BlockState;
@@ -314,7 +314,7 @@ void Response::guard_contact(const StepProblem& problem, const ContactBlock& blo
   }
 }
 
-// Of a block's own row: sense (delta - limit) >= 0.
+// Guard on the motion of a block's row: sense (delta - limit) >= 0.
 void Response::guard_motion(const StepProblem& problem, int row, double sense, double limit,
                             BlockState beyond) {
   const double own = problem.compliance(row, row);
@@ -324,7 +324,7 @@ void Response::guard_motion(const StepProblem& problem, int row, double sense, d
   end_guard(beyond, -factor * limit);
 }
 
-// The same of the effort.
+// Guard on the effort of a block's row: sense (lambda - limit) >= 0.
 void Response::guard_effort(const StepProblem& problem, int row, double sense, double limit,
                             BlockState beyond) {
   const double own = problem.compliance(row, row);
@@ -340,7 +340,7 @@ void Response::end_guard(BlockState beyond, double constant) {
       {static_cast<int>(guard_efforts_.size()), static_cast<int>(guard_motions_.size())});
 }
 
-// Their terms over the controlled efforts.
+// Expresses the guards in the controlled efforts.
 void Response::form_guards() {
   const std::size_t count = controlled_rows_.size();
   slopes_.assign(guards_.size() * count, 0.0);
@@ -400,7 +400,7 @@ void Response::end_equation(int unknown, double constant) {
                         static_cast<int>(motion_terms_.size())});
 }
 
-// system_ (unknown efforts over scale_), right_ (1, lambda_c): rows are scaled to a largest entry
+// system_ (unknown efforts over scale_) = right_ (1, lambda_c). Rows are scaled to a largest entry
 // of one, columns by 1/sqrt(W), so that efforts of different units compare.
 void Response::form_equations(const StepProblem& problem) {
   const auto count = static_cast<Eigen::Index>(equations_.size());
@@ -451,7 +451,7 @@ void Response::form_equations(const StepProblem& problem) {
   }
 }
 
-// Where rows repeat each other, the efforts of least norm are taken.
+// For redundant rows, takes the efforts of least norm.
 void Response::solve(const StepProblem& problem) {
   form_equations(problem);
   if (equations_.empty()) return;
@@ -473,8 +473,9 @@ void Response::solve(const StepProblem& problem) {
   clear_rounding(problem);
 }
 
-// The motor of a joint at its stop moves nothing, nor does a torque against cables that stick. A
-// choice of efforts must see zeros there, or rounding chooses.
+// Sets entries at rounding level to zero. The motor of a joint at its stop moves nothing, nor does
+// a torque against sticking cables; a choice of efforts must see zeros there, or rounding would
+// choose.
 void Response::clear_rounding(const StepProblem& problem) {
   row_scale_ = problem.compliance.diagonal().cwiseAbs().cwiseSqrt();
   for (Eigen::Index k = 0; k < compliance_.cols(); ++k) {

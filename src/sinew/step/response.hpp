@@ -1,5 +1,5 @@
 /// @file
-/// How a robot answers to the efforts of a controller while everything else on it obeys its own
+/// Response of a robot to the efforts of a controller while everything else on it obeys its own
 /// law.
 #pragma once
 
@@ -11,75 +11,78 @@
 
 namespace sinew::step {
 
-/// What a block does, and with it the equation that its effort obeys.
+/// The state of a block, which determines the equation of its effort.
 enum class BlockState : char {
-  given,        ///< an effort that nothing changes
-  commanded,    ///< the commanded effort, the motion within its limits
-  at_min,       ///< the least effort
-  at_max,       ///< the largest one
-  holds,        ///< a commanded motion, or that of a cable which sticks at a guide
-  at_stop_min,  ///< a commanded effort that the least motion holds
-  at_stop_max,  ///< one that the largest motion holds
-  released,     ///< what held a controlled actuator's motion, and lets go of it
+  given,        ///< a fixed effort
+  commanded,    ///< the commanded effort, with the motion within its limits
+  at_min,       ///< the smallest effort
+  at_max,       ///< the largest effort
+  holds,        ///< a commanded motion is held, or a cable sticks at a guide
+  at_stop_min,  ///< a commanded effort whose motion is at its lower limit
+  at_stop_max,  ///< a commanded effort whose motion is at its upper limit
+  released,     ///< held the motion of a controlled actuator, and releases it
   curve,        ///< on a drive's curve
-  slides_low,   ///< a cable at a guide, the effort at its lower limit
-  slides_high,  ///< and at its upper one
+  slides_low,   ///< a cable slides at a guide, with the effort at its lower limit
+  slides_high,  ///< the same, with the effort at its upper limit
   open,         ///< a contact without a force
   sticks,
   slips,
 };
 
-/// Where a block leaves its state: slack = offset + slope . lambda_c >= 0 as long as it has it, and
-/// beyond that it is in another one.
+/// The border of a block's state: slack = offset + slope . lambda_c is >= 0 within the state;
+/// beyond it the block is in another state.
 struct Guard {
-  int block = -1;  ///< position in Response::states()
+  int block = -1;  ///< index in Response::states()
   BlockState beyond = BlockState::given;
-  double offset = 0.0;  ///< sqrt(N m): motions over sqrt(W_ii), efforts times that
+  double offset = 0.0;  ///< sqrt(N m): motions are divided by sqrt(W_ii), efforts multiplied by it
   bool tight = false;   ///< see Response::tighten()
 };
 
-/// delta = free + compliance lambda_c over the efforts lambda_c that a controller chooses, as long
-/// as every other block keeps the state that it has: a held row stays held, a slack cable slack, a
-/// drive on the tangent of its curve; of contacts the open ones stay open, sticking ones stick, and
-/// sliding ones slide in the same direction; cables keep sticking or sliding at their guides. The
-/// efforts s of these rows obey linear equations
-///   delta_s = m               where a motion is held: held rows, sticking points, every normal,
-///   delta_s + c lambda_s = m  on a drive's curve, and of a block of stiffness,
-///   lambda_s = sum k lambda   where friction is at its limit,
-/// which with delta = delta_free + W lambda give them as an affine function of lambda_c. Sliding
-/// makes that unsymmetric: `compliance` of the controlled rows is then no stiffness's inverse.
+/// Affine response delta = free + compliance lambda_c to the efforts lambda_c that a controller
+/// chooses. Every other block keeps its state: a held row stays held, a slack cable slack, a drive
+/// on the tangent of its curve; open contacts stay open, sticking ones stick, and sliding ones
+/// slide in the same direction; cables keep sticking or sliding at their guides. The efforts s of
+/// these rows obey linear equations
+///   delta_s = m               if a motion is held: held rows, sticking points, every normal,
+///   delta_s + c lambda_s = m  on a drive's curve, and for a block of stiffness,
+///   lambda_s = sum k lambda   if friction is at its limit.
+/// With delta = delta_free + W lambda these give the efforts as an affine function of lambda_c.
+/// Sliding makes the function unsymmetric: `compliance` of the controlled rows is then not the
+/// inverse of a stiffness.
 class Response {
  public:
-  /// @param problem of the step. @param effort (rows,) N: efforts and with them the states of all
-  /// blocks, see DirectSolver. @param release lets go of actuators that hold the very motion of a
-  /// controlled one, as if that had taken their place: see decides().
+  /// Forms the response. @param problem of the step.
+  /// @param effort (rows,) N, which determine the states of all blocks, see DirectSolver.
+  /// @param release releases actuators that hold the motion of a controlled one, as if the
+  ///   controlled one had taken over their load: see decides().
   void form(const StepProblem& problem, std::span<const double> effort, bool release = false);
-  /// The same with states that are given, from `effort` on, which is on the border of them.
-  /// @param problem,effort as above. @param states (blocks,) of all that have one.
+  /// The same with given states. `effort` must lie on the border of these states.
+  /// @param problem,effort as above. @param states (blocks,) of all blocks that have one.
   void form_as(const StepProblem& problem, std::span<const double> effort,
                std::span<const BlockState> states);
 
-  /// Positions in problem.actuators of the controlled ones, ascending.
+  /// Indices of the controlled actuators in problem.actuators, ascending.
   const std::vector<int>& controlled() const { return controlled_; }
   const MatrixX& compliance() const { return compliance_; }  ///< (rows, controlled) m/N
   const VectorX& free() const { return free_; }              ///< (rows,) m
-  /// Whether it holds for all efforts: nothing else on the robot answers to them.
+  /// Whether the response holds for all efforts, since nothing else on the robot responds to them.
   bool holds_for_all() const { return holds_for_all_; }
-  /// Whether it is a tangent alone: a drive's curve, or the direction in which a point slides,
-  /// bends away from it.
+  /// Whether the response is only a tangent: the curve of a drive, or the direction in which a
+  /// point slides, changes with the efforts.
   bool bends() const { return bends_; }
-  /// Whether an actuator holds the very motion of a controlled one (a commanded cable on the same
-  /// line, the stop of a motor's joint), whose effort then moves nothing.
+  /// Whether an actuator holds the motion of a controlled one (a commanded cable on the same line,
+  /// the stop of a motor's joint), whose effort then moves nothing.
   bool has_decided() const { return decided_; }
-  /// Whether there are other efforts that follow.
+  /// Whether other efforts follow from those of the controlled actuators.
   bool has_unknowns() const { return !equations_.empty(); }
   /// Whether the controlled rows' part of `compliance` may be unsymmetric.
   bool is_unsymmetric() const { return unsymmetric_; }
   /// Whether the last two calls of form() found the same states of all blocks.
   bool same_states() const { return states_ == states_before_; }
-  /// Of all blocks that have one: actuators that are not controlled, capstans, contacts.
+  /// States of all blocks that have one: actuators that are not controlled, capstans, contacts.
   std::span<const BlockState> states() const { return states_; }
-  /// Whether the effort of a row follows those of the controlled ones. @param row of the problem.
+  /// Whether the effort of a row follows from those of the controlled actuators.
+  /// @param row of the problem.
   bool follows(int row) const {
     return !unknown_of_.empty() && unknown_of_[static_cast<std::size_t>(row)] >= 0;
   }
@@ -88,18 +91,20 @@ class Response {
   /// (controlled,) 1.
   void add_effort(int row, double factor, double& offset,
                   Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> slope) const;
-  /// Where blocks leave their states.
+  /// The borders of the present states.
   std::span<const Guard> guards() const { return guards_; }
-  /// Marks the guards that are reached. @param own (controlled,) N. @param slack sqrt(N m), less of
-  /// it is none.
+  /// Marks the guards that are reached. @param own (controlled,) N.
+  /// @param slack sqrt(N m), at or below which a guard is tight.
   void tighten(std::span<const double> own, double slack);
-  /// (controlled,) sqrt(N m)/N: how the slack of a guard follows the controlled efforts.
+  /// Derivative of a guard's slack with respect to the controlled efforts, (controlled,) sqrt(N
+  /// m)/N.
   Eigen::Map<const VectorX> guard_slope(std::size_t guard) const {
     const auto count = static_cast<std::size_t>(controlled_.size());
     return {slopes_.data() + guard * count, static_cast<Eigen::Index>(count)};
   }
 
-  /// Of what two rows' own compliances allow: where others are held, less is rounding.
+  /// Relative to what the compliances of two rows allow: below this, a coupling is rounding if
+  /// other rows are held.
   static constexpr double kCoupled = 1e-10;
 
  private:
@@ -107,8 +112,8 @@ class Response {
     int row = -1;
     double factor = 0.0;
   };
-  // sum of factor lambda_row over the effort terms, and of factor delta_row over the motion terms,
-  // = constant; one for each unknown effort.
+  // Sum of factor lambda_row over the effort terms plus factor delta_row over the motion
+  // terms = constant; one equation per unknown effort.
   struct Equation {
     int unknown = -1;  // row
     double constant = 0.0;

@@ -10,12 +10,12 @@ namespace sinew::step {
 
 namespace {
 
-// Friction of a cable within this part of its tension of the limit is at it: limits and tensions
-// are found together, by iteration.
+// Relative to the tension: friction within this of its limit is at it, since limits and tensions
+// are found together by iteration.
 constexpr double kAtLimit = 1e-9;
 
-// How far a motion is from `target`, where an effort at its lower limit lets it be more and one at
-// its upper limit less.
+// Violation of a commanded motion by `gap`: an effort at its lower limit allows a larger motion,
+// one at its upper limit a smaller one.
 double box_miss(double gap, bool at_lower, bool at_upper) {
   if (at_lower && at_upper) return 0.0;
   if (at_lower) return std::max(0.0, -gap);
@@ -37,14 +37,15 @@ double miss(const ActuatorBlock& block, double effort, double motion) {
                    at_upper ? 0.0 : block.motion_min - motion});
 }
 
-// How far a motion that somebody chose the effort of is beyond its limits.
+// Violation of the limits of motion for an effort that a controller chose.
 double limit_miss(const ActuatorBlock& block, double effort, double motion) {
   if (motion > block.motion_max && effort > block.effort_min) return motion - block.motion_max;
   if (motion < block.motion_min && effort < block.effort_max) return block.motion_min - motion;
   return 0.0;
 }
 
-// In motion: along the curve, or along the robot's own compliance where the curve is flat.
+// Distance from a curve as a motion: along the curve, or along the robot's own compliance if the
+// curve is flat.
 double curve_miss(const StepProblem& problem, const ActuatorBlock& block, double effort) {
   const auto at = block.drive->respond(block.drive_step, problem.delta[block.row]);
   const double own = problem.compliance(block.row, block.row);
@@ -118,7 +119,7 @@ void append_joints(const StepProblem& problem, std::vector<HeldRow>& held) {
   }
 }
 
-// An anchor's own W + C may vanish: W says how large its entries are.
+// The diagonal W + C of an anchor may vanish; W then gives the size of its entries.
 HeldCompliance held_compliance(const StepProblem& problem, std::span<const HeldRow> held) {
   const auto rows = static_cast<Eigen::Index>(held.size());
   HeldCompliance result{MatrixX(rows, rows), VectorX(rows)};

@@ -11,17 +11,17 @@ namespace sinew::step {
 namespace {
 
 constexpr int kMaxRounds = 6;
-// Of the largest effort: changes below it end the rounds.
+// Relative to the largest effort: smaller changes end the rounds.
 constexpr double kSettled = 1e-6;
-// Of a limit's size: what is beyond it by less is within.
+// Relative to a limit's size: tolerance of limits.
 constexpr double kWithin = 1e-9;
-// Of the objective: rounding.
+// Relative to the objective: rounding.
 constexpr double kOfValue = 1e-10;
-// Places on the way to an optimum between states, and how often a step along a bent piece is
-// halved.
+// Maximum number of points on the way to an optimum between states, and of halvings of a step along
+// a curved piece.
 constexpr int kMaxPlaces = 40, kMaxHalvings = 6;
 
-// (controlled,) N: what the controlled actuators did before.
+// Efforts of the controlled actuators before the step, (controlled,) N.
 void efforts_before(const StepProblem& problem, const Response& response,
                     std::vector<double>& efforts) {
   efforts.clear();
@@ -31,7 +31,7 @@ void efforts_before(const StepProblem& problem, const Response& response,
   }
 }
 
-// (controlled,) N: what they do in `effort`, (rows,) N.
+// Efforts of the controlled actuators in `effort`, (rows,) N, as (controlled,) N.
 void own_efforts(const StepProblem& problem, const Response& response,
                  std::span<const double> effort, std::vector<double>& own) {
   own.clear();
@@ -78,7 +78,7 @@ LawStatus StepSolver::steer(const StepProblem& problem, Controller& controller,
   return status;
 }
 
-// From a solution on, as a rule that at the last step's efforts.
+// Starts from a solution, usually that at the last step's efforts.
 LawStatus StepSolver::settle(const StepProblem& problem, Controller& controller,
                              std::span<double> effort) {
   own_efforts(problem, response_, effort, chosen_);
@@ -89,7 +89,7 @@ LawStatus StepSolver::settle(const StepProblem& problem, Controller& controller,
     double change = 0.0;
     status = choose(problem, controller, effort, change);
     if (status == LawStatus::failed) return status;
-    // A choice far off may be one that the direct solver does not find an answer to.
+    // The direct solver may fail for a choice that is far off.
     if (direct_.solve(problem, effort) == LawStatus::failed) break;
     response_.form(problem, effort);
     const bool settled = response_.same_states() && (!response_.bends() || change <= kSettled);
@@ -124,8 +124,8 @@ LawStatus StepSolver::descend(const StepProblem& problem, Controller& controller
   return LawStatus::solved;
 }
 
-// Towards the optimum of a piece, from the place so far. Where that does not lead on, `effort` is
-// the place's again.
+// Moves towards the optimum of a piece, from place_. If that brings no improvement, restores
+// `effort` to place_.
 bool StepSolver::advance(const StepProblem& problem, Controller& controller,
                          const Response& response, std::span<double> effort) {
   efforts_before(problem, response, trial_);
@@ -151,7 +151,7 @@ bool StepSolver::advance(const StepProblem& problem, Controller& controller,
   return false;
 }
 
-// Where guards hold the choice: into the piece beyond one of them, or beyond all.
+// If guards constrain the choice, moves into the piece beyond one of them, or beyond all.
 bool StepSolver::cross_guards(const StepProblem& problem, Controller& controller,
                               std::span<double> effort) {
   efforts_before(problem, response_, trial_);
@@ -192,7 +192,7 @@ LawStatus StepSolver::take_over(const StepProblem& problem, Controller& controll
     response_.form(problem, effort);
     return settle(problem, controller, effort);
   }
-  // As it was, with the controller's program for it.
+  // Restores the previous efforts, with the controller's program for them.
   try_efforts(problem, controller, held_, effort);
   response_.form(problem, effort);
   status = choose(problem, controller, effort, change);

@@ -1,5 +1,5 @@
 /// @file
-/// What a controller remembers from one step to the next.
+/// Memory of a controller between steps.
 #pragma once
 
 #include <cstddef>
@@ -7,16 +7,17 @@
 
 namespace sinew::step {
 
-/// Memory as numbers: part of the state of the simulation that the controller is attached to.
+/// Base class of objects with memory, as numbers in the state of the simulation to which they are
+/// attached.
 class WithMemory {
  public:
   virtual ~WithMemory() = default;
-  /// How many numbers, always the same.
+  /// Number of values; constant.
   virtual std::size_t memory_size() const { return 0; }
-  /// Into and from (memory_size(),) numbers.
+  /// Copy the memory to and from (memory_size(),) numbers.
   virtual void save_memory(std::span<double>) const {}
   virtual void load_memory(std::span<const double>) {}
-  /// Remembers nothing, as at the start.
+  /// Resets the memory to that at the start.
   virtual void forget() {}
 };
 
