@@ -106,8 +106,8 @@ class Simulation {
   /// attached.
   void reset();
 
-  /// Sets the command of an actuator. Throws Error(actuator-owned) while a controller, or a
-  /// commander other than `by`, owns the actuator.
+  /// Sets the command of an actuator. Throws Error(actuator-owned) unless the actuator's owner is
+  /// `by` (null: it has no owner); actuators of a controller accept no commands.
   void command(int actuator, Command command, const Commander* by = nullptr);
   const ActuatorState& actuator(int index) const;
   /// Prescribes the position of a body's fixed nodes in the next step: from their rest positions,
