@@ -25,8 +25,9 @@ struct CableSettings {
   Limits tension{.min = 0.0};  ///< N, min >= 0
   Limits displacement;         ///< m
   Command command;
-  bool geometric_stiffness = true;  ///< in time steps; solve_static() always includes it
-  double friction = 0.0;            ///< Coulomb's coefficient at each point between the ends, >= 0
+  /// Whether time steps include it; static solutions and the exact tangent always do.
+  bool geometric_stiffness = true;
+  double friction = 0.0;  ///< Coulomb's coefficient at each point between the ends, >= 0
   /// m, >= 0: each point is the mean over a ball of this radius, such as a tube embedded in the
   /// material; 0: a single point
   double guide_radius = 0.0;
