@@ -14,12 +14,13 @@ namespace sinew::sim {
 /// detect spurious gains of energy.
 struct EnergyLedger {
   /// J: work of all actuators, the sum of effort times change of motion with the effort that acted
-  /// through each step; likewise of loads and external forces (gravity counts as stored energy);
-  /// energy dissipated by damping, drag, cable friction, contact friction and impacts.
+  /// through each step; likewise of loads, external forces and moving surfaces (gravity counts as
+  /// stored energy); energy dissipated by damping, drag, cable friction, contact friction and
+  /// impacts.
   double actuators = 0.0, outside = 0.0, dissipated = 0.0;
   double begun = 0.0;    ///< 1 once gains are monitored, see WorkLedger::open()
   double start = 0.0;    ///< J, stored energy less put_in() when monitoring began
-  double largest = 0.0;  ///< J, largest energy or |put_in()| since then
+  double largest = 0.0;  ///< J, largest strain plus kinetic energy, or |put_in()|, since then
 
   double put_in() const { return actuators + outside - dissipated; }
   /// Restarts the monitoring with the next step.
