@@ -79,28 +79,33 @@ class Observables {
   /// Writes these values.
   using Fill = std::function<void(std::span<double>)>;
 
-  /// Lists, in this order: `time`; of every body `NAME.positions` (n, 3) m, in dynamics
-  /// `NAME.velocities` (n, 3) m/s, of a rigid body `NAME.position` (3,) m and `NAME.rotation` (4,)
-  /// w, x, y, z of its frame, `NAME.velocity` (3,) m/s of its centre of mass,
-  /// `NAME.angular_velocity` (3,) rad/s, of an arm `NAME.coordinates` (c,) rad and, in dynamics,
-  /// `NAME.rates` (c,) rad/s, extensions in m and m/s; of every actuator effort and motion, as
-  /// `NAME.tension` and `NAME.displacement`, and its commands (see commanded()); of every effector
-  /// `NAME.position` (3,) m or `NAME.rotation` (3,) rad; of every probe `NAME.value`, and of a line
-  /// `NAME.positions` (k, 3) m; of every sensor `NAME.measured` and `NAME.true` and when the former
-  /// was taken, `NAME.sample_time` s (NaN before the first sample); of every contact of n points
-  /// `NAME.pose` (3, 4) and
-  /// `NAME.points.position` (n, 3), `.gap` (n,), `.normal` (n, 3),
-  /// `.normal_force` (n,), `.friction_force` (n, 3), `.state` (n,), and, of the points together,
-  /// `NAME.force` (3,) N, `NAME.normal_force` and `NAME.friction_force` N, `NAME.gap` m,
-  /// `NAME.sticking`, `NAME.slipping`; of every joint `NAME.force` (3,) N and `NAME.moment` (3,) N
-  /// m (see JointLoad), `NAME.gap` m, `NAME.angle` rad and `NAME.displacement` m where it has them;
-  /// of every estimator `NAME.UNKNOWN` (3,) N and its standard deviation `NAME.UNKNOWN.std` (3,) N
-  /// for each unknown force, and `NAME.status`;
-  /// `strain_energy`, `kinetic_energy`, `gravity_energy`, `actuator_work`, `outside_work`,
-  /// `dissipation`, `numerical_loss` J; the report's `residual` N, `relative_residual`,
-  /// `iterations`, `substeps`, `scale`, `smallest_volume_ratio`, with contacts `contact_residual`,
-  /// `contact_signorini` and `contact_coulomb` m, with zones `contact_aggregation`; `status`;
-  /// `time.step` and the stages' times, s.
+  /// Lists the standard observables in the order of ObservableKind:
+  /// - `time`, s.
+  /// - Body: `NAME.positions` (n, 3) m and, in dynamics, `NAME.velocities` (n, 3) m/s. Rigid body:
+  ///   also `NAME.position` (3,) m and `NAME.rotation` (4,) w, x, y, z of its frame,
+  ///   `NAME.velocity` (3,) m/s of its centre of mass, `NAME.angular_velocity` (3,) rad/s. Arm:
+  ///   also `NAME.coordinates` (c,) rad and, in dynamics, `NAME.rates` (c,) rad/s; extensions in m
+  ///   and m/s.
+  /// - Actuator: effort and motion, such as `NAME.tension` and `NAME.displacement`, and its
+  ///   commands, see commanded().
+  /// - Effector: `NAME.position` (3,) m or `NAME.rotation` (3,) rad.
+  /// - Probe: `NAME.value`; of a line also `NAME.positions` (k, 3) m.
+  /// - Sensor: `NAME.measured`, `NAME.true`, and the time `NAME.sample_time`, s, when the former
+  ///   was taken (NaN before the first sample).
+  /// - Contact of n points: `NAME.pose` (3, 4), `NAME.points.position` (n, 3) m, `.gap` (n,) m,
+  ///   `.normal` (n, 3), `.normal_force` (n,) N, `.friction_force` (n, 3) N, `.state` (n,).
+  /// - Resultant of a contact: `NAME.force` (3,) N, `NAME.normal_force` and `NAME.friction_force`
+  ///   N, `NAME.gap` m, `NAME.sticking`, `NAME.slipping`.
+  /// - Joint: `NAME.force` (3,) N and `NAME.moment` (3,) N m (see JointLoad), `NAME.gap` m, and, if
+  ///   free, `NAME.angle` rad and `NAME.displacement` m.
+  /// - Estimator: for each unknown force `NAME.UNKNOWN` (3,) N and its standard deviation
+  ///   `NAME.UNKNOWN.std` (3,) N, for each unknown effort the same as scalars; `NAME.status`.
+  /// - Energies, J: `strain_energy`, `kinetic_energy`, `gravity_energy`, `actuator_work`,
+  ///   `outside_work`, `dissipation`, `numerical_loss`.
+  /// - Report: `residual` N, `relative_residual`, `iterations`, `substeps`, `scale`,
+  ///   `smallest_volume_ratio`; with contacts `contact_residual`, `contact_signorini` m and
+  ///   `contact_coulomb` m; with zones `contact_aggregation`; `status`.
+  /// - Times of the computation, s: `time.step`, and `time.STAGE` for each stage.
   /// @param simulation must outlive the list.
   explicit Observables(Simulation& simulation);
   Observables(const Observables&) = delete;
