@@ -13,14 +13,14 @@ namespace sinew::sim {
 
 namespace {
 
-// From where a commanded velocity goes on: a motor at its limit has fallen behind and does not
-// catch up; else what it was told last, so that rounding does not add up.
+// Start of a commanded velocity's increment: the present motion if the motor is at its effort
+// limit, since it does not catch up; otherwise the last setpoint, so rounding does not accumulate.
 double setpoint(const ActuatorModel& model, const ActuatorState& state) {
   const bool free = model.effort.min < state.effort && state.effort < model.effort.max;
   return free ? state.setpoint : state.motion;
 }
 
-// What an actuator may do in a step, from its state and that of its drive before it.
+// The block of an actuator, from its state and that of its drive at the start of the step.
 step::ActuatorBlock actuator_block(const ActuatorModel& model, const ActuatorState& state,
                                    std::span<const double> drive_state, double time,
                                    double time_step) {
@@ -117,7 +117,7 @@ void Actuation::own(const void* owner, std::span<const int> actuators, bool chos
   }
 }
 
-// A winch stays by its length, a regulator by its pressure.
+// A winch holds its length, a regulator its pressure.
 void Actuation::release(const void* owner) {
   for (std::size_t i = 0; i < states_.size(); ++i) {
     ActuatorState& state = states_[i];

@@ -1,5 +1,5 @@
 /// @file
-/// The actuators of a run: what they are told, and what they do.
+/// The actuators of a run: their commands, efforts and motions.
 #pragma once
 
 #include <span>
@@ -17,43 +17,46 @@ namespace sinew::sim {
 class Model;
 struct State;
 
-/// From commands to the blocks of a step's problem, and from its solution to what actuators did;
-/// with the numbers of their drives.
+/// Converts commands to the actuator blocks of a step's problem, and reads efforts and motions from
+/// its solution. Stores the state of the drives.
 class Actuation {
  public:
-  /// @param model outlives it.
+  /// @param model must outlive it.
   explicit Actuation(const Model& model);
 
   /// (actuators,)
   const std::vector<ActuatorState>& states() const { return states_; }
-  /// (actuators,) m or m^3, before the motion that was read last.
+  /// (actuators,) m or m^3, motions at the start of the step that was read last.
   std::span<const double> motions_before() const { return motions_before_; }
-  /// The numbers of an actuator's drive (see Drive); empty without one.
+  /// State variables of an actuator's drive (see Drive); empty without one.
   std::span<const double> drive_state(int actuator) const;
   std::size_t drive_numbers() const { return drives_.size(); }
 
-  /// Throws Error(actuator-owned) while a controller other than `by` has it.
+  /// Throws Error(actuator-owned) unless `by` owns the actuator (null: it has no owner).
   void command(int actuator, Command command, const void* by = nullptr);
-  /// @param commands (actuators,) those of actuators whose efforts are chosen wait for their
-  /// release; those that an owner commands keep their commands.
+  /// @param commands (actuators,) commands of actuators whose efforts a controller chooses take
+  ///   effect on release; actuators commanded by an owner keep their commands.
   void set_commands(const std::vector<Command>& commands);
-  /// @param owner of these actuators until release(). @param actuators indices of
-  /// Model::actuators(). @param chosen whether it chooses their efforts; else it commands them.
+  /// @param owner of these actuators until release().
+  /// @param actuators indices of Model::actuators().
+  /// @param chosen whether the owner chooses their efforts; otherwise it gives commands.
   void own(const void* owner, std::span<const int> actuators, bool chosen = true);
-  /// They stay where they stand, or where they were told to be, until they are told otherwise.
+  /// Releases the actuators of an owner. Those whose effort was chosen keep their present motion, a
+  /// chamber its pressure; the others keep their commands.
   void release(const void* owner);
 
-  /// What each may do in a step, from its state before. @param time s, the end of the step, at
-  /// which commands are read. @param time_step s; infinity lifts the limits on rates. @param blocks
-  /// (actuators,).
+  /// Writes the blocks of a step: limits, commands and drives, from the state at its start.
+  /// @param time s, the end of the step, at which commands are evaluated.
+  /// @param time_step s; infinity removes the rate limits. @param blocks (actuators,).
   void form_blocks(double time, double time_step, std::span<step::ActuatorBlock> blocks) const;
-  /// What each did in it. @param delta,effort (rows,) at the end of the step. @param blocks of it.
+  /// Reads efforts and motions from the solution of a step.
+  /// @param delta,effort (rows,) at the end of the step. @param blocks (actuators,) of the step.
   void read(const VectorX& delta, std::span<const double> effort,
             std::span<const step::ActuatorBlock> blocks);
-  /// After read(): where each drive then stands, whoever chose its effort.
+  /// Advances the state of the drives, also where a controller chose the effort. Call after read().
   void advance_drives(std::span<const step::ActuatorBlock> blocks);
 
-  /// Commands of those that nobody owns, and drives, as at the start.
+  /// Resets the drives and the commands of actuators without an owner.
   void restart();
   void save(State& state) const;
   void load(const State& state);
@@ -64,38 +67,39 @@ class Actuation {
   const Model& model_;
   std::vector<ActuatorState> states_;
   std::vector<double> motions_before_;
-  std::vector<double> drives_;  // numbers of all drives, at the start of the step
+  std::vector<double> drives_;  // state variables of all drives, at the start of the step
 };
 
-/// An interval of values.
+/// A closed interval.
 struct Interval {
   double min, max;
 };
-/// [limits.min, limits.max] cut to what `rate` allows from `now`. A value that stands outside its
-/// limits moves towards them as fast as it may.
-/// @param limits of the value, and its rate. @param now where it is. @param time_step s.
+/// [limits.min, limits.max], restricted to what `rate` allows from `now`. A value outside its
+/// limits moves towards them at the highest rate.
+/// @param limits of the value and its rate. @param now present value. @param time_step s.
 Interval reachable(const Limits& limits, double now, double time_step);
 
-/// Moves commands towards them from where the actuators were.
-/// @param blocks (actuators,) of a step. @param start (actuators,). @param fraction of the way, 1
-/// for the commands themselves.
+/// Interpolates commands between the actuators' values at the start and the commands themselves.
+/// @param blocks (actuators,) of a step. @param start (actuators,).
+/// @param fraction 0 for the start, 1 for the commands.
 void blend(std::span<step::ActuatorBlock> blocks, std::span<const ActuatorState> start,
            double fraction);
 
-/// Whether motors of joints are told where to go, and may not do so whatever it takes.
-/// @param model of them. @param blocks (actuators,) of a step.
+/// Whether any joint motor has a commanded motion and limits on its effort.
+/// @param model with the motors. @param blocks (actuators,) of a step.
 bool limits_motors(const Model& model, std::span<const step::ActuatorBlock> blocks);
-/// Lets them do so. In statics nothing else may hold a chain of links: while it is on its way, the
-/// torques of an iteration say nothing about those of the equilibrium, and limits would let go of
-/// the chain. So the way is made without them first, which counts where they are kept in the end.
-/// @param model of them. @param blocks (actuators,) of a step.
+/// Removes these limits. In statics, motors may be all that holds a chain of links. The torques of
+/// an iteration say nothing about those of the equilibrium, and a motor at its limit would release
+/// the chain. So the equilibrium is first sought without the limits, and accepted if they hold at
+/// its end.
+/// @param model with the motors. @param blocks (actuators,) of a step.
 void lift_motor_limits(const Model& model, std::span<step::ActuatorBlock> blocks);
-/// Whether motors' efforts are within limits. @param model of them. @param blocks (actuators,),
-/// with their limits. @param effort (rows,) N or Pa.
+/// Whether the efforts of motors are within their limits. @param model with the motors.
+/// @param blocks (actuators,), with limits. @param effort (rows,) N or Pa.
 bool keeps_motor_limits(const Model& model, std::span<const step::ActuatorBlock> blocks,
                         std::span<const double> effort);
 
-/// Holds owned actuators at the efforts that their controller chose last.
+/// Holds the actuators of a controller at the efforts that it chose last.
 /// @param blocks of a step. @param effort (rows,) N or Pa.
 void hold_efforts(std::span<step::ActuatorBlock> blocks, std::span<const double> effort);
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr QuantityName kTension{"tension", "N"}, kDisplacement{"displacement", "m"};
 
-// By ActuatorType.
+// Indexed by ActuatorType.
 constexpr std::array<ActuatorWords, kActuatorTypes> kWords = {{
     {"cable", kTension, kDisplacement},
     {"force", {"force", "N"}, kDisplacement},

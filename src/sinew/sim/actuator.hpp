@@ -1,6 +1,6 @@
 /// @file
-/// What drives a robot: one row of H whose effort (N, Pa) or motion (m, m^3) is commanded within
-/// limits, or follows a drive.
+/// Actuators: one row of H each, whose effort (N, Pa) or motion (m, m^3) is commanded within limits
+/// or follows a drive.
 #pragma once
 
 #include <array>
@@ -31,60 +31,59 @@ struct Limits {
 enum class ActuatorType { cable, force, chamber, spring, torque, motor, linear_motor };
 inline constexpr std::size_t kActuatorTypes = 7;
 
-/// What actuators of a type and their quantities are called: in scenes, Python, recordings and the
-/// view.
+/// Names of an actuator type and its quantities in scenes, Python, recordings and the view.
 struct ActuatorWords {
   const char* type = "";
   QuantityName effort, motion;
-  std::array<QuantityName, 2> inputs = {};  ///< of its drives, see Drive::input(); of a motor
+  std::array<QuantityName, 2> inputs = {};  ///< of its drives, see Drive::input(), or of a motor
 };
 const ActuatorWords& actuator_words(ActuatorType type);
-/// By ActuatorWords::type; none where no type has this name.
+/// The type with this ActuatorWords::type; none if there is no such type.
 std::optional<ActuatorType> actuator_type(std::string_view word);
-/// Every quantity by which some actuator is commanded, once.
+/// All quantities that can be commanded on some actuator, without duplicates.
 const std::vector<std::string_view>& command_quantities();
 
-/// What an actuator is told, over time.
+/// A command: the quantity and its value over time.
 struct Command {
   CommandKind kind = CommandKind::effort;
   Signal signal;
 };
 
-/// Immutable part of an actuator.
+/// The immutable part of an actuator.
 struct ActuatorModel {
   std::string name;
   ActuatorType type = ActuatorType::cable;
-  int constraint = -1;  ///< in Model::constraints
+  int constraint = -1;  ///< index in Model::constraints()
   int row = -1;         ///< of H
   Limits effort, motion;
-  Command command;                          ///< where a run begins
-  std::shared_ptr<const Drive> drive = {};  ///< none: it obeys its commands as they are
-  int first_state = 0;                      ///< of the drive's numbers among those of all drives
-  double motion_scale = 1.0;  ///< m per motion: 1, or 1/m^2 of a chamber, one over its area
-  int joint = -1;             ///< in Model::joints(), that it moves; -1: none
+  Command command;                          ///< at the start of a run
+  std::shared_ptr<const Drive> drive = {};  ///< none: the commands act directly
+  int first_state = 0;        ///< index of its first state variable among those of all drives
+  double motion_scale = 1.0;  ///< m per unit of motion: 1; for a chamber 1/m^2, one over its area
+  int joint = -1;             ///< index in Model::joints() of the joint it moves; -1: none
 
   const ActuatorWords& words() const { return actuator_words(type); }
-  /// Of the drive; "velocity" of a motor, rad/s or m/s; none: no name.
+  /// Name of the drive's input, or "velocity" of a motor, rad/s or m/s; otherwise empty.
   QuantityName input_name() const;
-  /// Of what a command of this kind gives.
+  /// The quantity to which a command of this kind refers.
   QuantityName quantity(CommandKind kind) const;
-  /// The command that gives this quantity; none when the actuator takes no such command.
+  /// The kind of command for this quantity; none if the actuator does not accept it.
   std::optional<CommandKind> kind_of(std::string_view quantity) const;
-  /// Whether something other than its drive may choose its effort.
+  /// Whether a controller may choose its effort: true without a drive.
   bool controllable() const { return drive == nullptr || drive->controllable(); }
 };
 
-/// What an actuator is doing in a simulation.
+/// The state of an actuator in a simulation.
 struct ActuatorState {
   Command command;
   double effort = 0.0;  ///< N or Pa, of the last step
   double motion = 0.0;  ///< m or m^3, at the end of the last step
-  /// m or m^3: the last commanded motion as far as limits let it; `motion` where an effort is
-  /// commanded or a controller chooses.
+  /// m or m^3: the last commanded motion, within limits; equal to `motion` if an effort is
+  /// commanded or a controller chooses it.
   double setpoint = 0.0;
-  bool slack = true;            ///< a cable without tension
-  const void* owner = nullptr;  ///< the controller that has it; null: anyone may command it
-  bool chosen = false;          ///< its owner chooses its effort; else it obeys its command
+  bool slack = true;            ///< whether a cable has no tension
+  const void* owner = nullptr;  ///< controller or commander that owns it; null: none
+  bool chosen = false;          ///< whether its owner chooses its effort; else it obeys its command
 };
 
 }  // namespace sinew::sim

@@ -26,7 +26,7 @@ void add_masses(ModelData& data, const fem::FemBodyModel& body) {
   }
 }
 
-// m, of the box along the world's axes that holds them.
+// m, diagonal of the axis-aligned bounding box.
 double box_diagonal(const Points& nodes) {
   const Vector3 extent = nodes.colwise().maxCoeff() - nodes.colwise().minCoeff();
   return extent.norm();

@@ -39,7 +39,7 @@ std::shared_ptr<const Drive> drive_of(const ChamberSettings& settings, double re
   return nullptr;
 }
 
-// What a chamber's liquid weighs, as the pressure that it has more of below than above.
+// Adds the hydrostatic pressure of a chamber's liquid.
 void add_liquid_weight(ModelData& data, const ChamberSettings& settings) {
   const auto* faces = std::get_if<std::vector<mesh::Face>>(&settings.surface);
   if (faces == nullptr) {

@@ -26,7 +26,7 @@ namespace sinew::sim {
 
 namespace {
 
-// Points deeper inside a surface than this part of the robot's size are an error of the scene.
+// Points deeper inside a surface, relative to the robot's size, are an error of the scene.
 constexpr double kDeepest = 1e-6;
 
 void check_gaps(const constraint::ShapeContact& contact, const mechanics::BodyModel& body,
@@ -101,7 +101,7 @@ const mechanics::HasShape* shape_of(const mechanics::BodyModel& body) {
   return mechanics::as<const mechanics::HasShape>(body);
 }
 
-// A rigid body touches with all of its shape where no points of it are named.
+// A rigid body touches with its whole shape if no points of it are named.
 std::unique_ptr<constraint::ShapeContact> make_contact(ModelData& data, mechanics::BodyModel& on,
                                                        const ContactSettings& settings) {
   std::optional<constraint::RigidSide> carrier;
@@ -120,8 +120,8 @@ std::unique_ptr<constraint::ShapeContact> make_contact(ModelData& data, mechanic
       settings.name, attach_points(data, on, settings), surface, settings.coefficients(), carrier);
 }
 
-// Whether impacts are events of the integrator: those of rigid bodies. Deformable ones rebound by
-// their elasticity.
+// Whether impacts are events of the integrator: true for rigid bodies. Deformable bodies rebound
+// elastically.
 bool strikes(ModelData& data, const mechanics::BodyModel& on, const ContactSettings& settings) {
   const mechanics::BodyModel* touched =
       settings.touched ? &find_body(data, *settings.touched, settings.place) : nullptr;
@@ -156,7 +156,7 @@ bool strikes(ModelData& data, const mechanics::BodyModel& on, const ContactSetti
   return strikes;
 }
 
-// m; of a deformable body, whose points are many.
+// m; zones are for deformable bodies, which have many points.
 double checked_aggregate(ModelData& data, const mechanics::BodyModel& on,
                          const ContactSettings& settings) {
   if (settings.aggregate == 0.0) return 0.0;

@@ -55,7 +55,7 @@ int add_estimator(ModelData& data, const EstimatorSettings& settings) {
   for (std::size_t k = 0; k < settings.sensors.size(); ++k) {
     const Location& place = settings.sensor_places[k];
     const EstimatorSensor sensor = sensor_of(data, settings.sensors[k], place, *settings.robot);
-    // Delivered at the first step at least that much later.
+    // A sample is delivered at the first step at or after the delay.
     const double steps = std::ceil(sensor.delay / data.step.time_step - 1e-6);
     if (steps > kMaxLags) {
       throw Error(ErrorKind::out_of_range, place,

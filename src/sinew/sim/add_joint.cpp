@@ -26,7 +26,7 @@ using constraint::JointPlace;
 using constraint::JointSide;
 using constraint::JointType;
 
-// Two axes are normal to each other to this, rad.
+// Tolerance on the perpendicularity of two axes, rad.
 constexpr double kNormal = 1e-6;
 
 [[noreturn]] void refuse(const JointSettings& joint, ErrorKind kind, const std::string& what,
@@ -34,12 +34,12 @@ constexpr double kNormal = 1e-6;
   throw Error(kind, joint.place, what, remedy);
 }
 
-// By JointModel::motions.
+// Whether a joint has a motion, in the order of JointModel::motions.
 bool has(JointType type, std::size_t motion) {
   return motion == 0 ? constraint::turns_about_axis(type) : constraint::slides_along_axis(type);
 }
 
-// A body without parts that stay rigid takes a ball joint's points alone.
+// A body without rigid parts can only take the point of a ball joint.
 JointSide side_of(ModelData& data, const JointSettings& joint, int body) {
   JointSide side;
   side.rest = joint.point;
@@ -47,7 +47,7 @@ JointSide side_of(ModelData& data, const JointSettings& joint, int body) {
   mechanics::BodyModel& on = find_body(data, body, joint.place);
   const std::string what = "joint '" + joint.name + "'";
   auto* rigid = mechanics::as<mechanics::AttachesOrientations>(on);
-  // A joint may stand beside the part that carries it: a bracket is not drawn.
+  // A joint may lie outside the part that carries it: brackets are not modelled.
   const auto outside = rigid == nullptr ? mesh::Outside::error : mesh::Outside::nearest;
   side.point = {{body, on.attach(joint.point, outside, what)}};
   if (joint.type == JointType::ball) return side;

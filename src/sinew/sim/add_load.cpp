@@ -1,4 +1,4 @@
-// Turns loads into forces on nodes.
+// Converts loads into nodal forces.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,11 +26,11 @@ namespace sinew::sim {
 namespace {
 
 constexpr const char* kOfLine = "a point of the line";
-/// Three points of Gauss on [-1, 1], and their weights.
+/// Three-point Gauss rule on [-1, 1]: points and weights.
 constexpr std::array<std::array<double, 2>, 3> kGauss = {
     {{-0.7745966692414834, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {0.7745966692414834, 5.0 / 9.0}}};
 
-/// Makes the loads of one entry; there are two where pressure and motion both matter.
+/// Makes the loads of one entry; there are two if both pressure and motion matter.
 class LoadMaker {
  public:
   LoadMaker(const fem::HasElements& body, const LoadSettings& settings)
@@ -41,8 +41,8 @@ class LoadMaker {
     return {dead()};
   }
 
-  // Element by element, where the shape functions along the line are polynomials, of degree 3 at
-  // most in undistorted elements: three Gauss points have degree 5.
+  // Integrates element by element, where the shape functions along the line are polynomials, of
+  // degree 3 at most in undistorted elements; three Gauss points are exact to degree 5.
   std::vector<fem::Load> operator()(const LineLoadSettings& load) {
     if (load.points.rows() < 2) {
       throw Error(ErrorKind::too_few_points, settings_.place,
@@ -103,7 +103,8 @@ class LoadMaker {
  private:
   const mesh::Mesh& mesh() const { return *body_.settings().mesh; }
 
-  // A piece in one element. Outside of all, the nearest element holds it, which changes along it.
+  // A piece within one element. Outside the mesh, the nearest element is used, which may change
+  // along the piece.
   void spread_evenly(const Vector3& from, const Vector3& to, const Vector3& force_per_length) {
     const bool inside = locate(0.5 * (from + to), kOfLine).distance == 0.0;
     const int parts = inside ? 1 : 20;

@@ -1,6 +1,6 @@
 /// @file
-/// Adds bodies and what acts on them to the data of a model, one function and file for each kind.
-/// ModelBuilder, whose functions these are, says what they throw.
+/// Functions that add bodies and what acts on them to the data of a model, one per kind of part.
+/// ModelBuilder, which calls them, documents their errors.
 #pragma once
 
 #include <memory>
@@ -46,10 +46,10 @@ int add_fem_body(ModelData& data, fem::FemBodySettings settings);
 int add_arm(ModelData& data, pcc::ArmSettings settings);
 int add_rigid_body(ModelData& data, rigid::RigidSettings settings);
 
-/// @param data gets both.
-/// @param actuator without the numbers of its constraint, row and state, which it gets here.
-/// @param constraint whose first row is the actuator's. @param place where it was written. Throws
-/// Error: duplicate-key, contradictory-limits, out-of-range (rate).
+/// @param data receives the actuator and its constraint.
+/// @param actuator without the indices of constraint, row and first state, which are set here.
+/// @param constraint whose first row is the actuator's. @param place source location.
+/// Throws Error: duplicate-key, contradictory-limits, out-of-range (rate).
 int add_actuator(ModelData& data, ActuatorModel actuator,
                  std::unique_ptr<constraint::Constraint> constraint, Location place);
 int add_cable(ModelData& data, const CableSettings& settings);
@@ -61,8 +61,8 @@ int add_chamber(ModelData& data, const ChamberSettings& settings);
 void add_base_motion(ModelData& data, const BaseMotion& motion, const Location& place);
 int add_load(ModelData& data, const LoadSettings& settings);
 int add_contact(ModelData& data, const ContactSettings& settings);
-/// Of the surfaces of two deformable bodies. Throws Error: not-in-this-version (a body without
-/// one), out-of-range (bodies overlap).
+/// A contact between the surfaces of two deformable bodies. Throws Error: not-in-this-version (a
+/// body without a surface), out-of-range (bodies overlap).
 std::unique_ptr<constraint::Contact> make_surface_contact(ModelData& data,
                                                           const ContactSettings& settings);
 int add_joint(ModelData& data, const JointSettings& settings);
@@ -71,7 +71,7 @@ int add_weld(ModelData& data, const WeldSettings& settings);
 
 int add_effector(ModelData& data, const EffectorSettings& settings);
 int add_probe(ModelData& data, const ProbeSettings& settings);
-/// After what it reads.
+/// Call after adding what the sensor reads.
 int add_sensor(ModelData& data, const SensorSettings& settings);
 int add_estimator(ModelData& data, const EstimatorSettings& settings);
 

@@ -15,7 +15,7 @@ namespace sinew::sim {
 
 namespace {
 
-/// Makes the probe that the settings ask for.
+/// Makes the probe for the settings.
 struct Make {
   Attacher attacher;
   const ProbeSettings& settings;

@@ -33,7 +33,7 @@ using SourcePtr = std::unique_ptr<const SensorSource>;
 
 // F/m, of free space (CODATA 2018).
 constexpr double kFreeSpace = 8.8541878128e-12;
-// Of a sampling period, to which it is a multiple of the time step.
+// Tolerance on the sampling period as a multiple of the time step, relative.
 constexpr double kMultiple = 1e-6;
 
 template <class Part, class NameOf>
@@ -48,7 +48,7 @@ int named_part(const std::vector<Part>& parts, const std::string& name, const ch
                             : fmt::format("there are: {}", fmt::join(known, ", ")));
 }
 
-// The point of a polyline at a length from its start.
+// The point of a polyline at a given arc length.
 Vector3 point_along(const Points& corners, double length) {
   for (Eigen::Index k = 1; k < corners.rows(); ++k) {
     const Vector3 from = corners.row(k - 1).transpose(), to = corners.row(k).transpose();
@@ -61,7 +61,7 @@ Vector3 point_along(const Points& corners, double length) {
   return corners.row(0).transpose();
 }
 
-/// Makes what a sensor reads, and says by what name others observe the same.
+/// Makes the source of a sensor, and determines the observable of the same quantity.
 class MakeSensor {
  public:
   MakeSensor(ModelData& data, const SensorSettings& settings)
@@ -149,7 +149,8 @@ void MakeSensor::require_type(const ActuatorModel& actuator,
               fmt::format("name an actuator of type {}", fmt::join(types, " or ")));
 }
 
-// A/N m or A/N: a motor's current is its torque over its constant; a drum turns tension to torque.
+// A/(N m) or A/N: the motor current is the torque over the motor constant; a drum converts tension
+// to torque.
 double MakeSensor::current_factor(const ActuatorModel& actuator, const SensorDrive& drive) const {
   const bool winds = actuator.type == ActuatorType::cable;
   if (winds && !(drive.radius > 0.0)) {
@@ -241,7 +242,7 @@ SourcePtr MakeSensor::operator()(const SensorCurvature& curvature) {
   const double half = 0.5 * (curvature.gauge > 0.0 ? curvature.gauge : 0.1 * length);
   std::vector<constraint::CurvatureProbe::Triple> places;
   for (const double at : curvature.places) {
-    // Files and units round lengths.
+    // Lengths from files and unit conversions are rounded.
     if (at - half < -1e-9 * length || at + half > (1.0 + 1e-9) * length) {
       throw Error(ErrorKind::out_of_range, settings_.place,
                   fmt::format("a length of {:g} m at {:g} m does not lie on the line, which is "
@@ -268,7 +269,7 @@ SourcePtr MakeSensor::operator()(const SensorCapacitance& capacitance) {
       settings_.name, std::move(electrodes), capacitance.relative_permittivity * kFreeSpace));
 }
 
-// Of the numbers of contacts those in which a body takes part.
+// The contacts in which a body takes part. @param contacts indices.
 std::vector<int> MakeSensor::contacts_of(int body, const std::vector<int>& contacts) const {
   std::vector<int> own;
   for (const int index : contacts) {
@@ -316,7 +317,7 @@ SourcePtr MakeSensor::operator()(const SensorContact& touch) {
   return std::make_unique<TouchSource>(std::move(contacts), std::move(patch), touch.threshold);
 }
 
-// A rate takes every k-th step.
+// The sampling period must be a multiple of the time step.
 void check_rate(const SensorSettings& settings, double time_step) {
   const double rate = settings.channel.rate;
   if (rate == 0.0 || settings.record) return;
@@ -331,7 +332,7 @@ void check_rate(const SensorSettings& settings, double time_step) {
               fmt::format("choose {:g} Hz, or a time_step that divides {:g} s", less, 1.0 / rate));
 }
 
-// Sensors of one seed differ by their names.
+// Sensors with the same seed differ by their names.
 std::uint64_t stream_of(const std::string& name) { return ValueHash().add(name).value(); }
 
 }  // namespace

@@ -37,7 +37,8 @@ int add_spring(ModelData& data, const SpringLineSettings& settings) {
         },
         settings.spring);
     const int index = add_actuator(data, std::move(actuator), std::move(line), settings.place);
-    // A stretched spring is as stiff across as along: without that a slack robot would swing.
+    // A stretched spring is about as stiff across its line as along it: without its geometric
+    // stiffness, a slack robot would swing.
     data.geometric_stiffness.in_steps.push_back(data.actuators.back().constraint);
     return index;
   } catch (const Error& error) {

@@ -18,7 +18,7 @@ namespace sinew::sim {
 
 namespace {
 
-/// The arm's coordinate that the torque acts on. @param name of the body.
+/// The arm's coordinate on which the torque acts. @param name of the body.
 int coordinate_of(const TorqueSettings& settings, const pcc::Arm& arm, const std::string& name) {
   if (settings.segment < 0 || settings.segment >= arm.segments()) {
     throw Error(ErrorKind::index_out_of_range, settings.place,

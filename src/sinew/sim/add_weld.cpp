@@ -18,7 +18,7 @@ namespace sinew::sim {
 
 namespace {
 
-// Points of the first body, each with the point of the second that it lies on.
+// Points of the first body, each paired with the coincident point of the second.
 std::vector<constraint::Tie::Pair> attach_pairs(ModelData& data, const WeldSettings& settings) {
   mechanics::BodyModel &first = data.body(settings.first), &second = data.body(settings.second);
   std::vector<int> points;

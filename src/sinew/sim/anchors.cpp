@@ -21,8 +21,8 @@ namespace sinew::sim {
 
 namespace {
 
-// Three nodes as far from one another as they come: farthest from the middle, from that one, and
-// from the line through both.
+// Three nodes that are far apart: the farthest from the centre, the farthest from that one, and the
+// farthest from the line through both.
 std::array<NodeId, 3> spread_nodes(const Points& nodes) {
   const Eigen::RowVector3d middle = nodes.colwise().mean();
   std::array<Eigen::Index, 3> found{};
@@ -41,8 +41,8 @@ std::array<NodeId, 3> spread_nodes(const Points& nodes) {
           static_cast<NodeId>(found[2])};
 }
 
-// N/m, of about what the body's own stiffness is. A rigid body has none, and any number serves: its
-// anchors are all that its matrix has.
+// N/m, of the order of the body's own stiffness. For a rigid body, which has none, any value
+// serves, since its matrix consists only of the anchors.
 double anchor_stiffness(const mechanics::BodyModel& body) {
   constexpr double kOfRigidBody = 1e3;
   const auto* own = mechanics::as<const fem::HasElements>(body);

@@ -1,12 +1,13 @@
 /// @file
-/// Springs that hold in statics what only joints hold.
+/// Anchor springs of bodies that only joints hold, see AnchorModel.
 #pragma once
 
 namespace sinew::sim {
 
 struct ModelData;
 
-/// Anchors three nodes of a body. @param data gets the anchors. @param body its number.
+/// Anchors three nodes of a body to the world. @param data receives the anchors.
+/// @param body index of the body.
 void add_anchors(ModelData& data, int body);
 
 }  // namespace sinew::sim

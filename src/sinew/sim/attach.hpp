@@ -1,5 +1,5 @@
 /// @file
-/// Points and nodes of bodies as attached points.
+/// Attachment of points and nodes to bodies.
 #pragma once
 
 #include <span>
@@ -23,19 +23,20 @@ namespace sinew::sim {
 
 struct ModelData;
 
-/// The mean of points given by position, as one attached point. @return its number.
-/// @param body,points,outside (n, 3) m on it, at rest. @param what names it in messages.
-/// @param place of what is declared. Throws Error: too-few-points, point-outside-mesh, wrong-type.
+/// Attaches the mean of points given by position. @return the index of the attached point.
+/// @param body to attach to. @param points (n, 3) m, at rest.
+/// @param outside treatment of points outside the mesh. @param what name of the point in messages.
+/// @param place source location. Throws Error: too-few-points, point-outside-mesh, wrong-type.
 int attach_mean(mechanics::BodyModel& body, const Points& points, mesh::Outside outside,
                 const std::string& what, const Location& place);
 
-/// The mean of nodes, one or more, as one attached point. @return its number.
+/// Attaches the mean of one or more nodes. @return the index of the attached point.
 int attach_mean(mechanics::BodyModel& body, std::span<const NodeId> nodes);
 
-/// @return the number of the attached point.
+/// Attaches a node. @return the index of the attached point.
 int attach_node(mechanics::BodyModel& body, NodeId node);
 
-/// (n, 3) m.
+/// (n, 3) m, rest positions of attached points.
 Points rest_positions(const ModelData& data, const std::vector<mechanics::MaterialPoint>& points);
 
 }  // namespace sinew::sim

@@ -17,7 +17,7 @@ using mechanics::MaterialPoint;
 
 namespace {
 
-/// Corners, and points between them at even distances.
+/// The corners, and evenly spaced points between them.
 std::vector<Vector3> sample(const Points& corners, int samples) {
   double length = 0.0;
   for (Eigen::Index k = 1; k < corners.rows(); ++k) {

@@ -1,5 +1,5 @@
 /// @file
-/// Points of one part that measures, on the bodies.
+/// Attachment of the points of a probe or sensor.
 #pragma once
 
 #include <string>
@@ -22,26 +22,28 @@ struct ModelData;
 struct ProbeLine;
 struct ProbeSpot;
 
-/// Attaches points of a probe or a sensor to the bodies.
+/// Attaches the points of a probe or sensor to the bodies.
 class Attacher {
  public:
-  /// @param data with the bodies. @param what names the part: "probe 'bend'". @param place where it
-  /// is written. @param outside for points given by position.
+  /// @param data with the bodies. @param what name of the part in messages: "probe 'bend'".
+  /// @param place its source location. @param outside for points given by position.
   Attacher(ModelData& data, std::string what, Location place, mesh::Outside outside)
       : data_(data), what_(std::move(what)), place_(std::move(place)), outside_(outside) {}
 
-  /// A point at rest. Throws Error(point-outside-mesh). @param body its number. @param rest (3,) m.
+  /// Attaches a point at rest. Throws Error(point-outside-mesh). @param body index.
+  /// @param rest (3,) m.
   mechanics::MaterialPoint point(int body, const Vector3& rest);
-  /// Each node. Throws Error(empty-region). @param body its number. @param list of its nodes.
+  /// Attaches every node. Throws Error(empty-region). @param body index. @param list of its nodes.
   std::vector<mechanics::MaterialPoint> nodes(int body, const std::vector<NodeId>& list);
-  /// Throws Error: point-outside-mesh, too-few-points. @param spot see there.
+  /// Attaches the mean of a spot. Throws Error: point-outside-mesh, too-few-points.
+  /// @param spot nodes or points of a body.
   mechanics::MaterialPoint mean(const ProbeSpot& spot);
-  /// The samples of a line. Throws Error: point-outside-mesh, too-few-points. @param line see
-  /// there.
+  /// Attaches the samples of a line. Throws Error: point-outside-mesh, too-few-points.
+  /// @param line through points of a body.
   std::vector<mechanics::MaterialPoint> line(const ProbeLine& line);
-  /// (n, 3) m. @param points that are attached.
+  /// (n, 3) m, rest positions. @param points that are attached.
   Points rest(const std::vector<mechanics::MaterialPoint>& points) const;
-  /// A body. Throws Error(unknown-name). @param body its number.
+  /// A body. Throws Error(unknown-name). @param body index.
   mechanics::BodyModel& on(int body) const;
   const std::string& what() const { return what_; }
 

@@ -1,5 +1,5 @@
 /// @file
-/// Motions that are given over time.
+/// Prescribed motions of bases and surfaces.
 #pragma once
 
 #include <array>
@@ -13,13 +13,13 @@ struct Location;
 
 namespace sinew::sim {
 
-/// A motion given over time, from rest: of a body's fixed nodes or of a surface.
+/// A rigid motion prescribed over time, from rest: of a body's fixed nodes or of a surface.
 struct BaseMotion {
-  int body = 0;                       ///< whose fixed nodes; a surface has none
+  int body = 0;                       ///< whose fixed nodes move; unused for a surface
   std::array<Signal, 3> translation;  ///< m, along x, y, z
   Signal angle;                       ///< rad
-  Vector3 axis = Vector3::UnitZ();    ///< of the turn, unit length
-  Vector3 centre = Vector3::Zero();   ///< of the turn, m
+  Vector3 axis = Vector3::UnitZ();    ///< of the rotation, unit length
+  Vector3 centre = Vector3::Zero();   ///< of the rotation, m
 
   /// (3,) m and (3,) rad at a time.
   Vector3 translation_at(double time) const {
@@ -27,22 +27,22 @@ struct BaseMotion {
   }
   Vector3 rotation_at(double time) const { return angle.value(time) * axis; }
 
-  /// A rigid motion's rate.
+  /// Velocity field of a rigid motion.
   struct Rate {
-    Vector3 centre = Vector3::Zero();   ///< (3,) m, of the turn, where it is then
-    Vector3 linear = Vector3::Zero();   ///< (3,) m/s, of that
+    Vector3 centre = Vector3::Zero();   ///< (3,) m, present position of the centre of rotation
+    Vector3 linear = Vector3::Zero();   ///< (3,) m/s, velocity of the centre
     Vector3 angular = Vector3::Zero();  ///< (3,) rad/s
-    /// (3,) m/s of what is at (3,) m then.
+    /// (3,) m/s, velocity of a point whose present position is `place`, (3,) m.
     Vector3 at(const Vector3& place) const { return linear + angular.cross(place - centre); }
   };
-  /// These are as Signal's. @param time s. @param side of a corner there.
+  /// See the functions of Signal. @param time s. @param side of a corner there.
   Rate rate(double time, Signal::Side side) const;
   double next_corner(double time) const;
   bool jumps() const;
 };
 
-/// An axis of unit length. @param axis,place (3,), and where it was written. Throws
-/// Error(out-of-range) for one without length.
+/// Normalises an axis. @param axis (3,).
+/// @param place source location. Throws Error(out-of-range) for an axis without length.
 Vector3 checked_axis(const Vector3& axis, const Location& place);
 
 }  // namespace sinew::sim

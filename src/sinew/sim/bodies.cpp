@@ -10,7 +10,7 @@ namespace sinew::sim {
 
 namespace {
 
-// Calls visit(system, part) for every system and its part of numbers that lie one behind the other.
+// Calls visit(system, part) for every system and its part of a concatenated vector.
 template <class Number, class Visit>
 void for_each_part(std::span<mechanics::StepSystem* const> systems, std::span<Number> all,
                    Visit&& visit) {

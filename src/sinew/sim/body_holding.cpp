@@ -19,10 +19,10 @@ namespace sinew::sim {
 
 namespace {
 
-// Singular values below this, of the largest, belong to rigid motions that joints leave free.
+// Smaller singular values, relative to the largest, belong to free rigid motions.
 constexpr double kFree = 1e-6;
 
-// Bodies that joints connect have one number.
+// Group of each body; bodies that joints connect have the same.
 std::vector<int> groups_of(const ModelData& data) {
   std::vector<int> group(data.bodies.size());
   std::iota(group.begin(), group.end(), 0);
@@ -35,7 +35,7 @@ std::vector<int> groups_of(const ModelData& data) {
   return group;
 }
 
-// Rows of d(delta)/d(shift, turn) over some bodies, as their normal matrix.
+// Normal matrix of the rows d(delta)/d(translation, rotation) of some bodies.
 class RigidMotions {
  public:
   RigidMotions(const ModelData& data, const std::vector<int>& bodies)
@@ -47,7 +47,8 @@ class RigidMotions {
     normal_.setZero(columns_, columns_);
   }
 
-  // What fixed nodes and held axes hold; other bodies are free or held altogether.
+  // Adds the fixed nodes and held axes of a body; bodies without elements are free or fixed as a
+  // whole.
   void hold_own(int body) {
     if (data_.body(body).is_free()) return;
     const auto* material = mechanics::as<const fem::HasElements>(data_.body(body));
@@ -81,11 +82,11 @@ class RigidMotions {
       add_row(joint, directions[k], static_cast<int>(k) >= joint.displacements());
     }
   }
-  // What a hinge or slider leaves: a motor moves it, or friction stops it.
+  // Adds the free motion of a hinge or slider, which a motor or friction holds.
   void hold_rest(const constraint::Joint& joint) {
     add_row(joint, joint.place().axes().col(2), constraint::turns_about_axis(joint.type()));
   }
-  // Whether no rigid motion is left.
+  // Whether no rigid motion is free.
   bool all_held() const {
     const VectorX values = linalg::symmetric_eigenvalues(normal_);
     return values[0] > kFree * kFree * values[columns_ - 1];
@@ -97,8 +98,8 @@ class RigidMotions {
   }
   void begin_row() { row_.setZero(columns_); }
   int column_of(int body) const { return body < 0 ? -1 : column_[static_cast<std::size_t>(body)]; }
-  // The motion along a direction of a point at x, of a body that shifts and turns: d.(s + w x x),
-  // turns counted in sizes.
+  // Motion along a direction of a point at x on a body that translates and rotates: d.(s + w x x),
+  // with rotations scaled by the robot's size.
   void fill(int body, const Vector3& at, const Vector3& direction, double sign) {
     const int column = column_of(body);
     if (column < 0) return;
@@ -109,7 +110,8 @@ class RigidMotions {
     const int column = column_of(body);
     if (column >= 0) row_.segment<3>(column + 3) += sign * axis;
   }
-  // Of the second side's motion less the first's: a turn about a direction, or a displacement.
+  // Row of the second side's motion relative to the first: a rotation about a direction, or a
+  // displacement along it.
   void add_row(const constraint::Joint& joint, const Vector3& direction, bool is_turn) {
     begin_row();
     double sign = -1.0;
@@ -126,7 +128,7 @@ class RigidMotions {
   void end_row() { normal_.noalias() += row_ * row_.transpose(); }
 
   const ModelData& data_;
-  std::vector<int> column_;  // of each body; -1: it does not move
+  std::vector<int> column_;  // of each body; -1: not among the bodies
   int columns_ = 0;
   VectorX row_;
   MatrixX normal_;
@@ -144,7 +146,8 @@ bool has_motor(const ModelData& data, const JointModel& joint) {
   });
 }
 
-// Whether joints hold every rigid motion of loose bodies. @param bodies one group.
+// Whether joints prevent every rigid motion of the bodies that are not held.
+// @param bodies one group.
 bool joints_hold(const ModelData& data, const std::vector<int>& bodies,
                  const std::vector<char>& held) {
   std::vector<int> loose;

@@ -1,6 +1,6 @@
 /// @file
-/// In statics something has to hold every body: what is fixed of it, or joints to bodies that are
-/// held, or to the world.
+/// Check that every body is supported in statics: by fixed nodes, or by joints to supported bodies
+/// or to the world.
 #pragma once
 
 #include <vector>
@@ -11,10 +11,10 @@ namespace sinew::sim {
 
 struct ModelData;
 
-/// Anchors the bodies of a finished list that need joints to be held.
-/// @param data gets the anchors.
-/// @param places (bodies,) where each is written. Throws Error(nothing-fixed) in statics for a body
-/// that keeps a rigid motion.
+/// Anchors the bodies that are supported by joints only. Call when all bodies and joints are added.
+/// @param data receives the anchors.
+/// @param places (bodies,) source locations.
+/// Throws Error(nothing-fixed) in statics for a body with a free rigid motion.
 void hold_bodies(ModelData& data, const std::vector<Location>& places);
 
 }  // namespace sinew::sim

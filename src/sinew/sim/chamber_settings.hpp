@@ -15,21 +15,21 @@
 
 namespace sinew::sim {
 
-/// A chamber of a body under pressure.
+/// A chamber of a body, filled with a fluid under pressure.
 struct ChamberSettings {
   std::string name;
   Location place;
   int body = 0;
-  /// Faces of the body's mesh as seen from the material, or a surface that the body carries along
-  /// (its vertices are attached to the elements; either orientation).
+  /// Faces of the body's mesh with their orientation as seen from the material, or a surface that
+  /// moves with the body (its vertices are attached to the elements; any orientation).
   std::variant<std::vector<mesh::Face>, mesh::Surface> surface;
   mesh::Outside outside = mesh::Outside::error;  ///< for a surface's vertices
-  bool cap = false;  ///< close openings by a lid without stiffness that passes its force to the rim
+  bool cap = false;  ///< close openings by lids without stiffness, which load the rim
   bool load_stiffness = true;
   Limits pressure;       ///< Pa, above ambient
   Limits volume_growth;  ///< m^3
   Command command;
-  /// What fills it; neither: the commanded pressure or growth of volume acts as it is.
+  /// The fluid; if neither is set, the commanded pressure or growth of volume acts directly.
   std::optional<GasSettings> gas;
   std::optional<LiquidSettings> liquid;
 };

@@ -20,7 +20,7 @@ using Edge = std::pair<NodeId, NodeId>;
 
 Edge edge_of(NodeId a, NodeId b) { return std::minmax(a, b); }
 
-// Of a patch's quadratic edges.
+// Middle nodes of a patch's quadratic edges.
 std::map<Edge, NodeId> middles_of(const std::vector<mesh::Face>& patch) {
   std::map<Edge, NodeId> middles;
   for (const mesh::Face& face : patch) {
@@ -44,7 +44,7 @@ int ChamberSurface::corner(NodeId node) {
   return corners_[node] = add(attach_node(body_, node));
 }
 
-// The mean of a loop, or the point half way from it to a node of the loop.
+// The mean of a loop, or the midpoint between it and a node of the loop.
 int ChamberSurface::add_spoke(const std::vector<NodeId>& loop, NodeId node) {
   const double share = (node < 0 ? 1.0 : 0.5) / static_cast<double>(loop.size());
   std::vector<double> weights(loop.size(), share);
@@ -55,7 +55,7 @@ int ChamberSurface::add_spoke(const std::vector<NodeId>& loop, NodeId node) {
 }
 
 void ChamberSurface::take(const std::vector<mesh::Face>& patch) {
-  // Out of the material is into the fluid: turned round.
+  // Outward from the material is inward to the fluid: faces are reversed.
   for (const mesh::Face& face : patch) {
     const auto& n = face.node;
     if (face.is_quadratic()) {
@@ -74,7 +74,7 @@ void ChamberSurface::close(const std::vector<mesh::Face>& patch) {
   const std::map<Edge, NodeId> middles = middles_of(patch);
   for (const std::vector<NodeId>& loop : mesh::open_loops(patch)) {
     const int hub = add_spoke(loop, -1);
-    // A quadratic rim needs quadratic lids, with straight spokes to the hub.
+    // A quadratic rim needs quadratic lid faces, with straight edges to the hub.
     std::map<NodeId, int> spokes;
     const auto spoke = [&](NodeId node) {
       const auto found = spokes.find(node);

@@ -1,5 +1,5 @@
 /// @file
-/// The surface of a chamber on attached points of a body.
+/// The surface of a chamber, on attached points of a body.
 #pragma once
 
 #include <map>
@@ -20,26 +20,27 @@ enum class Outside;
 
 namespace sinew::sim {
 
-/// Points and faces of a chamber, as they are taken in.
+/// Collects the points and faces of a chamber.
 class ChamberSurface {
  public:
-  /// @param body,number that carries the points, and its number.
+  /// @param body,number that carries the points, and its index.
   ChamberSurface(mechanics::BodyModel& body, int number) : body_(body), number_(number) {}
 
-  /// Faces of the body's mesh as seen from the material.
+  /// Adds faces of the body's mesh, oriented as seen from the material.
   void take(const std::vector<mesh::Face>& patch);
-  /// Closes the openings of a patch that was taken in: each by a fan about the mean of its rim.
+  /// Closes the openings of a patch that was added, each by a fan of triangles about the mean of
+  /// its rim.
   void close(const std::vector<mesh::Face>& patch);
-  /// A surface of its own, whose vertices are attached; either orientation. @param surface
-  /// closed, m, at rest. @param outside for vertices in no element. @param name of the chamber, for
-  /// messages.
+  /// Adds a separate surface of any orientation, whose vertices are attached to the body.
+  /// @param surface closed, m, at rest. @param outside for vertices outside the mesh.
+  /// @param name of the chamber, for messages.
   void take(const mesh::Surface& surface, mesh::Outside outside, const std::string& name);
 
   const std::vector<mechanics::MaterialPoint>& points() const { return points_; }
   const std::vector<constraint::ChamberFace>& faces() const { return faces_; }
 
  private:
-  /// All return the position of a point.
+  /// All return the index of a point.
   int add(int attached);
   int corner(NodeId node);
   int add_spoke(const std::vector<NodeId>& loop, NodeId node);
@@ -48,7 +49,7 @@ class ChamberSurface {
   int number_;
   std::vector<mechanics::MaterialPoint> points_;
   std::vector<constraint::ChamberFace> faces_;
-  std::map<NodeId, int> corners_;  // position of the point of each node
+  std::map<NodeId, int> corners_;  // index of the point of each node
 };
 
 }  // namespace sinew::sim

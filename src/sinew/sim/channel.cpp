@@ -12,9 +12,9 @@ namespace sinew::sim {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-// Of a sampling period, for the same reason.
+// The same, relative to a sampling period.
 constexpr double kSamePeriod = 1e-6;
-// The block that says whether a sample is lost.
+// Index of the random block that decides whether a sample is lost.
 constexpr std::uint64_t kLoss = std::numeric_limits<std::uint64_t>::max();
 constexpr std::size_t kScalars = 8;  // of save(), before lists
 
@@ -95,7 +95,7 @@ bool Channel::is_due(double time) {
   return due;
 }
 
-// Leaves the sample in hand; false when it is lost.
+// Stores the sample in sample_; returns false if it is lost.
 bool Channel::take(double time, std::span<const double> truth) {
   const auto k = static_cast<std::uint64_t>(samples_);
   const double walked =

@@ -13,12 +13,13 @@ namespace sinew::sim {
 
 namespace {
 
-// Tangent planes this near each other, of the robot's size, are the same.
+// Tangent planes that differ by less, relative to the robot's size, are equal.
 constexpr double kSamePlane = 1e-6;
-// Rounds of a step in which tangent planes follow the ways of their points.
+// Rounds of a step in which tangent planes are updated to the paths of their points.
 constexpr int kMaxTurns = 20;
 
-// (3,) m: of the surface, below the centre of roundness: a point of a body that rolls leaves it.
+// (3,) m: point of the surface below the centre of curvature, which the material point of a rolling
+// body leaves.
 Vector3 foot(const constraint::ShapeContact& contact,
              const constraint::Configuration& configuration, std::size_t point,
              const mechanics::RowValues& rows, const Vector3& at) {
@@ -158,7 +159,7 @@ bool ContactPlanes::turn_to(const constraint::ShapeContact& contact, std::size_t
   return plane.meets;
 }
 
-// Where the way meets the surface, planes that find it equally deep in the end are one.
+// If the path meets the surface, planes that give the same final gap are equal.
 bool ContactPlanes::follow_way(const constraint::ShapeContact& contact, std::size_t point,
                                const Vector3& free, const Eigen::Isometry3d& pose) {
   const Vector3 reference = rows_.reference.segment<3>(contact.row(point));

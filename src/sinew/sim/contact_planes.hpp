@@ -1,5 +1,5 @@
 /// @file
-/// The tangent planes that surfaces count as in a step.
+/// The tangent planes that represent surfaces in the contact problem of a step.
 #pragma once
 
 #include <cstddef>
@@ -31,12 +31,12 @@ struct ContactModel;
 class Model;
 class TouchingSurfaces;
 
-/// One plane for every point that may touch. It begins as that which the way at the point's
-/// velocity leads to, and may follow the way that a solution finds (constraint::Contact).
+/// One tangent plane for every contact point. It is first chosen by the path that the point takes
+/// at its present velocity, and may be updated to the path of a solution (constraint::Contact).
 class ContactPlanes {
  public:
-  /// All must outlive it. @param model whose contacts they are. @param configuration of its bodies.
-  /// @param rows gets the frames of contacts. @param pool see TouchingSurfaces.
+  /// All must outlive it. @param model with the contacts. @param configuration of its bodies.
+  /// @param rows receives the contact frames. @param pool see TouchingSurfaces.
   ContactPlanes(const Model& model, const constraint::Configuration& configuration,
                 mechanics::RowValues& rows, ThreadPool& pool);
   ~ContactPlanes();
@@ -45,84 +45,92 @@ class ContactPlanes {
 
   /// In the model's order.
   std::span<const constraint::Contact* const> contacts() const { return contacts_; }
-  /// The same as contacts with shapes; null where surfaces touch each other.
+  /// A contact with a shape; null for a contact between surfaces of bodies.
   const constraint::ShapeContact* shape(std::size_t contact) const { return shapes_[contact]; }
-  /// Before bodies follow their bases: what they are carried by counts as motion along the surface.
-  /// @param from,to s, when the step begins and ends: where surfaces stand then.
+  /// Places the planes for a step. Call before bodies follow their bases, whose motion then counts
+  /// as motion along the surface.
+  /// @param from,to s, start and end of the step, which fix the positions of moving surfaces.
   void place(double from, double to);
-  /// The points of contacts between surfaces. @param reach m: nearer ones have points.
-  /// @param effort (rows,) N of the last step, in and out: points take theirs along.
+  /// Finds the points of contacts between surfaces.
+  /// @param reach m: pairs that are nearer get points.
+  /// @param effort (rows,) N of the last step, in and out: points keep their forces.
   void find_points(double reach, std::span<double> effort);
-  /// Those of contacts that strike. find_points() finds these again, as far as here, so that a part
-  /// of a step has the points that were looked at when it began. @param reach,effort see there.
+  /// Finds the points of contacts that strike. find_points() then searches these contacts with the
+  /// same reach, so a part of a step has the points that were found at its start.
+  /// @param reach,effort see find_points().
   void find_striking_points(double reach, std::span<double> effort);
-  /// Once more where a part of an event-driven step has been carried on to: surfaces of the world
-  /// go on to where they are at a time, along the frames that the part has. Back again by its
-  /// middle, for which place() was called. After a measurement of delta. @param time s.
+  /// Updates the planes to the end of a part of an event-driven step: surfaces of the world move to
+  /// their positions at a time, with unchanged frames. A call with the time of place(), the middle
+  /// of the part, undoes this. Call after a measurement of delta. @param time s.
   void move_on(double time);
   /// Whether any surface of the world may move in the step.
   bool moves() const { return !carried_.empty(); }
-  /// Whether impacts are events: in their steps points of striking surfaces are looked for when a
-  /// part begins.
+  /// Whether impacts are events: the points of striking surfaces are then searched at the start of
+  /// each part of a step.
   void set_events(bool events) { events_ = events; }
-  /// Those of contacts between surfaces are forgotten.
+  /// Discards the points of contacts between surfaces.
   void forget_points();
-  /// Of contacts between surfaces.
+  /// The surface pairs of contacts between surfaces.
   std::span<const std::unique_ptr<TouchingSurfaces>> surfaces() const { return surfaces_; }
-  /// After a measurement of delta there: where contacts begin.
+  /// Stores delta at the start of the step. Call after a measurement of delta.
   void begin();
-  /// The same of a point that is found later. @param row its normal's.
+  /// The same for a point that is found during the step. @param row of its normal.
   void begin_point(int row) { start_.segment<3>(row) = rows_.reference.segment<3>(row); }
-  /// Moves a point's plane so that its gap is zero where the step begins. @param row its normal's.
+  /// Shifts a point's plane so that its gap is zero at the start of the step.
+  /// @param row of its normal.
   void keep_gap(int row);
-  /// Adds to the gap of a point in the step. @param row its normal's. @param more m.
+  /// Increases the gap of a point in the step. @param row of its normal. @param more m.
   void widen(int row, double more);
   /// Whether any surface is curved.
   bool curved() const { return curved_; }
-  /// Of the surface that a step's planes touch: where it stands at the end of the step, or where
-  /// its carrier was when the step began. @param contact of contacts().
+  /// Pose of the surface that the planes of the step refer to: at the end of the step, or for a
+  /// surface carried by a body, at its start. @param contact index in contacts().
   const Eigen::Isometry3d& pose(std::size_t contact) const { return poses_[contact]; }
-  /// Of the surface now. @param contact of contacts(). @param time s.
+  /// Present pose of the surface. @param contact index in contacts(). @param time s.
   Eigen::Isometry3d pose_now(std::size_t contact, double time) const;
 
-  /// (3,) m/s: how fast a point slides or leaves, also where the surface moves of itself. That
-  /// counts with its mean velocity in the step; where impacts are events, with that which it has
-  /// where the part begins, or has been carried on to.
+  /// (3,) m/s: velocity of a point relative to its surface. A surface with a prescribed motion
+  /// counts with its mean velocity in the step; if impacts are events, with its velocity at the
+  /// start of the part, or at the time of move_on().
   /// @param contact of contacts(). @param point below its size().
   Vector3 velocity_beside(const constraint::Contact& contact, std::size_t point) const;
-  /// (3,) m/s: of the centre of the point's body. @param contact,point as above.
+  /// (3,) m/s: the same for the centre of the point's body. @param contact,point as above.
   Vector3 centre_velocity_beside(const constraint::Contact& contact, std::size_t point) const;
-  /// (3,) m/s: of a surface of the world at a point that touches it; zero of one that stands still.
+  /// (3,) m/s: velocity of a surface of the world at a point that touches it; zero if at rest.
   /// @param contact,point as above.
   Vector3 surface_velocity(const constraint::Contact& contact, std::size_t point) const;
 
-  /// Planes turn in a bounded number of rounds a step, after which they stay as they are.
+  /// Whether planes may still turn in this step; the number of rounds is limited.
   bool may_turn() const { return turns_left_ > 0; }
   void end_round() { --turns_left_; }
-  /// Turns a point's plane to that of the way to where the point will be. Whether that way meets
-  /// the surface. @param contact,point which. @param end (3,) m. @param pose of the surface.
+  /// Replaces a point's plane by that of the path to the point's proposed position.
+  /// @return whether that path meets the surface.
+  /// @param contact,point which. @param end (3,) m. @param pose of the surface.
   bool turn_to(const constraint::ShapeContact& contact, std::size_t point, const Vector3& end,
                const Eigen::Isometry3d& pose);
-  /// Turns a pushed point's plane to that of the way that it would go without its own force, where
-  /// that is another one. Whether it is. @param contact,point,pose as for turn_to(). @param free
-  /// (3,) m, the point's rows without its force.
+  /// Replaces the plane of a point with a force by that of the path that the point would take
+  /// without this force, if that plane differs. @return whether it does.
+  /// @param contact,point,pose as for turn_to().
+  /// @param free (3,) m, the point's rows without its force.
   bool follow_way(const constraint::ShapeContact& contact, std::size_t point, const Vector3& free,
                   const Eigen::Isometry3d& pose);
 
-  /// Curved surfaces become their tangent planes at the points' nearest, where points are now.
+  /// Replaces the planes of curved surfaces by the tangent planes nearest to the points' present
+  /// positions.
   void follow_points();
-  /// (rows,) 1/m: of curved surfaces at their last follow_points(), how fast their normals turn
-  /// along tangential rows; zero elsewhere.
+  /// (rows,) 1/m: for curved surfaces, the rate at which the normal turns along tangential rows, as
+  /// of the last follow_points(); zero elsewhere.
   const VectorX& curvature() const { return curvature_; }
 
-  /// m: the farthest that any touching point's gap is from that of its plane, at the pose that
-  /// surfaces have at a time. @param effort (rows,) N; who touches. @param time s.
+  /// m: largest difference between the exact gap of a touching point and the gap from its plane,
+  /// with surfaces at their poses at a time.
+  /// @param effort (rows,) N, which defines the touching points. @param time s.
   double drift(std::span<const double> effort, double time);
   /// (rows,) m: delta of contacts when the step began.
   const VectorX& start() const { return start_; }
 
-  /// Normal and tangents of every point, as of the last step, 9 numbers each: what the efforts of
-  /// its rows mean.
+  /// Normal and tangents of every point in the last step, 9 numbers each; the efforts of its rows
+  /// refer to them.
   std::size_t frames_size() const;
   void save_frames(std::vector<double>& frames) const;
   void load_frames(std::span<const double> frames);
@@ -148,15 +156,15 @@ class ContactPlanes {
   struct Carried {
     const constraint::ShapeContact* contact;
     const ContactModel* model;
-    Eigen::Isometry3d from_end;  // to where it was when the step began
-    Eigen::Isometry3d placed;    // where it is in the step
-    BaseMotion::Rate rate;       // where the part begins, or has been carried on to
+    Eigen::Isometry3d from_end;  // from its pose at the end of the step to that at its start
+    Eigen::Isometry3d placed;    // pose in the step
+    BaseMotion::Rate rate;       // at the start of the part, or at the time of move_on()
   };
   std::vector<Carried> carried_;  // surfaces of the world that may move
   std::vector<char> strikes_;     // (surfaces,)
   double time_step_ = 0.0;        // s
-  double placed_ = 0.0;           // s, when the planes are where they were placed
-  VectorX moved_on_;              // (rows,) m, what move_on() has added to offsets
+  double placed_ = 0.0;           // s, time for which the planes were placed
+  VectorX moved_on_;              // (rows,) m, added to the offsets by move_on()
   bool events_ = false;
   int turns_left_ = 0;
 };

@@ -1,5 +1,5 @@
 /// @file
-/// Contacts of a run as a user reads them.
+/// User-level access to the contacts of a run.
 #pragma once
 
 #include <cstddef>
@@ -18,26 +18,26 @@ namespace sinew::sim {
 
 struct Run;
 
-/// What the points of contacts do, after the last step.
+/// Reads the state of contact points after the last step.
 class ContactReader {
  public:
-  /// @param run outlives it.
+  /// @param run must outlive it.
   explicit ContactReader(const Run& run) : run_(run) {}
-  /// @param contact of Model::contacts(). @param point below constraint::Contact::size().
+  /// @param contact index of Model::contacts(). @param point below constraint::Contact::size().
   ContactPoint point(int contact, std::size_t point) const;
   std::vector<ContactPoint> points(int contact) const;
   ContactResultant resultant(int contact) const;
-  /// Where the surface stands now, from where the scene puts it.
+  /// Present pose of the surface, relative to its pose in the scene.
   Eigen::Isometry3d pose(int contact) const;
-  /// The same as point(), of a pose that is known.
+  /// The same as point(contact, point), for a known pose of the surface.
   ContactPoint point(int contact, std::size_t point, const Eigen::Isometry3d& pose) const;
-  /// The points and where the surface stands.
+  /// All points, and the pose of the surface.
   ContactSnapshot snapshot(int contact) const;
-  /// How the forces were last found.
+  /// How the forces of the last step were found.
   const qp::ConeResult& result() const;
-  /// What they were found from: the problem of the last step (its last substep, its last
-  /// linearisation) or equilibrium. Of the points that took part, in the order of contacts and
-  /// their points. Not part of the state: empty before the first step.
+  /// The contact problem of the last step (its last substep and linearisation) or equilibrium, with
+  /// the active points in the order of contacts and their points. Not part of the state: empty
+  /// before the first step.
   step::ContactProblem problem() const;
 
  private:

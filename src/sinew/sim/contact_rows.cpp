@@ -18,23 +18,23 @@ namespace sinew::sim {
 
 namespace {
 
-// Surfaces of bodies have points where they are nearer than this part of the robot's size, and
-// points nearer than the second part take part in a step at once. The others are looked at when a
-// motion is proposed: too many rows at once cost more than another solution (docs/performance.md).
+// Distances relative to the robot's size: surfaces of bodies get points within the first, and
+// points within the second are active at once. The other points are checked when a motion is
+// proposed: more rows from the start cost more than another solution (docs/performance.md).
 constexpr double kNear = 0.01, kTaken = 0.002;
-// From so far a controller closes contacts between surfaces.
+// Distance, relative to the robot's size, from which a controller closes contacts between surfaces.
 constexpr double kWanted = 0.1;
-// Of this many times what the fastest node moves in a step, surfaces of bodies have points.
+// Surfaces of bodies get points within this multiple of the fastest node's motion in a step.
 constexpr double kAhead = 3.0;
-// A point that a step holds moved at its start where it was faster than this part of the fastest
-// point, and than this part of the size in a step.
+// A stopped point was moving if it was faster than this fraction of the fastest point, and than
+// this fraction of the robot's size per step.
 constexpr double kStill = 1e-3, kNoMotion = 1e-9;
-// Of the fastest point: friction is static at points that are slower.
+// Friction is static at points slower than this fraction of the fastest point.
 constexpr double kStays = 1e-6;
-// Rounds of a step in which overlapping surfaces get points, and zones spread their forces anew.
+// Rounds of a step in which overlapping surfaces get points, and zones redistribute their forces.
 constexpr int kMaxRounds = 20;
 
-// The rows of a point without its own force.
+// Motions of a point's rows without its own force.
 Vector3 free_motion(const step::StepProblem& problem, const linalg::AlignedNumbers& effort,
                     int problem_row) {
   const Eigen::Map<const VectorX, Eigen::AlignedMax> lambda(
@@ -77,7 +77,7 @@ bool ContactRows::has_zones() const {
   return std::ranges::any_of(zones_, [](const auto& zones) { return zones != nullptr; });
 }
 
-// Of the points that a step has a use for.
+// Measures the gaps of the points that are in use.
 template <class Gap>
 void ContactRows::measure_gaps(const constraint::Contact& contact, Gap&& gap) {
   gaps_.assign(contact.size(), 0.0);
@@ -86,7 +86,7 @@ void ContactRows::measure_gaps(const constraint::Contact& contact, Gap&& gap) {
   }
 }
 
-// m: the gap when the step ends, at the speed of its start.
+// m: the gap at the end of the step, at the velocity of its start.
 double ContactRows::arrival(const constraint::Contact& contact, std::size_t point,
                             double time_step) const {
   const int row = contact.row(point);
@@ -104,7 +104,7 @@ void ContactRows::for_each_point(Visit&& visit) const {
   }
 }
 
-// The same of contacts that strike, or of all others.
+// The same for contacts that strike, or for all others.
 template <class Visit>
 void ContactRows::for_each_point(bool striking, Visit&& visit) const {
   for (std::size_t i = 0; i < strikes_.size(); ++i) {
@@ -126,7 +126,7 @@ double ContactRows::reach(double time_step, double reach) const {
   return std::max({kNear * model_.size(), reach, ahead});
 }
 
-// A function of the state alone, so that a run goes on from a saved one bit for bit.
+// Depends on the state alone, so a run continues from a saved state bit for bit.
 void ContactRows::choose_active(std::span<const double> effort, double time_step, double reach) {
   left_out_ = false;
   rounds_left_ = zone_rounds_left_ = kMaxRounds;
@@ -201,9 +201,9 @@ double ContactRows::friction(const constraint::Contact& contact, std::size_t poi
   return slides ? contact.friction().sliding : contact.friction().sticking;
 }
 
-// By velocity and force, of which either may mislead: redundant points that stay share their
-// friction as they like, up to their limits; and a ball that rolls from frame to frame has a little
-// velocity. In quasi-statics by force alone.
+// Judges by velocity and force together, since either may mislead: redundant sticking points share
+// friction arbitrarily, up to their limits, and a rolling ball has a small velocity. In
+// quasi-statics, by force alone.
 void ContactRows::judge_sliding(std::span<const double> effort, double time_step) {
   if (!has_kinetic_) return;
   still_ = std::isfinite(time_step)
@@ -228,7 +228,8 @@ void ContactRows::judge_sliding(const constraint::Contact& contact, std::size_t 
   along_[row] = tangents * (pressed ? Eigen::Vector2d(-force.tail<2>()) : velocity);
 }
 
-// Friction is against the motion: along the way that a point went before, where it turned back.
+// Friction opposes the motion: a point whose friction acts along its previous direction has turned
+// back.
 bool ContactRows::hold_reversed(const RowNumbering& numbering,
                                 const linalg::AlignedNumbers& effort) {
   bool found = false;
@@ -309,7 +310,7 @@ bool ContactRows::correct(const step::StepProblem& problem, const RowNumbering& 
   return found || spread;
 }
 
-// (3,) m: where the proposed motion leads.
+// (3,) m: position after the proposed motion.
 Vector3 ContactRows::proposed_position(const constraint::ShapeContact& contact,
                                        std::size_t point) const {
   const auto motion = [&](const mechanics::Site& site) {
@@ -359,8 +360,8 @@ bool ContactRows::correct_shape(std::size_t number, const step::StepProblem& pro
   return found;
 }
 
-// Whether a point that was left out moves into its surface. A plane that it merely crosses beside
-// the surface is replaced by one that it does not.
+// Activates an inactive point that moves into its surface. If it only crosses its plane beside the
+// surface, it gets another plane instead. Returns whether it became active.
 bool ContactRows::take_in(const constraint::ShapeContact& contact, std::size_t point,
                           const Eigen::Isometry3d& pose) {
   if (contact.idle(point, rows_)) return false;
@@ -373,7 +374,8 @@ bool ContactRows::take_in(const constraint::ShapeContact& contact, std::size_t p
   return true;
 }
 
-// Points that were left out, and then those that nobody thought of.
+// First activates points that were left out; if there are none, adds points for unexpected
+// overlaps.
 bool ContactRows::correct_surfaces(TouchingSurfaces& touching) {
   if (rounds_left_ == 0) return false;
   bool found = false;
@@ -459,7 +461,7 @@ bool ContactRows::turns_back(const step::StepProblem& problem, const RowNumberin
   return found;
 }
 
-// m/s, of all bodies that touch.
+// m/s, over the points of all contacts.
 double ContactRows::fastest_node() const {
   double fastest = 0.0;
   for (const constraint::Contact* contact : planes_.contacts()) {

@@ -1,5 +1,5 @@
 /// @file
-/// The rows of contacts in a step: which take part.
+/// The active set of contact rows in a step.
 #pragma once
 
 #include <cstddef>
@@ -24,110 +24,115 @@ namespace sinew::sim {
 
 class RowNumbering;
 
-/// A step begins with a guess: points that touched, are near, or would arrive at their speed take
-/// part. After a motion was solved, correct() mends what was guessed wrong.
+/// Chooses which contact points are active in a step. The step begins with a guess: points with a
+/// force, points near their surface, and points that would reach it at their present velocity.
+/// After each solution, correct() mends wrong guesses.
 class ContactRows {
  public:
-  /// All must outlive it. @param model,configuration,pool see ContactPlanes. @param systems of the
-  /// bodies. @param rows whose contacts it looks after.
+  /// All must outlive it. @param model,configuration,pool see ContactPlanes.
+  /// @param systems of the bodies. @param rows of the contacts.
   ContactRows(const Model& model, const constraint::Configuration& configuration,
               std::span<mechanics::StepSystem* const> systems, mechanics::RowValues& rows,
               ThreadPool& pool);
 
-  /// m: how near surfaces of bodies have points in a step. @param time_step s. @param reach m.
+  /// m: distance within which surfaces of bodies get points in a step. @param time_step s.
+  /// @param reach m, a lower bound.
   double reach(double time_step, double reach) const;
 
   bool empty() const { return planes_.contacts().empty(); }
   const ContactPlanes& planes() const { return planes_; }
   ContactPlanes& planes() { return planes_; }
 
-  /// After planes were placed and begun: which points take part in the step.
-  /// @param effort (rows,) N of the last step: points with a force are near, whatever their gap.
-  /// @param time_step s. @param reach m: points that are nearer than this are near, too.
+  /// Chooses the points that are active in the step. Call after the planes were placed and begun.
+  /// @param effort (rows,) N of the last step: points with a force are active, whatever their gap.
+  /// @param time_step s. @param reach m: points with a smaller gap are active, too.
   void choose_active(std::span<const double> effort, double time_step, double reach);
-  /// Coulomb's coefficient of a point in the step: the kinetic one of what slid in the last step,
-  /// or comes sliding. @param contact of planes().contacts(). @param point below its size().
+  /// Coulomb's coefficient of a point in the step: the kinetic one if the point slid in the last
+  /// step or arrives sliding. @param contact of planes().contacts(). @param point below its size().
   double friction(const constraint::Contact& contact, std::size_t point) const;
-  /// Of these contacts the nearest point takes part, though it is far: a controller asks for their
-  /// forces. @param contacts positions in planes().contacts().
+  /// Keeps the nearest point of these contacts active, whatever its gap, since a controller needs
+  /// their forces. @param contacts indices in planes().contacts().
   void want(std::span<const int> contacts);
-  /// m: how far surfaces are searched for that point; 0 where each of them has a force.
+  /// m: distance within which this point is searched; 0 if all these contacts have forces.
   /// @param effort (rows,) N of the last step.
   double wanted_reach(std::span<const double> effort) const;
-  /// For a look at the present state: every point that a step has a use for takes part.
+  /// For a query of the present state: activates every point that a step could use.
   void take_all();
-  /// For an impact at the present state: the closed points of contacts that strike.
+  /// For an impact at the present state: activates the closed points of contacts that strike.
   void take_closed();
-  /// Efforts of points that share a row become those of its sum (ContactZones).
+  /// Redistributes the summed efforts of points that share a row (ContactZones).
   /// @param effort (rows,) N, in and out.
   void spread_forces(std::span<double> effort) const;
-  /// Appends the blocks of the points that take part.
+  /// Appends the blocks of the active points.
   void list(const RowNumbering& numbering, std::vector<step::ContactBlock>& blocks) const;
 
-  /// After a motion was solved and proposed:
-  /// - Points that were left out are taken in where the motion leads into their surface.
-  /// - A point that is pushed by the tangent plane of a curved surface gets the plane of the way
-  ///   that it would go without its own force (constraint::Contact), if that is another one: where
-  ///   that way misses the surface it is pushed no more.
-  /// - A point with kinetic friction that turns back has come to rest on the way: static friction
-  ///   may hold it there.
-  /// Whether there was anything to mend; rows, and who takes part, are then new.
+  /// Corrects the active set after a motion was solved and proposed:
+  /// - A point that was left out becomes active if the motion leads it into its surface.
+  /// - A point with a force from the tangent plane of a curved surface gets the plane of the path
+  ///   that it would take without this force (constraint::Contact), if that plane differs. If this
+  ///   path misses the surface, the point loses its force.
+  /// - A point with kinetic friction that turns back has come to rest within the step: static
+  ///   friction may hold it.
+  /// @return whether anything was corrected; rows and active points have then changed.
   /// @param problem,numbering of the step. @param effort (rows of the problem,) N, its solution.
   bool correct(const step::StepProblem& problem, const RowNumbering& numbering,
                const linalg::AlignedNumbers& effort);
-  /// Whether correct() could find anything.
+  /// Whether correct() may have anything to correct.
   bool are_guessed() const {
     return left_out_ || has_kinetic_ || planes_.curved() || !planes_.surfaces().empty() ||
            has_zones();
   }
   bool leave_points_out() const { return left_out_; }
 
-  /// Within an event-driven step contacts may strike; anything else that looks at the robot, such
-  /// as a static solution, takes them as all others.
+  /// Whether contacts may strike, as within an event-driven step. All other computations, such as a
+  /// static solution, treat them like the other contacts.
   void set_events(bool events) {
     events_ = events;
     planes_.set_events(events);
   }
-  /// Whether impacts of a contact are events now. Of its points, those that are closed take part in
-  /// steps, and keep the gap that they have; others pass through.
-  /// @param contact of planes().contacts().
+  /// Whether impacts of a contact are events now. Its closed points then take part in steps and
+  /// keep their gaps; its other points pass through.
+  /// @param contact index in planes().contacts().
   bool strikes(std::size_t contact) const { return events_ && strikes_[contact] != 0; }
-  /// With surfaces that touch; null: a shape. @param contact of planes().contacts().
+  /// The surface pair of a contact; null for a contact with a shape.
+  /// @param contact index in planes().contacts().
   TouchingSurfaces* surfaces(std::size_t contact) { return surfaces_[contact]; }
   const TouchingSurfaces* surfaces(std::size_t contact) const { return surfaces_[contact]; }
   void set_closed(int row, bool closed) { closed_[static_cast<std::size_t>(row)] = closed; }
   bool is_closed(int row) const { return closed_[static_cast<std::size_t>(row)] != 0; }
-  /// Whether a point of another contact has a force. @param effort (rows,) N.
+  /// Whether a point of a contact that does not strike has a force. @param effort (rows,) N.
   bool touches_softly(std::span<const double> effort) const;
 
-  /// Whether a point has a force that had none when the step began. @param effort (rows,) N.
+  /// Whether a point has a force that had none at the start of the step. @param effort (rows,) N.
   bool gap_closed(std::span<const double> effort) const;
-  /// Whether the step holds a point that moved when it began: an impact along the normal, or one
-  /// that slid and sticks. Before bodies' velocities follow. @param effort (rows,) N.
+  /// Whether the step stops a point that was moving at its start: an impact along the normal, or a
+  /// sliding point that sticks. Call before velocities are updated. @param effort (rows,) N.
   /// @param time_step s.
   bool stops_points(std::span<const double> effort, double time_step) const;
-  /// Whether a point with a kinetic coefficient has friction at its static limit: its force jumps
-  /// in the next step. @param effort (rows,) N.
+  /// Whether the friction of a point with a kinetic coefficient is at its static limit: the force
+  /// will jump in the next step. @param effort (rows,) N.
   bool breaks_loose(std::span<const double> effort) const;
-  /// Whether a point with kinetic friction has come to rest within the step: it goes less than half
-  /// of the way v_0 h that it began, so that, slowed down evenly, it ends the step on its way back.
-  /// Before bodies' velocities follow. @param problem,numbering of the step.
+  /// Whether a point with kinetic friction comes to rest within the step: it moves by less than
+  /// half of v_0 h, where v_0 is its velocity at the start, so under constant deceleration it ends
+  /// the step moving backwards. Call before velocities are updated.
+  /// @param problem,numbering of the step.
   /// @param effort (rows of the problem,) N. @param time_step h, s.
   bool turns_back(const step::StepProblem& problem, const RowNumbering& numbering,
                   const linalg::AlignedNumbers& effort, double time_step) const;
-  /// When a step has ended: about how far the forces of aggregated contacts are from those of
-  /// single points, of the sum of the zones' forces (ContactZones::end_step()); 0 without forces.
+  /// At the end of a step: the approximate difference between the forces of aggregated contacts and
+  /// those of single points, relative to the sum of the zones' forces (ContactZones::end_step()); 0
+  /// without forces.
   /// @param problem,numbering of the step. @param effort (rows,) N.
   double end_zones(const step::StepProblem& problem, const RowNumbering& numbering,
                    std::span<const double> effort);
-  /// Friction of zones starts afresh.
+  /// Discards the friction history of the zones.
   void forget_friction();
   /// Whether surfaces have passed through each other in the step.
   bool passed() const;
-  /// m, >= 0: how deep a point without a normal force is in its surface's tangent plane, at most.
+  /// m, >= 0: largest penetration of the tangent plane by a point without a normal force.
   /// @param effort (rows,) N.
   double max_penetration_without_force(std::span<const double> effort) const;
-  /// The same of points that were left out, by delta.
+  /// The same for the points that were left out, from delta.
   double max_penetration_left_out() const;
 
  private:
@@ -163,16 +168,15 @@ class ContactRows {
   ContactPlanes planes_;
   std::vector<std::unique_ptr<ContactZones>> zones_;  // (contacts,) null: single points
   std::vector<TouchingSurfaces*> surfaces_;           // (contacts,) null: with a shape
-  bool left_out_ = false;                             // some point
-  int rounds_left_ = 0;                  // of a step, in which overlapping surfaces get points
+  bool left_out_ = false;                             // whether any point is left out
+  int rounds_left_ = 0;                  // rounds in which overlapping surfaces may get points
   std::vector<double> gaps_, friction_;  // (points,) m, and coefficients, of one contact
-  int zone_rounds_left_ = 0;             // of a step, in which zones spread their forces anew
-  std::vector<char> touched_;            // (rows,) normal rows with a force when the step began
-  bool has_kinetic_ = false;             // some contact has two coefficients
-  double still_ = 0.0;                   // m/s: what is slower stays
+  int zone_rounds_left_ = 0;             // rounds in which zones may redistribute their forces
+  std::vector<char> touched_;            // (rows,) normal rows with a force at the step's start
+  bool has_kinetic_ = false;             // whether a contact has two coefficients
+  double still_ = 0.0;                   // m/s: slower points are at rest
   std::vector<char> slides_;             // (rows,) normal rows whose friction is kinetic
-  std::vector<Vector3>
-      along_;  // (rows,) where those slide to, of any length; empty: no such contact
+  std::vector<Vector3> along_;  // (rows,) sliding directions, of any length; empty: no such contact
   bool events_ = false;
   std::vector<char> strikes_;  // (contacts,)
   std::vector<char> wanted_;   // (contacts,)

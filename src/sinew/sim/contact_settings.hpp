@@ -1,5 +1,5 @@
 /// @file
-/// What a robot may touch.
+/// A contact of a body with a surface or another body.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ class BodyModel;
 
 namespace sinew::sim {
 
-/// Points of a body that may touch a surface.
+/// Points of a body that may touch a surface or another body.
 struct ContactSettings {
   constraint::Friction coefficients() const {
     return {friction, kinetic_friction.value_or(friction)};
@@ -28,34 +28,36 @@ struct ContactSettings {
   std::string name;
   Location place;
   int body = 0;
-  collision::Shape surface;  ///< where it is at rest, in the world
-  /// The body that is touched, in place of the surface: a rigid one with its shape, or by surfaces
-  /// (touch_by_surfaces()), which may be parts of one body's.
+  collision::Shape surface;  ///< at rest, in world coordinates
+  /// The body that is touched, in place of a surface of the world: a rigid body with its shape, or
+  /// a body whose surface triangles touch (touch_by_surfaces()), which may be the same body.
   std::optional<int> touched;
-  std::vector<NodeId> nodes;  ///< of the body's mesh; fixed ones are left out
-  Points points;  ///< (n, 3) m, at rest; beside the nodes. Neither: a rigid body's shape
+  std::vector<NodeId> nodes;  ///< of the body's mesh; fixed nodes are left out
+  Points points;  ///< (n, 3) m, at rest, in addition to nodes; neither: a rigid body's shape
   mesh::Outside outside = mesh::Outside::error;
   double friction = 0.0;                   ///< Coulomb's coefficient, >= 0
-  std::optional<double> kinetic_friction;  ///< of points that slide; none: the same
+  std::optional<double> kinetic_friction;  ///< of sliding points; none: equal to `friction`
   std::optional<BaseMotion> motion;        ///< of the surface
-  /// Newton's, 0 to 1; none: StepSettings::restitution. Of rigid bodies in event-driven
-  /// integration.
+  /// Newton's coefficient of restitution, 0 to 1, for rigid bodies in event-driven integration;
+  /// none: StepSettings::restitution.
   std::optional<double> restitution;
-  /// m, the size of zones whose points act as one (ContactZones); 0: all points by themselves. Of
-  /// deformable bodies.
+  /// m, size of the zones whose points act as one (ContactZones), for deformable bodies; 0: every
+  /// point acts by itself.
   double aggregate = 0.0;
 };
 
-/// Of a ball's radius: a triangle of such edges goes up to 1/24 of the radius into a ball that its
-/// corners touch.
+/// Maximum edge length of a deformable surface that a ball touches at nodes, relative to the ball's
+/// radius: a triangle of such edges penetrates a ball that its corners touch by at most 1/24 of the
+/// radius.
 inline constexpr double kFineEdge = 0.5;
 
-/// Whether two bodies touch with the triangles of their surfaces. Deformable ones do, with others,
-/// too. But a ball or a capsule touches a deformable surface of edges up to kFineEdge of its radius
-/// at the nodes of that, exactly round. Of rigid bodies, meshes do; others touch as shapes. An arm
-/// touches with points alone.
+/// Whether two bodies touch with the triangles of their surfaces. Deformable bodies do, also with
+/// other bodies. But a ball or capsule touches a deformable surface with edges up to kFineEdge of
+/// its radius at the nodes of that surface, as an exact shape. Of rigid bodies, meshes touch with
+/// triangles, others as shapes. An arm touches with points only.
 /// @param one,other the bodies, in either order.
-/// @param named nodes or points of one are named: they touch a rigid body's shape or hull.
+/// @param named whether nodes or points of one body are named: they touch a rigid body's shape or
+///   hull.
 bool touch_by_surfaces(const mechanics::BodyModel& one, const mechanics::BodyModel& other,
                        bool named);
 

@@ -1,5 +1,5 @@
 /// @file
-/// What touches what, and how hard: contacts as a user reads them.
+/// States of contacts: which points touch, and their forces.
 #pragma once
 
 #include <algorithm>
@@ -16,30 +16,30 @@ namespace sinew::sim {
 
 class Model;
 
-/// The body whose points may touch, and the body that they may touch; of a surface of the world the
-/// first alone. @param model of both. @param contact of Model::contacts().
+/// The body whose points may touch and, for a contact between bodies, the body whose surface they
+/// may touch. @param model that contains the contact. @param contact index of Model::contacts().
 std::vector<std::string> touching_bodies(const Model& model, int contact);
 
-/// One point that may touch, after the last step.
+/// State of one contact point after the last step.
 struct ContactPoint {
   Vector3 position = Vector3::Zero();        ///< (3,) m
-  double gap = 0.0;                          ///< m, exact, negative inside
-  Vector3 normal = Vector3::UnitZ();         ///< (3,) out of the surface, of the step
-  double normal_force = 0.0;                 ///< N, >= 0, on the body along `normal`
-  Vector3 friction_force = Vector3::Zero();  ///< (3,) N on the body, across `normal`
+  double gap = 0.0;                          ///< m, exact, negative inside the surface
+  Vector3 normal = Vector3::UnitZ();         ///< (3,) outward normal used by the step
+  double normal_force = 0.0;                 ///< N, >= 0, on the body, along `normal`
+  Vector3 friction_force = Vector3::Zero();  ///< (3,) N, on the body, tangential to the surface
   /// open: no force; slip: friction at its limit; stick: within it.
   qp::ContactState state = qp::ContactState::open;
 };
 
-/// All points of one contact together.
+/// Resultant of all points of one contact.
 struct ContactResultant {
   Vector3 force = Vector3::Zero();  ///< (3,) N, on the body
   double normal_force = 0.0;        ///< N, sum over the points
   double friction_force = 0.0;      ///< N, sum of the points' magnitudes
   double smallest_gap = std::numeric_limits<double>::infinity();  ///< m
-  int sticking = 0, slipping = 0;                                 ///< points
+  int sticking = 0, slipping = 0;                                 ///< numbers of points
 
-  /// @param point to be counted in.
+  /// Adds a point to the resultant. @param point of the contact.
   void add(const ContactPoint& point) {
     force += point.normal_force * point.normal + point.friction_force;
     normal_force += point.normal_force;
@@ -50,9 +50,10 @@ struct ContactResultant {
   }
 };
 
-/// One contact at one instant.
+/// All points of one contact at one time.
 struct ContactSnapshot {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< of the surface, from the scene's
+  Eigen::Isometry3d pose =
+      Eigen::Isometry3d::Identity();  ///< of the surface, relative to the scene
   std::vector<ContactPoint> points;
 };
 

@@ -12,15 +12,17 @@ namespace sinew::sim {
 
 namespace {
 
-// Overlaps that are left: of a zone's size, and of how far its force presses it in, so that a stiff
-// body's forces are spread as well. Below the last part of the size, rounding matters.
+// Overlaps that may remain, relative to a zone's size and to its deflection by its force, so the
+// forces of a stiff body are distributed, too. Below the last fraction of the size, rounding
+// dominates.
 constexpr double kTolerance = 2e-4, kOfDeflection = 0.01, kFloor = 1e-7;
-// w at first, and what becomes of it where overlaps grow by the second factor.
+// Initial w, and its reduction if overlaps grow by the last factor.
 constexpr double kRelaxation = 0.7, kLess = 0.5, kGrows = 1.1;
-// a, of the distance of neighbouring points. Larger ones make neighbours too alike.
+// a, relative to the distance of neighbouring points. Larger values make neighbours too similar.
 constexpr double kSpread = 0.2;
 constexpr int kSweeps = 10;
-// Weights, and gaps in parts of a zone, that differ by less are the same: rounding decides nothing.
+// Smaller differences between weights, and between gaps relative to a zone's size, are ignored, so
+// rounding decides nothing.
 constexpr double kAlike = 1e-6;
 
 }  // namespace
@@ -47,7 +49,7 @@ ContactZones::ContactZones(const constraint::Contact& contact, double size,
 
 double ContactZones::tolerance() const { return kTolerance * size_; }
 
-// Seeds, each half a zone from all before it; every place belongs to the nearest one.
+// Seeds are at least half a zone from all earlier seeds; each point belongs to the nearest seed.
 void ContactZones::make_zones(const Points& at) {
   std::vector<Vector3> seeds;
   const auto nearest = [&](const Vector3& place) {
@@ -137,7 +139,7 @@ void ContactZones::begin(std::span<const double> effort, std::span<const double>
   group(rows);
 }
 
-// Of weight_.
+// Forms the groups of rows from weight_.
 void ContactZones::group(mechanics::RowValues& rows) {
   mechanics::RowGroups& groups = rows.groups;
   std::vector<double>& share = groups.share;
@@ -180,7 +182,7 @@ void ContactZones::spread(std::span<double> effort, const mechanics::RowValues& 
   }
 }
 
-// And lists the points of each zone that have a force or overlap.
+// Also lists the points of each zone that have a force or overlap.
 void ContactZones::measure_overlaps(std::span<const double> gaps,
                                     const mechanics::RowValues& rows) {
   for (Zone& zone : zones_) {
@@ -197,7 +199,7 @@ void ContactZones::measure_overlaps(std::span<const double> gaps,
   }
 }
 
-// By projected Gauss-Seidel sweeps.
+// Solves by projected Gauss-Seidel sweeps.
 void ContactZones::smooth(const Zone& zone, std::span<const double> gaps, double force,
                           double compliance, const mechanics::RowValues& rows) {
   const std::size_t n = points_.size();
@@ -260,7 +262,7 @@ bool ContactZones::refine(std::span<const double> gaps, const step::StepProblem&
   return found;
 }
 
-// Those of each zone that have a force or overlap.
+// Lists the points of each zone that have a force or overlap.
 void ContactZones::list_points(std::span<const double> effort, const mechanics::RowValues& rows) {
   for (Zone& zone : zones_) zone.begin = -1;
   for (std::size_t k = contact_.size(); k-- > 0;) {
@@ -285,7 +287,7 @@ void ContactZones::take_points(const Zone& zone, std::span<const double> effort,
   }
 }
 
-// Of the zone whose points are listed.
+// Adds the force error of the zone in zone_points_.
 void ContactZones::add_lack(double& friction_lack, const Vector3& compliance, ForceError& sum) {
   Vector3 resultant = Vector3::Zero(), own = Vector3::Zero(), normal = Vector3::Zero();
   for (const ZonePoint& point : zone_points_) {

@@ -21,7 +21,7 @@ namespace sinew::sim {
 
 namespace {
 
-// What every actuator is told now, without limits on rates; the controlled ones obey nobody.
+// Present commands of all actuators, without rate limits; the controlled ones are marked as owned.
 void write_blocks(Simulation& simulation, const State& state, std::span<const int> controlled) {
   const Model& model = simulation.model();
   Actuation actuation(model);
@@ -33,7 +33,7 @@ void write_blocks(Simulation& simulation, const State& state, std::span<const in
                         std::span(blocks).first(model.actuators().size()));
 }
 
-// Points that touch nothing have no effort and no part in it. @param effort (rows,) N, in and out.
+// Open contact points have no effort and do not take part. @param effort (rows,) N, in and out.
 void condense(Simulation& simulation, const LinearisationChoice& choice,
               std::vector<double>& effort) {
   const Model& model = simulation.model();
@@ -54,7 +54,7 @@ void condense(Simulation& simulation, const LinearisationChoice& choice,
               "spring or a motor that is told an angle, or try tangent='corotated'");
 }
 
-// Leaves the simulation's state changed.
+// Does not restore the simulation's state.
 ControlledResponse respond(Simulation& simulation, const State& state,
                            std::span<const int> controlled, const LinearisationChoice& choice) {
   const Model& model = simulation.model();
@@ -68,7 +68,7 @@ ControlledResponse respond(Simulation& simulation, const State& state,
   step::Response response;
   response.form(world.problem(), effort);
 
-  // The response has the controlled rows in the order of the actuators.
+  // The response contains the controlled rows in the order of the actuators.
   std::vector<int> columns, own;
   for (const int actuator : controlled) {
     const auto place = std::ranges::lower_bound(response.controlled(), actuator);

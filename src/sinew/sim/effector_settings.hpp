@@ -1,5 +1,5 @@
 /// @file
-/// What of a robot is observed and controlled.
+/// An effector: a point or orientation that is observed and controlled.
 #pragma once
 
 #include <string>
@@ -11,17 +11,17 @@
 
 namespace sinew::sim {
 
-/// A point, the mean of several points or nodes, or an orientation: of the frame through three
-/// points, or of the rigid section that one point lies in.
+/// A point, the mean of several points or nodes, or an orientation: that of the frame through three
+/// points, or of the rigid section in which one point lies.
 struct EffectorSettings {
   enum class Kind { points, nodes, orientation };
   std::string name;
   Location place;
   int body = 0;
   Kind kind = Kind::points;
-  Points points;                    ///< (n, 3) m; their mean; of an orientation three, or one
-  std::vector<NodeId> nodes;        ///< kind nodes: their mean
-  std::vector<Vector3> directions;  ///< empty: x, y, z
+  Points points;                    ///< (n, 3) m, of which the mean is taken; orientation: 3 or 1
+  std::vector<NodeId> nodes;        ///< for Kind::nodes, of which the mean is taken
+  std::vector<Vector3> directions;  ///< observed directions; empty: x, y, z
   mesh::Outside outside = mesh::Outside::error;
 };
 

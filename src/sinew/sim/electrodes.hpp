@@ -1,5 +1,5 @@
 /// @file
-/// Electrodes of capacitive sensors on the bodies of a model under construction.
+/// Attachment of the electrodes of capacitive sensors.
 #pragma once
 
 #include <vector>
@@ -11,9 +11,11 @@ namespace sinew::sim {
 
 class Attacher;
 
-/// Triangles of an electrode; opposite each middle the place of the other one that is nearest at
-/// rest. @param attacher of the sensor. @param own,other both electrodes. @param place of the
-/// sensor. Throws Error(zero-volume) where they touch or one has no faces.
+/// The triangles of an electrode. Opposite the middle of each, the point of the other electrode
+/// that is nearest at rest is attached. @param attacher of the sensor.
+/// @param own,other the two electrodes.
+/// @param place source location of the sensor. Throws Error(zero-volume) if the electrodes touch or
+///   have no faces.
 std::vector<constraint::ElectrodeTriangle> attach_electrode(
     Attacher& attacher, const SensorCapacitance::Electrode& own,
     const SensorCapacitance::Electrode& other, const Location& place);

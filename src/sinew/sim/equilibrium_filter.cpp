@@ -30,7 +30,7 @@ void EquilibriumFilter::forget() {
 }
 
 void EquilibriumFilter::begin_settling() {
-  for (Instant& instant : instants_) instant.known = false;  // what was on its way is forgotten
+  for (Instant& instant : instants_) instant.known = false;  // late samples are discarded
   settled_from_ = filter_;
 }
 

@@ -1,5 +1,5 @@
 /// @file
-/// The filter of an estimator whose robot is in equilibrium in each step.
+/// The filter of a quasi-static estimator.
 #pragma once
 
 #include <span>
@@ -10,17 +10,17 @@
 
 namespace sinew::sim {
 
-/// The readings h_k(u_k) and their derivative S_k = dh_k/du of step k are those of this step of the
-/// robot and its linearisation (StepResponse). With x the unknowns, which wander at random,
-///   y = h_k(u_k) + S_k (x_k - u_k) + v
-/// is what a sample of step k says; estimate::RandomWalkFilter takes it, with u_k = the estimate
-/// before step k. This is the extended Kalman filter (Simon, Optimal State Estimation, Wiley 2006,
-/// sec. 13.2) of equilibria along a random walk; a sample that comes late counts for the step in
-/// which it was taken. Step and sample agree to the step's tolerance, and S to the change of the
-/// tangent by the last Newton correction.
+/// An extended Kalman filter (Simon, Optimal State Estimation, Wiley 2006, sec. 13.2) for
+/// equilibria whose unknowns x follow a random walk. The readings h_k(u_k) of step k and their
+/// derivative S_k = dh_k/du are those of the robot's step k and its linearisation (StepResponse).
+/// The measurement equation of a sample of step k is
+///   y = h_k(u_k) + S_k (x_k - u_k) + v,
+/// where u_k is the estimate before step k; estimate::RandomWalkFilter processes it. A late sample
+/// counts for the step in which it was taken. The readings are exact to the tolerance of the step,
+/// and S to the change of the tangent in the last Newton correction.
 class EquilibriumFilter : public EstimatorFilter {
  public:
-  /// See EstimatorFilter; the model has a quasi-static robot.
+  /// See EstimatorFilter; the robot of the model is quasi-static.
   EquilibriumFilter(const EstimatorModel& model, int threads);
 
   void begin_settling() override;
@@ -31,7 +31,7 @@ class EquilibriumFilter : public EstimatorFilter {
   VectorX beyond_path(int lag) const override;
   void correct(int lag, Eigen::Index first, const VectorX& innovation,
                const VectorX& variance) override;
-  /// Of one sample of each sensor, taken in the last step.
+  /// Observability by one sample of each sensor in the last step.
   estimate::Observability observability(const VectorX& variance) const override;
 
  protected:
@@ -42,12 +42,12 @@ class EquilibriumFilter : public EstimatorFilter {
   bool load_own(std::span<const double>& memory) override;
 
  private:
-  // What one step of the robot says.
+  // Linearised measurement model of one step.
   struct Instant {
     bool known = false;
-    VectorX unknowns;     // (n,) that acted
-    VectorX readings;     // (m,)
-    MatrixX sensitivity;  // (m, n)
+    VectorX unknowns;     // (n,) as they acted, u_k
+    VectorX readings;     // (m,) h_k
+    MatrixX sensitivity;  // (m, n) S_k
   };
 
   const Instant& at(int lag) const { return instants_[static_cast<std::size_t>(lag)]; }
@@ -57,8 +57,8 @@ class EquilibriumFilter : public EstimatorFilter {
   static void visit_memory(Self& self, Visitor&& visitor);
 
   estimate::RandomWalkFilter filter_, settled_from_;
-  std::vector<int> controlled_;    // (n,) actuators
-  std::vector<Instant> instants_;  // (lags + 1,) from now back
+  std::vector<int> controlled_;    // (n,) actuators of the unknowns
+  std::vector<Instant> instants_;  // (lags + 1,) newest first
 };
 
 }  // namespace sinew::sim

@@ -20,10 +20,10 @@ namespace sinew::sim {
 namespace {
 
 constexpr double kNever = -1.0;
-// The iterated filter ends where the estimate moves by less than this part of its deviation.
+// The iterated filter ends when the estimate moves by less than this fraction of its deviation.
 constexpr double kSettled = 1e-3;
 constexpr int kMaxSettling = 10;
-// Components of a direction that words leave out.
+// Components of a direction up to this size are omitted from its description.
 constexpr double kUnspoken = 0.1;
 
 std::unique_ptr<EstimatorFilter> make_filter(const EstimatorModel& model, int threads) {
@@ -122,7 +122,7 @@ void Estimator::note_silence(const Run& run) {
   }
 }
 
-// Samples of lost sensors tell nothing.
+// Samples of lost sensors carry no information.
 void Estimator::observe() {
   VectorX variance(model_.readings());
   Eigen::Index first = 0;
@@ -204,7 +204,7 @@ std::string Estimator::message() const {
   }
 }
 
-// Visitor(number) of a double.
+// Calls visitor(number) for every double.
 template <class Self, class Visitor>
 void Estimator::visit_memory(Self& self, Visitor&& visitor) {
   visitor(self.started_);

@@ -1,5 +1,5 @@
 /// @file
-/// What a run concludes from its sensors: forces from outside, efforts of actuators.
+/// Estimation of unknown forces and actuator efforts from the sensors of a run.
 #pragma once
 
 #include <memory>
@@ -20,68 +20,68 @@ struct Run;
 class Simulation;
 
 enum class EstimatorStatus {
-  not_started,  ///< no sample was used yet
+  not_started,  ///< no sample has been used yet
   estimating,
-  unobservable,    ///< along some directions sensors tell less than the prior: see its message
-  sensors_lost,    ///< a sensor is silent: see its message; the estimate goes on without it
-  no_equilibrium,  ///< the estimator's robot found none in the last step
+  unobservable,    ///< sensors add less than the prior in some directions, see message()
+  sensors_lost,    ///< a sensor is silent, see message(); estimation continues without it
+  no_equilibrium,  ///< the estimator's robot found no equilibrium in the last step
 };
 inline constexpr int kEstimatorStatuses = 5;
 /// "not-started", "estimating", "unobservable", "sensors-lost", "no-equilibrium".
 std::string_view estimator_status_name(EstimatorStatus status);
 
-/// A sensor is silent after as many of its periods without a sample.
+/// A sensor counts as silent after this many of its periods without a sample.
 inline constexpr double kSilentPeriods = 5.0;
 
-/// A computer beside the robot, which knows the robot, its commands and the loads of the scene but
-/// those that are named as unknown, and which gets the samples of sensors.
+/// Estimates unknown loads from sensor samples, as a computer beside the robot would. It knows the
+/// robot, its commands and the scene's loads except those named as unknown.
 ///
-/// It moves a robot of its own with the unknowns as it estimates them, and compares samples with
-/// what its sensors say: see EquilibriumFilter, and MotionFilter for a robot with inertia.
+/// It simulates a robot of its own under the estimated unknowns and compares the samples with that
+/// robot's readings: see EquilibriumFilter, and MotionFilter for a robot with inertia.
 ///
-/// What is not known to it is taken for the unknowns: other forces from outside, the bias of
-/// sensors, and the inertia of a robot that it takes for quasi-static.
+/// Effects outside its model are attributed to the unknowns: other external forces, sensor bias,
+/// and the inertia of a robot that it models as quasi-static.
 class Estimator {
  public:
-  /// @param model outlives it. @param plant that has the sensors. @param threads of the estimator's
-  /// robot.
+  /// @param model must outlive it. @param plant the model with the sensors; must outlive it. @param
+  ///   threads of the estimator's robot.
   Estimator(const EstimatorModel& model, const Model& plant, int threads);
   ~Estimator();
   Estimator(Estimator&&) noexcept;
 
   const EstimatorModel& model() const { return model_; }
   VectorX mean() const;        ///< (n,) N or Pa, see EstimatorModel::component_names()
-  MatrixX covariance() const;  ///< (n, n) of them
-  VectorX deviation() const;   ///< (n,) N or Pa
-  /// What sensors tell beyond the prior, see EstimatorFilter::observability(); zeros before the
-  /// first step.
+  MatrixX covariance() const;  ///< (n, n) of the unknowns
+  VectorX deviation() const;   ///< (n,) N or Pa, standard deviations
+  /// Information of the sensors beyond the prior, see EstimatorFilter::observability(); zeros
+  /// before the first step.
   const estimate::Observability& observability() const { return observability_; }
   EstimatorStatus status() const;
-  /// Which sensors are silent, what they do not observe, or why there is no equilibrium; else
-  /// empty.
+  /// Names the silent sensors, the unobservable directions, or the reason why there is no
+  /// equilibrium; otherwise empty.
   std::string message() const;
-  /// Names of sensors that are silent: without a sample for kSilentPeriods, or for their timeout.
+  /// Names of the silent sensors: those without a sample for kSilentPeriods or longer than their
+  /// timeout.
   std::vector<std::string> lost() const;
-  /// Directions that the prior alone decides, in words: "0.98 hand.z - 0.2 hand.x".
+  /// Directions determined by the prior alone, as text: "0.98 hand.z - 0.2 hand.x".
   std::vector<std::string> unobservable() const;
-  /// Samples that came later than the estimator can take.
+  /// Number of samples that arrived too late to be used.
   long dropped() const { return static_cast<long>(dropped_); }
-  /// The robot as the estimator sees it, with the unknowns that it had estimated before the last
-  /// step.
+  /// The estimator's robot, under the unknowns as estimated before the last step.
   const Simulation& robot() const;
 
-  /// As if the run had begun now.
+  /// Starts afresh, as if the run began now.
   void begin(const Run& run);
-  /// After a step and its samples.
+  /// Updates the estimate after a step and its samples.
   void advance(const Run& run);
-  /// After a search for an equilibrium: the iterated filter (Simon 2006, sec. 13.3.1) on the
-  /// samples that were taken there. Time stands still.
+  /// Updates the estimate after a search for an equilibrium: the iterated filter (Simon 2006, sec.
+  /// 13.3.1) on the samples taken there. Time does not advance.
   void settle(const Run& run);
 
-  /// Appends all that changes, finite numbers.
+  /// Appends its state as finite numbers.
   void save(std::vector<double>& memory) const;
-  /// Takes it from the front of `memory`, which it shortens. @return whether it had all numbers of
-  /// such an estimator; else it has to begin().
+  /// Reads its state from the front of `memory`, which is shortened. @return whether `memory` held
+  /// a complete state of such an estimator; if not, call begin().
   bool load(std::span<const double>& memory);
 
  private:

@@ -39,7 +39,7 @@ void EstimatorFilter::settle(const Run& run) {
   keep_time(run);
 }
 
-// The time of its robot is the run's.
+// The robot has the time of the run.
 void EstimatorFilter::keep_time(const Run& run) {
   if (robot_->steps() == run.steps) return;
   State state = robot_->state();
@@ -47,8 +47,7 @@ void EstimatorFilter::keep_time(const Run& run) {
   robot_->restore(state);
 }
 
-// What the command says of an effort, Pa or N: as far as the limits of the actuator let it. 0 where
-// something else is commanded.
+// The commanded effort, Pa or N, within the actuator's limits; 0 if no effort is commanded.
 double EstimatorFilter::told(const Run& run, int actuator) const {
   const auto at = static_cast<std::size_t>(actuator);
   const ActuatorState& state = run.actuation.states()[at];
@@ -59,7 +58,7 @@ double EstimatorFilter::told(const Run& run, int actuator) const {
   return given ? state.effort : 0.0;
 }
 
-// Forces of scripts and hands are what is to be found.
+// External forces of scripts and tethers are among the unknowns, and therefore set to zero.
 Inputs EstimatorFilter::inputs_of(const Run& run, const VectorX& unknowns) {
   Inputs inputs = run.inputs();
   const std::vector<ActuatorState>& states = run.actuation.states();
@@ -78,7 +77,7 @@ Inputs EstimatorFilter::inputs_of(const Run& run, const VectorX& unknowns) {
       const double offset = added ? told(run, actuator) : 0.0;
       const double wanted = offset + unknowns[k];
       const double effort = std::clamp(wanted, limits.min, limits.max);
-      acted_[k] = unknowns[k] + (effort - wanted);  // as it is where nothing bounds it
+      acted_[k] = unknowns[k] + (effort - wanted);  // exactly unknowns[k] within the limits
       inputs.commands[static_cast<std::size_t>(actuator)] = {CommandKind::effort,
                                                              Signal::constant(effort)};
     }
@@ -93,7 +92,7 @@ Inputs EstimatorFilter::inputs_of(const Run& run, const VectorX& unknowns) {
   return inputs;
 }
 
-// A run does not end because its estimator's robot fails.
+// A run continues if its estimator's robot fails.
 bool EstimatorFilter::move(const Run& run, const VectorX& unknowns, bool settles) {
   robot_->set_inputs(inputs_of(run, unknowns));
   failed_ = false;

@@ -1,5 +1,5 @@
 /// @file
-/// What an estimator concludes from samples, with a robot of its own.
+/// Interface of an estimator's filter, which runs a robot of its own.
 #pragma once
 
 #include <memory>
@@ -17,56 +17,58 @@ struct Inputs;
 struct Run;
 class Simulation;
 
-/// The distribution of an estimator's unknowns, and of the readings that it expects at the instants
-/// 0 .. lags back from now. Normal, by a linearisation about the path of the estimator's robot, on
-/// which the unknowns act as they are estimated.
+/// The joint normal distribution of an estimator's unknowns and of the expected readings at the
+/// last lags + 1 instants (lag 0 is now), linearised about the path of the estimator's robot under
+/// the estimated unknowns.
 class EstimatorFilter {
  public:
-  /// @param model outlives it. @param threads of the robot.
+  /// @param model must outlive it. @param threads of the robot.
   EstimatorFilter(const EstimatorModel& model, int threads);
   virtual ~EstimatorFilter();
   EstimatorFilter(const EstimatorFilter&) = delete;
   EstimatorFilter& operator=(const EstimatorFilter&) = delete;
 
-  /// As if the run had begun now. @param run now.
+  /// Starts afresh, as if the run began now. @param run at its present time.
   void restart(const Run& run);
-  /// To the end of the run's last step. @param run now. @param time_step s.
+  /// Predicts to the end of the run's last step. @param run at its present time.
+  /// @param time_step s.
   void advance(const Run& run, double time_step);
-  /// Forgets what happened before, but for the distribution: what settle() begins from.
+  /// Discards the past instants and stores the present distribution, from which settle() starts.
   virtual void begin_settling() = 0;
-  /// From there, to an equilibrium of the run's inputs with the unknowns as estimated now. Time
-  /// stands still. @param run now.
+  /// Predicts from there to an equilibrium under the run's inputs and the unknowns as estimated
+  /// now. Time does not advance. @param run at its present time.
   void settle(const Run& run);
 
   virtual VectorX mean() const = 0;        ///< (n,)
   virtual MatrixX covariance() const = 0;  ///< (n, n)
-  /// Whether a sample of an instant says something. @param lag 0 .. lags.
+  /// Whether samples of an instant can be used. @param lag 0 .. lags.
   virtual bool knows(int lag) const = 0;
-  /// (m,) what all sensors say of the robot's path. @param lag of an instant that it knows.
+  /// (m,) readings of all sensors on the robot's path. @param lag of a known instant.
   virtual const VectorX& path(int lag) const = 0;
-  /// (m,) how much more they are expected to have said than that, as EstimatorModel::difference()
-  /// has it. @param lag of an instant that it knows.
+  /// (m,) expected readings minus those on the path, in the sense of EstimatorModel::difference().
+  /// @param lag of a known instant.
   virtual VectorX beyond_path(int lag) const = 0;
-  /// Takes a sample of one sensor. @param lag of an instant that it knows. @param first of the
-  /// sensor among the readings. @param innovation (k,) the sample less what was expected of it.
-  /// @param variance (k,) > 0.
+  /// Updates the distribution by a sample of one sensor. @param lag of a known instant.
+  /// @param first index of the sensor's first component among the readings.
+  /// @param innovation (k,) sample minus its expected value. @param variance (k,) > 0.
   virtual void correct(int lag, Eigen::Index first, const VectorX& innovation,
                        const VectorX& variance) = 0;
-  /// What sensors tell beyond the prior. @param variance (m,) of samples; infinity: lost.
+  /// Information of the sensors beyond the prior. @param variance (m,) of samples; infinity: lost.
   virtual estimate::Observability observability(const VectorX& variance) const = 0;
 
   const Simulation& robot() const { return *robot_; }
-  /// Whether the robot failed in the last step, and why where that is known.
+  /// Whether the robot failed in the last step, and the reason if it is known.
   bool failed() const { return failed_; }
   const std::string& reason() const { return reason_; }
 
-  /// Appends all that changes, finite numbers.
+  /// Appends its state as finite numbers.
   void save(std::vector<double>& memory) const;
-  /// Takes it from the front of `memory`, which it shortens. @return whether it had all numbers.
+  /// Reads its state from the front of `memory`, which is shortened.
+  /// @return whether the state was complete.
   bool load(std::span<const double>& memory);
 
  protected:
-  /// Back to the prior.
+  /// Resets the distribution to the prior.
   virtual void forget() = 0;
   virtual void predict(const Run& run, double time_step) = 0;
   virtual void predict_rest(const Run& run) = 0;
@@ -75,12 +77,14 @@ class EstimatorFilter {
 
   const EstimatorModel& model() const { return model_; }
   Simulation& own_robot() { return *robot_; }
-  /// Steps the robot, or lets it come to rest. @param run whose inputs act. @param unknowns (n,).
-  /// @param settles to rest. @return whether it got there.
+  /// Makes a step of the robot, or finds its equilibrium. @param run whose inputs act.
+  /// @param unknowns (n,). @param settles whether to find the equilibrium.
+  /// @return whether it succeeded.
   bool move(const Run& run, const VectorX& unknowns, bool settles);
-  /// (n,) the unknowns as they acted in the last move: a cable does not push.
+  /// (n,) the unknowns as they acted in the last move, within the limits of their actuators: a
+  /// cable cannot push.
   const VectorX& acted() const { return acted_; }
-  /// (m,) what the sensors say of the robot without errors.
+  /// (m,) readings of the robot's sensors without errors.
   VectorX readings() const;
 
  private:

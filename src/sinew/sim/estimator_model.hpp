@@ -1,5 +1,5 @@
 /// @file
-/// Estimators of a model: what each concludes from which sensors.
+/// Estimators of a model: their unknowns and sensors.
 #pragma once
 
 #include <memory>
@@ -13,65 +13,65 @@ namespace sinew::sim {
 
 class Model;
 
-/// What an estimator looks for.
+/// A quantity that an estimator estimates.
 struct Unknown {
   enum class Kind {
-    force,   ///< a dead force on a point: components along x, y and z of the world
-    effort,  ///< of an actuator: what is added to its commanded effort, see command_known
+    force,   ///< a dead force on a point: components along the world axes
+    effort,  ///< of an actuator: in addition to its commanded effort, see command_known
   };
   std::string name;
   Kind kind = Kind::force;
-  int first_actuator = 0;  ///< of the estimator's robot: three forces in turn, or the actuator
-  double prior = 1.0;  ///< standard deviation of each component before anything is measured, in its
-                       ///< unit
-  double walk = 1.0;   ///< its unit over sqrt(s), of each component's random walk
-  /// Of an effort: whether the estimator knows the command. It then looks for the difference of
-  /// effort and commanded effort; where it does not know, or no effort is commanded, for the whole.
+  int first_actuator = 0;  ///< of the estimator's robot: the first of three forces, or the actuator
+  double prior = 1.0;      ///< prior standard deviation of each component, in its unit
+  double walk = 1.0;       ///< of each component's random walk, in its unit per sqrt(s)
+  /// For an effort: whether the estimator knows the command. If so, it estimates the difference
+  /// between effort and commanded effort; otherwise, or if no effort is commanded, the whole
+  /// effort.
   bool command_known = true;
   const char* unit = "N";
 
   int size() const { return kind == Kind::force ? 3 : 1; }
 };
 
-/// A sensor that an estimator goes by.
+/// A sensor that an estimator uses.
 struct EstimatorSensor {
-  int index = 0;           ///< in Model::sensors() of the model that has the estimator
-  int effector = -1;       ///< of the estimator's robot, of a marker or an orientation; else -1
-  double deviation = 0.0;  ///< of one sample, in its unit, > 0
+  int index = 0;           ///< in Model::sensors() of the model with the estimator
+  int effector = -1;       ///< of the estimator's robot, for a marker or orientation; else -1
+  double deviation = 0.0;  ///< standard deviation of one sample, in its unit, > 0
   double delay = 0.0;      ///< s
   double period = 0.0;     ///< s between samples
   std::size_t size = 1;
 };
 
-/// Immutable part of an estimator.
+/// The immutable part of an estimator.
 struct EstimatorModel {
   std::string name;
-  /// The robot as the estimator knows it, quasi-static or with the integrator of the model with the
-  /// estimator: its sensors are those of `sensors`, in their order, and its actuators those of that
-  /// model, then the unknown forces.
+  /// The robot as the estimator knows it: quasi-static, or with the integrator of the model with
+  /// the estimator. Its sensors are those in `sensors`, in the same order; its actuators are those
+  /// of that model, followed by the unknown forces.
   std::shared_ptr<const Model> robot;
   std::vector<EstimatorSensor> sensors;
   std::vector<Unknown> unknowns;
   std::vector<int>
-      loads;     ///< (loads of `robot`,) in Model::loads() of the model with the estimator
-  int lags = 0;  ///< steps of the longest delay
-  int rank = 0;  ///< columns of the covariance of a robot with inertia, see MotionFilter
+      loads;     ///< (loads of `robot`,) indices in Model::loads() of the model with the estimator
+  int lags = 0;  ///< number of steps of the longest delay
+  int rank = 0;  ///< columns of the covariance for a robot with inertia, see MotionFilter
 
-  Eigen::Index size() const;      ///< n: components of all unknowns
-  Eigen::Index readings() const;  ///< m: numbers that all sensors say
+  Eigen::Index size() const;      ///< n: number of components of all unknowns
+  Eigen::Index readings() const;  ///< m: number of components of all sensors
   /// (n,) "hand.x", "hand.y", "hand.z" of a force, "leak" of an effort.
   std::vector<std::string> component_names() const;
-  /// (n,) a number of the unknown that each component belongs to. @param number prior or walk.
+  /// (n,) the prior or walk of each component's unknown. @param number member of Unknown.
   VectorX of_components(double Unknown::*number) const;
-  /// (k,) what takes a reading of a sensor to another one: their difference, or of an orientation
-  /// the rotation vector of R_to R_from^T. @param sensor its number among `sensors`.
-  /// @param to,from (k,) of it.
+  /// (k,) difference of two readings of a sensor; for an orientation, the rotation vector of R_to
+  /// R_from^T. @param sensor index in `sensors`.
+  /// @param to,from (k,) readings.
   VectorX difference(std::size_t sensor, const VectorX& to, const VectorX& from) const;
-  /// (n,) of the estimator's robot, whose effort each component is part of.
+  /// (n,) the actuator of the estimator's robot that applies each component.
   std::vector<int> actuators() const;
 };
 
-/// What ModelBuilder::add_estimator() is told: sensors by name.
+/// Settings for ModelBuilder::add_estimator(); sensors are given by name.
 struct EstimatorSettings {
   std::string name;
   Location place;

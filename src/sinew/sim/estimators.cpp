@@ -9,7 +9,7 @@ namespace sinew::sim {
 
 namespace {
 
-// Of the robots, sensors and unknowns that the numbers are of. A whole number that a double holds
+// Hash of the robots, sensors and unknowns of a saved state, as an integer that a double represents
 // exactly.
 double signature_of(const std::vector<EstimatorModel>& estimators) {
   ValueHash hash;

@@ -9,11 +9,11 @@
 
 namespace sinew::sim {
 
-/// Steps estimators as a run goes on. They only look: a run takes the same bits with and without
-/// them.
+/// Updates the estimators during a run. Estimators only observe: the run is the same, bit for bit,
+/// with and without them.
 class Estimators {
  public:
-  /// @param model outlives them. @param threads inside a step of theirs.
+  /// @param model must outlive them. @param threads of each estimator's robot.
   Estimators(const Model& model, int threads);
 
   const Estimator& at(int index) const { return all_[static_cast<std::size_t>(index)]; }
@@ -23,10 +23,10 @@ class Estimators {
   void advance(const Run& run);
   void settle(const Run& run);
 
-  /// All that changes, finite numbers; nothing without estimators.
+  /// Writes the state of all estimators as finite numbers; nothing without estimators.
   void save(std::vector<double>& memory) const;
-  /// Takes it up again. @return whether it is of the same estimators; else they have to begin().
-  /// Throws Error(wrong-length) where it is theirs and incomplete.
+  /// Restores the state. @return whether it belongs to the same estimators; if not, call begin().
+  /// Throws Error(wrong-length) if it belongs to them but is incomplete.
   bool load(std::span<const double> memory);
 
  private:

@@ -12,21 +12,21 @@ namespace sinew::sim {
 
 namespace {
 
-// Bounds that no step of a sound scene comes near: impacts at one moment, parts of a step, and
-// times that a part is made.
+// Bounds that are far beyond the needs of a valid scene: impacts at one time, parts of a step, and
+// trials of a part.
 constexpr int kMaxImpacts = 1000;
 constexpr int kMaxParts = 100000;
 constexpr int kMaxTrials = 200;
-// The smallest part that is tried after a failure, of the step.
+// Smallest part, relative to the step, that is tried after a failure.
 constexpr double kSmallest = 1.0 / 64.0;
-// Of the robot's size: motions in a part that are none.
+// Smaller motions in a part, relative to the robot's size, are zero.
 constexpr double kStill = 1e-9;
 
 bool stops(const step::ActuatorBlock& block) {
   return std::isfinite(block.motion_min) || std::isfinite(block.motion_max);
 }
 
-// Contacts strike while it lives.
+// Enables striking contacts during its lifetime.
 class Events {
  public:
   explicit Events(ContactRows& contacts) : contacts_(contacts) { contacts_.set_events(true); }
@@ -68,7 +68,7 @@ void EventStepper::make_parts(double begin, double time_step) {
   }
 }
 
-// Impacts of the present moment, until no point approaches.
+// Solves impacts at the present time until no closed point approaches.
 void EventStepper::collide(double time) {
   for (strikes_ = 0;; ++strikes_) {
     run_.surroundings.set_base_rates(time, Signal::Side::after);
@@ -82,7 +82,7 @@ void EventStepper::collide(double time) {
   points_.close();
 }
 
-// The longest part up to which no gap closes.
+// Makes the longest part up to which no gap closes.
 double EventStepper::advance(double time, double left) {
   run_.keep(start_);
   double length = left;
@@ -111,8 +111,9 @@ double EventStepper::advance(double time, double left) {
   give_up("the moment of an impact is not found");
 }
 
-// What the midpoint rule leaves of velocities along rows that are held; and backward Euler, where
-// bodies are held on what moves by itself: it gives them the mean velocity of that.
+// Removes velocities along held rows that the midpoint rule leaves. Also after backward Euler if
+// bodies are held by something with a prescribed motion, since this method gives them its mean
+// velocity.
 void EventStepper::hold(double time) {
   using mechanics::StepEnd;
   moved_bases_ |= std::ranges::any_of(run_.world.bodies().ends(), &StepEnd::moved_from_outside);
@@ -125,7 +126,7 @@ void EventStepper::hold(double time) {
   if (joins || ((carried_on_ || moves) && points_.drift(run_.effort))) impact_.hold();
 }
 
-// Points that rebounded next to nothing stay closed: the impact was an inelastic one.
+// Points with negligible rebounds stay closed: the impact is repeated as inelastic.
 void EventStepper::rest(double time) {
   if (strikes_ > 0) run_.restore(struck_);
   run_.report.impacts -= strikes_;
@@ -133,7 +134,7 @@ void EventStepper::rest(double time) {
   run_.keep(start_);
 }
 
-// A part of this length, or half of it. @return its length.
+// Makes a part of this length, or half of it. @return its length.
 double EventStepper::move(double time, double length) {
   const bool smooth = is_smooth(time + length, length);
   const double solved = smooth ? 0.5 * length : length;
@@ -151,14 +152,14 @@ double EventStepper::move(double time, double length) {
   return solved;
 }
 
-// Whether the first half of a part may say what the second one does. A stop or a taut cable that
-// has just caught a body leaves it a velocity that a step of backward Euler takes away.
+// Whether the first half of a part predicts the second. A limit or a taut cable that has just
+// stopped a body leaves it a velocity, which a step of backward Euler removes.
 bool EventStepper::is_smooth(double end, double length) {
   World& world = run_.world;
   if (run_.actuation.drive_numbers() > 0 || !run_.model->guides().empty()) return false;
   if (!world.bodies().can_carry_on() || world.contacts().touches_softly(run_.effort)) return false;
   substep_.read_commands(end, length);
-  world.measure_delta();  // the rows of the present state, not of the last part's end
+  world.measure_delta();  // at the present state, not at the end of the last part
   return std::ranges::none_of(world.problem().actuators, [&](const step::ActuatorBlock& block) {
     if (block.row < 0) return false;
     if (block.kind == step::CommandKind::motion) return true;
@@ -168,8 +169,8 @@ bool EventStepper::is_smooth(double end, double length) {
   });
 }
 
-// Whether nothing has caught a body in the first half: joints' limits, cables with a limit of their
-// motion, points of deformable bodies, friction.
+// Whether nothing stopped a body in the first half: joint limits, cables with a limited motion,
+// points of deformable bodies, friction.
 bool EventStepper::stays_smooth() const {
   const World& world = run_.world;
   if (!world.bodies().can_carry_on() || world.contacts().gap_closed(run_.effort)) return false;

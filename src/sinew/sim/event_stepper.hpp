@@ -1,5 +1,5 @@
 /// @file
-/// A time step from one impact to the next.
+/// Event-driven time steps, divided at impacts.
 #pragma once
 
 #include <cstddef>
@@ -16,27 +16,27 @@ namespace sinew::sim {
 struct Run;
 
 /// Event-driven integration (Acary & Brogliato, Numerical Methods for Nonsmooth Dynamical Systems,
-/// 2008, ch. 8). Where rigid bodies touch, points are open or closed. A part of the step is made as
-/// if open points could pass through; where a gap would close in it, it is made again, up to there.
-/// Then an impact is solved (Impact), and the next part begins.
+/// 2008, ch. 8). Contact points of rigid bodies are open or closed. A part of the step is made as
+/// if open points could pass through surfaces; if a gap closes in it, the part is repeated up to
+/// the time of closure. Then the impact is solved (Impact), and the next part begins.
 ///
-/// A part is a step of the midpoint rule (Midpoint). It is one of backward Euler where half a
-/// motion says little about the other half: where deformable bodies touch anything or their bases
-/// move, where actuators are told motions, joints or cables rub, drives or materials have memories.
-/// It ends in its middle where something else catches a body (a joint's limit, a cable that becomes
-/// taut, a point that stops to slide), and at the corners of motions that are given.
+/// A part is a step of the midpoint rule (Midpoint), or of backward Euler if half a motion does not
+/// predict the other half: if deformable bodies have contact or moving bases, if motions of
+/// actuators are commanded, if joints or cables have friction, or if drives or materials have
+/// memory. It ends in its middle if something else stops a body (a joint limit, a cable that
+/// becomes taut, a point that stops sliding), and at the corners of prescribed motions.
 ///
-/// A rebound that would rise less than 1e-9 of the robot's size is none: the impact is solved again
-/// without restitution, and the point stays closed. That ends the infinite sequences of rebounds
-/// (Zeno). Which points are closed follows from gaps and velocities alone.
+/// A rebound by less than 1e-9 of the robot's size is suppressed: the impact is solved again
+/// without restitution, and the point stays closed. This ends infinite sequences of rebounds (Zeno
+/// behaviour). Gaps and velocities alone determine which points are closed.
 class EventStepper {
  public:
-  /// @param run outlives it.
+  /// @param run must outlive it.
   explicit EventStepper(Run& run);
-  /// Advances the run by a time step. @param begin,time_step s. Throws Error; the run is then
-  /// somewhere in the step.
+  /// Advances the run by a time step.
+  /// @param begin,time_step s. Throws Error, after which the run is at some time within the step.
   void step(double begin, double time_step);
-  /// Whether a base has moved in it.
+  /// Whether a base has moved in the step.
   bool moved_bases() const { return moved_bases_; }
   std::size_t bytes() const { return sizeof(double) * (start_.size() + struck_.size()); }
 
@@ -56,11 +56,11 @@ class EventStepper {
   Midpoint midpoint_;
   Impact impact_;
   StrikingPoints points_;
-  State start_, struck_;               // of a part; before the impact that it begins with
+  State start_, struck_;               // at the start of a part; before the impact at its start
   int strikes_ = 0;                    // impacts since struck_
-  double longest_ = 0.0;               // s, part of the step in hand: others fail
-  bool carried_on_ = false;            // the last part, by the midpoint rule
-  bool moved_bases_ = false;           // in some part
+  double longest_ = 0.0;               // s, longest part of this step that has not failed
+  bool carried_on_ = false;            // whether the last part followed the midpoint rule
+  bool moved_bases_ = false;           // whether a base moved in any part
   std::vector<double> effort_before_;  // (rows,) N
 };
 

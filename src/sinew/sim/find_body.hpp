@@ -1,5 +1,5 @@
 /// @file
-/// The bodies of a model under construction, as what acts on them names them.
+/// Checked access to the bodies of a model under construction.
 #pragma once
 
 namespace sinew {
@@ -16,12 +16,12 @@ namespace sinew::sim {
 
 struct ModelData;
 
-/// @param data with the bodies. @param index as it was given. @param place of what names it. Throws
-/// Error(unknown-name).
+/// A body by index. @param data with the bodies. @param index as given.
+/// @param place source location of the reference. Throws Error(unknown-name).
 mechanics::BodyModel& find_body(ModelData& data, int index, const Location& place);
 
-/// A body of finite elements. @param data,index,place as find_body()'s. @param what is for such
-/// bodies alone: "loads". Throws Error: unknown-name, wrong-type.
+/// A body of finite elements by index. @param data,index,place as for find_body().
+/// @param what needs such a body, for the message: "loads". Throws Error: unknown-name, wrong-type.
 fem::HasElements& find_elements(ModelData& data, int index, const Location& place,
                                 const char* what);
 

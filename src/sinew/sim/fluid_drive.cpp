@@ -12,9 +12,10 @@ namespace sinew::sim {
 
 namespace {
 
-// Above this ratio of pressures the flow is taken linear to zero.
+// Above this pressure ratio, the flow is linear to zero.
 constexpr double kLinear = 0.999;
-// A chamber is not squeezed below this part of its volume; the gas law would be singular.
+// Minimum volume of a chamber relative to its volume at rest, below which the gas law would be
+// singular.
 constexpr double kMinVolume = 1e-3;
 
 void check(const std::optional<Supply>& supply) {
@@ -38,10 +39,10 @@ double total_volume(double rest_volume, double dead_volume) {
 }
 
 struct Flow {
-  double flow, slope;  // m^3/s, and by the downstream pressure
+  double flow, slope;  // m^3/s, and its derivative by the downstream pressure
 };
 
-// From absolute pressure `up` to `down` < up.
+// Flow from the absolute pressure `up` to `down` < up.
 Flow forward(double conductance, double critical, double up, double down) {
   const double ratio = down / up;
   if (ratio <= critical) return {conductance * up, 0.0};
@@ -57,7 +58,7 @@ Flow forward(double conductance, double critical, double up, double down) {
   return {conductance * up * shape(ratio), -conductance * s / ((1.0 - critical) * shape(ratio))};
 }
 
-// Into the chamber at `inside` from `outside`, either way; slope by `inside`.
+// Flow into a chamber at `inside` from `outside`, in either direction; slope by `inside`.
 Flow inflow(double conductance, double critical, double outside, double inside) {
   if (conductance == 0.0) return {0.0, 0.0};
   if (outside >= inside) return forward(conductance, critical, outside, inside);
@@ -96,8 +97,8 @@ Drive::Response GasDrive::respond(const Step& step, double motion) const {
 }
 
 // Backward Euler for the content: v_f = v_i + h (q_in(p) - q_out(p)), p = p_ambient (v_f / V)^k.
-// The pressure that this gives falls with p, so that there is one root, found by bisection and
-// Newton.
+// The pressure from the gas law decreases with p, so there is one root, found by Newton's method
+// with bisection.
 Drive::Response GasDrive::fed(const Step& step, double volume) const {
   const Supply& supply = *settings_.supply;
   const double ambient = settings_.ambient_pressure, k = settings_.exponent;
@@ -108,7 +109,7 @@ Drive::Response GasDrive::fed(const Step& step, double volume) const {
     const Flow out = inflow(supply.leak, supply.critical_ratio, ambient, p);
     return Flow{in.flow + out.flow, in.slope + out.slope};
   };
-  // The residual rises with p: p less what the gas law gives, or in the long run what flows out.
+  // The residual increases with p: p minus the gas law, or in the steady state the outflow.
   struct Value {
     double value, slope;
   };
@@ -157,7 +158,7 @@ bool LiquidDrive::acts_on(CommandKind kind) const {
   return kind == CommandKind::input || (kind == CommandKind::effort && settings_.supply);
 }
 
-// p = s (x - motion) with x the liquid added; fed: x = x_i + h (C (p_s - p) - L p).
+// p = s (x - motion) with the added liquid x; with a supply: x = x_i + h (C (p_s - p) - L p).
 Drive::Response LiquidDrive::respond(const Step& step, double motion) const {
   if (step.kind == CommandKind::input) {
     return {stiffness_ * (step.command - motion), -stiffness_};

@@ -11,7 +11,7 @@ namespace sinew::sim {
 
 namespace {
 
-constexpr double kFolded = 0.1;  // of the mean piece at rest
+constexpr double kFolded = 0.1;  // of the mean segment length at rest
 
 }  // namespace
 

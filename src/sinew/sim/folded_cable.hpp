@@ -1,5 +1,5 @@
 /// @file
-/// Cables whose points have met.
+/// Diagnosis of cables that have folded.
 #pragma once
 
 #include <span>
@@ -13,9 +13,10 @@ namespace sinew::sim {
 
 class Model;
 
-/// A taut cable draws its points together. Where two of them meet, its force turns round and no
-/// state balances it. Says which piece of which cable is down to a tenth of the mean one:
-/// ", and piece 4 of cable 'east' is down to 0.2 mm: ..."; empty where none is.
+/// A taut cable pulls its points together. Where two of them meet, its force changes direction and
+/// no equilibrium exists. Reports the cable segment that has shrunk most, if to less than a tenth
+/// of the mean segment length:
+/// ", and piece 4 of cable 'east' is down to 0.2 mm: ..."; empty if there is none.
 /// @param model with the cables. @param configuration of its points. @param effort (rows,) N.
 std::string describe_folded_cable(const Model& model,
                                   const constraint::Configuration& configuration,

@@ -31,7 +31,7 @@ GeometricStiffness::GeometricStiffness(const Model& model,
 
 void GeometricStiffness::begin(const mechanics::LinearisationRequest& request) {
   tangent_ = request.tangent;
-  // Inertia holds a body by itself.
+  // In dynamics, inertia makes anchors unnecessary.
   for (std::size_t k = 0; k < anchor_rows_; ++k) {
     problem_.stiffness[k].stiffness =
         request.weights.dynamic() ? 0.0 : -model_.anchors()[k / 3].stiffness;
@@ -81,8 +81,8 @@ void GeometricStiffness::add_to(const mechanics::MaterialPoint& point, const Mat
   systems_[static_cast<std::size_t>(point.body)]->add_geometric_stiffness({point, point, hessian});
 }
 
-// A piece of a cable between two bodies: its C = T/l (I - n n^T), which the pairs of either point
-// with itself have added to the bodies, becomes a spring T/l along the rows of its coupling.
+// A cable segment between two bodies: its C = T/l (I - n n^T), which the pairs of each point with
+// itself have added to the bodies, becomes a spring T/l along the rows of its coupling.
 void GeometricStiffness::couple(const mechanics::StiffnessPair& pair) {
   for (const mechanics::MaterialPoint& point : {pair.first, pair.second}) {
     add_to(point, pair.hessian);
@@ -96,9 +96,9 @@ void GeometricStiffness::couple(const mechanics::StiffnessPair& pair) {
   }
 }
 
-// A pair (x_i, x_j) with block C puts -C at (i, j) and -C^T at (j, i) into A. What is never less:
-// |C| I at (i, i) and (j, j), as bodies bound what they hold; a pair of one point gives its
-// positive part. All stays on points' own blocks.
+// A pair (x_i, x_j) with block C adds -C at (i, j) and -C^T at (j, i) to A. Its majorant is |C| I
+// at (i, i) and (j, j), which bounds the off-diagonal blocks; a pair of one point contributes its
+// positive part. Only the points' diagonal blocks change.
 void GeometricStiffness::add_majorant(const mechanics::StiffnessPair& pair) {
   if (pair.first == pair.second) {
     return add_to(pair.first, -linalg::positive_part(Matrix3(-pair.hessian)));

@@ -1,5 +1,5 @@
 /// @file
-/// What the robot's tangent has beside that of its bodies.
+/// Contributions to the tangent beyond the stiffness of the bodies.
 #pragma once
 
 #include <cstddef>
@@ -25,26 +25,27 @@ namespace sinew::sim {
 
 class Model;
 
-/// The geometric stiffness of constraints under load, and the anchors of bodies that
-/// only joints hold. What stands on the points of one body is added to its A; what couples two, and
-/// what anchors must not add to the robot, goes into the step's problem as blocks of stiffness.
+/// The geometric stiffness of loaded constraints, and the anchors of bodies that only joints hold.
+/// Terms on points of one body are added to its A. Terms that couple two bodies, and the terms that
+/// cancel the anchors, become stiffness blocks of the step's problem.
 class GeometricStiffness {
  public:
-  /// All must outlive it. @param model whose constraints they are. @param configuration of its
-  /// bodies. @param systems of the bodies. @param problem gets the blocks of stiffness of anchors
-  /// and couplings.
+  /// All must outlive it. @param model with the constraints. @param configuration of its bodies.
+  /// @param systems of the bodies.
+  /// @param problem receives the stiffness blocks of anchors and couplings.
   GeometricStiffness(const Model& model, const constraint::Configuration& configuration,
                      std::span<mechanics::StepSystem* const> systems, step::StepProblem& problem);
 
-  /// Before the bodies linearise: anchors stand in statics alone.
+  /// Call before the bodies linearise. Anchors act in statics only.
   void begin(const mechanics::LinearisationRequest& request);
-  /// Of which constraints the next add() takes it. @param effort (rows,) N, at which it does; is
-  /// copied. @param constraints indices; must last until then.
+  /// Chooses the constraints whose geometric stiffness the next add() adds.
+  /// @param effort (rows,) N, copied. @param constraints indices; must stay valid until then.
   void choose(std::span<const double> effort, std::span<const int> constraints);
-  /// Adds it to the bodies: as it is, or, where the linearisation's tangent is not
-  /// exact, what is never less and positive semi-definite; and the anchors.
+  /// Adds the geometric stiffness and the anchors to the bodies. If the tangent of the
+  /// linearisation is not exact, terms that may soften are replaced by a positive semidefinite
+  /// majorant.
   void add();
-  /// Whether a majorant of it stands in A, which is then no derivative.
+  /// Whether A contains such a majorant, and is therefore not the derivative.
   bool has_majorant() const { return majorant_; }
   std::size_t bytes() const { return stiffness_pairs_.size() * sizeof(mechanics::StiffnessPair); }
 
@@ -60,11 +61,11 @@ class GeometricStiffness {
   std::span<mechanics::StepSystem* const> systems_;
   step::StepProblem& problem_;
   std::vector<mechanics::StiffnessPair> stiffness_pairs_;
-  std::vector<double> effort_;   // (rows,) N, of the chosen
-  std::span<const int> chosen_;  // constraints whose geometric stiffness add() adds
+  std::vector<double> effort_;   // (rows,) N, for the chosen constraints
+  std::span<const int> chosen_;  // constraints for the next add()
   mechanics::Tangent tangent_ = mechanics::Tangent::corotated;
   bool majorant_ = false;
-  std::size_t anchor_rows_ = 0;  // of problem_.stiffness; behind them those of couplings
+  std::size_t anchor_rows_ = 0;  // of problem_.stiffness; those of couplings follow
 };
 
 }  // namespace sinew::sim

@@ -20,7 +20,7 @@ int HeldMotions::count() {
   return std::max(0, step::negative_directions(pivots, invert(), held_));
 }
 
-// @return negative eigenvalues of S.
+// @return the number of negative eigenvalues of S.
 int HeldMotions::invert() {
   const auto [matrix, scale] = step::held_compliance(world_.problem(), held_);
   const auto scaled = linalg::spectral_inverse(matrix);

@@ -1,5 +1,5 @@
 /// @file
-/// Load stepping: removes an imbalance of forces in fractions.
+/// Load stepping: removal of a residual in fractions.
 #pragma once
 
 #include <span>
@@ -10,17 +10,17 @@ namespace sinew::sim {
 
 class Bodies;
 
-/// The homotopy residual r_0 = b + H^T effort of a linearisation, and how much of it still acts:
-/// the bodies' b is lessened by fraction * r_0, so that at 1 the robot is in equilibrium where it
-/// stood, and at 0 where it belongs.
+/// The homotopy residual r_0 = b + H^T effort of a linearisation, and the fraction of it that still
+/// acts: fraction * r_0 is subtracted from the bodies' b. At 1, the initial state is in
+/// equilibrium; at 0, the full residual acts.
 class Homotopy {
  public:
   /// @param bodies must outlive it.
   explicit Homotopy(Bodies& bodies) : bodies_(bodies) {}
 
-  /// r_0 is that of the present linearisation. @param effort (rows,) N.
+  /// Stores r_0 of the present linearisation. @param effort (rows,) N.
   void keep_residual(std::span<const double> effort);
-  /// From the next linearisation on. @param fraction 0 to 1; 0 ends it.
+  /// Applies a fraction from the next linearisation on. @param fraction 0 to 1; 0 ends it.
   void set_fraction(double fraction);
 
  private:

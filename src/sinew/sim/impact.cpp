@@ -13,10 +13,10 @@ namespace sinew::sim {
 
 namespace {
 
-// Within this time nothing but inertia counts: of a mesh whose fastest mode has w = 1e7 rad/s, the
+// Time step in which only inertia matters: for a mesh whose fastest mode has w = 1e7 rad/s, the
 // stiffness is (w t)^2 = 1e-10 of M/t^2.
 constexpr double kInstant = 1e-12;
-// Energy from an impact, of |p.u-|, beyond rounding.
+// Gain of energy beyond rounding, relative to |p.u-|.
 constexpr double kGain = 1e-9;
 
 // A = M/t^2.
@@ -45,8 +45,8 @@ void Impact::hold() {
   apply();
 }
 
-// Several coefficients at once may gain energy (Kane's paradox). Less of them for all gains less,
-// and none gains nothing.
+// Different coefficients may increase the energy (Kane's paradox). The smallest one for all points
+// reduces the gain, and zero restitution removes it.
 void Impact::solve(std::span<const double> restitution) {
   form();
   for (const double max_restitution : {1.0, smallest(restitution), 0.0}) {
@@ -95,7 +95,7 @@ std::size_t Impact::point_of(const step::ContactBlock& block) const {
   return static_cast<std::size_t>(row - run_.model->contact(block.contact).first_row()) / 3;
 }
 
-// J: what surfaces of the world do that move.
+// J: work of surfaces of the world with prescribed motion.
 double Impact::outside() const {
   const ContactPlanes& planes = run_.world.contacts().planes();
   double sum = 0.0;
@@ -147,7 +147,7 @@ void Impact::apply() {
   bodies.solve(force_, change_);
   change_ /= kInstant * kInstant;
   bodies.add_velocity(change_);
-  bodies.residual(run_.effort);  // which bodies remember
+  bodies.residual(run_.effort);  // bodies store the efforts
   run_.world.forget_solved();
   run_.ledger.count_impact(-gained_, outside());
 }

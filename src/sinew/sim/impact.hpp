@@ -1,5 +1,5 @@
 /// @file
-/// Velocities that change at once.
+/// Impacts, at which velocities jump.
 #pragma once
 
 #include <cstddef>
@@ -14,29 +14,29 @@ namespace sinew::sim {
 
 struct Run;
 
-/// Newton's law of impact with friction in Moreau's form (Moreau 1988, sec. 10; Acary & Brogliato,
+/// Newton's impact law with friction in Moreau's form (Moreau 1988, sec. 10; Acary & Brogliato,
 /// Numerical Methods for Nonsmooth Dynamical Systems, 2008, sec. 4.2): with the impulses p (N s) of
 /// all closed points, joints and held motors, u+ = u- + W p, W = H M^-1 H^T,
 ///   K contains p _|_ (u + mu |u_t| n) in K*,   u = u+ + e u-,   at each point,
-///   u+ = 0 of joints,   u+ = u- of motors that hold a motion.
-/// One e acts along and across the normal; a point that does not approach has e = 0. With one e for
-/// all points, the kinetic energy changes by
+///   u+ = 0 at joints,   u+ = u- at motors that hold a motion.
+/// The same e acts along and across the normal; a point that does not approach has e = 0. With one
+/// e for all points, the kinetic energy changes by
 ///   p.(u+ + u-)/2 = (p.u - (1 - e)/2 p.W p)/(1 + e) <= 0,
-/// since the law has p.u <= 0. Velocities are relative to surfaces that move by themselves: their
-/// work p.v is added to that, and counts as work from outside. With several, it might grow: then
-/// the smallest holds for all, or none. Springs, commanded efforts and bodies' own stiffness are
-/// finite forces, which give no impulse.
+/// since the law implies p.u <= 0. With different e, it might grow; then the smallest e is used for
+/// all points, or e = 0. Velocities are relative to surfaces with prescribed motion; the work p.v
+/// of such surfaces is added and counts as external work. Springs, commanded efforts and the
+/// stiffness of bodies are finite forces, which give no impulse.
 class Impact {
  public:
-  /// @param run outlives it.
+  /// @param run must outlive it.
   explicit Impact(Run& run) : run_(run) {}
-  /// Changes the velocities, and counts what the impact takes out. After World::begin_query(), and
-  /// with the points that take part marked as closed.
-  /// @param restitution (rows,) of each point, at its normal's row.
+  /// Changes the velocities and records the energy that the impact dissipates. Call after
+  /// World::begin_query(), with the participating points marked as closed.
+  /// @param restitution (rows,) of each point, at the row of its normal.
   /// Throws Error(not-converged | singular-matrix).
   void solve(std::span<const double> restitution);
-  /// After a part of a step, at its end: takes away the velocities of joints and of closed points
-  /// that were pressed. They are errors of second order.
+  /// At the end of a part of a step: removes the velocities along the rows of joints and of closed
+  /// points with a force. These velocities are errors of second order.
   void hold();
 
  private:
@@ -54,7 +54,7 @@ class Impact {
   linalg::AlignedNumbers impulse_;  // (rows of the problem,) N s
   std::vector<double> all_;         // (rows,) N s
   VectorX force_, rest_, change_;   // (all bodies' size(),)
-  double gained_ = 0.0;             // J
+  double gained_ = 0.0;             // J, change of the kinetic energy
 };
 
 }  // namespace sinew::sim

@@ -1,5 +1,5 @@
 /// @file
-/// What acts on a run from outside, and stays until it is changed.
+/// External inputs of a run, which stay in effect until they are changed.
 #pragma once
 
 #include <optional>
@@ -12,15 +12,15 @@
 
 namespace sinew::sim {
 
-/// Inputs of one body; of one without nodes they are empty.
+/// Inputs of one body; members that the body does not support are empty.
 struct BodyInputs {
   Points external_forces;                   ///< (n, 3) N on all mesh nodes
-  std::optional<mechanics::Tether> tether;  ///< a hand that pulls
+  std::optional<mechanics::Tether> tether;  ///< spring from a point to an anchor in the world
   std::optional<mechanics::AffineField>
-      base;  ///< where fixed nodes go in the next step; none: they stay
+      base;  ///< displacement of the fixed nodes in the next step; none: they stay
 };
 
-/// A value, see Simulation::inputs().
+/// The inputs of a simulation as a value, see Simulation::inputs().
 struct Inputs {
   std::vector<Command> commands;  ///< (actuators,)
   std::vector<Signal> loads;      ///< (loads,) factors

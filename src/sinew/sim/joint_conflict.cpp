@@ -19,9 +19,9 @@ namespace sinew::sim {
 
 namespace {
 
-// Eigenvalues of W, scaled to a diagonal of ones, below this are zero.
+// Smaller eigenvalues of W, scaled to a unit diagonal, are zero.
 constexpr double kNull = 1e-10;
-// Rows below this part of the largest do not take part.
+// Rows with smaller loads, relative to the largest, do not take part.
 constexpr double kPart = 1e-3;
 constexpr std::size_t kNamed = 6;
 constexpr double kAtLimit = 1e-6;  // of the robot's size
@@ -30,19 +30,19 @@ struct Row {
   step::HeldRow held;
   double gap = 0.0;           // m, rad or m^3
   double motion_scale = 1.0;  // m per gap
-  int side = 0;               // of a limit, which acts one way: 1 the greatest motion, -1 the least
-  double unclosed = 0.0;      // of the gap, that no motion of the linearisation closes
+  int side = 0;               // of a limit, a unilateral row: 1 upper, -1 lower
+  double unclosed = 0.0;      // part of the gap that no motion of the linearisation closes
   bool takes_part = false;
 };
 
-// -1 or 1 where a motion is at a limit or beyond it.
+// -1 or 1 if a motion is at its lower or upper limit or beyond.
 int side_of(const step::ActuatorBlock& block, double motion, double size) {
   const double near = kAtLimit * size / block.motion_scale;
   if (motion > block.motion_max - near) return 1;
   return motion < block.motion_min + near ? -1 : 0;
 }
 
-// What the rows lack at the present state.
+// The rows with their gaps at the present state.
 std::vector<Row> list_rows(const step::StepProblem& problem) {
   std::vector<Row> rows;
   const auto add = [&](const auto& block, double target, int side) {
@@ -66,7 +66,8 @@ std::vector<Row> list_rows(const step::StepProblem& problem) {
   return rows;
 }
 
-// What lies along loads that cancel. @return whether it is none, since a limit would have to pull.
+// Projects the gaps onto loads that cancel.
+// @return whether that is a contradiction; it is none if a limit would have to pull.
 bool find_unclosed(const step::StepProblem& problem, std::vector<Row>& rows) {
   std::vector<step::HeldRow> held;
   for (const Row& row : rows) held.push_back(row.held);
@@ -84,7 +85,7 @@ bool find_unclosed(const step::StepProblem& problem, std::vector<Row>& rows) {
   const double least = kPart * load.cwiseAbs().maxCoeff();
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    // A row whose motion is given has no compliance, and no scale to compare by.
+    // A row with a prescribed motion has no compliance, and therefore no scale for comparison.
     const bool given = compliance.matrix(i, i) == 0.0;
     rows[k].takes_part = std::abs(load[i]) > (given ? 0.0 : least);
     rows[k].unclosed = load[i] / compliance.scale[i];
@@ -93,16 +94,16 @@ bool find_unclosed(const step::StepProblem& problem, std::vector<Row>& rows) {
   return true;
 }
 
-// What a row lacks is measured in.
+// Unit of a gap.
 enum class Unit { length, angle, volume };
 constexpr std::size_t kUnits = 3;
 
-// What the rows of one part lack together.
+// Gaps of all rows of one part.
 struct Lack {
   std::string name;
   bool joint = false;
   std::array<double, kUnits> squares{};  // m^2, rad^2, m^6
-  std::array<double, kUnits> largest{};  // m, of the rows of each unit
+  std::array<double, kUnits> largest{};  // m, largest of the rows of each unit
 
   double most() const { return *std::ranges::max_element(largest); }
 
@@ -161,7 +162,7 @@ class Names {
   static bool contains(const constraint::Constraint& rows, int row) {
     return row >= rows.first_row() && row < rows.first_row() + rows.row_count();
   }
-  // Whether the row is one of the joint's, or one that limits it.
+  // Whether the row belongs to the joint or to one of its limits.
   bool add_joint(std::size_t index, const Row& row) {
     const JointModel& joint = model_.joints()[index];
     const constraint::Joint* rigid = model_.joint(static_cast<int>(index));

@@ -1,5 +1,5 @@
 /// @file
-/// Joints, motors and given motions that no motion obeys together.
+/// Diagnosis of joints, motors and prescribed motions that contradict each other.
 #pragma once
 
 #include <string>
@@ -8,21 +8,21 @@ namespace sinew::sim {
 
 class World;
 
-/// What contradicts itself; an empty text where nothing does.
+/// The contradiction; the text is empty if there is none.
 struct JointConflict {
   /// "'h1' is open by 2.5 mm and the command of 'm' is missed by 0.3 deg against 'h2'": the first
-  /// few that take part, with what each lacks.
+  /// few parts involved, with their gaps.
   std::string text;
-  bool opens = false;  ///< a joint is open; else only motors miss their commands
+  bool opens = false;  ///< whether a joint is open; otherwise motors miss their commands
 };
 
-/// Of all joints, motors without a limit of their effort, and limits that are passed, at the
-/// present state, as condensed there or nearly there. Efforts lambda of these rows change what each
-/// lacks, g, by W lambda. W is symmetric, so g can be closed if and only if it is normal to all y
-/// with W y = 0 (Fredholm's alternative; Farkas' lemma where a row acts one way). The part of g
-/// along such y is the contradiction: loads y that cancel on every body, and would work on the gaps
-/// whatever moves. Redundant joints have such y, too, but gaps that are normal to them.
-/// @param world whose rows are formed. @param least m: smaller gaps are none.
+/// Considers all joints, motors without effort limits, and exceeded limits, linearised at or near
+/// the present state. Efforts lambda of these rows change their gaps g by W lambda. W is symmetric,
+/// so g can be closed if and only if it is orthogonal to all y with W y = 0 (Fredholm's
+/// alternative; Farkas' lemma for unilateral rows). The component of g along such y is the
+/// contradiction: the loads y cancel on every body, so no motion changes y.g. Redundant joints also
+/// have such y, but their gaps are orthogonal to them.
+/// @param world whose rows are formed and condensed. @param least m: smaller gaps are ignored.
 JointConflict find_joint_conflict(const World& world, double least);
 
 }  // namespace sinew::sim

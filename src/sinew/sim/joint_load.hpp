@@ -1,5 +1,5 @@
 /// @file
-/// What a joint carries, and how far it has moved.
+/// Force, moment and motion of a joint.
 #pragma once
 
 #include "sinew/core/types.hpp"
@@ -8,21 +8,21 @@ namespace sinew::sim {
 
 class Simulation;
 
-/// What a joint's rows put on its second body, as one; the first body gets the opposite. Motors,
-/// limits and friction act beside them.
+/// Resultant of a joint's rows on its second body; the first body takes the opposite. Motors,
+/// limits and friction are not included.
 struct JointLoad {
-  Vector3 centre = Vector3::Zero();  ///< (3,) m, of the joint on its second body; of a weld of
-                                     ///< points their mean
+  Vector3 centre = Vector3::Zero();  ///< (3,) m, on the second body; of a weld, the mean point
   Vector3 force = Vector3::Zero();   ///< (3,) N, on the second body
   Vector3 moment = Vector3::Zero();  ///< (3,) N m, about the centre
-  double gap = 0.0;                  ///< m, largest distance of two points that should be one
+  double gap = 0.0;                  ///< m, largest distance of two points that should coincide
 };
 
-/// After the last step. @param simulation of the model. @param joint of Model::joints().
+/// The load after the last step. @param simulation of the model.
+/// @param joint index of Model::joints().
 JointLoad joint_load(const Simulation& simulation, int joint);
 
-/// Of the second body in the first one's frame, 0 at rest; whole turns count.
-/// @param simulation,joint as for joint_load(). @param motion of JointModel::motions.
+/// Motion of the second body relative to the first, 0 at rest; an angle counts full turns.
+/// @param simulation,joint as for joint_load(). @param motion index in JointModel::motions.
 /// @return rad or m.
 double joint_motion(const Simulation& simulation, int joint, std::size_t motion);
 

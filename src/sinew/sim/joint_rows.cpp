@@ -12,7 +12,7 @@ namespace sinew::sim {
 
 JointRows::JointRows(const Model& model) : size_(model.size()) {
   const auto row_of = [&](int constraint) { return model.constraint(constraint).first_row(); };
-  std::vector<std::size_t> first;  // motion of each joint
+  std::vector<std::size_t> first;  // first motion of each joint
   for (std::size_t j = 0; j < model.joints().size(); ++j) {
     const JointModel& joint = model.joints()[j];
     first.push_back(motions_.size());

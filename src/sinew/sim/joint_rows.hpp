@@ -1,5 +1,5 @@
 /// @file
-/// How far a run's joints have moved, and what limits and brakes them.
+/// Motions of joints, with their limits and friction.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +16,11 @@ namespace sinew::sim {
 
 class Model;
 
-/// Motions of joints in the model's order, the angle before the displacement. Frames tell angles
-/// within half a turn alone: whole turns are counted from step to step.
+/// Motions of joints in the model's order, the angle before the displacement. Frames determine
+/// angles only within half a turn; full turns are counted from step to step.
 class JointRows {
  public:
-  /// @param model outlives it.
+  /// @param model must outlive it.
   explicit JointRows(const Model& model);
 
   bool empty() const { return motions_.empty(); }
@@ -30,24 +30,25 @@ class JointRows {
   /// @param joint,motion see joint_motion().
   double value(int joint, std::size_t motion) const;
 
-  /// Adds the whole turns that lead nearest to where each angle was. @param delta (rows,).
+  /// Adds full turns to each angle, so that it is nearest to its last value. @param delta (rows,).
   void unwrap(VectorX& delta) const;
-  /// How many blocks limits and friction take.
+  /// Number of blocks of limits and friction.
   std::size_t block_count() const { return stops_.size() + brakes_.size(); }
-  /// What they do in a step that begins at delta. A limit is an actuator without effort whose
-  /// motion has limits. Friction is one that is told to stay, by an effort within those of
-  /// Coulomb's law, +- the joint's friction: sticking in between, sliding at either.
+  /// Writes the blocks of a step that begins at delta. A limit is an actuator without effort whose
+  /// motion is limited. Friction is an actuator commanded to hold its position, whose effort is
+  /// limited by Coulomb's law to +- the joint's friction: it sticks within these limits and slides
+  /// at them.
   /// @param delta (rows,) unwrapped. @param blocks (block_count(),).
   void form_blocks(const VectorX& delta, std::span<step::ActuatorBlock> blocks) const;
-  /// The step has ended there. @param delta (rows,) unwrapped.
+  /// Stores the motions at the end of a step. @param delta (rows,) unwrapped.
   void accept(const VectorX& delta);
   void restart();
 
  private:
   struct Motion {
     int joint = 0;
-    std::size_t which = 0;  // 0: an angle
-    int row = -1;           // that nothing acts on but limits
+    std::size_t which = 0;  // 0: angle, 1: displacement
+    int row = -1;           // on which only limits act
   };
   struct AngleRow {
     int row = -1;
@@ -56,7 +57,7 @@ class JointRows {
   struct Block {
     std::size_t motion = 0;
     int row = -1;
-    double low = 0.0, high = 0.0;  // of the motion, or of the effort of friction
+    double low = 0.0, high = 0.0;  // limits of the motion, or of the friction effort
   };
 
   double scale_of(const Motion& motion) const { return motion.which == 0 ? size_ : 1.0; }

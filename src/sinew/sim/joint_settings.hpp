@@ -1,5 +1,5 @@
 /// @file
-/// What holds bodies together.
+/// Welds and joints between bodies.
 #pragma once
 
 #include <string>
@@ -14,18 +14,20 @@
 
 namespace sinew::sim {
 
-/// Two bodies become one: points of the first stay where they are in the material of the second.
+/// A weld, which makes two bodies one: points of the first keep their positions in the material of
+/// the second.
 struct WeldSettings {
   std::string name;
   Location place;
   int first = 0, second = 1;  ///< bodies
   std::vector<NodeId> nodes;  ///< of the first's mesh
-  Points points;              ///< (n, 3) m, at rest; beside the nodes
-  /// For points that lie in no element of a body.
+  Points points;              ///< (n, 3) m, at rest, in addition to nodes
+  /// Treatment of points outside the mesh of a body.
   mesh::Outside outside = mesh::Outside::error;
 };
 
-/// Parts that stay rigid, of two bodies or of one and the world, move as the type says.
+/// A joint between rigid parts of two bodies, or of one body and the world, which move relative to
+/// each other as the type permits.
 struct JointSettings {
   std::string name;
   Location place;

@@ -29,7 +29,8 @@ LinePath set_guides(LinePath written, double spacing) {
   if (!places.empty()) result.places.push_back(places.front());
   for (Eigen::Index i = 1; i < written.points.rows(); ++i) {
     const Vector3 from = written.points.row(i - 1), to = written.points.row(i);
-    // A hair less than a whole number of spacings is that number.
+    // The tolerance keeps lengths that are multiples of the spacing, up to rounding, from getting
+    // an extra guide.
     const double parts = std::ceil((to - from).norm() / spacing - 1e-6);
     if (!(parts <= kMaxGuides)) {
       throw Error(
@@ -37,7 +38,7 @@ LinePath set_guides(LinePath written, double spacing) {
           fmt::format("guides {:g} m apart would be {:g} between two points", spacing, parts),
           "give a greater spacing, or check its unit");
     }
-    // From one body to another it runs freely.
+    // Between two bodies, the line is free of guides.
     const auto end = static_cast<std::size_t>(i);
     const int pieces = bodies[end] == bodies[end - 1] ? std::max(static_cast<int>(parts), 1) : 1;
     for (int k = 1; k <= pieces; ++k) {

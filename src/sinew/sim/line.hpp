@@ -1,5 +1,5 @@
 /// @file
-/// Lines through the material of bodies, along which cables and springs run.
+/// Paths of cables and springs through the material of bodies.
 #pragma once
 
 #include <memory>
@@ -21,27 +21,29 @@ struct ModelData;
 /// The points of a line at rest.
 struct LinePath {
   Points points;                 ///< (n, 3) m
-  std::vector<Location> places;  ///< (n,) where each was written, or empty
-  std::vector<int> bodies;       ///< (n,) whose material each is in
+  std::vector<Location> places;  ///< (n,) source locations, or empty
+  std::vector<int> bodies;       ///< (n,) body of each point
 };
 
-/// The path with guides between its points, evenly and no farther apart than `spacing` (m; 0: as
-/// it is). Throws Error(out-of-range) for more guides than anybody sets.
+/// Inserts guides between the points of a path that are on the same body, evenly and at most
+/// `spacing` apart (m; 0: none). Throws Error(out-of-range) if there would be more than 10000
+/// between two points.
 LinePath set_guides(LinePath written, double spacing);
 
+/// The path of a cable or spring, to be attached.
 struct Line {
   const char* kind;  ///< for messages: "cable"
   std::string name;
   Location place;
   LinePath path;
-  bool from_world = false;  ///< the first point is fixed to the world
+  bool from_world = false;  ///< whether the first point is fixed to the world
   mesh::Outside outside = mesh::Outside::error;
   bool friction = false;
   double guide_radius = 0.0;  ///< m, see CableSettings
 };
 
-/// Attaches the points of a line. Throws Error: point-outside-mesh at the place of the point, and
-/// what constraint::Cable does.
+/// Attaches the points of a line. Throws Error: point-outside-mesh with the point's location, and
+/// as constraint::Cable does.
 std::unique_ptr<constraint::Cable> attach_line(ModelData& data, Line line);
 
 }  // namespace sinew::sim

@@ -10,8 +10,7 @@ namespace sinew::sim {
 namespace {
 
 constexpr int kMaxStepHalvings = 10;
-// Of the robot's size: a point that is deeper in a surface after one linearisation, and is not
-// pushed out, is not there by rounding.
+// Penetration, relative to the robot's size, beyond rounding for a point without a force.
 constexpr double kMaxDepth = 1e-6;
 
 }  // namespace
@@ -39,8 +38,8 @@ void LinearStep::linearise(const mechanics::LinearisationRequest& request) {
   run_.clock.mark(Stage::rows);
 }
 
-// With the projected tangent where the exact one is indefinite; a factorisation for definite
-// matrices alone ends there as if it were singular.
+// Uses the projected tangent if the exact one is indefinite. A factorisation for definite matrices
+// only then reports a singular matrix.
 void LinearStep::condense(mechanics::LinearisationRequest& request) {
   auto status = run_.world.condense();
   const bool suits = status != linalg::FactorStatus::singular && run_.world.is_stable();
@@ -56,7 +55,7 @@ void LinearStep::condense(mechanics::LinearisationRequest& request) {
   }
 }
 
-// Takes the motion, or the largest halving of it that inverts no element.
+// Applies the motion, or the largest halving of it that inverts no element.
 void LinearStep::move_soundly() {
   const bool was_sound = run_.volume_ratio > 0.0;
   StepReport& report = run_.report;
@@ -81,7 +80,7 @@ void LinearStep::move_soundly() {
        "take a smaller time step, change commands more slowly, or refine the mesh there");
 }
 
-// Points that commanded motions leave nothing to give way are beyond any contact force.
+// Points in bodies whose motion is prescribed cannot be moved by any contact force.
 void LinearStep::require_outside() {
   if (run_.model->contacts().empty()) return;
   const double depth = run_.world.contacts().max_penetration_without_force(run_.effort);

@@ -1,5 +1,5 @@
 /// @file
-/// One linear solution of a step's equation, as real-time codes make it.
+/// A time step with one linear solution, as in real-time codes.
 #pragma once
 
 namespace sinew::mechanics {
@@ -10,14 +10,15 @@ namespace sinew::sim {
 
 struct Run;
 
-/// Solves a step by one linearisation, and looks at what that left. In dynamics it is about where
-/// the velocities lead: a turn by an angle t is then followed to t^2, and not stretched.
+/// Solves a step by one linearisation and measures the residual. In dynamics, it linearises about
+/// the state extrapolated with the velocities: a rotation by an angle t is then followed to order
+/// t^2, without stretching.
 class LinearStep {
  public:
-  /// @param run outlives it; its step has begun when solve() is called.
+  /// @param run must outlive it; its step has begun when solve() is called.
   explicit LinearStep(Run& run) : run_(run) {}
-  /// Moves the bodies and reports. Throws Error(singular-matrix | not-converged | diverged |
-  /// inverted-in-run), the run then being as before the step. @param time_step s.
+  /// Moves the bodies and fills the report. Throws Error(singular-matrix | not-converged | diverged
+  /// | inverted-in-run), after which the run is as before the step. @param time_step s.
   void solve(double time_step);
 
  private:

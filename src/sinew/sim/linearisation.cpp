@@ -33,13 +33,13 @@ std::string direction_name(const Vector3& direction, int index) {
   return fmt::format("[{}]", index);
 }
 
-// Rows of the problem that joints leave.
+// Rows of the problem without those of joints.
 struct FreeRows {
   std::vector<int> rows;
-  step::Followers joints;  // what their efforts add to the joints'
+  step::Followers joints;  // efforts of the joints in response to the other rows
 };
 
-// Leaves the rows of the robot as its joints hold it together.
+// Eliminates the rows of the joints.
 FreeRows take_joints_out(const step::StepProblem& problem, Linearisation& result) {
   std::vector<step::HeldRow> held;
   step::append_joints(problem, held);
@@ -77,7 +77,7 @@ FreeRows take_joints_out(const step::StepProblem& problem, Linearisation& result
   return left;
 }
 
-// Of all rows; those that joints hold have none.
+// Names of all rows; those that joints hold have empty names.
 std::vector<std::string> all_names(const Model& model) {
   std::vector<std::string> names(static_cast<std::size_t>(model.rows().rows()));
   const auto name = [&](int row) -> std::string& { return names[static_cast<std::size_t>(row)]; };
@@ -126,7 +126,7 @@ std::vector<std::string> row_names(const Model& model) {
 
 namespace {
 
-// Rows, delta and effort as they are now; W and delta_free as the world has them.
+// Present delta and effort of the rows; W and delta_free from the world's problem.
 // @param effort (rows,) N.
 FreeRows gather(Simulation& simulation, std::span<const double> effort, Linearisation& result) {
   const Model& model = simulation.model();
@@ -155,7 +155,7 @@ FreeRows gather(Simulation& simulation, std::span<const double> effort, Linearis
   return all;
 }
 
-// A unit effort of one row, and what the joints answer to it without any other cause.
+// A unit effort of one row, and the joint efforts that it causes.
 void unit_effort(const World& world, FreeRows& free, int row, std::vector<double>& effort) {
   const step::StepProblem& problem = world.problem();
   const auto rows = static_cast<std::size_t>(problem.delta_free.size());
@@ -166,7 +166,7 @@ void unit_effort(const World& world, FreeRows& free, int row, std::vector<double
   world.numbering().scatter_efforts(own, effort);
 }
 
-// The joints' law without motions of their own, so that their efforts are linear in the others'.
+// Sets the targets of the joints to zero, so their efforts are linear in those of the other rows.
 void forget_motions(const World& world, FreeRows& free) {
   const step::StepProblem& problem = world.problem();
   std::vector<step::HeldRow> held;
@@ -204,7 +204,7 @@ void find_fields(World& world, FreeRows& free, Linearisation& result) {
   }
 }
 
-// Leaves the simulation's state changed.
+// Does not restore the simulation's state.
 Linearisation linearise_here(Simulation& simulation, const LinearisationChoice& choice) {
   const Model& model = simulation.model();
   const std::vector<int> geometric =

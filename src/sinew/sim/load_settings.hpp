@@ -1,5 +1,5 @@
 /// @file
-/// Forces that the surroundings put on a body, as they are told to the ModelBuilder.
+/// Settings of loads on bodies.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ struct PointLoadSettings {
   Vector3 force = Vector3::Zero();  ///< N
 };
 
-/// A force spread evenly over a line of straight pieces.
+/// A uniform force per length along a polyline.
 struct LineLoadSettings {
   Points points;                               ///< (n, 3) m, at rest, n >= 2
   Vector3 force_per_length = Vector3::Zero();  ///< N/m, of the length at rest
@@ -32,17 +32,17 @@ struct SurfaceLoadSettings {
   Vector3 traction = Vector3::Zero();  ///< Pa, of the area at rest
 };
 
-/// A force in proportion to mass, such as a turntable's or a shaker's.
+/// A force proportional to mass, such as that of a turntable or shaker.
 struct BodyLoadSettings {
   Vector3 acceleration = Vector3::Zero();  ///< m/s^2
 };
 
-/// A pressure that follows faces, 1 Pa at a factor of 1.
+/// A follower pressure on faces, 1 Pa at a factor of 1.
 struct PressureLoadSettings {
   std::vector<mesh::Face> faces;
 };
 
-/// Water about a body: buoyancy under the body's gravity, drag and added mass, see fem::WaterLoad.
+/// Water around a body: buoyancy under the body's gravity, drag and added mass, see fem::WaterLoad.
 struct WaterSettings {
   std::vector<mesh::Face> faces;
   double density = 1000.0;             ///< kg/m^3, > 0

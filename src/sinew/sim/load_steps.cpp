@@ -8,7 +8,7 @@ double take_load_steps(const LoadSteps& steps, const std::function<bool(double)>
                        const std::function<void()>& keep, const std::function<void()>& go_back) {
   double fraction = 1.0;
   double step = steps.first;
-  int wanted = 1, successes = 0;  // before the step is doubled, and since the last change
+  int wanted = 1, successes = 0;  // required before doubling; since the last change of the step
   bool doubled = false;
   const auto is_long_enough = [&] {
     return step >= (fraction == 1.0 ? std::max(steps.min, steps.min_at_first) : steps.min);

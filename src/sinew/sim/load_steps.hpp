@@ -1,26 +1,27 @@
 /// @file
-/// The way of a convex homotopy: what is lacking to equilibrium is taken away in steps.
+/// Step control for a convex homotopy, which removes the residual of a state in steps.
 #pragma once
 
 #include <functional>
 
 namespace sinew::sim {
 
-/// How to go along the path r(q, lambda) = s r_start, from s = 1 to 0 (Allgower & Georg, Numerical
-/// Continuation Methods, 1990, 1.3).
+/// Step lengths along the path r(q, lambda) = s r_start, from s = 1 to 0 (Allgower & Georg,
+/// Numerical Continuation Methods, 1990, 1.3).
 struct LoadSteps {
-  double first = 0.25;        ///< step of s
-  double min = 1.0 / 256;     ///< steps shorter than this end the search
-  double min_at_first = 0.0;  ///< the same, before any step has succeeded
+  double first = 0.25;        ///< initial step of s
+  double min = 1.0 / 256;     ///< the search ends when the step is shorter
+  double min_at_first = 0.0;  ///< the same, until a step has succeeded
 };
 
-/// Halves the step after each failure, and doubles it after a success: where that fails at once,
-/// after twice as many successes as the last time. Returns the s that is left: 0 when the end was
-/// reached.
-/// @param steps see there. @param solve whether there is an equilibrium at an s, which is then the
-/// present
-///   state. @param keep the present state is one to come back to. @param go_back to the
-///   last state that was kept, or to the start.
+/// Follows the path, halving the step after each failure and doubling it after a success; if a
+/// doubled step fails at once, twice as many successes are required before the next doubling.
+/// @param steps lengths.
+/// @param solve finds the equilibrium at an s and makes it the present state; returns whether it
+///   did.
+/// @param keep stores the present state.
+/// @param go_back restores the last stored state, or that at the start.
+/// @return the remaining s: 0 if the end was reached.
 double take_load_steps(const LoadSteps& steps, const std::function<bool(double)>& solve,
                        const std::function<void()>& keep, const std::function<void()>& go_back);
 

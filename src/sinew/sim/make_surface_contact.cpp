@@ -23,13 +23,13 @@ namespace sinew::sim {
 
 namespace {
 
-// Of the larger body: how far apart surfaces rest, and how deep they may overlap at the start.
+// Relative to the larger body: separation at which surfaces rest, and permitted initial overlap.
 constexpr double kSeparation = 1e-7;
 constexpr double kDeepest = 1e-6;
-// Overlaps are undone up to this part of an edge and of the thinnest wall: what is deeper in a wall
-// would leave it on the other side.
+// Maximum depth of overlaps that are resolved, relative to an edge and to the thinnest wall: a
+// deeper point would leave a wall on the other side.
 constexpr double kDepth = 0.45;
-// Cosine of the angle up to which two sides of a wall need not be parallel.
+// Minimum cosine of the angle between one side's normal and the reversed normal of the other side.
 constexpr double kOpposite = 0.9;
 
 // A surface at rest.
@@ -56,7 +56,7 @@ Vector3 normal_of(const collision::Corners& x) {
   return (x[1] - x[0]).cross(x[2] - x[0]).normalized();
 }
 
-// m: from the middle of a triangle through the material to what looks the other way, or `most`.
+// m: distance from the middle of a triangle through the material to an opposite side, or `most`.
 double wall_behind(const collision::SurfaceTree& tree, int triangle, double most) {
   const collision::Corners own = tree.corners(triangle);
   const Vector3 middle = (own[0] + own[1] + own[2]) / 3.0, normal = normal_of(own);
@@ -68,8 +68,8 @@ double wall_behind(const collision::SurfaceTree& tree, int triangle, double most
   return std::min(most, collision::nearest_on_surface(tree, middle, most, skips).distance);
 }
 
-// m, or `most` where no wall is thinner. Vertices see walls that are thinner at one place; plates
-// have none but at their rims, which edges join to the other side's.
+// m: thickness of the thinnest wall, or `most` if none is thinner. Vertices detect walls that are
+// thin in one place; vertices of plates lie only at the rims, whose edges lead to the other side.
 double thinnest_wall(const RestSurface& surface, double most, ThreadPool& pool) {
   collision::Proximity proximity(pool);
   double thinnest = most;

@@ -10,9 +10,9 @@ namespace sinew::sim {
 
 namespace {
 
-// Of the robot's size: how well motions are held at the end of a step.
+// Tolerance on held motions at the end of a step, relative to the robot's size.
 constexpr double kHeld = 1e-12;
-// A round leaves about the square of the step's turn.
+// Each round reduces the error to about the square of the step's rotation.
 constexpr int kMaxRounds = 12;
 
 }  // namespace
@@ -22,7 +22,7 @@ Midpoint::Midpoint(Run& run) : run_(run), widened_(run.effort.size(), 0.0) {}
 void Midpoint::carry_on(Substep& substep, double half) {
   Bodies& bodies = run_.world.bodies();
   const double middle = run_.now;
-  std::ranges::fill(widened_, 0.0);  // where an earlier part ended with an error
+  std::ranges::fill(widened_, 0.0);  // an earlier part may have ended with an error
   bodies.scale_motion(2.0);
   place(middle + half);
   for (int round = 0; correct() > kHeld * run_.model->size() && round < kMaxRounds; ++round) {
@@ -35,7 +35,7 @@ void Midpoint::carry_on(Substep& substep, double half) {
   release();
 }
 
-// Of rigid bodies and surfaces that are put there.
+// Places rigid bases and surfaces with prescribed motion.
 void Midpoint::place(double time) {
   if (run_.model->base_motions().empty() && !run_.world.contacts().planes().moves()) return;
   run_.surroundings.put_bases(time);
@@ -43,7 +43,8 @@ void Midpoint::place(double time) {
   run_.world.contacts().planes().move_on(time);
 }
 
-// m: what the end lacks. With delta in the middle it is 2 delta and something of second order.
+// m: error at the end of the step. With delta in the middle, it is 2 delta plus terms of second
+// order.
 double Midpoint::correct() {
   World& world = run_.world;
   const VectorX& delta = world.measure_delta();

@@ -9,17 +9,17 @@ namespace sinew::sim {
 struct Run;
 class Substep;
 
-/// Repeats the motion of the first half; what moves by itself goes to where it is at the end.
-/// Forces of joints and closed points act in the directions that they have in the middle, but what
-/// they hold is held at the end of the step: the first half is solved again, with the motions held
-/// there off by half of what the end lacks, until it lacks nothing. Of constraints that are
-/// quadratic such forces do no work, and motion and energy do not drift (Gonzalez, Mechanical
-/// systems subject to holonomic constraints, Physica D 132 (1999) 165).
+/// Repeats the motion of the first half; bodies and surfaces with prescribed motion are placed at
+/// the end of the step. Forces of joints and closed points keep their directions at the middle of
+/// the step, but their rows are held at its end: the first half is solved again with targets offset
+/// by half of the error at the end, until this error vanishes. For quadratic constraints such
+/// forces do no work, and motion and energy do not drift (Gonzalez, Mechanical systems subject to
+/// holonomic constraints, Physica D 132 (1999) 165).
 class Midpoint {
  public:
-  /// @param run outlives it.
+  /// @param run must outlive it.
   explicit Midpoint(Run& run);
-  /// @param substep that has solved the first half. @param half s, its length.
+  /// Completes the step. @param substep that has solved the first half. @param half s, its length.
   void carry_on(Substep& substep, double half);
 
  private:
@@ -28,7 +28,7 @@ class Midpoint {
   void release();
 
   Run& run_;
-  std::vector<double> widened_;  // (rows,) m, gaps of closed points
+  std::vector<double> widened_;  // (rows,) m, offsets of the gaps of closed points
 };
 
 }  // namespace sinew::sim

@@ -1,5 +1,5 @@
 /// @file
-/// A whole robot and its surroundings, ready to run: what never changes, shared by simulations.
+/// A complete robot with its surroundings: the immutable data that simulations share.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ class Tie;
 
 namespace sinew::sim {
 
-/// Immutable; made by ModelBuilder. Several simulations and threads may share one.
+/// An immutable robot model, built by ModelBuilder. Simulations and threads may share it.
 class Model {
  public:
   explicit Model(ModelData data);
@@ -32,7 +32,7 @@ class Model {
   PartList<mechanics::BodyModel> bodies() const { return PartList(data_.bodies); }
   PartList<constraint::Constraint> constraints() const { return PartList(data_.constraints); }
   const std::vector<ActuatorModel>& actuators() const { return data_.actuators; }
-  /// Along each cable from its pull point on.
+  /// In the order of the cables, along each from its pull point.
   const std::vector<GuideModel>& guides() const { return data_.guides; }
   const std::vector<EffectorModel>& effectors() const { return data_.effectors; }
   const std::vector<ContactModel>& contacts() const { return data_.contacts; }
@@ -47,15 +47,15 @@ class Model {
     return data_.stiffness_pairs;
   }
   const StepSettings& step() const { return data_.step; }
-  /// Whether what a step leaves of its equation stays in the motion: in dynamics, and where a
-  /// material has a memory. Other quasi-static steps begin with it.
+  /// Whether an error that a step leaves in its equation persists in the motion: true in dynamics
+  /// and if a material has memory. Other quasi-static steps correct the error of the previous one.
   bool errors_last() const { return errors_last_; }
   const std::vector<BaseMotion>& base_motions() const { return data_.base_motions; }
   const std::vector<LoadModel>& loads() const { return data_.loads; }
   const std::vector<MassModel>& masses() const { return data_.masses; }
   const GeometricStiffnessModel& geometric_stiffness() const { return data_.geometric_stiffness; }
 
-  /// Positions in the lists above. Throw Error(unknown-name) with a suggestion.
+  /// Indices in the lists above. Throw Error(unknown-name) with a suggestion.
   int body_index(std::string_view name) const;
   int actuator_index(std::string_view name) const;
   int effector_index(std::string_view name) const;
@@ -67,27 +67,28 @@ class Model {
   int sensor_index(std::string_view name) const;
   int estimator_index(std::string_view name) const;
 
-  /// By these positions.
+  /// Parts by index.
   const mechanics::BodyModel& body(int index) const;
   const constraint::Constraint& constraint(int index) const;
   const constraint::Probe& probe(int index) const;
   const constraint::Effector& effector(int index) const;
   const constraint::Contact& contact(int index) const;
-  /// What a weld of points is; null of another joint.
+  /// The constraint of a weld of points; null for other joints.
   const constraint::Tie* tie(int joint) const;
-  /// What a joint of parts that stay rigid is; null of a weld of points.
+  /// The constraint of a joint between rigid parts; null for a weld of points.
   const constraint::Joint* joint(int joint) const;
-  /// The line of a cable or spring; null when an actuator has none.
+  /// The path of a cable or spring; null if the actuator has none.
   const constraint::Cable* cable(int actuator) const;
-  /// The chamber of an actuator; null when it has none.
+  /// The chamber of an actuator; null if it has none.
   const constraint::Chamber* chamber(int actuator) const;
-  /// Numbers of all drives.
+  /// Number of state variables of all drives.
   int drive_states() const { return data_.drive_states; }
-  /// A length of the robot's size, m: the largest diagonal of its bodies at rest.
+  /// Characteristic length of the robot, m: the largest diagonal of its bodies at rest.
   double size() const { return data_.size; }
-  /// See list_parts(): what saved states tell models apart by.
+  /// Hashes of the parts that determine the motion, see list_parts(); saved states identify their
+  /// model by them.
   const std::vector<NamedHash>& parts() const { return parts_; }
-  /// A hash of them.
+  /// Hash of parts().
   std::uint64_t fingerprint() const { return fingerprint_; }
 
  private:

@@ -126,7 +126,7 @@ int ModelBuilder::add_estimator(const EstimatorSettings& settings) {
 std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSettings& settings) {
   hold_bodies(data_, places_);
   add_couplings(data_);
-  // Transient rows stand behind all others, which keep their numbers in a step's problem.
+  // Transient rows come after all others, which keep their numbers in a step's problem.
   for (const ContactModel& contact : data_.contacts) {
     data_.constraint(contact.constraint).declare(data_.rows, data_.stiffness_pairs);
   }

@@ -1,5 +1,5 @@
 /// @file
-/// What a model consists of, as plain lists: ModelBuilder fills them, and a Model owns them.
+/// The parts of a model as plain lists, which ModelBuilder fills and a Model owns.
 #pragma once
 
 #include <array>
@@ -30,10 +30,10 @@ class BodyModel;
 
 namespace sinew::sim {
 
-/// A point that a cable slides through with friction.
+/// A point through which a cable slides with friction.
 struct GuideModel {
-  int actuator = -1;    ///< whose cable
-  int via = 0;          ///< point between the cable's ends, from the pull point on
+  int actuator = -1;    ///< of the cable
+  int via = 0;          ///< index among the points between the ends, from the pull point
   int row = -1;         ///< of H
   double friction = 0;  ///< Coulomb's coefficient, > 0
 };
@@ -44,37 +44,37 @@ struct EffectorModel {
   int constraint = -1;
 };
 
-/// Points that may touch a surface, and how the surface moves.
+/// A contact: points that may touch a surface, and the surface's motion.
 struct ContactModel {
   std::string name;
   int constraint = -1;               ///< a constraint::Contact
-  std::optional<BaseMotion> motion;  ///< of the surface; none: it stands still
-  bool strikes = false;              ///< its impacts are events: of rigid bodies alone
-  double restitution = 0.0;          ///< of these, 0 to 1
-  double aggregate = 0.0;            ///< m, of zones whose points act as one; 0: single points
+  std::optional<BaseMotion> motion;  ///< of the surface; none: it does not move
+  bool strikes = false;              ///< whether impacts are events; for rigid bodies only
+  double restitution = 0.0;          ///< of these impacts, 0 to 1
+  double aggregate = 0.0;            ///< m, size of zones whose points act as one; 0: single points
 
-  /// Of the surface at a time.
+  /// Pose of the surface at a time.
   Eigen::Isometry3d pose(double time) const;
 };
 
-/// What holds two bodies together, or a body to the world.
+/// A joint between two bodies, or between a body and the world.
 struct JointModel {
   std::string name;
   int first = 0, second = 1;           ///< bodies; kWorld: the world
   int constraint = -1;                 ///< a constraint::Tie or constraint::Joint
-  std::array<int, 2> motions{-1, -1};  ///< its angle and its displacement, where it leaves them
+  std::array<int, 2> motions{-1, -1};  ///< constraints of its free angle and displacement; -1: none
   std::array<Limits, 2> limits;        ///< of these, rad and m
-  int brake = -1;                      ///< one of these once more, for friction; -1: none
-  double friction = 0.0;               ///< N m or N, that it takes to move it
+  int brake = -1;                      ///< constraint of the same motion for friction; -1: none
+  double friction = 0.0;               ///< N m or N, breakaway effort
 };
-/// In place of a body.
+/// The world, in place of the index of a body.
 inline constexpr int kWorld = -1;
 
-/// Springs that A has in statics so that it can be factorised, and that the robot has not: see
-/// step::StiffnessBlock.
+/// Springs that are added to A in statics so that it can be factorised. They are not part of the
+/// robot; the step's problem cancels them: see step::StiffnessBlock.
 struct AnchorModel {
   int body = 0;
-  int constraint = -1;     ///< three rows, along x, y and z of one point
+  int constraint = -1;     ///< three rows, the x, y and z coordinates of one point
   double stiffness = 0.0;  ///< N/m
 };
 
@@ -84,18 +84,18 @@ struct CouplingModel {
   int constraint = -1;  ///< a constraint::Coupling
 };
 
-/// Which constraints have a geometric stiffness.
+/// The constraints that have a geometric stiffness.
 struct GeometricStiffnessModel {
   std::vector<int> all;
-  std::vector<int> in_steps;     ///< those of which it joins A in every step
-  bool extends_pattern = false;  ///< that of in_steps needs blocks that the elements' has not
+  std::vector<int> in_steps;     ///< those whose geometric stiffness is added to A in time steps
+  bool extends_pattern = false;  ///< whether in_steps needs blocks outside the elements' pattern
 };
 
-/// A mass that hangs on a point of a body.
+/// A point mass attached to a body.
 struct MassModel {
   std::string name;
   int body = 0;
-  int point = -1;     ///< attached, of the body
+  int point = -1;     ///< attached point of the body
   double mass = 0.0;  ///< kg
 };
 
@@ -103,18 +103,18 @@ struct MassModel {
 struct LoadModel {
   std::string name;
   int body = 0;
-  std::vector<int> numbers;  ///< in fem::HasElements::loads()
+  std::vector<int> numbers;  ///< indices in fem::HasElements::loads()
   Signal factor;
 };
 
-/// The lists that Model's functions of the same names give.
+/// The data behind the accessors of Model.
 struct ModelData {
   ModelData();
   ~ModelData();
   ModelData(ModelData&&) noexcept;
   ModelData& operator=(ModelData&&) noexcept;
 
-  /// Declares a constraint's rows and takes it in. @return its position.
+  /// Declares the rows of a constraint and adds it. @return its index.
   int declare(std::unique_ptr<constraint::Constraint> constraint);
 
   mechanics::BodyModel& body(int index) { return *bodies[static_cast<std::size_t>(index)]; }

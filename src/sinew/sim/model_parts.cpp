@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kNamedDifferences = 4;
 
-// What a constraint is, and which sites of which bodies its rows touch.
+// Adds a constraint, and the sites of the bodies on which its rows act.
 void add_constraint(ValueHash& hash, const ModelData& data, int index) {
   const constraint::Constraint& constraint = data.constraint(index);
   constraint.add_to(hash);

@@ -1,5 +1,5 @@
 /// @file
-/// What the motion of a robot depends on, by name.
+/// Named hashes of all parts of a model on which its motion depends.
 #pragma once
 
 #include <vector>
@@ -10,13 +10,13 @@ namespace sinew::sim {
 
 struct ModelData;
 
-/// Everything that changes how a state goes on, in the order of the model: time step and
-/// integrator, bodies, actuators, loads, contacts, joints, motions of bases, effectors. Not part of
-/// it: inputs, where a run begins, and how exactly and by which way steps are solved.
+/// Hashes of everything that affects how a state evolves, in the order of the model: time step and
+/// integrator, bodies, actuators, loads, contacts, joints, motions of bases, effectors. Not
+/// included: inputs, initial commands, and solver settings.
 std::vector<NamedHash> list_parts(const ModelData& data);
 
-/// "body 'trunk': material, actuator 'long_0'": the parts in which two models differ, the first few
-/// of them.
+/// Names the first few parts in which two models differ: "body 'trunk': material, actuator
+/// 'long_0'".
 std::string describe_difference(const std::vector<NamedHash>& saved,
                                 const std::vector<NamedHash>& present);
 

@@ -10,7 +10,7 @@ namespace sinew::sim {
 
 namespace {
 
-// e: large beside the tolerance of a step, small enough for its second derivative.
+// e: large compared with the tolerance of a step, small enough for its second derivative.
 constexpr double kDifference = 0.1;
 
 VectorX body_numbers(const State& state) {
@@ -22,7 +22,7 @@ VectorX body_numbers(const State& state) {
   return all;
 }
 
-// Sensors begin there: those that measure rates look back at the state that is moved.
+// Sensors restart there: those of rates would otherwise refer to the state before the displacement.
 State moved(const State& from, const VectorX& way) {
   State state = from;
   Eigen::Index next = 0;
@@ -63,7 +63,8 @@ void MotionFilter::predict(const Run& run, double time_step) {
   std::rotate(path_.begin(), path_.end() - 1, path_.end());
   std::rotate(known_.begin(), known_.end() - 1, known_.end());
   known_.front() = move_columns(run, from, false) ? 1.0 : 0.0;
-  // A correction that the robot cannot take is dropped: every later step would begin there.
+  // A correction that the robot cannot follow is dropped; otherwise every later step would start
+  // from it.
   if (failed() && own_robot().steps() == before.steps) own_robot().restore(before);
   filter_.end_step();
 }
@@ -80,7 +81,7 @@ void MotionFilter::predict_rest(const Run& run) {
   if (known_.front() != 0.0) filter_.end_rest(acted);
 }
 
-// Where an unknown is at its bound, columns go to the side on which it is free.
+// Where an unknown is at its bound, columns are perturbed to the side on which it is free.
 bool MotionFilter::move_columns(const Run& run, const State& from, bool settles) {
   if (!move(run, filter_.mean(), settles)) return false;
   const VectorX unknowns = acted();

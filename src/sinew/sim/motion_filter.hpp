@@ -12,23 +12,23 @@
 
 namespace sinew::sim {
 
-/// The unknowns u act through the robot's motion, with the integrator of the scene: of all that
-/// moves only they are uncertain, and the start is known. What is estimated is (u, s), s the
-/// numbers that the bodies carry from step to step (positions, velocities, the integrator's
-/// memory), with estimate::ReducedRankFilter: after each sample the robot's s moves with its mean.
+/// The unknowns u act through the robot's motion, with the integrator of the scene. They are the
+/// only uncertain input, and the initial state is known. estimate::ReducedRankFilter estimates (u,
+/// s), where s is the state of the bodies (positions, velocities, history of the integrator); after
+/// each sample, the robot's s is moved to its mean.
 ///
-/// A column (du, ds) of the covariance goes through a step by a difference of two steps,
+/// A column (du, ds) of the covariance factor is propagated through a step by a difference of two
+/// steps,
 ///   (dy, ds') = (F(s + e ds, u + e du) - F(s, u)) / e,   e = 0.1,
-/// of the robot as it is, with its joints, contacts and drives: the derivative of the step to the
-/// first order in e, and to the step's tolerance over e. One step of the filter therefore takes as
-/// many steps of the robot as there are columns, and one more.
+/// of the full robot, with joints, contacts and drives. This is the derivative of the step up to
+/// first order in e, with an error of the step's tolerance over e. One step of the filter therefore
+/// takes one step of the robot per column, plus one.
 ///
-/// Neglected: columns that are cut (see ReducedRankFilter), second derivatives, and the
-/// uncertainty of numbers that are not the bodies': the gas in chambers, the friction memory of
-/// contacts.
+/// Neglected: truncated columns (see ReducedRankFilter), second derivatives, and the uncertainty of
+/// states outside the bodies, such as the gas in chambers and the friction memory of contacts.
 class MotionFilter : public EstimatorFilter {
  public:
-  /// See EstimatorFilter; the model has a robot that is not quasi-static.
+  /// See EstimatorFilter; the robot of the model is not quasi-static.
   MotionFilter(const EstimatorModel& model, int threads);
 
   void begin_settling() override;
@@ -39,8 +39,8 @@ class MotionFilter : public EstimatorFilter {
   VectorX beyond_path(int lag) const override { return filter_.reading_deviation(lag); }
   void correct(int lag, Eigen::Index first, const VectorX& innovation,
                const VectorX& variance) override;
-  /// Of all samples so far: 1/(1 + s^2) are the eigenvalues of the covariance over the priors, or s
-  /// = 0 where they are larger.
+  /// Observability by all samples so far: 1/(1 + s^2) are the eigenvalues of the covariance
+  /// relative to the priors; s = 0 where these exceed 1.
   estimate::Observability observability(const VectorX& variance) const override;
 
  protected:
@@ -55,8 +55,8 @@ class MotionFilter : public EstimatorFilter {
   VectorX reading_difference(const VectorX& to, const VectorX& from) const;
 
   estimate::ReducedRankFilter filter_, settled_from_;
-  std::vector<VectorX> path_;  // (lags + 1,) (m,) from now back
-  std::vector<double> known_;  // (lags + 1,) 1: the robot got there
+  std::vector<VectorX> path_;  // (lags + 1,) (m,) readings on the path, newest first
+  std::vector<double> known_;  // (lags + 1,) 1: the robot made the step
 };
 
 }  // namespace sinew::sim

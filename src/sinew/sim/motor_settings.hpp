@@ -9,12 +9,12 @@
 
 namespace sinew::sim {
 
-/// What moves a hinge or slider.
+/// A motor of a hinge or slider.
 struct MotorSettings {
   std::string name;
   Location place;
-  int joint = 0;          ///< as add_joint() returned it
-  bool linear = false;    ///< of a slider
+  int joint = 0;          ///< index returned by add_joint()
+  bool linear = false;    ///< whether the joint is a slider
   Limits effort, motion;  ///< N m and rad; N and m
   Command command;
 };

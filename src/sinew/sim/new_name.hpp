@@ -1,5 +1,5 @@
 /// @file
-/// Names that are given once.
+/// Check that names are unique.
 #pragma once
 
 #include <algorithm>
@@ -11,13 +11,13 @@ struct Location;
 
 namespace sinew::sim {
 
-/// Throws Error(duplicate-key). @param kind of the parts, in the plural: "loads". @param name,place
-///   of the part that has a name again, and where it is written.
+/// Throws Error(duplicate-key). @param kind of the parts, in the plural: "loads".
+/// @param name,place of the part with the duplicate name, and its source location.
 [[noreturn]] void throw_same_name(const char* kind, const std::string& name, const Location& place);
 
-/// Throws Error(duplicate-key) where a part has the name already.
-/// @param parts,name_of of one kind, and where a part has its name. @param kind see
-///   throw_same_name(). @param name,place of the new part.
+/// Throws Error(duplicate-key) if a part already has the name.
+/// @param parts of one kind. @param name_of projection from a part to its name.
+/// @param kind see throw_same_name(). @param name,place of the new part.
 template <class Parts, class NameOf>
 void check_new_name(const Parts& parts, NameOf name_of, const char* kind, const std::string& name,
                     const Location& place) {

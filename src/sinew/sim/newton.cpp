@@ -11,18 +11,18 @@ namespace sinew::sim {
 
 namespace {
 
-// A step may raise the merit by this factor. A slender body that an iteration turns by t stretches
-// by t^2/2, whose force is about 6 t (L/h)^2 times that of the bending: 50 at 0.1 rad and L/h = 9.
-// Of 400 random robots (validation/cases/default_steps.py) a factor of 1 leaves 49 with flagged
-// steps, 2 leaves 24, 10 leaves 3, 50 and more none, at 155, 102, 81, 76 and 73 thousand
-// iterations.
+// Factor by which a step may raise the merit. A slender body that an iteration rotates by t is
+// stretched by t^2/2, which causes a force of about 6 t (L/h)^2 times the bending force: 50 at 0.1
+// rad and L/h = 9. Of 400 random robots (validation/cases/default_steps.py), the number with
+// flagged steps is 49 for a factor of 1, 24 for 2, 3 for 10, and none for 50 and more, at 155, 102,
+// 81, 76 and 73 thousand iterations.
 constexpr double kMeritGrowth = 50.0;
 constexpr int kMaxHalvings = 12;
-// Motions under this part of a robot's size are rounding, and then residuals under this part of its
-// forces may be: those of laws that are solved by iterations of their own.
+// Motions below this fraction of a robot's size are rounding. Residuals below the second fraction
+// of its forces may then be rounding, too, if the laws are solved iteratively.
 constexpr double kRounding = 1e-11;
 constexpr double kRoundedResidual = 1e-7;
-// An iteration that leaves more than this of the residual no longer converges.
+// An iteration that leaves more than this fraction of the residual no longer converges.
 constexpr double kLessened = 0.5;
 
 class NewtonSolver {
@@ -69,9 +69,9 @@ class NewtonSolver {
     clock_.mark(Stage::rows);
   }
 
-  // The exact tangent may be indefinite far from equilibrium; the projected one is not. Where a
-  // part of it is not symmetric (pressure on an open surface that has curled up), the rest may be
-  // indefinite at stable equilibria, and no other tangent leads to them.
+  // The exact tangent may be indefinite far from equilibrium; the projected one is not. If the
+  // tangent has an unsymmetric part (pressure on an open surface that has curled up), its symmetric
+  // part may be indefinite at stable equilibria, which no other tangent can find.
   bool condense() {
     auto status = world_.condense();
     ++report_.factorisations;
@@ -90,7 +90,7 @@ class NewtonSolver {
     return status != linalg::FactorStatus::singular;
   }
 
-  // Both terms shrink in proportion to (1 - step length) along the Newton direction.
+  // Both terms decrease in proportion to (1 - step length) along the Newton direction.
   double merit() {
     report_.residual = world_.bodies().residual(effort_);
     const double scale = world_.bodies().force_scale() + 1e-300;
@@ -99,31 +99,30 @@ class NewtonSolver {
     return report_.relative_residual + report_.violation / world_.problem().size;
   }
 
-  // A residual says little about distance: a small rotation along its tangent stretches a slender
-  // robot, and the axial forces of that are large where the move that takes them away is of second
-  // order in this one.
+  // A residual says little about the distance to the solution: a small linearised rotation
+  // stretches a slender robot and causes large axial forces, but the motion that removes them is of
+  // second order in the rotation.
   bool lags_little() const {
     const double left = report_.motion.largest_move * report_.relative_residual;
     return full_step_ && derivative_ && report_.relative_residual <= settings_.lag.residual &&
            left <= settings_.lag.move * world_.problem().size;
   }
 
-  // Whether the last full step did not lessen the residual, or moved nothing by a digit.
+  // Whether the last full step did not reduce the residual, or moved nothing beyond rounding.
   bool is_spent() const {
     return stagnant_ ||
            (full_step_ && report_.motion.largest_move <= kEpsilon * world_.problem().size);
   }
 
-  // Where rounding keeps the residual above the tolerance, a full step that moves nothing by more
-  // than rounding does, or that no longer lessens a residual at its floor, says that there is
-  // nothing left to find.
+  // If rounding keeps the residual above the tolerance, the solution is final when a full step
+  // moves nothing beyond rounding, or no longer reduces a residual at its rounding floor.
   bool converged() const {
     const double size = world_.problem().size;
     if (!(report_.violation <= std::max(settings_.motion_tolerance, kRounding) * size))
       return false;
     const bool at_rest = full_step_ && report_.motion.largest_move <= kRounding * size &&
                          report_.relative_residual <= kRoundedResidual;
-    // A matrix larger than the derivative moves little far from an equilibrium, too.
+    // A matrix larger than the derivative gives small motions even far from an equilibrium.
     const bool strict = settings_.lag.residual > 0.0 && !derivative_;
     const double tolerance =
         strict ? std::min(settings_.tolerance, kRoundedResidual) : settings_.tolerance;
@@ -168,8 +167,8 @@ class NewtonSolver {
   StepWatch& watch_;
   NewtonReport report_;
   bool converged_ = false;   // after the last motion
-  bool full_step_ = false;   // of that motion
-  bool derivative_ = false;  // what was condensed for it is the derivative
+  bool full_step_ = false;   // whether that motion was a full step
+  bool derivative_ = false;  // whether the condensed matrix was the derivative
   bool stagnant_ = false;    // the last full step did not lessen the residual
 };
 

@@ -1,6 +1,6 @@
 /// @file
-/// Newton's method on a step's equation and its law together: every iteration linearises,
-/// condenses, solves the law and moves, with a line search.
+/// Newton's method for the equation of a step together with its laws. Each iteration linearises,
+/// condenses, solves the laws and moves the bodies, with a line search.
 #pragma once
 
 #include <span>
@@ -20,12 +20,12 @@ class StageClock;
 class StepWatch;
 class World;
 
-/// What an iteration may leave for the next step although the residual is above its tolerance. A
-/// full iteration with the derivative leaves a move of second order in its own: about this one
-/// times the relative residual.
+/// Bounds on the error that an iteration may leave to the next step, although the residual exceeds
+/// the tolerance. After a full iteration with the exact derivative, the remaining motion is of
+/// second order: about the last motion times the relative residual.
 struct Lag {
-  double residual = 0.0;  ///< relative; 0: nothing is left
-  double move = 0.0;      ///< largest move times relative residual, of the robot's size
+  double residual = 0.0;  ///< relative residual; 0: no error may be left
+  double move = 0.0;      ///< largest move times relative residual, relative to the robot's size
 };
 
 struct NewtonSettings {
@@ -33,10 +33,10 @@ struct NewtonSettings {
   double tolerance = 1e-8;         ///< on the residual relative to the loads
   double motion_tolerance = 1e-8;  ///< on the law's violation relative to the robot's size
   int max_iterations = 50;
-  std::span<const int> geometric = {};  ///< constraints whose geometric stiffness joins A
+  std::span<const int> geometric = {};  ///< constraints whose geometric stiffness is added to A
   Lag lag = {};
-  /// As many first iterations of which each found the exact tangent indefinite are the last; 0: any
-  /// number.
+  /// The search ends after this many iterations if each of them found the exact tangent indefinite;
+  /// 0: no limit.
   int max_indefinite = 0;
 };
 
@@ -44,7 +44,7 @@ struct NewtonReport {
   NewtonStatus status = NewtonStatus::converged;
   int iterations = 0;
   double residual = 0.0;           ///< N, |p - f - ... + H^T lambda|
-  double relative_residual = 0.0;  ///< of the sum of the forces' norms
+  double relative_residual = 0.0;  ///< relative to the sum of the forces' norms
   double violation = 0.0;          ///< m, of the law
   int factorisations = 0;
   int tangent_fallbacks = 0;  ///< iterations in which the exact tangent was indefinite
@@ -52,11 +52,14 @@ struct NewtonReport {
   mechanics::MotionReport motion;
 };
 
-/// Iterates from the world's current state. On return the bodies are linearised at the last state.
-/// @param world is moved; its problem's actuators are told what to do. @param solver finds efforts.
-/// @param controller chooses those of owned actuators; null where there are none.
-/// @param effort (rows,) N, in and out. @param settings see there. @param clock gets the stages'
-/// times. @param watch is told of every iteration, and may throw.
+/// Runs Newton's method from the world's present state. On return, the bodies are linearised at the
+/// last state.
+/// @param world is moved; the actuators of its problem contain their commands.
+/// @param solver of the step's laws.
+/// @param controller chooses the efforts of its actuators; null if there is none.
+/// @param effort (rows,) N, in and out. @param settings tolerances and limits.
+/// @param clock records the times of the stages.
+/// @param watch is notified of every iteration, and may throw.
 NewtonReport solve_newton(World& world, step::StepSolver& solver, step::Controller* controller,
                           std::span<double> effort, const NewtonSettings& settings,
                           StageClock& clock, StepWatch& watch);

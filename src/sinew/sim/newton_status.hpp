@@ -1,5 +1,5 @@
 /// @file
-/// How Newton's iterations ended.
+/// How a Newton iteration ended.
 #pragma once
 
 #include <string_view>
@@ -9,10 +9,10 @@ namespace sinew::sim {
 enum class NewtonStatus {
   converged,
   iteration_limit,  ///< settings.max_iterations reached
-  stalled,          ///< no step length lessens the residual
-  inverted,         ///< even a short step would turn an element inside out
+  stalled,          ///< the line search found no acceptable step length
+  inverted,         ///< even a short step would invert an element
   singular,         ///< A cannot be factorised
-  law_failed,       ///< no efforts could be found
+  law_failed,       ///< the law has no solution for the efforts
 };
 /// "converged", "iteration-limit", ...
 std::string_view newton_status_name(NewtonStatus status);

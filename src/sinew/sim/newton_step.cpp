@@ -15,28 +15,28 @@ namespace sinew::sim {
 
 namespace {
 
-// What quasi-static steps leave for the next one, where it does not stay.
+// Errors that quasi-static steps leave to the next one, if they do not persist.
 constexpr Lag kLag{0.1, 1e-3};
-// The bounds of a search are those beyond which none of 600 random robots' steps was solved
+// Bounds of a search, beyond which none of the steps of 600 random robots was solved
 // (docs/solver.md).
-// Iterations with the projected tangent, which end wherever a stable equilibrium is downhill.
+// Iterations with the projected tangent, which descend to a stable equilibrium if there is one.
 constexpr int kMaxDescents = 60;
-// The smallest part of a quasi-static step, and the smallest to begin with.
+// Smallest part of a quasi-static step, and smallest first part.
 constexpr double kMinPart = 1.0 / 64.0;
 constexpr double kMinFirstPart = 1.0 / 16.0;
 constexpr int kIterationsOfPart = 25;
 constexpr int kIterationsInParts = 1000;
-// So many first iterations whose exact tangents are indefinite only descend.
+// The search ends after this many first iterations with an indefinite exact tangent.
 constexpr int kIndefinite = 25;
-// A controller chooses where to go anew in every iteration, which need not settle: after this many
-// its efforts are held. It has to keep up with a clock, too: a quasi-static step that it steers
-// takes no parts, and as many iterations with held efforts, with either tangent.
+// A controller makes a new choice in every iteration, which need not settle: after this many, its
+// efforts are held. It must also run in real time: its quasi-static steps are not divided, and take
+// at most as many iterations with held efforts, with either tangent.
 constexpr int kSteeredIterations = 8;
-// A dynamic step that can be halved is given up after so many: a crawling robot's steps of 40 ms
-// end within 15 or not within 50 (docs/performance.md).
+// Maximum iterations of a dynamic step that can be halved: steps of 40 ms of a crawling robot
+// converge within 15 iterations or not within 50 (docs/performance.md).
 constexpr int kIterationsBeforeHalving = 16;
-// Joints contradict each other where the last iteration moved less than this part of what they
-// lack, and where the contradiction, which all that take part in it share, is no less of it.
+// Joints are in conflict if the last iteration moved less than the first fraction of their gap, and
+// if the contradiction, which the joints involved share, is at least the second fraction of it.
 constexpr double kAtRest = 0.1;
 constexpr double kShare = 0.01;
 
@@ -101,11 +101,11 @@ NewtonReport NewtonStep::search(double time_step) {
   NewtonReport result = run_.newton(run_.controller, whole);
   if (steered && goes_on(result)) return hold_choice(result, time_step);
   if (run_.model->step().dynamic() || converged(result)) return result;
-  // From where the last step found no equilibrium by any way, none leads to one in this step.
+  // If all methods failed in the last step, they fail from there in this step, too.
   if (run_.before.residual > kLag.residual) return result;
   int tried = result.iterations;
   if (result.iterations > 0 && result.tangent_fallbacks == result.iterations) {
-    // What is unstable from the start on is unstable in parts, too.
+    // A step that is unstable from its start is unstable in parts, too.
     run_.restore(run_.before);
     run_.begin_world(time_step);
   } else {
@@ -120,7 +120,7 @@ NewtonReport NewtonStep::search(double time_step) {
   return result;
 }
 
-// See lift_motor_limits(). None: it did not end there.
+// See lift_motor_limits(). None: it found no equilibrium within the limits.
 std::optional<NewtonReport> NewtonStep::hold_motors(double time_step) {
   std::vector<step::ActuatorBlock>& blocks = run_.world.problem().actuators;
   if (!limits_motors(*run_.model, blocks)) return {};
@@ -134,8 +134,8 @@ std::optional<NewtonReport> NewtonStep::hold_motors(double time_step) {
   return {};
 }
 
-// A controller's choice need not settle: what it chose last is what its actuators are told in the
-// rest of the step, within their limits.
+// A controller's choice need not settle: in the rest of the step, its last choice becomes the
+// command of its actuators, within their limits.
 NewtonReport NewtonStep::hold_choice(const NewtonReport& chosen, double time_step) {
   run_.watch.enter(SearchStage::held_efforts);
   run_.report.choice_held = true;
@@ -161,8 +161,9 @@ NewtonReport NewtonStep::hold_choice(const NewtonReport& chosen, double time_ste
   return result;
 }
 
-// Where a controller's choice leads nowhere its actuators keep the efforts of the last step. It
-// remembers what it foresaw, and trusts its next choice less (see inverse::StepDamping).
+// If a controller's choice leads to no solution, its actuators keep the efforts of the last step.
+// The controller keeps the memory of its prediction, and trusts its next choice less (see
+// inverse::StepDamping).
 NewtonReport NewtonStep::stay(double time_step) {
   run_.watch.enter(SearchStage::last_efforts);
   std::vector<double> memory(run_.controller->memory_size());
@@ -182,8 +183,8 @@ NewtonReport NewtonStep::stay(double time_step) {
   return result;
 }
 
-// The robot at the end of the last step, which was about to buckle and from where Newton leads
-// nowhere: as near to equilibrium as it was then.
+// Returns to the end of the last step, for a robot that was about to buckle and from where Newton's
+// method fails: it is as near to equilibrium as it was then.
 NewtonReport NewtonStep::remain(double time_step, const NewtonReport& failed) {
   run_.restore(run_.before);
   run_.begin_world(time_step);
@@ -203,8 +204,8 @@ NewtonReport NewtonStep::remain(double time_step, const NewtonReport& failed) {
   return result;
 }
 
-// What the start of the step lacks to equilibrium is taken away bit by bit, as in statics
-// (static_solver.cpp), and commands go in proportion from where the actuators were.
+// Removes the residual at the start of the step gradually, as in statics (static_solver.cpp), with
+// commands interpolated from the actuators' values at the start.
 NewtonReport NewtonStep::approach(double time_step) {
   run_.watch.enter(SearchStage::parts);
   World& world = run_.world;
@@ -242,14 +243,14 @@ NewtonReport NewtonStep::approach(double time_step) {
   return result;
 }
 
-// From where approach() ended: with a matrix that is never less than the derivative every iteration
-// lowers the energy of conservative loads, through a buckling to wherever the robot then rests.
-// What is slow at the end of that, Newton finishes.
+// Continues from where approach() ended. With a matrix that majorises the derivative, every
+// iteration lowers the energy of conservative loads, through buckling to an equilibrium. Newton's
+// method completes the slow end of this descent.
 NewtonReport NewtonStep::descend(double time_step, int iterations) {
   run_.watch.enter(SearchStage::downhill);
   NewtonSettings downhill = settings(time_step);
   downhill.request.tangent = mechanics::Tangent::projected;
-  // A matrix that is never less has the stiffness of all cables, whatever the scene leaves out.
+  // A majorant requires the stiffness of all cables, even of those that the scene leaves out.
   downhill.request.with_geometric_stiffness = true;
   downhill.geometric = run_.model->geometric_stiffness().all;
   downhill.max_iterations = iterations;
@@ -261,9 +262,9 @@ NewtonReport NewtonStep::descend(double time_step, int iterations) {
   return result;
 }
 
-// Whether a quasi-static step may end so, and be flagged. Of contacts there is no such thing as
-// nearly: a point would be inside a surface. Forces may be as much out of balance as those of any
-// step that a controller steers.
+// Whether a quasi-static step may end in this state, with a flag. Contacts admit no approximate
+// solution, since a point would be inside a surface; with contacts, the residual is limited as for
+// the steps of a controller.
 bool NewtonStep::is_usable(const NewtonReport& result) const {
   if (!result.motion.finite || !(result.motion.volume.ratio > 0.0)) return false;
   if (result.law == LawStatus::failed) return false;
@@ -272,7 +273,7 @@ bool NewtonStep::is_usable(const NewtonReport& result) const {
          result.violation <= kMotionTolerance * run_.model->size();
 }
 
-// Where iterations have come to rest although joints are open.
+// Looks for a conflict if iterations have come to rest although joints are open.
 JointConflict NewtonStep::find_conflict(const NewtonReport& result, double time_step) const {
   const double open = result.violation, size = run_.model->size();
   const double tolerance = settings(time_step).motion_tolerance;

@@ -1,5 +1,5 @@
 /// @file
-/// A step's equation solved by Newton's method, and by longer ways where that finds nothing.
+/// Solution of a step by Newton's method, with fallbacks.
 #pragma once
 
 #include <optional>
@@ -11,15 +11,16 @@ namespace sinew::sim {
 
 struct Run;
 
-/// Newton; where that finds nothing and there is no inertia to say where to go, along the loads and
-/// commands in parts, and last downhill.
+/// Solves a step by Newton's method. In quasi-statics, where no inertia indicates the direction of
+/// motion, a failure is followed by load stepping of loads and commands, and finally by descent
+/// with the projected tangent.
 class NewtonStep {
  public:
-  /// @param run outlives it; its step has begun when solve() is called.
-  /// @param divisible smaller steps are tried where this one finds no end.
+  /// @param run must outlive it; its step has begun when solve() is called.
+  /// @param divisible whether the caller can retry with smaller steps.
   NewtonStep(Run& run, bool divisible) : run_(run), divisible_(divisible) {}
-  /// Moves the bodies and reports. Throws Error(not-converged), the run then being as before the
-  /// step. @param time_step s.
+  /// Moves the bodies and fills the report. Throws Error(not-converged), after which the run is as
+  /// before the step. @param time_step s.
   void solve(double time_step);
 
  private:

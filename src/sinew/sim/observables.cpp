@@ -32,8 +32,8 @@ Observables::Observables(Simulation& simulation) : simulation_(&simulation) {
   sort();
 }
 
-// By kind, and as they were added within one. At once: of many contacts there are thousands, and
-// each in its place would move all behind it.
+// Sorts by kind, stably, and once for all: many contacts have thousands of observables, and
+// inserting each at its place would move all behind it.
 void Observables::sort() {
   std::vector<std::size_t> order(list_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

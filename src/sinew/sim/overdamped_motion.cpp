@@ -11,22 +11,23 @@ namespace sinew::sim {
 
 namespace {
 
-// Steps follow the motion roughly: where it ends, Newton takes over.
+// Steps follow the motion approximately; near its end, Newton's method takes over.
 constexpr double kRelaxationTolerance = 1e-4;
 constexpr int kMaxIterationsOfStep = 12;
 constexpr int kFewIterations = 4;
 constexpr int kManyIterations = 8;
-constexpr double kLighter = 0.25;  // sigma of the next step after an easy one
+constexpr double kLighter = 0.25;  // factor of sigma after an easy step
 constexpr double kHeavier = 2.0;   // after a hard one
-constexpr double kHeaviest = 8.0;  // after one that failed
+constexpr double kHeaviest = 8.0;  // after a failed one
 constexpr int kMaxFailures = 8;    // in a row
-// Motion that becomes smaller, and is less than this of the robot's size in a step, settles.
+// A decreasing motion below this fraction of the robot's size per step is settling.
 constexpr double kSettling = 0.02;
 constexpr double kLater = 0.25;
-// Of the disturbance: a state that comes so near to what it left has come back.
+// Distance to the equilibrium that was left, relative to the disturbance, at which the state has
+// returned.
 constexpr double kBack = 0.1;
-constexpr double kSmall = 1e-6;  // of the robot's size: a motion to measure with
-// Inertia at the start over that at which the softest direction would be neutral.
+constexpr double kSmall = 1e-6;  // of the robot's size: test motion for measurements
+// Initial inertia relative to that at which the softest direction would be neutral.
 constexpr double kFirstInertia = 2.0;
 
 mechanics::StepWeights overdamped(double sigma) {
@@ -54,7 +55,7 @@ double OverdampedMotion::moved_since(const std::vector<Points>& before) const {
   return worst;
 }
 
-// d^T M d, by what inertia adds to the imbalance of a small motion along d; kg m^2 or alike.
+// d^T M d, from the change of the residual by inertia in a small motion along d; kg m^2 or similar.
 double OverdampedMotion::mass_along(const VectorX& direction) {
   Bodies& bodies = run_.world.bodies();
   search_.begin();
@@ -66,7 +67,7 @@ double OverdampedMotion::mass_along(const VectorX& direction) {
   bodies.imbalance(run_.effort, still);
   double sigma = 1.0;
   double mass = 0.0;
-  for (int round = 0; round < 2; ++round) {  // the second with inertia that is not lost in rounding
+  for (int round = 0; round < 2; ++round) {  // the second with inertia well above rounding
     search_.linearise(overdamped(sigma));
     bodies.imbalance(run_.effort, moving);
     mass = direction.dot(still - moving) / (sigma * scale);
@@ -100,7 +101,7 @@ OverdampedMotion::End OverdampedMotion::leave(const Stability& stability, double
   return relax(kFirstInertia * std::abs(curvature) / mass, kBack * disturbance);
 }
 
-// From the last equilibrium on the way, along the motion that Newton would begin with.
+// Starts at the last equilibrium of the path, in the Newton direction.
 bool OverdampedMotion::relax_from_here() {
   World& world = run_.world;
   Bodies& bodies = world.bodies();
@@ -123,7 +124,7 @@ bool OverdampedMotion::relax_from_here() {
   return relax(kFirstInertia * curvature / mass, 0.0) == End::arrived;
 }
 
-// @param sigma of the first step, 1/s^2. @param near m: nearer than this to what was left is back.
+// @param sigma of the first step, 1/s^2. @param near m: distance to left_ that counts as a return.
 OverdampedMotion::End OverdampedMotion::relax(double sigma, double near) {
   run_.watch.enter(SearchStage::overdamped);
   run_.world.homotopy().set_fraction(0.0);
@@ -153,14 +154,14 @@ OverdampedMotion::End OverdampedMotion::relax(double sigma, double near) {
       settled = kLater * moved;
     }
     moved_before = moved;
-    // While it falls away from what it left, less inertia would let a step end on the other side.
+    // While the robot moves away from left_, less inertia could let a step overshoot.
     if (slows && iterations <= kFewIterations) sigma *= kLighter;
     if (iterations > kManyIterations) sigma *= kHeavier;
   }
   return End::failed;
 }
 
-// Whether Newton finds an equilibrium from here; if not, nothing has moved.
+// Whether Newton's method finds an equilibrium from here; if not, the state is restored.
 bool OverdampedMotion::arrives() {
   run_.keep(sound_);
   if (search_.equilibrate(0.0)) return true;

@@ -1,5 +1,5 @@
 /// @file
-/// The motion of a robot that has mass and no velocity, into an equilibrium.
+/// Overdamped motion into an equilibrium.
 #pragma once
 
 #include <vector>
@@ -13,20 +13,21 @@ struct Run;
 class Stability;
 class StaticSearch;
 
-/// Implicit Euler steps of M dq/dt = r(q), of length tau, each solved by Newton:
-///   sigma M (q - q_start) = r(q),   sigma (1/s^2) the inverse of tau times a unit of time;
-/// sigma falls while the steps are easily solved, so that they end as Newton's own:
+/// Implicit Euler steps of the first-order equation M dq/dt = r(q), each solved by Newton's method:
+///   sigma M (q - q_start) = r(q),   sigma (1/s^2) the inverse of the step length times 1 s.
+/// sigma decreases while the steps are easy to solve, so they turn into Newton's method:
 /// pseudo-transient continuation (Kelley & Keyes, SIAM J. Numer. Anal. 35 (1998) 508).
 class OverdampedMotion {
  public:
   enum class End { arrived, returned, failed };
 
-  /// @param search outlives it.
+  /// @param search must outlive it.
   explicit OverdampedMotion(StaticSearch& search);
-  /// From the present state, along the motion that Newton would begin with. Whether it arrived.
+  /// Relaxes from the present state, starting in the Newton direction.
+  /// @return whether it reached an equilibrium.
   bool relax_from_here();
-  /// Away from an unstable equilibrium, along the direction of its lowest curvature.
-  /// @param stability of it. @param disturbance of the robot's size.
+  /// Leaves an unstable equilibrium along the direction of its lowest curvature.
+  /// @param stability of the equilibrium. @param disturbance relative to the robot's size.
   End leave(const Stability& stability, double disturbance);
 
  private:
@@ -39,7 +40,7 @@ class OverdampedMotion {
   StaticSearch& search_;
   Run& run_;
   State sound_;               // before the last step
-  std::vector<Points> left_;  // of each body: positions of the unstable equilibrium that was left
+  std::vector<Points> left_;  // positions of each body in the unstable equilibrium
 };
 
 }  // namespace sinew::sim

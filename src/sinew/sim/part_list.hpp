@@ -1,5 +1,5 @@
 /// @file
-/// A list of parts as those see it who may only read.
+/// A read-only list of parts.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace sinew::sim {
 
-/// Parts that others own, each const: a vector of unique_ptr would hand them out to be changed.
-/// Valid as long as the vector.
+/// A read-only view of parts owned by a vector of unique_ptr; the vector itself would allow the
+/// parts to be modified. Valid as long as the vector.
 template <typename Part>
 class PartList {
  public:

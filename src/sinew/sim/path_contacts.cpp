@@ -13,18 +13,19 @@ namespace {
 using Vector2 = Eigen::Vector2d;
 using Matrix2 = Eigen::Matrix2d;
 
-// Of a point's compliance, that its forces give way by: what a roller keeps from moving has a force
-// then, too. It acts on changes alone, which vanish.
+// Regularisation of the points' forces, relative to their compliance: a point that a roller keeps
+// from moving also has a force. It acts only on changes, which vanish on convergence.
 constexpr double kGives = 1e-9;
 
-// Of a point's rows, the tangential ones times its compliance along the surface.
+// The linearised law of a point's rows, the tangential ones multiplied by its tangential
+// compliance.
 struct PointLaw {
   Matrix3 by_effort = Matrix3::Zero();  // m/N
   Matrix3 by_motion = Matrix3::Identity();
   Vector3 miss = Vector3::Zero();  // m
 };
 
-// Of a point in its tangential rows, m/N.
+// Mean tangential compliance of a point, m/N.
 double compliance_along(const step::StepProblem& problem, const step::ContactBlock& block) {
   return 0.5 * problem.compliance.diagonal().segment<2>(block.row + 1).sum();
 }
@@ -74,7 +75,7 @@ PathContacts::PathContacts(World& world, HeldMotions& joints,
   factorise();
 }
 
-// E, F and miss of all points.
+// Collects E, F and the residual of all points.
 void PathContacts::ask(std::span<const step::ContactBlock> touching,
                        std::span<const double> effort) {
   const auto size = static_cast<Eigen::Index>(held_.size());

@@ -1,5 +1,5 @@
 /// @file
-/// The laws of the points that touch, in a correction along a path.
+/// Contact laws in the correction of a step along a path.
 #pragma once
 
 #include <span>
@@ -12,31 +12,32 @@
 
 namespace sinew::sim {
 
-/// Points that touch keep their gap, g = 0, and rub by Coulomb's law of the motion u_t along the
-/// surface since the step began: of a slow motion along the path its increments are all that the
-/// law asks for. With the force lambda_t, its limit R = mu lambda_n, w the compliance of the point
-/// and tau = lambda_t - u_t/w, the law is (Alart & Curnier, CMAME 92 (1991) 353)
-///   lambda_t = P(tau),   P the projection onto the disc of radius R,
-/// and Newton's method asks of a point that sticks, |tau| <= R, du_t = -u_t, and of one that slips,
-/// with the direction d = tau/|tau| and the part beta = R/|tau| Q, Q = 1 - d d^T,
+/// Touching points keep their gap, g = 0, and obey Coulomb's law in the tangential motion u_t since
+/// the step began: for a slow motion along the path, the law involves only the increments of the
+/// motion. With the friction force lambda_t, its limit R = mu lambda_n, the compliance w of the
+/// point and tau = lambda_t - u_t/w, the law is (Alart & Curnier, CMAME 92 (1991) 353)
+///   lambda_t = P(tau),   P the projection onto the disc of radius R.
+/// Newton's method requires du_t = -u_t at a sticking point, |tau| <= R, and at a slipping point,
+/// with the direction d = tau/|tau| and beta = R/|tau| Q, Q = 1 - d d^T,
 ///   (1 - beta) dlambda_t - mu d dlambda_n + beta du_t/w = P(tau) - lambda_t.
-/// In short E dlambda + F H dq = -miss. With T, the robot as its joints hold it (HeldMotions),
-/// dq = T (right + H^T dlambda), this is (E + F W) dlambda = -miss - F H T right, W = H T H^T,
-/// without symmetry where points slip.
+/// In short, E dlambda + F H dq = -miss. With the inverse T of the robot with its joints
+/// (HeldMotions), dq = T (right + H^T dlambda), this becomes (E + F W) dlambda = -miss - F H T
+/// right, W = H T H^T, which is unsymmetric if points slip.
 class PathContacts {
  public:
-  /// All outlive it. @param world condensed. @param joints of it. @param touching blocks of its
-  ///   problem. @param effort (rows,) N.
+  /// All must outlive it. @param world condensed. @param joints of the world.
+  /// @param touching contact blocks of its problem. @param effort (rows,) N.
   PathContacts(World& world, HeldMotions& joints, std::span<const step::ContactBlock> touching,
                std::span<const double> effort);
 
-  /// (k,) of the problem, that the points have efforts in.
+  /// (k,) rows of the problem in which the points have efforts.
   std::span<const step::HeldRow> rows() const { return held_; }
-  /// The robot's answer to a force. @param right (all bodies' size(),) N. @param closes whether
-  ///   joints and points also make good what they miss. @param answer with the joints' efforts,
-  ///   overwritten. @param efforts (k,) N, of the points, overwritten.
+  /// The response of the robot to a force. @param right (all bodies' size(),) N.
+  /// @param closes whether the residuals of joints and points are also closed.
+  /// @param answer motion and efforts of the joints, overwritten.
+  /// @param efforts (k,) N, of the points, overwritten.
   void solve(const VectorX& right, bool closes, HeldAnswer& answer, VectorX& efforts);
-  /// Whether the points' forces do not follow from the motion.
+  /// Whether the points' forces are not determined by the motion.
   bool is_singular() const { return !held_.empty() && factor_.is_singular(); }
 
  private:
@@ -54,8 +55,8 @@ class PathContacts {
   linalg::LuFactor factor_;
 };
 
-/// m: how far points that touch are from these laws.
-/// @param world its rows formed; compliances may be older. @param touching,effort see above.
+/// m: largest residual of these laws at the touching points.
+/// @param world whose rows are formed; W may be older. @param touching,effort see PathContacts.
 double path_miss(const World& world, std::span<const step::ContactBlock> touching,
                  std::span<const double> effort);
 

@@ -17,7 +17,7 @@ namespace sinew::sim {
 
 namespace {
 
-constexpr double kWantedIterations = 6.0;  // of a step of the right length
+constexpr double kWantedIterations = 6.0;  // of a step of suitable length
 constexpr int kMaxPathHalvings = 14;
 
 }  // namespace
@@ -55,7 +55,7 @@ void PathFollower::check() const {
   }
 }
 
-// A path beside contacts begins at an equilibrium: it needs to know what touches there.
+// With contacts, a path must begin at an equilibrium, which determines the touching points.
 void PathFollower::settle(PathLoads& loads) {
   if (run_.world.contacts().empty()) return;
   loads.set_fraction(0.0);
@@ -96,7 +96,7 @@ std::vector<PathPoint> PathFollower::follow(const std::function<void()>& visit) 
   check();
   PathLoads loads(run_);
   run_.keep(run_.before);
-  // What a watcher throws leaves the last point.
+  // An exception of the watcher leaves the state of the last point.
   const auto from_before = [&](auto&& part) {
     try {
       return part();

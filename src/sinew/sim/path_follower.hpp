@@ -1,6 +1,6 @@
 /// @file
-/// Equilibria along a load that grows, through limit points and back, by the length of the path
-/// rather than by the load.
+/// Path of equilibria under a growing load, parameterised by arc length and therefore able to pass
+/// limit points.
 #pragma once
 
 #include <functional>
@@ -13,14 +13,12 @@ namespace sinew::sim {
 class PathLoads;
 struct Run;
 
-/// Steps (PathStep) whose length follows how easily they are taken, from the present equilibrium
-/// on.
+/// Follows the path from the present equilibrium in steps (PathStep) of adaptive length.
 class PathFollower {
  public:
-  /// @param run is moved. @param settings see there.
+  /// @param run is moved. @param settings step lengths and tolerance.
   PathFollower(Run& run, const PathSettings& settings) : run_(run), settings_(settings) {}
-  /// See Simulation::follow_path(). @param visit called at every point, if there is something to
-  /// call.
+  /// See Simulation::follow_path(). @param visit called at every point, unless empty.
   std::vector<PathPoint> follow(const std::function<void()>& visit);
 
  private:

@@ -1,5 +1,5 @@
 /// @file
-/// What grows along a path.
+/// The loads and efforts that grow along a path.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,15 @@ namespace sinew::sim {
 
 struct Run;
 
-/// Factors of loads and efforts of actuators, from what acted last to what they are told to be.
+/// Interpolates load factors and actuator efforts between their last applied values and the
+/// commanded ones.
 class PathLoads {
  public:
-  /// Reads commands. @param run outlives it. Throws Error(bad-argument) where an actuator is told a
-  /// motion or has a drive.
+  /// Evaluates the commands.
+  /// @param run must outlive it. Throws Error(bad-argument) if an actuator has a commanded motion
+  ///   or a drive.
   explicit PathLoads(Run& run);
-  /// Where loads and efforts stand at a fraction of the way.
+  /// Applies the loads and efforts at a fraction of the path.
   void set_fraction(double fraction);
 
  private:

@@ -10,12 +10,12 @@ namespace sinew::sim {
 
 namespace {
 
-// Of the robot's size, by which gaps are told apart that close together.
+// Relative to the robot's size: difference by which gaps that close together are distinguished.
 constexpr double kTie = 1e-10;
-// Corners of one step, over the number of points.
+// Maximum number of corners in one step, per point.
 constexpr std::size_t kMaxCorners = 10;
 
-// How far the motion `from` + t `along` goes until its largest coordinate is `length`.
+// Distance t along `along` at which the largest coordinate of `from` + t `along` is `length`.
 double way_until(const VectorX& from, const VectorX& along, double length) {
   double least = kInfinity;
   for (Eigen::Index i = 0; i < along.size(); ++i) {
@@ -42,7 +42,7 @@ void PathPredictor::list(std::span<const double> effort) {
   }
 }
 
-// Normal rows, then the tangential ones of points that slip.
+// Problem with the normal rows, followed by the tangential rows of slipping points.
 qp::ComplementaryPath PathPredictor::begin(const HeldAnswer& by_load) {
   if (held_.empty()) return {{}, {}, {}, {}, 0.0};
   const auto points = static_cast<Eigen::Index>(held_.size());

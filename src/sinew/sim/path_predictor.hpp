@@ -1,5 +1,5 @@
 /// @file
-/// Where a path leads from an equilibrium, past the corners that contacts make in it.
+/// Predictor of a path step, which passes the corners that contacts cause in the path.
 #pragma once
 
 #include <span>
@@ -11,40 +11,45 @@
 
 namespace sinew::sim {
 
-/// What a step along a path begins with.
+/// The prediction with which a step along a path begins.
 struct PathPrediction {
-  HeldAnswer answer;           ///< of the robot and what holds it
-  VectorX origin;              ///< where a step of this length and direction would have begun
-  double load_fraction = 0.0;  ///< of the load, more than before
+  HeldAnswer answer;           ///< motion, and efforts of the held rows
+  VectorX origin;              ///< start of a straight step with this end, direction and length
+  double load_fraction = 0.0;  ///< increment of the load fraction
 };
 
-/// The robot as it is linearised, T its inverse where joints hold it (HeldMotions), answers a load
-/// that grows by t dr/ds with
+/// Linearised, with the inverse T of the robot with its joints (HeldMotions), the robot responds to
+/// a load that grows by t dr/ds with
 ///   dq = T (t dr/ds + H^T dlambda),   g = g_now + H dq,   0 <= g _|_ lambda >= 0,
-/// H the normal rows of contacts without friction: the linear complementarity problem in the gaps g
-/// and the forces lambda with matrix W = H T H^T and slope H T dr/ds. Its solutions are a path with
-/// corners where points touch or come off (Bjorkman, Comput. Mech. 10 (1992) 185, by directional
-/// derivatives), through which qp::ComplementaryPath goes, however many points move together
-/// (symmetry, a face that lands flat) and whether the load turns back there or not.
+/// where H are the normal rows of frictionless contacts: a linear complementarity problem in the
+/// gaps g and the forces lambda, with the matrix W = H T H^T and the slope H T dr/ds. Its solutions
+/// form a path with corners where points touch or separate (Bjorkman, Comput. Mech. 10 (1992) 185,
+/// by directional derivatives). qp::ComplementaryPath follows it, also if many points change
+/// together (symmetry, a face that lands flat) or the load turns back at a corner.
 ///
-/// Friction is predicted as it was: a point that sticks holds its tangential rows like a joint, one
-/// that slips goes on in its direction with lambda_t/lambda_n, which makes W unsymmetric, and one
+/// Friction is predicted from the present state: the tangential rows of a sticking point are held
+/// like those of a joint, a slipping point keeps its direction with constant lambda_t/lambda_n,
+/// which makes W unsymmetric, and a point that begins to touch has no friction. The correction then
+/// solves the friction law (PathContacts).
 /// that begins to touch has none. What comes of it the correction decides (PathContacts).
 class PathPredictor {
  public:
-  /// Both outlive it. @param world linearised, its rows formed, and condensed. @param joints of it,
-  /// and the tangential rows of points that stick.
+  /// Both must outlive it. @param world linearised, with rows formed, and condensed.
+  /// @param joints of the world, with the tangential rows of sticking points.
   PathPredictor(World& world, HeldMotions& joints) : world_(world), joints_(joints) {}
 
-  /// @param by_rest,by_load T r and T dr/ds. @param before motion of the last step, the path going
-  ///   on there; empty: the path begins as the load grows. @param length m, of the largest motion,
-  ///   and @param max_load_fraction of the load, which end a step. @param effort (rows,) N.
-  ///   @param result overwritten. False where the path leads nowhere; the result is then of no use.
+  /// @param by_rest,by_load T r and T dr/ds.
+  /// @param before motion of the last step, which fixes the direction of the path; empty: the path
+  ///   begins with a growing load.
+  /// @param length m, largest motion in any coordinate, at which the step ends.
+  /// @param max_load_fraction increment of the load fraction at which the step ends.
+  /// @param effort (rows,) N. @param result overwritten.
+  /// @return false if the path does not continue; `result` is then unusable.
   bool predict(const HeldAnswer& by_rest, const HeldAnswer& by_load, const VectorX& before,
                double length, double max_load_fraction, std::span<const double> effort,
                PathPrediction& result);
-  /// The points that touch where the prediction ends, blocks of the problem, and their forces;
-  /// those of the others become zero. @param effort (rows,) N, already moved by the prediction.
+  /// The blocks of the points that touch at the end of the prediction; writes their forces, and
+  /// zero for the other points. @param effort (rows,) N, already updated by the prediction.
   std::vector<step::ContactBlock> touch(std::span<double> effort) const;
 
  private:
@@ -55,10 +60,10 @@ class PathPredictor {
 
   World& world_;
   HeldMotions& joints_;
-  std::vector<char> held_;     // (points,) of the problem
-  VectorX value_;              // (points,) N where held, else m
-  std::vector<Vector3> push_;  // (points,) of their rows, for a normal force of one
-  MatrixX forces_;             // (all bodies' size(), points) of these pushes
+  std::vector<char> held_;     // (points,) of the problem, whether they touch
+  VectorX value_;              // (points,) force, N, if touching, else gap, m
+  std::vector<Vector3> push_;  // (points,) force on their rows per unit normal force
+  MatrixX forces_;             // (all bodies' size(), points) the same on the bodies
 };
 
 }  // namespace sinew::sim

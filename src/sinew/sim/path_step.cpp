@@ -16,16 +16,16 @@ namespace sinew::sim {
 namespace {
 
 constexpr int kMaxIterations = 25;
-constexpr double kFarthest = 5.0;  // of a step's length, that its corrections may go
-// Where points touch, loads grow fast: beside contacts no prediction goes beyond the full load by
-// more than the first, and no step by more than the second.
+constexpr double kFarthest = 5.0;  // bound of the total motion, relative to the step's length
+// Loads grow fast where points touch: with contacts, no prediction exceeds the full load by more
+// than the first fraction, and no step by more than the second.
 constexpr double kBeyond = 1e-2;
 constexpr double kFarBeyond = 0.1;
-constexpr double kDiagonal = 1.75;  // more than the largest coordinate's part of a motion in space
+constexpr double kDiagonal = 1.75;  // > sqrt(3), bound of a 3D motion over its largest coordinate
 
 }  // namespace
 
-// r at a fraction of the way; the bodies stay linearised there.
+// r at a load fraction; the bodies stay linearised there.
 void PathStep::imbalance_at(double load_fraction, VectorX& imbalance) {
   loads_.set_fraction(load_fraction);
   run_.world.linearise({{}, mechanics::Tangent::exact, true, true});
@@ -33,7 +33,7 @@ void PathStep::imbalance_at(double load_fraction, VectorX& imbalance) {
   run_.world.bodies().imbalance(run_.effort, imbalance);
 }
 
-// m: the largest of any joint, and what points that touch miss.
+// m: the largest gap of any joint, and the residual of touching points.
 double PathStep::gap() const {
   const step::StepProblem& problem = run_.world.problem();
   double largest = path_miss(run_.world, touching_, run_.effort);
@@ -52,8 +52,9 @@ std::vector<step::ContactBlock> PathStep::pressed() const {
   return result;
 }
 
-// Joints, and what the force lambda of a point on a curved surface does: its direction n turns with
-// the point, r has lambda grad n dq, and the tangent -lambda/R along the row across.
+// Rows of joints, and the effect of the force lambda of a point on a curved surface: the normal n
+// turns with the point, so r contains lambda grad n dq, and the tangent -lambda/R along the
+// tangential row.
 std::vector<step::HeldRow> PathStep::joints(std::span<const step::ContactBlock> touching) const {
   std::vector<step::HeldRow> held;
   step::append_joints(run_.world.problem(), held);
@@ -69,7 +70,7 @@ std::vector<step::HeldRow> PathStep::joints(std::span<const step::ContactBlock> 
   return held;
 }
 
-// And the tangential rows of points that stick.
+// The same, with the tangential rows of sticking points.
 std::vector<step::HeldRow> PathStep::joints_and_sticking() const {
   const std::vector<step::ContactBlock> touching = pressed();
   std::vector<step::HeldRow> held = joints(touching);
@@ -131,7 +132,7 @@ void PathStep::move(const VectorX& motion, double load_fraction) {
   run_.world.bodies().propose_motion(motion);
 }
 
-// Efforts of stiffness are part of no equilibrium.
+// Efforts of rows with stiffness are part of no equilibrium.
 void PathStep::push(std::span<const step::HeldRow> held, const VectorX& efforts) {
   for (std::size_t k = 0; k < held.size(); ++k) {
     if (held[k].compliance != 0.0) continue;
@@ -140,7 +141,7 @@ void PathStep::push(std::span<const step::HeldRow> held, const VectorX& efforts)
   }
 }
 
-// Takes the motion; whether it may be taken.
+// Applies the motion. @return whether it is acceptable.
 bool PathStep::is_sound(double length) {
   Bodies& bodies = run_.world.bodies();
   const auto motion = bodies.apply_motion(1.0);
@@ -153,8 +154,8 @@ bool PathStep::is_sound(double length) {
   return true;
 }
 
-// Whether points that touch are pressed, all others outside, and the load not far beyond its end.
-// What rounding pulls is let go.
+// Whether touching points have compressive forces, all others are outside, and the load is not far
+// beyond its end. Removes tensile forces within rounding.
 bool PathStep::is_path_point() {
   const step::StepProblem& problem = run_.world.problem();
   const double nothing = settings_.tolerance * run_.model->size();
@@ -170,7 +171,8 @@ bool PathStep::is_path_point() {
   return obeyed;
 }
 
-// Contacts change what is unstable from one iteration to the next: here, not before the last.
+// With contacts, the number of unstable directions changes between iterations: it is counted at the
+// solution, not before the last iteration.
 void PathStep::count() {
   if (run_.world.contacts().empty()) return;
   if (run_.world.condense() == linalg::FactorStatus::singular) return;
@@ -181,7 +183,7 @@ void PathStep::count() {
   negative_pivots_ = HeldMotions(run_.world, std::move(held)).negative_pivots();
 }
 
-// The iterations that a step took; 0: it failed.
+// @return the number of iterations; 0 if the step failed.
 int PathStep::try_length(double length) {
   run_.world.begin_step(run_.time(), run_.time(), run_.effort, kFarthest * kDiagonal * length);
   touching_.clear();
@@ -205,7 +207,7 @@ int PathStep::try_length(double length) {
   return 0;
 }
 
-// The same, taken back where it failed.
+// The same, with the run restored after a failure.
 int PathStep::take(double length) {
   run_.keep(run_.before);
   const double load_fraction_before = load_fraction_;

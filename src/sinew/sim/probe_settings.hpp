@@ -1,5 +1,5 @@
 /// @file
-/// What ModelBuilder::add_probe() is told.
+/// Settings for ModelBuilder::add_probe().
 #pragma once
 
 #include <array>
@@ -17,22 +17,22 @@ namespace sinew::sim {
 /// The mean of points given at rest, or of nodes.
 struct ProbeSpot {
   int body = 0;
-  Points points = Points(0, 3);  ///< (n, 3) m; used when there are no nodes
+  Points points = Points(0, 3);  ///< (n, 3) m; used if there are no nodes
   std::vector<NodeId> nodes;
 };
 
-/// Points along a polyline of the body at rest: its corners, and others at even distances between.
+/// Points along a polyline of the body at rest: its corners, and evenly spaced points between them.
 struct ProbeLine {
   int body = 0;
   Points corners;    ///< (n, 3) m, n >= 2
-  int samples = 21;  ///< points in all, about: every stretch has at least its ends
+  int samples = 21;  ///< approximate number of points; each segment has at least its ends
 };
 
 struct ProbeBend {
   struct Face {
     int body = 0;
     std::vector<NodeId> nodes;
-    std::optional<Vector3> normal;  ///< at rest; none: that of the plane that fits best
+    std::optional<Vector3> normal;  ///< at rest; none: that of the best-fitting plane
   };
   std::array<Face, 2> faces;
   std::optional<Vector3> about;  ///< see constraint::BendProbe
@@ -49,7 +49,7 @@ struct ProbeExtent {
   constraint::ExtentProbe::Way way = constraint::ExtentProbe::Way::along;
 };
 
-/// A probe: a number, or several, read off the robot's shape.
+/// A probe: one or more numbers measured on the robot's shape.
 struct ProbeSettings {
   std::string name;
   Location place;

@@ -1,5 +1,5 @@
 /// @file
-/// Looks at a simulation that leave nothing behind.
+/// Queries of a simulation that leave it unchanged.
 #pragma once
 
 #include <utility>
@@ -10,9 +10,9 @@
 
 namespace sinew::sim {
 
-/// Calls look(state), which may change the simulation's state and the world's problem, and puts
-/// both back, also where it throws. @param simulation that is looked at. @param look takes the
-/// State before. @return what it returns.
+/// Calls look(state), which may change the simulation's state and the world's problem, and restores
+/// both afterwards, even after an exception. @param simulation to be queried. @param look takes the
+/// State before the query. @return the result of `look`.
 template <class Look>
 auto query(Simulation& simulation, Look&& look) {
   const State state = simulation.state();

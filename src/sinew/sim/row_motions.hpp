@@ -1,5 +1,5 @@
 /// @file
-/// What rows do to bodies, and bodies to rows, one row at a time.
+/// Products of single rows of H with velocities and efforts.
 #pragma once
 
 #include <cstddef>
@@ -12,16 +12,17 @@ namespace sinew::sim {
 class World;
 
 /// Rate of a row's motion, H v, m/s.
-/// @param world its rows formed. @param row of the model, neither of a contact between surfaces.
+/// @param world whose rows are formed. @param row of the model, not of a contact between surfaces.
 double row_velocity(const World& world, int row);
 
-/// (3,) m/s: the rates of a contact point's rows, beside a surface that moves by itself: of centres
-/// of roundness along the normal, which stay over where a body rolls.
-/// @param world its delta measured. @param contact of the model. @param point below its size().
+/// (3,) m/s: rates of a contact point's rows, relative to a surface with prescribed motion. Normal
+/// rates refer to the centre of curvature, which stays above the contact point when a body rolls.
+/// @param world whose delta is measured. @param contact of the model.
+/// @param point below its size().
 Vector3 contact_velocity(const World& world, int contact, std::size_t point);
 
 /// (all bodies' size(), k) columns of H^T.
-/// @param world its rows formed. @param rows (k,) of the problem.
+/// @param world whose rows are formed. @param rows (k,) of the problem.
 MatrixX row_forces(World& world, std::span<const int> rows);
 
 }  // namespace sinew::sim

@@ -1,5 +1,5 @@
 /// @file
-/// Which rows of the model the problem of a step has.
+/// Mapping between the rows of the model and those of a step's problem.
 #pragma once
 
 #include <span>
@@ -11,28 +11,28 @@
 
 namespace sinew::sim {
 
-/// The problem's rows are those of the model, in their order, without those of points that are left
-/// out of the step, and one for each group of rows (mechanics::RowGroups). Contacts stand behind
-/// all others, whose numbers are therefore the same in both.
+/// The rows of the problem are those of the model in the same order, without the rows of inactive
+/// contact points, and with one row for each group of rows (mechanics::RowGroups). Contacts come
+/// after all other rows, whose numbers are therefore the same in both.
 class RowNumbering {
  public:
-  /// @param rows active ones and groups; these are remembered, the rest is not.
+  /// @param rows whose active rows and groups are stored; no other data of them is used.
   void number(const mechanics::RowValues& rows);
 
-  /// The model's row that a row of the problem is; of a group the first.
+  /// The model's row for a row of the problem; for a group, the first one.
   int model_row_of(int row) const { return model_rows_[static_cast<std::size_t>(row)]; }
-  /// Where a row of the model is in the problem; -1: nowhere.
+  /// The problem's row for a row of the model; -1: none.
   int problem_row_of(int row) const { return problem_rows_[static_cast<std::size_t>(row)]; }
-  /// (rows,) of each.
+  /// (rows,) the same for all rows of the model.
   std::span<const int> problem_rows() const { return problem_rows_; }
 
-  /// Of all rows' motions, those of the problem: of groups the mean.
+  /// Gathers the motions of the problem's rows; a group gets the mean, weighted by shares.
   void gather_motions(const VectorX& all, VectorX& result) const;
-  /// Of all rows' efforts, those of the problem: of groups the sum.
+  /// Gathers the efforts of the problem's rows; a group gets the sum.
   void gather_efforts(std::span<const double> all, linalg::AlignedNumbers& result) const;
-  /// And back; rows that are left out get zero.
+  /// The inverse; inactive rows get zero.
   void scatter_efforts(const linalg::AlignedNumbers& numbers, std::span<double> all) const;
-  /// Writes what an effort of one row of the problem is on the model's.
+  /// Writes the effort of one row of the problem to the corresponding rows of the model.
   void spread(int row, double effort, std::span<double> all) const;
 
  private:
@@ -40,9 +40,9 @@ class RowNumbering {
     int row = 0, problem_row = 0;
     double share = 1.0;
   };
-  std::vector<int> problem_rows_;  // (rows,) in the problem, -1: left out
-  std::vector<int> model_rows_;    // (rows of the problem,) of the model
-  std::vector<Member> members_;    // of groups
+  std::vector<int> problem_rows_;  // (rows,) row of the problem, -1: inactive
+  std::vector<int> model_rows_;    // (rows of the problem,) row of the model
+  std::vector<Member> members_;    // rows of groups
 };
 
 }  // namespace sinew::sim

@@ -27,37 +27,40 @@ struct Inputs;
 struct NewtonReport;
 struct NewtonSettings;
 
-/// What Stepper, StaticSolver and PathFollower work on, and Simulation shows.
+/// The data on which Stepper, StaticSolver and PathFollower work; Simulation is its public
+/// interface.
 struct Run {
-  /// See Simulation.
+  /// See Simulation::Simulation().
   Run(std::shared_ptr<const Model> shared_model, int threads);
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
 
   double time() const { return static_cast<double>(steps) * model->step().time_step; }  ///< s
-  /// Of the next step. @param time_step s.
+  /// Integrator weights of the next step. @param time_step s.
   mechanics::StepWeights step_weights(double time_step) const;
   mechanics::LinearisationRequest request(double time_step) const;
-  /// What actuators may do in a step, into its problem. @param time s, its end. @param time_step s;
-  /// infinity lifts the limits on rates.
+  /// Writes limits and commands of the actuators into the step's problem. @param time s, the end of
+  /// the step. @param time_step s; infinity removes the rate limits.
   void read_commands(double time, double time_step);
-  /// Bases and loads as at `now`, and the world begins a step that ends there. Also after
-  /// restore(), since a state has the loads of its own step. @param time_step s.
+  /// Sets bases and loads to their values at the time `now` and begins a step of the world that
+  /// ends there. Also needed after restore(), since a state contains the loads of its own step.
+  /// @param time_step s.
   void begin_world(double time_step);
-  /// From where the world is. @param chooser,settings see solve_newton().
+  /// Runs Newton's method from the world's present state. @param chooser,settings see
+  /// solve_newton().
   NewtonReport newton(step::Controller* chooser, const NewtonSettings& settings);
-  /// Of what is attached; null: nothing is.
+  /// The attached controller or commander; null if there is none.
   step::WithMemory* attached() const;
-  /// Reads off the state what actuators did.
+  /// Updates efforts and motions of actuators and joints from the state at the end of the step.
   void finish_step();
   void restart();
 
-  /// Writes the state, but for the memory of estimators, which a step does not touch. Allocates
-  /// nothing where it has the sizes already.
+  /// Writes the state, except the memory of the estimators, which a step does not change. Allocates
+  /// nothing if the vectors already have their sizes.
   void keep(State& state) const;
-  /// Takes up what keep() writes; see Simulation.
+  /// Restores what keep() writes; see Simulation::restore().
   void restore(const State& state);
-  /// To `before`, after what failed or was ended there.
+  /// Restores `before` after a failed or interrupted step or search.
   void go_back();
   Inputs inputs() const;
   void set_inputs(const Inputs& inputs);
@@ -69,18 +72,18 @@ struct Run {
   World world;
   StepWatch watch;
   step::StepSolver solver;
-  step::Controller* controller = nullptr;  ///< that is attached, and chooses efforts in steps
-  Commander* commander = nullptr;          ///< that is attached, and commands before steps
+  step::Controller* controller = nullptr;  ///< attached; chooses efforts within steps
+  Commander* commander = nullptr;          ///< attached; gives commands before steps
   Actuation actuation;
   Surroundings surroundings;
   std::vector<double> effort;  ///< (rows,) N or Pa
   WorkLedger ledger;
   std::int64_t steps = 0;  ///< since the start
-  double last_step = 0.0;  ///< s, the last substep; 0: the integrator starts afresh
-  double next_step = 0.0;  ///< s, what the next substep tries; 0: the whole step
+  double last_step = 0.0;  ///< s, length of the last substep; 0: the integrator starts afresh
+  double next_step = 0.0;  ///< s, length to try for the next substep; 0: the whole step
   double volume_ratio = 1.0;
-  double now = 0.0;  ///< s, end of the substep in hand
-  State before;      ///< before that, or before the search in hand
+  double now = 0.0;  ///< s, end of the current substep
+  State before;      ///< state before the current substep or search
   StepReport report;
   Sensors sensors;
   Estimators estimators;

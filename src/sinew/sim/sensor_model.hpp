@@ -1,5 +1,5 @@
 /// @file
-/// Sensors of a model: what each measures, and through what channel.
+/// Sensors of a model: sources and channels.
 #pragma once
 
 #include <cstdint>
@@ -17,19 +17,19 @@ class SensorSource;
 /// Samples of a real sensor, in the order of their arrival.
 struct SensorRecord {
   std::vector<double> arrivals;  ///< (n,) s, not decreasing
-  std::vector<double> times;     ///< (n,) s, when each was taken
-  MatrixX values;                ///< (n, size) in SI; a NaN: missing
+  std::vector<double> times;     ///< (n,) s, when each sample was taken
+  MatrixX values;                ///< (n, size) in SI units; NaN: missing
 };
 
-/// Immutable part of a sensor.
+/// The immutable part of a sensor.
 struct SensorModel {
   std::string name;
-  std::string kind;        ///< its type in scenes: "marker", "cable-length"
-  std::string observable;  ///< what it reads: "long_0.displacement"; its own NAME.true, where that
-                           ///< is observed by nothing else
+  std::string kind;        ///< type in scenes: "marker", "cable-length"
+  std::string observable;  ///< observable that it measures: "long_0.displacement"; its own
+                           ///< NAME.true if there is no other
   std::shared_ptr<const SensorSource> source;
   ChannelSettings channel;
-  std::shared_ptr<const SensorRecord> record = {};  ///< that replaces the source; null: none
+  std::shared_ptr<const SensorRecord> record = {};  ///< replaces the source; null: none
 };
 
 }  // namespace sinew::sim

@@ -1,5 +1,5 @@
 /// @file
-/// What ModelBuilder::add_sensor() is told.
+/// Settings for ModelBuilder::add_sensor().
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@
 
 namespace sinew::sim {
 
-/// Rotation since rest, its rate, or specific force: of the frame through three points, or of the
-/// rigid section that one point lies in.
+/// Rotation since rest, angular velocity or specific force, of the frame through three points or of
+/// the rigid section in which one point lies.
 struct SensorMotion {
   enum class What { orientation, gyroscope, accelerometer };
   What what = What::orientation;
@@ -28,36 +28,36 @@ struct SensorMotion {
   Vector3 gravity = Vector3::Zero();  ///< m/s^2
 };
 
-/// Of an actuator.
+/// A quantity of an actuator.
 struct SensorDrive {
   enum class What { cable_length, cable_tension, pressure, volume, flow, motor_current };
   What what = What::cable_length;
   std::string actuator;
-  double motor_constant = 0.0;  ///< motor_current: N m/A, or N/A
-  bool turns = true;            ///< motor_current: the constant is of a torque
-  double radius = 0.0;          ///< motor_current, of a cable: m, of its drum; 0: none
+  double motor_constant = 0.0;  ///< for motor_current: N m/A, or N/A
+  bool turns = true;            ///< for motor_current: whether the constant refers to a torque
+  double radius = 0.0;          ///< for motor_current of a cable: radius of the drum, m; 0: none
 };
 
-/// Along a polyline of a body at rest.
+/// A sensor along a polyline of a body at rest.
 struct SensorLine {
   enum class What { stretch, resistance, attenuation };
   What what = What::stretch;
   ProbeLine line;
-  double gauge_factor = 0.0;                          ///< resistance
-  double resistance = 0.0;                            ///< resistance: ohm, at rest
-  double loss_per_length = 0.0, loss_per_turn = 0.0;  ///< attenuation: dB/m, dB/rad
+  double gauge_factor = 0.0;                          ///< for resistance
+  double resistance = 0.0;                            ///< for resistance: ohm, at rest
+  double loss_per_length = 0.0, loss_per_turn = 0.0;  ///< for attenuation: dB/m, dB/rad
 };
 
-/// Curvature at places along such a line.
+/// Curvature at given positions along a polyline.
 struct SensorCurvature {
   int body = 0;
   Points corners;              ///< (n, 3) m, n >= 2
   std::vector<double> places;  ///< m along the line at rest
-  double gauge = 0.0;          ///< m: over which length; 0: a tenth of the line
+  double gauge = 0.0;          ///< m, length over which it is measured; 0: a tenth of the line
   std::optional<Vector3> about;
 };
 
-/// Of two electrodes.
+/// Capacitance between two electrodes.
 struct SensorCapacitance {
   struct Electrode {
     int body = 0;
@@ -70,17 +70,17 @@ struct SensorCapacitance {
 /// Normal force of contacts.
 struct SensorContact {
   std::vector<std::string> contacts;  ///< one or more
-  int body = -1;                      ///< of the patch; -1: the first of the first contact
-  std::vector<NodeId> patch;          ///< of its mesh; empty: all
-  std::optional<double> threshold;    ///< N, of a switch
+  int body = -1;                      ///< of the patch; -1: the first body of the first contact
+  std::vector<NodeId> patch;          ///< of its mesh; empty: no restriction
+  std::optional<double> threshold;    ///< N, for a switch
 };
 
 struct SensorSettings {
   std::string name;
   Location place, rate_place;
-  std::string kind;  ///< its type, for users
+  std::string kind;  ///< name of its type
   mesh::Outside outside = mesh::Outside::error;
-  ChannelSettings channel;  ///< its stream is the sensor's own: a hash of the name
+  ChannelSettings channel;  ///< the stream is replaced by a hash of the sensor's name
   std::shared_ptr<const SensorRecord> record;
   std::variant<ProbeSpot, SensorMotion, SensorDrive, SensorLine, SensorCurvature, SensorCapacitance,
                SensorContact>

@@ -1,5 +1,5 @@
 /// @file
-/// What sensors measure: true values of a run, before any channel.
+/// Sources of sensors: true values of a run, before any channel.
 #pragma once
 
 #include <cstddef>
@@ -18,23 +18,26 @@ namespace sinew::sim {
 
 struct Run;
 
-/// Reads one quantity of a run. It only looks. Rates of change have a memory of the step before.
+/// Reads one quantity of a run, without changing the run. Sources of rates keep a memory of the
+/// previous step.
 class SensorSource {
  public:
   virtual ~SensorSource() = default;
-  /// What read() writes.
+  /// The components that read() writes.
   const std::vector<constraint::ProbeComponent>& components() const { return components_; }
   std::size_t size() const { return components_.size(); }
-  /// Where it is read off the shape; null elsewhere.
+  /// The probe for a quantity measured on the shape; null for other quantities.
   virtual const constraint::Probe* probe() const { return nullptr; }
 
-  virtual std::size_t memory_size() const { return 0; }  ///< numbers
-  /// As if the run had stood still so far. @param run now. @param memory (memory_size(),),
-  /// replaced.
+  virtual std::size_t memory_size() const { return 0; }  ///< number of values
+  /// Initialises the memory as if the run had been at rest. @param run at its present time.
+  /// @param memory (memory_size(),), overwritten.
   virtual void begin(const Run& run, std::span<double> memory) const;
-  /// After a step. @param run now. @param time_step s. @param memory (memory_size(),), in and out.
+  /// Updates the memory after a step. @param run at its present time. @param time_step s.
+  /// @param memory (memory_size(),), in and out.
   virtual void advance(const Run& run, double time_step, std::span<double> memory) const;
-  /// @param run now. @param memory (memory_size(),). @param values (size(),), replaced.
+  /// Reads the quantity. @param run at its present time. @param memory (memory_size(),).
+  /// @param values (size(),), overwritten.
   virtual void read(const Run& run, std::span<const double> memory,
                     std::span<double> values) const = 0;
 
@@ -46,7 +49,7 @@ class SensorSource {
   std::vector<constraint::ProbeComponent> components_;
 };
 
-/// What a probe measures.
+/// The value of a probe.
 class ProbeSource : public SensorSource {
  public:
   explicit ProbeSource(std::unique_ptr<const constraint::Probe> probe)
@@ -59,7 +62,7 @@ class ProbeSource : public SensorSource {
   std::unique_ptr<const constraint::Probe> probe_;
 };
 
-/// How something has turned since rest: the rotation vector, rad, about the world's axes.
+/// Rotation since rest: the rotation vector, rad, in world axes.
 class RotationSource : public SensorSource {
  public:
   explicit RotationSource(std::shared_ptr<const constraint::OrientationEffector> orientation);
@@ -70,7 +73,7 @@ class RotationSource : public SensorSource {
   std::shared_ptr<const constraint::OrientationEffector> orientation_;
 };
 
-/// Its angular velocity in the sensor's own axes, rad/s, those of the world at rest: R^T log(R
+/// Angular velocity in the sensor's axes, which are the world axes at rest, rad/s: R^T log(R
 /// R_before^T)/h, the mean over a step. Memory: R_before (9), the mean (3).
 class GyroscopeSource : public SensorSource {
  public:
@@ -85,11 +88,13 @@ class GyroscopeSource : public SensorSource {
   std::shared_ptr<const constraint::OrientationEffector> orientation_;
 };
 
-/// Specific force in the same axes, m/s^2: R^T (a - g), at rest against gravity; a is the mean over
-/// a step, (v - v_before)/h, of the material points' mean. Memory: v_before (3), a (3).
+/// Specific force in the sensor's axes, m/s^2: R^T (a - g), opposite to gravity at rest; a is the
+/// mean acceleration (v - v_before)/h over a step of the mean of the material points. Memory:
+/// v_before (3), a (3).
 class AccelerometerSource : public SensorSource {
  public:
-  /// @param orientation of the sensor. @param points where it is. @param gravity (3,) m/s^2.
+  /// @param orientation of the sensor. @param points whose mean is its position.
+  /// @param gravity (3,) m/s^2.
   AccelerometerSource(std::shared_ptr<const constraint::OrientationEffector> orientation,
                       std::vector<mechanics::MaterialPoint> points, const Vector3& gravity);
   std::size_t memory_size() const override { return 6; }
@@ -109,7 +114,7 @@ class AccelerometerSource : public SensorSource {
 /// The effort of an actuator, times a factor.
 class EffortSource : public SensorSource {
  public:
-  /// @param actuator its number. @param factor of its effort. @param unit of the product.
+  /// @param actuator index. @param factor of its effort. @param unit of the product.
   EffortSource(int actuator, double factor, const char* unit)
       : SensorSource({{"", unit}}), actuator_(actuator), factor_(factor) {}
   int actuator() const { return actuator_; }
@@ -125,7 +130,7 @@ class EffortSource : public SensorSource {
 /// The motion of an actuator.
 class MotionSource : public SensorSource {
  public:
-  /// @param actuator its number. @param unit of its motion.
+  /// @param actuator index. @param unit of its motion.
   MotionSource(int actuator, const char* unit) : SensorSource({{"", unit}}), actuator_(actuator) {}
   int actuator() const { return actuator_; }
   void read(const Run& run, std::span<const double> memory,
@@ -135,9 +140,9 @@ class MotionSource : public SensorSource {
   int actuator_;
 };
 
-/// Flow into a chamber, m^3/s, the mean over a step: of its gas, as volume at ambient pressure, or
-/// its liquid; of a chamber with neither the growth of its volume. Memory: the content before, the
-/// mean.
+/// Flow into a chamber, m^3/s, the mean over a step: of gas, as volume at ambient pressure, or of
+/// liquid; without either, the rate of the chamber's volume. Memory: the content at the previous
+/// step, the mean.
 class FlowSource : public SensorSource {
  public:
   explicit FlowSource(int actuator) : SensorSource({{"", "m^3/s"}}), actuator_(actuator) {}
@@ -154,16 +159,16 @@ class FlowSource : public SensorSource {
 };
 
 /// The sum of the normal forces of contacts, N, or whether it exceeds a threshold, 1 or 0. With a
-/// patch, of the points whose nearest node of a body's mesh belongs to it.
+/// patch, only contact points count whose nearest surface node of a body belongs to the patch.
 class TouchSource : public SensorSource {
  public:
   struct Patch {
-    int body = -1;              ///< of all contacts; -1: everywhere
+    int body = -1;              ///< takes part in all contacts; -1: no restriction
     std::vector<NodeId> outer;  ///< nodes of the body's surface
-    std::vector<char> within;   ///< (outer,) whether they belong to the patch
+    std::vector<char> within;   ///< (outer,) whether each belongs to the patch
   };
-  /// @param contacts their numbers. @param patch see there. @param threshold N, of a switch; none:
-  /// it measures.
+  /// @param contacts indices. @param patch restriction to a part of a surface.
+  /// @param threshold N, for a switch; none: the force is measured.
   TouchSource(std::vector<int> contacts, Patch patch, const std::optional<double>& threshold);
   void read(const Run& run, std::span<const double> memory,
             std::span<double> values) const override;

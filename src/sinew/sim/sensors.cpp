@@ -12,7 +12,7 @@ namespace sinew::sim {
 
 namespace {
 
-// A whole number that a double holds exactly.
+// A hash as an integer that a double represents exactly.
 double signature_of(const std::vector<SensorModel>& sensors) {
   ValueHash hash;
   for (const SensorModel& sensor : sensors) {
@@ -35,14 +35,14 @@ Sensors::Sensors(const Model& model) : signature_(signature_of(model.sensors()))
 void Sensors::sample(const Run& run, Sensor& sensor) {
   if (sensor.model->record) {
     replay(run, sensor);
-    if (!sensor.channel.received()) return;  // nothing has arrived
+    if (!sensor.channel.received()) return;  // no sample has arrived yet
   } else {
     sensor.model->source->read(run, sensor.memory, sensor.truth);
   }
   sensor.channel.offer(run.time(), sensor.truth);
 }
 
-// What has arrived by now.
+// Delivers the samples that have arrived by now.
 void Sensors::replay(const Run& run, Sensor& sensor) {
   const SensorRecord& record = *sensor.model->record;
   for (; sensor.row < record.arrivals.size(); ++sensor.row) {

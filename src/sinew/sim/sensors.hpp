@@ -14,31 +14,32 @@ class Model;
 struct Run;
 struct SensorModel;
 
-/// Samples sensors as a run goes on. They only look: a run takes the same bits with and without
-/// them.
+/// Samples the sensors during a run. Sensors only observe: the run is the same, bit for bit, with
+/// and without them.
 class Sensors {
  public:
-  /// @param model outlives them.
+  /// @param model must outlive them.
   explicit Sensors(const Model& model);
 
   bool empty() const { return sensors_.empty(); }
-  /// At the start of a run.
+  /// Starts afresh, at the start of a run.
   void restart(const Run& run);
-  /// After a step.
+  /// Samples the sensors after a step.
   void advance(const Run& run);
-  /// After a search for an equilibrium: the robot has rested there, see Channel::settle().
+  /// Samples the sensors after a search for an equilibrium, as if the robot had rested there for
+  /// long; see Channel::settle().
   void settle(const Run& run);
 
   const Channel& channel(int index) const { return at(index).channel; }
   Channel& channel(int index) { return sensors_[static_cast<std::size_t>(index)].channel; }
-  /// What a sensor without errors and delay would say. @param run now. @param index of
-  /// Model::sensors(). @param values (size,), replaced.
+  /// Reading of a sensor without errors and delay. @param run at its present time. @param index of
+  /// Model::sensors(). @param values (size,), overwritten.
   void read_true(const Run& run, int index, std::span<double> values) const;
 
-  /// All that changes, finite numbers; nothing without sensors.
+  /// Writes the state of all sensors as finite numbers; nothing without sensors.
   void save(std::vector<double>& memory) const;
-  /// Takes it up again. @return whether it is of the same sensors; else nothing has changed but
-  /// what restart() renews.
+  /// Restores the state. @return whether it belongs to the same sensors; if not, call restart(),
+  /// which resets all that may have changed.
   bool load(std::span<const double> memory);
 
  private:
@@ -46,7 +47,7 @@ class Sensors {
     const SensorModel* model;
     Channel channel;
     std::vector<double> memory;  // of the source
-    std::size_t row = 0;         // of the record, the next one
+    std::size_t row = 0;         // next row of the record
     std::vector<double> truth;
   };
   const Sensor& at(int index) const { return sensors_[static_cast<std::size_t>(index)]; }

@@ -120,7 +120,7 @@ double Signal::value(double time) const {
   return std::get<Table>(form_).value(time);
 }
 
-// Of the piece that holds a moment.
+// Slope of the segment that contains a time.
 double Signal::Table::slope(double time) const {
   const auto after = std::upper_bound(times.begin(), times.end(), time);
   if (!interpolate || after == times.begin() || after == times.end()) return 0.0;

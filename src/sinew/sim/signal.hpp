@@ -1,5 +1,5 @@
 /// @file
-/// Commands over time: what an actuator is told to do at each moment. SI units.
+/// Signals: values of commands and load factors as functions of time. SI units.
 #pragma once
 
 #include <utility>
@@ -10,7 +10,7 @@
 
 namespace sinew::sim {
 
-/// `from` until `start`, then straight to `to` within `duration`, then held.
+/// `from` until `start`, then linear to `to` within `duration`, then constant.
 struct Ramp {
   double from = 0.0;      ///< the signal's unit
   double to = 0.0;        ///< the signal's unit
@@ -29,48 +29,49 @@ struct Sine {
 /// A value as a function of time. Immutable; reading it allocates nothing and is thread-safe.
 class Signal {
  public:
-  /// Zero for ever.
+  /// Zero at all times.
   Signal() : form_(Constant{0.0}) {}
 
-  /// One value for ever. Throws Error(not-finite).
+  /// A constant. Throws Error(not-finite).
   static Signal constant(double value);
   /// Throws Error(not-finite) or Error(bad-signal) when start < 0 or duration <= 0.
   static Signal ramp(const Ramp& ramp);
   /// Throws Error(not-finite) or Error(bad-signal) when period <= 0.
   static Signal sine(const Sine& sine);
-  /// Each value holds from its time (within a nanosecond, so that rounding of n h does not delay
-  /// it by a step) until the next one's; the last one holds for ever.
-  /// @param steps pairs (time in s, value). The first time is 0, so that no moment is undefined.
+  /// A step function. Each value holds from its time until that of the next one; the last one holds
+  /// for ever. Times are compared within a nanosecond, so rounding of n h does not delay a step.
+  /// @param steps pairs (time in s, value). The first time is 0, which defines the signal at all
+  ///   times.
   /// Throws Error(bad-signal) for no steps or a first time other than 0, Error(non-monotonic-time)
-  /// when times do not increase, Error(not-finite).
+  /// if times do not increase, Error(not-finite).
   static Signal steps(const std::vector<std::pair<double, double>>& steps);
-  /// Straight lines between samples; the first value holds before, the last one after.
+  /// A piecewise linear function; before the first sample and after the last one it is constant.
   /// @param times (n,) s, increasing, >= 0.
   /// @param values (n,) in the signal's unit.
-  /// Throws as steps() does, and Error(wrong-length) when the two differ in length.
+  /// Throws as steps() does, and Error(wrong-length) if `times` and `values` differ in length.
   static Signal sampled(std::vector<double> times, std::vector<double> values);
 
   /// The value at `time` (s).
   double value(double time) const;
 
-  /// On which side of a corner.
+  /// Side of a corner at which a derivative is taken.
   enum class Side { before, after };
-  /// Its derivative, in the signal's unit per s; 0 where it jumps. @param time s; a corner within a
-  /// nanosecond is there. @param side of that.
+  /// The derivative, in the signal's unit per s; 0 at a jump. @param time s; a corner within a
+  /// nanosecond counts as at `time`. @param side of that corner.
   double rate(double time, Side side) const;
-  /// s: the next corner or jump, later than a nanosecond after `time` (s); infinity: there is none.
+  /// s: the next corner or jump more than a nanosecond after `time` (s); infinity if there is none.
   double next_corner(double time) const;
   /// Whether the value ever jumps.
   bool jumps() const;
 
-  /// When the signal has shown all it has (s): 0 for a constant, the end of a ramp, one period of a
-  /// sine, the last time of steps and samples. A run without a duration lasts this long.
+  /// The time (s) after which nothing new happens: 0 for a constant, the end of a ramp, one period
+  /// of a sine, the last time of steps and samples. It is the default duration of a run.
   double end_time() const;
 
-  /// Adds its form and numbers: equal signals add the same.
+  /// Adds its type and parameters to a hash: equal signals add the same.
   void add_to(ValueHash& hash) const;
 
-  /// True when the value is the same at all times.
+  /// Whether the value is the same at all times.
   bool is_constant() const { return std::holds_alternative<Constant>(form_); }
 
  private:

@@ -17,7 +17,7 @@ namespace sinew::sim {
 
 namespace {
 
-// Those of another model begin anew, as do damaged ones.
+// Estimators start afresh if the state belongs to others or is damaged.
 void load_estimators(Run& run, const State& state) {
   try {
     if (!run.estimators.load(state.estimators)) run.estimators.begin(run);
@@ -53,7 +53,7 @@ const StepReport& Simulation::step() {
   return run_->report;
 }
 
-// A step that fails leaves the commander as it was, too.
+// A failed step restores the commander, too.
 void Simulation::step_by_command() {
   Commander& commander = *run_->commander;
   std::vector<double> memory(commander.memory_size());
@@ -79,7 +79,7 @@ StaticReport Simulation::solve_static(const StaticSettings& settings) {
   return report;
 }
 
-// On the way loads and commands act in part, of which an estimator knows nothing.
+// On the path, loads and commands act partially, which an estimator does not know.
 std::vector<PathPoint> Simulation::follow_path(const PathSettings& settings,
                                                const std::function<void()>& visit) {
   std::vector<PathPoint> path = PathFollower(*run_, settings).follow([&] {

@@ -45,10 +45,12 @@ struct State;
 class Stepper;
 class World;
 
-/// One run of a model. Not thread-safe itself; any number may run side by side in threads.
+/// One run of a model: its state, inputs and time steps. An instance is not thread-safe; different
+/// simulations may run in parallel threads.
 class Simulation {
  public:
-  /// @param model shared. @param threads inside a step, >= 1. Throws Error(out-of-range).
+  /// @param model shared. @param threads number of threads inside a step, >= 1.
+  /// Throws Error(out-of-range).
   explicit Simulation(std::shared_ptr<const Model> model, int threads = 1);
   ~Simulation();
   Simulation(const Simulation&) = delete;
@@ -57,133 +59,145 @@ class Simulation {
   const Model& model() const;
   std::shared_ptr<const Model> shared_model() const;
   int threads() const;
-  /// Parts of the steps' work that thread 0 .. threads()-1 has done so far.
+  /// Number of work items of all steps that thread 0 .. threads()-1 has executed so far.
   long work_done(int thread) const;
   double time() const;  ///< s
   std::int64_t steps() const;
 
-  /// Advances one time step. Throws Error(diverged | inverted-in-run | singular-matrix |
-  /// not-converged) with the step, the body and the likely cause; the state is then that before the
-  /// step.
+  /// Advances the run by one time step. Throws Error(diverged | inverted-in-run | singular-matrix |
+  /// not-converged), whose text names the step, the body and the likely cause. The state is then
+  /// restored to that before the step.
   const StepReport& step();
   const StepReport& report() const;
-  /// Has steps, solve_static() and follow_path() tell how far they are, from the next one on. What
-  /// the watcher throws ends them and passes on; the state is then that before the step or the
-  /// search, or that of the path's last point. No part of inputs or state, and not cloned.
-  /// @param watcher see there; empty: nobody watches.
+  /// Sets a callback to which step(), solve_static() and follow_path() report their progress, from
+  /// the next call on. An exception thrown by the watcher ends the call and propagates; the state
+  /// is then that before the step or search, or that of the last point of the path. The watcher is
+  /// part of neither inputs nor state, and is not cloned.
+  /// @param watcher the callback, see StepWatcher; empty: no reports.
   void watch(StepWatcher watcher);
-  /// Of all bodies now. Evaluates their elements.
+  /// The present energies of all bodies. Evaluates their elements.
   mechanics::Energies energies();
-  /// What has been put into the energy and taken out since the start or reset().
+  /// The work done on the bodies and the energy dissipated since the start or reset().
   const EnergyLedger& ledger() const;
 
-  /// A stable static equilibrium at the present inputs: commands at the present time, limits on
-  /// rates lifted, actuators of a controller held at their efforts; see StaticSolver. Velocities
-  /// become zero; time stands still. Friction of contacts is that of one slow motion from the
-  /// present state.
-  /// Throws Error(not-converged) and restores the state when there is none to be found.
+  /// Finds a stable static equilibrium under the present inputs (see StaticSolver): commands and
+  /// loads are evaluated at the present time, rate limits do not apply, and actuators of a
+  /// controller keep their efforts. Velocities become zero; time does not advance. Contact friction
+  /// acts as in a single slow motion from the present state.
+  /// Throws Error(not-converged) if no equilibrium is found, and restores the state.
   StaticReport solve_static(const StaticSettings& settings = {});
 
-  /// Equilibria from the present one to that of the present loads' factors and commanded efforts,
-  /// all growing in proportion from what acted last (nothing, at the start): through limit points
-  /// and back, stable or not; see PathFollower. Velocities become zero; time stands still. The last
-  /// point lies at the full load or just beyond; solve_static() finds that of the load itself from
-  /// there. Friction of contacts is that of one slow motion from each point to the next.
-  /// @param settings see there. @param visit called at every point.
-  /// Throws Error(bad-argument) where an actuator is told a motion, has a drive or friction;
-  /// Error(not-in-this-version) beside curved surfaces with friction, and where contacts alone hold
-  /// a body; Error(not-converged), the state then being that of the start.
+  /// Follows the path of equilibria from the present one as loads and commanded efforts grow in
+  /// proportion from their last applied values (zero at the start) to their present ones, through
+  /// limit points, stable or not; see PathFollower. Velocities become zero; time does not advance.
+  /// The last point lies at the full load or just beyond it; solve_static() finds the equilibrium
+  /// at exactly the full load from there. Contact friction acts as in one slow motion from each
+  /// point to the next.
+  /// @param settings step lengths, tolerance and number of points. @param visit called at every
+  ///   point.
+  /// Throws Error(bad-argument) if an actuator has a drive or a commanded motion, or if cables have
+  /// friction or joints have limits or friction; Error(not-in-this-version) for curved surfaces
+  /// with friction, aggregated contacts, contacts between bodies, and bodies held by contacts
+  /// alone; Error(not-converged), after which the state is that at the start.
   std::vector<PathPoint> follow_path(const PathSettings& settings,
                                      const std::function<void()>& visit = {});
 
-  /// Back to the start, bit for bit: state, time, commands of the model. Controllers stay attached.
+  /// Returns to the start, bit for bit: state, time and the model's commands. Controllers stay
+  /// attached.
   void reset();
 
-  /// Tells an actuator what to do. Throws Error(actuator-owned) while a controller has it, or a
-  /// commander other than `by`.
+  /// Sets the command of an actuator. Throws Error(actuator-owned) unless the actuator's owner is
+  /// `by` (null: it has no owner); actuators of a controller accept no commands.
   void command(int actuator, Command command, const Commander* by = nullptr);
   const ActuatorState& actuator(int index) const;
-  /// Moves a body's fixed nodes in the next step: turned about `centre` by a rotation vector and
-  /// then shifted, from rest. An input, as commands are: where the nodes then are is state.
-  /// @param body its number. @param translation (3,) m. @param rotation (3,) rad.
+  /// Prescribes the position of a body's fixed nodes in the next step: from their rest positions,
+  /// they are rotated about `centre` by a rotation vector and then translated. The prescribed
+  /// displacement is an input, like a command; the positions that the nodes have reached are state.
+  /// @param body index of Model::bodies(). @param translation (3,) m. @param rotation (3,) rad.
   /// @param centre (3,) m, at rest.
-  /// Throws Error: wrong-type (no finite elements), nothing-fixed, not-finite, bad-argument where
-  /// the model moves this base.
+  /// Throws Error: wrong-type (body without finite elements), nothing-fixed, not-finite,
+  /// bad-argument if the model prescribes the motion of this base.
   void move_base(int body, const Vector3& translation, const Vector3& rotation,
                  const Vector3& centre);
-  /// A load's factor from the next step on.
+  /// Sets the factor of a load from the next step on.
   void set_load(int load, Signal factor);
   const Signal& load_factor(int load) const;
   /// Position (3,) m, or rotation vector (3,) rad, of an effector.
   Vector3 effector_value(int index) const;
-  /// (components,) what a probe measures now, m and rad. @param index of Model::probes().
+  /// (components,) the present values of a probe, m and rad. @param index of Model::probes().
   std::vector<double> probe_values(int index) const;
 
-  /// The channel of a sensor: what it says, when it was taken. @param index of Model::sensors().
+  /// The channel of a sensor: its last sample and when it was taken. @param index of
+  /// Model::sensors().
   const Channel& sensor(int index) const;
-  /// (size,) what it would say now without errors and delay. @param index of Model::sensors().
+  /// (size,) the present reading of a sensor without errors and delay. @param index of
+  /// Model::sensors().
   std::vector<double> sensor_truth(int index) const;
-  /// The same into (size,) numbers, which allocates nothing. @param index of Model::sensors().
-  /// @param values replaced.
+  /// Writes the same into `values`, without allocation. @param index of Model::sensors().
+  /// @param values (size,), overwritten.
   void read_sensor_truth(int index, std::span<double> values) const;
-  /// Takes a sample of a real sensor in place of the simulated ones, from now until reset(). Throws
-  /// what Channel::receive() does. @param index of Model::sensors(). @param time s, when it was
-  /// taken. @param value (size,).
+  /// Delivers a sample of a real sensor. Until reset(), such samples replace the simulated ones.
+  /// Throws as Channel::receive() does.
+  /// @param index of Model::sensors(). @param time s, when the sample was taken.
+  /// @param value (size,).
   void feed_sensor(int index, double time, std::span<const double> value);
 
-  /// What an estimator concludes from the sensors, after each step and each search for an
+  /// An estimator, which is updated from the sensors after each step and each search for an
   /// equilibrium. @param index of Model::estimators().
   const Estimator& estimator(int index) const;
 
-  /// Forces, gaps and states of contacts; valid as long as the simulation.
+  /// Forces, gaps and states of the contacts. The reader is valid as long as the simulation.
   ContactReader contacts() const;
 
-  /// Gives a controller the actuators that it chooses efforts for, in every step until it is
-  /// detached. One controller at a time. Throws Error(actuator-owned); Error(not-in-this-version)
-  /// with event-driven integration.
-  /// @param controller must be detached before it ends. @param actuators of the model.
-  /// @param contacts whose forces it asks for, see ContactRows::want().
+  /// Attaches a controller, which chooses the efforts of the given actuators in every step until it
+  /// is detached. Only one controller or commander can be attached at a time. Throws
+  /// Error(actuator-owned); Error(not-in-this-version) with event-driven integration.
+  /// @param controller must be detached before its lifetime ends. @param actuators indices of
+  ///   Model::actuators().
+  /// @param contacts whose forces the controller needs, see ContactRows::want().
   void attach(step::Controller& controller, std::span<const int> actuators,
               std::span<const int> contacts = {});
   void detach(const step::Controller& controller);
   const step::Controller* attached_controller() const;
-  /// Gives a commander the actuators that it alone commands until it is detached. One commander or
-  /// controller at a time. Throws Error(actuator-owned).
-  /// @param commander must be detached before it ends. @param actuators of the model.
+  /// Attaches a commander, which alone may command the given actuators until it is detached. Only
+  /// one controller or commander can be attached at a time. Throws Error(actuator-owned).
+  /// @param commander must be detached before its lifetime ends. @param actuators indices of
+  ///   Model::actuators().
   void attach(Commander& commander, std::span<const int> actuators);
   void detach(const Commander& commander);
 
   World& world();
   const World& world() const;
   int bodies() const;
-  /// @param index of Model::bodies(). What only some bodies can do: mechanics::as().
+  /// @param index of Model::bodies(). Capabilities of some bodies only: mechanics::as().
   mechanics::Body& body(int index);
   const mechanics::Body& body(int index) const;
-  /// Where the points of all bodies are now.
+  /// Present positions of the points of all bodies.
   const constraint::Configuration& configuration() const;
   std::span<const double> efforts() const;  ///< (rows,) N or Pa
-  /// The numbers of an actuator's drive (see Drive); empty without one.
+  /// The state variables of an actuator's drive (see Drive); empty without a drive.
   std::span<const double> drive_state(int actuator) const;
-  /// What actuators were allowed and told in the last step.
+  /// Limits and commands of the actuators in the last step.
   std::span<const step::ActuatorBlock> actuator_blocks() const;
 
-  /// Everything that decides, with the inputs, how the run goes on.
+  /// Everything that, together with the inputs, determines how the run continues.
   State state() const;
-  /// Takes up a state, of this simulation or of another one of the same model. A controller takes
-  /// up its memory where the state has it; otherwise it begins anew, as do sensors where those of
-  /// the state are others. Commands stay as they are.
-  /// Throws Error(wrong-length) for a state of another model, and is then unchanged; and where the
-  /// memory of estimators is damaged, which then begin anew.
+  /// Sets the state to one of this simulation or of another simulation of the same model. An
+  /// attached controller restores its memory if the state contains it, and otherwise starts afresh;
+  /// sensors start afresh if the state belongs to different sensors. Commands do not change.
+  /// Throws Error(wrong-length) for a state of another model, which leaves the simulation
+  /// unchanged; also if the memory of the estimators is damaged, in which case the state is
+  /// restored and the estimators start afresh.
   void restore(const State& state);
-  /// What acts from outside: commands, load factors, forces, tethers, and where bases are asked to
-  /// be.
+  /// External inputs: commands, load factors, forces, tethers and prescribed displacements of
+  /// bases.
   Inputs inputs() const;
-  /// Throws Error(wrong-length) for inputs of another model, and is then unchanged.
+  /// Throws Error(wrong-length) for inputs of another model, which leaves the simulation unchanged.
   void set_inputs(const Inputs& inputs);
-  /// A simulation of the same model, with the same inputs, in the same state. A controller is not
-  /// copied: attach one to the copy, and restore() the state again for its memory.
+  /// A new simulation of the same model with the same inputs and state. A controller is not copied:
+  /// attach one to the copy, then restore() the state again to set its memory.
   std::unique_ptr<Simulation> clone() const;
-  /// Bytes that one more simulation of the same model takes.
+  /// Memory of one more simulation of the same model, in bytes.
   std::size_t bytes() const;
 
  private:

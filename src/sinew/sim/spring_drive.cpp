@@ -10,17 +10,17 @@ namespace sinew::sim {
 
 namespace {
 
-// Tension of a spring and a damper side by side at the end of a step.
+// Tension at the end of a step of a spring and a damper in parallel.
 Drive::Response pull(double stiffness, double free_length, double damping, double rest_length,
                      const Drive::Step& step, double motion) {
-  // dL/dt = -(motion - motion_before)/h; nothing moves in the long run.
+  // dL/dt = -(motion - motion_before)/h; zero in the steady state.
   const double rate = std::isinf(step.time_step) ? 0.0 : damping / step.time_step;
   const double tension =
       stiffness * (rest_length - motion - free_length) - rate * (motion - step.motion_before);
   return {tension, -stiffness - rate};
 }
 
-// 0 below `cold`, 1 above `hot`, half a cosine between.
+// 0 below `cold`, 1 above `hot`, half a cosine wave in between.
 double ramp(double temperature, double cold, double hot) {
   const double part = std::clamp((temperature - cold) / (hot - cold), 0.0, 1.0);
   return 0.5 * (1.0 - std::cos(std::numbers::pi * part));

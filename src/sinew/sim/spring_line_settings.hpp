@@ -19,12 +19,12 @@ struct SpringLineSettings {
   std::string name;
   Location place;
   int body = 0;
-  Points points;  ///< (n, 3) m; via points without friction between its ends
+  Points points;  ///< (n, 3) m; those between the ends guide it without friction
   std::vector<Location> point_places;
-  bool pull_from_world = false;  ///< the first point is fixed to the world, else to the body
+  bool pull_from_world = false;  ///< whether the first point is fixed to the world
   mesh::Outside outside = mesh::Outside::error;
   std::variant<SpringSettings, SmaSettings> spring;
-  bool free_at_rest = false;  ///< its free length is that at rest, whatever `spring` says
+  bool free_at_rest = false;  ///< whether the length at rest replaces the free length of `spring`
   Command command{CommandKind::effort, {}};
 };
 

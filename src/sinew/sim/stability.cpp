@@ -12,12 +12,12 @@ namespace sinew::sim {
 
 namespace {
 
-// Efforts nearer to a limit than this, of their size, are at it.
+// Relative difference below which an effort is at its limit.
 constexpr double kAtLimit = 1e-9;
 constexpr int kMaxDirections = 80;  // of Lanczos' method
 constexpr double kRitzTolerance = 1e-2;
-// A direction is neutral where moving the robot by its size along it changes forces by no more
-// than so many times what rounding does.
+// A direction is neutral if a motion along it by the robot's size changes forces by at most this
+// multiple of their rounding error.
 constexpr double kNeutral = 10.0;
 
 bool same(double effort, double limit) {
@@ -25,7 +25,7 @@ bool same(double effort, double limit) {
   return std::abs(effort - limit) <= kAtLimit * std::max(std::abs(effort), std::abs(limit));
 }
 
-// Whether what an actuator is told, or a limit of its motion, holds the row rigidly.
+// Whether a command or a limit of the motion holds the row rigidly.
 bool holds(const step::ActuatorBlock& range, double effort) {
   if (range.kind == step::CommandKind::effort) return !same(effort, range.value);
   if (range.kind != step::CommandKind::motion) return false;
@@ -40,8 +40,8 @@ linalg::AlignedNumbers gathered(const RowNumbering& numbering, std::span<const d
   return result;
 }
 
-// Numbers in [-1, 1) that have no symmetry (Steele, Lea, Flood, OOPSLA 2014: SplitMix64): a start
-// that lacks no mode.
+// Pseudo-random numbers in [-1, 1) (Steele, Lea, Flood, OOPSLA 2014: SplitMix64): a starting vector
+// without symmetry, which contains all modes.
 VectorX scattered(Eigen::Index size) {
   VectorX result(size);
   std::uint64_t state = 0;
@@ -100,23 +100,23 @@ Stability::Stability(World& world, std::span<const double> effort)
   if (force <= kNeutral * world_.bodies().rounding_floor()) negative_ = 0;
 }
 
-// Lanczos' method on T (Parlett, The Symmetric Eigenvalue Problem, 1998, ch. 13), made orthogonal
-// to all before. The negative eigenvalues of T lie at one end of its spectrum, so that few
-// directions show them; the one nearest to zero belongs to the lowest eigenvalue of the tangent.
-// Of a Ritz vector y with theta < 0, v = T y has v^T A v = y^T T y = theta: the curvature along v
-// is negative however sharp y is.
+// Lanczos' method on T with full reorthogonalisation (Parlett, The Symmetric Eigenvalue Problem,
+// 1998, ch. 13). The negative eigenvalues of T lie at one end of its spectrum, so few directions
+// suffice; the one nearest to zero belongs to the lowest eigenvalue of the tangent. For a Ritz
+// vector y with theta < 0, v = T y has v^T A v = y^T T y = theta: the curvature along v is
+// negative, however accurate y is.
 VectorX Stability::find_mode() {
   const Eigen::Index all = static_cast<Eigen::Index>(world_.bodies().size());
   const Eigen::Index most = std::min<Eigen::Index>(kMaxDirections, all);
   VectorX next, ritz;
-  motions_.solve(scattered(all), next);  // into the motions that are free
+  motions_.solve(scattered(all), next);  // projects onto the free motions
   MatrixX basis(all, 0);
   MatrixX projected = MatrixX::Zero(most, most);
   for (Eigen::Index size = 1; size <= most && next.norm() > 0.0; ++size) {
     basis.conservativeResize(Eigen::NoChange, size);
     basis.col(size - 1) = next.normalized();
     motions_.solve(basis.col(size - 1), next);
-    for (int pass = 0; pass < 2; ++pass) {  // the second removes what rounding left
+    for (int pass = 0; pass < 2; ++pass) {  // the second removes rounding errors
       const VectorX along = basis.transpose() * next;
       next.noalias() -= basis * along;
       projected.col(size - 1).head(size) += along;
@@ -134,7 +134,7 @@ VectorX Stability::find_mode() {
   return basis.leftCols(ritz.size()) * ritz;
 }
 
-// The largest entry becomes 1, which fixes the sign, too.
+// Scales the largest entry to 1, which also fixes the sign.
 void Stability::scale_mode() {
   Eigen::Index largest = 0;
   mode_.cwiseAbs().maxCoeff(&largest);

@@ -1,5 +1,5 @@
 /// @file
-/// Stability of an equilibrium on the motions that commands, drives and contacts leave free.
+/// Stability of an equilibrium in the motions that commands, drives and contacts permit.
 #pragma once
 
 #include <span>
@@ -14,32 +14,32 @@ namespace sinew::sim {
 class World;
 
 /// The rows that are held at an equilibrium: actuators at a commanded motion or at a limit of their
-/// motion, drives by the slope of their curve, normal rows of touching contacts, and tangential
-/// rows that stick. Actuators at a limit of their effort and sliding contacts hold nothing. Anchors
-/// hold less than nothing.
+/// motion, drives with the slope of their curve, normal rows of touching contact points, tangential
+/// rows of sticking points, and joints. Actuators at an effort limit and sliding contacts hold
+/// nothing. Anchors enter with negative compliance.
 /// @param problem,effort of the equilibrium.
 std::vector<step::HeldRow> held_rows(const step::StepProblem& problem,
                                      std::span<const double> effort);
 
-/// Of these, the rows of contacts.
+/// Appends the held rows of contacts only.
 void append_touching(const step::StepProblem& problem, std::span<const double> effort,
                      std::vector<step::HeldRow>& held);
 
-/// Whether an equilibrium is stable, and where it would go: the lowest eigenvalue of its tangent on
-/// the motions that held rows leave.
+/// Stability analysis of an equilibrium: the lowest eigenvalue of the tangent, restricted to the
+/// motions that the held rows permit, and its direction.
 class Stability {
  public:
-  /// @param world linearised with the exact tangent, rows formed, and condensed, at the
-  /// equilibrium. @param effort of it.
+  /// @param world linearised with the exact tangent, with rows formed, and condensed, at the
+  ///   equilibrium. @param effort of the equilibrium.
   Stability(World& world, std::span<const double> effort);
 
-  /// Negative eigenvalues of the restricted tangent; directions that rounding cannot tell from
-  /// neutral ones (a body that slides freely) are not counted.
+  /// Number of negative eigenvalues of the restricted tangent. Directions that are neutral to
+  /// within rounding (a body that slides freely) are not counted.
   int negative_pivots() const { return negative_; }
-  /// The direction of the lowest curvature, largest entry 1, (all bodies' size(),); empty
-  /// where negative_pivots() == 0 or the search found none.
+  /// The direction of the lowest curvature, (all bodies' size(),), scaled to a largest entry of 1;
+  /// empty if negative_pivots() == 0 or the search failed.
   const VectorX& mode() const { return mode_; }
-  /// v^T A v of mode(), N/m; negative.
+  /// v^T A v for v = mode(), N/m; negative.
   double curvature() const { return curvature_; }
 
  private:

@@ -1,5 +1,5 @@
 /// @file
-/// The clock that a step's stages are timed by.
+/// Clock that times the stages of a step.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,7 @@
 
 namespace sinew::sim {
 
-/// Adds the time since the last mark to a stage.
+/// Accumulates the time of each stage: mark() adds the time since the last mark.
 class StageClock {
  public:
   void start() {
@@ -22,7 +22,7 @@ class StageClock {
     last_ = now;
   }
   void stop() { times_.total = std::chrono::duration<double>(Clock::now() - begin_).count(); }
-  /// Since the last start.
+  /// Times since the last start().
   const StageTimes& times() const { return times_; }
 
  private:

@@ -1,5 +1,5 @@
 /// @file
-/// The stages of a step and how long each took.
+/// The timed stages of a step.
 #pragma once
 
 #include <array>
@@ -7,19 +7,19 @@
 
 namespace sinew::sim {
 
-/// Every step is these stages, in this order.
+/// The stages of a step, in order.
 enum class Stage {
-  assembly,       ///< elements: forces and matrix
+  assembly,       ///< forces and stiffness matrix of the elements
   rows,           ///< H and delta
-  factorisation,  ///< A bordered by H: factor, W and the free motion
-  law,            ///< efforts
-  correction,     ///< motion, and the check that it is sound
+  factorisation,  ///< factor of A bordered by H; W and the free motion
+  law,            ///< solution of the laws for the efforts
+  correction,     ///< application and check of the motion
 };
 inline constexpr std::size_t kStageCount = 5;
 inline constexpr std::array<const char*, kStageCount> kStageNames = {
     "assembly", "rows", "factorisation", "law", "correction"};
 
-/// Seconds spent in each stage of one step.
+/// Time spent in each stage of one step, s.
 struct StageTimes {
   std::array<double, kStageCount> seconds{};
   double total = 0.0;

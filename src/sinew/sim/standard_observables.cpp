@@ -1,4 +1,4 @@
-// What every simulation lets one observe: see the constructor of Observables.
+// The standard observables of a simulation: see the constructor of Observables.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -29,7 +29,7 @@ namespace sinew::sim {
 
 namespace {
 
-// Takes numbers in the order in which observables list them.
+// Writes numbers in the order of the observables that share a reading.
 class Numbers {
  public:
   explicit Numbers(std::span<double> numbers) : next_(numbers.begin()) {}
@@ -40,7 +40,7 @@ class Numbers {
   std::span<double>::iterator next_;
 };
 
-// An observable whose name is that of its owner and its quantity.
+// An observable named after its owner and its quantity.
 Observable of(ObservableKind kind, const std::string& owner, const std::string& quantity,
               const char* unit, std::vector<std::size_t> shape = {}) {
   Observable one{
@@ -49,12 +49,12 @@ Observable of(ObservableKind kind, const std::string& owner, const std::string& 
   return one;
 }
 
-// One of the whole robot.
+// An observable of the whole robot.
 Observable number(ObservableKind kind, const char* name, const char* unit = "") {
   return {name, unit, {}, kind, {}, name, {name}, {}};
 }
 
-// Of a rigid body: its frame, and the motion of its centre of mass.
+// Pose of a rigid body's frame, and velocity of its centre of mass.
 void add_pose(Observables& list, const std::string& name, const mechanics::HasPose& body) {
   std::vector<Observable> parts;
   const auto add = [&](const char* quantity, const char* unit, std::string_view axes) {
@@ -367,8 +367,8 @@ void add_estimators(Observables& list) {
   }
 }
 
-// Energies, work and losses since the first reading. What actuators and loads have put in since
-// then is in the bodies, dissipated, or lost by the integrator.
+// Energies, work and losses since the first reading. The work of actuators and loads since then is
+// stored in the bodies, dissipated, or lost by the integrator.
 class Ledger {
  public:
   explicit Ledger(Simulation& simulation) : simulation_(simulation) {}

@@ -1,5 +1,5 @@
 /// @file
-/// The blocks of a step's problem that stay for all steps of a model.
+/// The permanent blocks of a step's problem.
 #pragma once
 
 #include "sinew/step/step_problem.hpp"
@@ -8,9 +8,11 @@ namespace sinew::sim {
 
 class Model;
 
-/// A problem with the model's cable friction and held rows, and room for its actuators: all blocks
-/// but those of contacts and stiffness, which come and go.
-/// @param model of them. @param joint_actuators actuators of joints, behind the model's own.
+/// A problem with all permanent blocks of a model: cable friction, joints, and room for its
+/// actuators. Blocks of contacts and anchors or couplings are added elsewhere.
+/// @param model with these parts.
+/// @param joint_actuators number of blocks for limits and friction of joints, after those of the
+///   actuators.
 step::StepProblem standing_blocks(const Model& model, std::size_t joint_actuators);
 
 }  // namespace sinew::sim

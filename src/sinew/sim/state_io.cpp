@@ -68,10 +68,10 @@ class Writer {
   std::string bytes_;
 };
 
-// Sizes are checked before anything is taken from the bytes.
+// Reads with bounds checks.
 class Reader {
  public:
-  // @param bytes what stands between the preamble and the hash.
+  // @param bytes between the preamble and the hash.
   Reader(std::string_view bytes, std::string name) : rest_(bytes), name_(std::move(name)) {}
 
   std::uint64_t word() {
@@ -79,7 +79,7 @@ class Reader {
     std::memcpy(&value, take(kWord).data(), kWord);
     return value;
   }
-  // How many of something that takes at least a word each.
+  // Number of items that take at least one word each.
   std::size_t count() {
     const std::uint64_t value = word();
     if (value > rest_.size() / kWord) corrupt(name_, "a count is larger than the file");
@@ -154,8 +154,8 @@ SavedState read(std::string_view bytes, const std::string& name) {
   state.steps = saved.header.steps;
   state.bodies.resize(reader.count());
   State::visit(state, [&](std::string_view part, auto& numbers) {
-    // Robots of before had no joints that move, no surfaces that touched each other, no sensors and
-    // no estimators.
+    // Older versions had no moving joints, no contacts between surfaces, no sensors and no
+    // estimators.
     const bool lacks = (part == "joints" && saved.header.version < kFirstWithJoints) ||
                        (part == "points" && saved.header.version < kFirstWithPoints) ||
                        (part == "sensors" && saved.header.version <= kVersionWithoutSensors) ||

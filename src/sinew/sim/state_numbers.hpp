@@ -1,5 +1,5 @@
 /// @file
-/// A state among other numbers.
+/// States as parts of a list of numbers.
 #pragma once
 
 #include <span>
@@ -9,11 +9,12 @@ namespace sinew::sim {
 
 struct State;
 
-/// Appends all of a state, finite numbers, as take() takes them. @param state of a simulation.
+/// Appends a state as finite numbers, for take(). @param state of a simulation.
 /// @param numbers in and out.
 void append(const State& state, std::vector<double>& numbers);
-/// Takes a state from the front of `numbers`, which it shortens. @param state of the same model, in
-/// and out. @param numbers in and out. @return whether all were there.
+/// Reads a state from the front of `numbers`, which is shortened.
+/// @param state of the same model, in and out. @param numbers in and out.
+/// @return whether the state was complete.
 bool take(State& state, std::span<const double>& numbers);
 
 }  // namespace sinew::sim

@@ -1,5 +1,5 @@
 /// @file
-/// Newton's search for an equilibrium, of a run at rest or in overdamped motion.
+/// Newton search for an equilibrium, or for a step of overdamped motion.
 #pragma once
 
 #include "sinew/sim/newton.hpp"
@@ -9,27 +9,29 @@ namespace sinew::sim {
 
 struct Run;
 
-/// With the exact tangent and the geometric stiffness of all cables. Counts iterations in its
-/// report.
+/// Runs Newton's method with the exact tangent and the geometric stiffness of all constraints.
+/// Counts iterations in its report.
 class StaticSearch {
  public:
-  /// Both outlive it. @param run is moved. @param settings see there.
+  /// Both must outlive it. @param run is moved. @param settings tolerances and limits.
   StaticSearch(Run& run, const StaticSettings& settings) : run_(run), settings_(settings) {}
 
   Run& run() { return run_; }
   const StaticSettings& settings() const { return settings_; }
   StaticReport& report() { return report_; }
-  /// Of the last search.
+  /// Report of the last search.
   const NewtonReport& last() const { return last_; }
 
   /// Begins a slow motion from the present state.
   void begin();
-  /// There. @param weights of inertia; none at rest.
+  /// Linearises at the present state. @param weights of inertia; none at rest.
   void linearise(const mechanics::StepWeights& weights);
-  /// Whether Newton ends in an equilibrium. @param fraction of the residual that the world keeps.
+  /// Searches an equilibrium. @param fraction of the homotopy residual that still acts.
+  /// @return whether Newton's method converged.
   bool equilibrate(double fraction);
-  /// Whether it ends an overdamped step. @param weights of inertia. @param tolerance of residual
-  /// and motion. @param max_iterations of Newton.
+  /// Solves an overdamped step. @param weights of inertia.
+  /// @param tolerance of residual and violation. @param max_iterations of Newton's method.
+  /// @return whether it converged.
   bool step(const mechanics::StepWeights& weights, double tolerance, int max_iterations);
 
  private:

@@ -16,16 +16,16 @@ namespace sinew::sim {
 
 namespace {
 
-// A chamber is near its limit point where pressure rises by less than the inverse of this for what
-// it rose by the same volume before.
+// A chamber is near its limit point if its pressure increases per volume by less than the inverse
+// of this, relative to its mean increase so far.
 constexpr double kFlat = 5.0;
 
-// Touching points are this near their surface, of the robot's size.
+// Tolerance on the gaps of touching points, relative to the robot's size.
 constexpr double kSurfaceTolerance = 1e-9;
 constexpr int kMaxSurfaceRounds = 60;
 
-// Unstable equilibria that are left one after the other, each by a larger disturbance: of the
-// robot's size.
+// Maximum number of unstable equilibria that are left in succession, and the disturbances, relative
+// to the robot's size, which increase each time.
 constexpr int kMaxDepartures = 6;
 constexpr double kDisturbance = 1e-2;
 constexpr double kLargerDisturbance = 2.0;
@@ -48,7 +48,7 @@ StaticReport StaticSolver::run() {
   run_.keep(run_.before);
   try {
     search();
-  } catch (...) {  // failures have gone back already; what a watcher throws has not
+  } catch (...) {  // failures have restored the state already; exceptions of a watcher have not
     run_.go_back();
     throw;
   }
@@ -107,13 +107,13 @@ void StaticSolver::read_goal() {
   run_.solver.begin_step();
 }
 
-// Commands on the way from where the actuators stand (fraction 1) to where they are told to be (0).
+// Interpolates commands between the actuators' values at the start (fraction 1) and the goal (0).
 void StaticSolver::blend(double fraction) {
   run_.world.problem().actuators = goal_;
   sim::blend(run_.world.problem().actuators, start_, 1.0 - fraction);
 }
 
-// Load steps, then overdamped motion.
+// Applies load steps, then overdamped motion.
 void StaticSolver::approach() {
   const double fraction = step_load();
   if (fraction == 0.0) return;
@@ -126,13 +126,13 @@ void StaticSolver::approach() {
   fail_to_find(known);
 }
 
-// Of the last equilibrium on the way, as condensed by describe(), with all that is commanded.
+// Uses the last equilibrium of the path, as condensed by describe(), with the full commands.
 JointConflict StaticSolver::find_conflict() const {
   if (run_.world.inertia().status == linalg::FactorStatus::singular) return {};
   return find_joint_conflict(run_.world, kSurfaceTolerance * run_.model->size());
 }
 
-// The fraction of the imbalance that is left at the end.
+// @return the remaining fraction of the residual.
 double StaticSolver::step_load() {
   run_.watch.enter(SearchStage::parts);
   run_.restore(run_.before);
@@ -152,7 +152,7 @@ double StaticSolver::step_load() {
                          [&] { run_.restore(sound); });
 }
 
-// What is known of the last equilibrium on the way, where the world is.
+// Describes the last equilibrium of the path, which is the world's present state.
 std::string StaticSolver::describe(double fraction) {
   search_.begin();
   run_.world.homotopy().set_fraction(fraction);
@@ -174,8 +174,8 @@ std::string StaticSolver::describe(double fraction) {
       percent, negative, negative == 1 ? "" : "s");
 }
 
-// A chamber whose pressure hardly rises any more while its volume grows, compared with how it did
-// on the average so far. Of the condensed equilibrium.
+// Describes a chamber whose pressure hardly increases with its volume any more, compared with its
+// mean increase so far, in the condensed equilibrium.
 std::string StaticSolver::describe_limit_point() {
   for (std::size_t i = 0; i < start_.size(); ++i) {
     const ActuatorModel& model = run_.model->actuators()[i];
@@ -211,8 +211,8 @@ void StaticSolver::fail_to_find(const std::string& known) {
        "approach the load through time steps, which show where the robot goes");
 }
 
-// A step takes surfaces for their tangent planes: further ones until no touching point finds its
-// own another.
+// Each solution replaces surfaces by their tangent planes: repeats it with updated planes until the
+// plane of no touching point changes.
 void StaticSolver::follow_surfaces() {
   const double tolerance = std::max(settings_.tolerance, kSurfaceTolerance) * run_.model->size();
   ContactPlanes& planes = run_.world.contacts().planes();
@@ -227,11 +227,11 @@ void StaticSolver::follow_surfaces() {
   }
 }
 
-// From the equilibrium at hand, linearised, to a stable one.
+// Moves from the present linearised equilibrium to a stable one.
 void StaticSolver::settle() {
   double disturbance = kDisturbance;
   for (int departures = 0;; ++departures) {
-    // The tangent here, not on the way.
+    // Needs the tangent at this state, not at the last iterate.
     search_.begin();
     search_.linearise({});
     report_.stable = true;
@@ -253,7 +253,7 @@ void StaticSolver::settle() {
                        report_.relaxation_steps),
            "approach the load through time steps, or ask for any equilibrium, stable or not");
     }
-    // With a potential nothing comes back of itself: a step was too long.
+    // With a potential, the motion cannot return by itself: a step was too long.
     if (ended == OverdampedMotion::End::returned && unsymmetric) {
       report_.stable = true;
       return;

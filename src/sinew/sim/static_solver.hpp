@@ -1,5 +1,5 @@
 /// @file
-/// How Simulation::solve_static() comes to a stable equilibrium.
+/// The search for a stable equilibrium in Simulation::solve_static().
 #pragma once
 
 #include <string>
@@ -15,21 +15,21 @@ namespace sinew::sim {
 
 struct Run;
 
-/// Finds an equilibrium, first by Newton with the exact tangent and the cables' geometric stiffness
-/// in one go; where that fails, along the path on which the imbalance of the start is taken away
-/// bit by bit: r(q, lambda) = (1 - s) r_start, s from 0 to 1 (a convex homotopy; Allgower & Georg
-/// 1990, 1.3); and where that ends, by OverdampedMotion under the full load from the last
-/// equilibrium of the path.
+/// Searches an equilibrium in three stages. First, Newton's method with the exact tangent and the
+/// geometric stiffness of all constraints. If it fails, along the path r(q, lambda) = (1 - s)
+/// r_start, s from 0 to 1, which removes the residual of the start gradually (a convex homotopy;
+/// Allgower & Georg 1990, 1.3). If the path ends, OverdampedMotion under the full load from the
+/// last equilibrium on the path.
 ///
-/// An equilibrium with negative pivots (Stability) is left along the direction of its lowest
-/// curvature; the overdamped motion, a descent of the potential where there is one, then ends in
-/// another. Where it comes back, the equilibrium is stable after all: that is possible without a
-/// potential alone.
+/// From an equilibrium with negative pivots (Stability), the overdamped motion starts in the
+/// direction of its lowest curvature. If there is a potential, this motion descends it and ends in
+/// another equilibrium. If the motion returns, the equilibrium is stable after all, which is
+/// possible only without a potential.
 class StaticSolver {
  public:
-  /// @param run is moved. @param settings see there.
+  /// @param run is moved. @param settings tolerances and limits.
   StaticSolver(Run& run, const StaticSettings& settings);
-  /// Throws Error(not-converged), the run then being as it was.
+  /// Throws Error(not-converged), after which the run is as before.
   StaticReport run();
 
  private:

@@ -16,11 +16,11 @@ namespace sinew::sim {
 
 namespace {
 
-// More points than this are beyond the solver's Newton method, and slow.
+// With more points, the contact solver cannot use Newton's method, and is slow.
 constexpr std::size_t kManyPoints = static_cast<std::size_t>(qp::ConeSettings{}.newton_limit) / 3;
 
-// Which contact is farthest from its laws, with its bodies and where: "; the worst is contact
-// 'grip' of 'palm' and 'box' at (0.01, 0, 0.2) m". By what the solver tried last.
+// The contact with the largest residual, by the solver's last attempt, with its bodies and
+// position: "; the worst is contact 'grip' of 'palm' and 'box' at (0.01, 0, 0.2) m".
 std::string describe_worst(const Run& run) {
   const step::ContactProblem tried = run.solver.direct().contact_problem();
   const VectorX motion = tried.compliance * tried.effort + tried.motion;

@@ -1,5 +1,5 @@
 /// @file
-/// How a step or a search ends that cannot go on.
+/// Errors of a step or search.
 #pragma once
 
 #include <string>
@@ -11,12 +11,12 @@ namespace sinew::sim {
 struct JointConflict;
 struct Run;
 
-/// Goes back to `before` of a run and throws, with the step and the bodies.
+/// Restores `before` of the run and throws an error that names the step and the bodies.
 [[noreturn]] void fail(Run& run, ErrorKind kind, const std::string& message,
                        const std::string& remedy);
-/// The same where no efforts obey the law.
+/// The same if no efforts satisfy the laws.
 [[noreturn]] void fail_law(Run& run);
-/// And where joints and what moves them contradict each other.
+/// The same if joints and prescribed motions contradict each other.
 [[noreturn]] void fail_joints(Run& run, const JointConflict& conflict);
 
 }  // namespace sinew::sim

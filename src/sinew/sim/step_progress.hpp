@@ -1,5 +1,5 @@
 /// @file
-/// What a step that is not done yet tells of itself.
+/// Progress reports of a step or search that is not finished.
 #pragma once
 
 #include <functional>
@@ -7,27 +7,28 @@
 
 namespace sinew::sim {
 
-/// By which way an equilibrium is looked for, see docs/solver.md.
+/// The method by which an equilibrium is being sought, see docs/solver.md.
 enum class SearchStage {
-  newton,        ///< the whole step
-  held_efforts,  ///< with what a controller chose last
-  last_efforts,  ///< with what a controller's actuators did in the last step
-  parts,         ///< along loads and commands in parts
+  newton,        ///< Newton's method on the whole step
+  held_efforts,  ///< with the efforts that a controller chose last
+  last_efforts,  ///< with the efforts of a controller's actuators in the last step
+  parts,         ///< loads and commands applied in parts
   downhill,      ///< with the projected tangent
-  overdamped,    ///< by overdamped motion: solve_static() alone
+  overdamped,    ///< overdamped motion, in solve_static() only
 };
-/// The stage in words: "along the load in parts".
+/// Describes the stage: "along the load in parts".
 std::string_view search_stage_text(SearchStage stage);
 
+/// Progress of a step or search.
 struct StepProgress {
   SearchStage stage = SearchStage::newton;
-  int iterations = 0;              ///< of Newton, since the step began
-  double relative_residual = 0.0;  ///< after the last of them
-  double seconds = 0.0;            ///< since the step began
+  int iterations = 0;              ///< Newton iterations since the step began
+  double relative_residual = 0.0;  ///< after the last iteration
+  double seconds = 0.0;            ///< wall-clock time since the step began
 };
 
-/// Called at every iteration of Newton's and of contacts, in the thread that steps. What it throws
-/// ends the step.
+/// Called at every iteration of Newton's method and of the contact solver, in the thread of the
+/// step. An exception ends the step.
 using StepWatcher = std::function<void(const StepProgress&)>;
 
 }  // namespace sinew::sim

@@ -10,7 +10,7 @@
 
 namespace sinew::sim {
 
-// The blocks that form() reads are formed anew in each step.
+// The blocks that form() reads are rewritten in each step.
 StepResponse::StepResponse(Simulation& simulation, std::span<const int> controlled)
     : simulation_(simulation) {
   World& world = simulation.world();
@@ -29,7 +29,7 @@ int StepResponse::row_of(int row) const {
   return simulation_.world().numbering().problem_row_of(row);
 }
 
-// Rows that are no contact's keep their order and stand together.
+// Rows that are not contacts' keep their order and are contiguous.
 MatrixX StepResponse::motions(int first, int count) const {
   return response_.compliance().middleRows(row_of(first), count)(Eigen::all, columns_);
 }

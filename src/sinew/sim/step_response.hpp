@@ -1,5 +1,5 @@
 /// @file
-/// How a robot answers to the efforts of some actuators, as its last step saw it.
+/// Response of a robot to the efforts of some actuators, from its last step.
 #pragma once
 
 #include <span>
@@ -12,17 +12,18 @@ namespace sinew::sim {
 
 class Simulation;
 
-/// ControlledResponse by the last step's own linearisation (last_linearisation()), for motions and
-/// efforts of any row. Without a factorisation.
+/// ControlledResponse from the last step's linearisation (last_linearisation()), for motions and
+/// efforts of any row except those of contacts. Needs no factorisation.
 class StepResponse {
  public:
-  /// @param simulation after a step or solve_static(), whose state stays as it is.
-  /// @param controlled indices of Model::actuators(), each once.
+  /// @param simulation after a step or solve_static(). Its state does not change; in its last
+  ///   problem, the controlled actuators are marked as owned.
+  /// @param controlled indices of Model::actuators(), without duplicates.
   StepResponse(Simulation& simulation, std::span<const int> controlled);
 
-  /// (rows, controlled) of motions. @param first,count rows of H, none of a contact.
+  /// (rows, controlled) response of motions. @param first,count rows of H, not of a contact.
   MatrixX motions(int first, int count) const;
-  /// (1, controlled) of one effort. @param row of H, none of a contact.
+  /// (1, controlled) response of one effort. @param row of H, not of a contact.
   MatrixX effort(int row) const;
 
  private:
@@ -30,7 +31,7 @@ class StepResponse {
 
   const Simulation& simulation_;
   step::Response response_;
-  std::vector<Eigen::Index> columns_;  // (controlled,) of the response, which has them ascending
+  std::vector<Eigen::Index> columns_;  // (controlled,) columns of the response, which are sorted
   std::vector<int> rows_;              // (controlled,) of H
 };
 

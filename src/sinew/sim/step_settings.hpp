@@ -9,46 +9,47 @@
 
 namespace sinew::sim {
 
-/// How many linearisations a step takes.
+/// How many times a step is linearised.
 enum class Method {
-  one_linearisation,  ///< one linear solve a step, as real-time codes do; watched, not corrected
-  newton,             ///< as many as the tolerance asks for: one where little changes
+  one_linearisation,  ///< one linear solve per step, as in real-time codes; checked, not corrected
+  newton,             ///< as many as the tolerance requires; one if little changes
 };
 
-/// Smaller steps inside each time step where the integrator's error asks for them or a step fails.
+/// Divides time steps into smaller ones if the integrator's error requires it or a step fails.
 struct AdaptiveStep {
-  double tolerance = 1e-4;  ///< error of a step in any coordinate, relative to the robot's size
-  double smallest = 0.0;    ///< s, > 0
+  double tolerance = 1e-4;  ///< step error in any coordinate, relative to the robot's size
+  double smallest = 0.0;    ///< s, > 0, smallest step
 };
 
-/// Of quasi-static steps; what is of second order in an iteration's move is left to the next step
-/// at higher residuals.
+/// Default tolerance of quasi-static steps. At higher residuals, an error of second order in the
+/// motion of an iteration is left to the next step.
 inline constexpr double kQuasiStaticTolerance = 1e-4;
-/// Where the error of a step stays: as an impulse in dynamics, as a strain in materials with
-/// memory.
+/// Default tolerance where the error of a step persists: as an impulse in dynamics, as a strain in
+/// materials with memory.
 inline constexpr double kLastingTolerance = 1e-8;
 
 /// How each step is solved.
 struct StepSettings {
   double time_step = 0.01;  ///< s, > 0
   mechanics::Integrator integrator = mechanics::Integrator::quasi_static;
-  double spectral_radius = 0.8;  ///< of generalized-alpha, 0 to 1
-  double restitution = 0.0;      ///< of event-driven integration, 0 to 1: of contacts without own
+  double spectral_radius = 0.8;  ///< of generalized-alpha at infinite frequency, 0 to 1
+  double restitution = 0.0;      ///< of event-driven integration, 0 to 1: default of the contacts
   std::optional<AdaptiveStep> adaptive;
   Method method = Method::newton;
-  /// The exact tangent comes with the geometric stiffness of all cables, without which it says
-  /// little: a compressed robot's own tangent may be indefinite where the held robot is stable.
-  /// Where it is indefinite for the held robot, too, the projected one takes its place.
+  /// The exact tangent includes the geometric stiffness of all cables; without it, the tangent of a
+  /// compressed robot may be indefinite although the robot with its constraints is stable. If the
+  /// tangent is indefinite for the robot with its constraints too, the projected one is used
+  /// instead.
   mechanics::Tangent tangent = mechanics::Tangent::exact;
-  /// Newton: residual relative to the loads, and motion to the size; nothing above it is left to
-  /// the next step. None: kQuasiStaticTolerance, and what is left (docs/solver.md), or
-  /// kLastingTolerance.
+  /// Tolerance of Newton's method: residual relative to the loads, and violation relative to the
+  /// robot's size; no larger error is left to the next step. None: kQuasiStaticTolerance, with
+  /// errors that may be left to the next step (docs/solver.md), or kLastingTolerance.
   std::optional<double> tolerance;
-  int max_iterations = 50;  ///< Newton
+  int max_iterations = 50;  ///< of Newton's method
 
   bool dynamic() const { return integrator != mechanics::Integrator::quasi_static; }
   bool event_driven() const { return integrator == mechanics::Integrator::event_driven; }
-  double contact_tolerance = 1e-10;  ///< of the contacts' residual, see qp::ConeResult
+  double contact_tolerance = 1e-10;  ///< on the residual of the contact laws, see qp::ConeResult
 };
 
 }  // namespace sinew::sim

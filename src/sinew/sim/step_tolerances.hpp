@@ -1,16 +1,17 @@
 /// @file
-/// How well a step's equation and law have to be solved.
+/// Tolerances on the equation and the law of a step.
 #pragma once
 
 namespace sinew::sim {
 
-/// Relative residuals above this are no equilibrium, whatever the loads: half of the forces of a
-/// slender robot are axial, and bend it by nothing when they are this little out of balance.
+/// States with a larger relative residual are not equilibria, whatever the loads. Half of the
+/// forces of a slender robot are axial; a residual of this size in them bends the robot by a
+/// negligible amount.
 inline constexpr double kBalanced = 0.02;
-/// What a search with all means at hand may end with: friction of cables keeps Newton from
-/// settling.
+/// Relative residual accepted when all search methods were used: cable friction can keep Newton's
+/// method from converging further.
 inline constexpr double kSearched = 2e-5;
-/// Commanded motions are made to this part of the robot's size.
+/// Tolerance on commanded motions, relative to the robot's size.
 inline constexpr double kMotionTolerance = 1e-5;
 
 }  // namespace sinew::sim

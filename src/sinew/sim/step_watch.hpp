@@ -1,5 +1,5 @@
 /// @file
-/// Tells whoever watches a step how far it is.
+/// Progress reports of a step to its watcher.
 #pragma once
 
 #include <chrono>
@@ -10,31 +10,32 @@
 
 namespace sinew::sim {
 
-/// Counts a step's iterations. Solvers below a step are handed poll().
+/// Tracks the progress of a step and reports it to the watcher. Solvers within the step call
+/// poll().
 class StepWatch {
  public:
   StepWatch() = default;
   StepWatch(const StepWatch&) = delete;
   StepWatch& operator=(const StepWatch&) = delete;
 
-  /// @param watcher empty: nobody watches.
+  /// @param watcher the callback; empty: no reports.
   void set_watcher(StepWatcher watcher) { watcher_ = std::move(watcher); }
 
-  /// A step, or another search.
+  /// Begins a step or another search.
   void begin() {
     progress_ = {};
     if (watcher_) begin_ = Clock::now();
   }
   void enter(SearchStage stage) { progress_.stage = stage; }
-  /// An iteration of Newton's, and the relative residual that it left.
+  /// Counts a Newton iteration, and reports. @param residual relative residual after it.
   void count(double residual) {
     ++progress_.iterations;
     progress_.relative_residual = residual;
     tell();
   }
-  /// Since begin().
+  /// Number of iterations since begin().
   int iterations() const { return progress_.iterations; }
-  /// Tells, and counts nothing.
+  /// A function that reports without counting.
   const Poll& poll() const { return poll_; }
 
  private:

@@ -12,16 +12,16 @@ namespace sinew::sim {
 
 namespace {
 
-// A step that fails is made in parts, the smallest of which is the inverse of this.
+// A failed step is divided into parts, at most this many.
 constexpr double kMaxParts = 16.0;
-// After a step in parts the next one begins with parts of the same length, and each that needed no
-// shorter ones lets the following one try parts longer by this factor. What failed at 40 ms, as a
-// sole that creeps over its floor, mostly fails there again.
+// After a divided step, the next one begins with parts of the same length. Each step without a
+// failure lets the next one try parts longer by this factor, since steps that failed at 40 ms (a
+// sole creeping over the floor) mostly fail there again.
 constexpr double kLonger = 1.25;
-// A command that is missed by more than this of the robot's size was not reached.
+// A command was not reached if it is missed by more than this fraction of the robot's size.
 constexpr double kReached = 1e-3;
-// Energy that came out of nothing, of the work of all forces over the robot's size: less is
-// rounding, as of a robot at rest.
+// Smaller gains of energy, relative to the sum of forces times the robot's size, are rounding, as
+// for a robot at rest.
 constexpr double kNoEnergy = 1e-10;
 
 }  // namespace
@@ -60,8 +60,8 @@ void Stepper::step() {
   report.times = run_.clock.times();
 }
 
-// The whole step, or, where Newton finds no end, halves of it and of those: commands that jump and
-// loads that come at once are then approached.
+// Makes the whole step or, if Newton's method fails, halves of it, and halves of those: jumps of
+// commands and loads are then approached gradually.
 void Stepper::step_in_parts() {
   const StepSettings& settings = run_.model->step();
   const double whole = settings.time_step;
@@ -75,14 +75,14 @@ void Stepper::step_in_parts() {
     } catch (const Error& failure) {
       if (!parts || !failure.is_run_failure()) throw;
     }
-    length = 0.5;  // what failed is undone
+    length = 0.5;  // the failed step is undone
     next = length * whole;
     ++run_.report.retries;
   }
   go_on_in_parts(length, next);
 }
 
-// The fraction of the step that its first part takes: a power of two.
+// Length of the first part, as a fraction of the step: a power of two.
 double Stepper::first_part() const {
   const double next = run_.next_step / run_.model->step().time_step;
   double length = 1.0;
@@ -90,7 +90,7 @@ double Stepper::first_part() const {
   return length;
 }
 
-// next: what the next step tries where none of these parts fails, s.
+// @param next length that the next step tries if none of these parts fails, s.
 void Stepper::go_on_in_parts(double length, double next) {
   StepReport& report = run_.report;
   const double begin = run_.time(), whole = run_.model->step().time_step;
@@ -123,7 +123,7 @@ void Stepper::step_by_events() {
   events_.step(run_.time(), run_.model->step().time_step);
 }
 
-// What is commanded as a rate counts from the start of the step, and rates' limits span all of it.
+// Commanded rates count from the start of the step, and rate limits refer to the whole step.
 Stepper::Part Stepper::whole_step(double begin) {
   const double whole = run_.model->step().time_step;
   run_.read_commands(begin + whole, whole);
@@ -142,8 +142,8 @@ void Stepper::go_in_proportion() {
   blend(blocks, part_->start, part_->fraction);
 }
 
-// Halves where a substep fails; else aims at nine tenths of the step that the tolerance allows, by
-// the order of the error, at most twice the last one.
+// Halves the step if it fails; otherwise aims at nine tenths of the length that the tolerance
+// permits, by the order of the error, and at most twice the last length.
 void Stepper::step_adaptively() {
   StepReport& report = run_.report;
   const StepSettings& settings = run_.model->step();
@@ -182,7 +182,7 @@ void Stepper::step_adaptively() {
   }
 }
 
-// One solution of the step's equation; the error estimate, m.
+// Solves the step's equation once. @return the error estimate, m.
 double Stepper::substep(double end, double time_step, bool divisible) {
   Substep part(run_);
   part.read_commands(end, time_step);
@@ -192,7 +192,7 @@ double Stepper::substep(double end, double time_step, bool divisible) {
   return part.end(time_step);
 }
 
-// Newton knows. Where it had few iterations, or was not asked, the residual says.
+// Newton's method decides; if it had few iterations or was not used, the residual decides.
 bool Stepper::is_balanced() const {
   const bool newton = run_.model->step().method == Method::newton;
   if (newton && run_.report.newton == NewtonStatus::converged) return true;
@@ -200,7 +200,7 @@ bool Stepper::is_balanced() const {
   return run_.report.relative_residual <= (searched ? kSearched : kBalanced);
 }
 
-// What users are told of the step.
+// Determines the status of the step.
 void Stepper::judge() {
   StepReport& report = run_.report;
   const auto raise = [&](StepStatus status) { report.status = std::max(report.status, status); };
@@ -211,7 +211,7 @@ void Stepper::judge() {
   if (run_.model->step().dynamic()) watch_energy();
 }
 
-// A base that moves and forces from outside the ledger put in what is not counted.
+// Restarts the monitoring if a moving base or an external force outside the ledger supplied energy.
 void Stepper::watch_energy() {
   const Bodies& bodies = run_.world.bodies();
   const bool events = run_.model->step().event_driven();

@@ -14,21 +14,21 @@ namespace sinew::sim {
 
 struct Run;
 
-/// Makes a step whole, in smaller ones where it fails or the integrator's error asks for them, or
-/// from one impact to the next.
+/// Makes the time steps of a run: each as a whole, in smaller substeps if it fails or the
+/// integrator's error requires it, or from one impact to the next.
 class Stepper {
  public:
-  /// @param run outlives it.
+  /// @param run must outlive it.
   explicit Stepper(Run& run) : run_(run), events_(run) {}
-  /// Advances the run by one time step, and reports. See Simulation::step().
+  /// Advances the run by one time step and fills its report. See Simulation::step().
   void step();
   std::size_t bytes() const { return sizeof(double) * start_.size() + events_.bytes(); }
 
  private:
-  // Commands of a step that is made in parts go in proportion to where the whole step leads.
+  // A part of a divided step, in which commands are interpolated towards those of the whole step.
   struct Part {
-    double fraction = 1.0;             // of the step, at the end of the part
-    std::vector<ActuatorState> start;  // of the step
+    double fraction = 1.0;             // of the step that is done at the end of the part
+    std::vector<ActuatorState> start;  // at the start of the step
     std::vector<double> goal;          // (actuators,) commands at its end
   };
 
@@ -45,8 +45,8 @@ class Stepper {
   void watch_energy();
 
   Run& run_;
-  State start_;           // of the whole step, where that is made in parts
-  bool divided_ = false;  // it is
+  State start_;           // of the whole step, if it is divided
+  bool divided_ = false;  // whether the step is divided
   std::optional<Part> part_;
   EventStepper events_;
 };

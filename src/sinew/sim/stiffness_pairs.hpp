@@ -1,17 +1,16 @@
 /// @file
-/// What a model under construction makes of its constraints' second derivatives.
+/// Geometric stiffness of the constraints of a model under construction.
 #pragma once
 
 namespace sinew::sim {
 
 struct ModelData;
 
-/// Rows for the stiffness pairs between two bodies: no body has room for what couples it to
-/// another.
+/// Adds rows for the stiffness pairs between two bodies, which fit into the matrix of neither.
 void add_couplings(ModelData& data);
 
-/// Which constraints have a geometric stiffness, and whether that which joins A in every step
-/// extends the pattern of a body. After BodyModel::finish().
+/// Lists the constraints with a geometric stiffness, and determines whether the geometric stiffness
+/// used in time steps extends the pattern of a body. Call after BodyModel::finish().
 void list_geometric_stiffness(ModelData& data);
 
 }  // namespace sinew::sim

@@ -13,21 +13,21 @@ namespace sinew::sim {
 
 namespace {
 
-// Of the robot's size: gaps that are closed, and rebounds that are none.
+// Relative to the robot's size: gaps up to this are closed, and smaller rebounds are suppressed.
 constexpr double kClosed = 1e-9;
-// Of that: how far inside a point may be at the moment that is found.
+// Permitted penetration when a gap closes, relative to kClosed.
 constexpr double kFound = 1e-3;
-// Of the robot's size: an overlap that no watched point has seen coming.
+// Relative to the robot's size: overlap that no observed point has predicted.
 constexpr double kUnseen = 1e-6;
-// Of the time step: shorter parts lose the velocity in the rounding of positions. Gaps that close
-// within such a part are closed.
+// Minimum part, relative to the time step: in shorter parts, velocities vanish in the rounding of
+// positions. Gaps that would close within such a part are closed.
 constexpr double kShortest = 1e-6;
-// Parts of a step after which these become longer: where a vertex goes round an edge, at the
-// distance at which surfaces rest, there is no end of them.
+// Number of parts of a step after which the minimum part grows: where a vertex slides around an
+// edge at the separation of the surfaces, the number would be unbounded.
 constexpr double kManyParts = 200.0;
-// Of the time to where surfaces that nobody watched pass each other: they are still apart there.
+// Fraction of the time until unobserved surfaces pass each other, at which they are still apart.
 constexpr double kBefore = 0.95;
-// Of a body's speed: a point that slides less than this rolls.
+// A point rolls if its slip is less than this fraction of the body's speed.
 constexpr double kRolls = 0.05;
 
 }  // namespace
@@ -68,7 +68,7 @@ void StrikingPoints::look_at(int index) {
   }
 }
 
-// Edges that wait (TouchingSurfaces) touch where they really do.
+// Waiting edges (TouchingSurfaces) touch at zero distance, after their slack.
 StrikingPoints::Point StrikingPoints::measure(int index, std::size_t number) const {
   const constraint::Contact& contact = model_.contact(index);
   const ContactRows& rows = world_.contacts();
@@ -137,8 +137,8 @@ double StrikingPoints::gap_at_end(const Point& point) const {
   return surfaces->gap_there(point.number) + surfaces->slack(point.number);
 }
 
-// Where bodies overlap, or have passed each other, and no point that is watched has seen it coming:
-// a length at the end of which they are nearer, so that the next look finds the point.
+// If bodies overlap or have passed each other without a warning by any observed point: a length
+// after which they are nearer, so the next search finds the point.
 double StrikingPoints::unseen_length(double length) {
   const double allowed = kUnseen * model_.size();
   double first = kInfinity;
@@ -163,13 +163,13 @@ double StrikingPoints::next_corner(double time) const {
   return next;
 }
 
-// Of the parabola with the gap and its rate when the part began and the gap at its end. It is exact
-// for constant accelerations; elsewhere it is drawn anew in the shorter part.
+// Uses the parabola through the gap and its rate at the start of the part and the gap at its end.
+// It is exact for constant acceleration; otherwise it is updated in the shorter part.
 double StrikingPoints::closing_time(const Point& point, double end, double length) {
   const double gap = point.gap, rate = point.velocity;
   const double inside = -kFound * closed_;
   const double bend = (end - gap - rate * length) / (length * length);
-  if (is_closed(point) && rate > 0.0) {  // it rebounds
+  if (is_closed(point) && rate > 0.0) {  // rebound
     if (end >= std::min(gap, inside)) return kInfinity;
     if (rate * rate <= 4.0 * std::abs(bend) * closed_) {
       rests_.push_back(name(point));
@@ -177,7 +177,7 @@ double StrikingPoints::closing_time(const Point& point, double end, double lengt
     }
     return -rate / bend;
   }
-  if (end >= inside) {  // unless it dips in between
+  if (end >= inside) {  // unless it is negative in between
     const bool dips = rate < 0.0 && -rate < 2.0 * bend * length;
     if (!dips || gap - rate * rate / (4.0 * bend) >= inside) return kInfinity;
   }

@@ -1,5 +1,5 @@
 /// @file
-/// The points at which rigid bodies strike.
+/// Contact points at which rigid bodies strike.
 #pragma once
 
 #include <cstddef>
@@ -14,55 +14,56 @@ namespace sinew::sim {
 class Model;
 class World;
 
-/// Of contacts that strike (ContactRows): gaps and velocities when a part of a step begins, which
-/// points are closed, and when the next gap closes.
+/// Points of contacts that strike (ContactRows): their gaps and velocities at the start of a part
+/// of a step, which of them are closed, and when the next gap closes.
 class StrikingPoints {
  public:
-  /// Both outlive it.
+  /// Both must outlive it.
   StrikingPoints(const Model& model, World& world);
 
-  /// Takes up the present state, and marks the points that are closed for an impact: all whose
-  /// bodies touch. @param time s. @param effort (rows,) N of the last part, see
-  /// World::begin_look().
+  /// Measures the present state, and marks all points with closed gaps as closed, for an impact.
+  /// @param time s. @param effort (rows,) N of the last part, see World::begin_look().
   void look(double time, std::span<double> effort);
-  /// Whether a closed point approaches.
+  /// Whether the gap of a closed point decreases.
   bool strike() const;
-  /// (rows,) at normals: 0 at points that are to rest.
+  /// (rows,) coefficients of restitution at normal rows; 0 at points that must come to rest.
   std::span<const double> restitution() const { return restitution_; }
-  /// Marks the points that are closed for the next part: those that also rest.
+  /// Marks the points that are closed in the next part: those with closed gaps that also rest.
   void close();
 
-  /// After a part was made: the length up to which no gap closes, or `length`. Of surfaces, gaps
-  /// are looked at anew at the end of the part, and continuous detection tells what they passed.
-  /// @param length s, of the part. @param parts that the step had so far: after many, shorter ones
-  /// are not made, and what closes in them overlaps a little.
+  /// After a part was made: the length up to which no gap closes, or `length`. For surfaces, gaps
+  /// are measured again at the end of the part, and continuous collision detection finds passages
+  /// between unobserved features.
+  /// @param length s, of the part.
+  /// @param parts number of parts of the step so far; after many, the minimum length grows, and
+  ///   gaps that close within it overlap slightly.
   double free_length(double length, int parts);
-  /// s: when the next part ends at the latest: at the next corner of a motion that carries what may
-  /// strike. It is struck there by a change of its velocity. @param time s, now.
+  /// s: the latest end of the next part: the next corner of a prescribed motion of anything that
+  /// may strike, where a jump of its velocity can cause an impact. @param time s, present.
   double next_corner(double time) const;
-  /// Whether free_length() found rebounds too small to be made: their points are to rest.
+  /// Whether free_length() found rebounds that are too small: their points must come to rest.
   bool found_rest() const { return found_rest_; }
-  /// Rebounds may be made again.
+  /// Permits rebounds of these points again.
   void forget_rest();
-  /// Whether a closed point that is pressed has a velocity along its normal now.
+  /// Whether a closed point with a force has a velocity along its normal.
   /// @param effort (rows,) N.
   bool drift(std::span<const double> effort) const;
-  /// Whether a closed point has just stopped to slide. @param effort (rows,) N.
+  /// Whether a closed point has just stopped sliding. @param effort (rows,) N.
   bool caught(std::span<const double> effort) const;
 
  private:
   struct Point {
-    int contact = -1;        // of the model
-    std::size_t number = 0;  // of the contact's
+    int contact = -1;        // index in the model
+    std::size_t number = 0;  // index in the contact
     int row = -1;            // of its normal
     constraint::Friction friction;
     double gap = 0.0;       // m
-    double velocity = 0.0;  // m/s, of the gap
+    double velocity = 0.0;  // m/s, rate of the gap
     double slip = 0.0;      // m/s
     double speed = 0.0;     // m/s, of the body
   };
 
-  // A point by what it is called, as another look finds it again.
+  // Identifies a point across searches.
   struct Named {
     int contact = -1;
     TouchingSurfaces::Key key;
@@ -81,15 +82,15 @@ class StrikingPoints {
 
   const Model& model_;
   World& world_;
-  std::vector<int> contacts_;        // that strike
-  std::vector<Point> points_;        // that may touch, of all of them
+  std::vector<int> contacts_;        // contacts that strike
+  std::vector<Point> points_;        // their points that may touch
   std::vector<double> restitution_;  // (rows,)
-  std::vector<Named> rests_;         // points that are to rest
-  double closed_ = 0.0;              // m: lesser gaps are closed
-  double still_ = 0.0;               // m/s: lesser velocities are none
-  double shortest_ = 0.0;            // s, of parts
-  double deepest_ = 0.0;             // m, when the part began
-  double time_ = 0.0;                // s, likewise
+  std::vector<Named> rests_;         // points that must come to rest
+  double closed_ = 0.0;              // m: smaller gaps are closed
+  double still_ = 0.0;               // m/s: smaller velocities are zero
+  double shortest_ = 0.0;            // s, minimum length of a part
+  double deepest_ = 0.0;             // m, smallest gap at the start of the part
+  double time_ = 0.0;                // s, start of the part
   bool found_rest_ = false;
 };
 

@@ -32,7 +32,7 @@ void Substep::solve(double time_step, bool divisible) {
     if (!reaches_back()) return;
     stops_points_ = stops_points(time_step);
     if (stops_points_ && run_.last_step > 0.0) solve_afresh(time_step, divisible);
-  } catch (...) {  // failures have gone back already; what a watcher throws has not
+  } catch (...) {  // failures have restored the state already; exceptions of a watcher have not
     run_.go_back();
     throw;
   }
@@ -51,15 +51,15 @@ bool Substep::stops_points(double time_step) const {
          (alpha && run_.world.contacts().stops_points(run_.effort, time_step));
 }
 
-// Generalized-alpha carries on from the acceleration of the step before. Where a point is stopped
-// there is none, but an impulse, and the point would rebound with twice the energy. Such a step is
-// made again by backward Euler, v = d/h, and so is the next one, whose acceleration is the first to
-// go on from. So is a step of any formula that reaches back, in which a point with kinetic friction
-// comes to rest: its velocity would be on the way back before static friction can hold it.
+// Generalized-alpha uses the acceleration of the previous step. At a point that is stopped, this is
+// an impulse instead, and the point would rebound with twice the energy. Such a step is repeated
+// with backward Euler, v = d/h, and so is the next one, whose acceleration is the first that can be
+// used. A step of any multistep formula is also repeated if a point with kinetic friction comes to
+// rest: its velocity would reverse before static friction can hold it.
 void Substep::solve_afresh(double time_step, bool divisible) {
   run_.go_back();
   run_.last_step = 0.0;
-  // Where the first solution held a controller's choice, its actuators were taken from it.
+  // The discarded solution set this flag if it held the controller's choice.
   run_.report.choice_held = held_before_;
   run_.read_commands(run_.now, time_step);
   begin_world(time_step);
@@ -87,9 +87,9 @@ void Substep::solve_equation(double time_step, bool divisible) {
 
 double Substep::end(double time_step) {
   const double error = run_.world.bodies().end_step(run_.step_weights(time_step));
-  // A gap that closes stops its point at once. A multistep formula that reaches back over such a
-  // jump would have the point rebound, and gain energy: it starts afresh behind it. So it does
-  // where friction falls from its static limit to the kinetic one.
+  // A closing gap stops its point at once. A multistep formula across such a jump would let the
+  // point rebound and gain energy; it therefore restarts after the jump. So it does when friction
+  // falls from its static to its kinetic limit.
   const ContactRows& contacts = run_.world.contacts();
   const bool jumps =
       stops_points_ || contacts.gap_closed(run_.effort) || contacts.breaks_loose(run_.effort);

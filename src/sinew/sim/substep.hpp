@@ -6,24 +6,25 @@ namespace sinew::sim {
 
 struct Run;
 
-/// What makers of steps share: begin, solve, end.
+/// Common part of the step methods: begin, solve and end a solution of the step's equation.
 class Substep {
  public:
-  /// @param run outlives it.
+  /// @param run must outlive it.
   explicit Substep(Run& run) : run_(run) {}
 
-  /// Reads the commands of a part that ends at a time. @param end,time_step s.
+  /// Evaluates the commands for a part that ends at a time. @param end,time_step s.
   void read_commands(double end, double time_step);
-  /// Keeps the state in Run::before, and begins. After read_commands().
+  /// Stores the state in Run::before and begins the part. Call after read_commands().
   void begin(double time_step);
-  /// Throws Error, and what a watcher throws; the run is then as it was before begin().
+  /// Solves the part. Throws Error, and what the watcher throws, after which the run is as before
+  /// begin().
   /// @param time_step s, as for begin().
-  /// @param divisible smaller parts are tried where this one finds no end.
+  /// @param divisible whether the caller can retry with smaller parts.
   void solve(double time_step, bool divisible = false);
-  /// Velocities follow, and what the part came to is counted. @return error estimate, m.
+  /// Updates velocities, actuators and the energy ledger. @return error estimate, m.
   double end(double time_step);
-  /// The same where what was solved was the first half of a step of the midpoint rule, whose motion
-  /// was then doubled. @param time_step s, of the whole.
+  /// The same after a part that was solved as the first half of a midpoint step, whose motion was
+  /// then doubled. @param time_step s, of the whole step.
   void end_as_midpoint(double time_step);
 
  private:
@@ -35,8 +36,8 @@ class Substep {
   void count();
 
   Run& run_;
-  bool stops_points_ = false;  // of contacts, which moved when the part began
-  bool held_before_ = false;   // a controller's choice, in earlier parts of the step
+  bool stops_points_ = false;  // whether contacts stopped points that moved at the start
+  bool held_before_ = false;   // whether a controller's choice was held in earlier parts
 };
 
 }  // namespace sinew::sim

@@ -1,5 +1,5 @@
 /// @file
-/// What acts on the bodies of a run from outside, over time.
+/// External loads and base motions of a run.
 #pragma once
 
 #include <cstddef>
@@ -14,37 +14,38 @@ namespace sinew::sim {
 class Bodies;
 class Model;
 
-/// The factors of loads, and where bases are asked to be.
+/// The load factors over time, and the prescribed motions of bases.
 class Surroundings {
  public:
-  /// Both outlive it. @param model with the loads and motions of bases. @param bodies of the model.
+  /// Both must outlive it. @param model with the loads and base motions.
+  /// @param bodies of the model.
   Surroundings(const Model& model, Bodies& bodies);
 
-  /// (loads,) over time.
+  /// (loads,) factors over time.
   const std::vector<Signal>& factors() const { return factors_; }
   /// @param load index of Model::loads(). @param factor from the next step on.
   void set_factor(int load, Signal factor);
   /// @param factors (loads,).
   void set_factors(const std::vector<Signal>& factors) { factors_ = factors; }
-  /// (loads,) factors that acted last; 0 at the start.
+  /// (loads,) factors applied last; 0 at the start.
   const std::vector<double>& applied() const { return applied_; }
 
-  /// Asks bases that the model moves to be where they are at a time, s.
+  /// Prescribes the base positions that the model defines at a time, s.
   void move_bases(double time);
-  /// The same in the middle of a step: rigid bodies among them are there at once.
+  /// The same within a step; rigid bases are moved there at once.
   void put_bases(double time);
-  /// Rigid bodies among them get the velocities that the model gives them.
+  /// Sets the velocities of rigid bases to those that the model defines.
   /// @param time s. @param side of a corner of the motion there.
   void set_base_rates(double time, Signal::Side side);
   /// See Simulation::move_base().
   void move_base(int body, const Vector3& translation, const Vector3& rotation,
                  const Vector3& centre);
-  /// Every load by its factor at a time, s.
+  /// Applies all loads with their factors at a time, s.
   void apply(double time);
-  /// One load.
+  /// Applies one load with a factor.
   void apply(std::size_t load, double factor);
 
-  /// Factors of the model, none of which has acted.
+  /// Restores the model's factors; none counts as applied.
   void restart();
 
  private:

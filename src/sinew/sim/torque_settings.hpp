@@ -9,9 +9,9 @@
 
 namespace sinew::sim {
 
-/// A torque on a bend of a constant-curvature arm.
+/// A torque on a segment of a constant-curvature arm.
 struct TorqueSettings {
-  enum class Towards { side, across, along };  ///< a segment's coordinates: u, v, e
+  enum class Towards { side, across, along };  ///< the segment's coordinates u, v, e
   std::string name;
   Location place;
   int body = 0;

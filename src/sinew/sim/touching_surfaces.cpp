@@ -13,12 +13,12 @@ namespace sinew::sim {
 
 namespace {
 
-// Vertices on slopes up to this sine towards the other surface are points: they come to touch where
-// bodies flatten on each other. So are crossings of ridges. Of other edges the nearest ones alone,
-// but for rounding: the neighbours of one in a flat part are as near.
+// Vertices on slopes up to this sine towards the other surface are points, since they touch when
+// bodies flatten on each other. So are crossings of ridges. Of other edges, only the nearest are
+// points, with a tolerance for rounding, since neighbours in a flat region are equally near.
 constexpr double kSlack = 0.5, kEdgeSlack = 1e-9;
 // Overlaps up to this many separations, 1e-6 of the larger body, are left to the next step: where
-// flat meshes lie on each other their edges cross, and overlap at second order in the motion.
+// flat meshes lie on each other, their edges cross and overlap at second order in the motion.
 constexpr double kOverlap = 10.0;
 constexpr std::size_t kKeyMemory = 3;
 
@@ -57,8 +57,9 @@ void TouchingSurfaces::move_trees(const Points& first, const Points& second) {
   if (!contact_.is_within()) second_.move(second, pool_);
 }
 
-// In an order that does not depend on how the trees came about. Places that both are held touch
-// without a force. Of more pairs than there is room for, those that do not wait, and the nearest.
+// The order does not depend on the history of the trees. Positions that are held on both surfaces
+// touch without a force. If there are more pairs than rows, keeps those that do not wait, and the
+// nearest.
 void TouchingSurfaces::find(double reach) {
   const collision::ProximitySettings settings{
       .distance = reach, .depth = contact_.depth(), .slack = kSlack, .edge_slack = kEdgeSlack};
@@ -118,7 +119,7 @@ void TouchingSurfaces::clear_rest() {
   }
 }
 
-// Takes them out of the rows.
+// Stores the forces and removes them from the rows.
 void TouchingSurfaces::keep_forces(std::span<double> effort) {
   before_.clear();
   for (std::size_t k = 0; k < keys_.size(); ++k) {
@@ -164,13 +165,14 @@ bool TouchingSurfaces::add_overlaps() {
     if (one.pair.distance >= -allowed || keys_.size() == contact_.size()) continue;
     if (std::ranges::find(keys_, one.key) != keys_.end()) continue;
     add_point(one);
-    pairs_.back().between_flat = false;  // a motion leads into it: it waits no more
+    pairs_.back().between_flat = false;  // a motion leads into it, so it no longer waits
     contact_.measure(configuration_, keys_.size() - 1, rows_);
   }
   return keys_.size() > points;
 }
 
-// What moved by less than the depth up to which overlaps are found is found (add_overlaps()).
+// After motions smaller than the depth up to which overlaps are detected, add_overlaps() finds
+// them.
 bool TouchingSurfaces::passed() {
   const double allowed = contact_.depth();
   if (farthest_way() < allowed) return false;
@@ -191,7 +193,7 @@ void TouchingSurfaces::look_at_overlaps() {
   find(contact_.separation());
 }
 
-// Of several pairs of the same name, as in a groove, that which looks the same way.
+// Of several pairs with the same key, as in a groove, the one with the most similar normal.
 double TouchingSurfaces::gap_there(std::size_t point) const {
   const Vector3& normal = rows_.direction[contact_.entry(point)];
   double gap = rows_.delta[contact_.row(point)], nearest = 0.0;
@@ -212,7 +214,7 @@ double TouchingSurfaces::deepest() const {
   return least - contact_.separation();
 }
 
-// Nothing meets where no pair was near enough when the part began.
+// Surfaces cannot meet if no pair was near enough at the start of the part.
 double TouchingSurfaces::first_passing(double allowed) {
   const double way = farthest_way();
   if (way <= allowed || (keys_.empty() && way < reach_)) return kInfinity;
@@ -230,7 +232,7 @@ double TouchingSurfaces::farthest_way() const {
   return farthest(contact_.body(), first_start_) + farthest(contact_.other_body(), second_start_);
 }
 
-// How far a vertex is above a face, or an edge above another one, m: signed.
+// Signed height of a vertex above a face, or of an edge above another one, m.
 double TouchingSurfaces::height(const collision::SurfaceImpact& impact, const Points& first,
                                 const Points& second) const {
   using collision::FeatureKind;
@@ -257,7 +259,7 @@ double TouchingSurfaces::height(const collision::SurfaceImpact& impact, const Po
   return across.normalized().dot(at(first, a) - at(second, c));
 }
 
-// Whether what met stands on the other side by more than is allowed, m.
+// Whether the features are on opposite sides at the end, by more than `allowed`, m.
 bool TouchingSurfaces::has_passed(const collision::SurfaceImpact& impact, double allowed) const {
   const collision::SurfaceTree& second = contact_.is_within() ? first_ : second_;
   const double before = height(impact, first_.positions(), second.positions());
@@ -304,7 +306,7 @@ void TouchingSurfaces::save(std::vector<double>& to) const {
 }
 
 std::span<const double> TouchingSurfaces::load(std::span<const double> from) {
-  constexpr std::size_t kHead = 2;  // how many, and the reach
+  constexpr std::size_t kHead = 2;  // number of points, and the reach
   constexpr std::size_t kEach = kKeyMemory + constraint::SurfaceContact::kMemory;
   const double told = from.empty() ? -1.0 : from[0];
   if (!(told >= 0.0 && told <= static_cast<double>(contact_.size())) ||
@@ -315,7 +317,7 @@ std::span<const double> TouchingSurfaces::load(std::span<const double> from) {
   const auto count = static_cast<std::size_t>(told);
   reach_ = from[1];
   keys_.resize(count);
-  pairs_.resize(count);  // none waits until the next step, which says so
+  pairs_.resize(count);  // which of them wait is determined in the next step
   clear_rest();
   const double* at = from.data() + kHead;
   for (std::size_t k = 0; k < count; ++k, at += kEach) {

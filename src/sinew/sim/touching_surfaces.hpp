@@ -1,5 +1,5 @@
 /// @file
-/// Where the surfaces of a SurfaceContact touch, in one simulation.
+/// Contact points between the surfaces of a SurfaceContact, in one simulation.
 #pragma once
 
 #include <cstddef>
@@ -24,13 +24,11 @@ class StepSystem;
 
 namespace sinew::sim {
 
-/// Finds the points of a step: where it begins, and again where a motion that was solved leads, as
-/// far as surfaces have passed each other there. A function of positions and of the last step's
-/// forces alone.
+/// Finds the contact points of a step at its start, and again where a proposed motion makes
+/// surfaces overlap. Depends only on positions and on the forces of the last step.
 class TouchingSurfaces {
  public:
-  /// A point's name from step to step: a vertex of the first or of the second surface, or two
-  /// edges.
+  /// Identifies a point from step to step: a vertex of the first or second surface, or two edges.
   struct Key {
     int kind = 0, first = -1, second = -1;
     bool operator==(const Key&) const = default;
@@ -40,55 +38,58 @@ class TouchingSurfaces {
   };
 
   /// All must outlive it. @param contact of the surfaces. @param configuration of the bodies.
-  /// @param rows gets the points. @param pool shares the work of the search.
+  /// @param rows receives the points. @param pool shares the work of the search.
   TouchingSurfaces(const constraint::SurfaceContact& contact,
                    const constraint::Configuration& configuration, mechanics::RowValues& rows,
                    ThreadPool& pool);
 
   const constraint::SurfaceContact& contact() const { return contact_; }
-  /// Takes the pairs nearer than `reach` for the step's points. Forces of the last step go to those
-  /// that are the same. @param reach m. @param effort (rows,) N, in and out.
+  /// Makes the pairs nearer than `reach` the points of the step. Points that existed in the last
+  /// step keep their forces. @param reach m. @param effort (rows,) N, in and out.
   void begin_step(double reach, std::span<double> effort);
-  /// Looks at where a proposed motion leads. @param systems of the bodies.
+  /// Computes the surfaces after a proposed motion. @param systems of the bodies.
   void propose(std::span<mechanics::StepSystem* const> systems);
-  /// m: of a point's row there.
+  /// m: gap of a point's row after that motion.
   double proposed_gap(std::size_t point) const;
-  /// Adds pairs that overlap there and are no points yet. Whether there were any.
+  /// Adds pairs that overlap after that motion and are not yet points.
+  /// @return whether there were any.
   bool add_overlaps();
   /// Whether parts of the surfaces have passed through each other since the step began. Overlaps
-  /// that the next step undoes are none.
+  /// that the next step can undo do not count.
   bool passed();
-  /// m: how far begin_step() looked last.
+  /// m: reach of the last begin_step().
   double reach() const { return reach_; }
-  /// Of event-driven integration, at the end of a part: looks for overlaps there.
+  /// In event-driven integration, at the end of a part: searches overlaps there.
   void look_at_overlaps();
-  /// m: then the gap of a point: with the normal that its surfaces have there, where they overlap.
+  /// m: gap of a point after look_at_overlaps(); if its surfaces overlap, along their present
+  /// normal.
   double gap_there(std::size_t point) const;
-  /// m: the least gap of all pairs, of points or not, that were found last.
+  /// m: smallest gap of all pairs found last, whether points or not.
   double deepest() const;
-  /// Then: when the first parts of the surfaces passed each other that ended up deeper than
-  /// `allowed`, of the part, from 0 to 1; infinity where none did. @param allowed m.
+  /// The time, as a fraction of the part, at which surfaces first passed each other that ended
+  /// deeper than `allowed`; infinity if none did. @param allowed m.
   double first_passing(double allowed);
-  /// m: the farthest that the gap of a point with a force is from its row's. @param effort (rows,)
-  /// N.
+  /// m: largest difference between the exact gap of a point with a force and the gap of its row.
+  /// @param effort (rows,) N.
   double drift(std::span<const double> effort);
   std::size_t count() const { return keys_.size(); }
   const Key& key(std::size_t point) const { return keys_[point]; }
-  /// Whether a point waits until a motion leads into it: edges that cross where both surfaces are
-  /// nearly flat. Vertices keep such parts apart, all but for overlaps at second order. Flat meshes
-  /// on each other have more crossings than vertices, and forces of all would not be unique.
+  /// Whether a point stays inactive until a motion leads into it: edges that cross where both
+  /// surfaces are nearly flat. Vertices keep such regions apart, up to overlaps of second order.
+  /// Flat meshes on each other have more edge crossings than vertices, and forces at all of them
+  /// would not be unique.
   bool waits(std::size_t point) const {
     return point < pairs_.size() && pairs_[point].between_flat;
   }
-  /// m: how far the gap of a point may be below zero before it is one. Surfaces rest at the
-  /// separation, so that edges which wait do not overlap before they have used it up.
+  /// m: depth below zero that the gap of a waiting point may have before it becomes active.
+  /// Surfaces rest at the separation, so waiting edges do not overlap until they have used it up.
   double slack(std::size_t point) const;
-  /// No point, and no force to remember.
+  /// Removes all points and stored forces.
   void restart();
 
-  /// Points and what they are called, a number of numbers that varies.
+  /// Appends the points and their keys; the number of values varies.
   void save(std::vector<double>& to) const;
-  /// @return what is left of `from`. Throws Error(wrong-length).
+  /// @return the rest of `from`. Throws Error(wrong-length).
   std::span<const double> load(std::span<const double> from);
 
  private:
@@ -120,14 +121,14 @@ class TouchingSurfaces {
   ThreadPool& pool_;
   collision::Proximity proximity_;
   collision::SurfaceImpacts impacts_;
-  collision::SurfaceTree first_, second_;        // the second one stands still within one surface
-  std::vector<Named> found_;                     // by name
+  collision::SurfaceTree first_, second_;        // second_ is unused for contact within one surface
+  std::vector<Named> found_;                     // sorted by key
   std::vector<Key> keys_;                        // of the points
-  std::vector<collision::ProximityPair> pairs_;  // of the points; of those that wait between_flat
+  std::vector<collision::ProximityPair> pairs_;  // of the points; between_flat: waiting
   double reach_ = 0.0;                           // m, of the step
-  std::vector<Force> before_;                    // of the last step, by name
-  Points first_start_, second_start_;            // m, when the step began
-  Points first_end_, second_end_;                // m, where a motion leads
+  std::vector<Force> before_;                    // of the last step, sorted by key
+  Points first_start_, second_start_;            // m, at the start of the step
+  Points first_end_, second_end_;                // m, after the proposed motion
 };
 
 }  // namespace sinew::sim

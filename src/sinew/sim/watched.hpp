@@ -1,5 +1,5 @@
 /// @file
-/// Watches a simulation's steps for a while.
+/// Scoped watcher of a simulation.
 #pragma once
 
 #include <utility>
@@ -9,10 +9,10 @@
 
 namespace sinew::sim {
 
-/// While it lives, steps and searches tell the watcher how far they are (Simulation::watch()).
+/// Sets a simulation's watcher for the lifetime of the object, see Simulation::watch().
 class Watched {
  public:
-  /// @param simulation outlives it. @param watcher see Simulation::watch().
+  /// @param simulation must outlive it. @param watcher see Simulation::watch().
   Watched(Simulation& simulation, StepWatcher watcher) : simulation_(simulation) {
     simulation_.watch(std::move(watcher));
   }

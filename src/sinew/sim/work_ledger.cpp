@@ -12,7 +12,7 @@ namespace sinew::sim {
 
 namespace {
 
-// Energy that came out of nothing, of the largest energy so far.
+// Gain of energy that is excessive, relative to the largest energy so far.
 constexpr double kEnergyGain = 0.05;
 
 }  // namespace
@@ -31,8 +31,8 @@ void WorkLedger::count(const Model& model, const World& world, const Actuation& 
     const double slid = world.delta()[block.row] - block.held;
     sums_.dissipated -= effort[static_cast<std::size_t>(block.row)] * slid;
   }
-  // After the actuators' blocks, those of joints: limits do no work; friction holds where the step
-  // began.
+  // Joint blocks follow those of actuators: limits do no work, and friction acts on the motion
+  // since the start of the step.
   const std::span<const step::ActuatorBlock> blocks = world.problem().actuators;
   for (const step::ActuatorBlock& block : blocks.subspan(actuation.states().size())) {
     if (block.kind != step::CommandKind::motion) continue;
@@ -42,9 +42,9 @@ void WorkLedger::count(const Model& model, const World& world, const Actuation& 
   count_contacts(model, world, effort);
 }
 
-// Relative to where the surface's motion carries a point (reference), what contacts do is taken
-// out: by friction, and by an impact that stops a gap from closing further. The way to there is
-// work of whoever moves the surface.
+// Contacts dissipate energy in the motion relative to `reference`, to which the surface's motion
+// carries a point: by friction, and by an impact that stops a closing gap. The motion up to
+// `reference` is work of whatever moves the surface.
 void WorkLedger::count_contacts(const Model& model, const World& world,
                                 std::span<const double> effort) {
   const VectorX& end = world.delta();

@@ -1,5 +1,5 @@
 /// @file
-/// What was put into the energy of a run and taken out of it.
+/// Energy balance of a run.
 #pragma once
 
 #include <span>
@@ -16,34 +16,35 @@ class Actuation;
 class Model;
 class World;
 
-/// Counts the work of actuators, loads, friction and contacts step by step, and watches whether the
-/// bodies gain more energy than that.
+/// Sums the work of actuators, loads and moving surfaces and the energy dissipated by damping,
+/// friction and contacts, step by step, and checks whether the energy of the bodies grows by more.
 class WorkLedger {
  public:
-  /// J, since the start.
+  /// Sums since the start, J.
   const EnergyLedger& sums() const { return sums_; }
   void set(const EnergyLedger& sums) { sums_ = sums; }
-  /// After the actuators of a step were read: what it came to.
-  /// @param model,world,actuation of the run, as the step left them.
-  /// @param effort (rows,) N or Pa, that acted through it.
+  /// Adds the contributions of a step. Call after its actuators were read.
+  /// @param model,world,actuation of the run at the end of the step.
+  /// @param effort (rows,) N or Pa, which acted through the step.
   void count(const Model& model, const World& world, const Actuation& actuation,
              std::span<const double> effort);
 
-  /// An impact. @param lost J. @param outside J, the work of surfaces that move.
+  /// Adds an impact. @param lost J, dissipated. @param outside J, work of moving surfaces.
   void count_impact(double lost, double outside) {
     sums_.dissipated += lost;
     sums_.outside += outside;
   }
 
-  /// Before the first step that is watched, so that its own gain counts.
+  /// Starts monitoring. Call before the first step, so that its gain counts, too.
   void open(const mechanics::Energies& now);
   bool is_open() const { return sums_.begun != 0.0; }
   /// Watches anew, from the next step on.
+  /// Restarts the monitoring with the next step.
   void restart() { sums_.restart(); }
-  /// J: stored energy against what was put in since open().
+  /// J: growth of the stored energy beyond the work done since open().
   double gained(const mechanics::Energies& now);
-  /// Whether a gain is more than the integrator's. @param gain J, of gained(). @param nothing J:
-  /// less than this is rounding.
+  /// Whether a gain exceeds what the integrator may cause. @param gain J, from gained().
+  /// @param nothing J: smaller gains are rounding.
   bool is_excessive(double gain, double nothing) const;
 
  private:

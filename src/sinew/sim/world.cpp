@@ -146,7 +146,7 @@ bool World::correct_contacts() {
   return true;
 }
 
-// The problem's rows and its contacts: points that are left out have none.
+// Numbers the rows of the problem and lists its contacts; inactive points have neither.
 void World::number_rows() {
   numbering_.number(rows_);
   problem_.contacts.clear();

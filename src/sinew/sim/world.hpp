@@ -1,5 +1,5 @@
 /// @file
-/// All bodies of a simulation and the rows between them, as one linear system a step.
+/// All bodies of a simulation and the rows that couple them: the linear system of a step.
 #pragma once
 
 #include <memory>
@@ -27,8 +27,8 @@ namespace sinew::sim {
 
 class StageClock;
 
-/// Data of one simulation below the level of commands and laws. Nothing allocates after
-/// construction, but for the first use of geometric stiffness.
+/// Bodies, rows and step problem of one simulation, below the level of commands and laws. Allocates
+/// nothing after construction, except at the first use of geometric stiffness.
 class World {
  public:
   /// @param model shared. @param pool must outlive the world.
@@ -36,55 +36,59 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// @param from,to s, when the step begins and ends: where surfaces stand then. @param effort
-  ///   (rows,) N of the last step, in and out: points with a force are near, whatever their gap,
-  ///   and those that are found anew take it to other rows.
-  /// @param reach m: points that are nearer than this to their surface are near, too.
+  /// Begins a step: places surfaces and bodies, and chooses the active contact points.
+  /// @param from,to s, start and end of the step, which fix the positions of moving surfaces.
+  /// @param effort (rows,) N of the last step, in and out: points with a force are active, whatever
+  ///   their gap, and where contact points are searched anew, forces move to the rows of the new
+  ///   points.
+  /// @param reach m: points with a smaller gap are active, too.
   void begin_step(double from, double to, std::span<double> effort, double reach = 0.0);
-  /// For a look at the present state, which moves no base: those contact points take part that a
-  /// step from here would begin with. @param at s, when surfaces are looked at.
+  /// Begins a query of the present state, which moves no base. The active contact points are those
+  /// with which a step from here would begin. @param at s, time of the surfaces' positions.
   /// @param effort (rows,) N, see begin_step().
   void begin_query(double at, std::span<double> effort);
-  /// The same with every contact point that a step could have a use for.
+  /// The same with all contact points that a step could use.
   void begin_query(double at);
-  /// The same for a look within an event-driven step, for which contacts that strike find their
-  /// points. @param at s. @param effort (rows,) N, see begin_step().
+  /// The same within an event-driven step; searches the points of contacts that strike. @param at
+  /// s. @param effort (rows,) N, see begin_step().
   void begin_look(double at, std::span<double> effort);
-  /// For an impact at the present state, after begin_look(): the closed points of contacts that
-  /// strike, and no others, are in the problem.
+  /// Restricts the contact problem to the closed points of contacts that strike, for an impact at
+  /// the present state. Call after begin_look().
   void take_closed_points();
-  /// Assembly: every body at its current state.
+  /// Assembles every body at its current state.
   void linearise(const mechanics::LinearisationRequest& request);
-  /// H and delta at the current configuration, handed to the bodies. condense() adds the geometric
-  /// stiffness of the constraints `geometric` at `effort`, see GeometricStiffness.
+  /// Computes H and delta at the current configuration and passes them to the bodies. condense()
+  /// adds the geometric stiffness of the constraints `geometric` at `effort`, see
+  /// GeometricStiffness.
   void form_rows(std::span<const double> effort, std::span<const int> geometric);
-  /// W and delta_free of the step's problem. The worst status of any body.
+  /// Computes W and delta_free of the step's problem. @return the worst status of any body.
   linalg::FactorStatus condense();
-  /// Efforts that obey all blocks, and dq of all bodies, which Bodies::apply_motion() takes. As
-  /// long as that motion shows that contacts were guessed wrong (see ContactRows::correct()), this
-  /// is mended and the problem solved again, of the same factorisation.
+  /// Solves the step's problem for efforts that satisfy all laws and for dq of all bodies, which
+  /// Bodies::apply_motion() applies. If the motion shows that the active set of contacts was wrong
+  /// (see ContactRows::correct()), it is corrected and the problem solved again with the same
+  /// factorisation.
   /// @param solver,controller see step::StepSolver. @param effort (rows,) N, in and out. @param
-  /// clock gets the times of the law and of the motion.
+  ///   clock records the time of the law and the correction.
   step::LawStatus solve_step(step::StepSolver& solver, step::Controller* controller,
                              std::span<double> effort, StageClock& clock);
 
-  /// Of all bodies, at the last condensation.
+  /// Inertia of all bodies' matrices at the last condensation.
   const mechanics::Inertia& inertia() const { return inertia_; }
-  /// Whether the robot is stable with its drives and held rows, as far as its linearisation tells.
+  /// Whether the robot with its drives and held rows is stable according to its linearisation.
   bool is_stable() const;
-  /// Whether a majorant of the geometric stiffness stands in A, which is then no derivative.
+  /// Whether A contains a majorant of the geometric stiffness, and is therefore not the derivative.
   bool has_majorant() const { return stiffness_.has_majorant(); }
 
-  /// m: how far `effort` and the present configuration are from obeying all laws, points that are
-  /// left out included; see step::violation(). @param effort (rows,) N. @param law how it was
-  /// found.
+  /// m: violation of all laws by `effort` at the present configuration, including points that were
+  /// left out; see step::violation(). @param effort (rows,) N. @param law status of the solution
+  /// that gave `effort`.
   double violation(std::span<const double> effort, step::LawStatus law);
 
-  /// The step's problem, see RowNumbering for its rows. Actuators are the caller's to write;
-  /// capstans' grip, joints, contacts and all numbers of rows are the world's.
+  /// The step's problem, see RowNumbering for its rows. The caller writes the blocks of the
+  /// actuators; the world writes the grip of capstans, joints, contacts and all values of rows.
   step::StepProblem& problem() { return problem_; }
   const step::StepProblem& problem() const { return problem_; }
-  /// What last_linearisation() reads.
+  /// The data that last_linearisation() reads.
   struct Solved {
     step::StepProblem problem;
     RowNumbering numbering;
@@ -92,23 +96,24 @@ class World {
     mechanics::Inertia inertia;
     bool is_present = false;
   };
-  /// Whether problem(), numbering() and inertia() are those that led to the present state: not of
-  /// a query or an impact, nor of another state that was left since.
+  /// Whether problem(), numbering() and inertia() are those of the step that led to the present
+  /// state; false after a query or an impact, or when another state was restored.
   bool has_solved() const { return has_solved_; }
   void forget_solved() { has_solved_ = false; }
-  /// For a query, which puts it back when it has put back the state.
+  /// A copy for a query, which restores it together with the state.
   Solved keep_solved() const { return {problem_, numbering_, rows_.delta, inertia_, has_solved_}; }
   void put_back(Solved solved);
 
-  /// Of the step that was solved last, see ContactRows. @param time_step s.
+  /// For the step that was solved last, see ContactRows::turns_back(). @param time_step s.
   bool turns_back(double time_step) const {
     return contacts_.turns_back(problem_, numbering_, problem_effort_, time_step);
   }
   const RowNumbering& numbering() const { return numbering_; }
-  /// From where cables stick to their guides in this step, and joints to their friction.
+  /// Stores the present positions at which cables stick to their guides and joints to their
+  /// friction in this step.
   void hold_friction();
-  const VectorX& delta() const { return rows_.delta; }  ///< (rows,) m, as last formed
-  /// delta at the current configuration, without forming the rows anew for the bodies.
+  const VectorX& delta() const { return rows_.delta; }  ///< (rows,) m, as last computed
+  /// Computes delta at the current configuration, without passing the rows to the bodies.
   const VectorX& measure_delta();
   const mechanics::RowValues& rows() const { return rows_; }
 
@@ -122,7 +127,7 @@ class World {
   Bodies& bodies() { return bodies_; }
   const Bodies& bodies() const { return bodies_; }
 
-  /// All bodies at rest and surfaces where they are at the start, as after construction.
+  /// Returns all bodies to rest and surfaces to their initial poses, as after construction.
   void restart();
   std::size_t bytes() const;
 

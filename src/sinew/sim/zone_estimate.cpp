@@ -8,7 +8,7 @@ namespace sinew::sim {
 
 namespace {
 
-// Sweeps end where none changes a force by more than this part of the zone's.
+// Sweeps end when none changes a force by more than this fraction of the zone's force.
 constexpr double kSettled = 1e-4;
 constexpr int kMaxSweeps = 50;
 
@@ -48,7 +48,7 @@ void ZoneEstimate::begin(const std::vector<ZonePoint>& points, const Vector3& co
   tangential_ = scale * 0.5 * (compliance[1] + compliance[2]);
 }
 
-// (3,) m, in the frame of a point.
+// (3,) m, motion in the frame of a point.
 Vector3 ZoneEstimate::motion(const std::vector<ZonePoint>& points, std::size_t i) const {
   Vector3 way = Vector3::Zero();
   for (std::size_t j = 0; j < points.size(); ++j) {
@@ -60,7 +60,7 @@ Vector3 ZoneEstimate::motion(const std::vector<ZonePoint>& points, std::size_t i
   return points[i].motion + points[i].frame.transpose() * way;
 }
 
-// Coulomb's law of a point by itself, whose compliance is diagonal. N: how far its force changes.
+// Solves Coulomb's law at one point with a diagonal compliance. @return change of its force, N.
 double ZoneEstimate::relax(const std::vector<ZonePoint>& points, std::size_t i) {
   const ZonePoint& point = points[i];
   const double own = kernel_[i * points.size() + i];
