@@ -70,8 +70,8 @@ struct ExactTangent {
 /// Lower bound of det G (8 at rest). It keeps the tangent finite where the two smallest stretches
 /// cancel and the rotation has no derivative.
 inline constexpr double kSmallestPairSums = 1e-9;
-/// Lower bound of each eigenvalue of G in the projected tangent, for stretched elements, which
-/// -s/mu does not bound.
+/// Lower bound of each eigenvalue of G in the projected tangent, for stretched elements, where
+/// -s/mu is negative.
 inline constexpr double kSmallestPairSum = 1e-3;
 
 template <Law law>
