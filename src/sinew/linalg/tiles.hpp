@@ -11,8 +11,8 @@ namespace sinew::linalg {
 inline constexpr int kTileColumns = 6;
 inline constexpr int kMaxVectors = kLanes == 8 ? 4 : 2;
 
-/// Calls work<V>(row) for each tile of V * kLanes rows from `row` on; the tiles cover \[begin,
-/// end).
+/// Calls work with the template argument V for each tile of V * kLanes rows from `row` on. The
+/// tiles cover rows begin .. end-1.
 template <typename Work>
 void for_row_tiles(int begin, int end, Work&& work) {
   for (int row = begin; row < end;) {
