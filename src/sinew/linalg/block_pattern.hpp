@@ -11,7 +11,7 @@
 namespace sinew::linalg {
 
 /// Doubles per 3x3 block: three columns padded to four rows, so that a column is one vector load.
-/// Entry (r, c) of block b is values[12 b + 4 c + r]; values[12 b + 4 c + 3] is padding, 0.
+/// Entry (r, c) of block b is values[12 b + 4 c + r]; the padding values[12 b + 4 c + 3] is 0.
 inline constexpr int kBlockStride = 12;
 
 /// Lower triangle of the block matrix by columns: the blocks of column j are b = column_start[j] ..

@@ -82,7 +82,7 @@ struct RowGroups {
   }
   bool leads(int row) const { return empty() || leader[static_cast<std::size_t>(row)] == row; }
   double share_of(int row) const { return empty() ? 1.0 : share[static_cast<std::size_t>(row)]; }
-  /// Calls visit(row, share) for all rows of a group. @param first its leader.
+  /// Calls visit(row, share) for all rows of the group whose leader is `first`.
   template <class Visit>
   void for_each_member(int first, Visit&& visit) const {
     if (empty()) return visit(first, 1.0);
