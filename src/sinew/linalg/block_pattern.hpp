@@ -14,9 +14,9 @@ namespace sinew::linalg {
 /// Entry (r, c) of block b is values[12 b + 4 c + r]; the padding values[12 b + 4 c + 3] is 0.
 inline constexpr int kBlockStride = 12;
 
-/// Lower triangle of the block matrix by columns: the blocks of column j are b = column_start[j] ..
-/// column_start[j+1]-1, at (row[b], j), with ascending rows, the diagonal first. Block (i, j), i >=
-/// j, is A(3i..3i+2, 3j..3j+2). The upper triangle is not stored.
+/// Lower triangle of the block matrix by columns. Column j has the blocks
+/// column_start[j] .. column_start[j+1]-1; block b is at (row[b], j), with ascending rows, the
+/// diagonal first. Block (i, j), i >= j, is A(3i..3i+2, 3j..3j+2). The upper triangle is not stored.
 struct BlockPattern {
   int nodes = 0;
   std::vector<std::int32_t> column_start{0};
