@@ -16,7 +16,7 @@ inline constexpr int kBlockStride = 12;
 
 /// Lower triangle of the block matrix by columns. Column j has the blocks
 /// column_start[j] .. column_start[j+1]-1; block b is at (row[b], j), with ascending rows, the
-/// diagonal first. Block (i, j), i >= j, is A(3i..3i+2, 3j..3j+2). The upper triangle is not stored.
+/// diagonal first. Block (i, j), i >= j, is A(3i..3i+2, 3j..3j+2). The upper triangle is omitted.
 struct BlockPattern {
   int nodes = 0;
   std::vector<std::int32_t> column_start{0};

@@ -38,8 +38,8 @@ struct CellGroup {
   std::vector<std::size_t> cells;
 };
 
-/// Points and cells of the file, unchecked. Cell c has the points `connectivity[offsets[c] ..
-/// offsets[c + 1] - 1]`, numbered from 0.
+/// Points and cells of the file, unchecked. The points of cell c are those of `connectivity` at
+/// offsets[c] .. offsets[c + 1] - 1, numbered from 0.
 struct RawMesh {
   std::string name;
   std::string format;
