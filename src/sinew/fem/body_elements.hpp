@@ -34,12 +34,12 @@ class BodyElements {
   /// Evaluates forces and matrix at the current positions. @param request weights and tangent.
   /// @param first whether this is the first linearisation of the step.
   void linearise(const mechanics::LinearisationRequest& request, bool first);
-  /// Tells that a motion starts from the current positions. If the step iterates, later
+  /// Called when a motion starts from the current positions. If the step iterates, later
   /// linearisations use these positions (Assembly::linearise_from()).
   void leave_from_here();
-  /// Tells that the positions changed.
+  /// Called when the positions have changed.
   void moved() { active_->present.reset(); }
-  /// Tells that another state was loaded.
+  /// Called when another state is loaded.
   void forget();
   /// Updates the strain history of the elements. @param time_step s, 0 in statics.
   void end_step(double time_step);

@@ -7,7 +7,7 @@
 ///   K_ab = 2 V mu (g_a . g_b) I + (lambda/mu) h_a h_b^T + (kappa/mu) ((h_a . p_b) G - p_b p_a^T).
 /// The first term is constant, so the record of an element holds only a few vectors. The stiffness
 /// of corotational elements against strain rates D = sym(sum v_a (F^-T g_a)^T) is
-///   K_ab = (h_a . h_b) I + h_b h_a^T + (lambda/mu) h_a h_b^T,   h_a = sqrt(V mu) F^-T g_a:
+///   K_ab = (h_a . h_b) I + h_b h_a^T + (lambda/mu) h_a h_b^T,   h_a = sqrt(V mu) F^-T g_a.
 /// The sum of v_b . K_ba v_a is V (2 mu D : D + lambda (tr D)^2), which is independent of the spin
 /// of the deformed element (Kelvin-Voigt: Malvern, Introduction to the Mechanics of a Continuous
 /// Medium, 1969, sec. 6.4).

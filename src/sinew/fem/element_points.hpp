@@ -20,7 +20,7 @@ struct PointBatch {
   std::size_t nodes = 4;                  ///< nodes per element
   material::Lanes weight;                 ///< quadrature weight: volume at rest, m^3
   material::Lanes3x3 deformation;         ///< F = dx/dX
-  material::Lanes3x3 piola;               ///< first Piola stress P, Pa
+  material::Lanes3x3 piola;               ///< first Piola-Kirchhoff stress P, Pa
   material::Lanes3x3 cauchy;              ///< sigma = P F^T / det F, Pa; P for Law::linear
   material::Lanes energy;                 ///< strain energy per volume at rest, J/m^3
   material::Lanes gradient[10][3];        ///< dN_a/dX of each node, 1/m

@@ -90,10 +90,10 @@ class FemModel {
  public:
   /// Throws Error: no-volume-elements, non-finite-node, unsupported-element (hexahedra that are not
   /// hyperelastic), empty-list (no region), invalid-material, out-of-range (density, mass),
-  /// index-out-of-range (element, node, axis), conflicting-keys (an element in two regions; even
-  /// mass without a total or with a consistent matrix), bad-argument (nodes of a point mass that
-  /// are not of one element), empty-region (an element in none), zero-volume, inverted-element,
-  /// everything-fixed.
+  /// index-out-of-range (element, node, axis), conflicting-keys (an element in two regions; equal
+  /// nodal masses without a total mass or with a consistent matrix), bad-argument (nodes of a point
+  /// mass that do not share an element), empty-region (an element without a region), zero-volume,
+  /// inverted-element, everything-fixed.
   FemModel(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSettings& settings);
   ~FemModel();
   FemModel(const FemModel&) = delete;
@@ -116,8 +116,8 @@ class FemModel {
   std::span<const std::int64_t> held_diagonals() const { return held_diagonals_; }
 
   /// (n,) kg: lumped mass of each mesh node, including fixed ones, positive. The row sums of the
-  /// mass matrix; for quadratic tetrahedra, the diagonal scaled to the total mass. Without point
-  /// masses.
+  /// mass matrix; for quadratic tetrahedra, its diagonal scaled to the mass of each element.
+  /// Without point masses.
   const VectorX& lumped_mass() const { return lumped_mass_; }
   /// (n,) kg: mass of each mesh node on which gravity acts, the row sums of the mass matrix with
   /// point masses. Negative at corners of quadratic tetrahedra.

@@ -49,7 +49,7 @@ class FemStep : public mechanics::StepSystem {
   void scale_motion(double factor) override;
   void add_velocity(std::span<const double> change) override;
 
-  /// Tells that another state was loaded.
+  /// Called when another state is loaded.
   void forget() { elements_.forget(); }
   double strain_energy() { return elements_.strain_energy(); }   ///< J, of the current state
   double kinetic_energy() { return inertia_.kinetic_energy(); }  ///< J, of the current state

@@ -57,7 +57,7 @@ class DenseStep : public StepSystem {
   virtual void patch_jacobian(const Patch& patch, MatrixX& result) const;
   /// Smallest eigenvalue that the corotated tangent of an indefinite A may have.
   virtual double softest() const = 0;
-  /// Tells that the proposed motion starts from the current state.
+  /// Called when the proposed motion starts from the current state.
   virtual void depart() = 0;
   /// (n,) motion: time_step times the current rates.
   virtual void drift(double time_step, VectorX& motion) const = 0;

@@ -1,7 +1,8 @@
 /// @file
 /// Rows of the constraint Jacobian H in terms of sites, written by constraints and read by bodies.
-/// The motion of row k, which is conjugate to its effort, changes by d(delta_k) = sum direction_e .
-/// dx_e, summed over the entries e of the row, where dx_e is the motion of the site of e.
+/// The motion of row k, which is conjugate to its effort, changes by
+///   d(delta_k) = sum direction_e . dx_e
+/// over its entries e, where dx_e is the motion of the site of entry e.
 #pragma once
 
 #include <array>
@@ -15,8 +16,8 @@
 
 namespace sinew::mechanics {
 
-/// The sites of each row, fixed when the model is built. The entries of row k are row_start[k] <= e
-/// < row_start[k + 1].
+/// The sites of each row, fixed when the model is built. Entry e belongs to row k if
+/// row_start[k] <= e < row_start[k + 1].
 struct RowPattern {
   std::vector<std::int32_t> row_start{0};
   std::vector<Site> site;

@@ -129,7 +129,8 @@ class StepSystem {
   /// linearised.
   virtual SmallestVolume smallest_volume() { return {}; }
   virtual StepEnd end_step(const StepWeights& weights) = 0;
-  /// Tells that the last condensation is no longer needed: other simulations may use its memory.
+  /// Called when the last condensation is no longer needed; other simulations may then use its
+  /// memory.
   virtual void release() {}
 
   /// Whether the second half of a step may repeat the motion of the first. It may not if a base
