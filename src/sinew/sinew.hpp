@@ -1,7 +1,7 @@
 /// @file
 /// Includes what a program needs to build and simulate a robot: meshes, materials, bodies,
 /// actuators, contacts, joints, sensors, the simulation, the inverse controller and the high-rate
-/// loop. It is not the whole public interface. Include the following headers where you need them:
+/// loop. Other parts of the public interface have their own headers:
 ///
 /// - sinew/scene/build.hpp: scene files (target sinew::sinew)
 /// - sinew/record/run_recorder.hpp: recorded runs (target sinew::sinew)

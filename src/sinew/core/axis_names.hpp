@@ -1,5 +1,5 @@
 /// @file
-/// What the world's axes are called.
+/// Names of the world axes.
 #pragma once
 
 #include <array>

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-/// For messages: long or binary cells are cut and made printable.
+/// A cell as shown in messages: shortened and printable.
 std::string shown(std::string_view cell) {
   constexpr std::size_t kLongest = 40;
   std::string text(cell.substr(0, kLongest));
@@ -135,7 +135,7 @@ class TableReader {
     return line_.size();
   }
 
-  /// Column in the file, from 1, of a cell of the present line.
+  /// Column in the file, from 1, of a cell of the current line.
   std::size_t column_of(std::string_view cell) const {
     const auto offset = static_cast<std::size_t>(cell.data() - line_.data());
     return offset + 1 + (mark_ && place_.line == 1 ? kByteOrderMark.size() : 0);

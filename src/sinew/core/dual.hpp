@@ -1,5 +1,5 @@
 /// @file
-/// Numbers that carry their derivatives (forward mode): exact to rounding, of fixed size, without
+/// Dual numbers for forward-mode differentiation: exact to rounding, of fixed size, without
 /// allocation.
 #pragma once
 
@@ -28,8 +28,8 @@ struct LanesOf<8> {
 
 }  // namespace dual_detail
 
-/// value + sum_i grad[i] e_i, products of e_i dropped. N is 1, 2 or 8: the gradient is a
-/// vector of lanes, so that an operation is a few instructions whatever the optimiser sees.
+/// The dual number value + sum_i grad[i] e_i with e_i e_j = 0. N is 1, 2 or 8. The gradient is a
+/// vector type, so each operation is a few instructions and does not depend on the optimiser.
 template <std::size_t N>
 struct Dual {
   using Lanes = typename dual_detail::LanesOf<N>::Type;
@@ -39,14 +39,14 @@ struct Dual {
   Dual() : value(0.0), grad{} {}
   Dual(double v) : value(v), grad{} {}  // NOLINT(google-explicit-constructor): constants mix in
   Dual(double v, const Lanes& g) : value(v), grad(g) {}
-  /// The variable that direction `i` is the derivative with respect to.
+  /// The variable of direction `i`: grad[i] is the derivative with respect to it.
   static Dual variable(double v, std::size_t i) {
     Dual result(v);
     result.grad[i] = 1.0;
     return result;
   }
 
-  /// f of this number: value f0, derivative f1.
+  /// f(*this), from the value f0 = f(value) and the derivative f1 = f'(value).
   Dual chain(double f0, double f1) const { return {f0, f1 * grad}; }
   Dual& operator+=(const Dual& b) {
     value += b.value;
@@ -72,10 +72,10 @@ struct Dual {
   friend Dual operator*(const Dual& a, double b) { return b * a; }
 };
 
-/// Derivatives by any number of variables, in passes of as many as a Dual<N> carries.
-/// @param variables how many. @param direction of a variable: its number's gradient, zero; lent to
-/// the pass and zero again after it. @param take called with the pass's first variable and how many
-/// it has, in the order of the directions.
+/// Differentiates with respect to any number of variables, in passes of at most N.
+/// @param variables how many. @param direction returns the gradient of variable k, which must be
+///   zero; the pass sets one entry of it and zeroes it afterwards. @param take called in each pass
+///   with its first variable and the number of its variables; variable first + d has direction d.
 template <std::size_t N, typename Direction, typename Take>
 void in_passes(std::size_t variables, const Direction& direction, const Take& take) {
   for (std::size_t from = 0; from < variables; from += N) {

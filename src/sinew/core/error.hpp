@@ -1,6 +1,6 @@
 /// @file
-/// What a user did wrong, or what a run ran into: one exception type that carries the kind, the
-/// place, the offending value and the remedy.
+/// The exception for wrong input and failed runs. It carries the kind, the place, the offending
+/// value and a remedy.
 #pragma once
 
 #include <stdexcept>
@@ -9,8 +9,8 @@
 
 namespace sinew {
 
-/// Every way in which input can be wrong or a run can end early. The kebab-case name
-/// (`error_kind_name`) is part of the interface: it is printed, and Python has it as `.kind`.
+/// Kinds of wrong input and failed runs. The kebab-case name (`error_kind_name`) is part of the
+/// interface: it is printed, and is `.kind` in Python.
 enum class ErrorKind {
   // clang-format off
   file_not_found, file_unreadable, file_unwritable, unknown_format, truncated_file, malformed_file,
@@ -45,30 +45,30 @@ enum class ErrorKind {
   internal,
 };
 
-/// The kind as it is printed: "unknown-key", "point-outside-mesh".
+/// Printed name of a kind, such as "unknown-key" or "point-outside-mesh".
 std::string_view error_kind_name(ErrorKind kind);
 
 /// The number of kinds, for tests that enumerate them.
 int error_kind_count();
 
-/// Where something stands: a file position, or an argument, or a scene path such as
-/// `bodies.trunk.mass`, or both. Lines and columns count from 1; 0 means unknown.
+/// Location of an item in the input: a file position, and an argument or scene path such as
+/// `bodies.trunk.mass`; either may be missing. Lines and columns start at 1; 0 means unknown.
 struct Location {
   std::string file;
   int line = 0;
   int column = 0;
   std::string item;
 
-  /// "trunk.yaml:12:5: bodies.trunk.mass"; parts that are unknown are left out.
+  /// Text such as "trunk.yaml:12:5: bodies.trunk.mass", without the parts that are unknown.
   std::string text() const;
 };
 
-/// Thrown for anything wrong in what a user gave, and for runs that cannot go on.
+/// Thrown for wrong input, and for runs that cannot continue.
 /// `what()` reads "PLACE: MESSAGE; REMEDY [kind]".
 class Error : public std::runtime_error {
  public:
-  /// @param kind,place,message what is wrong, where, and in words that name the offending value.
-  /// @param remedy says what to write or do instead; may be empty.
+  /// @param kind,place,message what is wrong, where, and a description with the offending value.
+  /// @param remedy what to write or do instead; may be empty.
   Error(ErrorKind kind, Location place, std::string message, std::string remedy = {});
 
   ErrorKind kind() const { return kind_; }
@@ -76,7 +76,7 @@ class Error : public std::runtime_error {
   const std::string& message() const { return message_; }
   const std::string& remedy() const { return remedy_; }
 
-  /// The same error at a better known place (parts of `outer` fill what is unknown here).
+  /// A copy of this error whose unknown parts of the place are taken from `outer`.
   Error at(const Location& outer) const;
 
   /// True for a run that failed (exit code 1), false for wrong input (exit code 2).
@@ -89,8 +89,8 @@ class Error : public std::runtime_error {
   std::string remedy_;
 };
 
-/// The candidate nearest to `word` by edit distance, when near enough to be a likely typing slip;
-/// else empty. For "did you mean" remedies.
+/// The candidate nearest to `word` by edit distance, if it is near enough to be a likely typing
+/// error; otherwise empty. For "did you mean" remedies.
 template <typename Range>
 std::string nearest_word(std::string_view word, const Range& candidates);
 

@@ -34,7 +34,7 @@ std::string read_file(const std::filesystem::path& path) {
 }
 
 void write_file(const std::filesystem::path& path, std::string_view bytes) {
-  static std::atomic<unsigned> counter{0};  // two threads may write the same file at once
+  static std::atomic<unsigned> counter{0};  // two threads may write the same file at a time
   std::filesystem::path draft = path;
   draft += fmt::format(".{}-{}.tmp", getpid(), counter++);
   std::error_code problem;

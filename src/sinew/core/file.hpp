@@ -1,5 +1,5 @@
 /// @file
-/// Whole files as bytes.
+/// Reading and writing of whole files.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,11 @@
 
 namespace sinew {
 
-/// The bytes of a file. Throws Error(file-not-found, file-unreadable).
+/// Reads the bytes of a file. Throws Error(file-not-found, file-unreadable).
 /// @param path the file.
 std::string read_file(const std::filesystem::path& path);
 
-/// Writes a file whole or not at all: first beside it under another name, then renamed. Throws
+/// Writes a file atomically: writes a temporary file in the same folder and renames it. Throws
 /// Error(file-unwritable).
 /// @param path the file.
 /// @param bytes its content.

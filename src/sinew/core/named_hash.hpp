@@ -1,6 +1,6 @@
 /// @file
-/// Parts of a whole by their names and a hash of what each is: two wholes that differ can say in
-/// what.
+/// Hashes of the named parts of an object, by which two objects can tell in which parts they
+/// differ.
 #pragma once
 
 #include <bit>
@@ -18,16 +18,17 @@
 
 namespace sinew {
 
+/// Name and hash of one part.
 struct NamedHash {
-  std::string name;  ///< "body 'trunk': material"
+  std::string name;  ///< such as "body 'trunk': material"
   std::uint64_t hash = 0;
 
   bool operator==(const NamedHash&) const = default;
 };
 
-/// Hashes values of all kinds in order: numbers, enumerations, text, matrices and lists of them by
-/// their size and entries, what may be absent. Of real numbers seven digits count: what a compiler
-/// for another processor rounds differently is the same.
+/// Hashes values in order: numbers, enumerations, text, matrices, lists (size and entries) and
+/// optional values. Real numbers count to seven digits, so that different rounding on another
+/// processor does not change the hash.
 class ValueHash {
  public:
   template <class... Values>
@@ -38,8 +39,8 @@ class ValueHash {
   std::uint64_t value() const { return hash_.value(); }
 
  private:
-  // Numbers that people write lie where rounding to single precision jumps, such as powers of two;
-  // turned by an irrational factor they do not.
+  // Numbers that people write, such as powers of two, lie where rounding to single precision jumps.
+  // Multiplied by an irrational factor they do not.
   static std::uint64_t leading_digits(double number) {
     constexpr double kTurn = 1.2785764, kNothing = 1e-12;
     if (std::abs(number) < kNothing) return 0;
@@ -80,7 +81,7 @@ class ValueHash {
     hash_.add(static_cast<std::uint64_t>(list.size()));
     for (const auto& item : list) add_one(item);
   }
-  // What has numbers of its own says which.
+  // Types with a member add_to() add their own values.
   template <class T>
   requires requires(const T& value, ValueHash& hash) { value.add_to(hash); }
   void add_one(const T& value) { value.add_to(*this); }

@@ -1,6 +1,5 @@
 /// @file
-/// Something that a user should know, and that stops nothing: what a warning says. Wrong input is
-/// an Error, never a notice.
+/// Remarks and warnings, which do not stop a run. Wrong input is an Error, never a notice.
 #pragma once
 
 #include <string>
@@ -10,37 +9,37 @@
 
 namespace sinew {
 
-/// What a notice is about. The kebab-case name (notice_kind_name()) is part of the interface.
+/// Subject of a notice. The kebab-case name (notice_kind_name()) is part of the interface.
 enum class NoticeKind {
   locking_element,  ///< the elements make the body much stiffer than its material
-  bare_points,      ///< a cable pulls at single points, which dent the material
-  unused_element,   ///< a file holds what this version does not do
+  bare_points,      ///< a cable pulls at single points, which dents the material
+  unused_element,   ///< a file contains something that this version does not use
   coarse_contact,   ///< a round surface is smaller than the faces between the nodes that touch it
-  other_tangent,    ///< the tangent that the scene asks for is none of its materials
+  other_tangent,    ///< the materials of the scene do not have the requested tangent
 };
 
-/// Who has to see it.
+/// Where a notice is shown.
 enum class NoticeLevel {
-  remark,  ///< it follows from what the scene says in so many words: `info` and the view show it
-  /// It follows from a default, or the scene does not get what it asks for: `run`, `bench` and
-  /// Python's load() print it, too.
+  remark,  ///< follows from an explicit choice of the scene; `info` and the view show it
+  /// Follows from a default, or the scene does not get what it asks for; `run`, `bench` and load()
+  /// in Python print it, too.
   warning,
 };
 
-/// The kind as it is printed: "locking-element".
+/// Printed name of a kind, such as "locking-element".
 std::string_view notice_kind_name(NoticeKind kind);
 /// "remark", "warning".
 std::string_view notice_level_name(NoticeLevel level);
 
-/// See the file.
+/// One remark or warning.
 struct Notice {
   NoticeLevel level = NoticeLevel::warning;
   NoticeKind kind = NoticeKind::locking_element;
   Location place;
-  std::string message;  ///< names the offending value
+  std::string message;  ///< with the offending value
   std::string remedy;   ///< what to write or do instead
 
-  /// "PLACE: MESSAGE; REMEDY [kind]", as Error::what().
+  /// "PLACE: MESSAGE; REMEDY [kind]", like Error::what().
   std::string text() const;
 };
 

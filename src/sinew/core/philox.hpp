@@ -1,5 +1,5 @@
 /// @file
-/// Random numbers by their place: any of a stream's, in any order, without a state to keep.
+/// Counter-based random numbers: any number of a stream can be computed directly, without a state.
 #pragma once
 
 #include <array>
@@ -10,16 +10,16 @@
 namespace sinew {
 
 /// Philox4x64-10 (Salmon, Moraes, Dror & Shaw, "Parallel random numbers: as easy as 1, 2, 3",
-/// SC'11, section 3): a bijection of 256-bit counters for every 128-bit key, of which all blocks
-/// are independent streams. The same bits as numpy.random.Philox.
+/// SC'11, section 3): a bijection of 256-bit counters for every 128-bit key; different keys give
+/// independent streams. The bits are those of numpy.random.Philox.
 class Philox {
  public:
   using Block = std::array<std::uint64_t, 4>;
 
-  /// @param seed,stream both halves of the key.
+  /// @param seed,stream the two halves of the key.
   explicit Philox(std::uint64_t seed, std::uint64_t stream = 0) : key_{seed, stream} {}
 
-  /// The four words of a counter.
+  /// The four random words of a counter.
   Block bits(const Block& counter) const {
     Block x = counter;
     std::array<std::uint64_t, 2> key = key_;
@@ -34,7 +34,7 @@ class Philox {
     return x;
   }
 
-  /// In [0, 1), a multiple of 2^-53. @param word of a block.
+  /// Uniform in [0, 1), a multiple of 2^-53. @param word of a block.
   static double uniform(std::uint64_t word) { return static_cast<double>(word >> 11) * 0x1p-53; }
   /// Standard normal (Box & Muller, Ann. Math. Stat. 29, 1958). @param a,b words of a block.
   static double normal(std::uint64_t a, std::uint64_t b) {

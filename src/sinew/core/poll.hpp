@@ -1,13 +1,13 @@
 /// @file
-/// How whoever waits for long work looks in on it, and ends it.
+/// Callback by which the caller of long work can observe and end it.
 #pragma once
 
 #include <functional>
 
 namespace sinew {
 
-/// Called again and again by work that may take long, in the thread that was asked for it. What it
-/// throws ends the work: whoever was asked takes back what the work has changed, and lets it pass.
+/// Called repeatedly by work that may take long, in the thread that called it. An exception from it
+/// ends the work: the function undoes its changes and passes the exception on.
 using Poll = std::function<void()>;
 
 }  // namespace sinew

@@ -19,7 +19,7 @@ namespace sinew {
 
 namespace {
 
-/// Standard output and error into the pipe, standard input from nowhere.
+/// Redirects standard output and error to the pipe, and standard input from /dev/null.
 class FileActions {
  public:
   explicit FileActions(int pipe_end) {

@@ -1,5 +1,5 @@
 /// @file
-/// Runs other programs.
+/// Running other programs.
 #pragma once
 
 #include <string>
@@ -7,24 +7,25 @@
 
 namespace sinew {
 
-/// How a program ended and what it said.
+/// Exit code and output of a program.
 struct ProcessResult {
-  int exit_code = 0;   ///< 128 + signal when a signal ended it
+  int exit_code = 0;   ///< 128 + signal if a signal ended it
   std::string output;  ///< standard output and error together
 };
 
-/// True when a program of this name is on the PATH.
+/// Whether a program exists, on the PATH unless it has a slash.
 /// @param program name or path.
 bool program_exists(const std::string& program);
 
-/// Runs a program, found on the PATH, without a shell, and waits for its end. Throws
-/// Error(tool-missing) when it cannot be started.
+/// Runs a program from the PATH without a shell, and waits until it ends. Throws
+/// Error(tool-missing) if it cannot be started, and Error(tool-failed) if there is no pipe for its
+/// output.
 /// @param arguments the program and its arguments.
 ProcessResult run_program(const std::vector<std::string>& arguments);
 
-/// The last lines of a text.
+/// The last lines of a text, without blanks at its end.
 /// @param text to cut.
-/// @param count of lines.
+/// @param count number of lines.
 std::string last_lines(const std::string& text, int count);
 
 }  // namespace sinew

@@ -15,13 +15,13 @@ namespace sinew {
 
 namespace {
 
-/// How a dimension is called and written. `units` go from large to small; the first is used for 0.
+/// Name, example and units of a dimension. `units` go from large to small.
 struct DimensionWords {
   Dimension dimension;
   std::string_view name;
   std::string_view example;
   std::array<std::string_view, 5> units;
-  int natural;  ///< which of the units a zero takes
+  int natural;  ///< position of the unit that is used for 0
 };
 
 constexpr std::array kWords = {
@@ -65,7 +65,7 @@ const DimensionWords* find_words(Dimension dimension) {
   return nullptr;
 }
 
-/// Numbers, then whatever is left: the unit. One instance reads one text.
+/// Reads numbers; the rest of the text is the unit. One instance reads one text.
 class NumberReader {
  public:
   NumberReader(std::string_view text, Dimension expected, const Location& place)
@@ -93,7 +93,7 @@ class NumberReader {
   std::string_view unit() const { return rest_; }
 
  private:
-  /// A 1 in front of a slash, behind a number, belongs to the unit, as in "0.1 1/s".
+  /// A 1 before a slash and after a number belongs to the unit, as in "0.1 1/s".
   bool starts_number(bool unit_may_follow) const {
     if (rest_.empty()) return false;
     std::string_view text = rest_;
@@ -184,7 +184,7 @@ std::string shortest(double value) {
   return error == std::errc{} ? std::string(buffer.data(), end) : std::string("nan");
 }
 
-/// `value` in `unit`, if some number near the quotient reads back as exactly `value`.
+/// Formats `value` in a unit, if some number near the quotient reads back as exactly `value`.
 bool format_in(double value, std::string_view symbol, std::string* text) {
   const Unit unit = parse_unit_expression(symbol, {});
   const double quotient = value / unit.numerator * unit.denominator;
@@ -201,7 +201,7 @@ bool format_in(double value, std::string_view symbol, std::string* text) {
   return true;
 }
 
-/// The largest unit that leaves at least one before the decimal point, else the smallest.
+/// The largest unit in which the value is at least 1, else the smallest unit.
 std::string_view fitting_unit(double value, const DimensionWords& words) {
   std::string_view chosen = words.units[static_cast<std::size_t>(words.natural)];
   if (value == 0.0 || !std::isfinite(value)) return chosen;

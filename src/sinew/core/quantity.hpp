@@ -1,5 +1,5 @@
 /// @file
-/// Physical quantities as text: "450 kPa", "10 ms", "1070 kg/m^3". Values are SI inside.
+/// Physical quantities as text: "450 kPa", "10 ms", "1070 kg/m^3". Parsed values are in SI units.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace sinew {
 
-/// Exponents of length, mass, time, temperature and current: a force is {1, 1, -2}. Angles and
-/// ratios have no dimension.
+/// Dimension of a quantity: exponents of length, mass, time, temperature and current. A force is
+/// {1, 1, -2}. Angles and ratios are dimensionless.
 struct Dimension {
   int length = 0;
   int mass = 0;
@@ -53,41 +53,40 @@ inline constexpr Dimension kResistance{2, 1, -3, 0, -2};   ///< Ohm
 inline constexpr Dimension kCapacitance{-2, -1, 4, 0, 2};  ///< F
 }  // namespace dimension
 
-/// "a mass", "a density"; dimensions without a name as "a quantity in kg^2 m".
+/// Name such as "a mass" or "a density"; without a name, "a quantity in kg^2 m".
 std::string dimension_name(Dimension dimension);
 
-/// A quantity of this dimension as one would write it: "42 g", "1070 kg/m^3".
+/// Example of a quantity of this dimension, such as "42 g" or "1070 kg/m^3".
 std::string dimension_example(Dimension dimension);
 
-/// One number and its unit, in SI. A bare number is SI. The number is read as in C, whatever the
-/// locale. A unit is a product of factors: names with SI prefixes (m, g, s, N, Pa, J, W, K, Hz, l,
-/// L, bar, Nm, A, Ohm, F), names without (psi, atm, in, min, h, deg, rad, dB, %), parentheses and
-/// 1, joined by
-/// `*`, blanks or `/`, each with an integer power: "kg/m^3", "N s/m", "kg m^-3", "1/s".
-/// A blank after a `/` ("N/m s") is refused, since it is read in two ways.
-/// Throws Error at `place`: not-a-number, not-finite, unknown-unit, wrong-dimension, wrong-length
-/// (several numbers).
+/// Parses one number with an optional unit, and returns its SI value. A number without unit is in
+/// SI units. Numbers are read as in C, in any locale. A unit is a product of factors, joined by
+/// `*`, blanks or `/`, each with an optional integer power: "kg/m^3", "N s/m", "kg m^-3", "1/s".
+/// Factors are names with optional SI prefixes (m, g, s, N, Pa, J, W, Hz, l, L, bar, Nm, A, Ohm,
+/// F), names without prefixes (K, psi, atm, in, min, h, deg, rad, dB, %), 1, and products in
+/// parentheses. A blank between factors after a `/` ("N/m s") is an error, since it is ambiguous.
+/// Throws Error at `place`: not-a-number, not-finite, out-of-range (too small for a double),
+/// unknown-unit, wrong-dimension, wrong-length (several numbers).
 double parse_quantity(std::string_view text, Dimension expected, const Location& place = {});
 
-/// Three numbers with one unit behind: "0 0 -9.81 m/s^2". Blanks or commas stand between numbers.
-/// Throws as parse_quantity.
+/// Parses three numbers followed by one unit: "0 0 -9.81 m/s^2". Numbers are separated by blanks or
+/// commas. Throws like parse_quantity().
 Vector3 parse_vector3(std::string_view text, Dimension expected, const Location& place = {});
 
-/// `count` numbers with one unit behind, as in parse_vector3: "-20 -20 0 20 20 20 mm".
-/// `count` says how many numbers there must be; -1 stands for any number of them, at least one.
-/// Throws as parse_quantity.
+/// Parses a list of numbers followed by one unit, like parse_vector3(): "-20 -20 0 20 20 20 mm".
+/// There must be `count` numbers, or, if it is -1, at least one. Throws like parse_quantity().
 std::vector<double> parse_list(std::string_view text, Dimension expected, int count,
                                const Location& place = {});
 
-/// The SI value of one of the unit, such as 0.001 for "mm". Throws as parse_quantity.
+/// SI value of a unit, such as 0.001 for "mm". Throws like parse_quantity().
 double parse_unit(std::string_view unit, Dimension expected, const Location& place = {});
 
-/// The value with a unit whose prefix keeps the number short: "450 kPa", "195 mm".
+/// Formats a value with a unit of suitable size: "450 kPa", "195 mm".
 /// parse_quantity(format_quantity(v, d), d) == v, bit for bit, for every finite v. NaN and
-/// infinities are written "nan m" and "inf m", which parse_quantity refuses.
+/// infinities give "nan m" and "inf m", which parse_quantity() rejects.
 std::string format_quantity(double value, Dimension dimension);
 
-/// The same in four significant digits, to be read by people: "8.887 ml".
+/// The same with four significant digits, for display: "8.887 ml".
 std::string rounded_quantity(double value, Dimension dimension);
 
 }  // namespace sinew

@@ -1,6 +1,6 @@
 /// @file
-/// Random numbers that are the same everywhere: distributions of the standard library differ from
-/// one to the next.
+/// Random numbers that are the same on all platforms. (The distributions of the standard library
+/// differ between implementations.)
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace sinew {
 
-/// SplitMix64 (Steele, Lea & Flood, OOPSLA 2014, fig. 2): a seed, a sequence of 2^64.
+/// SplitMix64 (Steele, Lea & Flood, OOPSLA 2014, fig. 2), with period 2^64.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -20,11 +20,11 @@ class Random {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
   }
-  /// In [0, 1), a multiple of 2^-53.
+  /// Uniform in [0, 1), a multiple of 2^-53.
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
-  /// In [low, high).
+  /// Uniform in [low, high).
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// Standard normal (Box & Muller, Ann. Math. Stat. 29, 1958), one of the pair.
+  /// Standard normal (Box & Muller, Ann. Math. Stat. 29, 1958); the second of the pair is not used.
   double normal() {
     const double radius = std::sqrt(-2.0 * std::log1p(-uniform()));
     return radius * std::cos(2.0 * std::numbers::pi * uniform());

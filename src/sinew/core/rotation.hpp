@@ -1,23 +1,23 @@
 /// @file
-/// Rotations of space: matrices, rotation vectors (axis times angle, rad) and quaternions, in fixed
-/// axes.
+/// Rotations as matrices, rotation vectors (axis times angle, rad) and quaternions, in fixed axes.
 #pragma once
 
 #include "sinew/core/types.hpp"
 
 namespace sinew {
 
-/// [v] with [v] x = v cross x.
+/// The cross-product matrix [v], with [v] x = v cross x.
 inline Matrix3 cross_matrix(const Vector3& v) {
   Matrix3 m;
   m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
   return m;
 }
-/// The turn by a rotation vector: exp [v].
+/// Rotation matrix exp([v]) of a rotation vector.
 Matrix3 rotation_matrix(const Vector3& v);
-/// Points x as R x + d. @param points (n, 3) m. @param rotation R. @param displacement d (3,) m.
+/// Moves points from x to R x + d. @param points (n, 3) m. @param rotation R. @param displacement d
+/// (3,) m.
 Points moved(const Points& points, const Matrix3& rotation, const Vector3& displacement);
-/// The shortest rotation vector of a rotation: length 0 to pi.
+/// The shortest rotation vector of a rotation, of length 0 to pi.
 Vector3 rotation_vector(const Matrix3& rotation);
 /// The unit quaternion of a rotation: w, x, y, z with w >= 0.
 Eigen::Vector4d unit_quaternion(const Matrix3& rotation);

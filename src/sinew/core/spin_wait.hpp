@@ -1,5 +1,5 @@
 /// @file
-/// Waiting for another thread within microseconds: spins, then gives the core away.
+/// Short waits for another thread: spin first, then yield the core.
 #pragma once
 
 #include <thread>
@@ -10,7 +10,7 @@
 
 namespace sinew {
 
-/// Tells the core that this is a spin loop (x86 `pause`).
+/// Hints to the core that this is a spin loop (x86 `pause`, ARM `yield`).
 inline void pause_core() {
 #if defined(__x86_64__) || defined(__i386__)
   _mm_pause();
@@ -19,14 +19,15 @@ inline void pause_core() {
 #endif
 }
 
-/// Counts the rounds of a spin loop: `pauses` of them only pause, later ones yield to the operating
-/// system, so that a thread which shares its core with the one it waits for lets that one run.
+/// Backoff of a spin loop. The first `pauses` rounds only pause; later ones yield to the operating
+/// system, so that a thread on the same core can run.
 class SpinWait {
  public:
-  /// @param pauses rounds that pause before rounds yield; 0 where threads outnumber cores.
+  /// @param pauses number of rounds that pause before the loop yields; 0 if there are more threads
+  ///   than cores.
   explicit SpinWait(int pauses) : pauses_(pauses) {}
 
-  /// One round.
+  /// Waits for one round.
   void once() {
     if (round_ < pauses_) {
       pause_core();
@@ -35,7 +36,7 @@ class SpinWait {
     }
     ++round_;
   }
-  /// Rounds so far.
+  /// Number of rounds so far.
   int rounds() const { return round_; }
 
  private:

@@ -1,5 +1,5 @@
 /// @file
-/// A 64-bit fingerprint of states, to check that two runs agree bit for bit.
+/// A 64-bit hash of states, to check that two runs agree bit for bit.
 #pragma once
 
 #include <bit>
@@ -8,10 +8,10 @@
 
 namespace sinew {
 
-/// Hashes numbers by their bits, in order: 0.0 and -0.0 differ, and so do NaNs with different
-/// payloads. The same on every platform with IEEE doubles, whatever the byte order. Not for
-/// secrets. The mixing is the finaliser of SplitMix64 (Steele, Lea and Flood, OOPSLA 2014, section
-/// 4), a bijection of each word into the state.
+/// Hashes the bits of numbers in order: 0.0 and -0.0 differ, and so do NaNs with different
+/// payloads. The hash is the same on every platform with IEEE doubles, in any byte order. It is not
+/// cryptographic. The mixing is the finaliser of SplitMix64 (Steele, Lea and Flood, OOPSLA 2014,
+/// section 4), a bijection of each word into the state.
 class StateHash {
  public:
   /// Appends one 64-bit word.
@@ -19,14 +19,14 @@ class StateHash {
     state_ = mix((std::rotl(state_, 23) ^ word) + kIncrement);
     ++count_;
   }
-  /// Appends a number by its bits.
+  /// Appends the bits of a number.
   void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
   /// Appends numbers in order; their count is not appended.
   void add(std::span<const double> numbers) {
     for (const double number : numbers) add(number);
   }
 
-  /// The hash of all words so far and of their count.
+  /// The hash of all words so far and of their number.
   std::uint64_t value() const { return mix(state_ ^ count_); }
 
  private:
@@ -41,7 +41,7 @@ class StateHash {
   std::uint64_t count_ = 0;
 };
 
-/// The StateHash of one run of numbers.
+/// The StateHash of a sequence of numbers.
 inline std::uint64_t hash_doubles(std::span<const double> numbers) {
   StateHash hash;
   hash.add(numbers);

@@ -13,11 +13,11 @@ namespace sinew {
 
 namespace {
 
-/// Pauses before a waiting thread offers its core to others: about 20 us on a recent core.
+/// Pauses before a waiting thread yields its core: about 20 us on a recent core.
 constexpr int kPauses = 1000;
-/// Offers before it goes to sleep: on an idle core about 0.2 ms, longer than the gap between two
-/// parallel sections of a step (a backward solve), shorter than anything a user would notice. A
-/// busy core goes to whoever waits for it at the first offer.
+/// Yields before it sleeps: about 0.2 ms on an idle core. That is longer than the gap between two
+/// parallel sections of a step (a backward solve), and too short for a user to notice. On a busy
+/// core, the first yield lets another thread run.
 constexpr int kYields = 600;
 
 /// A counter on its own cache line.
@@ -25,7 +25,7 @@ struct alignas(64) Ticket {
   std::atomic<std::uint32_t> value{0};
 };
 
-/// A thread's count of parts on its own cache line.
+/// The count of parts of a thread, on its own cache line.
 struct alignas(64) PartCount {
   std::atomic<long> value{0};
 };
@@ -47,8 +47,8 @@ std::uint32_t wait_for_change(const Ticket& ticket, std::uint32_t old, int pause
 
 }  // namespace
 
-/// `call` is raised by the caller to start a round; `done[i]` by worker i when it has finished.
-/// `work`, `context` and `stop` are written before `call` is raised and read after it was seen.
+/// The caller increments `call` to start a round; worker i sets `done[i]` when it has finished.
+/// `work`, `context` and `stop` are written before `call` is incremented and read afterwards.
 struct ThreadPool::Shared {
   explicit Shared(int count)
       : done(static_cast<std::size_t>(count)),

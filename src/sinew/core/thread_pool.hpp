@@ -1,6 +1,7 @@
 /// @file
-/// A small persistent fork-join pool for the inside of a step (oneTBB serves coarse work). Workers
-/// spin briefly between calls, then back off to sleep, so that an idle simulation costs nothing.
+/// A small persistent fork-join pool for the loops of a step (oneTBB is used for coarse work).
+/// Between calls, workers spin briefly and then sleep, so that an idle simulation uses no processor
+/// time.
 #pragma once
 
 #include <memory>
@@ -8,12 +9,13 @@
 
 namespace sinew {
 
-/// `size()` threads including the caller. One call runs at a time; the pool is not re-entrant.
-/// Work is given to threads by number, never by race, so that results do not depend on timing.
+/// A pool of size() threads, including the caller. One call runs at a time; the pool is not
+/// re-entrant. Work is assigned to threads by number, never by race, so results do not depend on
+/// timing.
 class ThreadPool {
  public:
-  /// @param threads total number of threads, the caller included; >= 1. Throws Error
-  /// (out-of-range) otherwise.
+  /// @param threads total number of threads, including the caller, >= 1. Throws Error(out-of-range)
+  ///   otherwise.
   explicit ThreadPool(int threads = 1);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -21,13 +23,13 @@ class ThreadPool {
 
   int size() const;
 
-  /// Parts of work that a thread has done so far, to show that all take part. Counted by
-  /// for_range() and by whoever calls add_parts(), each thread for itself.
+  /// Number of parts of work that a thread has done so far, to show that all threads take part.
+  /// for_range() counts them, and callers of add_parts(); each thread counts its own.
   long parts_done(int thread) const;
   void add_parts(int thread, long count);
 
   /// Calls work(thread) once on every thread, thread = 0 .. size()-1 (0 is the caller), and returns
-  /// when all are done. Allocates nothing. `work` must not throw.
+  /// when all are done. Does not allocate. `work` must not throw.
   template <typename Work>
   void run(Work&& work) {
     using Callable = std::remove_reference_t<Work>;
@@ -35,8 +37,8 @@ class ThreadPool {
             const_cast<void*>(static_cast<const void*>(&work)));
   }
 
-  /// Calls work(begin, end, thread) on contiguous parts of [0, count), one part a thread, multiples
-  /// of `grain` except the last; a single part on the caller when count <= grain.
+  /// Calls work(begin, end, thread) on contiguous parts of [0, count), one part per thread. Sizes
+  /// are multiples of `grain`, except for the last part. If count <= grain, the caller does it all.
   template <typename Work>
   void for_range(int count, int grain, Work&& work) {
     const int parts = size();

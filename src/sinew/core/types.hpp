@@ -1,5 +1,5 @@
 /// @file
-/// The few numeric types that every folder shares. SI units everywhere.
+/// Numeric types that all folders share. All values are in SI units.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,11 @@ using Matrix3 = Eigen::Matrix3d;
 using VectorX = Eigen::VectorXd;
 using MatrixX = Eigen::MatrixXd;
 
-/// Points or vectors, one a row: (n, 3), row-major, so that it is a NumPy array as it stands.
+/// Points or vectors, one per row: (n, 3), row-major, the layout of a NumPy array.
 using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-/// A stored node, element or degree-of-freedom number. Sizes and loops use Eigen::Index or size_t.
+/// A stored number of a node, element or degree of freedom. Sizes and loops use Eigen::Index or
+/// size_t.
 using NodeId = std::int32_t;
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -78,7 +78,7 @@ std::optional<Unit> find_unit(std::string_view name) {
   return std::nullopt;
 }
 
-/// The names that a slip is likely to have meant; not every prefix of every unit.
+/// A remedy with the most likely intended name, from common units only.
 std::string suggest(std::string_view name) {
   constexpr std::array<std::string_view, 34> kCommon = {
       "m",  "mm", "cm",  "um",   "km",  "kg",  "g",   "mg",  "s",   "ms", "us", "N",
@@ -95,8 +95,8 @@ std::string suggest(std::string_view name) {
   return fmt::format("did you mean '{}'?", nearest);
 }
 
-/// The fraction in lowest terms where one part is a multiple of the other: a kg is 1000/1000 kg
-/// only on the way, or values would be rounded twice.
+/// Reduces the fraction if one part is a multiple of the other. Otherwise kg would be 1000/1000,
+/// and values would be rounded twice.
 std::pair<double, double> reduced(double numerator, double denominator) {
   if (std::fmod(numerator, denominator) == 0.0) return {numerator / denominator, 1.0};
   if (std::fmod(denominator, numerator) == 0.0) return {1.0, denominator / numerator};

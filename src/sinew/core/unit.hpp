@@ -1,5 +1,5 @@
 /// @file
-/// Units: what a unit expression such as "kg/m^3" stands for.
+/// Units and unit expressions such as "kg/m^3".
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace sinew {
 
-/// One of the unit is `numerator / denominator` SI units. Kept as a fraction because powers of ten
-/// are exact that way: 1.1 mm is 1.1 / 1000, correctly rounded, while 1.1 * 0.001 is not.
+/// A unit: one of it is `numerator / denominator` SI units. A fraction keeps powers of ten exact:
+/// 1.1 mm is 1.1 / 1000, correctly rounded, while 1.1 * 0.001 is not.
 struct Unit {
   double numerator = 1.0;
   double denominator = 1.0;
@@ -19,18 +19,18 @@ struct Unit {
   double to_si(double value) const { return value * numerator / denominator; }
 };
 
-/// The product, its fraction in lowest terms where one part is a multiple of the other.
+/// The product; its fraction is reduced if one part is a multiple of the other.
 Unit operator*(const Unit& a, const Unit& b);
 /// 1 / unit.
 Unit inverse(const Unit& unit);
 /// The unit to an integer power.
 Unit power(const Unit& unit, int exponent);
 
-/// Parses a whole unit expression; empty text is the unit 1. Throws Error(unknown-unit) at `place`,
-/// with the nearest known name as the remedy.
+/// Parses a unit expression; empty text is the unit 1. Throws Error(unknown-unit) at `place`, for
+/// an unknown name with the nearest known one as the remedy.
 Unit parse_unit_expression(std::string_view text, const Location& place);
 
-/// "kg m^-3"; "1" without dimension.
+/// Name in SI base units such as "kg m^-3"; "1" if dimensionless.
 std::string si_unit_name(Dimension dimension);
 
 }  // namespace sinew

@@ -22,7 +22,7 @@ using material::kLanes;
 constexpr int kPatchGrain = 256;
 constexpr int kNodeGrain = 4096;  // below this a thread's wake-up costs more than the work
 
-/// Visits to columns split so that threads have equal numbers of contributions.
+/// Splits the visits to columns so that threads have equal numbers of contributions.
 std::vector<int> split_columns(const FemModel& model, int threads) {
   const linalg::BlockPattern& pattern = model.pattern();
   const std::vector<std::int32_t>& start = model.gather().contribution_start;
@@ -49,17 +49,17 @@ struct Assembly::Workspace {
   std::size_t force_records = 0, solid_blocks = 0;  // doubles, of the records below
   std::size_t patch_slots = 0, patches = 0, patch_rows = 0;
   linalg::AlignedBuffer points, start_points;  // (n, 4) m
-  bool started = false;                        // start_points are those that count
+  bool started = false;                        // start_points are in use
   linalg::AlignedBuffer matrix;
   std::vector<double> forces;
-  std::vector<double> batch_energy;          // one a batch, groups of solids behind the others
-  std::vector<SmallestRatio> thread_ratios;  // one a thread, for batches, then for each group
+  std::vector<double> batch_energy;          // one per batch, those of solid groups last
+  std::vector<SmallestRatio> thread_ratios;  // one per thread, for batches, then for each group
   std::vector<int> column_splits;
   double energy = 0.0;
   SmallestRatio smallest{1.0, 0};
 };
 
-// What elements and patches write and gather() sums, in scratch memory: of one evaluate().
+// Records of elements and patches in one evaluate(), which gather() sums. In scratch memory.
 struct Assembly::Records {
   Records(const Workspace& work, int batches, Tangent tangent)
       : element_records(record_size(tangent) * kLanes * static_cast<std::size_t>(batches)),
@@ -288,8 +288,8 @@ void Assembly::hold() {
   double* matrix = work_->matrix.data();
   for (const std::int64_t entry : model_->held_entries()) matrix[entry] = 0.0;
   for (const std::int64_t entry : model_->held_diagonals()) {
-    // Their motion is zero whatever stands here; the size of the others keeps the factor well
-    // scaled.
+    // The motion of a held coordinate is zero with any value here; one of the size of the others
+    // keeps the factor well scaled.
     matrix[entry] = matrix[entry] == 0.0 ? 1.0 : std::abs(matrix[entry]);
   }
 }

@@ -17,43 +17,45 @@ class ElementHistory;
 /// Which derivative of the internal force goes into the matrix.
 enum class Tangent {
   none,  ///< forces and energy only; the matrix is left as it was
-  /// Positive semi-definite: R K0 R^T with the rotation held fixed, what real-time codes use; of
-  /// hyperelastic laws the projected derivative.
+  /// Positive semidefinite: R K_0 R^T with the rotation R held fixed. For hyperelastic laws, the
+  /// projected derivative.
   corotated,
-  /// The exact derivative of each element (of hyperelastic laws: of each point) projected onto the
-  /// positive semi-definite matrices: never less than the exact one.
+  /// The exact derivative of each element (for hyperelastic laws: of each quadrature point),
+  /// projected onto the positive semidefinite matrices. It is never less than the exact derivative.
   projected,
-  /// What rates of strain are resisted with: blind to spins of each point, of hyperelastic laws
-  /// otherwise as corotated (material::Projection::rates).
+  /// The stiffness by which damping resists strain rates. The spin of a point does not affect it;
+  /// for hyperelastic laws it is otherwise the corotated tangent (material::Projection::rates).
   rates,
-  exact,  ///< second derivative of the energy, rotation's derivative included; may be indefinite
+  exact,  ///< second derivative of the energy, including that of the rotation; may be indefinite
 };
 
-/// matrix = stiffness K + mass M. The weights come from the integrator; element code does not know
-/// which one runs. (1, 0) is quasi-static. (1, 1/h^2 + alpha/h) is backward Euler with mass damping
-/// alpha M. BodyElements adds the stiffness damping (beta/h) K, with K ahead in the step.
+/// Weights of the matrix, stiffness K + mass M. They come from the integrator; element code does
+/// not know which one runs. (1, 0) is quasi-static; (1, 1/h^2 + alpha/h) is backward Euler with
+/// mass damping alpha M. BodyElements adds the stiffness damping (beta/h) K, with K evaluated at
+/// extrapolated positions.
 struct AssemblyWeights {
   Tangent tangent = Tangent::corotated;
   double stiffness = 1.0;
   double mass = 0.0;
-  /// Whether rubber that was stretched before is softer.
+  /// Whether the Mullins effect of earlier strains softens the material.
   bool softened = true;
 
   bool operator==(const AssemblyWeights&) const = default;
 };
 
-/// The element whose volume shrank most.
+/// The smallest volume ratio of any element.
 struct VolumeMeasure {
   double smallest_ratio = 1.0;  ///< det F
-  int element = -1;             ///< of ElementList: tetrahedra, then hexahedra
+  int element = -1;             ///< its number in ElementList: tetrahedra, then hexahedra
 };
 
-/// Data of one simulation. Results are the same bit for bit for any number of threads. Nothing
-/// allocates after construction but the first evaluate() on a thread, which takes the elements'
-/// records there (linalg::ThreadScratch; 512 bytes a corotational tetrahedron).
+/// Evaluates the internal forces and the tangent stiffness of one body in one simulation. Results
+/// are the same bit for bit for any number of threads. After construction, memory is allocated only
+/// by the first linearise_from() and by the first evaluate() on a thread, for the records of the
+/// elements (linalg::ThreadScratch; up to 512 bytes per corotational tetrahedron).
 class Assembly {
  public:
-  /// @param model what is assembled.
+  /// @param model the elements to assemble.
   /// @param pool runs the loops; must outlive this object.
   Assembly(std::shared_ptr<const FemModel> model, ThreadPool& pool);
   ~Assembly();
@@ -61,27 +63,29 @@ class Assembly {
 
   const FemModel& model() const { return *model_; }
 
-  /// Forces, energy, volume ratios and (unless tangent is none) the matrix, at `positions`.
-  /// @param positions (n, 3) m, all mesh nodes, fixed ones included.
-  /// @param weights what the matrix is to be.
-  /// Throws Error(wrong-shape) unless positions has a row for every mesh node. Positions that are
-  /// not finite are seen by minimum_volume_ratio() = -infinity.
+  /// Evaluates forces, energy, volume ratios and (unless the tangent is none) the matrix.
+  /// @param positions (n, 3) m, all mesh nodes, including fixed ones.
+  /// @param weights of stiffness and mass in the matrix.
+  /// Throws Error(wrong-shape) unless positions has a row for every mesh node. If a position is not
+  /// finite, minimum_volume_ratio() is -infinity.
   void evaluate(const Points& positions, const AssemblyWeights& weights);
 
-  /// From the next evaluate() on, the tangent's pressures are linearised from these positions,
-  /// which the body moved from (SolidOutput::start); null: they are those of the forces.
+  /// From the next evaluate() on, the tangent uses pressures linearised about the positions from
+  /// which the body last moved (SolidOutput::start). If null, it uses the pressures of the forces.
   /// @param positions (n, 3) m; copied.
+  /// @return whether such positions were set before.
   bool linearise_from(const Points* positions);
 
-  /// From the next evaluate() on: what elements that relax or soften have behind them; null:
-  /// nothing. The energy is then the incremental one, whose derivative the forces are.
+  /// Sets the strain history of elements that relax or soften, from the next evaluate() on; null:
+  /// none. The energy is then the incremental one, of which the forces are the derivative.
   /// @param history must outlive this object.
   void set_history(const ElementHistory* history) { history_ = history; }
-  /// Ends a step of the history at these positions.
+  /// Advances the history by a step that ends at these positions.
   /// @param positions (n, 3) m. @param history of this model's elements.
   void advance(const Points& positions, ElementHistory& history);
 
-  /// Volume ratios alone, at a quarter of the cost of forces: to judge a motion before it is taken.
+  /// Computes only the volume ratios, at a quarter of the cost of forces, to judge a motion before
+  /// it is accepted.
   /// @param positions (n, 3) m, as for evaluate().
   VolumeMeasure measure_volume(const Points& positions);
 
@@ -89,22 +93,22 @@ class Assembly {
   std::span<const double> forces() const;
   /// kBlockStride * pattern().blocks() doubles, layout of linalg::BlockPattern, N/m for (1, 0).
   std::span<const double> matrix() const;
-  std::span<double> matrix();  ///< the same, for a caller that adds to it
+  std::span<double> matrix();  ///< the same, writable
   /// Adds a 3x3 block to the matrix, after evaluate().
-  /// @param free_i,free_j free numbers of row and column; for free_i < free_j the transpose is
-  /// added to the stored block, for free_i > free_j the caller does not add (j, i) too. A diagonal
-  /// block must be symmetric.
+  /// @param free_i,free_j free numbers of row and column. Only one block of each pair is stored:
+  ///   for free_i < free_j, the transpose of k is added to it. The caller therefore adds either (i,
+  ///   j) or (j, i), not both. A diagonal block must be symmetric.
   /// @param k (3, 3), already weighted. Throws Error(internal) if the pair is not in the pattern.
   void add_block(int free_i, int free_j, const Matrix3& k);
 
-  /// Takes held coordinates out of the matrix: zeros in their rows and columns, and a diagonal that
-  /// is not zero. After everything was added to it.
+  /// Eliminates held coordinates from the matrix: zeroes their rows and columns and keeps a
+  /// non-zero diagonal. Call it after everything else was added.
   void hold();
 
   double strain_energy() const;         ///< U, J
   double minimum_volume_ratio() const;  ///< smallest det F; <= 0: an element is inverted
-  int worst_element() const;            ///< the element that has it
-  std::size_t bytes() const;            ///< memory held by this object; the model not counted
+  int worst_element() const;            ///< the element with that ratio
+  std::size_t bytes() const;            ///< memory of this object, without the model
 
  private:
   struct Workspace;

@@ -4,8 +4,8 @@
 
 namespace sinew::fem {
 
-// All nodes of elements follow the base rigidly, which strains nothing and is where a step begins
-// its search; then the fixed ones stand where they must, without rounding adding up.
+// All nodes of elements follow the base rigidly, without strain; a step begins its search there.
+// The fixed nodes are then placed exactly, so that rounding does not accumulate.
 bool BaseCarry::begin_step() {
   const RigidBase& base = state_.base;
   carried_ = state_.base.begin_step();
@@ -26,9 +26,9 @@ bool BaseCarry::begin_step() {
   return true;
 }
 
-// K of a rigid motion is zero over all nodes, so that K_fb v_b = -K_ff w with w this field: damping
-// acts on v_f - w. The free nodes' place in the base's frame is extrapolated by their velocity in
-// it, to the second order of the integrators, and stays what it is in Newton's iterations.
+// A rigid motion w of all nodes has K w = 0, so K_fb v_b = -K_ff w_f, and damping acts on v_f -
+// w_f. The position of the free nodes in the frame of the base is extrapolated by their velocity in
+// it, which keeps the second order of the integrators. It is constant in Newton's iterations.
 void BaseCarry::find_velocity(const mechanics::StepWeights& weights) {
   const RigidBase& base = state_.base;
   moves_ = base.moves();

@@ -1,5 +1,5 @@
 /// @file
-/// What the motion of a body's base does to its free nodes.
+/// Effect of the motion of a body's base on its free nodes.
 #pragma once
 
 #include <cstddef>
@@ -8,26 +8,28 @@
 
 namespace sinew::fem {
 
+/// Moves the free nodes along with the base, and computes the base's part of their inertia and
+/// damping.
 class BaseCarry {
  public:
   /// @param state must outlive this.
   explicit BaseCarry(FemState& state) : state_(state) {}
 
-  /// The base goes where it was asked to be, and takes all nodes along.
-  /// @return whether that is a motion.
+  /// Moves the base to its requested displacement, and all nodes rigidly with it.
+  /// @return whether the base moved.
   bool begin_step();
-  /// The base stays.
+  /// Leaves the base where it is.
   void begin_query() { carried_ = false; }
 
-  /// Extends the base's velocity at the end of the step to the free nodes.
+  /// Computes the rigid velocity field of the base, at the end of the step, at the free nodes.
   void find_velocity(const mechanics::StepWeights& weights);
-  /// Takes the base's velocity from that of free nodes. @param velocity (3 free,) m/s.
+  /// Subtracts that field from the velocity of the free nodes. @param velocity (3 free,) m/s.
   void subtract_velocity(VectorX& velocity) const;
-  /// M_fb times a combination of the base nodes' motion, added to forces on free nodes.
+  /// Adds M_fb times a combination of the motion of the base nodes to the forces on free nodes.
   /// @param weights of the combination. @param forces (3 free,) N, added to.
   void add_momentum(const mechanics::Combination& weights, VectorX& forces) const;
-  /// (3,) m: a free node's motion in the step, beside the base's. @param free its number among free
-  /// nodes. @param moved (3,) m: all of its motion.
+  /// (3,) m: the displacement of a free node in the step, relative to the base.
+  /// @param free its free number. @param moved (3,) m: its total displacement.
   Vector3 strayed(std::int32_t free, const Vector3& moved) const {
     return carried_ ? Vector3(moved - carry_.segment<3>(3 * free)) : moved;
   }
@@ -38,8 +40,8 @@ class BaseCarry {
 
  private:
   FemState& state_;
-  bool carried_ = false;  // the base's motion took all nodes along at the start of the step
-  VectorX carry_;         // by this much, (3 free,) m
+  bool carried_ = false;  // the base moved all nodes at the start of the step
+  VectorX carry_;         // their displacement then, (3 free,) m
   bool moves_ = false;    // velocity_ is not zero
   VectorX velocity_;      // see find_velocity(), (3 free,) m/s
 };

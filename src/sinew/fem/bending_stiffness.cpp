@@ -26,7 +26,7 @@ Matrix3 edges(const Corners& corners) {
   return (corners.bottomRows<3>().rowwise() - corners.row(0)).transpose();
 }
 
-/// Where the body's tetrahedra lie: its centroid, and its second moments about it.
+/// Centroid of the body, and second moments about it.
 struct Section {
   Vector3 centroid = Vector3::Zero();  ///< m
   Vector3 moments = Vector3::Zero();   ///< integral of (e_i . r)^2 dV, m^5, ascending
@@ -53,8 +53,8 @@ Section section_of(const mesh::Mesh& mesh) {
   return {origin + centre, principal.eigenvalues(), principal.eigenvectors()};
 }
 
-/// Displacement of bending by the unit curvature about the longest axis, towards axis `towards`
-/// (0 or 1). @param r from the centroid, m.
+/// Displacement of pure bending of the longest axis with unit curvature, towards axis `towards` (0
+/// or 1). @param r from the centroid, m.
 Vector3 bending(const Section& section, int towards, double nu, const Vector3& r) {
   const Vector3 along = section.axes.col(2), across = section.axes.col(towards);
   const Vector3 beside = along.cross(across);

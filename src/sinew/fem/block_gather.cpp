@@ -70,7 +70,7 @@ SINEW_INLINE Block rotation_terms(const GatherLists& lists, std::int32_t begin, 
   return sum;
 }
 
-/// K without its constant diagonal, which that of rates does not have.
+/// K without its constant diagonal part, which K of Tangent::rates does not have.
 template <Tangent tangent>
 SINEW_INLINE Block gather_block(const GatherLists& lists, std::size_t visit,
                                 const double* records) {
@@ -108,7 +108,7 @@ SINEW_INLINE void add_solids(const GatherLists& lists, std::size_t visit, const 
   }
 }
 
-/// Adds what the shared dilatation of patches couples.
+/// Adds the coupling by the shared dilatation of patches.
 SINEW_INLINE void add_patches(const GatherLists& lists, std::size_t visit, const double* rows,
                               Block& sum) {
   for (std::int64_t p = lists.patch_start[visit]; p < lists.patch_start[visit + 1]; ++p) {

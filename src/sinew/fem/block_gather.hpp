@@ -7,10 +7,11 @@
 
 namespace sinew::fem {
 
-/// Writes the blocks of column visits begin .. end-1 as stiffness K + mass M.
-/// @param lists,pattern,begin,end what is gathered where, for these columns.
-/// @param records,solids,patch_rows,weights element records of the tangent that `weights` names,
-///   blocks of hyperelastic elements (nullptr without), and rows of patches (nullptr without).
+/// Writes the blocks of column visits begin .. end-1: stiffness K + mass M.
+/// @param lists,pattern,begin,end the gather lists, the pattern of the matrix and the range of
+///   visits.
+/// @param records,solids,patch_rows,weights element records for the tangent in `weights`, blocks of
+///   hyperelastic elements and rows of patches (nullptr if there are none), and the weights.
 /// @param node_mass (free,) kg, lumped; nullptr if `block_mass` is given.
 /// @param block_mass (blocks,) kg, consistent; nullptr if `node_mass` is given.
 /// @param matrix layout of linalg::BlockPattern.
@@ -20,8 +21,8 @@ void gather_blocks(const GatherLists& lists, const linalg::BlockPattern& pattern
                    const double* block_mass, double* matrix);
 
 /// Writes the internal forces of the nodes of visits begin .. end-1.
-/// @param lists,begin,end what is gathered, for these nodes.
-/// @param records kForceRecord doubles a slot.
+/// @param lists,begin,end the gather lists and the range of visits.
+/// @param records the force records, in vectors of four doubles (GatherLists::force_parts).
 /// @param forces (3 free,) N.
 void gather_forces(const GatherLists& lists, int begin, int end, const double* records,
                    double* forces);

@@ -36,14 +36,14 @@ void BodyElements::prepare_history(double time_step) {
 
 void BodyElements::begin_step() {
   prepared_step_.reset();
-  // What the last step's motion lent the tangent's pressure must not outlive it: a state says all.
+  // Start positions of the last step must not affect this one, which depends on the state only.
   if (active_->assembly.linearise_from(nullptr)) active_->present.reset();
 }
 
-// C = alpha M + beta K with K of rates of strain (see keep_damping_stiffness()): positive
-// semi-definite, so that damping damps, and constant, so that Newton's derivative is exact.
-// Softening has no part in it: where a step ends at the largest strain so far its slope jumps, and
-// rounding would decide.
+// C = alpha M + beta K, where K resists strain rates (see keep_damping_stiffness()). K is positive
+// semidefinite, so that damping dissipates, and constant during a step, so that the derivative in
+// Newton's method is exact. Softening is not included: its slope jumps where a step ends at the
+// largest strain so far, and rounding would decide on which side.
 void BodyElements::linearise(const mechanics::LinearisationRequest& request, bool first) {
   SystemWorkspace* const before = active_;
   active_ = &workspace(request.with_geometric_stiffness);
@@ -66,9 +66,10 @@ void BodyElements::linearise(const mechanics::LinearisationRequest& request, boo
   for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i] += rate * active_->damping_stiffness[i];
 }
 
-// Where the integrator's velocity is that of the body: a chord between two places of a turning body
-// is a spin about where it is half-way between them, and other formulas stand at the step's end.
-// There a spin costs nothing. A fast body would be inverted; it is taken where it is.
+// Evaluates K where the velocity of the integrator holds, so that spins are not damped. The chord
+// between two positions of a turning body is a spin about the position half-way; the velocities of
+// other formulas hold at the end of the step. If the extrapolation would invert a fast body, K is
+// that at the start positions.
 void BodyElements::keep_damping_stiffness(const mechanics::StepWeights& weights) {
   constexpr double kMinVolume = 0.5;
   const AssemblyWeights wanted{Tangent::rates, 1.0, 0.0, false};
@@ -108,7 +109,7 @@ void BodyElements::release() {
 }
 
 double BodyElements::strain_energy() {
-  // What relaxing parts store beside the law's energy is not in it.
+  // Energy stored in the relaxing parts, in addition to that of the law, is not included.
   prepare_history(0.0);
   const bool present = active_->present.has_value() && state_.element_history.empty();
   if (!present) active_->assembly.evaluate(state_.positions, {Tangent::none, 1.0, 0.0});

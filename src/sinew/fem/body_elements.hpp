@@ -1,5 +1,5 @@
 /// @file
-/// The elements of a body in steps: their forces, matrix and factor.
+/// The elements of a body during steps: their forces, matrix and factorisation.
 #pragma once
 
 #include <cstddef>
@@ -15,37 +15,39 @@
 
 namespace sinew::fem {
 
-/// What elements evaluate for a step's tangent.
+/// Tangent of the elements for the tangent of a step.
 Tangent element_tangent(mechanics::Tangent tangent);
 
-/// Over the plain pattern or the wider one, as each linearisation asks for it.
+/// Assembles and factorises the elements of one body. Each linearisation chooses between the plain
+/// pattern and the wider one with the geometric stiffness of constraints.
 class BodyElements {
  public:
   /// @param state,pool must outlive this. @param with_geometric_stiffness the system whose memory
-  /// is taken at once; the other's is when it is first asked for.
+  ///   is allocated now; that of the other is allocated on first use.
   BodyElements(FemState& state, ThreadPool& pool, bool with_geometric_stiffness);
 
-  /// What the last linearisation was over.
+  /// The workspace of the last linearisation.
   SystemWorkspace& active() { return *active_; }
   const SystemWorkspace& active() const { return *active_; }
 
   void begin_step();
-  /// Forces and matrix at the present positions. @param request what the matrix is to be.
-  /// @param first whether none of this step was before.
+  /// Evaluates forces and matrix at the current positions. @param request weights and tangent.
+  /// @param first whether this is the first linearisation of the step.
   void linearise(const mechanics::LinearisationRequest& request, bool first);
-  /// A motion is about to be taken from here: what follows in the same step begins with it.
+  /// Called when a motion starts from the current positions. If the step iterates, later
+  /// linearisations use these positions (Assembly::linearise_from()).
   void leave_from_here();
-  /// The positions are others from now on.
+  /// Called when the positions have changed.
   void moved() { active_->present.reset(); }
-  /// Another state is taken up.
+  /// Called when another state is loaded.
   void forget();
-  /// What elements keep follows. @param time_step s, 0 in statics.
+  /// Updates the strain history of the elements. @param time_step s, 0 in statics.
   void end_step(double time_step);
 
-  /// Lends the memory of factors to other bodies of the model.
+  /// Releases the memory of the factors to other bodies of the same model.
   void release();
 
-  double strain_energy();  ///< J, at the present positions
+  double strain_energy();  ///< J, at the current positions
   mechanics::SmallestVolume smallest_volume();
   std::size_t bytes() const;
 
@@ -58,8 +60,8 @@ class BodyElements {
   ThreadPool& pool_;
   std::unique_ptr<SystemWorkspace> plain_, curved_;
   SystemWorkspace* active_ = nullptr;
-  Points ahead_ = Points(0, 3);          // m, in the step, as the velocity leads
-  std::optional<double> prepared_step_;  // that the elements' history was last prepared for
+  Points ahead_ = Points(0, 3);          // m, positions extrapolated with the start velocity
+  std::optional<double> prepared_step_;  // s, time step for which the history is prepared
 };
 
 }  // namespace sinew::fem

@@ -8,9 +8,9 @@ namespace sinew::fem {
 
 namespace {
 
-// Never less than the block and its transpose: of a diagonal block its positive part; for another
-// one |C| I at both ends, since [|C| I, -C; -C^T, |C| I] is positive semi-definite (by its Schur
-// complement |C| I - C^T C/|C|).
+// Adds a majorant of the block and its transpose. For a diagonal block, that is its positive part;
+// for another block C, |C| I at both diagonal blocks, since [|C| I, -C; -C^T, |C| I] is positive
+// semidefinite (Schur complement |C| I - C^T C/|C|).
 void add_majorant(Assembly& assembly, const FreeBlock& block) {
   if (block.row == block.column) {
     assembly.add_block(block.row, block.row, linalg::positive_part(block.value));
@@ -35,8 +35,8 @@ void BodyLoads::find_rates(const mechanics::LinearisationRequest& request) {
   };
   rate(request.weights.velocity, rates_);
   rate(request.weights.acceleration, accelerations_);
-  // Quadratic drag has no slope where nothing moves yet: one linearisation takes it at the
-  // velocity of the start, Newton at that of its iterate.
+  // Drag is linearised at the start velocity for a single linearisation, and at the velocity of the
+  // iterate for Newton's method, where an iterate at rest would have no slope.
   gaps_.setZero(positions.rows(), 3);
   if (!request.iterating) {
     gaps_ = rates_ - state_.velocities;

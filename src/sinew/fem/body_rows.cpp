@@ -32,7 +32,7 @@ void BodyRows::take_transient(const mechanics::RowValues& rows) {
   }
 }
 
-// Calls visit(free node, weight) for the nodes of an entry's site.
+// Calls visit(free node, weight) for the free nodes of the site of an entry.
 template <typename Visit>
 void BodyRows::each_node(std::int32_t entry, const mechanics::RowValues& rows, Visit visit) const {
   const mechanics::Site& site = model_.world_rows().site[static_cast<std::size_t>(entry)];
@@ -51,7 +51,7 @@ void BodyRows::each_node(std::int32_t entry, const mechanics::RowValues& rows, V
   for (std::size_t k = 0; k < at.nodes.size(); ++k) see(at.nodes[k], at.weights[k]);
 }
 
-// The free nodes of a row and of those that share with it, ascending.
+// Lists the free nodes of a row and of the other rows in its group, ascending.
 void BodyRows::list_nodes(std::int32_t row, const mechanics::RowValues& rows) {
   const auto& starts = model_.world_rows().row_start;
   nodes_.clear();
@@ -65,7 +65,7 @@ void BodyRows::list_nodes(std::int32_t row, const mechanics::RowValues& rows) {
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
 }
 
-// The three rows of a point are on the same sites.
+// Adds the three rows of a point, which are on the same sites.
 void BodyRows::add_triple(std::int32_t row, const mechanics::RowValues& rows) {
   const auto& starts = model_.world_rows().row_start;
   list_nodes(row, rows);
@@ -98,7 +98,7 @@ double BodyRows::effort_of(std::size_t triple, int row, std::span<const double> 
   return sum;
 }
 
-// Takes held coordinates out of rows.
+// Zeroes held coordinates in rows.
 void BodyRows::hold(const linalg::BorderPattern& pattern, std::vector<double>& values) const {
   const auto held = model_.elements().held();
   if (held.empty()) return;
@@ -111,7 +111,7 @@ void BodyRows::hold(const linalg::BorderPattern& pattern, std::vector<double>& v
   }
 }
 
-// Calls add(free node, row's effort, (3,) of H) for every entry of rows that have an effort.
+// Calls add(free node, effort, (3,) of H) for every entry of rows whose effort is not zero.
 template <typename Add>
 void BodyRows::each_entry(std::span<const double> effort, const SystemWorkspace& workspace,
                           Add add) const {

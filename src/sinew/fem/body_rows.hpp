@@ -1,5 +1,5 @@
 /// @file
-/// Constraint rows on the free nodes of a body: its part of H, and of W.
+/// Constraint rows on the free nodes of a body: the body's part of H and of W.
 #pragma once
 
 #include <cstddef>
@@ -14,18 +14,18 @@
 
 namespace sinew::fem {
 
-/// Numbers are those of the last linearisation's system; efforts are (rows,) N of the world's rows.
-/// Rows that are always there stand in the factorisation's border. Of transient rows the
-/// active ones alone have their nodes listed, anew whenever they are taken; those that share a row
-/// of the problem (mechanics::RowGroups) are one, with efforts in the parts of their shares.
+/// The body's part of H and of W. `workspace` is that of the last linearisation, and `effort` is
+/// (rows,) N over all rows of the world. Persistent rows are the border of the factorisation. The
+/// nodes of active transient rows are listed anew whenever rows are taken. Transient rows that
+/// share one row of the problem (mechanics::RowGroups) form a single row here, each with its share.
 class BodyRows {
  public:
   /// @param model must outlive this.
   explicit BodyRows(const FemBodyModel& model);
 
-  /// Takes directions, and which of the transient rows are active.
+  /// Takes the directions of the rows, and which transient rows are active.
   void take(const mechanics::RowValues& rows, SystemWorkspace& workspace);
-  /// Adds H^T effort. @param effort,workspace as the class says. @param sum (3 free,) N.
+  /// Adds H^T effort. @param effort,workspace see the class. @param sum (3 free,) N.
   void add_forces(std::span<const double> effort, const SystemWorkspace& workspace,
                   VectorX& sum) const;
   /// The same on mesh nodes. @param effort,workspace as before. @param forces (n, 3) N.
@@ -34,7 +34,7 @@ class BodyRows {
   /// See mechanics::StepSystem.
   void add_compliance(std::span<const int> problem_row, const SystemWorkspace& workspace,
                       MatrixX& compliance, VectorX& free_motion) const;
-  /// Of the rows that are always there, as the factorisation counts them.
+  /// Efforts of the persistent rows, in the order of the factorisation's border.
   std::span<const double> fixed_effort(std::span<const double> effort);
 
  private:
@@ -53,10 +53,10 @@ class BodyRows {
   const FemBodyModel& model_;
   std::vector<double> fixed_effort_;
   linalg::BorderPattern transient_;            // triples of active rows
-  std::vector<double> transient_values_;       // of them
-  std::vector<std::int32_t> members_;          // the world's first rows of all triples' points
-  std::vector<std::int32_t> member_start_{0};  // by triple: where its points begin; the first leads
-  std::vector<std::int32_t> nodes_;            // of a triple, ascending: scratch
+  std::vector<double> transient_values_;       // their values
+  std::vector<std::int32_t> members_;          // first world row of each point of all triples
+  std::vector<std::int32_t> member_start_{0};  // by triple: its first point, which is the leader
+  std::vector<std::int32_t> nodes_;            // nodes of a triple, ascending: scratch
 };
 
 }  // namespace sinew::fem

@@ -39,7 +39,7 @@ void check_volume(const mesh::Mesh& mesh, int tetrahedron, const Matrix3& edge) 
               flat ? "remove or remesh it" : "swap two of its nodes");
 }
 
-/// Tetrahedra in the order of slots, each law filled up to whole batches with -1.
+/// Tetrahedra in the order of slots; each law is padded with -1 to whole batches.
 std::vector<std::int32_t> slot_order(const mesh::Mesh& mesh,
                                      std::span<const MaterialRegion> regions,
                                      std::span<const std::int32_t> region_of,

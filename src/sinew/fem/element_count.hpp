@@ -1,5 +1,5 @@
 /// @file
-/// The finite elements of a body by their names.
+/// Number of finite elements of a body, by kind.
 #pragma once
 
 #include <string>
@@ -10,16 +10,16 @@
 
 namespace sinew::fem {
 
-/// How many elements of one kind.
+/// Number of elements of one kind.
 struct ElementCount {
-  std::string_view element;  ///< as scenes name it: "tet4", "tet4-patch", "tet10", "hex8"
+  std::string_view element;  ///< its name in scenes: "tet4", "tet4-patch", "tet10", "hex8"
   int count = 0;             ///< > 0
 };
 
-/// Tetrahedra first.
+/// Counts the elements of each kind that occurs; tetrahedra first.
 std::vector<ElementCount> count_elements(const FemModel& model);
 
-/// "2639 tet10 elements", "12 tet4 and 30 hex8 elements".
+/// Text such as "2639 tet10 elements" or "12 tet4 and 30 hex8 elements".
 std::string describe_elements(const FemModel& model);
 
 }  // namespace sinew::fem

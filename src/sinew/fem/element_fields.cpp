@@ -88,7 +88,7 @@ Lanes equivalent_strain(const material::Principal& at) {
   return material::square_root(2.0 / 3.0 * deviator_square(logarithms));
 }
 
-// Values of a batch of points, whose principal stretches are found once.
+// Fields at a batch of points; principal stretches are computed only once.
 class PointValues {
  public:
   explicit PointValues(const PointBatch& point) : point_(point) {}
@@ -139,7 +139,7 @@ Lanes PointValues::operator()(ElementField field) {
   return lanes(0.0);
 }
 
-// Means of fields over the points of every element, one row an element.
+// Means of fields over the points of every element, one row per element.
 std::vector<double> means(const HasMaterial& body, std::span<const ElementField> fields) {
   const auto count =
       static_cast<std::size_t>(ElementList(body.material().elements().mesh()).count());
@@ -161,7 +161,7 @@ std::vector<double> means(const HasMaterial& body, std::span<const ElementField>
   return sum;
 }
 
-// Means of all fields over the points of some elements, and the volume of these.
+// Means of all fields over the points of some elements, and the volumes of these elements.
 template <typename IsMeant>
 ElementValues mean_over(const HasMaterial& body, const IsMeant& is_meant) {
   ElementValues result{.fields = std::vector<double>(kFields.size(), 0.0)};

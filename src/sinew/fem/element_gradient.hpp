@@ -1,5 +1,6 @@
 /// @file
-/// F of a batch of linear tetrahedra from positions as they lie, for measures outside of steps.
+/// Deformation gradient of a batch of linear tetrahedra from unpadded positions, for output outside
+/// of steps.
 #pragma once
 
 #include "sinew/core/types.hpp"
@@ -8,7 +9,8 @@
 
 namespace sinew::fem {
 
-/// F = I + sum (u_a - u_0) g_a^T, from displacements, so that a small strain keeps its digits.
+/// F = I + sum (u_a - u_0) g_a^T. It uses displacements, so that small strains are not lost to
+/// rounding.
 /// @param batch,nodes as in ElementBatches. @param positions,rest (n, 3) m.
 inline material::Lanes3x3 deformation_gradient(const BatchConstants& batch,
                                                const std::int32_t* nodes, const Points& positions,

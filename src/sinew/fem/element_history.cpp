@@ -13,7 +13,7 @@ namespace {
 using material::Lanes;
 using material::lanes;
 
-constexpr std::size_t kSix = 6;  // of a symmetric tensor
+constexpr std::size_t kSix = 6;  // components of a symmetric tensor
 
 }  // namespace
 

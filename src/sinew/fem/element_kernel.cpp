@@ -18,11 +18,12 @@ using material::sum;
 
 SINEW_INLINE Lanes row(const LaneRow& source) { return material::load(source.value); }
 
-/// One vector an element's node: v[a][component].
+/// One vector per node of an element: v[a][component].
 struct NodeVectors {
   Lanes v[4][3];
 
-  /// Sums of gradients over an element's nodes vanish, so do those of all that is linear in them.
+  /// Computes v[0]: shape gradients sum to zero over the nodes, and so does everything linear in
+  /// them.
   SINEW_INLINE void complete() {
     for (int c = 0; c < 3; ++c) v[0][c] = -(v[1][c] + v[2][c] + v[3][c]);
   }
@@ -102,8 +103,8 @@ SINEW_INLINE void store_exact(const NodeVectors& h, const material::ExactTangent
   for (int k = 0; k < kExactRecord; k += 8) store_records(rows + k, records + k, kExactRecord);
 }
 
-/// F^-T, which takes gradients to the present shape; F of an element that is crushed to less than a
-/// tenth of its volume counts as of that.
+/// F^-T, which maps gradients to the current shape. The determinant counts as at least 0.1, for
+/// crushed elements.
 SINEW_INLINE Lanes3x3 to_present(const Lanes3x3& f) {
   constexpr double kMinRatio = 0.1;
   const Lanes3x3 cof = material::cofactor(f);

@@ -13,7 +13,7 @@ namespace sinew::fem {
 
 namespace {
 
-// Of a tetrahedron's four nodes, how many a patch has not yet; then what is the loneliest outside.
+// Score of a tetrahedron: new nodes, minus faces in the patch, minus faces in any patch, number.
 using Score = std::tuple<int, int, int, std::int32_t>;
 
 /// Grows patches one element at a time.
@@ -32,7 +32,7 @@ class Grouping {
     }
   }
 
-  /// Patches by their members, in the order in which they were begun.
+  /// Members of each patch, in the order in which patches were begun.
   std::vector<std::vector<std::int32_t>> run(const std::vector<std::int32_t>& elements) {
     for (const std::int32_t seed : elements) {
       if (patch_[index(seed)] == kFree) grow(seed);
@@ -70,8 +70,8 @@ class Grouping {
     sizes_.push_back(static_cast<int>(members.size()));
   }
 
-  /// The free neighbour with the fewest new nodes; of equals the one with most faces in the patch,
-  /// then the one that would otherwise be left alone.
+  /// The free neighbour with the fewest new nodes; of equal ones, that with most faces in the
+  /// patch, then that with most faces in any patch, which would otherwise be left alone.
   std::int32_t best_neighbour(const std::vector<std::int32_t>& members,
                               const std::vector<NodeId>& nodes) const {
     Score best{5, 0, 0, -1};
@@ -93,8 +93,8 @@ class Grouping {
     return std::get<3>(best);
   }
 
-  /// Members of patches that stayed small go to a neighbouring one: a patch of a few lone elements
-  /// would lock as they do.
+  /// Moves the members of small patches to a neighbouring patch, since a patch of a few elements
+  /// would lock.
   void dissolve_small(const std::vector<std::int32_t>& elements) {
     constexpr int kSmall = kPatchSize / 3;
     for (const std::int32_t e : elements) {

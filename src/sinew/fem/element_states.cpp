@@ -20,7 +20,7 @@ Matrix3 lane_of(const material::Lanes3x3& m, std::size_t lane) {
   return result;
 }
 
-// What one element of a batch adds to the means and to the forces of its nodes.
+// Adds one element of a batch to the means, and its forces to those of the nodes.
 void add_point(const PointBatch& point, std::size_t lane, ElementStates& states) {
   const auto e = static_cast<std::size_t>(point.element[lane]);
   const double weight = point.weight[lane];

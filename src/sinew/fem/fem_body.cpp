@@ -16,7 +16,7 @@ FemBody::~FemBody() = default;
 
 namespace {
 
-// The mean of a field of the nodes that an attached point is.
+// Value of a nodal field at an attached point.
 Vector3 mean_at(const Points& field, const Attachment& point) {
   Vector3 sum = Vector3::Zero();
   for (std::size_t k = 0; k < point.nodes.size(); ++k) {
@@ -25,7 +25,7 @@ Vector3 mean_at(const Points& field, const Attachment& point) {
   return sum;
 }
 
-// Gravity's potential with respect to rest.
+// Potential energy of gravity relative to rest.
 double gravity_energy(const FemState& state) {
   const Points& rest = state.model.mesh().nodes;
   double energy = 0.0;

@@ -18,7 +18,7 @@ class FemBodyModel;
 struct FemState;
 class FemStep;
 
-/// Its state, and FemStep for its steps.
+/// A finite-element body in one simulation: a FemState, and a FemStep for its steps.
 class FemBody : public mechanics::Body,
                 public mechanics::TakesForces,
                 public mechanics::HasBase,
@@ -26,7 +26,7 @@ class FemBody : public mechanics::Body,
                 public mechanics::HasSurfaceNodes,
                 public HasMaterial {
  public:
-  /// @param model must outlive the body. @param pool likewise.
+  /// @param model,pool must outlive the body.
   /// @param with_geometric_stiffness,histories see mechanics::BodyModel::create().
   FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_geometric_stiffness,
           int histories = 0);

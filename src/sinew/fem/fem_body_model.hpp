@@ -1,6 +1,6 @@
 /// @file
-/// A robot of finite elements as a BodyModel: elements, loads, attached points, and how constraint
-/// rows fall on its free nodes.
+/// A finite-element robot as a BodyModel: elements, loads, attached points, and the map from
+/// constraint rows to its free nodes.
 #pragma once
 
 #include <array>
@@ -18,28 +18,30 @@
 
 namespace sinew::fem {
 
-/// What a body factorises: its elements on one pattern, bordered by its rows. A body has two, since
-/// the geometric stiffness of constraints needs a wider pattern than most steps use.
+/// The bordered matrix that a body factorises: the elements on one pattern, and the persistent
+/// rows. A body model has two systems, since the geometric stiffness of constraints needs a wider
+/// pattern than most steps use.
 struct FemSystem {
   /// border[3 position ..] += weight * direction[entry], for every free node of every entry.
   struct Scatter {
-    std::int32_t entry = 0;     ///< in the world's RowValues
-    std::int32_t position = 0;  ///< in the border's entries
+    std::int32_t entry = 0;     ///< in the RowValues of the world
+    std::int32_t position = 0;  ///< in the entries of the border
     double weight = 0.0;
   };
   std::shared_ptr<const FemModel> elements;
-  linalg::BorderPattern border;  ///< of the rows that are always there
+  linalg::BorderPattern border;  ///< of the persistent rows
   std::vector<Scatter> scatter;
   std::shared_ptr<const linalg::FactorisationPlan> plan;
 };
 
+/// Model of a finite-element body. Immutable after finish(), and shared by simulations.
 class FemBodyModel final : public mechanics::BodyModel,
                            public mechanics::HasSurface,
                            public mechanics::MayHaveBase,
                            public HasElements {
  public:
-  /// Throws what FemModel does, and Error: out-of-range for negative damping or a mass that is not
-  /// positive, point-outside-mesh for a mass outside.
+  /// Throws the errors of FemModel, and Error: out-of-range (negative damping, mass that is not
+  /// positive), point-outside-mesh (a point mass outside of the mesh).
   explicit FemBodyModel(FemBodySettings settings);
   ~FemBodyModel() override;
 
@@ -76,28 +78,27 @@ class FemBodyModel final : public mechanics::BodyModel,
   const FemModel& elements() const override { return *elements_; }
   std::shared_ptr<const FemModel> shared_elements() const override { return elements_; }
   const FemBodySettings& settings() const override { return settings_; }
-  /// (n, 3) m/s: of all nodes at the start; zero at fixed nodes and along held axes.
+  /// (n, 3) m/s: initial velocities of all nodes; zero at fixed nodes and along held axes.
   Points start_velocities() const;
-  /// (3,) N of a mesh node.
+  /// (3,) N: weight of a mesh node.
   Vector3 weight(NodeId node) const { return elements().load_mass()[node] * settings_.gravity; }
   int mass_point(std::size_t mass) const override { return mass_points_[mass]; }
   const LoadSet& loads() const override { return *loads_; }
   const Attachment& attachment(int point) const override {
     return attachments_[static_cast<std::size_t>(point)];
   }
-  /// World rows that touch this body: those that are always there ascending, then those that come
-  /// and go.
+  /// World rows that touch this body: persistent rows, then transient rows, each ascending.
   const std::vector<std::int32_t>& rows() const { return rows_; }
-  /// How many of them are always there.
+  /// Number of persistent rows among them.
   std::size_t fixed_rows() const { return fixed_rows_; }
-  /// Of all constraints of the world, and this body's position in it.
+  /// Rows of all constraints of the world.
   const mechanics::RowPattern& world_rows() const { return world_rows_; }
-  int body() const { return body_; }
-  /// What attach_surface() returned; -1: nothing touches the body's surface.
+  int body() const { return body_; }  ///< position of this body in the world
+  /// The result of attach_surface(); -1 if nothing touches the surface of the body.
   int surface_site() const { return surface_site_; }
   bool leaves_rows_out() const override { return true; }
-  /// The plain system, or the one whose pattern holds the geometric stiffness. Made at first use,
-  /// since most robots need one of them; safe from several threads.
+  /// The plain system, or the one whose pattern has room for the geometric stiffness. Each is made
+  /// on first use, since most robots need only one; thread-safe.
   const FemSystem& system(bool with_geometric_stiffness) const;
   bool is_plain(const FemSystem& system) const { return &system == &plain_; }
 

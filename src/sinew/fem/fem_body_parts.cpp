@@ -1,4 +1,4 @@
-// What the motion of a finite-element body depends on, by name.
+// Hashes of everything that the motion of a finite-element body depends on, by name.
 #include "sinew/fem/fem_body_model.hpp"
 
 namespace sinew::fem {
@@ -63,9 +63,9 @@ std::vector<NamedHash> FemBodyModel::parts() const {
   return result;
 }
 
-// Where it is, and how far the nodes that it is the mean of stand from there: a ball is told from
-// its centre. Which element a point on a face was found in, and what is left of a weight of zero,
-// are matters of rounding.
+// Hashes the position of the site and the spread of its nodes, which distinguishes a ball from its
+// centre. Nodes and weights are not hashed: rounding decides in which element a point on a face was
+// found.
 std::uint64_t FemBodyModel::site_hash(int site) const {
   const Attachment& of = attachment(site);
   const Vector3 at = rest_position(site);

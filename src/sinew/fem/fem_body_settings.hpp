@@ -1,5 +1,5 @@
 /// @file
-/// What a finite-element robot is made of.
+/// Settings of a finite-element robot.
 #pragma once
 
 #include <memory>
@@ -12,28 +12,28 @@
 
 namespace sinew::fem {
 
-/// C = mass M + stiffness K.
+/// Rayleigh damping C = mass M + stiffness K.
 struct RayleighDamping {
   double mass = 0.0;       ///< 1/s, >= 0
   double stiffness = 0.0;  ///< s, >= 0
 };
 
-/// A mass that hangs on a point of the body, such as a weight or a camera: it has weight and
-/// inertia, and no size.
+/// A point mass attached to the body, such as a weight or a camera.
 struct PointMassSettings {
   std::string name;
-  Location place;                   ///< for errors
+  Location place;                   ///< for error messages
   Vector3 point = Vector3::Zero();  ///< m, at rest
   double mass = 0.0;                ///< kg, > 0
   mesh::Outside outside = mesh::Outside::error;
 };
 
-/// Of a rigid body.
+/// Initial velocity: a rigid motion.
 struct InitialVelocity {
   Vector3 linear = Vector3::Zero();   ///< m/s, of the centre of mass
   Vector3 angular = Vector3::Zero();  ///< rad/s, about it
 };
 
+/// Settings of one finite-element body.
 struct FemBodySettings {
   std::string name;
   std::shared_ptr<const mesh::Mesh> mesh;
@@ -41,7 +41,7 @@ struct FemBodySettings {
   Vector3 gravity = Vector3::Zero();  ///< m/s^2
   RayleighDamping damping;
   std::vector<PointMassSettings> masses;
-  InitialVelocity initial_velocity;  ///< of the free nodes; in dynamics
+  InitialVelocity initial_velocity;  ///< of the free nodes; used in dynamics only
 };
 
 }  // namespace sinew::fem

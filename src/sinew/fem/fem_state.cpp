@@ -73,7 +73,7 @@ void FemState::combine(const mechanics::Combination& weights, VectorX& result) c
 double FemState::end_step(const mechanics::StepWeights& weights) {
   using Jump = mechanics::StepWeights::Jump;
   base.end_step(weights);
-  if (!weights.dynamic()) {  // nothing moves, and nothing is kept
+  if (!weights.dynamic()) {  // statics: no velocity and no history
     velocities.setZero();
     for (Points& kept : history) kept.setZero();
     return 0.0;

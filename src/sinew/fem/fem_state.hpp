@@ -1,5 +1,5 @@
 /// @file
-/// What a finite-element body carries from step to step, and what acts on it from outside.
+/// State of a finite-element body between steps, and its inputs.
 #pragma once
 
 #include <cstddef>
@@ -17,27 +17,28 @@ namespace sinew::fem {
 
 class FemBodyModel;
 
-/// One for a body, which its parts look at.
+/// State and inputs of one body, shared by the parts that compute its steps.
 struct FemState {
-  /// At rest. @param model_in must outlive this. @param histories see mechanics::history_count().
+  /// The body at rest. @param model_in must outlive this. @param histories see
+  /// mechanics::history_count().
   FemState(const FemBodyModel& model_in, int histories);
   FemState(const FemState&) = delete;
   FemState& operator=(const FemState&) = delete;
 
-  /// Back to the start; inputs stay, but for where the base was asked to be.
+  /// Returns to the initial state. Inputs are kept, except the requested displacement of the base.
   void restart();
-  /// What is saved: all but inputs and the start of the step in hand.
+  /// Size of the saved state: everything but the inputs and the start of the current step.
   std::size_t size() const;
   void save(std::span<double> to) const;    ///< (size(),)
   void load(std::span<const double> from);  ///< (size(),)
 
-  /// Velocities and what the integrator keeps follow from the step's motion.
-  /// @return an estimate of the largest error that the step made in any coordinate, m.
+  /// Updates velocities and the history of the integrator from the motion of the step.
+  /// @return an estimate of the largest error of the step in any coordinate, m.
   double end_step(const mechanics::StepWeights& weights);
 
-  /// (3,): a combination of a node's motion in the step and of what was before it.
+  /// (3,): a combination of the motion of a node in the step, its start velocity and its history.
   Vector3 combined(const mechanics::Combination& weights, NodeId node) const;
-  /// (3 free,): that of all free nodes.
+  /// (3 free,): the same combination for all free nodes.
   void combine(const mechanics::Combination& weights, VectorX& result) const;
 
   std::size_t bytes() const;
@@ -45,12 +46,12 @@ struct FemState {
   const FemBodyModel& model;
 
   Points positions, velocities;  ///< (n, 3) m and m/s, of all mesh nodes in file order
-  std::vector<Points> history;   ///< what the integrator keeps, (n, 3) each
+  std::vector<Points> history;   ///< history of the integrator, (n, 3) each
   ElementHistory element_history;
-  /// The motion of the fixed nodes. Each step begins its search where that motion takes the whole
-  /// body. What moves the base puts in or takes out work.
+  /// Motion of the fixed nodes. Each step begins its search with the whole body moved rigidly along
+  /// with the base. Moving the base does work on the body.
   RigidBase base;
-  Points start_positions;  ///< of the step; velocities stay those of its start until it ends
+  Points start_positions;  ///< at the start of the step; `velocities` are those at its start, too
 
   // Inputs.
   Points external_forces;            ///< (n, 3) N

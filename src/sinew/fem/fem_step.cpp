@@ -10,11 +10,11 @@ namespace sinew::fem {
 
 namespace {
 
-// A body whose nodes are this many of its sizes away has blown up.
+// A body whose nodes are this many times its size away has blown up.
 constexpr double kLargestSize = 1e3;
 
-// Residuals are judged relative to loads, but not to loads that strain a body less than this: at
-// rest there is nothing but rounding to compare with.
+// Residuals are relative to loads, and at least to the loads of this strain: at rest, there is only
+// rounding to compare with.
 constexpr double kMinStrain = 1e-5;
 
 std::span<double> span_of(VectorX& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
@@ -60,8 +60,8 @@ void FemStep::linearise(const mechanics::LinearisationRequest& request) {
   first_linearisation_ = false;
 }
 
-// b = p - f - M a - C v, a and v combinations of the motion since the step began and of what was
-// before it (mechanics::StepWeights).
+// b = p - f - M a - C v, where a and v are combinations of the motion since the start of the step
+// and of the state at its start (mechanics::StepWeights).
 void FemStep::form_right_side(const mechanics::StepWeights& weights) {
   const FemModel& elements = state_.model.elements();
   const auto nodes = elements.free_nodes();
@@ -102,7 +102,7 @@ void FemStep::add_geometric_stiffness(const mechanics::StiffnessPair& pair) {
       const auto j = free[static_cast<std::size_t>(second.nodes[b])];
       if (j < 0 || (same && i < j)) continue;
       Matrix3 block = -first.weights[a] * second.weights[b] * pair.hessian;
-      // Off-diagonal pairs stand for themselves and their transpose.
+      // A pair of different points includes its transpose.
       if (!same && i == j) block = (block + block.transpose()).eval();
       elements_.active().assembly.add_block(i, j, block);
     }

@@ -1,5 +1,5 @@
 /// @file
-/// A finite-element body in a step.
+/// Steps of a finite-element body.
 #pragma once
 
 #include "sinew/fem/body_elements.hpp"
@@ -11,7 +11,8 @@
 
 namespace sinew::fem {
 
-/// M a + C v + f(q) = p + H^T lambda over the free nodes, C = alpha M + beta K(q_start).
+/// StepSystem of a finite-element body: M a + C v + f(q) = p + H^T lambda over the free nodes, with
+/// C = alpha M + beta K. K is evaluated once per step (BodyElements::linearise()).
 class FemStep : public mechanics::StepSystem {
  public:
   /// @param state,pool must outlive this. @param with_geometric_stiffness see
@@ -48,11 +49,11 @@ class FemStep : public mechanics::StepSystem {
   void scale_motion(double factor) override;
   void add_velocity(std::span<const double> change) override;
 
-  /// Another state was taken up.
+  /// Called when another state is loaded.
   void forget() { elements_.forget(); }
-  double strain_energy() { return elements_.strain_energy(); }   ///< J, now
-  double kinetic_energy() { return inertia_.kinetic_energy(); }  ///< J, now
-  /// (n, 3) N on all nodes, as of the last linearisation.
+  double strain_energy() { return elements_.strain_energy(); }   ///< J, of the current state
+  double kinetic_energy() { return inertia_.kinetic_energy(); }  ///< J, of the current state
+  /// (n, 3) N on all nodes, from the last linearisation, with drag.
   Points load_forces() const { return loads_.forces() + loads_.drag(); }
   void add_row_forces(std::span<const double> effort, Points& forces) const {
     rows_.add_forces(effort, elements_.active(), forces);
@@ -74,15 +75,15 @@ class FemStep : public mechanics::StepSystem {
   mechanics::Tangent tangent_ = mechanics::Tangent::corotated;  // of the last linearisation
   bool first_linearisation_ = true;
 
-  // Over free nodes, (3 free,); lessening_ from the first time that it is given.
+  // Over free nodes, (3 free,); lessening_ is empty until lessen() is called.
   VectorX right_, motion_;
   VectorX imbalance_;  // b + H^T effort, N
-  VectorX from_;       // positions that motion_ starts from
+  VectorX from_;       // positions at which motion_ starts, m
   VectorX lessening_;  // N
   bool lessens_ = false;
   double force_scale_ = 0.0;  // N
   double min_force_ = 0.0;    // N
-  double blow_up_ = 0.0;  // sum of squared positions, m^2, beyond which the state is taken as lost
+  double blow_up_ = 0.0;      // m^2, sum of squared positions above which the state counts as lost
 };
 
 }  // namespace sinew::fem

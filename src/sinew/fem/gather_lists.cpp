@@ -21,7 +21,7 @@ struct Part {
   double stiffness;  // V mu g_a . g_b
 };
 
-/// In which order columns and their blocks are visited.
+/// The order in which columns and their blocks are visited.
 struct BlockVisits {
   const linalg::BlockPattern& pattern;
   std::vector<std::int32_t> visit;  // column -> visit
@@ -95,8 +95,8 @@ void append_parts(const ElementBatches& elements, std::span<const MaterialRegion
   }
 }
 
-/// Sorts parts by their blocks, and those of a block by `before`: a block has few, so that counting
-/// first costs less than one sort of all.
+/// Sorts parts by block, and within a block by `before`. A block has few parts, so a counting sort
+/// followed by small sorts costs less than one sort of all parts.
 template <class P>
 void sort_by_block(std::vector<P>& parts, int blocks, auto&& before) {
   std::vector<std::size_t> start(static_cast<std::size_t>(blocks) + 1, 0);
@@ -134,7 +134,7 @@ void write_blocks(std::vector<Part>& parts, int blocks, GatherLists& lists) {
   lists.contribution_start.push_back(static_cast<std::int32_t>(next));
 }
 
-/// A node's share in a force record.
+/// A nodal force in a force record.
 struct ForcePart {
   NodeId node;  // free number
   std::uint32_t code;
@@ -156,13 +156,13 @@ void write_forces(const std::vector<ForcePart>& parts, const BlockVisits& visits
   }
 }
 
-/// A block of a solid element's record in a block of the matrix.
+/// A contribution of a block in the record of a solid element to a block of the matrix.
 struct SolidPart {
   std::int32_t visit;
   std::uint32_t code;
 };
 
-/// A product of two rows of a patch in a block of the matrix.
+/// A contribution of a product of two patch rows to a block of the matrix.
 struct PatchPart {
   std::int32_t visit;
   std::array<std::uint32_t, 2> rows;
@@ -217,7 +217,7 @@ void append_solids(const SolidGroup& group, std::span<const NodeId> free_index,
       forces.push_back({free[a], static_cast<std::uint32_t>(force + a)});
       for (std::size_t b = 0; b < nodes; ++b) {
         if (free[b] < 0 || free[a] < free[b]) continue;
-        const bool transposed = a > b;  // the record has (low, high)
+        const bool transposed = a > b;  // the record contains (low, high)
         const int pair =
             SolidGroup::pair(static_cast<int>(std::min(a, b)), static_cast<int>(std::max(a, b)));
         const std::size_t code =

@@ -1,6 +1,6 @@
 /// @file
-/// Who contributes to each 3x3 block of the matrix and to each node's force, so that assembly is a
-/// gather: every result is written once, by one thread, in a fixed order of summation.
+/// Contributions to each 3x3 block of the matrix and to each nodal force. Assembly is a gather:
+/// every result is written once, by one thread, with a fixed order of summation.
 #pragma once
 
 #include <array>
@@ -14,45 +14,47 @@
 
 namespace sinew::fem {
 
-/// Contributions to one block by elements of equal lambda/mu, which factors out of their sum.
+/// Contributions to one block from elements of equal lambda/mu, which factors out of their sum.
 struct ContributionRun {
-  std::int32_t end;  ///< one past its last entry in `contributions`; it begins where the last ended
+  std::int32_t end;  ///< end of its entries in `contributions`; they begin at the previous end
   double ratio;      ///< lambda / mu
 };
 
-/// Columns of the matrix, that is free nodes, are visited in spatial order; lists are in the order
-/// of visits, so that they are read once from front to back. Visit k is to column column[k]; its
-/// block at position column_start[column[k]] + m of the pattern is visit block_visit[k] + m.
+/// The gather lists of a body. Columns of the matrix (free nodes) are visited in spatial order, and
+/// the lists are in the order of visits, so that each is read once from front to back. Visit k is
+/// to column column[k]; its block at position column_start[column[k]] + m of the pattern is block
+/// visit block_visit[k] + m.
 struct GatherLists {
   std::vector<std::int32_t> column, block_visit;
-  /// Element slot s couples local node a (row) with b (column): 16 s + 4 a + b.
+  /// 16 s + 4 a + b: element slot s couples local node a (row) with b (column).
   std::vector<std::uint32_t> contributions;
   std::vector<ContributionRun> runs;
   /// Runs of block visit q: run_start[q] .. run_start[q+1]-1; its contributions begin at
   /// contribution_start[q].
   std::vector<std::int32_t> run_start, contribution_start;
-  /// (blocks,) by block visit: sum of V mu g_a . g_b over a block's contributions, N/m.
+  /// (blocks,) by block visit: sum of V mu g_a . g_b over the contributions, N/m.
   std::vector<double> diagonal_stiffness;
 
   /// Hyperelastic parts of block visit q: solid_parts[solid_start[q] .. solid_start[q+1]-1] =
-  /// 2 block + transposed. Both empty without such elements.
+  /// 2 block + transposed. Both are empty without such elements.
   std::vector<std::int64_t> solid_start;
   std::vector<std::uint32_t> solid_parts;
 
   /// Products of rows of patches (element_patches.hpp) in block visit q:
-  /// patch_pairs[patch_start[q] .. patch_start[q+1]-1], rows counted over all of the body's groups;
-  /// h_first h_second^T. Both empty without patches.
+  /// patch_pairs[patch_start[q] .. patch_start[q+1]-1], h_first h_second^T, with rows numbered over
+  /// all groups of the body. Both are empty without patches.
   std::vector<std::int64_t> patch_start;
   std::vector<std::array<std::uint32_t, 2>> patch_pairs;
 
-  /// Parts of the force of visit k's node: force_parts[force_start[k] .. force_start[k+1]-1], in
-  /// vectors of four doubles: 4 s + a for batches, behind them those of solid groups.
+  /// Parts of the force on the node of visit k: force_parts[force_start[k] .. force_start[k+1]-1],
+  /// as positions in the force records, in vectors of four doubles: 4 s + a for batches, followed
+  /// by solid groups.
   std::vector<std::int32_t> force_start;
   std::vector<std::uint32_t> force_parts;
 };
 
-/// Lists what each block and each nodal force is summed from.
-/// @param elements,solids,regions,pattern what is gathered, and into which blocks.
+/// Lists the contributions to each block and to each nodal force.
+/// @param elements,solids,regions,pattern the elements, their materials and the pattern of blocks.
 /// @param free_index mesh node -> free number or -1.
 /// @param rank spatial rank of each mesh node.
 /// Throws Error(size-limit) beyond 2^28 element slots.

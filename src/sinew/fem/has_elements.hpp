@@ -1,5 +1,5 @@
 /// @file
-/// What models of finite elements offer beside mechanics::BodyModel.
+/// Capability of finite-element body models, in addition to mechanics::BodyModel.
 #pragma once
 
 #include <cstddef>
@@ -24,26 +24,26 @@ struct Attachment {
   std::vector<double> weights;
 };
 
-/// A body model whose material is finite elements: mechanics::as<HasElements>(model).
+/// A body model that consists of finite elements: mechanics::as<HasElements>(model).
 class HasElements {
  public:
   virtual ~HasElements() = default;
   virtual const FemModel& elements() const = 0;
-  /// For an Assembly of the same elements.
+  /// The same, for an Assembly, which shares ownership.
   virtual std::shared_ptr<const FemModel> shared_elements() const = 0;
   virtual const FemBodySettings& settings() const = 0;
-  /// Of an attached point.
+  /// Nodes and weights of an attached point.
   virtual const Attachment& attachment(int point) const = 0;
-  /// The nodes and weights of a point, which is not attached. Throws as attach() does.
+  /// Nodes and weights of any point, without attaching it. Throws as attach() does.
   virtual mesh::EmbeddedPoint locate(const Vector3& rest_position, mesh::Outside outside,
                                      const std::string& what) const = 0;
-  /// Adds a load, whose number in loads() is returned. Building only.
+  /// Adds a load and returns its number in loads(). Building only.
   virtual int add_load(Load load) = 0;
-  /// After finish().
+  /// All loads. Only after finish().
   virtual const LoadSet& loads() const = 0;
-  /// Of a load, by its number.
+  /// Hash of a load, by its number.
   virtual std::uint64_t load_hash(int load) const = 0;
-  /// The attached point of a mass of the settings.
+  /// Attached point of a point mass, by its position in the settings.
   virtual int mass_point(std::size_t mass) const = 0;
 };
 

@@ -1,5 +1,5 @@
 /// @file
-/// What bodies of finite elements show of their material beside mechanics::Body.
+/// Capability of finite-element bodies, in addition to mechanics::Body.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@ namespace sinew::fem {
 class ElementHistory;
 class HasElements;
 
-/// A body whose material is finite elements: mechanics::as<const HasMaterial>(body). Positions and
+/// A body that consists of finite elements: mechanics::as<const HasMaterial>(body). Positions and
 /// forces are those of mechanics::Body, TakesForces and TakesLoads.
 class HasMaterial {
  public:
@@ -21,10 +21,10 @@ class HasMaterial {
   virtual const Points& positions() const = 0;
   virtual const Points& external_forces() const = 0;
   virtual Points load_forces() const = 0;
-  /// What its elements have behind them.
+  /// Strain history of its elements.
   virtual const ElementHistory& history() const = 0;
-  /// Adds the force that rows put on each free node, as of the last linearisation.
-  /// @param effort (rows,) N of the world's rows. @param forces (n, 3) N, added to.
+  /// Adds the forces of the rows on free nodes, with the Jacobian of the last linearisation.
+  /// @param effort (rows,) N over all rows of the world. @param forces (n, 3) N, added to.
   virtual void add_row_forces(std::span<const double> effort, Points& forces) const = 0;
 };
 

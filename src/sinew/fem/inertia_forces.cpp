@@ -42,8 +42,8 @@ double InertiaForces::add(const mechanics::StepWeights& weights, const SystemWor
   return size;
 }
 
-// (C v) . d with C = alpha M + beta K as the step had it. K v is without the base's velocity, and
-// dissipates in the motion beside the base's: the rest of its work is the base's.
+// (C v) . d with C = alpha M + beta K of the step. K acts on velocities relative to the base, and
+// dissipates in the motion relative to the base; the rest of its work is done by the base.
 double InertiaForces::damped_work(const mechanics::StepWeights& weights,
                                   const SystemWorkspace& workspace) {
   const RayleighDamping& damping = state_.model.settings().damping;
@@ -86,7 +86,7 @@ double InertiaForces::kinetic_energy() {
   double energy = 0.5 * motion_.dot(force_);
   const auto free = elements.free_index();
   for (const SupportMass& entry : elements.support_mass()) {
-    // M_fb stands for M_bf, too.
+    // M_fb also represents M_bf.
     const double share = free[static_cast<std::size_t>(entry.node)] >= 0 ? 1.0 : 0.5;
     energy += share * entry.mass *
               state_.velocities.row(entry.node).dot(state_.velocities.row(entry.support));

@@ -1,5 +1,5 @@
 /// @file
-/// What masses and Rayleigh damping resist the motion of a body with.
+/// Inertia and Rayleigh damping forces of a body.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,7 @@
 
 namespace sinew::fem {
 
+/// Computes inertia and Rayleigh damping forces, their work and the kinetic energy.
 class InertiaForces {
  public:
   /// @param state must outlive this.
@@ -16,16 +17,17 @@ class InertiaForces {
 
   BaseCarry& base() { return base_; }
 
-  /// Adds -(M a + C v) at the end of the step. @param weights of the step, which a and v follow
-  /// from. @param workspace of the linearisation.
-  /// @param first whether none of this step was before. @param right (3 free,) N, added to.
-  /// @return the norm of what masses take part with, N.
+  /// Adds -(M a + C v) at the end of the step. @param weights of the step, which define a and v.
+  /// @param workspace of the linearisation.
+  /// @param first whether this is the first linearisation of the step. @param right (3 free,) N,
+  ///   added to.
+  /// @return the norm of the part from masses, M (a + alpha v), N.
   double add(const mechanics::StepWeights& weights, const SystemWorkspace& workspace, bool first,
              VectorX& right);
-  /// J taken out by damping in the step, which is at its end. @param weights of the step.
+  /// Energy dissipated by damping, J; call it at the end of the step. @param weights of the step.
   /// @param workspace of its last linearisation.
   double damped_work(const mechanics::StepWeights& weights, const SystemWorkspace& workspace);
-  double kinetic_energy();  ///< J, now
+  double kinetic_energy();  ///< J, of the current state
 
   std::size_t bytes() const {
     return base_.bytes() +
@@ -38,7 +40,7 @@ class InertiaForces {
 
   FemState& state_;
   BaseCarry base_;
-  VectorX motion_, force_;  // (3 free,), from the first step of dynamics on
+  VectorX motion_, force_;  // (3 free,), scratch; empty until first used
 };
 
 }  // namespace sinew::fem

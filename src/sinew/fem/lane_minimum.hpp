@@ -11,7 +11,7 @@
 
 namespace sinew::fem {
 
-/// Smallest det F of each lane so far and the batch it was seen in.
+/// The smallest det F so far in each lane, and the batch in which it occurred.
 struct LaneMinimum {
   material::Lanes value = material::lanes(std::numeric_limits<double>::infinity());
   material::LaneMask batch{};
@@ -27,8 +27,8 @@ struct LaneMinimum {
   }
 };
 
-/// The smallest over lanes, and its slot: the lowest of equals.
-/// @param minimum of batches. @param element of each slot, -1 where a lane only fills up.
+/// The smallest ratio over all lanes, and its slot (of equal ones, the lowest).
+/// @param minimum over batches. @param element of each slot, -1 in padding lanes.
 /// @param first_slot added to the slot.
 inline SmallestRatio smallest(const LaneMinimum& minimum, std::span<const std::int32_t> element,
                               std::int64_t first_slot) {

@@ -85,7 +85,7 @@ std::vector<FacePoint> quadratic_rule() {
   return points;
 }
 
-// One face as it stands: its nodes' rows of any field.
+// Position, tangents and area vector of a face at a quadrature point.
 struct FaceGeometry {
   FaceGeometry(const Points& positions, const FaceNodes& nodes, const FacePoint& point) {
     for (std::size_t a = 0; a < nodes.size(); ++a) {
@@ -108,7 +108,7 @@ Vector3 interpolate(const Points& field, const FaceNodes& nodes, const FacePoint
   return sum;
 }
 
-// -d(force)/d(position) of one face, node by node.
+// -d(force)/d(position) of one face, by pairs of nodes.
 class FaceStiffness {
  public:
   explicit FaceStiffness(std::size_t nodes) : nodes_(nodes) {
@@ -166,8 +166,8 @@ void press(const PressureLoad& load, double factor, const Points& positions, Poi
   }
 }
 
-// Derivatives by velocity and acceleration are exact; that of the face's own turn and growth is
-// left out, which costs Newton iterations and no accuracy.
+// Derivatives with respect to velocity and acceleration are exact. The derivative with respect to
+// rotation and growth of the face is omitted, which costs Newton iterations but no accuracy.
 void resist(const WaterLoad& load, const std::vector<double>& thickness, double factor,
             const LoadState& state, Points& forces, Points& drag,
             const LoadSet::AddBlock& symmetric) {
@@ -212,8 +212,8 @@ void resist(const WaterLoad& load, const std::vector<double>& thickness, double 
   }
 }
 
-// Half of the way from a face through the body to where it comes out again, but no more than half
-// of that of a ball of the same volume and surface: the ends of a long body.
+// Half the distance from each face through the body to the opposite surface. For the ends of a long
+// body, it is limited to 3 V/S, the radius of a ball with the same ratio of volume to surface.
 std::vector<double> half_thickness(const std::vector<mesh::Face>& faces, const Points& rest) {
   struct Triangle {
     Vector3 a, b, c;
@@ -249,7 +249,7 @@ std::vector<double> half_thickness(const std::vector<mesh::Face>& faces, const P
       const Vector3 u = b - a, v = c - a;
       const Vector3 p = inwards.cross(v);
       const double determinant = u.dot(p);
-      if (determinant >= 0.0) continue;  // comes out only where the normal goes along
+      if (determinant >= 0.0) continue;  // a ray exits only where the normal points along it
       const Vector3 s = here.at - a;
       const double first = s.dot(p) / determinant;
       const Vector3 q = s.cross(u);

@@ -33,20 +33,20 @@ void check_masses(const FemModelSettings& settings) {
   }
 }
 
-/// Integral of N_a N_b over an element, as a share of its volume.
+/// Integral of N_a N_b over an element, divided by its volume.
 class ElementMass {
  public:
   explicit ElementMass(std::size_t nodes) : nodes_(nodes), shares_(nodes * nodes, 0.0) {}
   double& at(std::size_t a, std::size_t b) { return shares_[a * nodes_ + b]; }
   double of(std::size_t a, std::size_t b) const { return shares_[a * nodes_ + b]; }
   double row_sum(std::size_t a) const {
-    // A quarter, exactly, for tetrahedra.
+    // Exactly a quarter for tetrahedra.
     if (nodes_ == 4) return 0.25;
     double sum = 0.0;
     for (std::size_t b = 0; b < nodes_; ++b) sum += of(a, b);
     return sum;
   }
-  /// Positive: the row sum, or for quadratic elements the scaled diagonal.
+  /// Lumped masses, positive: the row sum, or for quadratic elements the scaled diagonal.
   double lump(std::size_t a) const {
     if (nodes_ != 10) return row_sum(a);
     double trace = 0.0;

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-// Calls visit(triangle, share of the thickness).
+// Calls visit(triangle, fraction of the thickness) for the triangles of a face.
 template <typename Visit>
 void each_triangle(const mesh::Face& face, Visit visit) {
   const auto& [a, b, c, d] = face.node;
@@ -36,7 +36,7 @@ void check(const MembraneLayer& layer) {
 
 }  // namespace
 
-// At some positions.
+// Deformation and stress of a triangle at given positions.
 struct Membranes::Strained {
   Eigen::Matrix<double, 3, 2> gradient;  // F
   Matrix2d stress;                       // S, Pa
@@ -62,7 +62,7 @@ Membranes::Membranes(const mesh::Mesh& mesh, std::span<const MembraneLayer> laye
   }
 }
 
-// Its volume is the area as yet.
+// Makes a triangle at rest, with its area in place of the volume.
 Membranes::Triangle Membranes::at_rest(const Points& nodes, const mesh::Triangle& node) {
   Triangle triangle;
   triangle.node = node;

@@ -1,18 +1,19 @@
 /// @file
-/// Thin layers on faces of volume elements: paper, fabric, a film. They resist stretch in their
-/// plane and not bending, and have no mass.
+/// Thin layers on faces of volume elements, such as paper, fabric or a film. They resist in-plane
+/// stretch but not bending, and have no mass.
 ///
-/// Saint Venant-Kirchhoff's law in plane stress, on triangles of constant strain. With the
-/// gradients g_a (2-vectors in the plane of the triangle at rest), V = area times thickness,
+/// The law is Saint Venant-Kirchhoff in plane stress, on constant-strain triangles. With the
+/// gradients g_a (2-vectors in the plane of the triangle at rest) and V = area times thickness,
 ///   F = sum of x_a g_a^T (3 x 2),   E = (F^T F - I)/2,
-///   U = V/2 S : E,   S = lambda tr(E) I + 2 mu E,   lambda = E_y nu/(1 - nu^2), 2 mu = E_y/(1 +
-///   nu), f_a = V F S g_a, K_ab = V [(g_a . S g_b) I + lambda (F g_a)(F g_b)^T
+///   U = V/2 S : E,   S = lambda tr(E) I + 2 mu E,
+///   lambda = E_y nu/(1 - nu^2),   2 mu = E_y/(1 + nu),   f_a = V F S g_a,
+///   K_ab = V [(g_a . S g_b) I + lambda (F g_a)(F g_b)^T
 ///             + mu ((g_a . g_b) F F^T + (F g_b)(F g_a)^T)]
 /// (Bonet, Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", 2nd ed., 2008,
-/// sections 9.3 and 9.4, for two dimensions of the material). The last two terms are B^T D B,
-/// positive semi-definite and blind to spins; the first is the geometric stiffness, whose positive
-/// part the tangents that may not be indefinite take. The law is meant for layers that stretch by a
-/// few per cent: a stiff layer that a soft body bends.
+/// sections 9.3 and 9.4, in two material dimensions). The last two terms are B^T D B, which is
+/// positive semidefinite and does not resist spins. The first is the geometric stiffness; positive
+/// semidefinite tangents use its positive part. The law is meant for layers that stretch by a few
+/// per cent, such as a stiff layer on a soft body that bends.
 #pragma once
 
 #include <array>
@@ -34,8 +35,9 @@ namespace sinew::fem {
 
 enum class Tangent;
 
-/// What a membrane is made of. Its faces are those of volume elements: a quadrilateral is two
-/// triangles by either diagonal, each of half the thickness, and a quadratic triangle four.
+/// Settings of a membrane. Its faces are faces of volume elements. A quadrilateral is split along
+/// both diagonals, into two pairs of triangles of half the thickness; a quadratic triangle into
+/// four triangles.
 struct MembraneLayer {
   std::string name;
   std::vector<mesh::Face> faces;
@@ -43,20 +45,20 @@ struct MembraneLayer {
   material::ElasticConstants constants;
 };
 
-/// Immutable.
+/// The membranes of a body. Immutable.
 class Membranes {
  public:
   Membranes() = default;
-  /// @param mesh whose nodes are at rest. @param layers with faces of its elements.
-  /// @param free_index mesh node -> free or -1. @param pattern has every pair of nodes of a volume
-  /// element. Throws Error: out-of-range (thickness), invalid-material.
+  /// @param mesh at rest. @param layers with faces of its elements.
+  /// @param free_index mesh node -> free or -1. @param pattern contains every pair of nodes of a
+  ///   volume element. Throws Error: out-of-range (thickness), invalid-material.
   Membranes(const mesh::Mesh& mesh, std::span<const MembraneLayer> layers,
             std::span<const NodeId> free_index, const linalg::BlockPattern& pattern);
 
   bool empty() const { return triangles_.empty(); }
   double area(std::size_t layer) const { return areas_[layer]; }  ///< m^2, at rest
-  /// Adds to forces and, unless the tangent is none, stiffness times K to the matrix.
-  /// @param positions (n, 3) m. @param tangent what K is. @param stiffness K's factor.
+  /// Adds the membrane forces and, unless the tangent is none, stiffness times K to the matrix.
+  /// @param positions (n, 3) m. @param tangent kind of K. @param stiffness factor of K.
   /// @param forces (3 free,) N. @param matrix layout of linalg::BlockPattern. @return U, J.
   double add(const Points& positions, Tangent tangent, double stiffness, std::span<double> forces,
              std::span<double> matrix) const;
@@ -64,7 +66,7 @@ class Membranes {
  private:
   struct Block {
     std::int32_t position = -1;  // -1: a node of the pair is fixed
-    std::uint8_t a = 0, b = 0;   // the local nodes of its row and column
+    std::uint8_t a = 0, b = 0;   // local nodes of row and column
   };
   struct Triangle {
     std::array<NodeId, 3> node;

@@ -1,5 +1,5 @@
 /// @file
-/// What only bodies of finite elements can do, asked of a body that must be one.
+/// Access to the capabilities of finite-element bodies, with an error for other bodies.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace sinew::fem {
 
-/// Throws Error(wrong-type). @param name of a body that is of another kind.
+/// Throws Error(wrong-type). @param name of the body of another kind.
 [[noreturn]] void throw_not_of_elements(const std::string& name);
 
-/// mechanics::as<Capability>(body). Throws Error(wrong-type) where it has not got it.
+/// mechanics::as<Capability>(body). Throws Error(wrong-type) if the body lacks the capability.
 template <class Capability, class Body>
 Capability& of_elements(Body& body) {
   auto* const found = mechanics::as<Capability>(body);

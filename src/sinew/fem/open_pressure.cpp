@@ -21,8 +21,8 @@ void multiply(std::span<const FreeBlock> blocks, std::span<const std::int32_t> h
 
 }  // namespace
 
-// (I + A^-1 B) dq = A^-1 r, which needs as many directions as the rim of the surface makes B's
-// rank, at most.
+// Solves (I + A^-1 B) dq = A^-1 r. The number of directions needed is at most the rank of B plus
+// one, and the rim of the surface determines that rank.
 void correct_for_open_pressure(std::span<const FreeBlock> blocks,
                                std::span<const std::int32_t> held, linalg::Factorisation& factor,
                                VectorX& motion) {

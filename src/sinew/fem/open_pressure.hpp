@@ -1,6 +1,6 @@
 /// @file
-/// The unsymmetric part that pressure on an open surface has in a tangent, for which the factor
-/// knows the symmetric part alone.
+/// Correction for the unsymmetric stiffness of pressure on an open surface; only the symmetric part
+/// is factorised.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +20,9 @@ struct FreeBlock {
   Matrix3 value;
 };
 
-/// dq of (A + B) dq = r. Allocates.
-/// @param blocks of B, where they are not zero. @param held see FemModel::held().
-/// @param factor of A. @param motion (3 free,) A^-1 r, which becomes dq.
+/// Solves (A + B) dq = r by GMRES, preconditioned by the factor of A. Allocates.
+/// @param blocks non-zero blocks of B. @param held see FemModel::held().
+/// @param factor of A. @param motion (3 free,) in: A^-1 r; out: dq.
 void correct_for_open_pressure(std::span<const FreeBlock> blocks,
                                std::span<const std::int32_t> held, linalg::Factorisation& factor,
                                VectorX& motion);

@@ -7,10 +7,10 @@
 
 namespace sinew::fem {
 
-// The i-th force is known to eps X sum_j |A_ij|, X the largest coordinate of the body: that is what
-// a rounding of the positions changes it by. Elements evaluate their forces with errors of a few
-// eps |K_e| |x_e|, and inertia M (x - x_start)/h^2 with eps M/h^2 |x|: both are within it, since A
-// holds K and M/h^2.
+// Rounding of the positions changes the i-th force by eps X sum_j |A_ij|, where X is the largest
+// coordinate of the body. Elements evaluate their forces with errors of a few eps |K_e| |x_e|, and
+// inertia M (x - x_start)/h^2 has errors of eps M/h^2 |x|. Both are within this bound, since A
+// contains K and M/h^2.
 double rounding_floor(const linalg::BlockPattern& pattern, std::span<const double> matrix,
                       std::span<const std::int32_t> held, double largest) {
   VectorX sum = VectorX::Zero(3 * static_cast<Eigen::Index>(pattern.nodes));

@@ -1,5 +1,5 @@
 /// @file
-/// What rounding leaves of the residual of a finite-element body.
+/// Residual of a finite-element body due to rounding.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,9 @@
 
 namespace sinew::fem {
 
-/// A bound, N. @param pattern,matrix A, which holds the elements' stiffness and inertia.
-/// @param held coordinates that are not part of it. @param largest coordinate of the body, m.
+/// A bound on the residual that rounding leaves, N.
+/// @param pattern,matrix A, with stiffness and inertia of the elements.
+/// @param held coordinates to leave out. @param largest coordinate of the body, m.
 double rounding_floor(const linalg::BlockPattern& pattern, std::span<const double> matrix,
                       std::span<const std::int32_t> held, double largest);
 

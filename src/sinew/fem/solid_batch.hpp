@@ -1,5 +1,5 @@
 /// @file
-/// Batches of hyperelastic elements in hand: positions, gradients, and what their points share.
+/// Working data of a batch of hyperelastic elements: positions, gradients and shared dilatation.
 /// Included by kernels only; the equations are in solid_elements.hpp and element_history.hpp.
 #pragma once
 
@@ -16,13 +16,13 @@ using material::Lanes;
 using material::lanes;
 using material::Lanes3x3;
 
-/// A batch in hand.
+/// Positions and constants of one batch of elements with N nodes and Q quadrature points.
 template <int N, int Q>
 struct Batch {
   static constexpr int kRows = 3 * N + 1;
 
   const LaneRow* constants;
-  Lanes x[N][3];  // relative to the first node: no digits are lost far from the origin
+  Lanes x[N][3];  // relative to the first node, to keep digits far from the origin
 
   SINEW_INLINE Batch(const SolidGroup& group, std::int64_t batch, const double* points)
       : constants(group.constants.data() + batch * Q * kRows) {
@@ -52,12 +52,13 @@ struct Batch {
   }
 };
 
-/// Moduli of the dilatation that points share and of their own about it (solid_elements.hpp).
+/// Moduli of the shared dilatation and of the dilatation of each point relative to it
+/// (solid_elements.hpp).
 struct BulkModuli {
   double shared = 0.0;
   double own = 0.0;
-  /// Whether pressures dominate what turns leave in the tangent: nu above about 0.45. Elsewhere the
-  /// tangent's pressure is that of the forces, which large steps need.
+  /// Whether rotations leave mainly pressure errors in the tangent: nu above about 0.45. Otherwise
+  /// the tangent uses the pressure of the forces, which large steps need.
   bool dominates = false;
 
   explicit BulkModuli(const SolidGroup& group)
@@ -66,17 +67,17 @@ struct BulkModuli {
         dominates(shared > 9.0 * group.law.shear_modulus()) {}
 };
 
-/// What a batch's elements share.
+/// Shared dilatation of the elements of a batch.
 struct Dilatation {
   Lanes ratio = lanes(1.0);     // Jm
   Lanes pressure = lanes(0.0);  // kappa (Jm - 1)
   Lanes energy = lanes(0.0);    // V kappa/2 (Jm - 1)^2
-  Lanes volume = lanes(1.0);    // V; 1 in lanes that only fill up
+  Lanes volume = lanes(1.0);    // V; 1 in padding lanes
 };
 
-/// Of the elements' own points, or of the patches that they belong to.
-/// @param group,batch,number of which batch. @param ratios det F of each point.
-/// @param patch_ratio of the group's patches, null without. @param bulk kappa, Pa.
+/// Computes the shared dilatation, from the points of each element or from the patch it belongs to.
+/// @param group,batch,number the batch and its number. @param ratios det F of each point.
+/// @param patch_ratio Jm of the patches of the group; null without patches. @param bulk kappa, Pa.
 template <int N, int Q>
 SINEW_INLINE Dilatation shared_dilatation(const SolidGroup& group, const Batch<N, Q>& batch,
                                           std::int64_t number, const Lanes (&ratios)[Q],
@@ -98,14 +99,14 @@ SINEW_INLINE Dilatation shared_dilatation(const SolidGroup& group, const Batch<N
   return result;
 }
 
-/// The part of the stress that history holds at one point, with b = F H and s = F : b.
+/// The stress due to the strain history at one point, with b = F H and s = F : b.
 struct Overstress {
   material::LanesSymmetric h;
   Lanes3x3 b;
   Lanes3x3 inverse;  // F^-T
   Lanes scale, s;    // J^(-2/3); 1 and 0 for a law that is not split
 
-  /// @param rows six of PointHistory::carried. @param split whether H acts on J^(-2/3) C.
+  /// @param rows six rows of PointHistory::carried. @param split whether H acts on J^(-2/3) C.
   /// @param f,cof,ratio F, its cofactors and its determinant.
   SINEW_INLINE Overstress(const LaneRow* rows, bool split, const Lanes3x3& f, const Lanes3x3& cof,
                           const Lanes& ratio)
@@ -160,17 +161,17 @@ struct Overstress {
   }
 };
 
-/// What a batch's points have behind them.
+/// Strain history at the points of one batch.
 struct BatchHistory {
-  const LaneRow* carried = nullptr;  ///< six rows a point
-  const LaneRow* peak = nullptr;     ///< one row a point
+  const LaneRow* carried = nullptr;  ///< six rows per point
+  const LaneRow* peak = nullptr;     ///< one row per point
 
   SINEW_INLINE BatchHistory(const SolidGroup& group, const PointHistory& history,
                             std::int64_t batch)
       : carried(history.carried == nullptr ? nullptr : history.carried + 6 * group.points * batch),
         peak(history.peak == nullptr ? nullptr : history.peak + group.points * batch) {}
 
-  /// The isochoric part at point q, softened.
+  /// Isochoric response at point q, with softening.
   SINEW_INLINE material::LanesLogResponse respond(const material::Hyperelastic& law,
                                                   const material::Principal& at, int q) const {
     material::LanesLogResponse response = material::respond(law, at);

@@ -32,7 +32,8 @@ Eigen::Matrix<double, Eigen::Dynamic, 3> rest_nodes(const mesh::Mesh& mesh,
   return x;
 }
 
-/// Local gradients (n, 3) and rest positions (n, 3) to gradients in space and the weight.
+/// Maps local gradients (n, 3) at rest positions (n, 3) to spatial gradients, and computes the
+/// weight.
 PointConstants point_constants(const Eigen::Matrix<double, Eigen::Dynamic, 3>& local,
                                const Eigen::Matrix<double, Eigen::Dynamic, 3>& x, double weight) {
   const Matrix3 jacobian = x.transpose() * local;  // dX/dxi

@@ -21,8 +21,8 @@ struct Sums {
   Lanes spread[N][3] = {};  // b_a = dV/dx_a
   Lanes block[kPairs][9] = {};
 
-  /// Gradients of a tetrahedron's nodes sum to zero, and so do rows and columns of its blocks:
-  /// those of the first node follow from the others.
+  /// First node that is computed. Shape gradients of a tetrahedron sum to zero, and so do the rows
+  /// and columns of its blocks; those of node 0 follow from the others.
   static constexpr int kFirst = N == 4 ? 1 : 0;
 
   SINEW_INLINE void add_tangent(const material::Lanes9x9& a9, const Lanes (&g)[N][3],
@@ -109,13 +109,13 @@ const double* patch_ratios_of(const SolidGroup& group, const SolidOutput& output
   return group.patches.empty() ? nullptr : output.patch_ratio + group.patches.patches_before;
 }
 
-/// Where a group's batch writes what patches sum up.
+/// Start of the records of a batch that patches sum (see sum_rows()).
 double* spread_records(const SolidGroup& group, const SolidOutput& output, std::int64_t batch) {
   return output.spread + 16 * (group.patches.slots_before + kLanes * batch);
 }
 
-/// kappa (Jm - 1) with J linearised from where the body was before its last motion,
-/// J0 + cof F0 : (F - F0); see SolidOutput::start.
+/// kappa (Jm - 1) with J linearised about the positions before the last motion, J0 + cof F0 : (F -
+/// F0); see SolidOutput::start.
 /// @param group,batch,number of which batch. @param f F of each point. @param bulk kappa, Pa.
 template <int N, int Q>
 SINEW_INLINE Lanes linear_pressure(const SolidGroup& group, const Batch<N, Q>& batch,
@@ -139,7 +139,7 @@ material::Projection projection_of(Tangent tangent) {
   return tangent == Tangent::exact ? none : positive;
 }
 
-// Compiled with and without blocks, not for each tangent: the compiler needs long for each.
+// Compiled with and without blocks, but not for each tangent, since each takes long to compile.
 template <int N, int Q, bool kBlocks>
 void evaluate(const SolidGroup& group, int begin, int end, const double* points, Tangent tangent,
               const SolidOutput& output, LaneMinimum& minimum) {
@@ -158,7 +158,7 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
       minimum.see(ratio[q], b);
     }
     const Dilatation shared = shared_dilatation(group, batch, b, ratio, patch_ratio, bulk.shared);
-    Lanes lag = lanes(0.0);  // of the tangent's pressure behind the force's
+    Lanes lag = lanes(0.0);  // pressure of the tangent minus that of the forces
     if (kBlocks && bulk.dominates && output.start != nullptr && patch_ratio == nullptr) {
       lag = linear_pressure(group, batch, b, f, output, bulk.shared) - shared.pressure;
     }
@@ -171,7 +171,7 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
       if (past.carried != nullptr) material::scale(response, output.history.factor);
       const Lanes off = ratio[q] - shared.ratio, own = bulk.own * off;
       energy += weight * (response.energy + 0.5 * own * off);
-      // p J: p cof F by logarithmic stretches
+      // The stress p cof F adds p J to the derivatives with respect to logarithmic stretches.
       const Lanes push = (shared.pressure + own) * ratio[q];
       const Lanes stiffness = push + bulk.own * ratio[q] * ratio[q];
       for (int i = 0; i < 3; ++i) {
@@ -225,7 +225,7 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
   }
 }
 
-/// psi_iso = c (I - 3) alone: by invariants, without principal stretches.
+/// Whether psi_iso = c (I - 3), which is evaluated by invariants, without principal stretches.
 bool is_neo_hookean(const material::Hyperelastic& law) {
   return law.powers.size() == 1 && law.powers.front().exponent == 2.0 && law.polynomial.empty() &&
          law.saint_venant_shear == 0.0;
@@ -235,8 +235,8 @@ bool is_neo_hookean(const material::Hyperelastic& law) {
 ///   P = m F + s H,   s = p J - m I1/3,   p = kappa (Jm - 1) + kappa' (J - Jm),
 ///   K_ab = V { m (g_a . g_b) I - 2/3 m (f_a h_b^T + h_a f_b^T)
 ///              + (2/9 m I1 + p J + kappa' J^2) h_a h_b^T - s h_b h_a^T },
-/// the derivative of P by dJ = J H : dF and dH = -H dF^T H; without patches Jm = J, kappa' = kappa
-/// and the tangent's p may be that of SolidOutput::start.
+/// from dJ = J H : dF and dH = -H dF^T H. Without patches, Jm = J and kappa' = kappa, and the p of
+/// the tangent may be that of SolidOutput::start.
 template <bool kBlocks>
 void evaluate_neo_hookean(const SolidGroup& group, int begin, int end, const double* points,
                           const SolidOutput& output, LaneMinimum& minimum) {
@@ -295,7 +295,7 @@ void evaluate_neo_hookean(const SolidGroup& group, int begin, int end, const dou
       const Lanes mixed = -2.0 / 3.0 * vm;
       const Lanes square = volume * (2.0 / 9.0 * m * i1 + push + lag + bulk.own * j * j);
       for (int bb = 1; bb < 4; ++bb) {
-        Lanes right[3];  // what h_a is multiplied by
+        Lanes right[3];  // factor of h_a
         for (int r = 0; r < 3; ++r) right[r] = mixed * fg[bb][r] + square * h[bb][r];
         for (int a = 1; a <= bb; ++a) {
           Lanes* k = sums.block[SolidGroup::pair(a, bb)];

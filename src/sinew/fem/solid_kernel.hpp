@@ -1,6 +1,6 @@
 /// @file
-/// From positions to what each hyperelastic element contributes, eight at a time; the equations are
-/// in solid_elements.hpp.
+/// Kernels of hyperelastic elements: from positions to element records, eight elements at a time.
+/// The equations are in solid_elements.hpp.
 #pragma once
 
 #include "sinew/fem/element_kernel.hpp"
@@ -8,26 +8,26 @@
 
 namespace sinew::fem {
 
-/// What a group's points have behind them, from ElementHistory; nulls without.
+/// Strain history at the points of a group, from ElementHistory; null pointers if there is none.
 struct PointHistory {
-  const LaneRow* carried = nullptr;  ///< (batch, point, 6): what earlier strain adds to the stress
-  double factor = 1.0;               ///< of the law's isochoric part beside it
+  const LaneRow* carried = nullptr;  ///< (batch, point, 6): H, the stress due to earlier strain
+  double factor = 1.0;               ///< of the isochoric stress of the law, added to H
   const LaneRow* peak = nullptr;     ///< (batch, point): largest energy so far, Pa
 };
 
-/// Where a group's batches write. Record arrays are 64-byte aligned.
+/// Output arrays of a group, and inputs besides positions. Record arrays are 64-byte aligned.
 struct SolidOutput {
-  double* forces;  ///< four doubles a node of an element
-  double* blocks;  ///< kSolidBlock doubles a pair of nodes; not touched for Tangent::none
-  double* energy;  ///< one a batch of this group, J
-  const double* patch_ratio = nullptr;  ///< Jm of all patches of the body; read
-  double* spread = nullptr;             ///< 16 doubles a slot of a patch; see sum_rows()
+  double* forces;  ///< four doubles per node of each element
+  double* blocks;  ///< kSolidBlock doubles per pair of nodes; unused for Tangent::none
+  double* energy;  ///< one per batch of this group, J
+  const double* patch_ratio = nullptr;  ///< Jm of all patches of the body; input
+  double* spread = nullptr;             ///< 16 doubles per slot in a patch; see sum_rows()
   PointHistory history = {};            ///< of this group
-  /// (n, 4) m, where the body was before its last motion, or null. The tangent then has the
-  /// pressure p0 + kappa d(Jm), linearised from there, in its part p d(cof F)/dF: Newton's method
-  /// on displacements and pressures (u, p), with p condensed out of each iteration. An iteration
-  /// that turns an element by theta leaves kappa theta^2/2 in its true pressure, which the next
-  /// takes away, but which would make the tangent useless where kappa is large (Magisano,
+  /// (n, 4) m, positions before the last motion of the body, or null. If given, the term p d(cof
+  /// F)/dF of the tangent uses the pressure p0 + kappa d(Jm), linearised there. This is Newton's
+  /// method on displacements and pressures (u, p) with p condensed in each iteration. An iteration
+  /// that turns an element by theta leaves an error kappa theta^2/2 in its true pressure. The next
+  /// iteration removes it, but for large kappa it would make the tangent useless (Magisano,
   /// Leonetti, Garcea, Comput. Methods Appl. Mech. Engng 313 (2017) 986, for all stresses).
   const double* start = nullptr;
 };
@@ -35,14 +35,14 @@ struct SolidOutput {
 /// Evaluates batches begin .. end-1 of a group.
 /// @param group,begin,end which batches.
 /// @param points (n, 4) m, positions padded to four.
-/// @param tangent exact: the derivative; corotated: its projection onto the positive semi-definite
-///   matrices, point by point; rates: see there. @param output where everything is written.
-/// The smallest det F at a point of integration is returned, with the slot among all of the body;
-/// positions that are not finite give minus infinity.
+/// @param tangent exact: the derivative; corotated, projected: its projection onto the positive
+///   semidefinite matrices, point by point; rates: see Tangent. @param output arrays to write.
+/// @return the smallest det F at a quadrature point, with its slot among all slots of the body;
+///   minus infinity if a position is not finite.
 SmallestRatio evaluate_solids(const SolidGroup& group, int begin, int end, const double* points,
                               Tangent tangent, const SolidOutput& output);
 
-/// The smallest det F alone.
+/// Computes only the smallest det F.
 SmallestRatio measure_solids(const SolidGroup& group, int begin, int end, const double* points);
 
 /// det F of batches begin .. end-1 of linear tetrahedra.
@@ -50,24 +50,25 @@ SmallestRatio measure_solids(const SolidGroup& group, int begin, int end, const 
 void volume_ratios(const SolidGroup& group, int begin, int end, const double* points,
                    double* ratios);
 
-/// Deformation and stress of eight elements at one point of integration.
+/// Deformation and stress of eight elements at one quadrature point.
 struct SolidState {
   LaneRow weight;             ///< m^3
   LaneRow deformation[3][3];  ///< F
-  LaneRow piola[3][3];        ///< P, Pa, with the element's pressure
-  LaneRow energy;             ///< of the law (of slow motion, softened), volumetric part too; J/m^3
+  LaneRow piola[3][3];        ///< P, Pa, with the pressure of the element
+  LaneRow energy;             ///< J/m^3, long-term, softened, with the volumetric part
   LaneRow gradient[10][3];    ///< g_a of each node, 1/m
 };
 
-/// States of a batch, one a point of integration. @param group,batch which.
-/// @param points as for evaluate_solids(). @param patch_ratio Jm of the group's patches
-///   (patch_ratios()), null without. @param history of the group: ElementHistory::present().
+/// States of a batch, one per quadrature point. @param group,batch which.
+/// @param points as for evaluate_solids(). @param patch_ratio Jm of the patches of the group
+///   (patch_ratios()); null without patches. @param history of the group:
+///   ElementHistory::present().
 /// @param result (points,).
 void state_batch(const SolidGroup& group, int batch, const double* points,
                  const double* patch_ratio, const PointHistory& history,
                  std::span<SolidState> result);
 
-/// S~ of a batch's points, that which relaxes, and the energy of first loading
+/// Relaxing stress S~ at the points of a batch, and the energy of first loading
 /// (element_history.hpp).
 /// @param group,batch which. @param points as for evaluate_solids(). @param history of the group.
 /// @param stress (6 points,) Pa: xx, yy, zz, xy, xz, yz of each. @param energy (points,) Pa.

@@ -1,4 +1,4 @@
-// What is read from elements outside of forces: volume ratios, states, measures, history.
+// Evaluations of hyperelastic elements without forces: volume ratios, states and strain history.
 #include "sinew/fem/lane_minimum.hpp"
 #include "sinew/fem/solid_batch.hpp"
 #include "sinew/fem/solid_kernel.hpp"

@@ -7,9 +7,9 @@ namespace sinew::fem {
 
 namespace {
 
-constexpr int kBits = 20;  // an axis
+constexpr int kBits = 20;  // per axis
 
-/// The bits of x with two zeros between each and the next.
+/// The bits of x, with two zeros between consecutive bits.
 std::uint64_t spread(std::uint64_t x) {
   std::uint64_t result = 0;
   for (int bit = 0; bit < kBits; ++bit) result |= (x >> bit & 1U) << (3 * bit);

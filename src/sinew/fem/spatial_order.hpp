@@ -1,6 +1,6 @@
 /// @file
-/// An order of nodes in which neighbours in space stand close together, whatever the mesh file's
-/// numbering: loops in this order find their data in cache.
+/// An order of nodes in which neighbours in space are close, whatever the numbering of the mesh
+/// file. Loops in this order find their data in cache.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,9 @@
 
 namespace sinew::fem {
 
-/// (n,) place of each node along a Z-order curve through the bounding box (Morton, "A computer
-/// oriented geodetic data base", IBM, 1966), 2^20 cells an axis; ties keep the file's order.
+/// (n,) rank of each node along a Z-order curve through the bounding box (Morton, "A computer
+/// oriented geodetic data base", IBM, 1966), with 2^20 cells per axis; ties keep the order of the
+/// file.
 /// @param nodes (n, 3) m, finite.
 std::vector<std::int32_t> spatial_ranks(const Points& nodes);
 

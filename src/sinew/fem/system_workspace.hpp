@@ -1,5 +1,5 @@
 /// @file
-/// What a body keeps of one of its model's two systems.
+/// Working data of a body for one of the two systems of its model.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace sinew::fem {
 
-/// Assembly, border and factorisation of one FemSystem, as the parts of a body share them.
+/// Assembly, border and factorisation of one FemSystem, shared by the parts of a body.
 struct SystemWorkspace {
   /// @param system_in,pool must outlive this.
   SystemWorkspace(const FemSystem& system_in, ThreadPool& pool)
@@ -29,13 +29,13 @@ struct SystemWorkspace {
   std::unique_ptr<linalg::Factorisation> factorisation;
   Assembly assembly;
   std::vector<double> border;
-  std::vector<double> damping_stiffness;  ///< K of rates of strain (Tangent::rates)
+  std::vector<double> damping_stiffness;  ///< K against strain rates (Tangent::rates)
   bool damped = false;
-  /// What the elements' forces and matrix in `assembly` are of, at the body's present positions:
-  /// the next linearisation there takes them as they are. None once the body moved or something
-  /// was added to the matrix.
+  /// Weights of the forces and the matrix in `assembly` if they are valid at the current positions,
+  /// so that the next linearisation can reuse them. None after the body moved or something was
+  /// added to the matrix.
   std::optional<AssemblyWeights> present;
-  bool iterating = false;  ///< further linearisations follow where the body moves to
+  bool iterating = false;  ///< further linearisations of the same step may follow
 };
 
 }  // namespace sinew::fem

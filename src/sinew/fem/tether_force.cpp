@@ -42,7 +42,7 @@ void check_numbers(const Tether& tether, NodeId nodes) {
   }
 }
 
-// Nodes that stand together in an element have a block in the matrix's pattern.
+// Two nodes of one element have a block in the pattern of the matrix.
 void check_face(const Tether& tether, const FemModel& elements) {
   for (std::size_t a = 0; a < 3; ++a) {
     for (std::size_t b = 0; b < a; ++b) {

@@ -1,5 +1,6 @@
 /// @file
-/// Between "one array a quantity" (SoA, in kernels) and "one record an element" (AoS, for gathers).
+/// Conversion between one array per quantity (SoA, in kernels) and one record per element (AoS, for
+/// gathers).
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,7 @@ SINEW_INLINE void store_quad(double* target, const Quad& value) {
   std::memcpy(target, &value, sizeof value);
 }
 
-/// The first three components, 0 as the fourth.
+/// The first three components, with 0 as the fourth.
 SINEW_INLINE Quad without_padding(const Quad& value) {
   const QuadMask mask{-1, -1, -1, 0};
   return (Quad)((QuadMask)value & mask);
@@ -31,7 +32,7 @@ SINEW_INLINE Quad without_padding(const Quad& value) {
 
 namespace detail {
 
-/// (a, b) of a 2x2 transposition within pairs of lanes: even and odd lanes.
+/// Even and odd lanes of (a, b), interleaved: a 2x2 transposition within pairs of lanes.
 SINEW_INLINE material::Lanes even(const material::Lanes& a, const material::Lanes& b) {
   return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
 }
@@ -48,10 +49,10 @@ SINEW_INLINE material::Lanes odd_pairs(const material::Lanes& a, const material:
 
 }  // namespace detail
 
-/// Eight points into x, y, z lanes.
+/// Loads eight points into x, y and z lanes.
 /// @param points (n, 4) padded positions.
 /// @param nodes eight node numbers.
-/// @param result x, y and z of the eight.
+/// @param result x, y and z of the eight points.
 SINEW_INLINE void load_points(const double* points, const std::int32_t* nodes,
                               material::Lanes (&result)[3]) {
   using namespace detail;

@@ -24,8 +24,8 @@ AlignedBuffer::AlignedBuffer(std::size_t count) : size_(count) {
   if (pointer == nullptr) throw std::bad_alloc();
   data_.reset(pointer);
 #if defined(__linux__)
-  // A factor of a large mesh spans thousands of small pages: their address look-ups cost a tenth of
-  // the factorisation. Advice only, so a refusal is no error.
+  // The factor of a large mesh spans thousands of small pages, whose address translation costs a
+  // tenth of the factorisation. This is only advice, so a refusal is no error.
   if (alignment == kHugePage) static_cast<void>(madvise(pointer, bytes, MADV_HUGEPAGE));
 #endif
   std::memset(static_cast<void*>(pointer), 0, bytes);

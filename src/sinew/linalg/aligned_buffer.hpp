@@ -1,5 +1,5 @@
 /// @file
-/// Memory of doubles on cache-line bounds; large buffers on huge pages where the system has them.
+/// Arrays of doubles aligned to cache lines; large ones use huge pages if the system has them.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace sinew::linalg {
 
-/// A fixed number of doubles, zero at first.
+/// An array of a fixed number of doubles, initially zero.
 class AlignedBuffer {
  public:
   AlignedBuffer() = default;

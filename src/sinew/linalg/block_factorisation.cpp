@@ -14,8 +14,9 @@ namespace sinew::linalg {
 
 namespace {
 
-/// Nested dissection gives broad trees: four threads are nearly four times as fast as one, where
-/// minimum degree leaves long chains. It is kept unless it costs one thread more than this factor.
+/// Nested dissection gives broad trees, on which four threads are nearly four times as fast as one;
+/// minimum degree gives long chains. Nested dissection is therefore kept unless it is slower on one
+/// thread by more than this factor.
 constexpr double kDissectionBonus = 1.1;
 
 class BlockFactorisation final : public Factorisation {

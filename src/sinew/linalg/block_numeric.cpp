@@ -15,8 +15,8 @@ namespace sinew::linalg {
 
 namespace {
 
-/// Windows of rows of an update that are multiplied before they are spread: product and operands
-/// stay in the second cache.
+/// Number of row windows of an update that are multiplied before they are spread, so that product
+/// and operands stay in the second-level cache.
 constexpr int kWindows = 12;
 constexpr int kRowBlock = 8 * kWindows;
 
@@ -45,7 +45,7 @@ BlockNumeric::BlockNumeric(const BlockSymbolic& symbolic, std::shared_ptr<Factor
   const Panel& border = symbolic.border_panel();
   border_sums_ = AlignedBuffer(groups * 3 * at(border.width) * at(border.leading) + kOverrun);
   const std::size_t width = at(symbolic.max_width);
-  std::size_t signed_rows = 6 * width;  // what the diagonal block and the largest update ask for
+  std::size_t signed_rows = 6 * width;  // for the diagonal block and the largest update
   for (const Update& update : symbolic.updates) {
     const int depth = 3 * symbolic.panels[at(update.descendant)].width;
     signed_rows = std::max(signed_rows, at(depth) * at(update.columns));
@@ -119,7 +119,7 @@ void BlockNumeric::apply(const Update& update, const Panel& target, double* pane
   const std::span<const RowRun> runs(s.runs.data() + update.run_begin,
                                      s.runs.data() + update.run_end);
   const long leading = target.leading;
-  if (runs.size() == 1 && !target.split) {  // rows side by side up to the end of the panel
+  if (runs.size() == 1 && !target.split) {  // contiguous rows up to the end of the panel
     const int row = runs[0].target;
     multiply(product, 0, update.rows, panel + row + row * leading, leading, Store::subtract,
              Part::lower);
@@ -194,7 +194,7 @@ void BlockNumeric::update_border(int group, Scratch& scratch) {
   const long size = 3L * border.width * border.leading;
   double* const sum = border_sums_.data() + group * size;
   std::fill_n(sum, size, 0.0);
-  // Every panel updates the border once (b touches all), so update i is panel i's.
+  // Every panel updates the border once (b touches all), so update i is that of panel i.
   for (int p = s.group_start[at(group)]; p < s.group_start[at(group) + 1]; ++p) {
     apply(s.updates[at(border.update_begin + p)], border, sum, 0, border.height, scratch);
   }

@@ -1,6 +1,6 @@
 /// @file
-/// The numbers of one block factorisation, and the operations on single panels of which the whole
-/// is composed. Each operation touches one panel only, so that threads may share the panels out.
+/// Numeric data of a block factorisation, and operations on single panels. Each operation changes
+/// one panel only, so that threads can work on different panels.
 #pragma once
 
 #include <memory>
@@ -14,56 +14,57 @@
 
 namespace sinew::linalg {
 
-/// What the caller gives to one factorisation.
+/// Input of a factorisation: the arrays of A, H and b (Factorisation::factorise()).
 struct BlockInput {
   const double* matrix;
   const double* border;
   const double* right;
 };
 
-/// L, S and the sums of the border, for one BlockSymbolic.
+/// L, S and the border sums for one BlockSymbolic.
 class BlockNumeric {
  public:
-  /// Memory that one thread needs beside the factor.
+  /// Working memory of one thread.
   struct Scratch {
-    AlignedBuffer product;  ///< of an update, before it is spread over the target's rows
+    AlignedBuffer product;  ///< product of an update, before it is spread over the target rows
     AlignedBuffer signed_rows;
-    AlignedBuffer values;           ///< a panel's rows in a substitution
-    std::vector<int> column_place;  ///< of an update's nodes in the target
+    AlignedBuffer values;           ///< rows of a panel in a substitution
+    std::vector<int> column_place;  ///< target column of each node of an update
   };
 
-  /// @param symbolic must outlive this. @param memory of factors of factor_size(symbolic).
-  /// @param threads that factorise.
+  /// @param symbolic must outlive this. @param memory for factors of factor_size(symbolic) doubles.
+  /// @param threads number of threads that factorise.
   BlockNumeric(const BlockSymbolic& symbolic, std::shared_ptr<FactorMemory> memory, int threads);
-  /// Doubles.
+  /// Size of the factor in doubles.
   static std::size_t factor_size(const BlockSymbolic& symbolic);
 
-  /// Takes memory for the factor, where it holds none. Before the first panel.
+  /// Takes memory for the factor, unless it has some. Call it before the first panel.
   void begin();
-  /// Gives it back.
+  /// Returns the memory of the factor.
   void release();
   bool holds_factor() const { return factor_.size() > 0; }
 
-  /// Sets panel rows to the entries of A, H and b.
+  /// Fills a panel with the entries of A, H and b.
   void assemble(int panel, const BlockInput& input);
-  /// Subtracts what all descendants do to panel rows row_begin .. row_end-1.
+  /// Subtracts the updates of all descendants from panel rows row_begin .. row_end-1.
   void update(int panel, int row_begin, int row_end, Scratch& scratch);
-  /// Factorises the diagonal block; of a panel that is not split, the rows below too.
+  /// Factorises the diagonal block and, unless the panel is split, the rows below.
   void factorise(int panel, Scratch& scratch);
-  /// Rows row_begin .. row_end-1 of a split panel whose diagonal block is factorised.
+  /// Solves for rows row_begin .. row_end-1 of a split panel whose diagonal block is factorised.
   void solve_rows(int panel, int row_begin, int row_end, Scratch& scratch);
-  /// Sums up group `group` of the border's updates.
+  /// Sums the border updates of group `group`.
   void update_border(int group, Scratch& scratch);
-  /// Adds the groups: -(H; b) A^-1 (H; b)^T, lower triangle, ends in border(0).
+  /// Adds the groups; the result is the lower triangle of -(H; b) A^-1 (H; b)^T, see border().
   void finish_border();
 
-  /// x := S^-1 L^-1 x, in elimination order.
+  /// Forward substitution x := S^-1 L^-1 x, in elimination order.
   void forward(double* x, Scratch& scratch) const;
-  /// x := L^-T (x + L_border^T weights), in elimination order. weights (3 border nodes,).
+  /// Backward substitution x := L^-T (x + L_border^T weights), in elimination order. weights (3
+  /// border nodes,).
   void backward(double* x, const double* weights, Scratch& scratch) const;
 
-  /// Of a factorised panel: its values, S of its own columns, whether all of them are positive, and
-  /// its diagonal block to substitute with.
+  /// Values of a factorised panel, S of its columns, whether all of these are positive, and its
+  /// diagonal block for substitutions.
   const double* values(const Panel& panel) const { return factor_.data() + panel.offset; }
   const double* sign(const Panel& panel) const { return sign_.data() + 3 * panel.first; }
   bool positive(int panel) const { return negatives_[static_cast<std::size_t>(panel)] == 0; }
@@ -71,7 +72,7 @@ class BlockNumeric {
 
   const BlockSymbolic& symbolic() const { return *symbolic_; }
   Scratch& scratch(int thread) { return scratch_[static_cast<std::size_t>(thread)]; }
-  /// Entry (i, j), i >= j, of the border's panel.
+  /// Entry (i, j), i >= j, of the border panel.
   double border(int i, int j) const;
   int negative_pivots() const;
   bool singular() const;
@@ -82,7 +83,7 @@ class BlockNumeric {
              Scratch& scratch) const;
   const BlockSymbolic* symbolic_;
   std::shared_ptr<FactorMemory> memory_;
-  AlignedBuffer factor_;   ///< empty: given back
+  AlignedBuffer factor_;   ///< empty after release()
   AlignedBuffer inverse_;  ///< 1 / L_jj; before a panel is factorised, the magnitude of A_jj
   AlignedBuffer sign_;
   AlignedBuffer border_sums_;

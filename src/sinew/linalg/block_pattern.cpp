@@ -27,7 +27,7 @@ void check_cliques(int nodes, std::span<const Index> starts, std::span<const Ind
   }
 }
 
-/// For every node the cliques that hold it: (starts, cliques).
+/// For every node, the cliques that contain it: (starts, cliques).
 std::pair<std::vector<Index>, std::vector<Index>> cliques_of_nodes(int nodes,
                                                                    std::span<const Index> starts,
                                                                    std::span<const Index> members) {

@@ -1,6 +1,6 @@
 /// @file
-/// The fixed pattern of a symmetric matrix of 3x3 blocks, one block a pair of nodes, and the
-/// pattern of constraint rows upon it. Layouts are drawn here once.
+/// Fixed patterns of a symmetric matrix of 3x3 blocks, one block per pair of nodes, and of its
+/// constraint rows. This file defines their layouts.
 #pragma once
 
 #include <cstdint>
@@ -10,34 +10,33 @@
 
 namespace sinew::linalg {
 
-/// Doubles stored per 3x3 block: three columns padded to four rows, so that a column is one vector
-/// load. Entry (r, c) of block b is values[12 b + 4 c + r]; values[12 b + 4 c + 3] is padding and
-/// 0.
+/// Doubles per 3x3 block: three columns padded to four rows, so that a column is one vector load.
+/// Entry (r, c) of block b is values[12 b + 4 c + r]; the padding values[12 b + 4 c + 3] is 0.
 inline constexpr int kBlockStride = 12;
 
-/// Lower triangle of the node graph by columns: block b in column_start[j] .. column_start[j+1]-1
-/// stands at (row[b], j), rows ascending, the diagonal first. The block (i, j), i > j, holds
-/// A(3i..3i+2, 3j..3j+2); the upper triangle is its transpose and is not stored.
+/// Lower triangle of the block matrix by columns. Column j has the blocks
+/// column_start[j] .. column_start[j+1]-1; block b is at (row[b], j), with ascending rows, the
+/// diagonal first. Block (i, j), i >= j, is A(3i..3i+2, 3j..3j+2). The upper triangle is omitted.
 struct BlockPattern {
   int nodes = 0;
   std::vector<std::int32_t> column_start{0};
   std::vector<std::int32_t> row;
 
   int blocks() const { return static_cast<int>(row.size()); }
-  /// Position of block (i, j) (any order); -1 if it is not in the pattern. Binary search.
+  /// Position of block (i, j) or (j, i); -1 if it is not in the pattern. Binary search.
   int find(int i, int j) const;
 
-  /// The pattern with all diagonal blocks and every pair (i, j) that stands together in a clique
-  /// (an element's nodes, a cable segment's nodes). Cliques are rows of `members` split at
-  /// `starts`.
+  /// Makes the pattern of all diagonal blocks and all pairs (i, j) in a common clique (the nodes of
+  /// an element or of a cable segment). Clique c is members[starts[c] .. starts[c+1]-1]. Throws
+  /// Error(index-out-of-range).
   static BlockPattern from_cliques(int nodes, std::span<const std::int32_t> starts,
                                    std::span<const std::int32_t> members);
 
   bool operator==(const BlockPattern&) const = default;
 };
 
-/// Rows of H with fixed patterns: entry e in row_start[k] .. row_start[k+1]-1 is row k's 3-vector
-/// at node[e]; its values are border_values[3 e .. 3 e + 2]. Nodes within a row are distinct,
+/// Pattern of the rows of H: entry e in row_start[k] .. row_start[k+1]-1 is the 3-vector of row k
+/// at node[e], with the values border_values[3 e .. 3 e + 2]. The nodes of a row are distinct and
 /// ascending.
 struct BorderPattern {
   std::vector<std::int32_t> row_start{0};

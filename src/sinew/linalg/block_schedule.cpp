@@ -10,9 +10,9 @@ namespace sinew::linalg {
 
 namespace {
 
-/// A task is worth waiting a little for on the thread that has its operands in its cache (s).
+/// Priority bonus, s, for a task on the thread that has its operands in its cache.
 constexpr double kCacheBonus = 2e-6;
-/// Pauses before a waiting thread yields: a few microseconds, the length of a task.
+/// Pauses before a waiting thread yields: a few microseconds, the duration of a task.
 constexpr int kPauses = 300;
 
 void do_panel(BlockNumeric& numeric, int p, const BlockInput& input,
@@ -49,7 +49,7 @@ void do_task(BlockNumeric& numeric, const BlockTask& task, const BlockInput& inp
   }
 }
 
-/// Time from the start of each task to the end of all, along the longest chain that needs it.
+/// Time from the start of each task to the end of the longest chain of tasks that need it.
 std::vector<double> remaining_time(const std::vector<BlockTask>& tasks) {
   std::vector<double> remaining(tasks.size(), 0);
   for (std::size_t t = tasks.size(); t-- > 0;) {
@@ -61,8 +61,8 @@ std::vector<double> remaining_time(const std::vector<BlockTask>& tasks) {
   return remaining;
 }
 
-/// Plays the run through with estimated times: whenever a thread is free it takes the ready task
-/// with the longest chain behind it.
+/// Simulates the run with estimated times. A free thread takes the ready task with the longest
+/// remaining chain.
 class Simulation {
  public:
   Simulation(const std::vector<BlockTask>& tasks, int threads)

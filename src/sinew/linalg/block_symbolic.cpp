@@ -10,12 +10,12 @@ namespace sinew::linalg {
 
 namespace {
 
-/// Zero rows behind a panel: one less than the widest vector of any instruction set in use.
+/// Zero rows after a panel: one less than the widest vector of any instruction set in use.
 constexpr Index kTail = 7;
-/// Least number of zero rows between the diagonal block and the rows below of a split panel, and
-/// what the first row below is a multiple of.
+/// Minimum number of zero rows between the diagonal block and the rows below of a split panel; the
+/// first row below is a multiple of it.
 constexpr Index kGap = 8;
-/// Work from which the rows of a panel are worth sharing between threads (flops).
+/// Minimum work, flops, for dividing the rows of a panel between threads.
 constexpr double kSplitFlops = 4e5;
 constexpr Index kSplitRows = 96;
 constexpr int kBorderGroups = 8;
@@ -35,8 +35,8 @@ std::vector<std::vector<Index>> border_nodes_of(int nodes, const BorderPattern& 
   return result;
 }
 
-/// Whole cache lines, so that windows of 8 rows are aligned, and not a multiple of many: columns
-/// would fall on the same few cache sets.
+/// A multiple of a cache line, so that windows of 8 rows are aligned, but not of 8 lines, since
+/// columns would then map to the same few cache sets.
 Index leading_dimension(Index height) {
   const Index leading = (height + kTail + 7) / 8 * 8;
   return leading % 64 == 0 ? leading + 8 : leading;
@@ -56,7 +56,7 @@ class PanelBuilder {
     }
   }
 
-  /// Panels in order; the ranges of rows that update each, by descendant.
+  /// Makes the panels in order, with the ranges of rows that update each, by descendant.
   void lay_out() {
     std::vector<std::vector<Range>> ranges(at(partition_.count() + 1));
     for (Index d = 0; d < partition_.count(); ++d) find_ranges(d, ranges);
@@ -103,7 +103,7 @@ class PanelBuilder {
 
  private:
   struct Range {
-    Index descendant, begin, end;  // in the descendant's list of rows
+    Index descendant, begin, end;  // in the list of rows of the descendant
   };
   struct Block {
     Index number, row, column;
@@ -236,7 +236,7 @@ class PanelBuilder {
     std::tie(panel.transposed_begin, panel.transposed_end) = add(true, s_.transposed);
   }
 
-  /// Fills place_ with the panel row of every node that the panel holds.
+  /// Fills place_ with the panel row of every node in the panel.
   void place_rows(const Panel& panel) {
     for (Index i = 0; i < panel.width; ++i) place_[at(panel.first + i)] = 3 * i;
     for (Index i = panel.row_begin; i < panel.row_end; ++i) {
@@ -250,7 +250,7 @@ class PanelBuilder {
   std::vector<Index> panel_of_;
 };
 
-/// Groups of panels of about equal work, by their place in the order.
+/// Splits the panels, in order, into groups of about equal work.
 std::vector<Index> group_panels(const BlockSymbolic& s) {
   double total = 0;
   for (Index p = 0; p < s.panel_count(); ++p) total += s.panels[at(p)].flops;

@@ -7,14 +7,14 @@ namespace sinew::linalg {
 
 namespace {
 
-/// Rough speeds of one core, only to share out the work: they shift results in time, not in value.
+/// Approximate speeds of one core, to divide the work: they affect times, but not results.
 constexpr double kFlopsPerSecond = 40e9;
 constexpr double kDiagonalFlopsPerSecond = 15e9;
 constexpr double kSecondsPerUpdate = 0.15e-6;
 constexpr double kSecondsPerDouble = 0.3e-9;
-/// Subtrees become one task below this part of a thread's share.
+/// A subtree becomes one task if its work is below this fraction of the work per thread.
 constexpr double kSubtreeShare = 0.1;
-/// Rows of a shared part: a multiple of 3 (nodes) and of 8 (full vectors).
+/// Unit of the rows of a part: a multiple of 3 (nodes) and of 8 (full vectors).
 constexpr Index kRowUnit = 24;
 constexpr Index kMinSharedRows = 48;
 
@@ -47,8 +47,8 @@ class TaskBuilder {
   }
 
  private:
-  /// subtree_first_[p]: first panel of the task that ends at p, -1 where p is inside a task or
-  /// split.
+  /// Computes subtree_first_[p], the first panel of the task that ends at p; -1 if p is inside a
+  /// task or split.
   void find_subtrees() {
     const Index count = s_.panel_count();
     std::vector<double> work(at(count));

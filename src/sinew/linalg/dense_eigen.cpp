@@ -1,4 +1,4 @@
-// The spectrum of a symmetric matrix: dense.hpp and dense_factor.hpp.
+// Spectra of symmetric matrices, of dense.hpp and dense_factor.hpp.
 #include <Eigen/Eigenvalues>
 
 #include "sinew/linalg/dense.hpp"

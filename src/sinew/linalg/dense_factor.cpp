@@ -9,7 +9,7 @@ void LuFactor::solve(const Eigen::Ref<const VectorX>& b, Eigen::Ref<VectorX> x) 
 }
 
 void LuFactor::solve_columns(const Eigen::Ref<const MatrixX>& b, Eigen::Ref<MatrixX> x) const {
-  // Eigen takes the address of the first entry, which there must be.
+  // Eigen takes the address of the first entry, which must exist.
   if (b.size() == 0) {
     x = b;
   } else {

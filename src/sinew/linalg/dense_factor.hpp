@@ -1,5 +1,6 @@
 /// @file
-/// Factors of dense matrices that are made anew in each step: nothing allocates after construction.
+/// Factors of dense matrices that are recomputed in each step; they do not allocate after
+/// construction.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -10,7 +11,7 @@
 
 namespace sinew::linalg {
 
-/// P A = L U with partial pivoting. A singular A shows in solutions that are not finite.
+/// LU factors P A = L U with partial pivoting. A singular A gives solutions that are not finite.
 class LuFactor {
  public:
   explicit LuFactor(Eigen::Index size = 0) : lu_(size) {}
@@ -18,43 +19,44 @@ class LuFactor {
 
   /// @param a (size, size)
   void compute(const MatrixX& a);
-  /// x of A x = b. @param b (size,). @param x (size,), not b.
+  /// Solves A x = b. @param b (size,). @param x (size,), must not alias b.
   void solve(const Eigen::Ref<const VectorX>& b, Eigen::Ref<VectorX> x) const;
-  /// Column by column. @param b (size, k). @param x (size, k), not b.
+  /// Solves for each column. @param b (size, k). @param x (size, k), must not alias b.
   void solve_columns(const Eigen::Ref<const MatrixX>& b, Eigen::Ref<MatrixX> x) const;
-  /// Of a matrix scaled to entries of order 1: whether a pivot is rounding, or not finite.
+  /// Whether a pivot is zero to rounding, or not finite. A must be scaled to entries of order 1.
   bool is_singular() const;
 
  private:
   Eigen::PartialPivLU<MatrixX> lu_;
 };
 
-/// A = L L^T of a positive definite A.
+/// Cholesky factor A = L L^T of a positive definite A.
 class CholeskyFactor {
  public:
   explicit CholeskyFactor(Eigen::Index size = 0) : llt_(size) {}
 
-  /// @param a (size, size); its lower triangle is read. False when A is not positive definite.
+  /// @param a (size, size); its lower triangle is read. @return false if A is not positive
+  ///   definite.
   bool compute(const MatrixX& a);
-  /// x of A x = b. @param b (size,). @param x (size,), may be b.
+  /// Solves A x = b. @param b (size,). @param x (size,), may be b.
   void solve(const Eigen::Ref<const VectorX>& b, Eigen::Ref<VectorX> x) const;
-  /// Column by column. @param b (size, k). @param x (size, k), may be b.
+  /// Solves for each column. @param b (size, k). @param x (size, k), may be b.
   void solve_columns(const Eigen::Ref<const MatrixX>& b, Eigen::Ref<MatrixX> x) const;
 
  private:
   Eigen::LLT<MatrixX> llt_;
 };
 
-/// Signs of a symmetric matrix: D of P A P^T = L D L^T with diagonal pivoting has as many negative
-/// entries as A has negative eigenvalues (Sylvester's law of inertia).
+/// Inertia of a symmetric matrix: D of P A P^T = L D L^T with diagonal pivoting has as many
+/// negative entries as A has negative eigenvalues (Sylvester's law of inertia).
 class SymmetricPivots {
  public:
   explicit SymmetricPivots(Eigen::Index size = 0) : ldlt_(size) {}
 
   /// @param a (size, size); its lower triangle is read.
   void compute(const MatrixX& a);
-  int negative() const;   ///< how many are below zero
-  bool vanishes() const;  ///< one is zero: A is singular
+  int negative() const;   ///< number of negative pivots
+  bool vanishes() const;  ///< whether a pivot is zero: A is singular
 
  private:
   Eigen::LDLT<MatrixX> ldlt_;
@@ -75,13 +77,13 @@ class SymmetricSpectrum {
   Eigen::SelfAdjointEigenSolver<MatrixX> solver_;
 };
 
-/// Inverse of a symmetric matrix on the directions in which it has one.
+/// Pseudo-inverse of a symmetric matrix.
 struct SpectralInverse {
   MatrixX inverse;   ///< Moore-Penrose, (n, n)
   int negative = 0;  ///< eigenvalues below zero
 };
-/// Eigenvalues within 1e-11 of the largest are taken for zero: rows that repeat each other give
-/// them. @param a (n, n), n > 0, scaled to entries of order 1; its lower triangle is read.
+/// Computes a pseudo-inverse. Eigenvalues below 1e-11 of the largest, as from redundant rows, count
+/// as zero. @param a (n, n), n > 0, scaled to entries of order 1; its lower triangle is read.
 SpectralInverse spectral_inverse(const MatrixX& a);
 
 }  // namespace sinew::linalg

@@ -12,13 +12,13 @@ namespace sinew::linalg {
 
 namespace {
 
-/// A pivot below this fraction of its original diagonal is taken as zero: what rounding leaves of a
-/// rigid motion is of the order of 1e-15, the softest mode of a slender robot of 1e-9.
+/// A pivot below this fraction of its original diagonal counts as zero. Rounding leaves about 1e-15
+/// for a rigid motion; the softest mode of a slender robot has about 1e-9.
 constexpr double kPivotTolerance = 1e-13;
-/// Rows below a diagonal block from which on it is worth a copy.
+/// Minimum number of rows below a diagonal block for which a copy of it pays.
 constexpr int kMinRowsApart = 96;
 
-// By itself, where registers are not short of what its callers hold.
+// Not inlined, so that the values of the callers do not occupy registers.
 template <int V, int C, Store mode>
 [[gnu::noinline]] void product_tile(const Product& p, int row, int column, double* c,
                                     long leading) {
@@ -58,7 +58,7 @@ void product_rows(const Product& p, int row_begin, int row_end, double* c, long 
   for_strips(p.columns, strip);
 }
 
-/// Rows of S L for the columns column .. column + C - 1, to multiply with: the panel itself unless
+/// Rows of S L for the columns column .. column + C - 1, as an operand: the panel itself unless
 /// there are negative pivots.
 template <int C>
 Product finished_columns(const DiagonalBlock& block, int column) {
@@ -89,8 +89,8 @@ inline void load_minus_product(const Product& p, int row, const double* c, Lanes
   }
 }
 
-/// Left-looking substitution of a tile: subtracts what the columns before did, then solves with the
-/// triangle in registers.
+/// Left-looking substitution of a tile: subtracts the contributions of the previous columns, then
+/// solves with the triangle in registers.
 template <int V, int C>
 inline void solve_tile(const Product& p, const Triangle<C>& t, int row, double* c) {
   Lanes x[C][V];
@@ -101,7 +101,8 @@ inline void solve_tile(const Product& p, const Triangle<C>& t, int row, double* 
   }
 }
 
-/// A pivot that may be divided by; counts negative ones and marks vanishing ones.
+/// Returns a pivot that can be a divisor: replaces vanishing pivots, and marks the block as
+/// singular.
 inline double accept_pivot(DiagonalBlock& block, double pivot, double magnitude) {
   if (!(std::abs(pivot) > kPivotTolerance * magnitude)) {  // also for NaN
     block.singular = true;
@@ -110,9 +111,8 @@ inline double accept_pivot(DiagonalBlock& block, double pivot, double magnitude)
   return pivot;
 }
 
-/// Factorises the triangle of C columns, with the rest of the rows that its vectors reach.
-/// Eliminates as L D L^T, whose chain from pivot to pivot holds one division, and scales by
-/// |D|^1/2 at the end.
+/// Factorises the triangle of C columns, with the other rows in its vectors. Eliminates as L D L^T,
+/// which has one division per pivot in its dependency chain, and scales by |D|^1/2 at the end.
 template <int C>
 inline void factorise_tile(DiagonalBlock& block, const Product& p, int column) {
   constexpr int V = (C + kLanes - 1) / kLanes;
@@ -152,7 +152,7 @@ void solve_strip(const DiagonalBlock& block, const Product& p, int column, int b
   for_row_tiles(begin, end, [&]<int V>(int row) { solve_tile<V, C>(p, triangle, row, c + row); });
 }
 
-/// Rows 0 .. columns-1, and what is below up to row_end.
+/// Factorises rows 0 .. columns-1, and solves for the rows below up to row_end.
 void factorise_strips(DiagonalBlock& block, int row_end) {
   for_strips(block.columns, [&]<int C>(int column) {
     constexpr int reached = (C + kLanes - 1) / kLanes * kLanes;
@@ -162,7 +162,8 @@ void factorise_strips(DiagonalBlock& block, int row_end) {
   });
 }
 
-/// Rows 0 .. columns-1 alone, in a copy: tiles run over its end, where the panel has other rows.
+/// Factorises only rows 0 .. columns-1, in a copy, since tiles overrun its end, where the panel has
+/// other rows.
 void factorise_apart(DiagonalBlock& block) {
   constexpr long leading = kMaxPackedBlock + kOverrun;
   alignas(64) double copy[kMaxPackedBlock * leading + kOverrun];

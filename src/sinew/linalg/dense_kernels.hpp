@@ -1,12 +1,12 @@
 /// @file
-/// The dense arithmetic of the block factorisation: products of panels, and the factorisation and
-/// substitution of one panel. Column-major, sizes multiples of 3. Every entry is computed by the
-/// same operations in the same order, however rows are cut into pieces.
+/// Dense kernels of the block factorisation: products of panels, and factorisation and substitution
+/// of one panel. Arrays are column-major, sizes multiples of 3. Every entry is computed by the same
+/// operations in the same order, however the rows are divided.
 #pragma once
 
 namespace sinew::linalg {
 
-/// Numbers behind the last row that kernels may touch.
+/// Number of doubles after the last row that kernels may access.
 inline constexpr int kOverrun = 8;
 
 /// Two operands A (rows, depth) and B (columns, depth) of a product A B^T.
@@ -19,47 +19,48 @@ struct Product {
   int columns;
 };
 
-/// What a product does to the numbers that are there.
+/// How a product is combined with the values in the target.
 enum class Store { assign, add, subtract };
-/// All of a product, or of a square part the lower triangle: entries (i, j) with j <= i, and
-/// some above.
+/// The part of a product to compute: all of it, or the lower triangle j <= i, with some entries
+/// above.
 enum class Part { lower, whole };
 
-/// c(i - row_begin, j) = (A B^T)(i, j) for row_begin <= i < row_end and j < columns, or += or -=.
-/// Reads up to 7 rows of A past the end, and changes up to 7 rows of c by what A holds there.
+/// Computes c(i - row_begin, j) = (A B^T)(i, j) for row_begin <= i < row_end and j < columns, or +=
+/// or -=. Reads up to 7 rows of A past the end, and changes up to 7 rows of c past the end with
+/// them.
 void multiply(const Product& product, int row_begin, int row_end, double* c, long leading,
               Store store, Part part = Part::whole);
 
-/// The diagonal block of a panel and what its factorisation L S L^T, S = diag(+-1), leaves.
+/// The diagonal block of a panel and the results of its factorisation L S L^T, S = diag(+-1).
 struct DiagonalBlock {
   double* panel;          ///< column-major
   long leading;           ///< doubles from column to column
   int columns;            ///< a multiple of 3
-  double* inverse;        ///< (columns,) 1 / L_jj; in: magnitude that pivot j is measured against
+  double* inverse;        ///< (columns,) out: 1 / L_jj; in: magnitude to which pivot j is compared
   double* sign;           ///< (columns,) S
-  int negatives = 0;      ///< out: negative pivots
-  bool singular = false;  ///< out: a pivot vanished and was replaced
+  int negatives = 0;      ///< out: number of negative pivots
+  bool singular = false;  ///< out: whether a pivot vanished and was replaced
   double* scratch;        ///< 6 * columns doubles
 };
 
-/// Factorises rows 0 .. columns-1 and carries it through rows columns .. row_end-1 in one pass.
-/// Changes up to 7 rows past row_end; they must hold zeros, or rows that are not in use.
+/// Factorises rows 0 .. columns-1 and solves for rows columns .. row_end-1 in one pass. Changes up
+/// to 7 rows past row_end, which must be zero or unused.
 void factorise_panel(DiagonalBlock& block, int row_end);
 
-/// Carries a finished factorisation through rows row_begin .. row_end-1 (row_end - row_begin a
-/// multiple of 8, or zeros behind).
+/// Solves for rows row_begin .. row_end-1 with a factorised diagonal block. row_end - row_begin
+/// must be a multiple of 8, or followed by rows of zeros.
 void solve_panel_rows(const DiagonalBlock& block, int row_begin, int row_end);
 
-/// The same for `count` rows that stand by themselves, column-major; changes up to 7 rows more.
+/// The same for `count` rows in a separate array, column-major; changes up to 7 more rows.
 void solve_rows_apart(const DiagonalBlock& block, double* rows, long leading, int count);
 
-/// Backward substitution with one panel: v holds the values of the rows below, zeros at the
-/// padding, and y in its first `columns` entries, which become x: L^T x = y - L_below^T v_below.
+/// Backward substitution with one panel, L^T x = y - L_below^T v_below. v contains y in its first
+/// `columns` entries, which become x, then zeros in the padding, and v_below.
 void backward_panel(const double* panel, long leading, int columns, int height,
                     const double* inverse, double* v);
 
-/// Forward substitution: v holds r in its first `columns` entries, zeros below. They become u with
-/// L u = r, and the rows below -(L_below u).
+/// Forward substitution with one panel. v contains r in its first `columns` entries, and zeros
+/// below. The former become u with L u = r, the latter -(L_below u).
 void forward_panel(const double* panel, long leading, int columns, int height,
                    const double* inverse, double* v);
 

@@ -1,4 +1,4 @@
-// Linear systems and least squares that are solved once: dense.hpp.
+// Linear systems and least squares of dense.hpp.
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 

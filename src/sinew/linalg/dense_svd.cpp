@@ -1,4 +1,4 @@
-// Singular values and vectors: dense.hpp.
+// Singular values and vectors of dense.hpp.
 #include <Eigen/SVD>
 
 #include "sinew/linalg/dense.hpp"

@@ -17,7 +17,7 @@ using AmdOrdering = Eigen::AMDOrdering<int>;
 using Ldlt = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, AmdOrdering>;
 using Llt = Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, AmdOrdering>;
 
-/// Where each stored scalar of the lower triangle comes from.
+/// Pattern of the lower triangle by scalars, and the source of each.
 struct ScalarPattern {
   SparseMatrix matrix;  ///< values are 1
   std::vector<int> source;
@@ -26,7 +26,8 @@ struct ScalarPattern {
   double flops = 0;
 };
 
-/// Lower triangle of scalars, column by column; `source` in the order of the values.
+/// Expands blocks to the lower triangle of scalars, column by column; `source` has the order of the
+/// values.
 ScalarPattern expand(const BlockPattern& pattern, const BorderPattern& border) {
   ScalarPattern result;
   result.border = border;
@@ -175,7 +176,7 @@ class EigenPlan final : public FactorisationPlan {
   }
 
  private:
-  /// Column counts from the elimination tree of Eigen's own order: exact, and independent of
+  /// Column counts from the elimination tree of Eigen's order: exact, and independent of the
   /// values.
   static void count_factor(ScalarPattern& scalars) {
     const int size = static_cast<int>(scalars.matrix.rows());

@@ -32,7 +32,7 @@ std::vector<Index> amd(const NodeGraph& graph) {
 
 std::vector<Index> metis(const NodeGraph& graph) {
   idx_t nodes = graph.nodes();
-  std::vector<Index> start = graph.start;  // METIS takes its arguments without const
+  std::vector<Index> start = graph.start;  // METIS takes non-const arguments
   std::vector<Index> neighbour = graph.neighbour;
   std::vector<Index> order(at(nodes));
   std::vector<Index> inverse(at(nodes));
@@ -40,8 +40,8 @@ std::vector<Index> metis(const NodeGraph& graph) {
   METIS_SetDefaultOptions(options.data());
   options[METIS_OPTION_SEED] = 1;
   options[METIS_OPTION_NUMBERING] = 0;
-  // METIS draws from the C library's one rand(), which it seeds first: orderings made at the same
-  // time would take each other's numbers and come out different every time.
+  // METIS seeds and uses the global rand() of the C library. Concurrent orderings would take each
+  // other's numbers and differ in every run.
   static std::mutex one_at_a_time;
   const std::scoped_lock lock(one_at_a_time);
   const int status = METIS_NodeND(&nodes, start.data(), neighbour.data(), nullptr, options.data(),
@@ -101,7 +101,7 @@ NodeGraph::NodeGraph(const BlockPattern& pattern) {
 }
 
 std::vector<std::int32_t> fill_reducing_order(const NodeGraph& graph, Ordering which) {
-  if (graph.neighbour.empty()) {  // nothing to reduce, and METIS does not take an empty graph
+  if (graph.neighbour.empty()) {  // no fill, and METIS rejects an empty graph
     std::vector<Index> order(at(graph.nodes()));
     std::iota(order.begin(), order.end(), 0);
     return order;
@@ -154,7 +154,7 @@ Elimination::Elimination(const NodeGraph& graph, const std::vector<std::int32_t>
   const std::vector<Index> position = inverse_of(order);
   rows.resize(at(nodes));
   for (Index k = 0; k < nodes; ++k) {
-    std::vector<Index>& mine = rows[at(k)];  // holds what the children handed up, with repetitions
+    std::vector<Index>& mine = rows[at(k)];  // has the rows of the children, with repetitions
     const std::size_t node = at(order[at(k)]);
     for (Index e = graph.start[node]; e < graph.start[node + 1]; ++e) {
       const Index i = position[at(graph.neighbour[at(e)])];

@@ -1,5 +1,5 @@
 /// @file
-/// Memory that the factorisations of one plan lend each other.
+/// Memory of factors, shared by the factorisations of one plan.
 #pragma once
 
 #include <cstddef>
@@ -10,17 +10,17 @@
 
 namespace sinew::linalg {
 
-/// Between the steps of a simulation its factor is of no use. Of many simulations only those that
-/// are in a step hold one, and the next one works in the memory that was given back last, which may
-/// still be in the cache. May be used by several threads.
+/// Pool of buffers for factors. A simulation does not need its factor between steps, so only
+/// simulations in a step hold a buffer. The next one gets the buffer that was returned last, which
+/// may still be in the cache. Thread-safe.
 class FactorMemory {
  public:
-  /// @param doubles of a factor.
+  /// @param doubles size of a factor.
   explicit FactorMemory(std::size_t doubles);
 
-  /// What stands in it is undefined. Allocates where none is free.
+  /// Takes a buffer, whose content is undefined. Allocates if none is free.
   AlignedBuffer take();
-  /// Keeps as many as the machine has threads, and frees others.
+  /// Returns a buffer. The pool keeps as many as the machine has threads, and frees others.
   void give_back(AlignedBuffer buffer);
 
  private:

@@ -68,8 +68,8 @@ void check_border_pattern(const BorderPattern& border, int nodes) {
   }
 }
 
-/// The plans in use, each with what it was made of. A plan is a function of that alone, so that no
-/// number depends on who shares one.
+/// The plans in use, each with the input from which it was made. A plan depends on that only, so
+/// sharing does not affect results.
 class PlansInUse {
  public:
   PlanPointer find(const BlockPattern& pattern, const BorderPattern& border,
@@ -78,7 +78,7 @@ class PlansInUse {
     return find_locked(pattern, border, settings);
   }
 
-  /// The plan, or that of another thread that was earlier.
+  /// Adds a plan and returns it, or an equal one that another thread added before.
   PlanPointer add(const BlockPattern& pattern, const BorderPattern& border,
                   const FactorisationSettings& settings, PlanPointer plan) {
     auto made = std::make_shared<const Made>(Made{pattern, border, settings, std::move(plan)});

@@ -10,12 +10,12 @@ namespace sinew::linalg {
 
 namespace {
 
-/// A pivot may be so much smaller than its column.
+/// Minimum ratio of a pivot to its column.
 constexpr double kThreshold = 1e-4;
-/// Below it, in a matrix scaled to one, a pivot is none.
+/// A pivot below it counts as zero, in a matrix scaled to entries near one.
 constexpr double kVanishing = 1e-14;
 constexpr int kScalings = 3;
-/// So many neighbours, and so many times the median's, are too many for a level.
+/// An unknown with more neighbours than this, and than this multiple of the median, gets no level.
 constexpr std::size_t kFull = 64, kFullOverMedian = 8;
 
 }  // namespace
@@ -45,7 +45,7 @@ void FrontalFactorisation::order() {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
-  // Rows so full that they would join all levels.
+  // Rows with so many entries that they would join all levels.
   std::vector<std::size_t> degrees;
   degrees.reserve(beside.size());
   for (const auto& list : beside) degrees.push_back(list.size());
@@ -58,7 +58,7 @@ void FrontalFactorisation::order() {
   }
   const auto is_last = [&](int i) { return beside[at(i)].size() > full; };
   std::vector<int> found, distance(at(size_), -1);
-  // Breadth first from `start` over what has no level yet.
+  // Breadth-first search from `start` over the unknowns without a level.
   const auto spread = [&](int start) {
     for (const int i : found) distance[at(i)] = -1;
     found = {start};
@@ -74,7 +74,8 @@ void FrontalFactorisation::order() {
   level_begin_ = {0};
   for (int i = 0; i < size_; ++i) {
     if (level_of_[at(i)] >= 0 || is_last(i)) continue;
-    // From an end: the farthest of the farthest (George & Liu 1979), fewest neighbours first.
+    // Start at an end: repeatedly the farthest unknown with the fewest neighbours (George & Liu
+    // 1979).
     int start = i;
     for (int depth = -1;;) {
       spread(start);
@@ -152,7 +153,7 @@ void FrontalFactorisation::scale(std::span<const double> values) {
 }
 
 void FrontalFactorisation::assemble(std::size_t level, std::span<const double> values) {
-  // What waits, the level's own, and the boundary.
+  // Rows: delayed pivots, the unknowns of the level, and the boundary.
   const auto waiting = std::partition_point(rest_rows_.begin(), rest_rows_.end(),
                                             [&](int i) { return at(level_of_[at(i)]) < level; });
   rows_.assign(rest_rows_.begin(), waiting);
@@ -188,8 +189,8 @@ void FrontalFactorisation::swap(int a, int b) {
 
 FrontalFactorisation::Pivot FrontalFactorisation::find(int next) {
   const int size = static_cast<int>(rows_.size());
-  // The largest of a column among the rows left, but for two; and which of those that may be
-  // pivots.
+  // The largest entry of a column in the remaining rows, except two; and the largest in rows that
+  // may be pivots.
   struct Largest {
     double all = 0.0, full = 0.0;
     int where = -1;
@@ -267,7 +268,7 @@ void FrontalFactorisation::eliminate_twin(int p) {
   weighted_two = two;
   one = (c * weighted_one - b * weighted_two) / determinant;
   two = (a * weighted_two - b * weighted_one) / determinant;
-  column(p)[p + 1] = 0.0;  // of L
+  column(p)[p + 1] = 0.0;  // entry of L
   for (int j = p + 2; j < full_; ++j) {
     const Eigen::Index from = j - p - 2;
     Eigen::Map<VectorX>(column(j) + j, size - j).noalias() -=
@@ -289,7 +290,7 @@ void FrontalFactorisation::eliminate() {
       done_ += 2;
     }
   }
-  // What is left goes on: columns that wait are up to date, those of the boundary are not.
+  // Pass on the remainder: delayed columns are up to date, those of the boundary are not.
   const std::size_t size = rows_.size(), left = size - at(done_);
   rest_.resize(left * left);
   rest_rows_.assign(rows_.begin() + done_, rows_.end());
@@ -341,7 +342,7 @@ void FrontalFactorisation::solve(VectorX& x) {
           panels_.data() + front.panel + at(p) * at(front.size) + at(p) + 1, left);
       local_.segment(p + 1, left).noalias() -= local_[p] * below;
     }
-    // D, and the rows go back.
+    // Solve with D, and scatter the rows.
     for (int p = 0; p < front.pivots; ++p) {
       const std::size_t k = at(front.first + p);
       const double a = diagonal_[k], b = beside_[k];

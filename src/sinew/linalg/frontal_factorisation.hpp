@@ -1,8 +1,8 @@
 /// @file
-/// A = P L D L^T P^T of a sparse symmetric indefinite matrix whose graph is long and thin, as that
-/// of the optimality conditions of a motion in time: the frontal method (Irons 1970; Duff & Reid,
-/// ACM Trans. Math. Software 9, 1983) along the levels of its graph, with pivots of one and two
-/// rows by threshold.
+/// Factorisation A = P L D L^T P^T of a sparse symmetric indefinite matrix whose graph is long and
+/// thin, such as the optimality conditions of a trajectory. It is the frontal method (Irons 1970;
+/// Duff & Reid, ACM Trans. Math. Software 9, 1983) along the levels of the graph, with threshold
+/// pivoting and 1x1 and 2x2 pivots.
 #pragma once
 
 #include <cstddef>
@@ -13,41 +13,42 @@
 
 namespace sinew::linalg {
 
-/// Where an entry of a sparse matrix stands. Entries that stand in one place add up.
+/// Position of an entry of a sparse matrix. Entries at the same position are added.
 struct SparseEntry {
   int row = 0, column = 0;
 };
 
-/// Levels are the sets of unknowns at one distance from an end of the graph: each has neighbours in
-/// the one before and the one after alone. Unknowns with so many neighbours that there would be no
-/// levels come last. A front holds a level and what is left of those before; pivots are taken from
-/// the level, those that are too small against their columns wait for the next front. The matrix is
-/// scaled so that its largest entries by row are near one (Ruiz 2001).
+/// Frontal factorisation. A level is the set of unknowns at one distance from an end of the graph;
+/// its neighbours are in the previous and the next level only. Unknowns with so many neighbours
+/// that they would join the levels come last. A front contains a level and the remainder of the
+/// previous fronts. Pivots are taken from the level; those that are too small compared with their
+/// columns are delayed to the next front. The matrix is scaled so that the largest entry of each
+/// row is near one (Ruiz 2001).
 class FrontalFactorisation {
  public:
-  /// Makes the plan. @param size rows of A. @param entries places in either triangle, each pair of
-  /// unknowns in one of the two.
+  /// Makes the plan. @param size rows of A. @param entries positions in either triangle, but for
+  /// each pair of unknowns only in one.
   FrontalFactorisation(int size, std::vector<SparseEntry> entries);
 
-  /// False where A is singular to rounding; the factorisation is then not to be used.
+  /// Factorises A. Returns false if A is singular to rounding; the factors must then not be used.
   /// @param values of the entries, in their order.
   bool factor(std::span<const double> values);
-  /// Negative eigenvalues of A.
+  /// Number of negative eigenvalues of A.
   int negative() const { return negative_; }
-  /// x <- A^-1 x, by a workspace of its own: one thread at a time. @param x (size,).
+  /// Solves x <- A^-1 x. Uses a workspace of this object: not thread-safe. @param x (size,).
   void solve(VectorX& x);
-  /// result <- A x, by the entries. @param values as for factor(). @param x (size,).
+  /// Multiplies result <- A x. @param values as for factor(). @param x (size,).
   /// @param result (size,).
   void multiply(std::span<const double> values, const VectorX& x, VectorX& result) const;
 
   int levels() const { return static_cast<int>(level_begin_.size()) - 1; }
 
  private:
-  /// What a front leaves behind.
+  /// Factors of a front.
   struct Front {
-    std::size_t panel = 0;                ///< where its columns of L begin, its rows long each
-    std::size_t rows = 0;                 ///< where its rows' unknowns begin
-    int size = 0, pivots = 0, first = 0;  ///< rows; pivots, the first of which is so many overall
+    std::size_t panel = 0;                ///< start of its columns of L, of `size` rows each
+    std::size_t rows = 0;                 ///< start of the unknowns of its rows
+    int size = 0, pivots = 0, first = 0;  ///< number of rows; of pivots; number of the first pivot
   };
   enum class Pivot { none, single, twin };
 
@@ -57,7 +58,7 @@ class FrontalFactorisation {
   void assemble(std::size_t level, std::span<const double> values);
   void eliminate();
   void swap(int a, int b);
-  /// Brings the next pivot to row and column `next`, and a twin's other half behind it.
+  /// Swaps the next pivot to row and column `next`; a 2x2 pivot (twin) also uses the one after.
   Pivot find(int next);
   void eliminate_single(int p);
   void eliminate_twin(int p);
@@ -66,23 +67,23 @@ class FrontalFactorisation {
 
   int size_;
   std::vector<SparseEntry> entries_;
-  std::vector<int> level_order_, level_of_;  // unknowns level by level; of each its level
-  std::vector<std::size_t> level_begin_;     // in level_order_
-  std::vector<std::vector<int>> boundary_;   // of each level, without what waits
-  std::vector<std::size_t> entry_begin_, entry_order_;  // entries by the level that takes them
+  std::vector<int> level_order_, level_of_;             // unknowns by level; level of each unknown
+  std::vector<std::size_t> level_begin_;                // in level_order_
+  std::vector<std::vector<int>> boundary_;              // of each level, without delayed pivots
+  std::vector<std::size_t> entry_begin_, entry_order_;  // entries by the level that assembles them
   VectorX scale_, largest_;
 
-  // The front at hand.
-  std::vector<int> rows_, place_;  // its unknowns; of an unknown its row
+  // The current front.
+  std::vector<int> rows_, place_;  // its unknowns; row of each unknown
   std::vector<double> front_, rest_, weighted_;
   std::vector<int> rest_rows_;
-  int full_ = 0, done_ = 0;  // rows that may become pivots, that have
+  int full_ = 0, done_ = 0;  // number of rows that may become pivots, and that have
 
   std::vector<Front> fronts_;
-  std::vector<double> panels_, diagonal_, beside_;  // D: beside_ is not 0 at the first of a twin
+  std::vector<double> panels_, diagonal_, beside_;  // L; D, beside_ is not 0 at the first of a twin
   std::vector<int> front_rows_;
   int negative_ = 0;
-  VectorX local_;  // of solve()
+  VectorX local_;  // workspace of solve()
 };
 
 }  // namespace sinew::linalg

@@ -1,5 +1,5 @@
 /// @file
-/// Numbers of block rows and columns, and their use as places in arrays.
+/// Type of block row and column numbers, and its conversion to array positions.
 #pragma once
 
 #include <concepts>

@@ -1,6 +1,6 @@
 // Goto & van de Geijn, Anatomy of high-performance matrix multiplication, ACM Trans. Math. Software
-// 34 (2008), with the roles of the caches changed: a tile of A stays in the first cache while all
-// strips of a block of B, which fill the second, pass by.
+// 34 (2008), with the roles of the caches exchanged: a tile of A stays in the first-level cache
+// while it is multiplied by all strips of a block of B, which fill the second-level cache.
 #include "sinew/linalg/packed_product.hpp"
 
 #include <algorithm>
@@ -12,10 +12,11 @@ namespace sinew::linalg {
 namespace {
 
 constexpr int kPackedDepth = 144;    // the widest panel
-constexpr int kPackedColumns = 144;  // of B: with the depth, a part of the second cache
+constexpr int kPackedColumns = 144;  // of B; with the depth, part of the second-level cache
 static_assert(kPackedColumns % kTileColumns == 0);
 
-/// Strips of B one after the other; in a strip, the columns of one k side by side.
+/// Strips of B, one after the other; within a strip, the values of all columns for each k are
+/// contiguous.
 struct PackedStrips {
   alignas(64) double values[kPackedDepth * kPackedColumns];
   int depth;

@@ -10,8 +10,8 @@ namespace {
 constexpr int kStrips = kMaxPackedBlock / kTileColumns;
 static_assert(kStrips * kTileColumns == kMaxPackedBlock);
 
-/// Rows of S L strip after strip: those of a strip's C columns against the columns before them, the
-/// C numbers of one column side by side; and the triangles of the strips.
+/// Rows of S L, strip by strip: the rows of the C columns of a strip in all previous columns, with
+/// the C values of each column contiguous; and the triangles of the strips.
 struct PackedBlock {
   alignas(64) double values[kTileColumns * kTileColumns * kStrips * (kStrips - 1) / 2];
   Triangle<kTileColumns> triangles[kStrips];
@@ -29,7 +29,7 @@ struct PackedBlock {
     });
   }
 
-  /// Where the strip of a column begins.
+  /// Start of the strip of a column.
   static int first(int column) { return column * (column - kTileColumns) / 2; }
   template <int C>
   const Triangle<C>& triangle(int column) const {
@@ -41,8 +41,8 @@ struct PackedBlock {
   }
 };
 
-/// Left-looking: subtracts what the columns before did, then solves with the triangle. @param done
-/// the tile's columns so far, without gaps.
+/// Left-looking substitution: subtracts the contributions of the previous columns, then solves with
+/// the triangle. @param done previous columns of the tile, contiguous.
 template <int V, int C>
 inline void solve_strip_packed(const PackedBlock& block, int column, double* done, double* c,
                                long leading) {

@@ -1,5 +1,5 @@
 /// @file
-/// Spreads the product of an update over the rows of its target panel.
+/// Scatters the product of an update to the rows of its target panel.
 #pragma once
 
 #include <span>
@@ -8,13 +8,13 @@
 
 namespace sinew::linalg {
 
-/// panel(target row of i, column_place[j / 3] + j % 3) -= product(i - begin, j) for the rows
-/// begin <= i < end of an update and all columns j <= i. Entries of the target above its diagonal
-/// may change too; they are not in use.
+/// Arguments of panel(target row of i, column_place[j / 3] + j % 3) -= product(i - begin, j) for
+/// the rows begin <= i < end of an update and all columns j <= i. Entries of the target above its
+/// diagonal, which are unused, may change, too.
 struct Spread {
   std::span<const RowRun> runs;        ///< all rows of the update
   std::span<const RowWindow> windows;  ///< the rows begin .. end-1
-  const int* column_place;             ///< by node
+  const int* column_place;             ///< first target column of each node
   int columns;
   int begin, end;
   const double* product;  ///< readable up to 7 rows past the end
@@ -23,12 +23,12 @@ struct Spread {
   long leading;
 };
 
-/// Does it in the way that is faster on the processor built for; see Spread.
+/// Performs a Spread, by the method that is faster on the target processor.
 void spread_rows(const Spread& spread);
 
-/// By stretches of rows, on any processor.
+/// Performs a Spread by runs of rows; for any processor.
 void spread_runs(const Spread& spread);
-/// By windows of eight rows, which a mask expands: AVX-512 alone.
+/// Performs a Spread by masked windows of eight rows; only with AVX-512.
 void spread_windows(const Spread& spread);
 
 }  // namespace sinew::linalg

@@ -7,8 +7,8 @@ namespace sinew::linalg {
 
 namespace {
 
-/// Three columns of `count` rows, a multiple of 3. Writes exactly these rows: a vector that ran
-/// over the end would hold up the next read of the rows behind.
+/// Subtracts three columns of `count` rows, a multiple of 3. Writes exactly these rows, since a
+/// vector write beyond the end would stall the next read of the following rows.
 inline void subtract_columns(double* target, long leading, const double* source,
                              long leading_source, int count) {
   for (int c = 0; c < 3; ++c, target += leading, source += leading_source) {

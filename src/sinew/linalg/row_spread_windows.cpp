@@ -6,8 +6,8 @@
 
 namespace sinew::linalg {
 
-// Whole vectors of the target are rewritten, rows without a source with what they hold. Every write
-// covers the same eight rows as the reads that follow it, so none of them waits for the other.
+// Rewrites whole vectors of the target; rows without a source keep their values. Every write covers
+// the same eight rows as the following reads, so they do not stall.
 void spread_windows(const Spread& s) {
   const RowWindow* first = s.windows.data();
   const RowWindow* const last = first + s.windows.size();

@@ -1,5 +1,5 @@
 /// @file
-/// Dense arrays whose sizes change from step to step: memory grows and is kept.
+/// Dense arrays whose sizes change from step to step. Their memory grows and is kept.
 #pragma once
 
 #include <algorithm>
@@ -12,20 +12,20 @@
 
 namespace sinew::linalg {
 
-/// Numbers for Eigen to sum: it does so in an order that depends on their alignment, so that only a
-/// fixed one gives the same bits in every run.
+/// Aligned numbers for Eigen. Its order of summation depends on the alignment, so a fixed alignment
+/// is needed for the same bits in every run.
 using AlignedNumbers = std::vector<double, Eigen::aligned_allocator<double>>;
 
-/// Makes room for `size` entries; never gives any back.
+/// Makes room for at least `size` entries; never shrinks.
 template <class Vector>
 void grow(Vector& memory, std::size_t size) {
   if (memory.size() < size) memory.resize(std::max(size, 2 * memory.size()));
 }
 
-/// A matrix of changing shape that allocates only where it becomes larger than ever before.
+/// A matrix of changing shape that allocates only when it becomes larger than ever before.
 class ScratchMatrix {
  public:
-  /// Its entries are undefined. @param rows,columns the new shape.
+  /// Sets the shape; entries are then undefined. @param rows,columns the new shape.
   Eigen::Map<MatrixX> shape(Eigen::Index rows, Eigen::Index columns) {
     rows_ = rows;
     columns_ = columns;

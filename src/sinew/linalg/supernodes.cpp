@@ -8,7 +8,7 @@ namespace sinew::linalg {
 
 namespace {
 
-/// A set of columns on its way to become a supernode.
+/// A set of columns that becomes a supernode.
 struct Group {
   std::vector<Index> columns;  // ascending
   std::vector<Index> children;
@@ -38,8 +38,8 @@ std::vector<Group> fundamental_groups(const Elimination& tree) {
   return groups;
 }
 
-/// Zero blocks that joining `child` to `parent` stores: the rows of the child are a subset of the
-/// parent's columns and rows.
+/// Number of zero blocks stored if `child` is merged with `parent`. The rows of the child are a
+/// subset of the columns and rows of the parent.
 std::int64_t added_zeros(const Group& child, const Group& parent) {
   return std::int64_t{child.width()} * (parent.width() + parent.rows - child.rows);
 }
@@ -52,7 +52,7 @@ bool worth_joining(const Group& child, const Group& parent, const SupernodeSetti
          static_cast<double>(zeros) <= settings.zero_fraction * static_cast<double>(size);
 }
 
-/// Joins children to parents, cheapest first, from the leaves up. Joined groups end up empty.
+/// Merges children with parents, cheapest first, from the leaves up. Merged children become empty.
 void join_groups(std::vector<Group>& groups, const SupernodeSettings& settings) {
   for (std::size_t p = 0; p < groups.size(); ++p) {
     Group& parent = groups[p];
@@ -75,7 +75,7 @@ void join_groups(std::vector<Group>& groups, const SupernodeSettings& settings) 
   }
 }
 
-/// Equal parts of at most `max_width`, as numbers of columns.
+/// Splits a number of columns into equal parts of at most `max_width`.
 std::vector<Index> split_width(Index width, Index max_width) {
   const Index parts = (width + max_width - 1) / max_width;
   std::vector<Index> widths(at(parts));
@@ -95,7 +95,7 @@ SupernodePartition::SupernodePartition(const Elimination& elimination,
   for (std::size_t g = 0; g < groups.size(); ++g) parents[g] = groups[g].parent;
   const auto nodes = static_cast<Index>(elimination.order.size());
   std::vector<Index> renumbered(at(nodes));
-  std::vector<Index> sequence;  // groups in their final order, the empty ones left out
+  std::vector<Index> sequence;  // groups in their final order, without empty ones
   for (const Index g : postorder(parents)) {
     if (groups[at(g)].columns.empty()) continue;
     sequence.push_back(g);

@@ -1,6 +1,6 @@
 /// @file
-/// Supernodes: runs of columns of L with the same rows below, stored and computed as one dense
-/// panel. Columns whose patterns nearly agree are joined too, at the price of stored zeros.
+/// Supernodes: consecutive columns of L with the same rows below, stored and computed as one dense
+/// panel. Columns with nearly the same pattern are also merged, at the cost of stored zeros.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,17 @@
 
 namespace sinew::linalg {
 
-/// When columns are joined, and how wide a panel may be.
+/// Settings for merging columns, and the maximum width of a panel.
 struct SupernodeSettings {
-  /// A supernode joins its parent when that stores at most this many zero 3x3 blocks ..
+  /// A supernode is merged with its parent if that stores at most this many zero 3x3 blocks, ...
   int zero_blocks = 24;
-  /// .. or at most this fraction of the joined panel.
+  /// ... or zeros in at most this fraction of the merged panel.
   double zero_fraction = 0.0;
-  /// Widest panel in nodes; wider supernodes are split into equal parts.
+  /// Maximum width of a panel in nodes; wider supernodes are split into equal parts.
   int max_width = 48;
 };
 
-/// The columns in their final order, cut into supernodes. Children come before parents.
+/// The columns in their final order, divided into supernodes. Children come before parents.
 struct SupernodePartition {
   std::vector<std::int32_t> order;  ///< node eliminated k-th
   std::vector<std::int32_t> start;  ///< supernode s has columns start[s] .. start[s+1]-1

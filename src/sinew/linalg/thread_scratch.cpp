@@ -11,7 +11,7 @@ namespace sinew::linalg {
 
 namespace {
 
-constexpr std::size_t kLine = 8;  // doubles of a cache line
+constexpr std::size_t kLine = 8;  // doubles per cache line
 
 struct Memory {
   AlignedBuffer buffer;
@@ -29,11 +29,11 @@ ThreadScratch::ThreadScratch(std::size_t count) {
     throw Error(ErrorKind::internal, {}, "this thread's scratch memory is in use", "");
   }
   if (memory.buffer.size() < count) {
-    memory.buffer = AlignedBuffer();  // first, so that both never stand side by side
+    memory.buffer = AlignedBuffer();  // freed first, so that both never exist at a time
     memory.buffer = AlignedBuffer(whole_lines(count));
   }
 #ifndef NDEBUG
-  // Whoever reads what it has not written gets what shows.
+  // Reading uninitialised values then gives NaN.
   std::fill_n(memory.buffer.data(), memory.buffer.size(), std::numeric_limits<double>::quiet_NaN());
 #endif
   memory.leased = true;

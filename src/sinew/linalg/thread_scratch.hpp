@@ -1,25 +1,25 @@
 /// @file
-/// Memory of a thread for what is of no use when a function returns.
+/// Scratch memory of a thread, for data that is not needed after a function returns.
 #pragma once
 
 #include <cstddef>
 
 namespace sinew::linalg {
 
-/// A lease of the calling thread's memory: all simulations that step on one thread work in the same
-/// place, instead of keeping a place of their own each. The memory grows to the largest lease and
-/// is given back when the thread ends. One lease at a time on a thread; other threads may work in
-/// it while it lasts. What stands in it at first is undefined.
+/// A lease of the scratch memory of the calling thread. All simulations that step on one thread
+/// share this memory. It grows to the largest lease and is freed when the thread ends. A thread can
+/// have one lease at a time; other threads may use its memory while it lasts. The content is
+/// initially undefined.
 class ThreadScratch {
  public:
-  /// @param count doubles that take() may give, with 7 more for each call. Throws Error(internal)
-  /// where this thread has a lease.
+  /// @param count total number of doubles for take(), plus 7 for each call. Throws Error(internal)
+  ///   if this thread already has a lease.
   explicit ThreadScratch(std::size_t count);
   ~ThreadScratch();
   ThreadScratch(const ThreadScratch&) = delete;
   ThreadScratch& operator=(const ThreadScratch&) = delete;
 
-  /// The next `count` doubles, from a cache-line bound on; null for none.
+  /// Takes the next `count` doubles, aligned to a cache line; null if count is 0.
   double* take(std::size_t count);
 
  private:

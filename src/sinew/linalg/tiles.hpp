@@ -1,17 +1,18 @@
 /// @file
-/// How the dense kernels cut rows and columns into tiles whose sums stay in registers.
+/// Division of rows and columns into tiles whose sums stay in registers, for the dense kernels.
 #pragma once
 
 #include "sinew/linalg/vector_lanes.hpp"
 
 namespace sinew::linalg {
 
-/// Columns of a tile: two nodes. With kMaxVectors vectors of rows its sums fill the registers.
+/// Columns of a tile: two nodes. With kMaxVectors vectors of rows, the sums of a tile fill the
+/// registers.
 inline constexpr int kTileColumns = 6;
 inline constexpr int kMaxVectors = kLanes == 8 ? 4 : 2;
 
-/// Calls work with the template argument V for each piece, V * kLanes rows from `row` on; the
-/// pieces cover [begin, end).
+/// Calls work with the template argument V for each tile of V * kLanes rows from `row` on. The
+/// tiles cover rows begin .. end-1.
 template <typename Work>
 void for_row_tiles(int begin, int end, Work&& work) {
   for (int row = begin; row < end;) {
@@ -29,7 +30,8 @@ void for_row_tiles(int begin, int end, Work&& work) {
   }
 }
 
-/// Calls work with the template argument C for each strip, C columns from `column` on, forward.
+/// Calls work with the template argument C for each strip of C columns from `column` on, in
+/// ascending order.
 template <typename Work>
 void for_strips(int columns, Work&& work) {
   int column = 0;

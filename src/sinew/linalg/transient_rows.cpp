@@ -11,14 +11,14 @@ namespace sinew::linalg {
 
 namespace {
 
-/// Groups of a chunk where there are several, and up to which there is one alone.
+/// Groups per chunk, and maximum number of groups for a single chunk.
 constexpr std::int32_t kChunk = 32, kOneChunk = 48;
-/// Columns of the border at a time.
+/// Number of border columns that are processed at a time.
 constexpr int kBorderColumns = 96;
 
 std::int32_t leading_of(std::int32_t groups) { return (3 * groups + kOverrun + 7) / 8 * 8; }
 
-/// Tasks 0 .. count-1, each on the thread of its number.
+/// Runs tasks 0 .. count-1, assigned to threads by number.
 template <typename Work>
 void share_out(ThreadPool& pool, int count, Work&& work) {
   if (count == 1 || pool.size() == 1) {
@@ -34,7 +34,7 @@ void share_out(ThreadPool& pool, int count, Work&& work) {
 
 TransientRows::TransientRows(const BlockSymbolic& symbolic) : symbolic_(&symbolic) {}
 
-// Most bodies never have such rows: no memory is taken before.
+// Allocates on first use, since most bodies have no transient rows.
 void TransientRows::prepare(int threads) {
   if (!scratch_.empty()) return;
   const BlockSymbolic& s = *symbolic_;
@@ -63,7 +63,7 @@ void TransientRows::prepare(int threads) {
   }
 }
 
-// The panels on the ways from a group's nodes to the root, each once.
+// Visits the panels on the paths from the nodes of a group to the root, each once.
 template <typename Visit>
 void TransientRows::for_panels(const BorderPattern& rows, std::int32_t group, std::int32_t stamp,
                                Visit&& visit) {
@@ -125,7 +125,7 @@ void TransientRows::list(const BorderPattern& rows) {
 
 void TransientRows::list_chunk(const BorderPattern& rows, Chunk& chunk) {
   touched_.clear();
-  // A stamp for each group and pass, which are all different.
+  // Stamps are different for each group and pass.
   for (std::int32_t k = chunk.first; k < chunk.first + chunk.groups; ++k) {
     for_panels(rows, order_[at(k)], 2 * k, [&](std::int32_t p) {
       if (count_[at(p)]++ == 0) touched_.push_back(p);
@@ -170,7 +170,7 @@ void TransientRows::fill(const Chunk& chunk, const Piece& piece, const BorderPat
   }
 }
 
-// Rows times S, where S is not the identity.
+// Rows times S, if S is not the identity.
 TransientRows::Rows TransientRows::with_signs(const BlockNumeric& numeric, const Panel& panel,
                                               bool positive, Rows rows, int count,
                                               Scratch& scratch) {
@@ -200,7 +200,7 @@ void TransientRows::update(const BlockNumeric& numeric, const Piece& piece, Scra
     const Product product{values_of(from), from.leading,         factor.values,
                           factor.leading,  3 * descendant.width, update.columns};
     const RowRun* run = s.runs.data() + update.run_begin;
-    if (from.count == piece.count && run->length >= update.columns) {  // all groups, side by side
+    if (from.count == piece.count && run->length >= update.columns) {  // all groups, contiguous
       multiply(product, 0, 3 * from.count, x + run->target * long{piece.leading}, piece.leading,
                Store::subtract);
       continue;
@@ -271,7 +271,7 @@ void TransientRows::substitute(BlockNumeric& numeric, const Chunk& chunk, const 
   }
 }
 
-// X S X^T of the rows of one chunk with those of another that is not behind it.
+// X S X^T of the rows of one chunk with those of the same or an earlier chunk.
 void TransientRows::multiply_chunks(const BlockNumeric& numeric, const Chunk& left,
                                     const Chunk& right, Scratch& scratch) {
   const Part part = &left == &right ? Part::lower : Part::whole;
@@ -308,7 +308,7 @@ void TransientRows::multiply_chunks(const BlockNumeric& numeric, const Chunk& le
   place_block(left, right, block, leading);
 }
 
-// To where the caller's order has it in the lower triangle.
+// Copies a block to its place in the lower triangle, in the order of the caller.
 void TransientRows::place_block(const Chunk& left, const Chunk& right, const double* block,
                                 long leading) {
   for (int j = 0; j < right.groups; ++j) {
@@ -336,7 +336,7 @@ void TransientRows::condense(BlockNumeric& numeric, const BorderPattern& rows,
   share_out(pool, count, [&](int chunk, int thread) {
     substitute(numeric, chunks_[at(chunk)], rows, values, thread);
   });
-  // Pairs (left, right), right <= left, one row of them after the other.
+  // Pairs (left, right) with right <= left, row by row.
   share_out(pool, count * (count + 1) / 2, [&](int pair, int thread) {
     int left = 0;
     while ((left + 1) * (left + 2) / 2 <= pair) ++left;

@@ -1,6 +1,6 @@
 /// @file
-/// Rows that come and go beside a factorisation L S L^T: forward substitution of as many of them as
-/// there are now, and their part of the compliance.
+/// Transient rows of a factorisation L S L^T: forward substitution of the active rows, and their
+/// part of the compliance.
 #pragma once
 
 #include <cstdint>
@@ -13,36 +13,38 @@
 
 namespace sinew::linalg {
 
-/// For rows H_t, given anew at every call, X = H_t L^-T S, by panels: a row is zero but in the
-/// panels on the way from its nodes to the root of the elimination tree, so that as much is
-/// computed as if these rows alone were in the border. Then H_t A^-1 H_t^T = X S X^T, and with the
-/// border's rows of L, which are the same of H and b, the columns between.
+/// Condensation onto rows H_t that are given at every call. It computes X = H_t L^-T S by panels. A
+/// row is non-zero only in the panels on the path from its nodes to the root of the elimination
+/// tree, so the work is the same as if these rows were in the border. Then H_t A^-1 H_t^T = X S
+/// X^T. The coupling to H and b follows from the border rows of L, which are the same quantity for
+/// H and b.
 ///
-/// Rows are taken in chunks, in the order of elimination of their nodes, so that the rows of a
-/// chunk share most of their way. Chunks are substituted, and pairs of chunks multiplied, apart
-/// from each other: what is at hand stays in the second cache, and threads share them out.
+/// Rows are processed in chunks, in the order of elimination of their nodes, so that the rows of a
+/// chunk share most of their path. Chunks are substituted, and pairs of chunks multiplied,
+/// independently: the working set stays in the second-level cache, and threads work in parallel.
 /// Allocates only for more rows than ever before.
 class TransientRows {
  public:
   /// @param symbolic must outlive this.
   explicit TransientRows(const BlockSymbolic& symbolic);
 
-  /// @param numeric factorised. @param rows k groups of three on the same nodes (a point).
-  /// @param values of them, layout of BorderPattern. @param pool as many threads as numeric was
-  /// made for.
+  /// Computes compliance() and coupling().
+  /// @param numeric factorised. @param rows k groups of three rows on the same nodes (a point).
+  /// @param values of the rows, layout of BorderPattern. @param pool with as many threads as
+  ///   numeric was made for.
   void condense(BlockNumeric& numeric, const BorderPattern& rows, std::span<const double> values,
                 ThreadPool& pool);
-  /// (3 k, 3 k) leading block of H_t A^-1 H_t^T. Only the lower triangle.
+  /// H_t A^-1 H_t^T, lower triangle only, in the leading block (3 k, 3 k).
   const MatrixX& compliance() const { return compliance_; }
-  /// (3 k, border rows + 1) leading rows of H_t A^-1 (H^T, b).
+  /// H_t A^-1 (H^T, b), in the leading block (3 k, border rows + 1).
   const MatrixX& coupling() const { return coupling_; }
   std::size_t bytes() const;
 
  private:
-  /// X of a chunk in one panel.
+  /// X of one chunk in one panel.
   struct Piece {
     std::int32_t panel = 0;
-    std::int32_t count = 0;        // groups in it
+    std::int32_t count = 0;        // number of groups
     std::int32_t leading = 0;      // doubles from column to column
     std::int64_t offset = 0;       // in values_
     std::size_t first_member = 0;  // in members_
@@ -53,8 +55,9 @@ class TransientRows {
   };
   struct Scratch {
     AlignedBuffer product, signed_rows, block;
-    std::vector<std::int32_t> piece_of;  // by panel: of the chunk at hand, or -1
-    std::vector<std::int32_t> place;     // of a descendant's groups among the panel's
+    std::vector<std::int32_t> piece_of;  // by panel: piece of the current chunk, or -1
+    std::vector<std::int32_t>
+        place;  // place of the groups of a descendant among those of the panel
     std::vector<std::int32_t> column_place;
   };
   struct Rows {
@@ -88,8 +91,8 @@ class TransientRows {
 
   const BlockSymbolic* symbolic_;
   std::vector<std::int32_t> panel_of_;  // by position in the order of elimination
-  std::vector<std::int32_t> stamp_;     // by panel: who was there last
-  std::vector<std::int32_t> count_;     // by panel: groups of the chunk that is listed
+  std::vector<std::int32_t> stamp_;     // by panel: stamp of its last visit
+  std::vector<std::int32_t> count_;     // by panel: groups of the chunk being listed
   std::vector<std::int32_t> touched_;   // the panels of that chunk
   std::vector<std::int32_t> order_;     // groups by the elimination of their first node
   std::vector<std::int32_t> first_position_;

@@ -1,5 +1,5 @@
 /// @file
-/// What the substitution of a few columns needs of their triangle, for the dense kernels.
+/// Triangle of a few columns for substitution, in the dense kernels.
 #pragma once
 
 #include "sinew/linalg/dense_kernels.hpp"
@@ -7,8 +7,8 @@
 
 namespace sinew::linalg {
 
-/// factor[k][j] = S_k L_jk for k < j, inverse[j] = 1 / (S_j L_jj), of C columns that follow each
-/// other.
+/// The triangle of C consecutive columns: factor[k][j] = S_k L_jk for k < j, inverse[j] = 1 / (S_j
+/// L_jj).
 template <int C>
 struct Triangle {
   double factor[C][C];
@@ -24,7 +24,7 @@ struct Triangle {
     }
   }
 
-  /// x := x S^-1 L^-T of these columns. @param x by column: a number of rows in vectors.
+  /// Substitutes x := x S^-1 L^-T for these columns. @param x by column, V vectors of rows.
   template <int V>
   void substitute(Lanes (&x)[C][V]) const {
     SINEW_UNROLL for (int j = 0; j < C; ++j) {

@@ -1,6 +1,6 @@
 /// @file
-/// The widest vector of doubles of the instruction set that this file is compiled for, through the
-/// vector extensions that GCC and Clang share.
+/// The widest vector of doubles of the target instruction set, by the vector extensions of GCC and
+/// Clang.
 #pragma once
 
 #include <cstring>
@@ -38,7 +38,7 @@ inline Lanes broadcast(double x) {
 
 }  // namespace sinew::linalg
 
-/// Loops over registers must disappear: an array of registers lives in registers only then.
+/// Unrolls a loop over registers: an array stays in registers only if all its loops are unrolled.
 #if defined(__clang__)
 #define SINEW_UNROLL _Pragma("unroll")
 #else

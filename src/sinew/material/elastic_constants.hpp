@@ -1,15 +1,15 @@
 /// @file
-/// The two constants of an isotropic elastic material, and which law turns stretch into stress.
+/// Constants of an isotropic elastic material, and the choice of its law.
 #pragma once
 
 #include <string>
 
 namespace sinew::material {
 
-/// Law of stretch (see corotational.hpp and linear.hpp for the equations).
+/// Linear material laws; the equations are in response.hpp.
 enum class Law {
-  linear,        ///< small strain; right only while rotations and stretches are small
-  corotational,  ///< small strain in the frame of the rotation of F = R S; any rotation
+  linear,        ///< small strain; valid only for small rotations and stretches
+  corotational,  ///< small strain in the frame of the rotation R of F = R S; any rotation
 };
 
 /// Isotropic elastic constants.
@@ -19,12 +19,12 @@ struct ElasticConstants {
 
   /// Second Lame constant (shear modulus) mu = E / (2 (1 + nu)), Pa.
   double shear_modulus() const { return young_modulus / (2.0 * (1.0 + poisson_ratio)); }
-  /// First Lame constant lambda = E nu / ((1 + nu) (1 - 2 nu)), Pa. Negative when nu < 0.
+  /// First Lame constant lambda = E nu / ((1 + nu) (1 - 2 nu)), Pa. Negative if nu < 0.
   double first_lame() const {
     return young_modulus * poisson_ratio / ((1.0 + poisson_ratio) * (1.0 - 2.0 * poisson_ratio));
   }
   /// Throws Error(invalid-material) unless E > 0 is finite and -1 < nu < 0.5.
-  /// @param what names the material in the message ("bodies.trunk.material").
+  /// @param what name of the material in the message, such as "bodies.trunk.material".
   void validate(const std::string& what) const;
 };
 

@@ -98,7 +98,7 @@ Hyperelastic relaxed(Hyperelastic law) {
   const double share = law.long_term_share();
   for (PowerTerm& term : law.powers) term.coefficient *= share;
   for (double& coefficient : law.polynomial) coefficient *= share;
-  if (law.saint_venant_shear > 0.0) {  // all of it relaxes
+  if (law.saint_venant_shear > 0.0) {  // all of its stress relaxes
     law.saint_venant_shear *= share;
     law.bulk_modulus *= share;
   }
@@ -166,14 +166,14 @@ std::vector<OgdenTerm> convert(const std::vector<OgdenTerm>& terms, OgdenConvent
   return result;
 }
 
-// By the kernels' own functions, in one lane.
+// Uses the functions of the kernels, in one lane.
 LogResponse respond(const Hyperelastic& law, const std::array<double, 3>& stretches,
                     bool volumetric) {
   Principal at;
   at.determinant = lanes(stretches[0] * stretches[1] * stretches[2]);
   for (int i = 0; i < 3; ++i) at.stretch[i] = lanes(stretches[static_cast<std::size_t>(i)]);
   LanesLogResponse response = respond(law, at);
-  // Saint Venant-Kirchhoff has no volumetric part of its own.
+  // Saint Venant-Kirchhoff has no separate volumetric part.
   if (volumetric && law.saint_venant_shear == 0.0) {
     add_volumetric(response, at.determinant, law.bulk_modulus);
   }
@@ -201,14 +201,14 @@ std::array<double, 3> incompressible_stretches(DeformationMode mode, double stre
 }
 
 double nominal_stress(const Hyperelastic& law, DeformationMode mode, double stretch) {
-  // The last face is free: its Kirchhoff stress is the pressure to take off.
+  // The last face is unloaded: its Kirchhoff stress is the pressure to subtract.
   const LogResponse response = respond(law, incompressible_stretches(mode, stretch), false);
   return (response.first[0] - response.first[2]) / stretch;
 }
 
 namespace {
 
-// Isochoric motions e_3 = -e_1 - e_2: the second derivative on them is positive definite.
+// Whether the second derivative is positive definite on isochoric motions e_3 = -e_1 - e_2.
 bool is_stable(const Hyperelastic& law, DeformationMode mode, double stretch) {
   const auto h = respond(law, incompressible_stretches(mode, stretch), false).second;
   const double a = h[0][0] - 2.0 * h[0][2] + h[2][2];
@@ -217,7 +217,7 @@ bool is_stable(const Hyperelastic& law, DeformationMode mode, double stretch) {
   return a > 0.0 && a * b - c * c > 0.0;
 }
 
-// The stretch at which stability ends, going from 1 to `end` in equal ratios, then by bisection.
+// The stretch between 1 and `end` at which stability ends, by equal ratios and then by bisection.
 double end_of_stability(const Hyperelastic& law, DeformationMode mode, double end) {
   constexpr int kSamples = 400, kBisections = 50;
   double stable = 1.0;

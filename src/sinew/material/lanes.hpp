@@ -1,14 +1,15 @@
 /// @file
-/// Eight doubles that are computed on together, one an element: GCC and clang vector extensions,
-/// which the compiler lowers to whatever the target has (one AVX-512 register, two AVX, four SSE).
-/// Everything here is inlined into kernels; Lanes never crosses a library boundary by value.
+/// SIMD vectors of eight doubles, one per element. They are GCC and clang vector extensions, which
+/// the compiler maps to the registers of the target (one AVX-512, two AVX, four SSE). Everything
+/// here is inlined into kernels; Lanes never cross a library boundary by value.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 
-// How wide vectors are passed depends on the target; all such calls are inlined.
+// How wide vectors are passed depends on the target; all such calls are inlined, so the ABI warning
+// does not apply.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 #define SINEW_INLINE [[gnu::always_inline]] inline
@@ -54,7 +55,7 @@ SINEW_INLINE Lanes square_root(const Lanes& value) {
   return load(part);
 }
 
-/// Of all lanes, in pairs.
+/// Sum of all lanes, added in pairs.
 SINEW_INLINE double sum(const Lanes& value) {
   return ((value[0] + value[1]) + (value[2] + value[3])) +
          ((value[4] + value[5]) + (value[6] + value[7]));

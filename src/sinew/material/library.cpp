@@ -28,7 +28,7 @@ constexpr const char* kTensileRemark =
     "the fit gives E = 148 kPa for Dragon Skin 10, a measured beam 264 kPa. Scale it to your own "
     "test. It was fitted to one tensile test and not checked in other modes.";
 
-/// As published, or fitted; the bulk modulus is added.
+/// An entry as published or fitted; finish() adds the bulk modulus.
 struct Entry {
   std::string name, trade_name, law;
   Hyperelastic energy;

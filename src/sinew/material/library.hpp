@@ -1,5 +1,5 @@
 /// @file
-/// Silicones by their trade names.
+/// Library of silicones.
 #pragma once
 
 #include <span>
@@ -13,26 +13,27 @@ namespace sinew::material {
 
 /// An entry of the library.
 struct NamedMaterial {
-  std::string name;        ///< as scenes write it: "ecoflex-00-30"
-  std::string trade_name;  ///< "Ecoflex 00-30"
-  std::string law;         ///< "ogden", three terms, ...
-  Hyperelastic energy;     ///< with the bulk modulus of kLibraryPoissonRatio
+  std::string name;        ///< name in scenes, such as "ecoflex-00-30"
+  std::string trade_name;  ///< such as "Ecoflex 00-30"
+  std::string law;         ///< such as "ogden" or "neo-hookean"
+  Hyperelastic energy;     ///< with the bulk modulus for kLibraryPoissonRatio
   double density = 0.0;    ///< kg/m^3
-  double lowest = 0.0;     ///< stretches between which the source measured or which it fitted; 0
-  double highest = 0.0;    ///< where it does not say
-  std::string source;      ///< coefficients; density
-  std::string remark;      ///< doubts and how they were settled; may be empty
+  double lowest = 0.0;     ///< smallest stretch that the source measured or fitted; 0: not stated
+  double highest = 0.0;    ///< largest such stretch; 0: not stated
+  std::string source;      ///< of the coefficients, and of the density
+  std::string remark;      ///< known doubts and how they were resolved; may be empty
 };
 
-/// The sources take their materials as incompressible; nu_0 = 0.49 stands for that unless a scene
-/// says otherwise: mean-dilatation elements do not lock there.
+/// nu_0 of all entries. The sources treat their materials as incompressible. 0.49 approximates
+/// that, unless a scene gives another value; mean-dilatation elements do not lock at 0.49.
 inline constexpr double kLibraryPoissonRatio = 0.49;
 
-/// All entries, by name.
+/// All entries, sorted by name.
 std::span<const NamedMaterial> material_library();
 
-/// The entry of a name. Throws Error(unknown-name) with the nearest name, and all of them.
-/// @param name as scenes write it.
+/// Looks up an entry. Throws Error(unknown-name) with the nearest name or, if none is near, all
+/// names.
+/// @param name its name in scenes.
 const NamedMaterial& named_material(std::string_view name);
 
 }  // namespace sinew::material

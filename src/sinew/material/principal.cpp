@@ -16,7 +16,7 @@ SINEW_INLINE void rotate(Lanes (&c)[3][3], Lanes3x3& v, int p, int q) {
   const Lanes half = 0.5 * (c[q][q] - c[p][p]);
   const Lanes root = square_root(half * half + off * off);
   const Lanes sum = absolute(half) + root;
-  // tan of the smaller angle; nothing to do where both vanish
+  // tangent of the smaller angle; no rotation if both are zero
   Lanes t = off / (sum > 0.0 ? sum : lanes(1.0));
   t = half < 0.0 ? -t : t;
   const Lanes cosine = 1.0 / square_root(1.0 + t * t);
@@ -45,14 +45,15 @@ SINEW_INLINE Lanes power(const Lanes& x, const Lanes& log_x, double a) {
   return load(part);
 }
 
-/// s = sum_i b_i^a, with t_i = b_i^a and T their sum; its derivatives by e_i = ln l_i are
+/// s = sum_i b_i^a, with t_i = b_i^a and T their sum. Its derivatives with respect to e_i = ln l_i
+/// are
 /// a (t_i - T/3) and a^2 (delta_ij t_i - (t_i + t_j)/3 + T/9).
 struct LanesPowerSum {
   Lanes t[3], total;
   double exponent;
 
   /// Adds f(s): f' s_i, and f' s_ij + f'' s_i s_j.
-  /// @param to,value,slope,curvature where, and f with its derivatives.
+  /// @param to,value,slope,curvature the response added to, and f with its derivatives.
   SINEW_INLINE void add_to(LanesLogResponse& to, const Lanes& value, const Lanes& slope,
                            const Lanes& curvature) const {
     Lanes first[3];
@@ -116,7 +117,7 @@ namespace detail {
 
 void diagonalise(Lanes (&c)[3][3], Lanes3x3& v) {
   constexpr int kSweeps = 6;
-  constexpr double kSmall = 1e-30;  // of squares of what is left beside the diagonal
+  constexpr double kSmall = 1e-30;  // relative, of the squares of the off-diagonal entries
   for (int r = 0; r < 3; ++r) {
     for (int k = 0; k < 3; ++k) v[r][k] = lanes(r == k ? 1.0 : 0.0);
   }
@@ -138,7 +139,7 @@ Principal principal(const Lanes3x3& f) {
   Lanes c[3][3] = {{g.xx, g.xy, g.xz}, {g.xy, g.yy, g.yz}, {g.xz, g.yz, g.zz}};
   detail::diagonalise(c, result.axes);
   for (int i = 0; i < 3; ++i) {
-    // An eigenvalue below rounding of the largest: an element pressed flat.
+    // An eigenvalue below the rounding of the largest one: a flattened element.
     result.stretch[i] = square_root(maximum(c[i][i], lanes(1e-24)));
   }
   result.determinant = determinant(f, cofactor(f));
@@ -159,7 +160,7 @@ LanesLogResponse respond(const Hyperelastic& law, const Principal& at) {
   const Lanes zero = lanes(0.0);
   const Lanes scale = detail::inverse_cube_root(at.stretch[0] * at.stretch[1] * at.stretch[2]);
   Lanes logs[3] = {zero, zero, zero}, isochoric[3];
-  bool needs_logs = false;  // squares and their inverses do without
+  bool needs_logs = false;  // not for exponents 2 and -2
   for (const PowerTerm& term : law.powers) needs_logs |= std::abs(term.exponent) != 2.0;
   for (int i = 0; i < 3; ++i) {
     isochoric[i] = scale * at.stretch[i];
@@ -179,7 +180,7 @@ LanesLogResponse respond(const Hyperelastic& law, const Principal& at) {
   if (!law.polynomial.empty()) {
     const LanesPowerSum sum = sum_of(2.0);
     const Lanes x = sum.total - 3.0;
-    Lanes value = zero, slope = zero, curvature = zero;  // Horner, derivatives along with it
+    Lanes value = zero, slope = zero, curvature = zero;  // Horner's method with derivatives
     for (std::size_t k = law.polynomial.size(); k > 0; --k) {
       curvature = curvature * x + 2.0 * slope;
       slope = slope * x + value;
@@ -192,7 +193,7 @@ LanesLogResponse respond(const Hyperelastic& law, const Principal& at) {
 
 void soften(const MullinsEffect& effect, const Lanes& peak, LanesLogResponse& response) {
   constexpr double kRootPi = 1.7724538509055160273;
-  constexpr double kMinWidth = 1e-9;  // Pa: where nothing was strained yet
+  constexpr double kMinWidth = 1e-9;  // Pa, for unstrained material
   constexpr double kAtPeak = 1e-9;    // x below which eta is 1
   for (int lane = 0; lane < kLanes; ++lane) {
     const double w = response.energy[lane], most = peak[lane];
@@ -229,7 +230,7 @@ void tangent(const Lanes3x3& f, const Principal& at, const LanesLogResponse& res
       second[i][j] = second[j][i] = value / (l[i] * l[j]);
     }
   }
-  // Of pairs (0,1), (0,2), (1,2): (x + y)/2, of dF_ij and of dF_ji, and (x - y)/2.
+  // For pairs (0,1), (0,2), (1,2): (x + y)/2, for dF_ij and for dF_ji, and (x - y)/2.
   Lanes same[3], reversed[3], crossed[3];
   constexpr int kPairs[3][2] = {{0, 1}, {0, 2}, {1, 2}};
   for (int k = 0; k < 3; ++k) {
@@ -270,7 +271,7 @@ void tangent(const Lanes3x3& f, const Principal& at, const LanesLogResponse& res
       }
     }
   }
-  Lanes with[9][9];  // what each of the nine dyads is multiplied by
+  Lanes with[9][9];  // factor of each of the nine dyads
   for (int a = 0; a < 9; ++a) {
     for (int i = 0; i < 3; ++i) {
       with[i][a] =

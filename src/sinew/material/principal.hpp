@@ -1,22 +1,23 @@
 /// @file
-/// Hyperelastic laws at a deformation gradient, eight points at a time: one way for all isotropic
-/// energies.
+/// Hyperelastic laws at a deformation gradient, eight points at a time, by principal stretches;
+/// works for all isotropic energies.
 ///
-/// With C = F^T F = sum l_i^2 N_i N_i^T, n_i = F N_i / l_i, and t_i, t_ij the derivatives of psi by
-/// e_i = ln l_i (hyperelastic.hpp),
+/// With C = F^T F = sum l_i^2 N_i N_i^T, n_i = F N_i / l_i, and t_i, t_ij the derivatives of psi
+/// with respect to e_i = ln l_i (hyperelastic.hpp),
 ///   psi_i = t_i / l_i,   psi_ij = (t_ij - delta_ij t_i) / (l_i l_j),
 ///   P = sum psi_i n_i N_i^T,
 ///   dP/dF = sum_ij psi_ij (n_i N_i)(n_j N_j)
 ///         + sum_{i<j} x_ij/2 (n_i N_j + n_j N_i)(n_i N_j + n_j N_i)
 ///         + sum_{i<j} y_ij/2 (n_i N_j - n_j N_i)(n_i N_j - n_j N_i),
 ///   x_ij = (psi_i - psi_j)/(l_i - l_j),   y_ij = (psi_i + psi_j)/(l_i + l_j),
-/// products of tensors dyadic; the last two lines are eigenpairs of dP/dF, the first is a 3x3
-/// matrix. Where stretches meet, x_ij tends to the mean of psi_ii - psi_ij and psi_jj - psi_ij.
-/// Clamping x, y and the 3x3 matrix's eigenvalues at zero projects onto the positive semi-definite
-/// matrices.
+/// where products of tensors are dyadic. The last two lines are eigenpairs of dP/dF; the first is a
+/// 3x3 matrix. For equal stretches, x_ij is the mean of psi_ii - psi_ij and psi_jj - psi_ij.
+/// Clamping x, y and the eigenvalues of the 3x3 matrix at zero projects onto the positive
+/// semidefinite matrices.
 ///
-/// What is long is a function of its own, by reference: inlined into every kernel it would be most
-/// of the library's time of compilation, and a call is nothing beside eight points.
+/// Long functions are not inlined and take references: inlining them into every kernel would
+/// dominate the compilation time of the library, and a call costs little compared with eight
+/// points.
 ///
 /// Sources: Ogden, "Non-linear elastic deformations", 1984, section 6.1.4; Simo & Taylor, CMAME 85,
 /// 1991, section 2; eigenpairs and projection: Smith, de Goes, Kim, ACM Trans. Graph. 38(1), 2019,
@@ -31,17 +32,18 @@
 
 namespace sinew::material {
 
-/// F's singular values and right singular vectors; det F > 0 is assumed (see determinant).
+/// Singular values and right singular vectors of F. They are valid only for det F > 0.
 struct Principal {
-  Lanes stretch[3];   ///< l_i, in no order
+  Lanes stretch[3];   ///< l_i, in no particular order
   Lanes3x3 axes;      ///< N_i in column i
-  Lanes determinant;  ///< det F; where it is not positive the rest has no meaning
+  Lanes determinant;  ///< det F
 };
 
 namespace detail {
 
-/// Eigenvalues on the diagonal of c, eigenvectors in the columns of v. Sweeps converge
-/// quadratically: four bring any 3x3 matrix to rounding, most need three.
+/// Eigendecomposition by Jacobi rotations: eigenvalues on the diagonal of c, eigenvectors in the
+/// columns of v. Sweeps converge quadratically: four reach rounding for any 3x3 matrix, most need
+/// three.
 void diagonalise(Lanes (&c)[3][3], Lanes3x3& v);
 
 /// x^(-1/3).
@@ -61,7 +63,7 @@ SINEW_INLINE Lanes logarithm(const Lanes& x) {
 
 }  // namespace detail
 
-/// @param f of one point. @return see there.
+/// Principal stretches and axes. @param f F of one point.
 Principal principal(const Lanes3x3& f);
 
 /// psi, t_i and t_ij of hyperelastic.hpp in every lane.
@@ -71,10 +73,11 @@ struct LanesLogResponse {
   Lanes second[3][3];
 };
 
-/// The isochoric part (all of Saint Venant-Kirchhoff) at given stretches; only j <= i of `second`.
+/// Isochoric response (for Saint Venant-Kirchhoff, the whole response). Sets only j <= i of
+/// `second`.
 LanesLogResponse respond(const Hyperelastic& law, const Principal& at);
 
-/// A law so many times as stiff. @param response changed. @param factor how many.
+/// Multiplies a response by a factor. @param response changed. @param factor of stiffness.
 SINEW_INLINE void scale(LanesLogResponse& response, double factor) {
   response.energy *= factor;
   for (int i = 0; i < 3; ++i) {
@@ -83,16 +86,17 @@ SINEW_INLINE void scale(LanesLogResponse& response, double factor) {
   }
 }
 
-/// Softens a law W that was strained up to W_m before: with x = (W_m - W)/w, w = m + beta W_m,
+/// Applies softening to a law W that was loaded up to W_m before. With x = (W_m - W)/w, w = m +
+/// beta W_m,
 ///   phi = W + w/r (x erf x + (exp(-x^2) - 1)/sqrt(pi)),
 ///   eta = dphi/dW = 1 - erf(x)/r,   deta/dW = 2/(sqrt(pi) r w) exp(-x^2),
-/// and phi = W on first loading, W >= W_m. The slope of eta jumps there: a step that begins at the
-/// largest strain so far begins with first loading, whatever rounding makes of W. @param
-/// effect,peak its numbers, and W_m.
+/// and phi = W on first loading, W >= W_m. The slope of eta jumps at W_m. A step that begins at the
+/// largest strain so far therefore begins with first loading, whatever the rounding of W.
+/// @param effect,peak the coefficients, and W_m.
 /// @param response changed.
 void soften(const MullinsEffect& effect, const Lanes& peak, LanesLogResponse& response);
 
-/// Adds U(J) = kappa/2 (J - 1)^2 of the point's own J.
+/// Adds U(J) = kappa/2 (J - 1)^2 for the J of the point itself.
 SINEW_INLINE void add_volumetric(LanesLogResponse& to, const Lanes& ratio, double bulk_modulus) {
   const Lanes pressure = bulk_modulus * (ratio - 1.0), stiffness = bulk_modulus * ratio;
   to.energy += 0.5 * pressure * (ratio - 1.0);
@@ -129,19 +133,20 @@ struct Lanes9x9 {
   Lanes m[9][9];
 };
 
-/// What is made of dP/dF.
+/// Projections of dP/dF.
 enum class Projection {
   none,
-  positive,  ///< projected onto the positive semi-definite matrices
-  /// That, and blind to spins dF = W F, W skew: in the plane of two principal stretches,
-  ///   (dF_ij, dF_ji) . (l_i, l_j)/sqrt(l_i^2 + l_j^2) alone counts,
-  /// which is the rate of the right Cauchy-Green strain there but for a factor. What a rate of
-  /// strain is resisted with: turns of strained and stressed material cost nothing.
+  positive,  ///< onto the positive semidefinite matrices
+  /// The same, and independent of spins dF = W F with W skew. In the plane of two principal
+  /// stretches, only
+  ///   (dF_ij, dF_ji) . (l_i, l_j)/sqrt(l_i^2 + l_j^2)
+  /// counts, which is proportional to the rate of the right Cauchy-Green strain there. It is used
+  /// for damping, which resists strain rates, but not rotations of strained or stressed material.
   rates,
 };
 
-/// dP/dF.
-/// @param f,at,response of one point. @param projection see there. @param result replaced.
+/// Computes dP/dF.
+/// @param f,at,response of one point. @param projection of the result. @param result replaced.
 void tangent(const Lanes3x3& f, const Principal& at, const LanesLogResponse& response,
              Projection projection, Lanes9x9& result);
 

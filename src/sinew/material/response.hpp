@@ -1,18 +1,19 @@
 /// @file
-/// What a material law answers at a deformation gradient F = dx/dX, eight elements at a time, and
-/// the derivative of its stress.
+/// Stress and energy of the linear and corotational laws at a deformation gradient F = dx/dX, eight
+/// elements at a time, and the derivative of the stress.
 ///
 /// With F = R S (polar_decomposition.hpp):
 ///   corotational  psi = mu |F - R|^2 + lambda/2 (tr S - 3)^2
 ///                 P   = 2 mu (F - R) + lambda (tr S - 3) R
 ///   linear        psi = mu |e|^2 + lambda/2 (tr e)^2,   e = (F + F^T)/2 - I
 ///                 P   = 2 mu e + lambda tr(e) I
-/// P = dpsi/dF is the first Piola-Kirchhoff stress; R drops out of its derivation because
-/// F : dR = S : R^T dR = 0 (symmetric times skew).
+/// P = dpsi/dF is the first Piola-Kirchhoff stress; dR does not contribute, because F : dR = S :
+/// R^T dR = 0 (symmetric times skew).
 ///
-/// Tangents of the corotational law. Holding R fixed gives the rotated small-strain stiffness
+/// Tangents of the corotational law. With R held fixed, the tangent is the corotated small-strain
+/// stiffness
 ///   dP = mu (dF + R dF^T R) + lambda (R : dF) R.
-/// Exactly, R^T dR = [w]x with (tr(S) I - S) w = axial(R^T dF - dF^T R), so that
+/// For the exact tangent, R^T dR = [w]x with (tr(S) I - S) w = axial(R^T dF - dF^T R), so that
 ///   dP = 2 mu dF + lambda (R : dF) R + (lambda (tr S - 3) - 2 mu) dR.
 /// For dF = u b^T seen by a test gradient v a^T, with r_a = R a, r_b = R b and
 /// G = tr(S) I - R S R^T, the identity [G a]x = det(G) G^-1 [a]x G^-1 turns the last term into
@@ -20,18 +21,18 @@
 ///   v . dP a = v . { 2 mu (a.b) I + lambda r_a r_b^T
 ///                    + kappa ((r_a . G r_b) G - (G r_b)(G r_a)^T) } u,
 ///   kappa = (lambda (tr S - 3) - 2 mu) / det G.
-/// The linear law is the same with R = S = I (G = 2 I), where both tangents agree.
+/// The linear law is the special case R = S = I (G = 2 I), for which both tangents agree.
 ///
-/// Projected. dR has three modes, the twists T_k about the axes n_k of R S R^T, orthonormal:
-///   dR = sum_k 2/g_k (T_k : dF) T_k,   g_k the eigenvalues of G,
-/// and R : T_k = 0, so that dP/dF has the eigenvalues 2 mu + 2 s/g_k there, s = lambda (tr S - 3)
-/// - 2 mu, and is positive elsewhere. They are negative where g_k < -s/mu (g_k > 0; Smith, de Goes,
-/// Kim 2019, section 5.1): an element pressed together. Raising g_k to max(g_k, -s/mu) puts them to
-/// zero, which projects dP/dF onto the positive semi-definite matrices; the result is never less
+/// Projected tangent. dR has three orthonormal modes, the twists T_k about the axes n_k of R S R^T:
+///   dR = sum_k 2/g_k (T_k : dF) T_k,   g_k the eigenvalues of G.
+/// Since R : T_k = 0, dP/dF has the eigenvalues 2 mu + 2 s/g_k for T_k, with s = lambda (tr S - 3)
+/// - 2 mu, and is positive on the complement. They are negative if g_k < -s/mu (g_k > 0; Smith, de
+/// Goes, Kim 2019, section 5.1), in a compressed element. Raising g_k to max(g_k, -s/mu) sets them
+/// to zero, which projects dP/dF onto the positive semidefinite matrices. The result is never less
 /// than dP/dF.
 ///
 /// Sources: law and P: Sifakis & Barbic, "FEM simulation of 3D deformable solids", SIGGRAPH 2012
-/// course, part I, sections 3.2 and 3.4; rotated stiffness: Muller & Gross, "Interactive virtual
+/// course, part I, sections 3.2 and 3.4; corotated stiffness: Muller & Gross, "Interactive virtual
 /// materials", Graphics Interface 2004, section 3; derivative of the rotation: McAdams et al.,
 /// "Efficient elasticity for character skinning", ACM Trans. Graph. 30(4), 2011, section 3, and
 /// Smith, de Goes, Kim, "Analytic eigensystems for isotropic distortion energies", ACM Trans.
@@ -50,7 +51,7 @@ struct LaneModuli {
   Lanes mu, lambda;
 };
 
-/// A law's answer at F.
+/// Response of a law at F.
 struct Response {
   Lanes3x3 stress;    ///< P, Pa
   Lanes energy;       ///< psi, J/m^3
@@ -60,17 +61,17 @@ struct Response {
   Lanes determinant;  ///< det F
 };
 
-/// What the exact tangent adds to R: G and kappa of this file's head.
+/// Additional quantities of the exact tangent: G and kappa as defined at the top of this file.
 struct ExactTangent {
-  LanesSymmetric g;  ///< G = tr(S) I - R S R^T, without unit
+  LanesSymmetric g;  ///< G = tr(S) I - R S R^T, dimensionless
   Lanes kappa;       ///< (lambda (tr S - 3) - 2 mu) / det G, Pa
 };
 
-/// det G is held at or above this (it is 8 at rest), where the two smallest stretches cancel and
-/// the rotation has no derivative: the tangent stays finite.
+/// Lower bound of det G (8 at rest). It keeps the tangent finite where the two smallest stretches
+/// cancel and the rotation has no derivative.
 inline constexpr double kSmallestPairSums = 1e-9;
-/// The same of each eigenvalue of G, where a stretched element's stiffening keeps it from the
-/// clamp.
+/// Lower bound of each eigenvalue of G in the projected tangent, for stretched elements, where
+/// -s/mu is negative.
 inline constexpr double kSmallestPairSum = 1e-3;
 
 template <Law law>
@@ -119,6 +120,7 @@ SINEW_INLINE Response respond<Law::linear>(const Lanes3x3& f, const LaneModuli& 
   return result;
 }
 
+/// G and kappa of the exact tangent.
 template <Law law>
 SINEW_INLINE ExactTangent exact_tangent(const Lanes3x3& f, const LaneModuli& moduli,
                                         const Response& at) {
@@ -137,8 +139,7 @@ SINEW_INLINE ExactTangent exact_tangent(const Lanes3x3& f, const LaneModuli& mod
       kappa};
 }
 
-/// The same for the projection of dP/dF onto the positive semi-definite matrices: G with its
-/// eigenvalues raised where they must be.
+/// G and kappa of the projected tangent: the eigenvalues of G are raised as described above.
 template <Law law>
 SINEW_INLINE ExactTangent projected_tangent(const Lanes3x3& f, const LaneModuli& moduli,
                                             const Response& at) {

@@ -1,7 +1,6 @@
 /// @file
-/// What every model of a robot is to those who look at it: material points, a state, energies. How
-/// it takes part in a step is its StepSystem; what only some bodies can do is in capabilities.hpp.
-/// Finite elements, reduced models, rods and constant-curvature arms are Bodies.
+/// Interface of all bodies: attached points, state and energies. The equation of a step is in the
+/// StepSystem of a body, and what only some bodies can do is in capabilities.hpp.
 #pragma once
 
 #include <cstddef>
@@ -23,28 +22,28 @@ class Body {
 
   /// Position (3,) m of an attached point.
   virtual Vector3 position(int point) const = 0;
-  /// Rate (3,) of a site's motion: m/s; of an orientation, its angular velocity, rad/s; of a
-  /// coordinate, (rate, 0, 0).
+  /// Velocity (3,) of a site: m/s; for an orientation the angular velocity, rad/s; for a coordinate
+  /// (rate, 0, 0).
   virtual Vector3 velocity(int site) const = 0;
-  /// Of the nodes of the model's mesh, (n, 3) m and m/s.
+  /// Positions and velocities of the nodes of the model's mesh, (n, 3) m and m/s.
   virtual const Points& positions() const = 0;
   virtual const Points& velocities() const = 0;
-  /// Evaluates its elements where they are not at the present state.
+  /// Energies of the current state. Evaluates the elements if necessary.
   virtual Energies energies() = 0;
 
-  /// Back to the start: the model's own q and v. Inputs (outside forces) stay, but for where a base
-  /// was asked to be.
+  /// Returns to the initial q and v of the model. Inputs (such as external forces) are kept, except
+  /// the requested displacement of the base.
   virtual void restart() = 0;
-  /// q, v and what the integrator keeps as one array, for hashing and saving.
+  /// The state (q, v, history of the integrator, ...) as one array, for hashing and saving.
   virtual std::size_t state_size() const = 0;
   virtual void save_state(std::span<double> state) const = 0;
   virtual void load_state(std::span<const double> state) = 0;
 
-  /// How it takes part in a step.
+  /// The equations of the body in a step.
   virtual StepSystem& system() = 0;
   virtual const StepSystem& system() const = 0;
 
-  /// Bytes of this body's own data, the model not counted.
+  /// Memory of this body in bytes, without the model.
   virtual std::size_t bytes() const = 0;
 };
 

@@ -1,6 +1,6 @@
 /// @file
-/// What only some bodies can do, as interfaces that are asked for: as<HasBase>(body) is null where
-/// a body has none.
+/// Interfaces that only some bodies and models implement: as<HasBase>(body) is null if the body has
+/// no base.
 #pragma once
 
 #include <array>
@@ -26,46 +26,47 @@ namespace sinew::mechanics {
 
 class SurfaceTrace;
 
-/// A capability of a Body or BodyModel; null where it has not got it.
+/// A capability of a Body or BodyModel; null if it lacks the capability.
 template <class Capability, class Owner>
 Capability* as(Owner& owner) {
   return dynamic_cast<Capability*>(&owner);
 }
 
-/// A spring from a point of a body to a place in the world, a hand that pulls at the robot: the
-/// force stiffness (anchor - x) on x = sum weights x_node, taken implicitly. Every step's matrix
-/// holds the spring, so that no stiffness is too large for it.
+/// A spring from a point of a body to a fixed point in the world, such as a hand in the view that
+/// pulls at the robot. Its force stiffness (anchor - x) acts on x = sum weights x_node. The spring
+/// is implicit, so its stiffness does not limit the step size.
 struct Tether {
-  std::array<NodeId, 3> nodes{};                 ///< mesh nodes of one face of an element, distinct
-  std::array<double, 3> weights{1.0, 0.0, 0.0};  ///< sum 1; 0 at nodes that do not count
+  std::array<NodeId, 3> nodes{};                 ///< distinct mesh nodes of one face of an element
+  std::array<double, 3> weights{1.0, 0.0, 0.0};  ///< sum 1; 0 at unused nodes
   Vector3 anchor = Vector3::Zero();              ///< m
   double stiffness = 0.0;                        ///< N/m, >= 0
 };
 
-/// A body whose nodes can be pulled at. All of it are inputs, not state.
+/// A body with external forces on its nodes and a tether. Both are inputs, not state.
 class TakesForces {
  public:
   virtual ~TakesForces() = default;
-  /// (n, 3) N, dead loads added to gravity; zero unless set. Forces on fixed nodes do nothing.
+  /// (n, 3) N: dead loads in addition to gravity; zero unless set. Forces on fixed nodes do not
+  /// affect the motion.
   virtual Points& external_forces() = 0;
   virtual const Points& external_forces() const = 0;
-  /// From the next step on; none lets go.
-  /// @param tether see there. Throws Error: index-out-of-range (node), out-of-range (weights,
-  /// stiffness), not-finite, bad-argument when the nodes are no face of an element.
+  /// Sets the tether from the next step on; none removes it.
+  /// @param tether see Tether. Throws Error: index-out-of-range (node), out-of-range (weights,
+  ///   stiffness), not-finite, bad-argument (nodes that do not share an element).
   virtual void set_tether(const std::optional<Tether>& tether) = 0;
   virtual const std::optional<Tether>& tether() const = 0;
-  /// Where the tether holds the body now, (3,) m. Only while there is one.
+  /// Current position of the point that the tether holds, (3,) m. Only if there is a tether.
   virtual Vector3 tether_point() const = 0;
 };
 
-/// A body that stands on a base: nodes whose motion is given.
+/// A body with a base: nodes with a prescribed motion, or a rigid body that is fixed.
 class HasBase {
  public:
   virtual ~HasBase() = default;
-  /// Whether something is fixed that can be moved: nodes, or all of a rigid body.
+  /// Whether there is a base that can be moved.
   virtual bool base_can_move() const = 0;
-  /// Where the base goes when the next step begins: a displacement from rest. None: it stays. An
-  /// input.
+  /// Requests a displacement from rest, which the base takes when the next step begins. None: it
+  /// stays. An input.
   virtual void move_base(const std::optional<AffineField>& displacement) = 0;
   virtual const std::optional<AffineField>& base_input() const = 0;
 };
@@ -74,28 +75,28 @@ class HasBase {
 class MayHaveBase {
  public:
   virtual ~MayHaveBase() = default;
-  /// Whether something of it is fixed, and stands where a base motion puts it.
+  /// Whether part of the body, or all of it, is fixed and follows a prescribed motion.
   virtual bool has_base() const = 0;
 };
 
-/// A body that carries loads declared with it.
+/// A body with the loads of its model.
 class TakesLoads {
  public:
   virtual ~TakesLoads() = default;
-  /// 1 unless set. An input. @param load number of the body's own.
-  /// @param factor times the load as declared, of either sign.
+  /// Sets the factor of a load; 1 unless set. An input. @param load its number on the body.
+  /// @param factor multiplies the load; of either sign.
   virtual void set_load_factor(int load, double factor) = 0;
-  /// (n, 3) N: what the loads put on all nodes, as of the last linearisation.
+  /// (n, 3) N: forces of the loads on all nodes, from the last linearisation.
   virtual Points load_forces() const = 0;
 };
 
-/// A body model with parts that stay rigid, such as the sections of an arm.
+/// A body model with rigid parts, such as the sections of an arm.
 class AttachesOrientations {
  public:
   virtual ~AttachesOrientations() = default;
-  /// Attaches the rotation of the part that a point lies in. Building only.
-  /// @param rest_position,outside,what as BodyModel::attach()'s.
-  /// @return the site's number. Throws Error(point-outside-mesh).
+  /// Attaches the rotation of the part that contains a point. Building only.
+  /// @param rest_position,outside,what as for BodyModel::attach().
+  /// @return the number of the site. Throws Error(point-outside-mesh).
   virtual int attach_orientation(const Vector3& rest_position, mesh::Outside outside,
                                  const std::string& what) = 0;
 };
@@ -104,24 +105,24 @@ class AttachesOrientations {
 class HasOrientations {
  public:
   virtual ~HasOrientations() = default;
-  /// Rotation of an attached orientation since rest.
+  /// Rotation of an attached orientation relative to rest.
   virtual Matrix3 rotation(int orientation) const = 0;
 };
 
-/// A body model with a surface of triangles. Their nodes need not be those of its mesh.
+/// A body model with a surface of triangles. Their nodes need not be those of BodyModel::mesh().
 class HasSurface {
  public:
   virtual ~HasSurface() = default;
   /// Attaches the whole surface as one site (SurfaceSite). Building only. @return its number.
   virtual int attach_surface() = 0;
-  /// Its triangles, outwards; those of quadratic faces are split at the middles of their edges.
-  /// After attach_surface().
+  /// The triangles, oriented outwards. Quadratic faces are split into four triangles at the middle
+  /// nodes. After attach_surface().
   virtual std::shared_ptr<const collision::SurfaceTopology> surface() const = 0;
-  /// How its nodes move the points of these triangles. After attach_surface().
+  /// Interpolation of the nodes at points of these triangles. After attach_surface().
   virtual std::shared_ptr<const SurfaceTrace> surface_trace() const = 0;
-  /// (n, 3) m, of its nodes at rest. After attach_surface().
+  /// (n, 3) m: rest positions of the surface nodes. After attach_surface().
   virtual const Points& rest_surface_nodes() const = 0;
-  /// Whether no force moves a node: its motion is given.
+  /// Whether the motion of a node is prescribed, so that forces do not move it.
   virtual bool holds(NodeId node) const = 0;
 };
 
@@ -133,26 +134,26 @@ class HasSurfaceNodes {
   virtual const Points& surface_node_velocities() const = 0;  ///< (n, 3) m/s
 };
 
-/// What of a rigid body touches others.
+/// Geometry by which a rigid body touches others: its shape, its convex hull or its triangles.
 enum class TouchingPart { shape, hull, surface };
 
-/// A body model that is rigid as a whole.
+/// The model of a rigid body.
 class HasShape {
  public:
   virtual ~HasShape() = default;
-  virtual Vector3 rest_origin() const = 0;  ///< (3,) m, of its own frame at rest
-  /// m, of a point (3,) m to its surface at rest: negative inside.
+  virtual Vector3 rest_origin() const = 0;  ///< (3,) m, origin of its own frame at rest
+  /// Signed distance, m, from a point (3,) m to the surface at rest: negative inside.
   virtual double rest_distance(const Vector3& point) const = 0;
   virtual double mass() const = 0;         ///< kg
-  virtual Vector3 own_centre() const = 0;  ///< (3,) m, of mass, in its own frame
-  /// kg m^2, (3, 3) about the centre of mass, in its own axes.
+  virtual Vector3 own_centre() const = 0;  ///< (3,) m, centre of mass in its own frame
+  /// (3, 3) kg m^2, inertia about the centre of mass, in its own axes.
   virtual Matrix3 own_inertia() const = 0;
   virtual const char* shape_name() const = 0;  ///< "box", "sphere", ..., "mesh"
   virtual TouchingPart touching_part() const = 0;
-  /// m, of a ball or a capsule. 0 for shapes with edges or corners, and for meshes.
+  /// Radius of a sphere or capsule, m; 0 for shapes with edges or corners, and for meshes.
   virtual double touching_radius() const = 0;
-  /// The shape or the hull, which touches, where it is at rest, in the world. Of a surface its
-  /// hull, which touches planes as it does.
+  /// The touching shape or hull at rest, in world axes. For a surface, its hull, which touches
+  /// planes in the same points.
   virtual collision::Shape rest_shape() const = 0;
 };
 
@@ -160,26 +161,27 @@ class HasShape {
 class HasPose {
  public:
   virtual ~HasPose() = default;
-  virtual Vector3 origin() const = 0;            ///< (3,) m, of its own frame
+  virtual Vector3 origin() const = 0;            ///< (3,) m, origin of its own frame
   virtual Vector3 centre_of_mass() const = 0;    ///< (3,) m
-  virtual Matrix3 axes() const = 0;              ///< columns: of its own frame, in the world
+  virtual Matrix3 axes() const = 0;              ///< columns: axes of its own frame, in the world
   virtual Vector3 linear_velocity() const = 0;   ///< (3,) m/s, of the centre of mass
-  virtual Vector3 angular_velocity() const = 0;  ///< (3,) rad/s, about the world's axes
-  /// The state of the body at rest in a pose. @param origin (3,) m. @param axes unit quaternion.
+  virtual Vector3 angular_velocity() const = 0;  ///< (3,) rad/s, in world axes
+  /// Writes the state of the body with another pose, at zero velocity.
+  /// @param origin (3,) m. @param axes unit quaternion.
   /// @param state (state_size(),) see Body::save_state().
   virtual void put_pose(const Vector3& origin, const Eigen::Quaterniond& axes,
                         std::span<double> state) const = 0;
 };
 
-/// A body of few coordinates, which users know.
+/// A body with a few generalised coordinates that users can read and set.
 class HasCoordinates {
  public:
   virtual ~HasCoordinates() = default;
-  /// An attached coordinate, rad or m. @param site its number as a site.
+  /// Value of an attached coordinate, rad or m. @param site its number.
   virtual double coordinate(int site) const = 0;
-  virtual const VectorX& coordinates() const = 0;  ///< (coordinates,) rad; extensions: m
-  virtual const VectorX& rates() const = 0;        ///< (coordinates,) rad/s; m/s
-  /// A new state. @param q,rate (coordinates,). Throws Error(wrong-shape).
+  virtual const VectorX& coordinates() const = 0;  ///< (coordinates,) rad; m for extensions
+  virtual const VectorX& rates() const = 0;        ///< (coordinates,) rad/s or m/s
+  /// Sets coordinates and rates. @param q,rate (coordinates,). Throws Error(wrong-shape).
   virtual void set_coordinates(const VectorX& q, const VectorX& rate) = 0;
 };
 

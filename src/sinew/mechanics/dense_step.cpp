@@ -9,7 +9,7 @@ namespace sinew::mechanics {
 
 namespace {
 
-// Of what a row's entries add up from: a few roundings.
+// Relative to the sum of the terms of an entry of a row: a few roundings.
 constexpr double kRowRounding = 16.0 * kEpsilon;
 
 }  // namespace
@@ -60,7 +60,7 @@ void DenseStep::patch_jacobian(const Patch&, MatrixX&) const {
   throw Error(ErrorKind::internal, {}, "a body without a surface is asked how that moves");
 }
 
-// Efforts stay with their rows.
+// Rows that were active before keep their efforts.
 void DenseStep::take_surface_rows(const RowValues& rows) {
   surface_rows_before_.swap(surface_rows_);
   surface_rows_.clear();
@@ -75,8 +75,8 @@ void DenseStep::take_surface_rows(const RowValues& rows) {
   }
 }
 
-// A cable along one rigid body pulls with forces that cancel. What rounding leaves of them would
-// pose as a compliance, by which laws scale the row's effort: it is taken away.
+// The forces of a cable along one rigid body cancel. Their rounding errors are set to zero, since
+// they would look like a compliance, by which laws scale the effort of the row.
 void DenseStep::take_lasting_rows(const RowValues& rows) {
   const std::size_t count = own_.entries.size();
   rows_.leftCols(static_cast<Eigen::Index>(own_.rows.size())).setZero();
@@ -159,7 +159,7 @@ void DenseStep::lessen(std::span<const double> force) {
 }
 
 Inertia DenseStep::condense() {
-  if (motion_.size() == 0) return {};  // it does not move
+  if (motion_.size() == 0) return {};  // a fixed body
   symmetric_ = 0.5 * (matrix_ + matrix_.transpose());
   pivots_.compute(symmetric_);
   Inertia inertia;
@@ -193,8 +193,8 @@ void DenseStep::respond() {
   }
 }
 
-// In the directions in which the body would buckle the corotated tangent is as stiff as the exact
-// one is soft there: a law's program must be convex, and a step must go downhill.
+// Negative eigenvalues (buckling directions) change sign, and all are raised to at least softest():
+// the program of a law must be convex, and a step must be a descent direction.
 void DenseStep::make_definite() {
   spectrum_.compute(symmetric_);
   const double floor = softest();
@@ -206,13 +206,13 @@ void DenseStep::make_definite() {
   }
 }
 
-// The law's programs want a symmetric W. They get that of A_s, the symmetric part of A; the free
-// motion takes the rest, H (A^-1 - A_s^-1) H^T lambda, at the efforts known last, so that in the
-// limit of Newton's iterations the law holds of the motion. With A = A_s + A_a, A_s > 0, the
-// iteration lambda <- lambda - W_s^-1 (W lambda - d) contracts: in the metric of A_s, W is the
-// compression of (I + S)^-1 with S skew, whose numerical range lies in |z - 1/2| <= 1/2. The
-// symmetric part of W itself is no such bound: it is softer than W_s by S^2, and near the rank of
-// redundant joints the iteration then diverges.
+// The programs of the laws need a symmetric W. They get W_s, that of the symmetric part A_s of A.
+// The remainder, H (A^-1 - A_s^-1) H^T lambda at the last known efforts, is added to the free
+// motion, so that the law holds for the true motion when Newton's iterations converge. With
+// A = A_s + A_a, A_s > 0, the iteration lambda <- lambda - W_s^-1 (W lambda - d) contracts: in the
+// metric of A_s, W is the compression of (I + S)^-1 with S skew, whose numerical range is in
+// |z - 1/2| <= 1/2. The symmetric part of W would not do: it is softer than W_s by S^2, and with
+// nearly redundant joints the iteration diverges.
 void DenseStep::add_compliance(std::span<const int> problem_row, MatrixX& compliance,
                                VectorX& free_motion) const {
   if (motion_.size() == 0) return;

@@ -1,5 +1,5 @@
 /// @file
-/// A body of few coordinates in a step.
+/// Steps of a body with few generalised coordinates.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,10 @@
 
 namespace sinew::mechanics {
 
-/// A is dense and may be unsymmetric. Rows on sites that stay are all taken, also those that are
-/// left out elsewhere; of those on the body's surface, the active ones. What the body's equation
-/// is, how its sites move, and what a motion does to its state is said by those who derive from it.
+/// StepSystem with a dense matrix A, which may be unsymmetric. All rows on attached sites have a
+/// column, which is zero while a row is not active; rows on the surface of the body have one only
+/// while active. Derived classes define the equation of the body, the Jacobians of its sites, and
+/// how a motion changes its state.
 class DenseStep : public StepSystem {
  public:
   void linearise(const LinearisationRequest& request) final;
@@ -41,40 +42,40 @@ class DenseStep : public StepSystem {
   /// @param coordinates n. @param own,memory must outlive this.
   DenseStep(Eigen::Index coordinates, const OwnRows& own, RowMemory& memory);
 
-  /// Writes b and A of the present state. @param request which A, for what step.
+  /// Computes b and A at the current state. @param request tangent and weights.
   /// @param right (n,). @param matrix (n, n).
   /// @return force_scale().
   virtual double form(const LinearisationRequest& request, VectorX& right, MatrixX& matrix) = 0;
-  /// A -= sum over entries of effort direction . d2(motion of the site)/dq2, at the efforts and
-  /// directions remembered, and those of surface_rows().
+  /// A -= sum over entries of effort direction . d2(motion of the site)/dq2, with the efforts and
+  /// directions of RowMemory and of surface_rows().
   virtual void add_row_stiffness(MatrixX& matrix) = 0;
-  /// The motion of a site for each coordinate. @param site its number on the body.
+  /// Jacobian of the motion of a site. @param site its number on the body.
   /// @param result (3, n).
   virtual void site_jacobian(int site, MatrixX& result) const = 0;
-  /// The same of a point of the surface. Asked of bodies that have one; others throw
+  /// Jacobian of the displacement of a point of the surface. Bodies without a surface throw
   /// Error(internal).
   virtual void patch_jacobian(const Patch& patch, MatrixX& result) const;
-  /// The softest that a corotated tangent lets a direction be: see Tangent.
+  /// Smallest eigenvalue that the corotated tangent of an indefinite A may have.
   virtual double softest() const = 0;
-  /// The motion proposed next starts from the present state.
+  /// Called when the proposed motion starts from the current state.
   virtual void depart() = 0;
-  /// (n,) of the rates.
+  /// (n,) motion: time_step times the current rates.
   virtual void drift(double time_step, VectorX& motion) const = 0;
 
   const VectorX& motion() const { return motion_; }
   const MatrixX& matrix() const { return matrix_; }
   /// Whether further linearisations of this step may follow.
   bool iterating() const { return iterating_; }
-  /// A row on the surface as it was taken last.
+  /// A row on the surface, from the last take_rows().
   struct SurfaceRow {
-    std::int32_t row = 0;  // of the world's
+    std::int32_t row = 0;  // of the world
     Vector3 direction = Vector3::Zero();
     Patch patch;
-    double effort = 0.0;  // N, as known last in this step
+    double effort = 0.0;  // N, last known in this step
   };
-  /// The active ones, ascending.
+  /// Active rows on the surface, ascending.
   const std::vector<SurfaceRow>& surface_rows() const { return surface_rows_; }
-  /// When a step begins, since their points are found anew.
+  /// Clears them at the beginning of a step, since their points are found anew.
   void forget_surface_rows() { surface_rows_.clear(); }
 
  private:
@@ -92,25 +93,25 @@ class DenseStep : public StepSystem {
   RowMemory& memory_;
   VectorX right_, motion_, scratch_;
   VectorX lessening_;
-  VectorX gross_;  // of a row: the sum of what its entries could be at most
+  VectorX gross_;  // of one row: sum of the magnitudes of its terms, to tell rounding from zero
   bool lessens_ = false;
   MatrixX matrix_, symmetric_;
   mutable MatrixX jacobian_;          // (3, n), of sites: scratch
-  MatrixX second_jacobian_, pulled_;  // likewise
+  MatrixX second_jacobian_, pulled_;  // (3, n), scratch
   linalg::LuFactor decomposed_, symmetric_factor_;
   linalg::SymmetricPivots pivots_;
   linalg::SymmetricSpectrum spectrum_;
   bool definite_wanted_ = true;
-  bool is_symmetric_ = true;  // A, of the last condensation
+  bool is_symmetric_ = true;  // A of the last condensation
   bool iterating_ = false;
   std::vector<SurfaceRow> surface_rows_, surface_rows_before_;
-  std::vector<double> shares_;  // (columns,) of their efforts in groups; empty: all are 1
-  // Columns in use: those of the own rows that stay, then of surface_rows_. There is room for more.
+  std::vector<double> shares_;  // (columns,) shares in RowGroups; empty: all are 1
+  // Columns in use: those of own_.rows, then of surface_rows_. The arrays may have more columns.
   Eigen::Index columns_ = 0;
   MatrixX rows_, moved_rows_;  // (n, columns): H^T, A^-1 H^T
-  MatrixX soft_rows_;          // the same of the symmetric part of A
+  MatrixX soft_rows_;          // A_s^-1 H^T, with A_s the symmetric part of A
   VectorX free_motion_, effort_;
-  // Of the columns that are in a step's problem: which, and where there.
+  // A column whose row is in the problem of the step: the column, its row there, and its share.
   struct ProblemRow {
     Eigen::Index column;
     int row;

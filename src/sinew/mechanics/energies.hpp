@@ -1,10 +1,10 @@
 /// @file
-/// Energy as it is summed over bodies.
+/// Energies of a body, or summed over bodies.
 #pragma once
 
 namespace sinew::mechanics {
 
-/// J; gravity's from the height at rest.
+/// Energies, J. Gravity energy is measured from the rest position.
 struct Energies {
   double strain = 0.0, kinetic = 0.0, gravity = 0.0;
 

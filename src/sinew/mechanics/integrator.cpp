@@ -21,12 +21,12 @@ StepWeights bdf2(double h, double before) {
   const double now = (1.0 + 2.0 * w) / (1.0 + w) / h, last = w * w / (1.0 + w) / h;
   StepWeights weights;
   weights.velocity = {.motion = now, .first = -last};
-  // a = now (v - v_start) - last (v_start - v_before): v_start - v_before is what v gained before.
+  // a = now (v - v_start) - last (v_start - v_before).
   weights.acceleration = {
       .motion = now * now, .velocity = -now - last, .first = -now * last, .second = last};
   weights.first = {.motion = 1.0};
   weights.second = {.velocity = 1.0};
-  // Error of q: 2/9 h^3 of the third derivative, for even steps.
+  // Error of q: 2/9 h^3 times the third derivative, for equal steps.
   weights.error_jump = 2.0 / 9.0 * h * h;
   weights.error_of = StepWeights::Jump::acceleration;
   weights.step_before = before;
@@ -84,13 +84,13 @@ StepWeights step_weights(Integrator integrator, double time_step, double step_be
                          double spectral_radius) {
   const bool bdf = integrator == Integrator::bdf2;
   StepWeights weights;
-  weights.time_step = time_step;  // materials that relax do so without inertia, too
+  weights.time_step = time_step;  // materials relax in quasi-static steps, too
   if (integrator == Integrator::quasi_static) return weights;
   const bool alone =
       integrator == Integrator::backward_euler || integrator == Integrator::event_driven;
   if (alone || !(step_before > 0.0)) {
     weights = backward_euler(time_step);
-    if (bdf) {  // as bdf2() keeps them
+    if (bdf) {  // the history of bdf2()
       weights.first = {.motion = 1.0};
       weights.second = {.velocity = 1.0};
     } else {

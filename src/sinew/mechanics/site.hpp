@@ -1,10 +1,10 @@
 /// @file
-/// Sites: where on a body rows act. A body gives each a number when it is attached.
+/// Sites: the places on a body where rows act. A body numbers its sites when they are attached.
 ///
-/// | site | its motion | a row's direction there | conjugate |
+/// | site | its motion | direction of a row there | conjugate |
 /// |---|---|---|---|
 /// | MaterialPoint | displacement, m | of the displacement | force, N |
-/// | Orientation | turn about the world's axes, rad | the axis of the turn | moment, N m |
+/// | Orientation | rotation in world axes, rad | axis of the rotation | moment, N m |
 /// | SurfaceSite | displacement, m | of the displacement | force, N |
 /// | Coordinate | change of q, rad or m | (factor, 0, 0) | generalised force, N m or N |
 #pragma once
@@ -13,24 +13,24 @@
 
 namespace sinew::mechanics {
 
-/// A place on a body, of whatever kind.
+/// A site of any kind.
 struct Site {
-  std::int32_t body = -1;    ///< position in the world's list of bodies
-  std::int32_t number = -1;  ///< what the body calls it
+  std::int32_t body = -1;    ///< position of the body in the world
+  std::int32_t number = -1;  ///< number of the site on the body
 
   bool operator==(const Site&) const = default;
 };
 
-/// A point fixed in a body's material.
+/// A point that moves with the material of a body.
 struct MaterialPoint : Site {};
 
-/// Any point of a body's surface: which one, RowValues::patch says in every step anew.
+/// A point of the surface of a body, given in every step by RowValues::patch.
 struct SurfaceSite : Site {};
 
-/// The rotation of a part of a body that stays rigid: a section of an arm.
+/// The rotation of a rigid part of a body, such as a section of an arm.
 struct Orientation : Site {};
 
-/// One of the coordinates of a body of few.
+/// A generalised coordinate of a body with few coordinates.
 struct Coordinate : Site {};
 
 }  // namespace sinew::mechanics

@@ -33,7 +33,7 @@ Patch SurfaceTrace::at(const collision::SurfacePoint& place) const {
   return patch;
 }
 
-// In the coordinates of the unit square. Corners off an edge of the face have no part in it.
+// Bilinear weights in the unit square. On an edge of the face, the other two corners are left out.
 Patch SurfaceTrace::on(const Quadrilateral& face, const collision::SurfacePoint& place) {
   double s = 0.0, t = 0.0;
   for (std::size_t k = 0; k < 3 && place.nodes[k] >= 0; ++k) {

@@ -1,5 +1,5 @@
 /// @file
-/// What moves a point of a body's surface.
+/// Interpolation of nodes at points of the surface of a body.
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@
 
 namespace sinew::mechanics {
 
-/// The shape functions of the faces that a surface's triangles stand for. A quadrilateral is
-/// bilinear on both of its triangles, so that forces at the corners of what two faces have in
-/// common can be those of a uniform pressure on both. Quadratic faces are taken as their four flat
-/// triangles: with quadratic functions errors halve, but dense contacts of many points were no
-/// longer solved.
+/// Shape functions of the faces to which the triangles of a surface belong. A quadrilateral is
+/// bilinear on both of its triangles, so that forces at the corners of the overlap of two faces can
+/// represent a uniform pressure on both. Quadratic faces are treated as four flat triangles:
+/// quadratic functions halve the errors, but with them dense contacts of many points no longer
+/// converged.
 class SurfaceTrace {
  public:
   /// Linear on every triangle.
@@ -25,7 +25,7 @@ class SurfaceTrace {
   /// @param faces of the surface. @param node_count of the mesh.
   SurfaceTrace(std::span<const mesh::Face> faces, int node_count);
 
-  /// @param place on a vertex, an edge or a triangle of the surface's triangles.
+  /// Nodes and weights of a point of the surface. @param place on a vertex, an edge or a triangle.
   Patch at(const collision::SurfacePoint& place) const;
 
  private:

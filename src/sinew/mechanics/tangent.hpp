@@ -1,5 +1,5 @@
 /// @file
-/// The derivatives of internal forces that a step may use.
+/// Derivatives of the internal force that a step may use.
 #pragma once
 
 #include <optional>
@@ -7,19 +7,19 @@
 
 namespace sinew::mechanics {
 
-/// Which derivative of the internal force is used.
+/// Which derivative of the internal force a step uses.
 enum class Tangent {
-  /// Corotational elements: R K0 R^T with the rotation held fixed, positive semi-definite; other
-  /// elements as projected. An arm: made definite.
+  /// Corotational elements: R K_0 R^T with the rotation held fixed, positive semidefinite. Other
+  /// elements: as `projected`. Arms: the exact derivative, made positive definite.
   corotated,
-  projected,  ///< the exact derivative, projected piece by piece to be positive semi-definite
+  projected,  ///< the exact derivative, with each element's part projected to be semidefinite
   exact,      ///< the exact derivative df/dq, which may be indefinite
 };
 
-/// "corotated", "projected", "exact".
+/// Name: "corotated", "projected" or "exact".
 std::string_view tangent_name(Tangent tangent);
 
-/// The tangent of that name; nothing for any other word.
+/// The tangent with this name; none for any other word.
 std::optional<Tangent> tangent_of(std::string_view word);
 
 }  // namespace sinew::mechanics

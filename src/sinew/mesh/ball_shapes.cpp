@@ -21,7 +21,7 @@ namespace sinew::mesh {
 
 namespace {
 
-/// As elements integrate it: exact for hexahedra with twisted faces, too.
+/// Volume by the quadrature of the elements, exact for hexahedra with twisted faces, too.
 double element_volume(const Mesh& mesh) {
   double sum = mesh.hexahedra.empty() ? volume(mesh) : 0.0;
   for (const Hexahedron& nodes : mesh.hexahedra) {
@@ -34,7 +34,7 @@ double element_volume(const Mesh& mesh) {
   return sum;
 }
 
-/// Without middle nodes. A length of 0 gives a ball.
+/// Makes capsules without middle nodes. A length of 0 gives a ball.
 class Capsule {
  public:
   Capsule(const CapsuleShape& shape, Cells cells, std::string name)
@@ -66,8 +66,8 @@ class Capsule {
     return mesh;
   }
 
-  /// The radius at which polyhedra have the volume V of the capsule: they have f^2 A L + f^3 B with
-  /// A the disc's area and B the balls' volume at f = 1, times the radius.
+  /// The radius f r at which the polyhedron has the volume of the capsule. Its volume is f^2 A L +
+  /// f^3 B, where A and B are the area of the disc and the volume of the half balls at f = 1.
   double fitting_radius(Cells cells) const {
     if (cells == Cells::quadratic) return shape_.radius;
     const double pi = std::numbers::pi, r = shape_.radius;
@@ -91,7 +91,7 @@ class Capsule {
     }
   }
 
-  /// Half a ball on the layer of nodes from `base` on.
+  /// Attaches half a ball to the layer of nodes that starts at `base`.
   void attach(Mesh& mesh, NodeId base, double side, double radius, const char* set) const {
     const auto shared = static_cast<NodeId>(section_.radius.size());
     const NodeId first = mesh.node_count();
@@ -137,7 +137,7 @@ Mesh make_capsule(const CapsuleShape& shape, Cells cells, const std::string& nam
   std::vector<Ball> balls;
   for (int ring = 1; ring <= shape.rings; ++ring) {
     const double r = radius * ring / shape.rings;
-    circles.push_back({0.0, [=](double z) {  // on the cylinder alone
+    circles.push_back({0.0, [=](double z) {  // only on the cylinder
                          constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
                          return std::abs(z) > end * (1.0 + 1e-12) ? kNone : r;
                        }});

@@ -16,7 +16,7 @@ namespace sinew::mesh {
 
 namespace {
 
-/// Where the planes of nodes lie along an axis, m, ascending.
+/// Positions of the planes of nodes along an axis, m, ascending.
 using Planes = std::vector<double>;
 
 /// A grid of boxes: node numbers, positions and sets.
@@ -30,7 +30,7 @@ class BoxGrid {
             fmt::format("{} nodes are too many", nodes));
   }
 
-  /// Without the cells that `skip(i, j, k)` leaves out.
+  /// Makes the mesh without the cells for which `skip(i, j, k)` is true.
   template <typename Skip>
   Mesh fill(Cells cells, const Skip& skip) const {
     Mesh mesh = nodes_and_sets();
@@ -101,7 +101,7 @@ Planes even_planes(double first, double length, int cells) {
   return planes;
 }
 
-/// Goes on by `length` in even cells.
+/// Appends planes over a further `length`, in equal cells.
 void extend(Planes& planes, double length, int cells) {
   const double first = planes.back();
   for (int k = 1; k <= cells; ++k) planes.push_back(first + length * k / cells);

@@ -19,7 +19,7 @@ bool is_space(char c) {
   return c == ' ' || c == '\n' || c == '\r' || c == '\t' || c == '\v' || c == '\f';
 }
 
-/// A word as it may be shown in a message: short and printable.
+/// A word as shown in messages: shortened and printable.
 std::string shown(std::string_view word) {
   constexpr std::size_t kLongest = 40;
   std::string text(word.substr(0, kLongest));
@@ -219,7 +219,7 @@ std::size_t ByteReader::checked_count(std::int64_t count, std::size_t bytes_each
          fmt::format("{} {} are more than 2^31 - 1, the most that can be numbered", count, what));
   }
   const auto wanted = static_cast<std::size_t>(count);
-  // The last item of a text file needs no space after it, hence the one byte of grace.
+  // The last item of a text file needs no space after it, so one byte less is accepted.
   if (bytes_each > 0 && wanted > (remaining() + 1) / bytes_each) {
     fail(ErrorKind::truncated_file,
          fmt::format("{} {} need at least {} bytes each, but the file has only {} bytes left",

@@ -15,13 +15,13 @@ namespace sinew::mesh {
 
 namespace {
 
-/// The chamber's circle as an O-grid, and rings from it to the outer circle: circles whose centres
-/// and radii go evenly from one to the other. Radii in m; ring nodes of the chamber's wall and of
-/// the outside are listed.
+/// The circle of the chamber as an O-grid, and rings from it to the outer circle, with linearly
+/// interpolated centres and radii. Radii are in m. `wall` and `outside` list the nodes on the
+/// chamber wall and on the outer circle.
 struct EccentricSection {
   Section section;
   std::vector<NodeId> wall, outside;
-  NodeId core_nodes = 0;  // those before the wall's ring
+  NodeId core_nodes = 0;  // number of nodes before those of the wall
 };
 
 EccentricSection eccentric_section(const ChamberedCylinderShape& shape, Cells cells) {
@@ -36,7 +36,7 @@ EccentricSection eccentric_section(const ChamberedCylinderShape& shape, Cells ce
     section.angle.push_back(std::atan2(y, x));
     return static_cast<NodeId>(section.radius.size()) - 1;
   };
-  std::vector<double> turn;  // of each node of the wall
+  std::vector<double> turn;  // angle of each node of the wall, rad
   for (std::size_t i = 0; i < core.radius.size(); ++i) {
     const double r = wall_radius * core.radius[i];
     const NodeId node =
@@ -67,7 +67,7 @@ EccentricSection eccentric_section(const ChamberedCylinderShape& shape, Cells ce
   return result;
 }
 
-/// Even layers below, along and above the chamber.
+/// Heights of layers: equal ones below, along and above the chamber.
 std::vector<double> chamber_heights(const ChamberedCylinderShape& shape) {
   const double size = shape.height / shape.layers;
   std::vector<double> heights{0.0};
@@ -98,7 +98,7 @@ void check_chamber(const ChamberedCylinderShape& shape, const std::string& name)
   require_cells(shape.layers, 1, name, "layers");
 }
 
-// Its quadrilaterals as triangles.
+// Splits the quadrilaterals of a section into triangles.
 void split_cells(Section& section) {
   for (const auto& [a, b, c, d] : section.quadrilaterals) {
     section.triangles.push_back({a, b, c});
@@ -107,7 +107,7 @@ void split_cells(Section& section) {
   section.quadrilaterals.clear();
 }
 
-// A cylinder without its chamber, and where the nodes of its layers lie.
+// Makes the solid cylinder and removes the chamber from it.
 class Chambered {
  public:
   Chambered(const ChamberedCylinderShape& shape, Cells cells)
@@ -120,7 +120,7 @@ class Chambered {
         plan_.section, heights_, [](double s, double) { return s; }, name);
   }
 
-  // Takes away the elements of the chamber: those of nodes inside its circle, between its ends.
+  // Removes the elements of the chamber: those with all nodes in its circle, between its ends.
   void cut(Mesh& mesh) const {
     const auto inside = [&](const auto& element) {
       double z = 0.0;

@@ -188,7 +188,7 @@ MaybeDefect zero_volume(const Mesh& mesh, double smallest) {
                 "remesh; mesh optimisation removes such slivers (in Gmsh: Mesh.Optimize = 1)"};
 }
 
-/// Two uses of one face are sound when they see it from opposite sides, and there are no more.
+/// Finds overlaps: a face may have only two uses, from opposite sides.
 MaybeDefect overlap(const Mesh& mesh) {
   const std::vector<FaceUse> uses = face_uses(mesh);
   std::vector<int> faults(mesh.tetrahedra.size(), 0);
@@ -230,8 +230,8 @@ MaybeDefect inverted_hexahedron(const Mesh& mesh) {
                 "check the node order (bottom face, then top face) or remesh"};
 }
 
-/// A triangle on the outside of the tetrahedra whose corners are three of a quadrilateral on the
-/// outside of the hexahedra lies in that face: the two kinds meet there, and bend in two ways.
+/// Finds boundary triangles of tetrahedra whose corners are three of those of a boundary
+/// quadrilateral of hexahedra. The two kinds meet there without conforming.
 MaybeDefect non_conforming(const Mesh& mesh) {
   if (mesh.tetrahedra.empty() || mesh.hexahedra.empty()) return {};
   std::vector<Triangle> corners;

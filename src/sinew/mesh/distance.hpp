@@ -1,5 +1,5 @@
 /// @file
-/// Where a point lies relative to a tetrahedron.
+/// Position of a point relative to a tetrahedron.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace sinew::mesh {
 
-/// Weights w of the corners with point = sum w_k x_k and sum w_k = 1; all in [0, 1] inside. The
-/// tetrahedron must not be flat.
+/// Barycentric weights w of the corners, with point = sum w_k x_k and sum w_k = 1; all in [0, 1] if
+/// the point is inside. The tetrahedron must not be flat.
 /// @param point (3,) m.
 /// @param corners of the tetrahedron, m.
 std::array<double, 4> barycentric_weights(const Vector3& point, const Corners& corners);

@@ -36,7 +36,7 @@ std::vector<NodeId> weld_map(const Points& points, const std::vector<char>& cons
     if (takes_part(i)) box.extend(Vector3(points.row(static_cast<NodeId>(i))));
   }
   const double diagonal = box.isEmpty() ? 0.0 : box.diagonal().norm();
-  // A tolerance of zero would divide by zero below; all points are then one anyway.
+  // A tolerance of zero would divide by zero below.
   const double tolerance = std::max(relative_tolerance * diagonal, 1e-300);
   std::unordered_map<Cell, std::vector<NodeId>, CellHash> cells;
   std::vector<NodeId> lowest(count);

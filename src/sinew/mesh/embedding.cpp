@@ -26,21 +26,22 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 
-/// A weight this little below zero still counts as inside: rounding of a point on the surface.
+/// A weight slightly below zero, by rounding of a point on the surface, still counts as inside.
 constexpr double kWeightTolerance = 1e-9;
-/// Distances that differ by less than this share of the mesh's size are equal.
+/// Distances that differ by less than this fraction of the size of the mesh count as equal.
 constexpr double kDistanceTolerance = 1e-10;
 constexpr int kLeafSize = 4;
-/// Samples of a ball along its radius: 257 in all.
+/// Number of samples of a ball along its radius; it has 257 in total.
 constexpr int kBallSteps = 4;
-/// Least second moment of the part inside, in radius^2 (a whole ball has 1/5).
+/// Minimum second moment of the part of a ball inside, in radius^2 (a whole ball has 1/5).
 constexpr double kThinnest = 0.01;
 
-/// A hexahedron as six tetrahedra round its diagonal 0-6, positively oriented.
+/// A hexahedron as six positively oriented tetrahedra around its diagonal 0-6.
 constexpr std::array<std::array<std::size_t, 4>, 6> kSplit = {
     {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}}};
 
-/// Tree node: children 2k+1.. are stored by number; a leaf has the elements order[begin, end).
+/// Node of the tree, with the numbers of its children; a leaf (-1) has the elements order[begin,
+/// end).
 struct Branch {
   Box box;
   int begin = 0, end = 0;
@@ -51,7 +52,7 @@ struct Branch {
 
 struct Embedder::Tree {
   std::string name;
-  // Of tetrahedra, and behind them of hexahedra, six each.
+  // Of the tetrahedra, then of six for each hexahedron.
   std::vector<Corners> corners;
   std::vector<Tetrahedron> nodes;
   std::vector<QuadraticTetrahedron> quadratic;
@@ -66,11 +67,12 @@ struct Embedder::Tree {
   explicit Tree(const Mesh& mesh);
   int build(const std::vector<Box>& boxes, int begin, int end);
 
-  /// Calls visit(element) for the elements of all leaves whose box is within reach() of the point.
+  /// Calls visit(element) for the elements of all leaves whose box is at most reach() away from the
+  /// point.
   template <typename Reach, typename Visit>
   void visit_near(const Vector3& point, const Reach& reach, const Visit& visit) const;
 
-  /// Element of the mesh that a tetrahedron of the search belongs to.
+  /// Element of the mesh to which a tetrahedron of the search belongs.
   int owner(int part) const {
     const auto p = static_cast<std::size_t>(part);
     return static_cast<int>(p < tetrahedra ? p : tetrahedra + (p - tetrahedra) / kSplit.size());
@@ -188,8 +190,8 @@ std::pair<int, double> Embedder::Tree::find_nearest(const Vector3& point) const 
       [&](int e) {
         best = std::min(best, distance_to_tetrahedron(point, corners[static_cast<std::size_t>(e)]));
       });
-  // A nearest edge or corner belongs to several elements: take the one that needs the mildest
-  // extrapolation, then the lowest number.
+  // The nearest edge or corner belongs to several elements: take the one with the least
+  // extrapolation, then the one with the lowest number.
   int chosen = -1;
   double mildest = -std::numeric_limits<double>::infinity();
   visit_near(
@@ -285,8 +287,8 @@ EmbeddedPoint Embedder::spread(const Vector3& centre, double radius, Outside out
       }
     }
   }
-  // Weights 1 + slope . offset: sum_s (1 + slope . o_s) o_s = 0. A ball with next to nothing inside
-  // (a centre outside, a thin wall) has no such weights, or wild ones.
+  // Weights 1 + slope . offset with sum_s (1 + slope . o_s) o_s = 0. If too little of the ball is
+  // inside (a centre outside, a thin wall), there are no such weights, or very large ones.
   const Eigen::SelfAdjointEigenSolver<Matrix3> spectrum(moments);
   const auto count = static_cast<double>(samples.size());
   if (spectrum.eigenvalues()[0] < kThinnest * radius * radius * count || samples.empty()) {

@@ -132,7 +132,7 @@ void GmshInput::add_element(std::int64_t element_tag, std::int64_t type,
     }
     nodes.push_back(found->second);
   }
-  // Gmsh's last two middle nodes stand the other way round than VTK's.
+  // The last two middle nodes have the opposite order in Gmsh and VTK.
   if (known.cell == kQuadraticTetrahedron) std::swap(nodes[8], nodes[9]);
   const bool repeated = elements_repeat_ && nodes == last_nodes_ && physical_tags != last_groups_;
   const std::size_t cell = repeated ? raw_.cell_count() - 1 : raw_.cell_count();

@@ -1,5 +1,5 @@
 /// @file
-/// What the readers of Gmsh's versions share: numbers in either encoding, nodes by tag, groups.
+/// Common parts of the readers of Gmsh versions: numbers in either encoding, nodes by tag, groups.
 #pragma once
 
 #include <cstdint>
@@ -18,47 +18,47 @@ namespace sinew::mesh {
 /// A physical group: dimension and tag.
 using PhysicalGroup = std::pair<std::int64_t, std::int64_t>;
 
-/// A Gmsh file being read: the cursor, and the mesh as far as it is known.
+/// A Gmsh file being read: the cursor, and the mesh so far.
 class GmshInput {
  public:
-  /// @param bytes the whole file; the caller keeps it.
+  /// @param bytes the whole file; the caller keeps it alive.
   /// @param name its name, for messages.
   GmshInput(std::string_view bytes, const std::string& name);
 
   ByteReader& reader() { return reader_; }
   bool binary() const { return binary_; }
-  /// Binary numbers follow, in this byte order.
+  /// From here on, numbers are binary in this byte order.
   void set_binary(ByteOrder order);
 
-  /// A 32-bit integer, or a word of text.
+  /// Reads a 32-bit integer, or a word of text.
   std::int64_t integer(std::string_view what);
-  /// A 64-bit size, or a word of text.
+  /// Reads a 64-bit size, or a word of text.
   std::int64_t size(std::string_view what);
-  /// A double, or a word of text.
+  /// Reads a double, or a word of text.
   double real(std::string_view what);
 
-  /// A count of items of at least `binary_bytes` each, or `words` words of text.
+  /// Checks a count of items of at least `binary_bytes` each, or `words` words of text.
   std::size_t count(std::int64_t given, std::size_t binary_bytes, std::size_t words,
                     std::string_view what);
 
-  /// Starts a node. Throws Error(duplicate-node) when the tag is known.
+  /// Starts a node. Throws Error(duplicate-node) if the tag exists.
   void add_node_tag(std::int64_t tag);
   void add_coordinates(double x, double y, double z);
 
-  /// Version 2 repeats an element for each of its physical groups: then one cell is made of them.
+  /// Merges repeated elements into one cell: version 2 repeats an element for each physical group.
   void expect_repeated_elements() { elements_repeat_ = true; }
 
-  /// Adds a cell of Gmsh's element type from node tags, and to the groups (tag 0 is none).
+  /// Adds a cell of a Gmsh element type by its node tags, and adds it to groups (tag 0 is none).
   void add_element(std::int64_t element_tag, std::int64_t type,
                    const std::vector<std::int64_t>& node_tags,
                    const std::vector<std::int64_t>& physical_tags);
 
   void name_group(const PhysicalGroup& group, const std::string& name) { names_[group] = name; }
 
-  /// The mesh, complete; call once.
+  /// Returns the complete mesh; call once.
   RawMesh take();
 
-  /// Nodes of an element type. Throws Error(unsupported-element) when unknown.
+  /// Number of nodes of an element type. Throws Error(unsupported-element) if unknown.
   std::size_t nodes_of_type(std::int64_t type);
 
  private:
@@ -70,15 +70,15 @@ class GmshInput {
   std::map<PhysicalGroup, std::string> names_;
   std::map<PhysicalGroup, std::vector<std::size_t>> members_;
   bool elements_repeat_ = false;
-  std::vector<std::int64_t> last_nodes_;  // of the element before, and its groups
+  std::vector<std::int64_t> last_nodes_;  // of the previous element, and its groups
   std::vector<std::int64_t> last_groups_;
 };
 
-/// Reads $Nodes or $Elements of version 2, $Nodes, $Elements or $Entities of version 4.1.
+/// Reads the sections of one version: $Nodes and $Elements, and in version 4.1 $Entities.
 class GmshSections {
  public:
   virtual ~GmshSections() = default;
-  /// Reads the section after its name; false when it is not one of the version's own.
+  /// Reads a section, after its name. Returns false if it is not one of these.
   virtual bool read(std::string_view section, GmshInput& in) = 0;
 };
 

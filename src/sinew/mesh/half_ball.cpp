@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Collects nodes; those of the base have their numbers already.
+/// Collects nodes, starting with those of the base.
 class NodeList {
  public:
   explicit NodeList(const Section& base) {
@@ -41,9 +41,9 @@ class NodeList {
   std::vector<Vector3> nodes_;
 };
 
-/// Six tetrahedra with a corner at the centre and one at the pole, each cut in n^3. Shell r has
-/// radius r/n; its row c, at a latitude of 90 degrees c/r, has 6 (r - c) nodes, even in longitude,
-/// and the pole one. The base is disc_section(n).
+/// Half a ball of six tetrahedra with a corner at the centre and one at the pole, each split into
+/// n^3. Shell r has the radius r/n. Its row c, at a latitude of 90 degrees c/r, has 6 (r - c) nodes
+/// at equal longitudes; the pole is one node. The base is disc_section(n).
 class TetrahedralHalf {
  public:
   explicit TetrahedralHalf(int rings) : rings_(rings), list_(disc_section(rings)) {
@@ -78,7 +78,8 @@ class TetrahedralHalf {
     }
   }
 
-  /// Lattice point of a sixth: i towards its first corner, j its second, k the pole.
+  /// Node of a lattice point of a sixth: i steps towards its first corner, j its second, k the
+  /// pole.
   NodeId node(int sixth, int i, int j, int k) const {
     const int row = i + j, r = row + k;
     const int place = row == 0 ? 0 : (sixth * row + j) % (6 * row);
@@ -86,8 +87,8 @@ class TetrahedralHalf {
     return r == 0 ? 0 : 1 + 3 * r * (r - 1) + place;
   }
 
-  /// Those whose lowest corner is (i, j, k): a tetrahedron, an octahedron cut along its shortest
-  /// diagonal, and a tetrahedron upside down.
+  /// Adds the cells whose lowest corner is (i, j, k): a tetrahedron, an octahedron cut along its
+  /// shortest diagonal, and an inverted tetrahedron.
   void add_cells(int sixth, int i, int j, int k) {
     const auto at = [&](int a, int b, int c) { return node(sixth, i + a, j + b, k + c); };
     half_.tetrahedra.push_back({at(0, 0, 0), at(1, 0, 0), at(0, 1, 0), at(0, 0, 1)});
@@ -116,9 +117,9 @@ class TetrahedralHalf {
   HalfBall half_;
 };
 
-/// A rounded half cube in the middle, and shells from it to the outside, whose directions are those
-/// of the equiangular cubed sphere (Ronchi, Iacono, Paolucci, J. Comput. Phys. 124, 1996). The base
-/// is disc_section_of_quadrilaterals(rings).
+/// Half a ball of hexahedra: a rounded half cube in the middle, and shells from it to the outside
+/// in the directions of the equiangular cubed sphere (Ronchi, Iacono, Paolucci, J. Comput. Phys.
+/// 124, 1996). The base is disc_section_of_quadrilaterals(rings).
 class HexahedralHalf {
  public:
   explicit HexahedralHalf(int rings)
@@ -159,8 +160,8 @@ class HexahedralHalf {
     return Vector3(p[0] - inner_, p[1] - inner_, p[2]) / inner_;
   }
 
-  /// The map of a cube onto a ball whose restriction to z = 0 is that of a square onto a disc by
-  /// ellipses, blended with the cube itself as there.
+  /// Maps a cube onto a ball, blended with the cube itself. At z = 0, this is the elliptical map of
+  /// a square onto a disc in disc_section_of_quadrilaterals().
   Vector3 core_position(const Lattice& p) const {
     constexpr double kRoundness = 0.6;
     const Vector3 x = in_cube(p), s = x.cwiseProduct(x);
@@ -176,7 +177,7 @@ class HexahedralHalf {
     core_[p] = p[2] == 0 ? p[1] * (cells() + 1) + p[0] : list_.add(core_position(p));
   }
 
-  /// Its place in a ring of the base, counter-clockwise from the lowest corner.
+  /// Place of a node in a ring of the base, counter-clockwise from the lowest corner.
   int place_in_ring(const Lattice& p) const {
     const int n = cells();
     if (p[1] == 0 && p[0] < n) return p[0];
@@ -201,7 +202,7 @@ class HexahedralHalf {
     return shell == 0 ? core_.at(p) : shell_.at({p, shell});
   }
 
-  /// The cell, and those between it and the outside.
+  /// Adds a cell of the core, and the cells between it and the outside.
   void add_core_cell(const Lattice& p) {
     const auto at = [&](int a, int b, int c) { return Lattice{p[0] + a, p[1] + b, p[2] + c}; };
     const Square low = {at(0, 0, 0), at(1, 0, 0), at(1, 1, 0), at(0, 1, 0)};

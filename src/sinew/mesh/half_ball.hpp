@@ -1,5 +1,5 @@
 /// @file
-/// Half a ball over a disc, which closes a swept disc; internal to this folder.
+/// Half a ball over a disc, the end of a swept disc; internal to this folder.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace sinew::mesh {
 
-/// Half a ball of radius 1 about the origin, z >= 0. The nodes of its base are those of the disc's
-/// section, in its order; the others follow.
+/// Half a ball of radius 1 about the origin, z >= 0. The first nodes are those of the section of
+/// the disc, in its order.
 struct HalfBall {
   Points nodes;  ///< (n, 3)
   std::vector<Tetrahedron> tetrahedra;
@@ -18,7 +18,7 @@ struct HalfBall {
   std::vector<NodeId> outside;  ///< nodes at radius 1
 };
 
-/// @param rings >= 1, of hexahedra >= 2. @param cells hexahedra over
+/// Makes half a ball. @param rings >= 1, for hexahedra >= 2. @param cells hexahedra over
 /// disc_section_of_quadrilaterals(), or tetrahedra over disc_section(). Elements may have either
 /// orientation.
 HalfBall half_ball(int rings, Cells cells);

@@ -8,7 +8,7 @@ namespace sinew::mesh {
 
 namespace {
 
-// VTK_HEXAHEDRON: four nodes round the lower face, then above them.
+// VTK_HEXAHEDRON: four nodes around the lower face, then those above them.
 constexpr double kCorner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
                                   {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
 

@@ -13,10 +13,10 @@ namespace sinew::mesh {
 
 namespace {
 
-/// Of a face's parameters and of the way: nearer cuts are one, and a line that passes a face by
-/// less still meets it.
+/// Tolerance on the parameters of a face and of the line: closer cuts are merged, and a line that
+/// misses a face by less still meets it.
 constexpr double kTolerance = 1e-9;
-/// Sine of the angle between a line and a face under which the line lies in the face.
+/// Sine of the angle between a line and a face below which the line counts as lying in the face.
 constexpr double kParallel = 1e-12;
 
 class Cutter {
@@ -81,7 +81,7 @@ class Cutter {
   Vector3 at(NodeId node) const { return mesh_.nodes.row(node).transpose(); }
   void keep(double share) { cuts_.push_back(share); }
 
-  // Real ones of c2 r^2 + c1 r + c0, in the form that loses no digits.
+  // Real roots of c2 r^2 + c1 r + c0, without cancellation.
   static std::vector<double> roots(double c2, double c1, double c0) {
     const double discriminant = c1 * c1 - 4.0 * c2 * c0;
     if (discriminant < 0.0) return {};

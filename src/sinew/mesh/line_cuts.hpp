@@ -1,5 +1,5 @@
 /// @file
-/// Where a straight line passes from one element of a mesh into the next.
+/// Intersections of a straight line with the faces of a mesh.
 #pragma once
 
 #include <vector>
@@ -8,12 +8,12 @@
 
 namespace sinew::mesh {
 
-/// Shares of the way from one point to another at which the line between them meets faces of
-/// elements: between two of them it stays in one element, or in none. Faces of hexahedra are
-/// bilinear; those of quadratic tetrahedra are taken as those of their corners, as the Embedder
-/// takes them. A line within a face is cut where it meets the face's edges.
+/// Fractions of the line between two points at which it meets faces of elements. Between two of
+/// them, the line stays in one element, or outside. Faces of hexahedra are bilinear; quadratic
+/// tetrahedra count as their flat corner tetrahedra, as in the Embedder. A line within a face is
+/// cut at the edges of the face.
 /// @param mesh at rest. @param from,to (3,) m, at rest.
-/// @return ascending, from 0 to 1, both included.
+/// @return ascending, from 0 to 1, including both.
 std::vector<double> line_cuts(const Mesh& mesh, const Vector3& from, const Vector3& to);
 
 }  // namespace sinew::mesh

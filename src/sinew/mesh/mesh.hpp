@@ -1,5 +1,5 @@
 /// @file
-/// A volume mesh as simulation needs it: nodes, tetrahedra, hexahedra, named sets. Lengths in m.
+/// A volume mesh for simulation: nodes, tetrahedra, hexahedra and named sets. Lengths in m.
 #pragma once
 
 #include <array>
@@ -11,33 +11,35 @@
 
 namespace sinew::mesh {
 
-/// Four node numbers; positively oriented: (x1-x0) . ((x2-x0) x (x3-x0)) > 0, as VTK and Gmsh.
+/// Four node numbers, positively oriented: (x1-x0) . ((x2-x0) x (x3-x0)) > 0, as in VTK and Gmsh.
 using Tetrahedron = std::array<NodeId, 4>;
-/// The corners of a tetrahedron, then the middle nodes of its edges 01, 12, 20, 03, 13, 23, as VTK.
+/// The corners of a tetrahedron, then the middle nodes of its edges 01, 12, 20, 03, 13, 23, as in
+/// VTK.
 using QuadraticTetrahedron = std::array<NodeId, 10>;
 /// Eight node numbers in VTK_HEXAHEDRON order.
 using Hexahedron = std::array<NodeId, 8>;
 /// Three node numbers, counter-clockwise seen from outside.
 using Triangle = std::array<NodeId, 3>;
 
-/// What reading and checking did to a mesh, for `sinew info`.
+/// Notes from reading and checking a mesh, for `sinew info`.
 struct LoadNotes {
-  std::string format;          ///< "VTK legacy 2.0, binary"; empty for meshes made in the program
+  std::string format;          ///< such as "VTK legacy 2.0, binary"; empty for generated meshes
   double unit = 1.0;           ///< m per file unit
-  int reordered_elements = 0;  ///< elements of the opposite node ordering, turned round
-  int passed_over_cells = 0;   ///< vertices, lines, quadrilaterals and the like that the file holds
+  int reordered_elements = 0;  ///< elements whose opposite node order was corrected
+  int passed_over_cells = 0;   ///< ignored cells of the file: vertices, lines, quadrilaterals, ...
 };
 
-/// Immutable once loaded and checked. Node order is the file's, unused nodes included.
+/// A volume mesh, immutable after loading and checking. Nodes have the order of the file, including
+/// unused ones.
 struct Mesh {
-  std::string name;  ///< file name or what made it, for messages
+  std::string name;  ///< file or generator, for messages
   Points nodes;      ///< (n, 3) m
   std::vector<Tetrahedron> tetrahedra;
-  /// With middle nodes, in the order of `tetrahedra`, which are then their corners; empty for
-  /// linear ones. A mesh has one kind.
+  /// Tetrahedra with middle nodes, in the order of `tetrahedra`, which are then their corners.
+  /// Empty if the tetrahedra are linear; a mesh has only one of the two kinds.
   std::vector<QuadraticTetrahedron> quadratic;
   std::vector<Hexahedron> hexahedra;
-  std::vector<Triangle> triangles;  ///< surface triangles that the file holds; may be empty
+  std::vector<Triangle> triangles;  ///< surface triangles of the file; may be empty
 
   /// Named sets from physical groups or integer cell/point data ("name" or "name:value").
   std::map<std::string, std::vector<NodeId>> node_sets;

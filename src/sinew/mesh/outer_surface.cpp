@@ -11,7 +11,8 @@ namespace sinew::mesh {
 
 namespace {
 
-/// Faces by their corners in ascending order, the fourth of a triangle -1, and whose they are.
+/// The elements of faces. A face is given by its sorted corners, with -1 as the fourth of a
+/// triangle.
 class FaceOwners {
  public:
   explicit FaceOwners(const Mesh& mesh) {
@@ -26,7 +27,7 @@ class FaceOwners {
     }
     std::ranges::sort(faces_);
   }
-  /// The first element that has the face; -1: none.
+  /// The first element with this face; -1 if there is none.
   std::int32_t of(const Face& face) const {
     const auto found = std::ranges::lower_bound(faces_, std::pair{sorted(face.node), 0});
     return found == faces_.end() || found->first != sorted(face.node) ? -1 : found->second;
@@ -43,7 +44,7 @@ class FaceOwners {
   std::vector<std::pair<Key, std::int32_t>> faces_;
 };
 
-/// Numbers nodes in the order in which they are first met.
+/// Numbers nodes in the order of their first use.
 class Numbering {
  public:
   Numbering(const Mesh& mesh, std::vector<NodeId>& nodes)
@@ -66,8 +67,8 @@ class Numbering {
   int next_ = 0;
 };
 
-// Local nodes of the eight tetrahedra of a quadratic one: four at its corners, and the octahedron
-// between its middle nodes round the diagonal from the middle of edge 01 to that of 23.
+// Local nodes of the eight tetrahedra of a quadratic one: four at its corners, and four in the
+// octahedron of its middle nodes, around the diagonal from the middle of edge 01 to that of 23.
 constexpr std::array<std::array<std::size_t, 4>, 8> kEighths = {{{0, 4, 6, 7},
                                                                  {4, 1, 5, 8},
                                                                  {6, 5, 2, 9},

@@ -29,7 +29,7 @@ Vector3 middle(const Mesh& mesh, const Face& face) {
   return sum / face.corners();
 }
 
-/// Unit vector out of the material.
+/// Unit outward normal.
 Vector3 normal(const Mesh& mesh, const Face& face) {
   const auto& n = face.node;
   const Vector3 first = at(mesh, n[2]) - at(mesh, n[0]);
@@ -38,7 +38,7 @@ Vector3 normal(const Mesh& mesh, const Face& face) {
   return (face.corners() == 4 ? first.cross(second) : second.cross(first)).normalized();
 }
 
-/// Faces that share an edge: [face][k] lies beyond the edge from corner k to k + 1; -1 for none.
+/// Neighbours of faces: [face][k] is the face beyond the edge from corner k to k + 1; -1 if none.
 std::vector<std::array<int, 4>> neighbours(const std::vector<Face>& faces) {
   struct Edge {
     NodeId low, high;
@@ -106,8 +106,9 @@ int nearest_face(const Mesh& mesh, const std::vector<Face>& faces, const Vector3
   return best;
 }
 
-/// Solid angle that the faces cover as seen from a point, over 4 pi: 1 for a closed surface round
-/// the point whose faces look at it (van Oosterom & Strackee, IEEE Trans. Biomed. Eng. 30, 1983).
+/// Solid angle of the faces as seen from a point, divided by 4 pi: 1 for a closed surface around
+/// the point whose normals point inwards (van Oosterom & Strackee, IEEE Trans. Biomed. Eng. 30,
+/// 1983).
 double winding(const Mesh& mesh, const std::vector<Face>& faces, const Vector3& point) {
   double sum = 0.0;
   const auto triangle = [&](NodeId na, NodeId nb, NodeId nc) {
@@ -198,7 +199,7 @@ std::vector<std::vector<NodeId>> open_loops(const std::vector<Face>& faces) {
       edges.insert({nodes[k], nodes[(k + 1) % nodes.size()]});
     }
   }
-  std::map<NodeId, NodeId> next;  // along the cap: against the open edges
+  std::map<NodeId, NodeId> next;  // in the direction of the cap, opposite to the open edges
   for (const auto& [from, to] : edges) {
     if (edges.contains({to, from})) continue;
     const bool twice = edges.count({from, to}) > 1;

@@ -1,6 +1,5 @@
 /// @file
-/// Parts of a mesh's surface picked by place, by name, by angle or by the void that they enclose:
-/// where pressure acts.
+/// Selection of surface faces by place, name, angle, or the void that they enclose, for pressure.
 #pragma once
 
 #include <string>
@@ -11,33 +10,35 @@
 
 namespace sinew::mesh {
 
-/// Boundary faces all of whose nodes lie in the region; of a set of triangles, those triangles that
-/// are boundary faces.
+/// Selects the boundary faces with all their nodes in a region; for a set of triangles, those
+/// triangles that are boundary faces.
 /// @param mesh,region,what as for select_nodes().
-/// Throws what select_nodes() does, and Error(empty-region) when no face has all its nodes there.
+/// Throws the errors of select_nodes(), and Error(empty-region) if no face has all its nodes there.
 std::vector<Face> select_faces(const Mesh& mesh, const Region& region, const std::string& what);
 
-/// The boundary face nearest to a point, and all that can be reached from it over edges at which
-/// the surface turns by less than `angle`.
-/// @param mesh to pick from.
+/// Selects the boundary face whose centre is nearest to a point, and all faces that can be reached
+/// from it over edges at which the surface turns by at most `angle`.
+/// @param mesh to select from.
 /// @param point (3,) m.
-/// @param angle rad, > 0; pi takes the whole connected surface.
-/// @param what names the use in messages. Throws Error(out-of-range, not-finite).
+/// @param angle rad, > 0; pi selects the whole connected surface.
+/// @param what name of the use in messages. Throws Error(out-of-range, not-finite,
+///   no-volume-elements).
 std::vector<Face> grow_patch(const Mesh& mesh, const Vector3& point, double angle,
                              const std::string& what);
 
-/// The connected surface that encloses a void of the body round a point.
-/// @param mesh to pick from.
+/// Selects the connected surface that encloses a void around a point. It is the surface of the
+/// boundary face whose centre is nearest to the point.
+/// @param mesh to select from.
 /// @param point (3,) m in the void.
-/// @param what names the use in messages. Throws Error(empty-region) when the point lies in the
-///   material, outside the body, or in a bore that is open to the outside.
+/// @param what name of the use in messages. Throws Error(empty-region) if the point lies in the
+///   material, outside of the body, or in a bore that is open to the outside.
 std::vector<Face> enclosing_surface(const Mesh& mesh, const Vector3& point,
                                     const std::string& what);
 
-/// The closed loops of edges at which faces end, each in the direction in which a cap over it would
-/// run: empty for a closed surface.
-/// @param faces of one orientation. Throws Error(surface-not-closed) where an edge has more than
-///   two faces or loops touch each other.
+/// The closed loops of edges at which faces end, in the direction of the edges of a cap; empty for
+/// a closed surface.
+/// @param faces of consistent orientation. Throws Error(surface-not-closed) if two faces end at the
+///   same edge or loops touch each other.
 std::vector<std::vector<NodeId>> open_loops(const std::vector<Face>& faces);
 
 }  // namespace sinew::mesh

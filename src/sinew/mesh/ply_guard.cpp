@@ -104,7 +104,7 @@ class PlyWalker {
   void element() {
     const std::string name(in_.word("the name of an element"));
     const std::int64_t count = in_.integer("a count");
-    // Each takes at least a byte of what follows.
+    // Each item takes at least one of the following bytes.
     elements_.push_back({name, in_.checked_count(count, 1, name), {}});
   }
 

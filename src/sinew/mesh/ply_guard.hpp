@@ -1,5 +1,5 @@
 /// @file
-/// Makes sure that a PLY file is whole before another library parses it.
+/// Checks that a PLY file is complete before another library parses it.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace sinew::mesh {
 
-/// Walks through header and body of a PLY file (text, binary of either order) and checks that the
-/// header is complete and known, that every element it announces is there, that vertices have
-/// coordinates, and that faces name vertices that exist. assimp's parser does not end on some files
-/// that are cut short. Throws Error(malformed-file, truncated-file, size-limit,
+/// Checks header and body of a PLY file (text, or binary of either byte order): the header is
+/// complete and known, every announced element is present, vertices have coordinates, and faces
+/// refer to existing vertices. This is needed because the parser of assimp does not terminate on
+/// some truncated files. Throws Error(malformed-file, truncated-file, size-limit,
 /// index-out-of-range).
 /// @param bytes the whole file.
 /// @param name its name, for messages.

@@ -33,7 +33,7 @@ std::vector<Term> shape_terms(std::size_t node) {
 
 double factorial(int n) { return n < 2 ? 1.0 : n * factorial(n - 1); }
 
-/// Integral over a tetrahedron as a share of its volume: 6 prod(a!)/(sum a + 3)!.
+/// Integral over a tetrahedron, divided by its volume: 6 prod(a!)/(sum a + 3)!.
 double integral(const std::array<int, 4>& power) {
   double product = 6.0;
   int sum = 3;
@@ -71,7 +71,7 @@ std::array<double, 10> quadratic_shapes(const std::array<double, 4>& l) {
 }
 
 Eigen::Matrix<double, 10, 3> quadratic_gradients(const std::array<double, 4>& l) {
-  // By all four coordinates first; L_0 = 1 - L_1 - L_2 - L_3.
+  // Derivatives with respect to all four coordinates first; L_0 = 1 - L_1 - L_2 - L_3.
   Eigen::Matrix<double, 10, 4> full = Eigen::Matrix<double, 10, 4>::Zero();
   for (Eigen::Index a = 0; a < 4; ++a) full(a, a) = 4.0 * l[static_cast<std::size_t>(a)] - 1.0;
   for (std::size_t e = 0; e < 6; ++e) {

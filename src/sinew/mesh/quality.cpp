@@ -48,7 +48,7 @@ double radius_ratio(const Corners& x) {
 }
 
 std::array<double, 6> dihedral_angles(const Corners& x) {
-  // Each edge (i, j) with the two corners (k, l) that its faces end in.
+  // Each edge (i, j) with the third corners (k, l) of its two faces.
   constexpr std::array<std::array<std::size_t, 4>, 6> kHinges = {
       {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};
   std::array<double, 6> angles;
@@ -63,7 +63,7 @@ std::array<double, 6> dihedral_angles(const Corners& x) {
 }
 
 double signed_volume(const Mesh& mesh, const Hexahedron& h) {
-  // The faces that do not touch corner 6 and 0 in turn: the ring of edges round the diagonal.
+  // The ring of corners around the diagonal 0-6.
   constexpr std::array<std::size_t, 7> kRing = {1, 2, 3, 7, 4, 5, 1};
   double sum = 0.0;
   for (std::size_t k = 0; k < 6; ++k) {

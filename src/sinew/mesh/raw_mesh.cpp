@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxLabels = 256;
 
-/// Where a cell of the file went: which list of the mesh and which place in it.
+/// Destination of a cell of the file: a list of the mesh, and the position in it.
 struct Destination {
   enum class List { none, triangles, tetrahedra, hexahedra } list = List::none;
   NodeId position = -1;
@@ -26,7 +26,7 @@ struct Destination {
   throw Error(kind, {.file = raw.name}, message, remedy);
 }
 
-/// Points of a cell of this type; 0 when any number is allowed.
+/// Number of points of a cell of this type; 0 if any number is allowed.
 std::size_t points_of(std::int64_t type) {
   switch (type) {
     case kVertex:
@@ -48,7 +48,7 @@ std::size_t points_of(std::int64_t type) {
   }
 }
 
-/// Volume cells that Sinew cannot simulate must not vanish silently.
+/// Whether a cell is a volume that Sinew cannot simulate, which must not be ignored silently.
 bool is_unsupported_volume(std::int64_t type) {
   const bool linear = type == kWedge || type == kPyramid || type == 15 || type == 16;
   const bool quadratic = (type >= 25 && type <= 29) || type == 32 || type == 33 || type == 37;
@@ -139,7 +139,7 @@ Destination place_cell(const RawMesh& raw, std::size_t c, Mesh& mesh) {
     case kHexahedron:
       return {List::hexahedra, append(mesh.hexahedra, nodes_of<8>(raw, c))};
     case kVoxel: {
-      auto nodes = nodes_of<8>(raw, c);  // a voxel counts along the axes, a hexahedron round
+      auto nodes = nodes_of<8>(raw, c);  // a voxel is numbered along the axes, a hexahedron around
       std::swap(nodes[2], nodes[3]);
       std::swap(nodes[6], nodes[7]);
       return {List::hexahedra, append(mesh.hexahedra, nodes)};
@@ -150,8 +150,8 @@ Destination place_cell(const RawMesh& raw, std::size_t c, Mesh& mesh) {
   }
 }
 
-/// Puts one cell of the file into the sets called `name`: triangles and volumes by their place,
-/// vertices, lines and quadrilaterals by their nodes.
+/// Adds a cell of the file to the sets called `name`: triangles and volumes by position; vertices,
+/// lines and quadrilaterals by their nodes.
 void add_to_set(const RawMesh& raw, const std::vector<Destination>& where, std::size_t cell,
                 const std::string& name, Mesh& mesh) {
   const auto [list, position] = where[cell];
@@ -173,7 +173,7 @@ void add_to_set(const RawMesh& raw, const std::vector<Destination>& where, std::
   }
 }
 
-/// Calls add(set name, place) for every entry of an integer field that belongs to a set.
+/// Calls add(set name, position) for every entry of an integer field that belongs to a set.
 template <typename Add>
 void for_each_label(const IntegerField& field, const Add& add) {
   const std::set<std::int64_t> labels = [&] {

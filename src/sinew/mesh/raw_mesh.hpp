@@ -1,5 +1,5 @@
 /// @file
-/// What a mesh file holds before anything is made of it: the common ground of all readers.
+/// Unchecked content of a mesh file, the common output of all readers.
 #pragma once
 
 #include <cstdint>
@@ -28,18 +28,18 @@ enum CellType : int {
 /// An integer value for each point or cell.
 struct IntegerField {
   std::string name;
-  bool mask = false;  ///< stored in 8 bits: 0/1 values then mean "in the set called `name`"
+  bool mask = false;  ///< stored in 8 bits: values 0 and 1 are a mask of the set `name`
   std::vector<std::int64_t> values;
 };
 
-/// A group of cells that the file names itself (Gmsh's physical groups).
+/// A named group of cells in the file (a physical group of Gmsh).
 struct CellGroup {
   std::string name;
   std::vector<std::size_t> cells;
 };
 
-/// Points and cells as the file gives them, unchecked. Cell c has the points
-/// `connectivity[offsets[c] .. offsets[c + 1])`, numbered from 0.
+/// Points and cells of the file, unchecked. The points of cell c are those of `connectivity` at
+/// offsets[c] .. offsets[c + 1] - 1, numbered from 0.
 struct RawMesh {
   std::string name;
   std::string format;
@@ -62,13 +62,13 @@ struct RawMesh {
   }
 };
 
-/// Sorts the cells by type, checks every index and makes the named sets. Integer fields become sets
-/// `name:value` for each value, or the one set `name` when they are 8-bit masks; fields with more
-/// than 256 values are labels of something else and are passed over. Lengths stay in file units.
-/// Throws Error(index-out-of-range, unsupported-element, malformed-file, size-limit).
+/// Makes a Mesh: sorts the cells by type, checks every index and makes the named sets. An integer
+/// field gives a set `name:value` for each value, or one set `name` if it is an 8-bit mask. Fields
+/// with more than 256 values are ignored, since they label something else. Lengths stay in file
+/// units. Throws Error(index-out-of-range, unsupported-element, malformed-file, size-limit).
 Mesh assemble(const RawMesh& raw);
 
-/// "tetrahedron", "pyramid" or "type 42".
+/// Name of a cell type, such as "tetrahedron", "pyramid" or "type 42".
 std::string cell_type_name(std::int64_t type);
 
 }  // namespace sinew::mesh

@@ -17,7 +17,7 @@ namespace sinew::mesh {
 
 namespace {
 
-/// Numbers the middles of edges as they are first asked for.
+/// Numbers the middles of edges in the order of their first use.
 class EdgeMiddles {
  public:
   explicit EdgeMiddles(NodeId first) : next_(first) {}
@@ -44,7 +44,7 @@ class EdgeMiddles {
 /// Edge middles of a tetrahedron, named after the ends.
 enum Middle : std::size_t { k01, k02, k03, k12, k13, k23 };
 
-/// A diagonal of the inner octahedron and the ring of nodes round it.
+/// A diagonal of the inner octahedron and the ring of nodes around it.
 struct Diagonal {
   Middle from, to;
   std::array<Middle, 5> ring;
@@ -55,7 +55,7 @@ constexpr std::array<Diagonal, 3> kDiagonals = {{
     {k03, k12, {k01, k02, k23, k13, k01}},
 }};
 
-/// The middle of an edge is the mean of its ends, whatever the numbering.
+/// Position of the middle of an edge.
 Vector3 middle_of(const Mesh& mesh, const Tetrahedron& t, Middle m) {
   constexpr std::array<std::pair<std::size_t, std::size_t>, 6> kEnds = {
       {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
@@ -63,7 +63,7 @@ Vector3 middle_of(const Mesh& mesh, const Tetrahedron& t, Middle m) {
   return 0.5 * (mesh.nodes.row(t[a]) + mesh.nodes.row(t[b]));
 }
 
-/// The shortest diagonal; of equal ones the first.
+/// The shortest diagonal; of equal ones, the first.
 const Diagonal& shortest_diagonal(const Mesh& mesh, const Tetrahedron& t) {
   const Diagonal* best = nullptr;
   double least = std::numeric_limits<double>::infinity();
@@ -108,7 +108,7 @@ void split_triangle(const Triangle& t, EdgeMiddles& middles, Mesh& fine) {
 
 using Sets = std::map<std::string, std::vector<NodeId>>;
 
-/// Members of element sets: each element became `parts` consecutive ones.
+/// Element sets after refinement: each element became `parts` consecutive ones.
 Sets split_sets(const Sets& sets, NodeId parts) {
   Sets result;
   for (const auto& [name, members] : sets) {

@@ -1,5 +1,5 @@
 /// @file
-/// What a mesh is like, for `sinew info` and for logs.
+/// Description of a mesh, for `sinew info` and logs.
 #pragma once
 
 #include <string>
@@ -18,47 +18,48 @@ struct Histogram {
   std::vector<int> counts;
 };
 
-/// A named set and what it holds.
+/// Name, kind and size of a set.
 struct SetSummary {
   std::string name;
   std::string kind;  ///< "nodes", "triangles", "tetrahedra", "hexahedra"
   int size = 0;
 };
 
-/// Everything that is worth telling about a mesh. Lengths in m, volumes in m^3, angles in degrees.
+/// Description of a mesh. Lengths in m, volumes in m^3, angles in degrees.
 struct MeshReport {
   std::string name;
   LoadNotes notes;
   int nodes = 0, tetrahedra = 0, hexahedra = 0, triangles = 0;
   int unused_nodes = 0;
-  Vector3 low = Vector3::Zero();   ///< least corner of the bounding box of used nodes
-  Vector3 high = Vector3::Zero();  ///< largest corner
+  Vector3 low = Vector3::Zero();   ///< lower corner of the bounding box of used nodes
+  Vector3 high = Vector3::Zero();  ///< upper corner
   double volume = 0.0;
   double surface_area = 0.0;
 
-  // Tetrahedra only; 0 and empty without them.
+  // For tetrahedra only; 0 or empty without them.
   double shortest_edge = 0.0, mean_edge = 0.0, longest_edge = 0.0;
   double min_radius_ratio = 0.0, mean_radius_ratio = 0.0;
-  int worst_tetrahedron = -1;  ///< the one with the least radius ratio
+  int worst_tetrahedron = -1;  ///< the one with the smallest radius ratio
   Histogram radius_ratio;      ///< 10 bins from 0 to 1
   double min_dihedral = 0.0, max_dihedral = 0.0;
-  Histogram dihedral;  ///< 9 bins from 0 to 180 degrees, six angles a tetrahedron
+  Histogram dihedral;  ///< 9 bins from 0 to 180 degrees, six angles per tetrahedron
 
   std::vector<SetSummary> sets;
   Components components;
-  std::vector<Defect> defects;  ///< what check() would refuse
+  std::vector<Defect> defects;  ///< result of find_defects()
 };
 
-/// Describes a mesh, sound or not. Elements count as reordered only when `mesh.notes` says so.
+/// Describes a mesh with or without defects. The number of reordered elements is that in
+/// `mesh.notes`.
 /// @param mesh to describe, after reorder_elements().
-/// @param options what passes as sound.
+/// @param options of find_defects().
 MeshReport describe(const Mesh& mesh, const CheckOptions& options = {});
 
-/// The report as text for people: a dozen lines, lengths in a handy unit.
+/// The report as text of a dozen lines, with lengths in a convenient unit.
 /// @param report to print.
 std::string format_report(const MeshReport& report);
 
-/// A length with a handy unit: "195 mm", "1.2 m".
+/// A length with a convenient unit, such as "195 mm" or "1.2 m".
 /// @param metres the length.
 std::string format_length(double metres);
 

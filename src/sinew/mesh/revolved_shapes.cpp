@@ -1,4 +1,4 @@
-// Solids whose layers are discs or rings round one axis.
+// Solids whose layers are discs or rings around one axis.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -19,7 +19,7 @@ Section disc(int rings, Cells cells) {
   return cells == Cells::hexahedra ? disc_section_of_quadrilaterals(rings) : disc_section(rings);
 }
 
-/// The circles of all rings of a section round the axis.
+/// The circles of all rings of a section around the axis.
 std::vector<Circle> ring_circles(const Section& section, const RadialProfile& profile) {
   std::vector<double> radii = section.radius;
   std::ranges::sort(radii);
@@ -29,7 +29,7 @@ std::vector<Circle> ring_circles(const Section& section, const RadialProfile& pr
     if (s > 0.0) circles.push_back({0.0, [s, profile](double z) { return profile(s, z); }});
   }
   if (radii.front() == 0.0) return circles;
-  circles.push_back({0.0, [profile](double z) { return profile(0.0, z); }});  // a tube's bore
+  circles.push_back({0.0, [profile](double z) { return profile(0.0, z); }});  // bore of a tube
   return circles;
 }
 
@@ -111,8 +111,8 @@ Mesh trunk(const TrunkShape& shape, Cells cells) {
   require_cells(shape.layers_per_bellow, 2, "trunk", "layers_per_bellow");
   require_rings(shape.rings, cells, "trunk");
   const Section section = disc(shape.rings, cells);
-  // Crests at both ends and between bellows; the wave fades towards the axis as s^3, so that the
-  // inside stays smooth.
+  // Crests are at both ends and between bellows. The wave decays towards the axis as s^3, so that
+  // the inside stays smooth.
   const auto profile = [&](double s, double z) {
     const double crest = std::lerp(shape.bottom_radius, shape.top_radius, z / shape.height);
     const double phase = 2.0 * std::numbers::pi * shape.bellows * z / shape.height;

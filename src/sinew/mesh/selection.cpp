@@ -31,7 +31,7 @@ void require_finite(bool finite, const std::string& what) {
   if (!finite) fail(ErrorKind::not_finite, what, "the region has a number that is not finite", "");
 }
 
-/// A region of space: whether it holds a point, grown by a tolerance, and how it is called.
+/// A region of space: a test whether it contains a point, with a tolerance, and its name.
 struct Place3 {
   std::function<bool(const Vector3&, double)> holds;
   std::string text;

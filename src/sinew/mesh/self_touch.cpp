@@ -14,9 +14,9 @@ namespace sinew::mesh {
 
 namespace {
 
-constexpr double kInside = 1e-9;  // of a barycentric weight
+constexpr double kInside = 1e-9;  // minimum barycentric weight of a point inside
 
-// The six tetrahedra round a hexahedron's diagonal 0-6 (Kuhn's triangulation).
+// The six tetrahedra around the diagonal 0-6 of a hexahedron (Kuhn's triangulation).
 constexpr std::array<std::array<std::size_t, 4>, 6> kSplit{
     {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}}};
 
@@ -66,7 +66,8 @@ SelfTouch::SelfTouch(const Mesh& mesh)
 }
 
 std::optional<SelfTouch::Touch> SelfTouch::find(const Points& positions, double apart) const {
-  // Surface nodes in cells of the mean element's size; every element looks into those it spans.
+  // Surface nodes are sorted into cells of the mean element size; every element searches the cells
+  // that it spans.
   double size = 0.0;
   for (const Part& part : parts_) {
     const Vector3 edge =

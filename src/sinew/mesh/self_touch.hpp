@@ -1,5 +1,5 @@
 /// @file
-/// Whether a deformed mesh reaches into itself.
+/// Detection of self-penetration of a deformed mesh.
 #pragma once
 
 #include <array>
@@ -10,23 +10,25 @@
 
 namespace sinew::mesh {
 
-/// Finds where the surface of a mesh enters the mesh elsewhere. Made once for a mesh.
+/// Finds where the surface of a mesh penetrates the mesh elsewhere. Made once per mesh.
 class SelfTouch {
  public:
   struct Touch {
-    NodeId node = -1;  ///< of the surface
-    int element = -1;  ///< that it lies in: tetrahedra, then hexahedra
+    NodeId node = -1;  ///< node of the surface
+    int element = -1;  ///< element that contains it: tetrahedra, then hexahedra
   };
 
   /// @param mesh must outlive this. Elements count as their flat corner tetrahedra.
   explicit SelfTouch(const Mesh& mesh);
 
   /// @param positions (n, 3) m, of all nodes.
-  /// @param apart m: what is nearer than this at rest is not looked at, such as the dent round a
-  ///   point load.
-  /// @return the first node of the surface, by number, that lies inside an element that it does not
-  ///   belong to; none while nothing overlaps. Touching without overlap is not seen, an edge that
-  ///   crosses an edge neither until a node is inside.
+  /// @param apart m: pairs that are nearer than this at rest are ignored, for instance in the dent
+  ///   around a point load.
+  /// @return the lowest-numbered surface node that lies inside an element to which it does not
+  ///   belong;
+  ///   none without overlap. Touching without overlap is not detected, nor are crossing edges as
+  ///   long
+  ///   as no node is inside.
   std::optional<Touch> find(const Points& positions, double apart = 0.0) const;
 
  private:

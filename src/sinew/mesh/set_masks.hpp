@@ -1,5 +1,5 @@
 /// @file
-/// Named sets as a mask of 8 bits each, as VTK's files carry them. Internal to this folder.
+/// Named sets as 8-bit masks, for VTK files; internal to this folder.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,15 @@
 
 namespace sinew::mesh {
 
-/// By the set's name: 1 for what is in it.
+/// Masks by the name of the set: 1 for members, 0 for others.
 using SetMasks = std::map<std::string, std::vector<std::uint8_t>>;
 
-/// Sets of nodes, a value for each node.
+/// Masks of node sets, with a value for each node.
 SetMasks node_masks(const Mesh& mesh);
 
-/// Sets of elements, a value for each tetrahedron, hexahedron and, where asked, triangle.
-/// @param mesh its sets. @param triangles whether surface triangles are cells, too.
+/// Masks of element sets, with a value for each tetrahedron, hexahedron and, if requested,
+/// triangle.
+/// @param mesh with the sets. @param triangles whether surface triangles are cells, too.
 SetMasks cell_masks(const Mesh& mesh, bool triangles);
 
 }  // namespace sinew::mesh

@@ -15,8 +15,8 @@ namespace sinew::mesh {
 
 namespace {
 
-/// Least determinant of an element's map at its corners and points of integration, over that of its
-/// corners alone.
+/// Minimum Jacobian determinant of an element at its corners and quadrature points, relative to
+/// that of the straight-edged element.
 double least_jacobian(const Mesh& mesh, const QuadraticTetrahedron& element) {
   Eigen::Matrix<double, 10, 3> x;
   for (std::size_t a = 0; a < 10; ++a) {
@@ -36,8 +36,8 @@ double least_jacobian(const Mesh& mesh, const QuadraticTetrahedron& element) {
   return least / straight.determinant();
 }
 
-/// Where cells are flat beside their circle's curve, arcs would fold elements: these get straight
-/// edges again.
+/// Gives straight edges to elements that arcs would fold, where cells are flat compared with the
+/// curvature of their circle.
 void straighten_folded(Mesh& mesh) {
   constexpr double kMinJacobian = 0.1;
   for (bool folded = true; folded;) {
@@ -53,17 +53,17 @@ void straighten_folded(Mesh& mesh) {
   }
 }
 
-/// Of the radius: how far nodes on a circle may lie from it.
+/// Tolerance, relative to the radius, for nodes on a circle.
 constexpr double kOn = 1e-9;
 
-/// Moves the middle of an edge from a to b onto the circle when both lie on it.
+/// Moves the middle of the edge from a to b onto the circle, if both ends lie on it.
 void bend_to(const Circle& circle, const Vector3& a, const Vector3& b, Vector3& middle) {
   const Vector3 axis(circle.x, 0.0, 0.0);
   const Eigen::Vector2d p = (a - axis).head<2>(), q = (b - axis).head<2>();
   const double ra = circle.radius(a.z()), rb = circle.radius(b.z());
   const bool on = std::abs(p.norm() - ra) < kOn * ra && std::abs(q.norm() - rb) < kOn * rb;
   const Eigen::Vector2d between = p.normalized() + q.normalized();
-  if (!on || between.norm() < 1.0) return;  // a chord across is none along
+  if (!on || between.norm() < 1.0) return;  // chords across the circle stay straight
   const double z = 0.5 * (a.z() + b.z());
   const Eigen::Vector2d at = circle.radius(z) * between.normalized();
   middle = {circle.x + at.x(), at.y(), z};

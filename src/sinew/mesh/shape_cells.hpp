@@ -1,5 +1,5 @@
 /// @file
-/// What shapes are made of, with the corners and arcs of round ones; internal to this folder.
+/// Cells of generated shapes, and corners and arcs of round ones; internal to this folder.
 #pragma once
 
 #include <functional>
@@ -10,32 +10,34 @@
 
 namespace sinew::mesh {
 
-/// A circle about an axis along z that curves the edges between nodes on it.
+/// Circles about an axis along z. Edges between nodes on one become arcs.
 struct Circle {
-  double x = 0.0;                        ///< of the axis, at y = 0, m
-  std::function<double(double)> radius;  ///< at a height, m
+  double x = 0.0;                        ///< x of the axis, which is at y = 0, m
+  std::function<double(double)> radius;  ///< radius at a height, m
 };
 
-/// A sphere that curves the edges between nodes on it, as far as they lie on one side of it.
+/// Half a sphere. Edges between nodes on it become arcs.
 struct Ball {
-  double z = 0.0;       ///< of its centre, on the z axis, m
+  double z = 0.0;       ///< z of its centre, on the z axis, m
   double radius = 0.0;  ///< m
-  double side = 1.0;    ///< 1: from its centre upwards, -1: downwards
+  double side = 1.0;    ///< 1: the half above the centre, -1: the half below
 };
 
-/// How much farther out than a circle the corners of a regular polygon lie that has its area, which
-/// gives it nearly the same second moment as well: bending stiffness is right from few cells on.
-/// @param corners,cells of the polygon. Quadratic cells have arcs: 1.
+/// Ratio of the circumradius of a regular polygon to the radius of the circle of the same area.
+/// Such a polygon has nearly the same second moment, too, so that a few cells give the right
+/// bending stiffness.
+/// @param corners,cells of the polygon. The ratio is 1 for quadratic cells, which have arcs.
 double rounding(int corners, Cells cells);
 
-/// Nodes of a section at its radius 1.
+/// Number of nodes of a section at radius 1.
 int outside_corners(const Section& section);
 
-/// Renumbers so that every node belongs to an element.
+/// Removes nodes without elements, and renumbers the others.
 void drop_unused_nodes(Mesh& mesh);
 
-/// The mesh as the cells ask: with middle nodes where they are quadratic, those of edges along a
-/// circle or a ball on its arc.
+/// Completes a mesh for the kind of cells: adds middle nodes if they are quadratic, and moves those
+/// of edges along a circle or ball onto the arc. Elements that an arc would fold keep straight
+/// edges.
 Mesh finished(Mesh mesh, Cells cells, const std::vector<Circle>& circles,
               const std::vector<Ball>& balls = {});
 

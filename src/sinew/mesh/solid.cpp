@@ -14,7 +14,7 @@ namespace sinew::mesh {
 
 namespace {
 
-// A volume below this part of its bounding box's diagonal cubed is rounding.
+// A volume below this fraction of the cubed diagonal of the bounding box is rounding.
 constexpr double kFlat = 1e-12;
 
 double diagonal(const Surface& surface) {
@@ -44,7 +44,7 @@ void require_no_crossing(const Surface& surface) {
 SolidMoments solid_moments(const Surface& surface) {
   SolidMoments result;
   if (surface.nodes.rows() == 0) return result;
-  // From the middle, so that a far origin costs no digits.
+  // Relative to the mean of the nodes, so that a distant origin costs no digits.
   const Vector3 origin = surface.nodes.colwise().mean().transpose();
   Vector3 first = Vector3::Zero();
   for (const auto& [a, b, c] : surface.triangles) {

@@ -28,7 +28,7 @@ namespace {
 constexpr std::size_t kReasonShown = 100;  // assimp quotes whole files
 constexpr std::array kExtensions = {"stl", "obj", "ply"};
 
-/// Leaves only the importers for the formats above: the others are not ours to vouch for.
+/// Removes all importers except those for the formats above; the others are not tested.
 void keep_named_importers(Assimp::Importer& importer) {
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
     const aiImporterDesc* description = importer.GetImporterInfo(i);
@@ -41,7 +41,8 @@ void keep_named_importers(Assimp::Importer& importer) {
   }
 }
 
-/// Cuts a polygon into a fan from the first corner from which all triangles face the same way.
+/// Splits a polygon into a fan from the first corner from which all triangles have the same
+/// orientation.
 void add_polygon(const std::vector<NodeId>& corners, const std::vector<double>& coordinates,
                  Surface& surface) {
   const std::size_t n = corners.size();
@@ -70,7 +71,7 @@ void add_polygon(const std::vector<NodeId>& corners, const std::vector<double>& 
               "export the surface as triangles");
 }
 
-/// All triangles of the scene, vertices as the file has them.
+/// Collects all triangles, with the vertices of the file.
 Surface collect(const aiScene& scene, const std::string& name) {
   std::vector<double> coordinates;
   Surface surface{.name = name, .nodes = {}, .triangles = {}};
@@ -96,7 +97,8 @@ Surface collect(const aiScene& scene, const std::string& name) {
   return surface;
 }
 
-/// A text file that was cut short at the end of a triangle would pass for a smaller surface.
+/// Requires the end of a text file: one truncated at the end of a triangle would look like a
+/// smaller surface.
 void require_whole_stl(std::string_view bytes, const std::string& name) {
   constexpr std::size_t kHeader = 84, kTriangle = 50;
   std::uint32_t count = 0;
@@ -116,7 +118,7 @@ void require_finite(const Surface& surface) {
   }
 }
 
-/// Makes vertices at the same place one, and drops what is then flat or unused.
+/// Merges coincident vertices, and removes triangles that are then flat and unused vertices.
 Surface welded(const Surface& raw, double tolerance) {
   const std::vector<NodeId> lowest = weld_map(raw.nodes, {}, tolerance);
   Surface surface{.name = raw.name, .nodes = {}, .triangles = {}};
@@ -207,7 +209,7 @@ Surface read_surface(const std::filesystem::path& path, const SurfaceOptions& op
 }
 
 void require_closed(const Surface& surface) {
-  // Each directed edge once, and its opposite once.
+  // Each directed edge must occur once, and its opposite once.
   std::vector<std::pair<NodeId, NodeId>> edges;
   for (const auto& [a, b, c] : surface.triangles) {
     edges.insert(edges.end(), {{a, b}, {b, c}, {c, a}});

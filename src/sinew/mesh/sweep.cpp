@@ -15,7 +15,7 @@ int ring_start(int ring) { return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1); }
 
 int ring_node(int ring, int k) { return ring == 0 ? 0 : ring_start(ring) + k % (6 * ring); }
 
-/// The band between ring r and r + 1, sixth by sixth.
+/// Adds the triangles between ring r and r + 1, sixth by sixth.
 void add_band(int ring, std::vector<Triangle>& triangles) {
   for (int sixth = 0; sixth < 6; ++sixth) {
     for (int k = 0; k <= ring; ++k) {
@@ -54,7 +54,7 @@ Section disc_section(int rings) {
 }
 
 Section disc_section_of_quadrilaterals(int rings) {
-  constexpr double kRoundness = 0.6;  // of the square: 0 straight, 1 a circle
+  constexpr double kRoundness = 0.6;  // of the square: 0 for straight edges, 1 for a circle
   const int inner = (rings + 1) / 2, n = 2 * inner, outer = rings - inner;
   const double half = static_cast<double>(inner) / rings;
   Section section;
@@ -64,13 +64,13 @@ Section disc_section_of_quadrilaterals(int rings) {
     for (int i = 0; i <= n; ++i) {
       const double x = 2.0 * i / n - 1.0, y = 2.0 * j / n - 1.0;
       const auto blend = [&](double a,
-                             double b) {  // with the map of a square onto a disc by ellipses
+                             double b) {  // with the elliptical map of a square onto a disc
         return half * std::lerp(a, a * std::sqrt(1.0 - 0.5 * b * b), kRoundness);
       };
       at.push_back({blend(x, y), blend(y, x)});
     }
   }
-  std::vector<NodeId> ring;  // round the square, counter-clockwise from its lowest corner
+  std::vector<NodeId> ring;  // around the square, counter-clockwise from its lowest corner
   ring.reserve(static_cast<std::size_t>(4 * n));
   for (int i = 0; i < n; ++i) ring.push_back(number(i, 0));
   for (int j = 0; j < n; ++j) ring.push_back(number(n, j));
@@ -166,7 +166,7 @@ Mesh sweep(const Section& section, const std::vector<double>& heights, const Rad
     mesh.node_sets["top"].push_back((layers - 1) * in_layer + i);
   }
   reorder_elements(mesh);
-  mesh.notes.reordered_elements = 0;  // that is how they are made, nothing to tell
+  mesh.notes.reordered_elements = 0;  // generated elements are not worth a note
   return mesh;
 }
 

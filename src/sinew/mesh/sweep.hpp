@@ -1,5 +1,5 @@
 /// @file
-/// Solids swept along +z from a section of triangles or quadrilaterals.
+/// Solids swept along +z, from a section of triangles or quadrilaterals.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace sinew::mesh {
 
-/// A plane section: nodes by radius (0 to 1 of the local measure) and angle, and its cells:
-/// triangles become tetrahedra, quadrilaterals hexahedra.
+/// A plane section: nodes by radius (0 to 1, see RadialProfile) and angle, and cells. Triangles
+/// become tetrahedra, quadrilaterals hexahedra.
 struct Section {
   std::vector<double> radius;  ///< (m,) dimensionless
   std::vector<double> angle;   ///< (m,) rad
@@ -20,31 +20,32 @@ struct Section {
   std::vector<std::array<NodeId, 4>> quadrilaterals;  ///< counter-clockwise
 };
 
-/// A disc of radius 1: a centre and rings, ring r with 6 r nodes at radius r / rings. Its triangles
-/// are nearly equilateral.
+/// A disc of radius 1 of nearly equilateral triangles: a centre, and rings of 6 r nodes at radius r
+/// / rings.
 /// @param rings >= 1.
 Section disc_section(int rings);
 
-/// A disc of radius 1 of quadrilaterals: a rounded square in the middle, and rings round it whose
-/// angles are even (an O-grid).
-/// @param rings cells from the axis to the outside, >= 2; half of them, rounded down, in the
-/// square.
+/// A disc of radius 1 of quadrilaterals: a rounded square in the middle, with rings of equal angles
+/// around it (an O-grid).
+/// @param rings cells from the axis to the outside, >= 2; half of them, rounded up, are in the
+///   square.
 Section disc_section_of_quadrilaterals(int rings);
 
-/// A ring of `through` x `around` cells. Radius 0 is the inside, 1 the outside.
+/// An annulus of `through` x `around` cells. Radius 0 is the inside, 1 the outside.
 /// @param through cells from the inside to the outside, >= 1.
-/// @param around cells round the axis, >= 3.
-/// @param split each into two triangles.
+/// @param around cells around the axis, >= 3.
+/// @param split whether to split each cell into two triangles.
 Section annulus_section(int through, int around, bool split);
 
-/// Distance from the axis, m, of a node of section radius `s` at height `z`.
+/// Distance from the axis, m, of a node with section radius `s` at height `z`, m.
 using RadialProfile = std::function<double(double s, double z)>;
 
-/// Stacks the section along z; each prism of a triangle is split into three tetrahedra by node
-/// number, so that neighbours match. Node numbers go layer by layer. Sets: nodes `bottom`, `top`.
+/// Sweeps a section along z. Each prism over a triangle is split into three tetrahedra by node
+/// number, so that neighbours conform. Nodes are numbered layer by layer. Node sets: `bottom`,
+/// `top`.
 /// @param section to sweep.
 /// @param heights z of every layer of nodes, ascending, m.
-/// @param profile gives the radius.
+/// @param profile radius of each node.
 /// @param name of the mesh.
 Mesh sweep(const Section& section, const std::vector<double>& heights, const RadialProfile& profile,
            const std::string& name);

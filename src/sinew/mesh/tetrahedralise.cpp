@@ -18,11 +18,11 @@ namespace sinew::mesh {
 
 namespace {
 
-/// Gmsh is given millimetres: its absolute tolerances suit numbers near one.
+/// Gmsh gets lengths in millimetres, since its absolute tolerances suit numbers near one.
 constexpr double kGmshUnit = 1e-3;
 constexpr double kMaxElements = 20e6;
 
-/// A folder of our own that is removed at the end.
+/// A temporary folder that is removed at the end.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -60,7 +60,7 @@ void check_options(const Surface& surface, const TetrahedraliseOptions& options)
   }
 }
 
-/// Reparametrises the triangulation so that the surface is meshed anew, then fills it.
+/// Gmsh script: reparametrises the triangulation, so that the surface is remeshed, and fills it.
 std::string script(const std::filesystem::path& surface, const TetrahedraliseOptions& options) {
   const double size = options.size / kGmshUnit;
   return fmt::format(

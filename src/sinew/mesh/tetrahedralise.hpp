@@ -1,5 +1,5 @@
 /// @file
-/// From a closed surface to a volume mesh, by the separate program Gmsh.
+/// Volume meshing of a closed surface by the external program Gmsh.
 #pragma once
 
 #include <filesystem>
@@ -10,20 +10,20 @@
 
 namespace sinew::mesh {
 
-/// How to fill a surface.
+/// Options for volume meshing.
 struct TetrahedraliseOptions {
-  double size = 0.005;           ///< m, wanted edge length
+  double size = 0.005;           ///< m, target edge length
   SurfaceOptions surface;        ///< unit of the surface file
-  double feature_angle = 40.0;   ///< degrees: sharper edges are kept
+  double feature_angle = 40.0;   ///< degrees; sharper edges are kept
   std::string program = "gmsh";  ///< name or path
 };
 
-/// Fills a closed surface (STL, OBJ, PLY) with tetrahedra of about the wanted size, remeshing the
-/// surface too, and writes the checked mesh as VTU in m when `out` is not empty. Gmsh is run as a
-/// program of its own (its licence is the GPL; nothing of it is linked).
-/// Throws Error: tool-missing saying how to install Gmsh, tool-failed with Gmsh's last lines,
-/// out-of-range for a size that is not positive or would give more than 20 million elements,
-/// surface-not-closed, and what read_surface(), check() and write_vtu() throw.
+/// Fills a closed surface (STL, OBJ, PLY) with tetrahedra of about the target size. The surface is
+/// remeshed, too. The checked mesh is written as VTU in m unless `out` is empty. Gmsh runs as a
+/// separate program (its licence is the GPL; it is not linked). Throws Error: tool-missing with how
+/// to install Gmsh, tool-failed with the last lines of Gmsh, out-of-range for a size that is not
+/// positive or would give more than 20 million elements, surface-not-closed, and the errors of
+/// read_surface(), read_gmsh(), check() and write_vtu().
 /// @param surface_file the surface.
 /// @param out the VTU file to write, or empty.
 /// @param options size, unit and program.

@@ -12,7 +12,7 @@ namespace sinew::mesh {
 
 namespace {
 
-/// Sorts the three numbers; true when an even number of swaps did it.
+/// Sorts the three numbers; returns whether the permutation is even.
 bool sort_triangle(Triangle& t) {
   bool even = true;
   const auto order = [&](std::size_t i, std::size_t j) {
@@ -60,7 +60,7 @@ void for_each_element(const Mesh& mesh, const Visit& visit) {
   for (const Hexahedron& element : mesh.hexahedra) visit(element);
 }
 
-/// The quadrilateral faces of hexahedra that occur once.
+/// Appends the faces of hexahedra that occur once.
 void append_hexahedron_faces(const Mesh& mesh, std::vector<Face>& result) {
   using Quad = std::array<NodeId, 4>;
   std::vector<std::pair<Quad, Quad>> faces;  // sorted nodes, outward nodes
@@ -157,7 +157,7 @@ std::array<Triangle, 4> quarters(const Face& face) {
 
 namespace {
 
-// Lengths and coordinates that differ by less than this part of a face are the same.
+// Lengths and coordinates that differ by less than this fraction of a face count as equal.
 constexpr double kAlike = 1e-9;
 
 bool lies_before(const Vector3& one, const Vector3& other, double alike) {
@@ -167,7 +167,7 @@ bool lies_before(const Vector3& one, const Vector3& other, double alike) {
   return false;
 }
 
-// An end of the diagonal that a quadrilateral is split along, see triangles_of().
+// One end of the diagonal along which a quadrilateral is split, see triangles_of().
 std::size_t first_corner(const Points& nodes, const Face& face) {
   const auto at = [&](std::size_t k) -> Vector3 { return nodes.row(face.node[k]).transpose(); };
   const double even = (at(2) - at(0)).norm(), odd = (at(3) - at(1)).norm();
@@ -240,7 +240,7 @@ Components components(const Mesh& mesh) {
   for (NodeId node = 0; node < mesh.node_count(); ++node) {
     const auto n = static_cast<std::size_t>(node);
     if (used[n] == 0) continue;
-    const NodeId root = sets.find(node);  // the lowest node, so met first
+    const NodeId root = sets.find(node);  // the lowest node, which comes first
     if (root == node) {
       part_of[n] = static_cast<int>(parts.size());
       parts.push_back({.first = node});

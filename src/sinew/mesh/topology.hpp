@@ -1,5 +1,5 @@
 /// @file
-/// What touches what in a mesh: faces, surface, used nodes, components.
+/// Topology of a mesh: faces, surface, used nodes and components.
 #pragma once
 
 #include <array>
@@ -24,13 +24,14 @@ struct FaceUse {
   int tetrahedron = 0;
 };
 
-/// Every face of every tetrahedron, sorted by key, then tetrahedron: uses of one face are adjacent.
+/// All faces of all tetrahedra, sorted by key and then tetrahedron, so that the uses of a face are
+/// adjacent.
 std::vector<FaceUse> face_uses(const Mesh& mesh);
 
 /// A face of a volume element, counter-clockwise seen from outside the element.
 struct Face {
-  std::array<NodeId, 4> node{-1, -1, -1, -1};  ///< the last one -1 for a triangle
-  /// Of a quadratic triangle: between corner k and k + 1.
+  std::array<NodeId, 4> node{-1, -1, -1, -1};  ///< corners; the last one is -1 for a triangle
+  /// Middle nodes of a quadratic triangle, between corners k and k + 1.
   std::array<NodeId, 3> middle{-1, -1, -1};
   int corners() const { return node[3] < 0 ? 3 : 4; }
   bool is_quadratic() const { return middle[0] >= 0; }
@@ -39,42 +40,42 @@ struct Face {
   }
 };
 
-/// The four flat triangles of a quadratic one, turned as it is: at its corners, then the middle
-/// one.
+/// Splits a quadratic triangle into four flat ones of the same orientation: three at its corners,
+/// then the middle one.
 std::array<Triangle, 4> quarters(const Face& face);
 
 /// The faces that belong to one element only: triangles of tetrahedra, then quadrilaterals of
-/// hexahedra. Of a mesh without volume elements its triangles.
+/// hexahedra. For a mesh without volume elements, its triangles.
 std::vector<Face> boundary_faces(const Mesh& mesh);
 
-/// The nodes of boundary_faces(), ascending; middles of quadratic faces included.
+/// The nodes of boundary_faces(), ascending, including middle nodes of quadratic faces.
 std::vector<NodeId> outer_nodes(const Mesh& mesh);
 
-/// The triangles that stand for faces: quarters of quadratic ones, quadrilaterals split in two
-/// along the shorter diagonal; of two that are as long, that with the corner of the least x, of
-/// these the least y, then z. The numbers of nodes and elements decide nothing.
+/// Splits faces into triangles: quadratic triangles by quarters(), quadrilaterals along the shorter
+/// diagonal. If both diagonals are equal, the one with the corner of the smallest x is used, then
+/// y, then z. The result does not depend on node and element numbers.
 /// @param nodes (n, 3) m. @param faces of these nodes.
 std::vector<Triangle> triangles_of(const Points& nodes, std::span<const Face> faces);
 
-/// The surface of the volume elements: triangles_of() boundary_faces(). Nodes are
-/// those of the mesh, in its numbering, unused ones included.
+/// The surface of the volume elements: triangles_of() the boundary_faces(). It has all nodes of the
+/// mesh, in the same numbering, including unused ones.
 Surface boundary_surface(const Mesh& mesh);
 
-/// m, of the longest edge of its triangles.
+/// Length of the longest edge of the triangles, m.
 double longest_edge(const Surface& surface);
 
-/// For each node whether a volume element uses it.
+/// (n,) whether a volume element uses each node.
 std::vector<char> used_nodes(const Mesh& mesh);
 
-/// Parts of the mesh: nodes that are joined by elements.
+/// Connected components of a mesh.
 struct Components {
   std::vector<int> of_node;        ///< component of each node; -1 for unused nodes
-  std::vector<int> element_count;  ///< elements of each component, largest first
-  std::vector<int> node_count;     ///< nodes of each component, in the same order
+  std::vector<int> element_count;  ///< number of elements of each component, descending
+  std::vector<int> node_count;     ///< number of nodes of each component
   std::vector<NodeId> first_node;  ///< lowest node of each component
 };
 
-/// Components by shared nodes.
+/// Finds the components of a mesh; elements with a common node are connected.
 Components components(const Mesh& mesh);
 
 }  // namespace sinew::mesh

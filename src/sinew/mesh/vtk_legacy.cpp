@@ -65,7 +65,7 @@ class LegacyReader : private LegacyValues {
                fmt::format("VTK legacy version `{}` is not known", version),
                "write the file as version 2.0 to 5.1");
     }
-    in_.line();  // the title may hold anything
+    in_.line();  // the title may be any text
     const std::string encoding = lower_case(in_.word("the encoding, ASCII or BINARY"));
     if (encoding != "ascii" && encoding != "binary") {
       in_.fail(ErrorKind::malformed_file,
@@ -148,7 +148,7 @@ class LegacyReader : private LegacyValues {
                                  "point numbers");
   }
 
-  /// Versions before: `second` integers, each cell being its number of points and the points.
+  /// Earlier versions: `second` integers; each cell is its number of points, then the points.
   void cells_with_counts(std::int64_t first, std::int64_t second) {
     const std::size_t size =
         in_.checked_count(second, item_size(ScalarType::int32), "cell entries");
@@ -247,14 +247,14 @@ class LegacyReader : private LegacyValues {
     array({}, 4, size, binary_ ? "unsigned_char" : "float");
   }
 
-  /// Lines up to an empty one.
+  /// Skips lines up to an empty one.
   void metadata() {
     in_.line();
     while (in_.remaining() > 0 && !in_.line().empty()) {
     }
   }
 
-  /// Reads an array; keeps it as integer field when it is one, has a name and one component.
+  /// Reads an array, and keeps it as integer field if it has integers, a name and one component.
   void array(const std::string& name, std::int64_t components, std::int64_t tuples,
              std::string_view type_name) {
     const std::optional<ScalarType> type = legacy_scalar_type(type_name);
@@ -265,7 +265,7 @@ class LegacyReader : private LegacyValues {
                fmt::format("array `{}` has the unknown type `{}`", name, type_name.substr(0, 40)));
     }
     const std::size_t width = in_.checked_count(components, 0, "components");
-    // A bit takes an eighth of a byte; its exact size is checked when the block is taken.
+    // A bit takes an eighth of a byte; the exact size is checked when the block is read.
     const std::size_t each = *type == ScalarType::bit && binary_ ? 0 : item_size(*type);
     if (width != 0 && each * width / width != each) {
       in_.fail(ErrorKind::size_limit, fmt::format("array `{}` is too large", name));
@@ -280,7 +280,7 @@ class LegacyReader : private LegacyValues {
     fields_->push_back({name, mask, integers(count, *type, "values")});
   }
 
-  /// The count that ends a keyword's line.
+  /// Reads the count at the end of the line of a keyword.
   std::size_t line_count(std::string_view what, std::size_t bytes_each) {
     const std::int64_t given = in_.integer("a count");
     end_of_header();

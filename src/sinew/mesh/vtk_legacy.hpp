@@ -10,9 +10,9 @@
 
 namespace sinew::mesh {
 
-/// An unstructured grid, ASCII or big-endian binary, versions 1.0 to 5.x. Lengths stay in file
-/// units, geometry is not checked (see check()). Touches no file, so that it can be fuzzed.
-/// Throws Error (malformed-file, truncated-file, unknown-format, unsupported-version,
+/// Reads an unstructured grid, ASCII or big-endian binary, versions 1.0 to 5.x. Lengths stay in
+/// file units, and geometry is not checked (see check()). Works in memory, so that it can be
+/// fuzzed. Throws Error (malformed-file, truncated-file, unknown-format, unsupported-version,
 /// index-out-of-range, unsupported-element, size-limit), with file and line or byte.
 /// @param bytes the whole file.
 /// @param name its name, for messages.

@@ -1,5 +1,5 @@
 /// @file
-/// Numbers of VTK legacy files, text or big-endian binary.
+/// Reading numbers of VTK legacy files, text or big-endian binary.
 #pragma once
 
 #include <cstdint>
@@ -12,42 +12,44 @@
 
 namespace sinew::mesh {
 
-/// The text in lower case (VTK's keywords may be in either).
+/// The text in lower case (keywords of VTK may be in either).
 std::string lower_case(std::string_view text);
 
-/// The type that a VTK legacy file calls `word`; nothing when there is none.
+/// The number type with the name `word` in VTK legacy files; nothing if there is none.
 std::optional<ScalarType> legacy_scalar_type(std::string_view word);
 
-/// Reads the arrays of a legacy file in its encoding. `what` names what is read, for messages.
+/// Reads the arrays of a legacy file in its encoding. `what` is the name of the data in messages.
 class LegacyValues {
  public:
-  /// @param bytes the whole file; the caller keeps it.
+  /// @param bytes the whole file; the caller keeps it alive.
   /// @param name its name, for messages.
   LegacyValues(std::string_view bytes, const std::string& name) : in_(bytes, name) {}
 
-  /// Arrays are binary from here on.
+  /// From here on, arrays are binary.
   void set_binary();
 
-  /// Least bytes of one number: a digit and a space in text.
+  /// Minimum size of one number in bytes; in text, a digit and a space.
   std::size_t item_size(ScalarType type) const { return binary_ ? bytes_of(type) : 2; }
 
-  /// Binary values start right after the line end; words may go on in the same line.
+  /// Ends a header: binary values start right after the line end, text may continue in the same
+  /// line.
   void end_of_header();
 
-  /// The type named by the next word. Throws Error(malformed-file).
+  /// Reads the name of a number type. Throws Error(malformed-file).
   ScalarType scalar(std::string_view what);
 
-  /// The next `count` numbers; the caller has checked the count. Throws Error(truncated-file,
+  /// Reads `count` numbers; the caller has checked the count. Throws Error(truncated-file,
   /// malformed-file).
   std::vector<double> doubles(std::size_t count, ScalarType type, std::string_view what);
 
-  /// As doubles(), for integers. Throws Error(malformed-file) for a floating-point type.
+  /// Reads `count` integers, like doubles(). Throws Error(malformed-file) for a floating-point
+  /// type.
   std::vector<std::int64_t> integers(std::size_t count, ScalarType type, std::string_view what);
 
-  /// Passes over `count` numbers.
+  /// Skips `count` numbers.
   void skip(std::size_t count, ScalarType type);
 
-  /// Passes over an array of strings in a text file, one a line.
+  /// Skips an array of strings in a text file, one per line.
   void skip_strings(std::int64_t components, std::int64_t tuples);
 
  protected:

@@ -65,7 +65,7 @@ class VtuReader {
     const auto connectivity = file_.all_integers(cell_array(node, "connectivity"));
     const auto base = static_cast<std::int64_t>(raw_.connectivity.size());
     for (const std::int64_t point : connectivity) {
-      // A negative number must stay one, to be found out of range.
+      // A negative number must stay negative, so that the range check finds it.
       raw_.connectivity.push_back(point < 0 ? point : point + first_point);
     }
     std::int64_t begin = 0;
@@ -79,12 +79,13 @@ class VtuReader {
       begin = ends[c];
       raw_.offsets.push_back(base + ends[c]);
     }
-    // Entries after the last cell belong to none; they would shift the cells of the next piece.
+    // Entries after the last cell belong to no cell, and would shift the cells of the next piece.
     raw_.connectivity.resize(static_cast<std::size_t>(base + begin));
     raw_.types.insert(raw_.types.end(), types.begin(), types.end());
   }
 
-  /// Keeps integer arrays of one component; those missing in an earlier piece are filled with -1.
+  /// Keeps integer arrays with one component; arrays that are missing in a piece are filled with
+  /// -1.
   void read_fields(pugi::xml_node node, std::size_t count, std::size_t before,
                    std::vector<IntegerField>& fields) {
     for (const pugi::xml_node array : node.children("DataArray")) {

@@ -34,7 +34,7 @@ VtuFile::VtuFile(std::string_view bytes, const std::string& name) : bytes_(bytes
   read_attributes();
 }
 
-/// Appended data may be raw bytes, which are no XML: the document is parsed without them.
+/// Appended data may be raw bytes, which are not valid XML, so the document is parsed without them.
 void VtuFile::parse() {
   constexpr std::string_view kTag = "<AppendedData";
   const std::size_t tag = bytes_.find(kTag);
@@ -131,7 +131,7 @@ bool VtuFile::is_ascii(pugi::xml_node array) const {
   return format == "ascii";
 }
 
-/// Up to `max_bytes` of the array's stored form, after its first `skip` bytes.
+/// Up to `max_bytes` of the stored form of an array, after its first `skip` bytes.
 std::string VtuFile::raw_bytes(pugi::xml_node array, std::size_t skip,
                                std::size_t max_bytes) const {
   std::string_view source = array.text().get();
@@ -183,7 +183,7 @@ std::string VtuFile::plain_block(pugi::xml_node array) const {
   return data;
 }
 
-/// Header: number of blocks, size of a block, size of the last one when it is partial (else 0),
+/// Header: number of blocks, size of a block, size of the last one if it is partial (else 0),
 /// compressed size of each block.
 std::string VtuFile::compressed_block(pugi::xml_node array) const {
   const std::size_t blocks = header_item(array, raw_bytes(array, 0, header_bytes_), 0);

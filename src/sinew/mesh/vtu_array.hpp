@@ -1,5 +1,5 @@
 /// @file
-/// The DataArray of VTK's XML files: from any encoding to numbers.
+/// Decoding of the DataArray elements of VTK XML files.
 #pragma once
 
 #include <cstdint>
@@ -13,34 +13,34 @@
 
 namespace sinew::mesh {
 
-/// A VTU file taken apart: its XML, and where the appended data start.
+/// A parsed VTU file: its XML document and its appended data.
 class VtuFile {
  public:
-  /// @param bytes the whole file; the caller keeps it.
+  /// @param bytes the whole file; the caller keeps it alive.
   /// @param name its name, for messages.
   VtuFile(std::string_view bytes, const std::string& name);
 
   /// The element `VTKFile`.
   pugi::xml_node root() const { return document_.child("VTKFile"); }
 
-  /// The values of a DataArray.
-  /// @param array the node; its text or appended data are read.
-  /// @param count number of values that it must have.
+  /// Reads the values of a DataArray.
+  /// @param array its node; its text or appended data are read.
+  /// @param count required number of values.
   std::vector<double> doubles(pugi::xml_node array, std::size_t count) const;
 
-  /// As doubles(), for an array of integers.
+  /// Reads an array of integers, like doubles().
   std::vector<std::int64_t> integers(pugi::xml_node array, std::size_t count) const;
 
-  /// Values of an array whose number only the array itself tells.
+  /// Reads an array of integers of unknown length.
   std::vector<std::int64_t> all_integers(pugi::xml_node array) const;
 
-  /// The number type of an array. Throws Error(malformed-file) when it is none.
+  /// The number type of an array. Throws Error(malformed-file) if it is unknown.
   ScalarType type_of(pugi::xml_node array) const;
 
-  /// A count given as attribute of an element.
+  /// Reads a count from an attribute of an element.
   std::size_t count(pugi::xml_node node, const char* attribute) const;
 
-  /// Throws Error at the node's line.
+  /// Throws an Error at the line of the node.
   [[noreturn]] void fail(ErrorKind kind, pugi::xml_node node, const std::string& message,
                          const std::string& remedy = {}) const;
 
@@ -62,7 +62,7 @@ class VtuFile {
 
   std::string_view bytes_;
   std::string name_;
-  std::string_view xml_;       // what comes before the appended data
+  std::string_view xml_;       // before the appended data
   std::string_view appended_;  // after its leading underscore
   bool appended_is_base64_ = false;
   pugi::xml_document document_;

@@ -1,5 +1,5 @@
 /// @file
-/// Writers for ParaView and for Sinew's own meshes: VTU files and PVD series.
+/// Writers of VTU files and PVD series, for ParaView and for meshes.
 #pragma once
 
 #include <filesystem>
@@ -18,51 +18,52 @@ struct VtuField {
   std::vector<double> values;  ///< (count x components,) row by row
 };
 
-/// What a VTU file carries beside the mesh.
+/// Content of a VTU file in addition to the mesh.
 struct VtuFields {
-  std::vector<VtuField> points;  ///< one row a node
-  std::vector<VtuField> cells;  ///< one row a tetrahedron, then one a hexahedron; NaN for triangles
-  const Points* positions = nullptr;  ///< (n, 3) m, in place of the mesh's own nodes
+  std::vector<VtuField> points;  ///< one row per node
+  std::vector<VtuField> cells;  ///< one row per tetrahedron, then per hexahedron; NaN for triangles
+  const Points* positions = nullptr;  ///< (n, 3) m, replace the nodes of the mesh
   bool sets = true;                   ///< named sets as 8-bit masks, which read_mesh() reads back
-  bool triangles = true;              ///< the mesh's surface triangles as cells
-  /// Arrays compressed with zlib, fields in double precision. Else raw arrays, fields in single
-  /// precision: several times as fast, and hardly larger, since such numbers do not compress.
+  bool triangles = true;              ///< surface triangles of the mesh as cells
+  /// True: arrays compressed with zlib, fields in double precision. False: raw arrays, fields in
+  /// single precision, which is several times as fast and hardly larger, since such numbers do not
+  /// compress.
   bool compressed = true;
 };
 
-/// Writes tetrahedra, hexahedra and triangles, in this order, in m, as appended raw data. The file
-/// appears whole or not at all. Throws Error(file-unwritable), and Error(wrong-length) when a field
-/// does not fit the mesh.
+/// Writes a VTU file with tetrahedra, hexahedra and triangles, in this order, in m, as appended raw
+/// data. The file is written atomically. Throws Error(file-unwritable), and Error(wrong-length) if
+/// a field does not fit the mesh.
 /// @param path the file.
 /// @param mesh to write.
 /// @param fields values at nodes and elements.
 void write_vtu(const std::filesystem::path& path, const Mesh& mesh, const VtuFields& fields = {});
 
-/// The bytes that write_vtu() writes. Throws Error(wrong-length).
+/// Returns the bytes that write_vtu() writes. Throws Error(wrong-length).
 /// @param mesh to write.
 /// @param fields values at nodes and elements.
 std::string format_vtu(const Mesh& mesh, const VtuFields& fields = {});
 
-/// A time series for ParaView: NAME.pvd lists NAME/NAME_000000.vtu and so on. The list is a whole
-/// file after every step, so that an interrupted run can be read as far as it went.
+/// Writes a time series for ParaView: NAME.pvd lists NAME/NAME_000000.vtu and so on. The list is a
+/// complete file after every step, so that an interrupted run can be read up to its last step.
 class PvdWriter {
  public:
   /// Starts the series with an empty list. Throws Error(file-unwritable).
-  /// @param path of the .pvd file; its folder is made.
+  /// @param path of the .pvd file; its folder is created.
   explicit PvdWriter(std::filesystem::path path);
 
-  /// Writes one step and adds it to the list. Throws as write_vtu(), or Error(not-finite).
+  /// Writes one step and adds it to the list. Throws like write_vtu(), and Error(not-finite).
   /// @param time s.
   /// @param mesh to write.
   /// @param fields values at nodes and elements.
   void write(double time, const Mesh& mesh, const VtuFields& fields = {});
 
-  /// Steps written.
+  /// Number of steps written.
   int count() const { return count_; }
 
  private:
   std::filesystem::path path_;
-  long tail_ = 0;  // where the closing tags start
+  long tail_ = 0;  // position of the closing tags
   int count_ = 0;
 };
 

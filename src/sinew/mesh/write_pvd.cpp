@@ -31,7 +31,7 @@ void make_folder(const std::filesystem::path& folder) {
   if (problem) fail(folder, problem.message());
 }
 
-/// Overwrites the file's end in one go: a reader sees the old list or the new one.
+/// Overwrites the end of the file in one write: a reader sees the old list or the new one.
 void overwrite_end(const std::filesystem::path& path, long at, std::string_view text) {
   const int file = open(path.c_str(), O_WRONLY | O_CLOEXEC);
   if (file < 0) fail(path, std::strerror(errno));

@@ -24,7 +24,7 @@ void append(std::string& bytes, Value value) {
   bytes.append(raw.data(), raw.size());
 }
 
-/// Cells as the file has them: each its number of nodes and the nodes; and their types.
+/// Cells in the layout of the file (number of nodes, then the nodes), and their types.
 class CellTable {
  public:
   template <typename Elements>
@@ -61,7 +61,7 @@ CellTable cells_of(const Mesh& mesh) {
   return table;
 }
 
-/// A name without white space; VTK undoes it when it reads.
+/// Percent-encodes white space, quotes and non-ASCII bytes in a name; VTK decodes them.
 std::string percent_encoded(const std::string& name) {
   std::string result;
   for (const char c : name) {

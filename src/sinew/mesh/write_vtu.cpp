@@ -46,7 +46,7 @@ void append_bytes(std::string& bytes, const Value* values, std::size_t count) {
   bytes.append(reinterpret_cast<const char*>(values), count * sizeof(Value));
 }
 
-/// Gathers the XML and the appended data side by side.
+/// Builds the XML and the appended data together.
 class VtuBuilder {
  public:
   explicit VtuBuilder(bool compressed) : compressed_(compressed) {}
@@ -54,7 +54,7 @@ class VtuBuilder {
   template <typename Value>
   void array(const std::string& name, const char* type, int components,
              const std::vector<Value>& values) {
-    // Readers take an array without the attribute as plain scalars, with it as rows of one.
+    // Without the attribute, readers give scalars; with it, rows of one component.
     const std::string width =
         components == 1 ? "" : fmt::format(" NumberOfComponents=\"{}\"", components);
     xml_ += fmt::format(
