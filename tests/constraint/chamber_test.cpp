@@ -203,6 +203,13 @@ TEST(Chamber, PointsThatEncloseNothingAreRefused) {
   }
 }
 
+/// Near a corner of the void, the thin wall's outer faces have nearer centres than the void's own.
+TEST(Chamber, AVoidIsFoundFromItsCornersToo) {
+  mesh::Mesh mesh = sinew::testing::hollow_block(mesh::Cells::hexahedra);
+  mesh.nodes = mesh.nodes.cwiseMax(0.009);
+  EXPECT_EQ(mesh::enclosing_surface(mesh, {0.011, 0.011, 0.011}, "x").size(), 6U);
+}
+
 TEST(Chamber, APatchGrowsOverBluntEdgesAlone) {
   const mesh::Mesh mesh =
       mesh::block({.size = {0.03, 0.03, 0.03}, .cells = {3, 3, 3}}, mesh::Cells::hexahedra);

@@ -90,6 +90,34 @@ std::vector<Face> grow(const std::vector<Face>& faces, const std::vector<Vector3
   return result;
 }
 
+/// Surfaces that share no edge with each other, each in the order of the faces.
+std::vector<std::vector<Face>> connected(const std::vector<Face>& faces) {
+  const auto beside = neighbours(faces);
+  std::vector<int> surface(faces.size(), -1);
+  int surfaces = 0;
+  std::vector<std::size_t> open;
+  for (std::size_t start = 0; start < faces.size(); ++start) {
+    if (surface[start] >= 0) continue;
+    surface[start] = surfaces;
+    open.push_back(start);
+    while (!open.empty()) {
+      const std::size_t f = open.back();
+      open.pop_back();
+      for (const int next : beside[f]) {
+        if (next < 0 || surface[static_cast<std::size_t>(next)] >= 0) continue;
+        surface[static_cast<std::size_t>(next)] = surfaces;
+        open.push_back(static_cast<std::size_t>(next));
+      }
+    }
+    ++surfaces;
+  }
+  std::vector<std::vector<Face>> result(static_cast<std::size_t>(surfaces));
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    result[static_cast<std::size_t>(surface[f])].push_back(faces[f]);
+  }
+  return result;
+}
+
 int nearest_face(const Mesh& mesh, const std::vector<Face>& faces, const Vector3& point,
                  const std::string& what) {
   if (!point.allFinite()) fail(ErrorKind::not_finite, what, "the point is not finite", "");
@@ -174,21 +202,20 @@ std::vector<Face> grow_patch(const Mesh& mesh, const Vector3& point, double angl
 
 std::vector<Face> enclosing_surface(const Mesh& mesh, const Vector3& point,
                                     const std::string& what) {
-  const std::vector<Face> faces = boundary_faces(mesh);
-  const std::vector<Vector3> normals(faces.size(), Vector3::UnitZ());
-  std::vector<Face> patch =
-      grow(faces, normals, nearest_face(mesh, faces, point, what), std::numbers::pi);
-  const double turns = winding(mesh, patch, point);
-  if (turns < 0.5) {
-    fail(ErrorKind::empty_region, what,
-         fmt::format("({:.6g}, {:.6g}, {:.6g}) m lies in no void that the body encloses", point.x(),
-                     point.y(), point.z()),
-         turns < -0.5
-             ? "the point is inside the material: choose one in the chamber"
-             : "for a bore that is open to the outside name its wall by set, box or patch, "
-               "with cap: true");
+  if (!point.allFinite()) fail(ErrorKind::not_finite, what, "the point is not finite", "");
+  std::vector<std::vector<Face>> surfaces = connected(boundary_faces(mesh));
+  double inside = 0.0;
+  for (std::vector<Face>& surface : surfaces) {
+    const double turns = winding(mesh, surface, point);
+    if (turns > 0.5) return std::move(surface);
+    inside -= turns;
   }
-  return patch;
+  fail(ErrorKind::empty_region, what,
+       fmt::format("({:.6g}, {:.6g}, {:.6g}) m lies in no void that the body encloses", point.x(),
+                   point.y(), point.z()),
+       inside > 0.5 ? "the point is inside the material: choose one in the chamber"
+                    : "for a bore that is open to the outside name its wall by set, box or patch, "
+                      "with cap: true");
 }
 
 std::vector<std::vector<NodeId>> open_loops(const std::vector<Face>& faces) {

@@ -26,8 +26,8 @@ std::vector<Face> select_faces(const Mesh& mesh, const Region& region, const std
 std::vector<Face> grow_patch(const Mesh& mesh, const Vector3& point, double angle,
                              const std::string& what);
 
-/// Selects the connected surface that encloses a void around a point. It is the surface of the
-/// boundary face whose centre is nearest to the point.
+/// Selects the connected surface that encloses a void around a point: the one whose winding number
+/// about the point is 1.
 /// @param mesh to select from.
 /// @param point (3,) m in the void.
 /// @param what name of the use in messages. Throws Error(empty-region) if the point lies in the
