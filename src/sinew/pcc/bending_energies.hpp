@@ -37,9 +37,8 @@ struct Derivatives {
 
 /// The terms of the equation of motion at one angle.
 struct BendingTerms {
-  Derivatives strain;  ///< V_s/G, m^3
-  Derivatives
-      gravity;  ///< V_g, J: of weight minus buoyancy, 0 if the centre is level with the base
+  Derivatives strain;   ///< V_s/G, m^3
+  Derivatives gravity;  ///< V_g, J, of weight minus buoyancy, relative to the height of the base
   Derivatives inertia;  ///< I, kg m^2: the kinetic energy is I theta'^2 / 2
 };
 
