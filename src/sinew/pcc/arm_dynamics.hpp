@@ -59,10 +59,11 @@ class ArmDynamics {
   /// Position of a point, m.
   Vec3<T> position(const ArmPoint& point) const;
   Vec3<T> velocity(const ArmPoint& point);  ///< m/s
-  /// Jacobian of a point. @param columns (coordinates,).
+  /// Jacobian of a point. @param point of the arm. @param columns (coordinates,).
   void jacobian(const ArmPoint& point, std::span<Vec3<T>> columns) const;
   Rotation<T> rotation(const ArmPoint& point) const;  ///< of the point's section
-  /// Angular Jacobian of a point's section, in world axes. @param columns (coordinates,).
+  /// Angular Jacobian of a section, in world axes. @param point of the section. @param columns
+  /// (coordinates,).
   void angular_jacobian(const ArmPoint& point, std::span<Vec3<T>> columns) const;
   Vec3<T> angular_velocity(const ArmPoint& point);  ///< rad/s
 

@@ -63,7 +63,8 @@ std::shared_ptr<const sim::SensorRecord> read_sensor_record(const Fields& fields
 /// Reads an axis: the world axis x, y or z, or a vector, which is normalised.
 /// @param node,forms the value, and the forms that it may have.
 Vector3 read_axis(const Node& node, const std::vector<Form>& forms);
-/// Reads a controller. @param scene with the effectors, which fix the size of weights and targets.
+/// Reads a controller. @param entry of the controller. @param context of the scene. @param scene
+/// with the effectors, which determine the size of weights and targets.
 ControllerDescription read_controller(const Node::Entry& entry, const ReadContext& context,
                                       const SceneDescription& scene);
 
@@ -88,7 +89,8 @@ struct TimeTable {
 /// not opened. If there is one value and the key `column`, reads the column of that name; the
 /// default of its unit is then that of the heading. Throws Error: wrong-columns,
 /// non-monotonic-time.
-/// @param columns number of values in a row, besides the time.
+/// @param fields of the table. @param columns number of values in a row, besides the time.
+/// @param context of the scene.
 TimeTable read_time_table(const Fields& fields, int columns, const ReadContext& context);
 
 /// Returns `make()`. If that throws an Error without a location, the Error gets `place`.
