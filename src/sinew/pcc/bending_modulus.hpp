@@ -50,8 +50,8 @@ class BendingModulus {
   /// @param outside behaviour at other pressures.
   static BendingModulus published(OutsideRange outside = OutsideRange::refuse);
 
-  /// The modulus of its own kind, Pa. Throws Error(out-of-range) if it refuses the pressure. @param
-  /// pressure Pa.
+  /// The modulus of its own kind, Pa. Throws Error(out-of-range) if it refuses the pressure.
+  /// @param pressure Pa.
   double value(double pressure) const {
     return constant_ ? coefficients_[0] : polynomial(pressure);
   }

@@ -26,8 +26,8 @@ class PointDerivatives {
   /// Positions (m) of points, as functions of q. @param q (coordinates,). @param points of the arm.
   const std::vector<VectorDerivatives>& positions(const VectorX& q,
                                                   const std::vector<pcc::ArmPoint>& points);
-  /// Velocity (m/s) of a point, as a function of (q, q'). @param q,rate (coordinates,). @param
-  /// point of the arm.
+  /// Velocity (m/s) of a point, as a function of (q, q'). @param q,rate (coordinates,).
+  /// @param point of the arm.
   const VectorDerivatives& velocity(const VectorX& q, const VectorX& rate,
                                     const pcc::ArmPoint& point);
 
