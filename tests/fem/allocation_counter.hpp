@@ -1,5 +1,5 @@
 /// @file
-/// Counts every `new` of this test program, aligned ones included, on all threads.
+/// Counts every call of operator new in this test program, aligned ones included, on all threads.
 #pragma once
 
 #include <cstddef>

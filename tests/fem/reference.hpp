@@ -1,6 +1,6 @@
 /// @file
-/// Forces and matrices of a body, one tetrahedron at a time in dense Eigen algebra: an oracle that
-/// shares no formula with the library beyond the law itself.
+/// Reference forces and matrices of a body, one tetrahedron at a time in dense Eigen algebra.
+/// Shares no formula with the library except the law itself.
 #pragma once
 
 #include <cmath>
@@ -37,7 +37,7 @@ inline Matrix3 polar_rotation(const Matrix3& f, Matrix3& stretch) {
   return u * svd.matrixV().transpose();
 }
 
-/// vec of columns.
+/// Column-major vec.
 inline Eigen::Matrix<double, 9, 1> vec(const Matrix3& m) { return m.reshaped(); }
 
 /// d vec(R) / d vec(F): R [w]x with (tr(S) I - S) w = axial(R^T dF - dF^T R), by a linear solve.
@@ -56,7 +56,7 @@ inline Matrix9 rotation_derivative(const Matrix3& r, const Matrix3& stretch) {
   return result;
 }
 
-/// dP/dF of the small-strain law in the frame of R, rotation held fixed.
+/// dP/dF of the small-strain law in the frame of R, with the rotation held fixed.
 inline Matrix9 rotated_moduli(const Matrix3& r, double mu, double lambda) {
   Matrix9 result;
   for (int k = 0; k < 9; ++k) {
@@ -70,7 +70,7 @@ inline Matrix9 rotated_moduli(const Matrix3& r, double mu, double lambda) {
 
 }  // namespace detail
 
-/// @param settings those of the model.
+/// @param settings the settings of the model.
 inline Reference reference(const FemModel& model, const FemModelSettings& settings,
                            const Points& positions, const AssemblyWeights& weights) {
   const mesh::Mesh& mesh = model.mesh();
@@ -149,7 +149,7 @@ inline Reference reference(const FemModel& model, const FemModelSettings& settin
   return result;
 }
 
-/// The assembled matrix, dense and with both triangles.
+/// The assembled matrix as a dense matrix with both triangles.
 inline MatrixX dense_matrix(const Assembly& assembly) {
   const linalg::BlockPattern& pattern = assembly.model().pattern();
   MatrixX result = MatrixX::Zero(3 * pattern.nodes, 3 * pattern.nodes);
