@@ -124,7 +124,7 @@ TEST_P(EveryTangent, EvaluationAllocatesNothing) {
   for (const int threads : {1, 4}) {
     ThreadPool pool(threads);
     Assembly assembly(model, pool);
-    const Points positions = moved(*mesh, kEdge, 0.4);  // also the rotation's fallback
+    const Points positions = moved(*mesh, kEdge, 0.4);      // also the rotation's fallback
     assembly.evaluate(positions, {.tangent = GetParam()});  // allocates this thread's buffers
     const std::size_t before = allocation_count();
     for (int k = 0; k < 3; ++k) assembly.evaluate(positions, {.tangent = GetParam()});

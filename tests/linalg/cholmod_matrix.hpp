@@ -1,5 +1,5 @@
 /// @file
-/// A block system as a CHOLMOD matrix, for comparison. CHOLMOD holds GPL modules: tests and
+/// A block system as a CHOLMOD matrix, for comparison. CHOLMOD contains GPL modules: tests and
 /// benchmarks may use it, the library never.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace sinew::linalg::testing {
 
-/// CHOLMOD's state, with the methods that are asked for.
+/// CHOLMOD's state, with the requested methods.
 class CholmodSolver {
  public:
   CholmodSolver(const BlockSystem& system, bool supernodal) {

@@ -1,6 +1,6 @@
 /// @file
 /// Block systems for tests and benchmarks: random graphs of any size, and linear elasticity of
-/// structured tetrahedral blocks and tubes of the size of real soft robots.
+/// structured tetrahedral blocks and tubes as large as real soft robots.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace sinew::linalg::testing {
 
-/// A, H and b in the library's layouts.
+/// A, H and b in the layouts of the library.
 struct BlockSystem {
   BlockPattern pattern;
   BorderPattern border;
@@ -28,7 +28,7 @@ struct BlockSystem {
 
   int size() const { return 3 * pattern.nodes; }
 
-  /// Adds a 3x3 block at (i, j) and, by symmetry, its transpose at (j, i); i == j adds once.
+  /// Adds a 3x3 block at (i, j) and its transpose at (j, i); for i == j it is added once.
   void add(int i, int j, const Matrix3& block) {
     double* to = matrix.data() + kBlockStride * pattern.find(i, j);
     const Matrix3 lower = i >= j ? block : Matrix3(block.transpose());
@@ -55,7 +55,7 @@ struct BlockSystem {
     return full;
   }
 
-  /// A x, block by block.
+  /// A x, computed block by block.
   VectorX multiply(const VectorX& x) const {
     VectorX y = VectorX::Zero(size());
     for (int j = 0; j < pattern.nodes; ++j) {
@@ -91,19 +91,19 @@ struct BlockSystem {
   }
 };
 
-/// How a random system looks.
+/// Parameters of a random system.
 struct RandomSettings {
   int nodes = 10;
   int cliques = 20;
   int clique_size = 4;
   int rows = 0;
-  double row_density = 0.2;  ///< chance that a border row touches a node; 1 touches all
-  double negative = 0;       ///< chance that a clique has the opposite sign
+  double row_density = 0.2;  ///< probability that a border row touches a node
+  double negative = 0;       ///< probability that a clique has the opposite sign
   unsigned seed = 1;
 };
 
-/// Sum over random cliques of C C^T, plus a positive diagonal: positive definite where no clique is
-/// negative. Rows of the border may be empty.
+/// Sum of C C^T over random cliques plus a positive diagonal: positive definite if no clique is
+/// negative. Border rows may be empty.
 inline BlockSystem random_system(const RandomSettings& settings) {
   std::mt19937 random(settings.seed);
   std::uniform_int_distribution<int> node(0, settings.nodes - 1);
@@ -148,13 +148,14 @@ inline BlockSystem random_system(const RandomSettings& settings) {
   return system;
 }
 
-/// Nodes (metres) and tetrahedra.
+/// Nodes (m) and tetrahedra.
 struct TetrahedralMesh {
   std::vector<Vector3> nodes;
   std::vector<std::array<int, 4>> tets;
 };
 
-/// A block of cells, six tetrahedra each (Kuhn); `bent(p)` moves every node of the unit-cell grid.
+/// A block of cells, six tetrahedra each (Kuhn's division); `bent(p)` maps every node of the
+/// unit-cell grid.
 template <typename Bend>
 TetrahedralMesh cell_mesh(int nx, int ny, int nz, Bend&& bent) {
   TetrahedralMesh mesh;
@@ -184,8 +185,8 @@ TetrahedralMesh cell_mesh(int nx, int ny, int nz, Bend&& bent) {
   return mesh;
 }
 
-/// Linear elasticity (Young 450 kPa, Poisson 0.45) of a mesh whose first `fixed` nodes are held,
-/// with `rows` border rows, each along a line of nodes, and a right side.
+/// Linear elasticity (Young's modulus 450 kPa, Poisson's ratio 0.45) of a mesh whose first `fixed`
+/// nodes are held, with `rows` border rows, each along a line of nodes, and a right-hand side.
 inline BlockSystem elastic_system(const TetrahedralMesh& mesh, int fixed, int rows) {
   constexpr double kYoung = 450e3;
   constexpr double kPoisson = 0.45;
@@ -251,7 +252,7 @@ inline BlockSystem elastic_block(int nx, int ny, int nz, int rows) {
   return elastic_system(mesh, (nx + 1) * (ny + 1), rows);
 }
 
-/// A half tube of wall thickness `layers` cells, clamped at one end.
+/// A half tube whose wall is `layers` cells thick, clamped at one end.
 inline BlockSystem elastic_half_tube(int layers, int around, int along, int rows) {
   const TetrahedralMesh mesh = cell_mesh(layers, around, along, [&](const Vector3& p) {
     const double radius = 0.02 + 0.002 * p.x();
