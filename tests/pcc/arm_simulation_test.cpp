@@ -1,4 +1,5 @@
-// Arms in time: orders of the integrators, energy, stiffness of the lumped model, equilibria.
+// Time integration of arms: orders of the integrators, energy, stiffness of the lumped model,
+// equilibria.
 #include "sinew/pcc/arm_simulation.hpp"
 
 #include <cmath>
@@ -18,14 +19,14 @@ using mechanics::Integrator;
 using testing::fluidic;
 using testing::make;
 
-/// An arm of distributed mass without damping, which is not stiff.
+/// An undamped arm with distributed mass, which is not stiff.
 std::shared_ptr<const Arm> lossless() {
   ArmSettings settings = fluidic(MassCentre::distributed);
   for (Segment& segment : settings.segments) segment.damping = 0.0;
   return make(settings);
 }
 
-/// Position after half a second's swing from a bent start.
+/// Position half a second after release from a bent pose.
 VectorX swing(const std::shared_ptr<const Arm>& arm, Integrator integrator, double step) {
   ArmSimulation simulation(
       arm,
@@ -80,7 +81,7 @@ TEST(ArmSimulation, LumpedMassesAreStiffAndExplicitStepsBlowUp) {
       linalg::symmetric_eigenvalues(equations.mass_matrix(VectorX::Constant(4, 0.1)))[0];
   EXPECT_GT(4.2e-3 / lowest, 1e3);  // 1/s
   const double step = 1e-3;
-  // Explicit: q' += h q'', q += h q' (symplectic Euler).
+  // Symplectic Euler: q' += h q'', q += h q'.
   VectorX q = VectorX::Constant(4, 0.1), rate = VectorX::Zero(4);
   bool blown = false;
   for (int i = 0; i < 100 && !blown; ++i) {
@@ -92,7 +93,7 @@ TEST(ArmSimulation, LumpedMassesAreStiffAndExplicitStepsBlowUp) {
   ArmSimulation simulation(arm, {.time_step = step, .integrator = Integrator::backward_euler});
   simulation.set_state(VectorX::Constant(4, 0.1), VectorX::Zero(4));
   for (int i = 0; i < 4000; ++i) simulation.step(VectorX::Zero(4));
-  EXPECT_LT(simulation.position().norm(), 0.5 * 0.2);  // a start of 0.2, lightly damped
+  EXPECT_LT(simulation.position().norm(), 0.5 * 0.2);  // from a norm of 0.2, lightly damped
 }
 
 TEST(ArmSimulation, SettlesWhereTheEquilibriumIs) {

@@ -65,7 +65,7 @@ TEST(Stumpff, DerivativesAgreeWithComplexStep) {
 }
 
 TEST(Transform, IsTheProductOfItsFactors) {
-  // R_z(gamma) T_z(L_P) R_y(theta/2) T_z(d) R_y(theta/2), behind the base R_x(pi).
+  // R_z(gamma) T_z(L_P) R_y(theta/2) T_z(d) R_y(theta/2), after the base rotation R_x(pi).
   ArmSettings settings = fluidic();
   settings.segments.resize(2);
   settings.segments[0].gamma = 0.7;
@@ -131,7 +131,8 @@ TEST(Centres, ArcAndChordAreWhereTheyAreSaidToBe) {
 }
 
 TEST(Pendulum, ShortStiffSegmentWithAMassIsOne) {
-  // A dead length with a short bend at its top and the mass far below: theta'' = -(g/l) sin theta.
+  // A pendulum: a long dead length with a short bend at its top and the mass far below,
+  // theta'' = -(g/l) sin theta.
   ArmSettings settings = fluidic();
   settings.segments.resize(2);
   settings.segments[0].length = 1e-5;
@@ -144,7 +145,7 @@ TEST(Pendulum, ShortStiffSegmentWithAMassIsOne) {
   settings.segments[1].stiffness = 1e3;
   settings.segments[1].damping = 0.0;
   ArmEquations equations(make(settings));
-  // With the second bend held straight, the first row of r is m l^2 theta'' + m g l sin theta.
+  // With the second bend held straight, the first entry of r is m l^2 theta'' + m g l sin theta.
   const double angle = 0.8;
   const VectorX r =
       equations.residual(VectorX{{angle, 0.0}}, VectorX{{1.3, 0.0}}, VectorX{{2.0, 0.0}});
@@ -186,14 +187,14 @@ TEST_P(ArmKinds, CoriolisMatrixGivesTheForcesAndLeavesASkewMatrix) {
 }
 
 TEST_P(ArmKinds, ResidualIsThatOfTheLagrangian) {
-  // d/dt dT/dq' - dT/dq + dV/dq + b q' by differences of the energies alone.
+  // d/dt dT/dq' - dT/dq + dV/dq + b q', computed by differences of the energies only.
   const VectorX q = random_vector(random, n, 1.0), rate = random_vector(random, n, 2.0);
   const VectorX acceleration = random_vector(random, n, 5.0);
   const double h = 1e-5;
   const auto momentum = [&](double t, Eigen::Index k) {
     const VectorX at = q + t * rate + 0.5 * t * t * acceleration;
     VectorX up = rate + t * acceleration, down = up;
-    up[k] += 0.1;  // T is quadratic in the rates: differences are exact
+    up[k] += 0.1;  // exact, since T is quadratic in the rates
     down[k] -= 0.1;
     return (equations.energy(at, up).kinetic - equations.energy(at, down).kinetic) / 0.2;
   };
@@ -268,7 +269,7 @@ TEST_P(ArmKinds, ForwardDynamicsInvertsInverseDynamics) {
   const VectorX acceleration = equations.acceleration(q, rate, torque);
   EXPECT_LT((equations.residual(q, rate, acceleration) - torque).norm(), 1e-11);
   const auto forward = equations.forward_derivatives(q, rate, torque);
-  // Lumped masses make H nearly singular and its inverse steep: by complex step.
+  // Lumped masses make H nearly singular, so its inverse varies steeply: complex-step derivatives.
   ArmDynamics<Complex> complex(arm);
   const auto size = static_cast<std::size_t>(n);
   const double tiny = 1e-30;

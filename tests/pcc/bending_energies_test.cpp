@@ -15,7 +15,7 @@ const double kAngles[] = {-2.5, -0.7, -0.01, 0.02, 0.4, 1.3, 2.8, 6.2};
 
 BendingParameters under_water(std::optional<int> order) {
   BendingParameters p;
-  p.outer_radius = 9e-3;  // thicker on the far side
+  p.outer_radius = 9e-3;  // thicker wall on the far side
   p.filling_density = 1.2;
   p.surroundings_density = 1000.0;
   p.inclination = 0.6;
@@ -30,8 +30,8 @@ TEST(BendingEnergies, ExactOnesAgreeWithClosedForms) {
   p.order.reset();
   const BendingEnergies energies(p);
   const double l = p.length, mass = mass_sum(p).total * l, net = net_mass_sum(p).total * l;
-  // int over a disc of (a + b x)^-2, x from -1 to 1, is 2 pi/b^2 (a/sqrt(a^2 - b^2) - 1) R^2; of
-  // (a + b x)^2 it is pi R^2 (a^2 + b^2/4).
+  // Integrals over a disc, x from -1 to 1: of (a + b x)^-2 it is 2 pi/b^2 (a/sqrt(a^2 - b^2) - 1)
+  // R^2, of (a + b x)^2 it is pi R^2 (a^2 + b^2/4).
   const auto disc = [&](double theta, double radius, double centre) {
     const double a = 1.0 + theta * centre / l, b = theta * radius / l;
     const double inverse = 2.0 * std::numbers::pi / (b * b) * (a / std::sqrt(a * a - b * b) - 1.0);
@@ -39,7 +39,7 @@ TEST(BendingEnergies, ExactOnesAgreeWithClosedForms) {
            (std::numbers::pi * (a * a + 0.25 * b * b) + inverse - 2.0 * std::numbers::pi);
   };
   for (const double theta : kAngles) {
-    if (std::abs(theta) < 0.1) continue;  // the closed forms cancel
+    if (std::abs(theta) < 0.1) continue;  // cancellation in the closed forms
     const BendingTerms terms = energies.at(theta);
     const double square = theta * theta;
     const double inertia = 2.0 * mass * l * l *
@@ -64,7 +64,7 @@ TEST(BendingEnergies, ExactOnesAgreeWithSumsOverMaterialPoints) {
     const double scale = std::abs(brute.gravity(1.0));
     for (const double theta : {-1.1, 0.3, 2.0, 5.0}) {
       const BendingTerms terms = energies.at(theta);
-      // The grid's own error: cells of 1/60 and 1/200.
+      // Discretisation error of the grid, with cells of 1/60 and 1/200.
       EXPECT_NEAR(terms.inertia.value / brute.inertia(theta), 1.0, 3e-4) << theta;
       EXPECT_NEAR(terms.strain.value / brute.strain(theta), 1.0, 3e-4) << theta;
       EXPECT_NEAR(terms.gravity.value, brute.gravity(theta), 3e-4 * scale) << theta;
@@ -121,8 +121,8 @@ TEST(BendingEnergies, FifthOrderIsTheSeriesByHand) {
   EXPECT_NEAR(terms.gravity.value, net * p.gravity * l * lever, 1e-13 * net);
   const double inertia = 1.0 / 20.0 - std::pow(theta, 2) / 504.0 + std::pow(theta, 4) / 25920.0;
   EXPECT_NEAR(terms.inertia.value, mass * l * l * inertia, 1e-13 * mass * l * l);
-  // Moments of a disc about a line at the distance c: c^2 + R^2/4, c^3 + 3/4 c R^2,
-  // c^4 + 3/2 c^2 R^2 + R^4/8, c^5 + 5/2 c^3 R^2 + 5/8 c R^4 times its area.
+  // Moments of a disc about a line at the distance c, per area: c^2 + R^2/4, c^3 + 3/4 c R^2,
+  // c^4 + 3/2 c^2 R^2 + R^4/8, c^5 + 5/2 c^3 R^2 + 5/8 c R^4.
   const auto series = [&](double radius, double c) {
     const double r2 = radius * radius, k = kappa;
     return std::numbers::pi * r2 *
@@ -156,7 +156,7 @@ TEST(BendingEnergies, TaylorIsWithinItsBoundWhichIsNoWiderThanNeeded) {
         keep(worst.gravity_slope, a.gravity.first, b.gravity.first);
         keep(worst.inertia, a.inertia.value, b.inertia.value);
       }
-      // Rounding beside the terms themselves, where the bound is far below them.
+      // Rounding of the terms themselves, which exceeds a very small bound.
       const BendingTerms size = exact.at(end);
       const double slack = 1e-14;
       EXPECT_LE(worst.strain, bound.strain + slack * size.strain.value) << order << ' ' << end;
@@ -181,7 +181,7 @@ TEST(BendingEnergies, TaylorConvergesWithItsOrder) {
       return std::abs(BendingEnergies(under_water(n)).at(angle).strain.value -
                       exact.at(angle).strain.value);
     };
-    // Halving the angle divides the error by 2^(order + 1), a little less for its own next term.
+    // Halving the angle divides the error by 2^(order + 1), slightly less because of the next term.
     const double rate = std::log2(error(theta, order) / error(0.5 * theta, order));
     EXPECT_NEAR(rate, order + 1, 0.25) << order;
     EXPECT_LT(error(theta, order), 0.02 * wanted);

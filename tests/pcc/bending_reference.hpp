@@ -1,5 +1,5 @@
 // A bending actuator by brute force: sums over a grid of material points whose positions follow
-// from the arc alone. Shares no formula with the library.
+// from the arc only. Shares no formula with the library.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@ struct BruteForce {
     double height, area, density, net, wall;
   };
 
-  /// Midpoints of polar cells of a disc.
+  /// Adds the midpoints of polar cells of a disc.
   void add_disc(std::vector<Cell>& cells, double radius, double centre, double density, double net,
                 double wall) const {
     for (int i = 0; i < rings; ++i) {
@@ -45,17 +45,17 @@ struct BruteForce {
   struct Point {
     double x, z;
   };
-  /// On the arc of radius L/theta, in world axes. theta is not 0.
+  /// Position on the arc of radius L/theta, in world axes; theta must not be 0.
   Point place(double theta, double u, double height) const {
     const double radius = p.length / theta, angle = u * theta;
-    // Layer at `radius` from the centre of curvature, which lies towards x.
+    // The layer is at `radius` from the centre of curvature, which lies towards +x.
     const double x = radius - (radius + height) * std::cos(angle);
     const double axial = (radius + height) * std::sin(angle);
     const double s = std::sin(p.inclination), c = std::cos(p.inclination);
     return {x * c + axial * s, x * s - axial * c};
   }
 
-  /// I with velocities by differences of positions.
+  /// Inertia I, with velocities by differences of positions.
   double inertia(double theta) const {
     const double step = 1e-4;
     double sum = 0.0;
@@ -82,7 +82,7 @@ struct BruteForce {
     return sum;
   }
 
-  /// V_s/G: sum of squares of stretches along, round (1) and through the wall.
+  /// V_s/G: sum of the squared stretches along, round (1) and through the wall.
   double strain(double theta) const {
     double sum = 0.0;
     for (const Cell& cell : section()) {

@@ -1,6 +1,6 @@
 /// @file
-/// Contacts of rigid bodies: towers, walls and heaps, whose W = J M^-1 J^T has fewer columns than
-/// rows, or islands. Independent of the solver that is tested with them.
+/// Contacts of rigid bodies: towers, walls and heaps, whose W = J M^-1 J^T has a rank below its
+/// size, or decomposes into islands. Independent of the tested solver.
 #pragma once
 
 #include <algorithm>
@@ -17,12 +17,12 @@
 
 namespace sinew::qp {
 
-/// Boxes on the ground and on each other, in one step of h from a given motion.
+/// Boxes on the ground and on each other, in one step of length h from a given motion.
 class RigidContacts {
  public:
   static constexpr double kStep = 1e-3, kGravity = 9.81, kDensity = 600.0;
 
-  /// @return its number. @param size edges, m. @param at centre, m.
+  /// @return the number of the box. @param size edges, m. @param at centre, m.
   int add_box(const Vector3& size, const Vector3& at, double density = kDensity) {
     const double mass = density * size.prod();
     bodies_.push_back(
@@ -36,11 +36,11 @@ class RigidContacts {
   void push(int body, const Vector3& velocity) {
     velocity_[static_cast<std::size_t>(body)] = velocity;
   }
-  /// `normal` points from `below` (-1: the ground) to `above`.
+  /// Adds a contact; `normal` points from `below` (-1: the ground) to `above`.
   void touch(int above, int below, const Vector3& at, const Vector3& normal) {
     contacts_.push_back({above, below, at, normal});
   }
-  /// Four corners of a rectangle in a horizontal plane.
+  /// Adds contacts at the four corners of a horizontal rectangle.
   void rest(int above, int below, const Vector3& middle, double length, double width) {
     for (const double x : {-0.5, 0.5}) {
       for (const double y : {-0.5, 0.5}) {
@@ -117,7 +117,7 @@ class RigidContacts {
   std::vector<Contact> contacts_;
 };
 
-/// Planks (0.117 x 0.0234 x 0.0078 m), two a level, each level across the one below.
+/// Planks (0.117 x 0.0234 x 0.0078 m), two per level, each level across the one below.
 inline RigidContacts tower(int levels) {
   RigidContacts scene;
   const Vector3 plank(0.117, 0.0234, 0.0078);
@@ -144,7 +144,7 @@ inline RigidContacts tower(int levels) {
   return scene;
 }
 
-/// Bricks in bond, each on halves of two below and beside its neighbours.
+/// Bricks in running bond, each on the halves of two below and next to its neighbours.
 inline RigidContacts wall(int rows, int columns) {
   RigidContacts scene;
   const Vector3 brick(0.24, 0.115, 0.071);
@@ -171,7 +171,7 @@ inline RigidContacts wall(int rows, int columns) {
   return scene;
 }
 
-/// Boxes thrown together: random bodies, each touching some of those before it.
+/// Random boxes, each in contact with some of the previous ones.
 inline RigidContacts heap(int bodies, int touches, double speed, Random& random) {
   RigidContacts scene;
   std::vector<Vector3> at;
@@ -195,7 +195,7 @@ inline std::span<double> span_of(VectorX& x) {
   return {x.data(), static_cast<std::size_t>(x.size())};
 }
 
-/// |r - P_K(r - v)|/|q| of all contacts, written out independently of the solver: P by the cases of
+/// r - P_K(r - v)|/|q| over all contacts, written independently of the solver: P by the cases of
 /// the cone in its plane.
 inline double natural_map(const Eigen::SparseMatrix<double>& w, const VectorX& q,
                           const std::vector<ConeBlock>& cones, const VectorX& r) {
@@ -207,7 +207,7 @@ inline double natural_map(const Eigen::SparseMatrix<double>& w, const VectorX& q
     Vector3 z = own - u.segment<3>(cone.row);
     z[0] -= mu * std::hypot(u[cone.row + 1], u[cone.row + 2]);
     const double across = std::hypot(z[1], z[2]);
-    // Coordinates along and beside the cone's ray in the plane of z.
+    // Coordinates along and across the cone's generator in the plane of z.
     const double norm = std::hypot(1.0, mu);
     const double along = (z[0] + mu * across) / norm, beside = (across - mu * z[0]) / norm;
     Vector3 nearest = z;

@@ -1,5 +1,5 @@
 /// @file
-/// Random problems of a step: a positive definite W and blocks of every kind.
+/// Random step problems: a positive definite W and blocks of every kind.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace sinew::step::testing {
 
 using qp::Random;
 
-/// effort = rest - stiffness motion^3 - slope motion: steeper the farther it goes.
+/// effort = rest - stiffness motion^3 - slope motion: the slope grows with the motion.
 class CubicDrive : public Drive {
  public:
   CubicDrive(double rest, double slope, double cubic) : rest_(rest), slope_(slope), cubic_(cubic) {}
@@ -35,7 +35,7 @@ class CubicDrive : public Drive {
   double rest_, slope_, cubic_;
 };
 
-/// A problem and the drives that it points to.
+/// A problem together with the drives that it refers to.
 struct RandomProblem {
   StepProblem problem;
   std::vector<std::unique_ptr<Drive>> drives;
@@ -46,7 +46,7 @@ struct RandomProblem {
   }
 };
 
-/// How many blocks of each kind; actuators are dealt out in this order.
+/// Number of blocks of each kind; actuators are assigned in this order.
 struct BlockCounts {
   int owned = 0, commanded_efforts = 0, stopped_efforts = 0, motions = 0, held = 0, drives = 0;
   int capstans = 0;  ///< on the first motion's cable, or the first owned one's
@@ -105,7 +105,7 @@ inline RandomProblem random_problem(const BlockCounts& counts, Random& random) {
   }
   for (int i = 0; i < counts.contacts; ++i, row += 3) {
     problem.contacts.push_back({row, random.uniform(0.0, 0.8)});
-    problem.delta_free[row] -= 0.5;  // most of them press
+    problem.delta_free[row] -= 0.5;  // most contacts are compressed
   }
   for (int i = 0; i < counts.bilaterals; ++i, ++row) {
     problem.bilaterals.push_back({row, random.uniform(-0.3, 0.3), 1.0});
