@@ -26,10 +26,10 @@ inline constexpr double kBeamGravity = 9.81;
 struct CutBeam {
   sim::StepSettings step;
   bool cut = true;  ///< at the middle, into two bodies
-  int finer = 1;    ///< cells of the second part across, of those of the first
+  int finer = 1;    ///< cells across of the second part, relative to the first
   Vector3 gravity{0.0, 0.0, -kBeamGravity};
   bool rubber = false;  ///< neo-Hookean, else corotational
-  int cables = 0;       ///< up to 3, through both: top, left, bottom
+  int cables = 0;       ///< up to 3, through both parts: top, left, bottom
   double cable_friction = 0.0;
   bool push = false;  ///< a force on the tip
   bool second_fixed = false;
