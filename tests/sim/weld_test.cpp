@@ -94,8 +94,7 @@ TEST(Weld, CarriesTheWeightOfWhatHangsOnIt) {
   EXPECT_LT((load.force - Vector3(0.0, 0.0, -weight)).norm(), 1e-8 * weight);
   const Vector3 middle = simulation.body(1).positions().colwise().mean();
   const Vector3 expected = (middle - load.centre).cross(Vector3(0.0, 0.0, -weight));
-  EXPECT_LT((load.moment - expected).norm(),
-            0.02 * expected.norm());  // mean of the nodes, not of the mass
+  EXPECT_LT((load.moment - expected).norm(), 0.02 * expected.norm());  // mean of nodes, not of mass
   EXPECT_GT(load.moment[1], 0.9 * expected[1]);
 }
 
