@@ -38,15 +38,16 @@ namespace {
 
 constexpr int kSteps = 6;
 constexpr int kHalf = 3;
-// Of the robot's size: another order of bodies sums forces in another order. With adaptive steps a
-// rounding may decide whether a substep is accepted; the runs then differ by a part of its error.
+// Relative to the robot's size: another order of bodies changes the order of sums. With adaptive
+// steps, rounding may decide whether a substep is accepted; the runs then differ by a fraction of
+// its error.
 constexpr double kOrderTolerance = 1e-9;
 constexpr double kPartOfError = 0.1;
-// A gap below 1e-9 of the size is closed: a rounding may decide whether it is now or a part of the
-// step later, and impacts multiply that.
+// A gap below 1e-9 of the size counts as closed: rounding may decide whether it closes now or a
+// fraction of a step later, and impacts amplify the difference.
 constexpr double kEventTolerance = 1e-7;
-constexpr double kEnergyTolerance = 1e-10;  // of an energy
-// J: what bodies at rest have by rounding alone.
+constexpr double kEnergyTolerance = 1e-10;  // relative
+// J, rounding of the energy of bodies at rest.
 constexpr double kNoEnergy = 1e-15;
 
 // A simulation with the controllers of its scene.
@@ -63,7 +64,7 @@ class Run {
     }
   }
 
-  // Appends the state after each step.
+  // Makes steps and appends the state after each one.
   void advance(int steps) {
     for (int k = 0; k < steps && error_.empty(); ++k) {
       try {
@@ -102,7 +103,7 @@ scene::Robot build(const std::string& text) {
   return scene::build(scene::parse_scene_text(text, "scene.yaml", {}));
 }
 
-// "body at 12", "volume ratio": every number by its name.
+// All numbers of a state with their names, such as "body at 12" or "volume ratio".
 std::vector<std::pair<std::string, double>> numbers_of(const sim::State& state) {
   std::vector<std::pair<std::string, double>> numbers;
   sim::State::visit(state, [&](std::string_view name, const auto& part) {
@@ -122,14 +123,14 @@ bool is_finite(const sim::State& state) {
                              [](const auto& number) { return std::isfinite(number.second); });
 }
 
-// Of the robot's size.
+// Tolerance relative to the robot's size.
 double order_tolerance(const sim::Model& model) {
   if (model.step().event_driven()) return kEventTolerance;
   const auto& adaptive = model.step().adaptive;
   return adaptive ? kPartOfError * adaptive->tolerance : kOrderTolerance;
 }
 
-// m, between the nodes of two runs whose bodies stand in opposite orders.
+// Largest distance between nodes of two runs whose bodies are in opposite order, m.
 double largest_distance(const sim::Simulation& one, const sim::Simulation& other) {
   double largest = 0.0;
   const auto count = static_cast<int>(one.model().bodies().size());
@@ -140,7 +141,7 @@ double largest_distance(const sim::Simulation& one, const sim::Simulation& other
   return largest;
 }
 
-// The first number that differs.
+// The name of the first number that differs.
 std::string first_difference(const sim::State& one, const sim::State& other) {
   const auto mine = numbers_of(one), theirs = numbers_of(other);
   for (std::size_t k = 0; k < std::min(mine.size(), theirs.size()); ++k) {
@@ -189,7 +190,7 @@ class Trial {
       resumed.advance(kSteps - kHalf);
       compare("a saved state", resumed.states, kHalf);
       Run cloned(*robot, std::move(copy));
-      cloned.simulation.restore(state);  // once more: the controllers' memory
+      cloned.simulation.restore(state);  // again, for the controllers' memory
       cloned.advance(kSteps - kHalf);
       compare("a clone", cloned.states, kHalf);
     }
@@ -215,13 +216,12 @@ class Trial {
       }
       compare("other names", renamed.states, 0);
     }
-    // A step that is flagged may have wandered, and a choice that did not settle may be another,
-    // where rounding decides.
+    // Rounding may change a step that is flagged, and a contact choice that did not settle.
     if (!sim::is_flagged(first->condition) && !first->choice_held) {
       double distance = distance_of_order({.reversed = true}, first->simulation);
       const double tolerance = order_tolerance(*robot->model) * robot->model->size();
       if (!(distance <= tolerance)) {
-        // What quasi-static steps leave to the next one may be another by rounding.
+        // The residual that quasi-static steps leave to the next one may depend on rounding.
         Run converged(build(write_scene(draft_, {.converged = true})));
         converged.advance(kSteps);
         distance = distance_of_order({.reversed = true, .converged = true}, converged.simulation);
@@ -237,20 +237,19 @@ class Trial {
   }
 
  private:
-  // m, of a node after kSteps.
+  // Largest distance of a node after kSteps, m.
   double distance_of_order(const Layout& layout, const sim::Simulation& from) const {
     Run reversed(build(write_scene(draft_, layout)));
     reversed.advance(kSteps);
     return largest_distance(from, reversed.simulation);
   }
 
-  // What is recorded reads back bit for bit, and a copy of the simulation lets one observe the
-  // same.
+  // Recorded values read back bit for bit, and a copy of the simulation has the same observables.
   void check_records(const scene::Robot& robot) {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / fmt::format("sinew_trial_{}", ::getpid());
     Run run(robot);
-    std::vector<std::vector<double>> seen;  // of each observable, all frames one after the other
+    std::vector<std::vector<double>> seen;  // per observable, all frames in sequence
     sim::Observables list = run.observables();
     const auto look = [&] {
       list.refresh();
@@ -285,11 +284,11 @@ class Trial {
     sim::Observables theirs = copy.observables();
     for (std::size_t k = 0; k < seen.size(); ++k) {
       const sim::Observable& one = list.list()[k];
-      // Work since the first reading and the last step's report are no part of a state.
+      // A state contains neither the work since the first reading nor the report of the last step.
       if (one.kind >= sim::ObservableKind::ledger) {
         continue;
       }
-      // A step sums energies in another order than a look at the elements does.
+      // A step sums energies in another order than a query.
       const bool same = one.kind == sim::ObservableKind::energy
                             ? std::abs(list.number(k) - theirs.number(k)) <=
                                   kEnergyTolerance * std::abs(list.number(k)) + kNoEnergy
@@ -302,7 +301,7 @@ class Trial {
 
   void fail(const std::string& what) { wrong_ += (wrong_.empty() ? "" : "; ") + what; }
 
-  // @param states of the steps from `from` on.
+  // @param states those after the steps from `from` on.
   void compare(const char* way, const std::vector<sim::State>& states, std::size_t from) {
     const std::size_t expected = reference_.size() - std::min(from, reference_.size());
     for (std::size_t k = 0; k < std::min(states.size(), expected); ++k) {
@@ -341,8 +340,8 @@ Outcome try_scene(const Selection& selection, std::uint64_t seed) {
 
 std::string try_changed_number(const Selection& selection, std::uint64_t seed) {
   const std::string text = write_scene(draft_scene(selection, seed));
-  // Group 4 is a number of the robot; what stands before it in the pattern are inputs, settings,
-  // and an estimator with its sensor, which do not act on it.
+  // Group 4 matches a number of the robot. The alternatives before it match inputs, settings, and
+  // the estimator with its sensor, which do not act on the robot.
   static const std::regex number(
       "(command|factor|pressure|target|rotation): (\\{[^}]*\\}[^}]*\\}|[^,}]*)|"
       "(?:seen|guess|solver): [^\\n]*|sinew: 1|time_step: [^\\n]*|fixed: [^\\n,]*|"
@@ -375,7 +374,7 @@ std::string try_changed_number(const Selection& selection, std::uint64_t seed) {
       return where + ": a state was accepted and goes on differently";
     }
   } catch (const Error&) {
-    return {};  // refused
+    return {};  // rejected
   }
   return {};
 }
