@@ -1,4 +1,4 @@
-// Plans of the commands of drives: what they do through the whole chain.
+// Plans of drive commands, and their effect through the whole chain.
 #include <cmath>
 #include <string>
 
@@ -48,8 +48,9 @@ PlanTask driven(const Vector3& goal, double frequency) {
 
 class DrivePlan : public ::testing::TestWithParam<double> {};
 
-/// The plan's commands end where the plan says, after the whole chain; torques that are planned
-/// first and inverted then end faster the slower the cylinders are.
+/// The planned commands reach the predicted end state through the whole chain. Torques that are
+/// planned first and inverted afterwards give a higher final speed, increasingly so with slower
+/// cylinders.
 TEST_P(DrivePlan, EndsAtTheGoalThroughTheChain) {
   const auto arm = make(pcc::testing::fluidic());
   for (const Vector3& goal : {kGoals[1], kGoals[2]}) {
@@ -97,7 +98,7 @@ TEST(DrivePlan, KeepsItsLimits) {
   const MatrixX change =
       run.command.bottomRows(run.command.rows() - 1) - run.command.topRows(run.command.rows() - 1);
   EXPECT_LE(change.cwiseAbs().maxCoeff() / 0.01, rate * (1.0 + rounding));
-  // All are reached, or they would not have been at stake; the tip is at the goal all the same.
+  // All limits are active, and the tip still reaches the goal.
   EXPECT_GT(run.volume.maxCoeff(), volume * 0.999);
   EXPECT_GT(run.command.maxCoeff(), command * 0.999);
   EXPECT_GT(change.cwiseAbs().maxCoeff() / 0.01, rate * 0.999);
@@ -125,7 +126,7 @@ TEST(DrivePlan, CostsMoreTheSlowerTheCylindersAre) {
 TEST(DrivePlan, BeginsAtATorqueHeld) {
   const auto arm = make(pcc::testing::fluidic());
   PlanTask task = driven(kGoals[1], 30.0);
-  // Whole samples, so that one stands where the plan begins.
+  // The delay is a multiple of the sampling time, so a sample falls on the start of the plan.
   for (DriveChannel& channel : task.drive->channels) channel.actuator.delay = 0.08;
   task.start.torque = VectorX{{0.0, 0.02, -0.03, 0.04}};
   pcc::ArmSimulation simulation(arm, {.time_step = 5e-3});
@@ -140,7 +141,7 @@ TEST(DrivePlan, BeginsAtATorqueHeld) {
   const Replay after = replay(arm, task, run);
   EXPECT_LT(after.tip_error, 3e-3);
   EXPECT_LT(after.tip_speed, 1e-2);
-  // A plan made anew from the old one for a goal nearby.
+  // Replanning for a goal nearby.
   task.goal.position += Vector3(0.01, 0.0, 0.0);
   const Plan next = Planner(arm, task).replan(found);
   ASSERT_TRUE(next.found());

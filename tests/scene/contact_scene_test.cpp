@@ -1,4 +1,4 @@
-// Contacts of a scene: what is read, what is built of it, and what is wrong with it.
+// Contacts in scenes: parsing, building, and errors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

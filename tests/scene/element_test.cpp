@@ -1,4 +1,5 @@
-// Which element a body gets without `element`, and what is said of linear tetrahedra that lock.
+// The element of a body without the key `element`, and the warning about linear tetrahedra that
+// lock.
 #include <gtest/gtest.h>
 
 #include "sinew/fem/element_count.hpp"

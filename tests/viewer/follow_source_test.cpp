@@ -1,4 +1,4 @@
-// A script steps, the page looks on: who has its turn when, and what the page may do.
+// A script makes the steps and the page follows: order of turns, and what the page may do.
 #include "viewer/follow_source.hpp"
 
 #include <atomic>
@@ -31,7 +31,7 @@ struct Script {
   }
   ~Script() { source.stop(); }
 
-  /// One turn of the source; false when it has ended.
+  /// One turn of the source; false after its end.
   bool update() {
     source.hand_over();
     while (!source.wait_turn(10ms)) {
@@ -58,7 +58,7 @@ TEST(FollowSource, ShowsWhatTheScriptDid) {
     script.simulation->step();
     ASSERT_TRUE(script.update());
   }
-  // Frames are at most sixty a second; the last one comes once the script rests.
+  // At most sixty frames per second; the last one is sent once the script pauses.
   std::this_thread::sleep_for(30ms);
   script.simulation->step();
   ASSERT_TRUE(script.update());
