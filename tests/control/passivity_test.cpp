@@ -21,7 +21,7 @@ using sinew::testing::wall_settings;
 struct Felt {
   double created = 0.0;       // J, counted here
   double by_the_step = 0.0;   // J, counted by the step
-  double pressing = 0.0;      // s, in the wall
+  double pressing = 0.0;      // s, contact time
   double path = 0.0;          // m^2/s: integral of v^2 during contact
   double mean_damping = 0.0;  // N s/m
 };

@@ -23,7 +23,7 @@ inline control::HighRateSettings robot_settings(int hands = 1, int contacts = 12
   return settings;
 }
 
-/// Adds sensors of all driven rows and effectors with a deviation of one micrometre.
+/// Adds sensors of all driven rows and effectors with a standard deviation of one micrometre.
 inline void add_sensors(control::HighRateSettings& settings) {
   for (int row = 0; row < 8; ++row) settings.sensors.push_back({row, 1e-6});
   for (int row = 11; row < 17; ++row) settings.sensors.push_back({row, 1e-6});

@@ -103,7 +103,7 @@ TEST(ConeEquation, ObeysSignoriniAndCoulombInEveryState) {
   for (const int count : seen) EXPECT_GT(count, 200);
 }
 
-// Scans all sliding directions: each one that satisfies the law is near the solution.
+// Scans all sliding directions: one that satisfies the law is near the solution.
 TEST(ConeEquation, AgreesWithScanningTheDirectionOfSliding) {
   Random random(5);
   int slips = 0;
