@@ -26,7 +26,7 @@ import traceback
 
 HERE = pathlib.Path(__file__).resolve().parent
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
-    os.environ.setdefault(variable, "1")  # cases run side by side
+    os.environ.setdefault(variable, "1")  # cases run in parallel
 sys.path.insert(0, str(HERE))
 if importlib.util.find_spec("sinew") is None:
     sys.path.append(str(HERE.parent / "build" / "release" / "python"))
@@ -36,7 +36,7 @@ from suite.case import KNOWN, MISSED, Case, Result  # noqa: E402
 
 
 def case_names() -> list[str]:
-    """In the order of the scorecard, which is that of the file names."""
+    """Names of all cases, in the order of the scorecard (alphabetical)."""
     return sorted(path.stem for path in (HERE / "cases").glob("*.py") if path.stem != "__init__")
 
 

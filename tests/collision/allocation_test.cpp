@@ -1,4 +1,4 @@
-// A steady step allocates nothing, whatever number of threads it has.
+// In the steady state, collision queries allocate nothing, for any number of threads.
 #include <gtest/gtest.h>
 
 #include "sinew/collision/overlap_volume.hpp"

@@ -24,7 +24,8 @@ std::vector<Shape> shapes() {
           ConvexSolid{std::make_shared<const Polyhedron>(wedge), {0.01, -0.01, 0.0}, axes}};
 }
 
-// Against many points of the way: the first that is inside, else the nearest.
+// Compares with a dense sampling of the path: the first sample inside the shape, or the nearest
+// sample if none is inside.
 TEST(Approach, IsTheFirstMeetingOrTheNearestPoint) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> coordinate(-0.06, 0.06);
@@ -61,10 +62,10 @@ TEST(Approach, IsTheFirstMeetingOrTheNearestPoint) {
         if (least > 1e-3) {
           EXPECT_NEAR(share, at, 0.01);
         }
-        EXPECT_GT(found.distance.gap + normal.dot(to - found.at), 0.0);  // no plane in its way
+        EXPECT_GT(found.distance.gap + normal.dot(to - found.at), 0.0);  // stays above the plane
       }
       EXPECT_GE(found.distance.gap + normal.dot(from - found.at), -1e-14);
-      // No point of the solid lies beyond the plane.
+      // The tangent plane supports the solid: no point of the solid lies beyond it.
       const Vector3 foot = found.at - (found.distance.gap - 1e-9) * normal;
       EXPECT_GE(distance(surface, foot + 0.02 * normal.unitOrthogonal()).gap, 0.0);
     }
@@ -80,11 +81,11 @@ TEST(Approach, OfPointsThatRestTouchOrLeave) {
   const ShapeApproach rests = approach(ball, top, top);
   EXPECT_EQ(rests.at, top);
   EXPECT_FALSE(rests.meets);
-  EXPECT_FALSE(approach(ball, top, {0.0, 0.0, 2.0}).meets);  // leaves
+  EXPECT_FALSE(approach(ball, top, {0.0, 0.0, 2.0}).meets);  // moves away
   EXPECT_FALSE(approach(ball, top, {1.0, 0.0, 1.0}).meets);  // along the tangent
   EXPECT_TRUE(approach(ball, top, {1.0, 0.0, 0.99}).meets);  // into it at once
-  EXPECT_EQ(approach(ball, top, {0.0, 0.0, -3.0}).at, top);  // not out at the other side
-  EXPECT_FALSE(approach(ball, {0.0, 0.0, 0.5}, {0.0, 0.0, 2.0}).meets);  // from inside, out
+  EXPECT_EQ(approach(ball, top, {0.0, 0.0, -3.0}).at, top);  // does not exit at the other side
+  EXPECT_FALSE(approach(ball, {0.0, 0.0, 0.5}, {0.0, 0.0, 2.0}).meets);  // starts inside, moves out
   const ShapeApproach inside = approach(ball, {0.0, 0.0, 0.5}, {0.0, 0.0, 0.1});
   EXPECT_TRUE(inside.meets);
   EXPECT_DOUBLE_EQ(inside.distance.gap, -0.5);

@@ -14,7 +14,7 @@ namespace {
 
 using testing::random_point;
 
-// Least value of a convex function of [0, 1] by golden sections.
+// Minimum of a convex function on [0, 1] by golden-section search.
 double least(const std::function<double(double)>& value) {
   const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
   double low = 0.0, high = 1.0;
@@ -25,8 +25,8 @@ double least(const std::function<double(double)>& value) {
   return std::min({value(low), value(0.5 * (low + high)), value(high), value(0.0), value(1.0)});
 }
 
-// The triangle as b + s (c - b) + t (a - b - s (c - b)): squares of distances are convex along t,
-// and so is their least value over t in s once the domain is written as a convex one.
+// The triangle is parametrised as b + s (c - b) + t (a - b - s (c - b)). The squared distance is
+// convex in t. Its minimum over t is convex in s if the domain is written as a convex one.
 double distance_by_search(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
   return std::sqrt(least([&](double t) {
     return least([&](double s) {
@@ -42,8 +42,8 @@ double distance_by_search(const Vector3& a0, const Vector3& a1, const Vector3& b
   }));
 }
 
-// Golden sections find the least square to the square of their step, its root to the step where
-// it is near zero.
+// Golden-section search finds the minimum of the squared distance to the square of its step, so a
+// distance near zero is accurate to the step only.
 constexpr double kSearch = 3e-8;
 
 void expect_triangle(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
@@ -91,7 +91,7 @@ TEST(ClosestOnTriangle, TakesFlatOnes) {
   Random random(2);
   for (int trial = 0; trial < 40; ++trial) {
     const Vector3 p = random_point(random), a = random_point(random), b = random_point(random);
-    expect_triangle(p, a, b, a + random.uniform(-1.0, 2.0) * (b - a));  // corners on a line
+    expect_triangle(p, a, b, a + random.uniform(-1.0, 2.0) * (b - a));  // collinear corners
     expect_triangle(p, a, b, b);
     expect_triangle(p, a, a, a);
     expect_triangle(p, a, b, a + 0.5 * (b - a) + 1e-9 * random_point(random));
@@ -102,7 +102,7 @@ TEST(ClosestOnTriangle, TakesFlatOnes) {
 }
 
 TEST(ClosestOnTriangle, IsObtuse) {
-  // Beside the edge a b, and yet nearest to b c.
+  // The projection lies outside the edge a b, but the nearest point is on b c.
   const Vector3 a(0, 0, 0), b(1, 0, 0), c(3, 0.2, 0);
   expect_triangle({2.0, -0.5, 0.0}, a, b, c);
   EXPECT_EQ(closest_on_triangle({2.0, -0.5, 0.0}, a, b, c).weights[0], 0.0);
@@ -124,7 +124,7 @@ TEST(ClosestOnEdges, TakesParallelOnes) {
       const Vector3 other = random.uniform(-2.0, 2.0) * along + turned * random_point(random);
       expect_edges(a, a + along, b, b + other);
     }
-    expect_edges(a, a + along, a + 0.5 * along, a + 1.5 * along);  // on one line
+    expect_edges(a, a + along, a + 0.5 * along, a + 1.5 * along);  // collinear edges
     expect_edges(a, a + along, a + 2.0 * along, a + 3.0 * along);
   }
 }

@@ -39,7 +39,7 @@ FourPoints between(const FourPoints& start, const FourPoints& end, double time) 
   return x;
 }
 
-// The least distance on a fine grid of times, refined where it is least.
+// Minimum distance over a fine grid of times, refined near the minimum.
 double least_distance(Kind kind, const FourPoints& start, const FourPoints& end) {
   double least = kInfinity, best = 0.0;
   for (double step = 1.0 / 64.0, from = 0.0, to = 1.0; step > 1e-9; step /= 16.0) {
@@ -61,8 +61,8 @@ struct Touch {
   double time;
 };
 
-// Points that touch at a known time, all numbers exact: whole positions x* at the time k/16,
-// weights that are sixteenths, and start = x* - k v, end = x* + (16 - k) v with whole v.
+// Four points that touch at a known time, all numbers exact: integer positions x* at the time k/16,
+// weights that are multiples of 1/16, and start = x* - k v, end = x* + (16 - k) v with integer v.
 Touch exact_touch(Kind kind, Random& random, int most, int fast) {
   FourPoints x;
   for (Vector3& point : x) point = 256.0 * random_grid_point(random, most);
@@ -70,7 +70,7 @@ Touch exact_touch(Kind kind, Random& random, int most, int fast) {
   if (kind == Kind::vertex_face) {
     x[0] = t * x[1] + (1.0 - t) * (s * x[2] + (1.0 - s) * x[3]);
   } else {
-    // Moves the second edge so that its point t lies on the point s of the first one.
+    // Shifts the second edge so that its point at t coincides with the point at s of the first one.
     const Vector3 gap = x[0] + s * (x[1] - x[0]) - (x[2] + t * (x[3] - x[2]));
     x[2] += gap;
     x[3] += gap;
@@ -90,7 +90,7 @@ class Impact : public ::testing::TestWithParam<Kind> {};
 TEST_P(Impact, MissesNoTouch) {
   Random random(11);
   for (int trial = 0; trial < 40000; ++trial) {
-    // Small numbers give degenerate motions: in one plane, along a line, no motion at all.
+    // Small integers often give degenerate motions: coplanar, collinear or no motion at all.
     const int most = 1 << (trial % 12), fast = trial % 5 == 0 ? 0 : 1 << (trial % 11);
     const Touch touch = exact_touch(GetParam(), random, most, fast);
     const auto time = impact(GetParam(), touch.start, touch.end);
@@ -105,7 +105,7 @@ TEST_P(Impact, MissesNoTouchWhateverTheScaleAndPlace) {
   for (int trial = 0; trial < 4000; ++trial) {
     Touch touch = exact_touch(GetParam(), random, 64, 32);
     const double scale = std::ldexp(1.0, random_integer(random, 80) - 40);
-    // 2^22 times larger: still exact, and close to cancellation.
+    // 2^22 times larger: still exact, but with strong cancellation.
     const Vector3 place = random_grid_point(random, 2) * 0x1p40;
     for (Vector3& x : touch.start) x = scale * (x + place);
     for (Vector3& x : touch.end) x = scale * (x + place);
@@ -123,7 +123,7 @@ TEST_P(Impact, FindsNoneWhereTheDistanceStaysLarge) {
     for (Vector3& x : start) x = random_point(random);
     for (Vector3& x : end) x = random_point(random);
     const double least = least_distance(GetParam(), start, end);
-    // Steps of 1/64 may pass a dip that is this shallow.
+    // The time grid of 1/64 may miss a minimum as shallow as this.
     if (least < 1e-6) continue;
     ++misses;
     if (least < 0.05) ++near;
@@ -131,7 +131,7 @@ TEST_P(Impact, FindsNoneWhereTheDistanceStaysLarge) {
   }
   EXPECT_GT(misses, 1000);
   EXPECT_GT(near, 50);
-  // Those that the grid of times takes for misses: narrow passes.
+  // The time grid misses a few narrow contacts, which count as false here.
   EXPECT_LE(false_ones, misses / 500);
 }
 
@@ -166,7 +166,7 @@ TEST_P(Impact, SeparationIsADistance) {
     if (least < 0.1) {
       ++sure;
       ASSERT_TRUE(time.has_value());
-      // A lower bound: what comes before keeps the distance.
+      // The time is a lower bound: at all earlier times the distance is kept.
       for (int k = 0; k < 50; ++k) {
         EXPECT_GE(distance(GetParam(), between(start, end, *time * k / 50.0)), 0.1 * (1 - 1e-12));
       }
@@ -212,7 +212,7 @@ TEST_P(Impact, CountsNumbersThatAreNotFinite) {
 }
 
 TEST(VertexFaceImpact, PassesBesideAnEdge) {
-  // Through the plane at a distance from the edge x = 0.
+  // The point crosses the plane at this distance outside the edge x = 0.
   for (const double beside : {1e-3, 1e-9, 1e-13}) {
     const FourPoints start{Vector3(-beside, 0.3, 1), Vector3(0, 0, 0), Vector3(1, 0, 0),
                            Vector3(0, 1, 0)};
@@ -236,7 +236,7 @@ TEST(EdgeEdgeImpact, OfParallelEdges) {
   ASSERT_TRUE(time.has_value());
   EXPECT_NEAR(*time, 0.5, 1e-14);
   FourPoints beside = start, beside_end = end;
-  beside[2][0] = beside_end[2][0] = 1.0 + 1e-12;  // one behind the other
+  beside[2][0] = beside_end[2][0] = 1.0 + 1e-12;  // collinear, without overlap
   EXPECT_EQ(edge_edge_impact(beside, beside_end), std::nullopt);
 }
 

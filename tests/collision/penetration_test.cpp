@@ -31,7 +31,7 @@ TEST(Penetration, VerticesInsideABall) {
     found[static_cast<std::size_t>(x.node)] = 1;
     const Vector3 at = a.at(x.node);
     EXPECT_LE((at + x.depth * x.normal - x.nearest.point).norm(), 1e-14);
-    EXPECT_NEAR(x.depth, 1.0 - at.norm(), 0.02);  // flat triangles stand off the sphere
+    EXPECT_NEAR(x.depth, 1.0 - at.norm(), 0.02);  // flat triangles deviate from the sphere
     EXPECT_GT(x.normal.dot(at), 0.0);
   }
   int deep = 0;
@@ -98,7 +98,7 @@ TEST(OverlapVolume, OfBoxesIsTheProductOfTheirOverlaps) {
   for (const int cells : {1, 2, 3}) {
     const TestSurface a = unit_box(2), b = unit_box(cells);
     Overlap overlap(a, b);
-    // Faces, edges and diagonals of both fall together in many of these.
+    // In many of these placements, faces, edges and diagonals of both coincide.
     for (const double x : {-1.5, -1.0, -0.75, -0.5, 0.0, 0.3, 1.0}) {
       for (const double y : {-0.5, 0.0, 0.125}) {
         for (const double z : {-0.25, 0.0, 0.5}) {
@@ -109,7 +109,7 @@ TEST(OverlapVolume, OfBoxesIsTheProductOfTheirOverlaps) {
         }
       }
     }
-    // One inside the other, and far away.
+    // One inside the other, then far apart.
     EXPECT_NEAR(overlap(a.nodes, placed(b.nodes, upright, {.2, .3, .4}, 0.25)), 1 / 64.0, 1e-14);
     EXPECT_NEAR(overlap(placed(a.nodes, upright, {.2, .3, .4}, 0.25), b.nodes), 1 / 64.0, 1e-14);
     EXPECT_EQ(overlap(a.nodes, placed(b.nodes, upright, {5, 5, 5})), 0.0);
@@ -141,7 +141,8 @@ TEST(OverlapVolume, IsThatOfSampledPoints) {
     SurfaceTree first(a.topology()), second(b.topology());
     first.move(x, pool);
     second.move(y, pool);
-    // Low-discrepancy points in the box of the first (a lattice of three irrational steps).
+    // Low-discrepancy points in the bounding box of the first surface (Kronecker lattice of three
+    // irrational steps).
     const Box& box = first.branches().front().box;
     constexpr int kCount = 200000;
     int inside = 0;
@@ -166,7 +167,7 @@ TEST(OverlapVolume, GradientIsItsDerivative) {
   EXPECT_GT(overlap(x, y), 0.1);
   const Points by_x = overlap.last().first_gradient(), by_y = overlap.last().second_gradient();
   EXPECT_GT(by_x.norm(), 0.1);
-  // Forces balance: a common translation changes nothing.
+  // The gradients balance: a common translation changes nothing.
   EXPECT_LE((by_x.colwise().sum() + by_y.colwise().sum()).norm(), 1e-12);
   constexpr double kStep = 1e-6;
   for (int trial = 0; trial < 30; ++trial) {

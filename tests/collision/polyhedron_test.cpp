@@ -27,7 +27,7 @@ Points random_points(int count) {
   return to_points(points);
 }
 
-// As a surface whose corners stand for themselves in every triangle.
+// Converts the hull to a triangle surface over the hull's corners.
 TestSurface surface_of(const Polyhedron& hull) {
   TestSurface surface;
   surface.nodes = to_points(hull.corners());
@@ -136,7 +136,7 @@ TEST(Polyhedron, OfManyCornersStandsOnItsWholeRim) {
                          Matrix3::Identity()};
   const TouchingPoints points = touching_points(drum, Plane{}, 1e-3);
   ASSERT_EQ(points.size(), TouchingPoints::kMax);
-  for (int d = 0; d < 16; ++d) {  // no direction in which it could tip over its points
+  for (int d = 0; d < 16; ++d) {  // the points support it in each direction
     const double angle = 2.0 * std::numbers::pi * d / 16;
     double farthest = 0.0;
     for (const TouchingPoint& at : points) {

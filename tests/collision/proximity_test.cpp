@@ -47,7 +47,7 @@ class TwoSurfaces {
   Proximity proximity_;
 };
 
-// What a pair says of itself holds together.
+// Checks that the members of a pair are consistent with each other.
 void expect_consistent(const ProximityPair& pair, const SurfaceTree& a, const SurfaceTree& b) {
   const auto place = [](const SurfaceTree& tree, const SurfacePoint& on) -> Vector3 {
     Vector3 x = Vector3::Zero();
@@ -129,7 +129,7 @@ TEST(Proximity, OfConvexBodiesIsTheirDistance) {
 }
 
 TEST(Proximity, VertexOverEverything) {
-  // A tip over a square with a cross of edges.
+  // A box corner points down at a square divided by a cross of edges.
   TestSurface tip = unit_box(1);
   const TestSurface floor = unit_square(2);
   const Matrix3 on_tip =
@@ -157,13 +157,13 @@ TEST(Proximity, VertexOverEverything) {
 }
 
 TEST(Proximity, RidgesThatCross) {
-  // Two boxes on their edges, one along x and one along y, ridge over ridge.
+  // Two boxes rotated onto an edge: the upper ridge, along x, crosses above the lower one, along y.
   const TestSurface box = unit_box(1);
   TwoSurfaces bodies(box, box);
   constexpr double kTurn = 0.25 * std::numbers::pi;
   const Matrix3 along_x = Eigen::AngleAxisd(kTurn, Vector3::UnitX()).matrix();
   const Matrix3 along_y = Eigen::AngleAxisd(kTurn, Vector3::UnitY()).matrix();
-  // The upper ridge begins at (x, 0), the lower one at (0, y), 0.125 below.
+  // The upper ridge starts at (x, 0), the lower one at (0, y), 0.125 below.
   const auto at = [&](double x, double y) {
     bodies.place(placed(box.nodes, along_x, {x, 0.0, 0.125}),
                  placed(box.nodes, along_y, {-std::sqrt(0.5), y, -std::sqrt(0.5)}));
@@ -197,7 +197,7 @@ TEST(Proximity, FaceOnFaceIsFoundOnceAtEveryVertex) {
     EXPECT_NEAR(pair.normal[2], 1.0, 1e-15);
     expect_consistent(pair, bodies.first, bodies.second);
   }
-  // Of the nine vertices of the upper face, four lie over the lower one, and the other way round.
+  // Four of the nine vertices of the upper face lie over the lower box, and vice versa.
   const auto vertices = [&](bool first) {
     return std::ranges::count_if(pairs, [&](const ProximityPair& pair) {
       return (first ? pair.first : pair.second).kind == kVertex;
@@ -218,7 +218,7 @@ TEST(Proximity, FaceOnEqualFaceHasAPairAtEachVertex) {
   EXPECT_FALSE(count.contains({kVertex, kFace}) || count.contains({kVertex, kEdge}));
 }
 
-// Goes to and fro between the surfaces, each time to the nearest point: ends in a local minimum.
+// Alternating projection onto the two surfaces, which ends in a local minimum of the distance.
 std::pair<Vector3, Vector3> settle(const SurfaceTree& a, const SurfaceTree& b, Vector3 p) {
   Vector3 q = p;
   for (int k = 0; k < 3000; ++k) {
@@ -260,7 +260,7 @@ TEST(Proximity, HoldsEveryMinimumThatAWalkEndsIn) {
 }
 
 TEST(Proximity, EveryPairIsALocalMinimum) {
-  // No pair of points of the triangles around, sampled nearby, is nearer.
+  // No pair of points sampled nearby, on the adjacent triangles, is nearer.
   Random random(33);
   const TestSurface ring = torus(1.0, 0.4, 16, 8);
   TwoSurfaces bodies(ring, ring);
@@ -319,7 +319,7 @@ TEST(Proximity, SlackLetsMoreIn) {
 }
 
 TEST(Proximity, OfOneSurfaceWithItself) {
-  // A plate, bent to a C: its ends face each other over 0.2; its sides are 0.05 apart inside.
+  // A plate bent to a C: its ends face each other across 0.2, and the wall is 0.05 thick.
   TestSurface plate = unit_box(16);
   const Points flat = plate.nodes;
   const auto bend = [&](double angle) {
@@ -343,9 +343,9 @@ TEST(Proximity, OfOneSurfaceWithItself) {
       EXPECT_TRUE(node < 0 || std::ranges::count(pair.second.nodes, node) == 0);
     }
   }
-  // The inner corners of the ends, at radius 0.95, are nearest.
+  // The inner corners of the ends, at radius 0.95, are nearest to each other.
   EXPECT_NEAR(least, 0.95 * gap, 1e-12);
-  // Through the wall: only if told so.
+  // Pairs through the wall are reported only on request.
   const auto through = bodies.own_pairs({.distance = 0.06, .facing = false});
   EXPECT_TRUE(std::ranges::any_of(
       through, [](const ProximityPair& pair) { return std::abs(pair.distance - 0.05) < 0.002; }));
@@ -375,8 +375,8 @@ TEST(Proximity, DoesNotDependOnThreads) {
   }
 }
 
-// Two boxes that do not match, one on the other, pushed through each other by a little: the same
-// pairs face each other, and their distances go on below zero.
+// Two boxes with non-matching meshes are stacked, then pushed slightly into each other: the same
+// pairs face each other, and their distances continue below zero.
 TEST(Proximity, OverlapsGoOnFromGaps) {
   TestSurface low = unit_box(3), top = unit_box(4);
   const Eigen::AngleAxisd turn(0.3, Vector3::UnitZ());
@@ -410,12 +410,12 @@ TEST(Proximity, OverlapsGoOnFromGaps) {
     EXPECT_LE((found->second.normal - pair.normal).norm(), 1e-9);
   }
   EXPECT_EQ(common, apart.size());
-  // No pair leads out through a side face, which is farther away than the top.
+  // No pair takes the way out through a side face, which is farther away than the top.
   for (const auto& [name, pair] : through) EXPECT_NEAR(pair.distance, -1e-3, 1e-12);
 }
 
-// Boxes whose sides are flush touch with their faces alone, at a distance, at one place, and where
-// one was pushed into the other: not along the sides, in whose planes the rims lie.
+// Boxes with flush sides touch only with the faces that meet: at a distance, in contact, and
+// overlapping. The side faces, in whose planes the rims lie, give no pairs.
 TEST(Proximity, FlushBoxesMeetAcrossTheirFaces) {
   const TestSurface box = unit_box(2);
   for (const double offset : {0.0, 0.3}) {
@@ -441,7 +441,7 @@ TEST(Proximity, FlushBoxesMeetAcrossTheirFaces) {
   }
 }
 
-// Ridges that cross: a pair of edges, on either side of touching.
+// Crossing ridges give a pair of edges, before and after they touch.
 TEST(Proximity, CrossingRidgesPassEachOther) {
   const auto ridge = [](const Vector3& axis, double height) {
     TestSurface box = unit_box(1);

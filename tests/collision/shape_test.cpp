@@ -24,7 +24,7 @@ struct Sample {
   Shape shape;
 };
 
-constexpr double kOctahedron = 0.8;  // m, from its centre to its corners
+constexpr double kOctahedron = 0.8;  // m, from centre to corner
 
 std::shared_ptr<const Polyhedron> octahedron() {
   Points corners(6, 3);
@@ -42,7 +42,7 @@ std::vector<Sample> samples() {
           {"octahedron", ConvexSolid{octahedron(), {0.1, 0.0, 0.2}, random_rotation(random)}}};
 }
 
-// By definition of the solids.
+// Point-in-solid tests, from the definitions of the solids.
 bool holds(const Plane& plane, const Vector3& x) { return plane.normal.dot(x - plane.point) < 0.0; }
 bool holds(const Sphere& sphere, const Vector3& x) {
   return (x - sphere.centre).norm() < sphere.radius;
@@ -81,8 +81,8 @@ TEST(ShapeDistance, TellsInsideFromOutside) {
 }
 
 TEST(ShapeDistance, IsTheLeastOneToTheSurface) {
-  // The nearest point lies on the surface, as far away as told, and no other point of the surface
-  // is nearer: others are found along random lines.
+  // The nearest point lies on the surface at the reported distance, and no other sampled point of
+  // the surface is nearer.
   Random random(43);
   for (const Sample& sample : samples()) {
     std::vector<Vector3> surface;
@@ -118,7 +118,7 @@ TEST(ShapeDistance, NormalIsItsGradient) {
         const ShapeDistance up = distance(sample.shape, x + step);
         const ShapeDistance down = distance(sample.shape, x - step);
         slope[k] = (up.gap - down.gap) / (2.0 * kStep);
-        // Across a middle plane the normal jumps.
+        // The normal jumps across a medial plane.
         smooth = smooth && (up.normal - down.normal).norm() < 1e-3;
       }
       if (!smooth) continue;
@@ -168,7 +168,7 @@ TEST(ShapeDistance, OnCentresAndAxes) {
 TEST(ShapeDistance, HasEveryRegionOfACapsule) {
   const Capsule capsule{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 0.25};
   EXPECT_DOUBLE_EQ(distance(capsule, {0.5, 1.0, 0.0}).gap, 0.75);   // beside the segment
-  EXPECT_DOUBLE_EQ(distance(capsule, {-1.0, 0.0, 0.0}).gap, 0.75);  // before its beginning
+  EXPECT_DOUBLE_EQ(distance(capsule, {-1.0, 0.0, 0.0}).gap, 0.75);  // before its start
   EXPECT_DOUBLE_EQ(distance(capsule, {1.0, 0.0, -2.0}).gap, 1.75);  // at its end
   EXPECT_DOUBLE_EQ(distance(capsule, {3.0, 0.0, 0.0}).gap, 1.75);   // beyond it
   const ShapeDistance inside = distance(capsule, {0.5, 0.0, 0.0});  // on the axis

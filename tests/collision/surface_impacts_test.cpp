@@ -22,7 +22,7 @@ std::vector<Entry> sorted(std::span<const SurfaceImpact> impacts, bool unordered
   std::vector<Entry> result;
   for (const SurfaceImpact& x : impacts) {
     Entry entry{x.first_kind, x.first, x.second_kind, x.second, x.time};
-    // Of one surface, a vertex and a face stand in either order, and two edges too.
+    // Within one surface, vertex and face may come in either order, and so may two edges.
     if (unordered && x.first_kind == FeatureKind::face) {
       entry = {x.second_kind, x.second, x.first_kind, x.first, x.time};
     }
@@ -36,7 +36,7 @@ std::vector<Entry> sorted(std::span<const SurfaceImpact> impacts, bool unordered
   return result;
 }
 
-// All vertices with all faces and all edges with all edges.
+// Brute force: all vertices with all faces, and all edges with all edges.
 std::vector<Entry> by_force(const SurfaceTree& a, const SurfaceTree& b, double separation) {
   std::vector<Entry> result;
   const auto add_faces = [&](const SurfaceTree& own, const SurfaceTree& other, bool swapped) {
@@ -127,7 +127,7 @@ TEST(SurfaceImpacts, OfABallThatFallsOnASquare) {
   const double lowest = start.col(2).minCoeff();
   EXPECT_NEAR(earliest(search.between(a, b, 0.0)).value(), lowest / 4.0, 1e-12);
   EXPECT_NEAR(earliest(search.between(a, b, 0.1)).value(), (lowest - 0.1) / 4.0, 1e-6);
-  // What ends above has none.
+  // No impact if the motion ends above the floor.
   a.sweep(start, placed(start, Matrix3::Identity(), {0, 0, -0.999 * lowest}), pool);
   EXPECT_FALSE(earliest(search.between(a, b, 0.0)).has_value());
   EXPECT_TRUE(earliest(search.between(a, b, 0.01)).has_value());

@@ -27,7 +27,7 @@ TEST(SurfaceTopology, CountsAndOwnsEverythingOnce) {
   const auto nodes = static_cast<int>(sphere.nodes.rows());
   const auto triangles = static_cast<int>(sphere.triangles.size());
   const auto edges = static_cast<int>(topology->edges().size());
-  EXPECT_EQ(nodes - edges + triangles, 2);  // Euler
+  EXPECT_EQ(nodes - edges + triangles, 2);  // Euler's formula
   EXPECT_TRUE(topology->closed());
   std::multiset<int> own_nodes, own_edges;
   for (int t = 0; t < triangles; ++t) {
@@ -141,12 +141,12 @@ TEST(SurfaceTree, IsBuiltAnewWhenDegraded) {
   SurfaceTree tree(sphere.topology());
   tree.move(sphere.nodes, pool);
   EXPECT_EQ(tree.builds(), 1);
-  // A motion of the whole and a small change of form keep it.
+  // A similarity motion and a small deformation keep the tree.
   tree.move(placed(sphere.nodes, Matrix3::Identity(), {5, 5, 5}, 3.0), pool);
   tree.move(shaken(sphere.nodes, random, 0.01), pool);
   EXPECT_EQ(tree.builds(), 1);
   const double cost = tree.cost();
-  // Crumpled to a knot, boxes overlap whatever their order was.
+  // When the surface is crumpled, the boxes overlap whatever their order: the tree is rebuilt.
   tree.move(shaken(sphere.nodes, random, 1.0), pool);
   EXPECT_EQ(tree.builds(), 2);
   tree.move(sphere.nodes, pool);
@@ -188,7 +188,8 @@ TEST(NearestOnSurface, TakesTheLowestOfEqualTriangles) {
             tree.topology().triangles_of_node(corner).front());
 }
 
-// Sum of the solid angles over 4 pi (van Oosterom & Strackee 1983): an independent way.
+// Winding number as the sum of solid angles over 4 pi (van Oosterom & Strackee 1983): an
+// independent method.
 double winding_by_angles(const SurfaceTree& tree, const Vector3& point) {
   double sum = 0.0;
   for (int t = 0; t < static_cast<int>(tree.topology().triangles().size()); ++t) {
@@ -204,7 +205,7 @@ double winding_by_angles(const SurfaceTree& tree, const Vector3& point) {
 TEST(WindingNumber, IsTheSumOfTheSolidAngles) {
   Random random(25);
   ThreadPool pool;
-  // A ring, shaken until it overlaps itself, with a ball that reaches into it.
+  // A ring perturbed until it overlaps itself, with a ball that reaches into it.
   const TestSurface surface = joined(torus(1.0, 0.4, 18, 9), unit_sphere(4));
   SurfaceTree tree(surface.topology());
   std::set<int> seen;
@@ -221,7 +222,7 @@ TEST(WindingNumber, IsTheSumOfTheSolidAngles) {
 }
 
 TEST(WindingNumber, OfRaysThroughEdgesAndVertices) {
-  // Rays from points of the lattice run along faces, through edges, vertices and diagonals.
+  // Rays from the lattice points pass along faces and through edges, vertices and diagonals.
   ThreadPool pool;
   const TestSurface box = unit_box(4);
   SurfaceTree tree(box.topology());
@@ -232,7 +233,7 @@ TEST(WindingNumber, OfRaysThroughEdgesAndVertices) {
         const Vector3 point = Vector3(i, j, k) / 8.0;
         const double low = point.minCoeff(), high = point.maxCoeff();
         const bool inside = low > 0.0 && high < 1.0;
-        if (!inside && low >= 0.0 && high <= 1.0) continue;  // on it
+        if (!inside && low >= 0.0 && high <= 1.0) continue;  // on the surface
         EXPECT_EQ(winding_number(tree, point), inside ? 1 : 0);
       }
     }

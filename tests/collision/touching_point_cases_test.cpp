@@ -1,4 +1,4 @@
-// Touching points where they are known: boxes, cylinders and capsules that stand and lie.
+// Touching points in cases where they are known: standing and lying boxes, cylinders and capsules.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,7 +16,7 @@ namespace {
 
 using namespace testing;
 
-// Every one of `expected` is there, as on_second, and nothing else.
+// Checks that the points on the second shape are exactly those of `expected`.
 void expect_points(const TouchingPoints& points, const std::vector<Vector3>& expected, double gap,
                    const Vector3& normal = Vector3::UnitZ()) {
   EXPECT_EQ(points.size(), expected.size());
@@ -56,7 +56,7 @@ TEST(TouchingPointCases, OfABoxOnATableAreItsCorners) {
 
 TEST(TouchingPointCases, OfTurnedBoxesAreThoseOfTheOctagon) {
   const OrientedBox lower{Vector3::Zero(), Matrix3::Identity(), {0.5, 0.5, 0.5}};
-  const double near = 0.5 * (std::sqrt(2.0) - 1.0);  // of a corner, from the middle of a side
+  const double near = 0.5 * (std::sqrt(2.0) - 1.0);  // from a corner to a side's middle
   std::vector<Vector3> octagon;
   for (const double side : {-0.5, 0.5}) {
     for (const double along : {-near, near}) {
@@ -81,7 +81,7 @@ TEST(TouchingPointCases, OfEqualBoxesOnEachOtherAreTheCorners) {
 }
 
 TEST(TouchingPointCases, OfCrossingEdgesAreTheNearestPair) {
-  // Both stand on an edge, which cross at a right angle.
+  // Both stand on an edge, and the edges cross at a right angle.
   const Matrix3 on_edge = about(Vector3::UnitX(), std::numbers::pi / 4.0);
   const double high = 0.5 * std::sqrt(2.0);
   for (const double gap : kGaps) {
@@ -112,10 +112,10 @@ TEST(TouchingPointCases, OfWhatLiesAreItsEnds) {
       for (const Shape& below : {table, floor}) {
         expect_points(touching_points(lying, below, 0.01), {{-0.3, 0, 0}, {0.3, 0, 0}}, gap);
       }
-      // Longer than the table is wide.
+      // The lying shape is longer than the table is wide.
       const OrientedBox bar{{0.0, 0.0, -0.1}, Matrix3::Identity(), {0.05, 0.2, 0.1}};
       expect_points(touching_points(lying, bar, 0.01), {{-0.05, 0, 0}, {0.05, 0, 0}}, gap);
-      // Along another one, of either kind, half beside it.
+      // Parallel to another shape of either kind, half of it beyond the end.
       const Vector3 lower_from(0.0, 0.0, -0.2), lower_to(0.8, 0.0, -0.2);
       for (const Shape& below : {Shape(Capsule{lower_from, lower_to, 0.2}),
                                  Shape(Cylinder{lower_from, lower_to, 0.2})}) {
@@ -130,7 +130,7 @@ TEST(TouchingPointCases, OfAStandingCylinderAreFourOfItsRim) {
   for (const double gap : kGaps) {
     const std::vector<Vector3> rim = {{0.2, 0, 0}, {-0.2, 0, 0}, {0, 0.2, 0}, {0, -0.2, 0}};
     for (int trial = 0; trial < 10; ++trial) {
-      // Noise turns nothing.
+      // Noise in the axis does not change the points.
       const Cylinder can{Vector3(0, 0, gap), Vector3(0, 0, 0.5 + gap) + random_point(random, 1e-13),
                          0.2};
       expect_points(touching_points(can, kTable, 0.01), rim, gap);
@@ -160,7 +160,8 @@ TEST(TouchingPointCases, OfALeaningCylinderHaveItsLowestPoint) {
 }
 
 TEST(TouchingPointCases, OfStackedCylindersSpanTheirCommonPart) {
-  // Equal ones beside each other by half a radius: the lens' ends, and points round it.
+  // Equal cylinders, offset by half a radius: the points span the lens that both cover, including
+  // its tips.
   const Cylinder lower{{0, 0, -1}, {0, 0, 0}, 0.2}, upper{{0.1, 0, 0}, {0.1, 0, 1}, 0.2};
   const TouchingPoints points = touching_points(upper, lower, 0.01);
   Vector3 low = Vector3::Constant(kInfinity), high = -low;
@@ -176,7 +177,8 @@ TEST(TouchingPointCases, OfStackedCylindersSpanTheirCommonPart) {
 }
 
 TEST(TouchingPointCases, OfARoundThingOnAnEdge) {
-  // A capsule along a box's edge, under 45 degrees: both its ends; a ball there: its one point.
+  // A capsule along a box's edge, at 45 degrees, touches at both its ends; a ball there touches at
+  // one point.
   const Vector3 edge(0.0, 1.0, 0.0), out = Vector3(0.0, 1.0, 1.0).normalized();
   for (const double gap : {1e-9, 1e-6, 1e-3, -1e-3}) {
     const Vector3 centre = edge + (0.1 + gap) * out;
@@ -187,7 +189,7 @@ TEST(TouchingPointCases, OfARoundThingOnAnEdge) {
   }
 }
 
-// Gaps of all points, by features.
+// The gap of the point with a given feature; infinite if there is none.
 double gap_at(const TouchingPoints& points, int feature) {
   for (const TouchingPoint& at : points) {
     if (at.feature == feature) return at.gap;
@@ -196,7 +198,7 @@ double gap_at(const TouchingPoints& points, int feature) {
 }
 
 TEST(TouchingPointCases, KeepTheirFeaturesAndChangeTheirGapsLittle) {
-  // Small turns of whatever stands or lies on a table.
+  // Small rotations of shapes that stand or lie on a table.
   Random random(62);
   const std::vector<Shape> shapes = {
       OrientedBox{{0, 0, 0.1}, about(Vector3::UnitZ(), 0.3), {0.2, 0.3, 0.1}},
@@ -229,7 +231,7 @@ TEST(TouchingPointCases, TakeShapesThatAreInEachOther) {
       ASSERT_FALSE(points.empty()) << i << ' ' << j;
       const TouchingPoint& at = deepest(points);
       EXPECT_NEAR(push({first, second}, at.normal), -at.gap, 1e-9) << i << ' ' << j;
-      // The same place.
+      // A shape with itself, in the same pose.
       const TouchingPoints own = touching_points(first, first, 0.0);
       ASSERT_FALSE(own.empty());
       EXPECT_NEAR(push({first, first}, deepest(own).normal), -least_gap(own), 1e-9) << i;
@@ -238,7 +240,8 @@ TEST(TouchingPointCases, TakeShapesThatAreInEachOther) {
   EXPECT_TRUE(touching_points(Plane{}, Plane{}, 1.0).empty());
 }
 
-// Cubes of one size whose sides are flush up to noise: no side that is seen edge-on takes part.
+// Cubes of equal size whose sides are flush up to noise: only the faces that meet take part, not
+// the sides seen edge-on.
 TEST(TouchingPointCases, FlushCubesTouchWithFacesAlone) {
   const Vector3 half = Vector3::Constant(0.01);
   for (int trial = 0; trial < 1000; ++trial) {

@@ -13,8 +13,8 @@ namespace {
 
 using namespace testing;
 
-// A distance from the definition of the solids alone: projections onto both, in turn, with
-// Nesterov's momentum on the point of the first; the function is convex.
+// An independent distance: alternating projections onto both solids, with Nesterov momentum on the
+// point of the first. The function is convex.
 Vector3 projected(const Shape& shape, const Vector3& point) {
   const ShapeDistance at = distance(shape, point);
   return at.gap > 0.0 ? at.nearest : point;
@@ -50,10 +50,11 @@ TEST(TouchingPoints, HaveTheDistanceOfShapesThatAreApart) {
   EXPECT_GT(compared, 2500);
 }
 
-// A capsule that leans is touched through the balls at its ends, whose upper one may be in it.
+// Checks that a point is on the shape. A leaning capsule touches with the balls at its ends, and
+// the point of the upper one may be inside it.
 void expect_on(const Shape& shape, const Vector3& point) {
   const double out = distance(shape, point).gap;
-  EXPECT_LE(out, 1e-7);  // what was iterated has half the digits of its gap
+  EXPECT_LE(out, 1e-7);  // iterated points have half the digits of the gap
   if (!std::holds_alternative<Capsule>(shape)) {
     EXPECT_GE(out, -1e-7);
   }
@@ -92,7 +93,8 @@ TEST(TouchingPoints, MovedByTheLeastGapShapesAreFree) {
 }
 
 TEST(TouchingPoints, OverlapByTheLeastPush) {
-  // No other direction frees them sooner: random ones, and smaller and smaller turns of the best.
+  // No other direction separates them sooner; tries random directions, and smaller and smaller
+  // rotations of the best one.
   Random random(54);
   int compared = 0;
   with_every_pair(55, 800, [&](const Pair& pair) {
@@ -145,7 +147,7 @@ TEST(TouchingPoints, GoWithARigidMotion) {
     const bool rims =
         std::holds_alternative<Cylinder>(pair.second) &&
         (std::holds_alternative<Plane>(pair.first) || std::holds_alternative<Cylinder>(pair.first));
-    if (rims) return;  // four points of a rim are in directions of the space
+    if (rims) return;  // the four points of a rim follow the world axes
     ASSERT_EQ(here.size(), there.size());
     EXPECT_NEAR(least_gap(here), least_gap(there), 2e-9);
     for (const TouchingPoint& at : here) {

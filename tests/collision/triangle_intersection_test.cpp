@@ -16,9 +16,10 @@ namespace {
 using testing::random_grid_point;
 using testing::random_point;
 
-// Two convex polygons are apart if a face normal of their Minkowski difference separates them:
-// both normals, the products of their edges, and of triangles in one plane the edges' normals in
-// it. On small whole numbers doubles make no error.
+// Separating axes: two convex polygons are apart if and only if a face normal of their Minkowski
+// difference separates them. The candidates are both normals, the cross products of the edges and,
+// for coplanar triangles, the edge normals in the plane. For small integers the arithmetic is
+// exact.
 bool apart_by_axes(const Corners& a, const Corners& b) {
   const auto edges = [](const Corners& t) {
     return std::vector<Vector3>{t[1] - t[0], t[2] - t[1], t[0] - t[2]};
@@ -86,7 +87,8 @@ TEST(TrianglesMeet, TakesFlatOnes) {
 }
 
 TEST(Orientation, IsExactNextToAPlane) {
-  // d = a + s (b - a) + t (c - a) with short numbers is exact; one unit beside it the sign turns.
+  // d = a + s (b - a) + t (c - a) is exact for numbers of few bits; one ulp beside it the sign
+  // changes.
   Random random(7);
   for (int trial = 0; trial < 2000; ++trial) {
     const Vector3 a = random_grid_point(random, 1 << 20) * 0x1p-20;
@@ -105,7 +107,7 @@ TEST(Orientation, IsExactNextToAPlane) {
 }
 
 TEST(SegmentMeetsTriangle, AtItsCornerByExactArithmetic) {
-  // Through a corner, and past it by one unit of its last place.
+  // Through a corner, and past it by one unit in the last place.
   Random random(8);
   for (int trial = 0; trial < 500; ++trial) {
     const Vector3 corner = random_grid_point(random, 1 << 20) * 0x1p-20;

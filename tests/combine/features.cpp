@@ -148,8 +148,9 @@ std::vector<Feature> list_features() {
        or_none(with(alternatives(map_of(contact, "surface"), "plane"), {"body", "soft", "self"}))},
       {"contact_friction", switched},
       {"contact_motion", switched},
-      // A link that only its joint holds, on any body: soft and welded, or rigid; by what it is
-      // welded, or what it looks like and what moves it.
+      // A link on any body, held by its joint only. A weld holds a soft link, and its levels are
+      // the kinds of weld; other joints hold a rigid link, and their levels are its shape and
+      // motor.
       {"link", or_none(words(variants(items("joints"), "type")))},
       {"link_shape", alternatives(map_of(rigid, "shape"), "box")},
       {"motor", or_none(alternatives(map_of(motor, "command"), "angle"))},

@@ -16,7 +16,7 @@ struct Feature {
   std::vector<std::string> levels;
 };
 
-/// All features. Built at the first call.
+/// All features; built at the first call.
 const std::vector<Feature>& features();
 
 /// A level of each feature, (features,).

@@ -33,12 +33,12 @@ std::string vector_text(const std::array<double, 3>& mm) {
 
 // Positions on a body at rest, mm. All bodies are 60 mm long from base to tip.
 struct BodyShape {
-  std::string mesh;  // of finite elements
+  std::string mesh;  // of finite element bodies
   std::string base, tip, side;
   int along = 0;                   // axis
-  std::array<double, 3> origin{};  // of the axis
-  std::array<double, 3> half{};    // of the cross-section, mm
-  double sense = 1.0;              // of the axis from base to tip
+  std::array<double, 3> origin{};  // of the axis, mm
+  std::array<double, 3> half{};    // half size of the cross-section, mm
+  double sense = 1.0;              // sign of the direction from base to tip
 
   // A point, (3,) mm. @param a 0 at the base, 1 at the tip. @param u,v -1 .. 1 across.
   std::array<double, 3> at(double a, double u, double v) const {
@@ -92,7 +92,7 @@ BodyShape fem_shape(const std::string& name) {
         "{shape: chambered-cylinder, radius: 12 mm, height: 60 mm, chamber_radius: 5 mm, "
         "chamber_offset: 4 mm, chamber_bottom: 10 mm, chamber_top: 50 mm, element_size: 30 mm}"}}));
   if (name == "hollow-cylinder") shape.side = "outer";
-  if (name == "capsule") shape.origin[2] = -30.0;  // its middle is the origin of its mesh
+  if (name == "capsule") shape.origin[2] = -30.0;  // the mesh is centred at the origin
   return shape;
 }
 
@@ -151,7 +151,7 @@ class Drafter {
         bodies_, [&](const Body& own) { return own.fem == fem && !own.rigid; });
     return found == bodies_.end() ? nullptr : &*found;
   }
-  // Any body.
+  // A random body.
   const Body& some_body() {
     return bodies_[static_cast<std::size_t>(random_.below(static_cast<int>(bodies_.size())))];
   }
@@ -393,7 +393,7 @@ class Drafter {
          {"tension", ", command: {tension: " + signal(draw(0.1, 0.5), "N") + "}"},
          {"untold", ""}});
     if (has("cable_friction")) text += ", friction: 0.3";
-    if (body.fem) {  // sections of arms are rigid
+    if (body.fem) {  // arm sections are rigid
       text += look_up("cable_guides", of("cable_guides"),
                       {{"none", ""},
                        {"radius", ", guide_radius: 2 mm"},

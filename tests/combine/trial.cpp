@@ -64,7 +64,7 @@ class Run {
     }
   }
 
-  // Appends the state after each step.
+  // Makes steps and appends the state after each one.
   void advance(int steps) {
     for (int k = 0; k < steps && error_.empty(); ++k) {
       try {
@@ -141,7 +141,7 @@ double largest_distance(const sim::Simulation& one, const sim::Simulation& other
   return largest;
 }
 
-// The first number that differs.
+// The name of the first number that differs.
 std::string first_difference(const sim::State& one, const sim::State& other) {
   const auto mine = numbers_of(one), theirs = numbers_of(other);
   for (std::size_t k = 0; k < std::min(mine.size(), theirs.size()); ++k) {
@@ -238,7 +238,7 @@ class Trial {
   }
 
  private:
-  // m, of a node after kSteps.
+  // Largest distance of a node after kSteps, m.
   double distance_of_order(const Layout& layout, const sim::Simulation& from) const {
     Run reversed(build(write_scene(draft_, layout)));
     reversed.advance(kSteps);
@@ -375,7 +375,7 @@ std::string try_changed_number(const Selection& selection, std::uint64_t seed) {
       return where + ": a state was accepted and goes on differently";
     }
   } catch (const Error&) {
-    return {};  // refused
+    return {};  // rejected
   }
   return {};
 }

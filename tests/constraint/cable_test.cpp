@@ -20,7 +20,7 @@
 namespace sinew::constraint {
 namespace {
 
-// A bent beam, so that nothing is aligned by accident.
+// A bent beam, where nothing is aligned by accident.
 class BentCable : public ::testing::Test {
  protected:
   BentCable() : model_(sinew::testing::beam()), simulation_(model_) {
@@ -32,7 +32,7 @@ class BentCable : public ::testing::Test {
   }
   mechanics::Body& body() { return simulation_.body(0); }
   const Cable& cable() { return *model_->cable(0); }
-  // Moves all nodes by t times a fixed random direction.
+  // Displaces all nodes by t times a fixed random direction.
   void shift(double t) {
     std::mt19937 random(11);
     std::normal_distribution<double> noise(0.0, 1.0);
@@ -41,7 +41,7 @@ class BentCable : public ::testing::Test {
     for (std::size_t i = 0; i < state.size() / 2; ++i) state[i] += t * noise(random);
     body().load_state(state);
   }
-  // Sum over the cable's entries of direction . d(point)/dt along that direction.
+  // Sum over the cable's entries of direction . d(point)/dt.
   double directional(const mechanics::RowValues& rows, const Points& before, const Points& after,
                      double t) {
     double sum = 0.0;
@@ -104,7 +104,8 @@ TEST_F(BentCable, HessianIsTheDerivativeOfTheDirections) {
   }
 }
 
-// Every row's directions are the derivatives of its motion, the Hessian that of H^T lambda.
+// The directions of each row are the derivatives of its motion, and the Hessian is that of H^T
+// lambda.
 TEST(CableFriction, RowsAndHessianAgreeWithDifferences) {
   const auto model = sinew::testing::beam({.cables = 1, .pull_from_world = false, .friction = 0.2});
   sim::Simulation simulation(model);

@@ -22,7 +22,7 @@ namespace {
 using sinew::testing::chamber;
 using sinew::testing::kVoid;
 
-/// A chamber whose nodes are moved by hand.
+/// A chamber whose node positions are prescribed.
 enum class Kind { tetrahedra, quadratic, hexahedra };
 
 sinew::testing::ChamberOptions options_of(Kind kind) {
@@ -43,7 +43,7 @@ class ChamberTest : public ::testing::TestWithParam<Kind> {
     held_chamber().linearise(simulation_.configuration(), values);
     return values;
   }
-  /// Moves every node by a smooth field of this size (m).
+  /// Displaces the nodes by a smooth field of this magnitude, m.
   void distort(double size) {
     sim::State state = simulation_.state();
     const Points& x = simulation_.body(0).positions();
@@ -100,7 +100,7 @@ TEST_P(ChamberTest, DirectionsAreTheDerivativeOfTheVolume) {
       move(held_chamber().material_points()[k], axis, -2.0 * kStep);
       const double down = rows().delta[0];
       move(held_chamber().material_points()[k], axis, kStep);
-      // V is linear in each coordinate: central differences are exact but for rounding.
+      // V is linear in each coordinate, so central differences are exact up to rounding.
       EXPECT_NEAR(exact.direction[k][axis], (up - down) / (2.0 * kStep), 1e-12) << k;
     }
   }
@@ -146,7 +146,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ChamberTest,
 
 using sinew::testing::kind_of;
 
-// On a flat quadratic triangle the corners bear nothing, the middles a third each.
+// On a flat quadratic triangle the corners carry no load and the middle nodes a third each.
 TEST(Chamber, PressureOnFlatQuadraticFacesIsConsistent) {
   const sim::Simulation simulation(chamber(options_of(Kind::quadratic)));
   const Chamber& chamber = *simulation.model().chamber(0);
@@ -161,7 +161,7 @@ TEST(Chamber, PressureOnFlatQuadraticFacesIsConsistent) {
   }
   EXPECT_NEAR(area, 6e-4, 1e-12);
   for (std::size_t k = 0; k < share.size(); ++k) {
-    // Middles on an edge of the cube bear on two sides; those inside of a face on one.
+    // Middle nodes on an edge of the cube take load from two sides, those within a face from one.
     const double found = values.direction[k].cwiseAbs().sum();
     EXPECT_NEAR(found, share[k], 1e-15) << k;
   }
@@ -187,7 +187,7 @@ TEST_P(ChamberTest, ACapPassesItsForceToTheRim) {
   simulation.model().chamber(0)->linearise(simulation.configuration(), values);
   Vector3 force = Vector3::Zero();
   double size = 0.0;
-  for (const Vector3& direction : values.direction) {  // the effector's are not formed
+  for (const Vector3& direction : values.direction) {  // the effector's directions are not formed
     force += direction;
     size += direction.norm();
   }

@@ -19,7 +19,7 @@ std::vector<collision::Shape> surfaces() {
           Capsule{{-0.01, 0.0, 0.0}, {0.03, 0.02, -0.01}, 0.005}};
 }
 
-/// A point of a bent beam near a ball that moves and turns in the step.
+/// A point of a bent beam near a ball that moves and rotates in the step.
 class ContactRows : public ::testing::Test {
  protected:
   ContactRows() : model_(sinew::testing::beam()), simulation_(model_) {}
@@ -67,15 +67,16 @@ TEST_F(ContactRows, AreTheDerivativeOfGapAndSlip) {
       EXPECT_NEAR((values.delta[k] - before[k]) / t,
                   values.direction[static_cast<std::size_t>(k)].dot(moved) / t, 1e-8);
     }
-    // The gap's row agrees with the exact gap to second order in the distance from where the
-    // surface carries the point.
+    // The gap row equals the exact gap to second order in the point's motion relative to the
+    // surface.
     const double carried = (at - pose(1.5) * pose(1.0).inverse() * at).norm();
     EXPECT_NEAR(before[0], gap, carried * carried / 0.005);
     shift(-t);
   }
 }
 
-// The frame of a step is that of the way at the point's velocity; rows and positions agree in it.
+// The contact frame of a step is that of the path at the point's velocity; row values and positions
+// are consistent in it.
 TEST_F(ContactRows, FrameIsThatOfTheWay) {
   const auto& effector = dynamic_cast<const PointEffector&>(model_->effector(0));
   const Configuration& configuration = simulation_.configuration();
@@ -94,13 +95,13 @@ TEST_F(ContactRows, FrameIsThatOfTheWay) {
   values.resize(pattern);
   const Eigen::Isometry3d rest = Eigen::Isometry3d::Identity();
   contact.begin_step(configuration, rest, rest, 0.1, values);
-  EXPECT_LT((values.direction[0] - Vector3::UnitZ()).norm(), 1e-9);  // where it passes
+  EXPECT_LT((values.direction[0] - Vector3::UnitZ()).norm(), 1e-9);  // along the path
   EXPECT_NEAR(values.reference[0], 1e-4, 1e-12);
   for (const Vector3& point : {at, Vector3(0.3, -0.2, 0.1)}) {
     const Vector3 rows = contact.row_values(0, point, values);
     EXPECT_LT((contact.position(0, rows, values) - point).norm(), 1e-15);
   }
-  contact.begin_step(configuration, rest, rest, 0.0, values);  // stays
+  contact.begin_step(configuration, rest, rest, 0.0, values);  // at rest
   EXPECT_LT(values.direction[0][0], -0.9);
 }
 

@@ -19,7 +19,7 @@
 namespace sinew::constraint {
 namespace {
 
-// A block that is moved by hand: positions are set as the test wants them.
+// A block with prescribed node positions.
 class Effectors : public ::testing::Test {
  protected:
   Effectors() {

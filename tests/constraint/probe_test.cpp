@@ -1,4 +1,4 @@
-// Probes on a block put into known shapes by hand.
+// Probes on a block with prescribed deformations.
 #include "sinew/constraint/probe.hpp"
 
 #include <cmath>
@@ -58,7 +58,7 @@ TEST_F(Probes, ABendIsTheAngleBetweenTheEnds) {
   EXPECT_NEAR(values("bend")[0], 0.0, 1e-12);
   for (const double angle : {0.3, -0.3, 1.9, 3.0}) {
     bend(angle);
-    // About y a turn from x to z is by the left hand.
+    // A rotation from x to z is left-handed about y.
     EXPECT_NEAR(values("bend")[0], std::abs(angle), 1e-9) << angle;
     EXPECT_NEAR(values("about y")[0], -angle, 1e-9);
     EXPECT_NEAR(values("about -y")[0], angle, 1e-9);
@@ -75,11 +75,11 @@ TEST_F(Probes, ABendKnowsNothingOfRigidMotions) {
   EXPECT_NEAR(square, std::numbers::pi / 2.0, 1e-9);
   const Matrix3 turn = Eigen::AngleAxisd(2.0, Vector3(1, 2, -3).normalized()).toRotationMatrix();
   deform([&](const Vector3& x) -> Vector3 { return turn * x + Vector3(1, 2, 3); });
-  EXPECT_NEAR(values("bend")[0], 0.0, 1e-7);  // atan2 of rounding
+  EXPECT_NEAR(values("bend")[0], 0.0, 1e-7);  // rounding in atan2
   EXPECT_NEAR(values("sides")[0], square, 1e-9);
 }
 
-// A slab of nodes as thick as it is wide says nothing of its normal; given by a plane it does.
+// Nodes of a slab as thick as wide do not determine a normal; a given normal is used instead.
 TEST_F(Probes, ACrossSectionTakesTheNormalThatIsGiven) {
   std::vector<NodeId> thick;
   for (Eigen::Index i = 0; i < mesh_->nodes.rows(); ++i) {
@@ -164,7 +164,7 @@ TEST_F(Probes, ExtentsAreThoseOfEveryDirection) {
   EXPECT_NEAR(values("largest")[0], most, 1e-7 * most);
 }
 
-// Nodes of a cylinder stand one behind the other along its axis, but for rounding.
+// Nodes of a cylinder coincide along its axis, up to rounding.
 TEST(RoundProbes, HaveOneDiameterInEveryDirection) {
   sim::ModelBuilder builder;
   fem::FemBodySettings body;
@@ -183,7 +183,7 @@ TEST(RoundProbes, HaveOneDiameterInEveryDirection) {
   builder.add_probe(
       {"most", {}, {}, sim::ProbeExtent{0, all, Vector3::UnitZ(), Way::largest_across}});
   sim::Simulation simulation(builder.build());
-  // A ring of tetrahedra has 6 r nodes: the outermost is a polygon of 36 corners.
+  // Ring r of the mesh has 6 r nodes, so the outermost is a polygon of 36 corners.
   const double most = simulation.probe_values(1)[0];
   EXPECT_NEAR(most, 0.04, 0.001);
   EXPECT_NEAR(simulation.probe_values(0)[0], most * std::cos(std::numbers::pi / 36.0), 1e-9);

@@ -20,7 +20,7 @@ namespace {
 
 struct Pair {
   rigid::Shape first, second;
-  double height = 0.0;  // of the first one's centre, m
+  double height = 0.0;  // of the first body's centre, m
 };
 
 std::vector<Pair> pairs() {
@@ -101,7 +101,8 @@ TEST(RigidContact, RowsAreTheDerivativeOfGapAndSlip) {
   }
 }
 
-// What a contact does to two bodies is no resultant: forces and moments about any point cancel.
+// The action of a contact on two bodies has no resultant: forces and moments about any point
+// cancel.
 TEST(RigidContact, ForcesCancel) {
   for (const Pair& pair : pairs()) {
     const auto model = make(pair);

@@ -1,4 +1,4 @@
-// The loop on a clock that is turned by hand, and between threads.
+// The loop on a simulated clock, and between threads.
 #include "sinew/control/high_rate_loop.hpp"
 
 #include <array>
@@ -20,7 +20,8 @@ using sinew::testing::robot_settings;
 using sinew::testing::wall;
 using sinew::testing::wall_settings;
 
-/// Jumps to where it sleeps until; each period takes 10 us, some take longer, some begin late.
+/// A clock that jumps to the end of each sleep. Each period takes 10 us; some are set to take
+/// longer or to start late.
 class TurnedClock : public Clock {
  public:
   double now() override {
@@ -34,7 +35,7 @@ class TurnedClock : public Clock {
   void sleep_until(double time) override {
     time_ = std::max(time_, time + (lates_.contains(period_) ? lates_.at(period_) : 0.0));
   }
-  std::map<int, double> works_, lates_;  // s, by the period's number
+  std::map<int, double> works_, lates_;  // s, by period
 
  private:
   double time_ = 100.0;
@@ -45,7 +46,7 @@ TEST(HighRateLoop, CountsWhatCameLate) {
   HighRateLoop loop(wall_settings());
   loop.publish(wall());
   TurnedClock clock;
-  clock.works_[5] = 2.5e-3;      // its own period passes, and one more
+  clock.works_[5] = 2.5e-3;      // misses two periods
   clock.works_[20] = 0.9985e-3;  // in time
   clock.lates_[30] = 0.2e-3;
   clock.lates_[40] = 1.2e-3;
@@ -111,7 +112,7 @@ TEST(HighRateLoop, StartsStopsAndStartsAgain) {
   EXPECT_FALSE(report.scheduling.empty());
 }
 
-// A writer and a reader as fast as they can: whole values, each later than the one before.
+// A writer and a reader at full speed: values are whole, and each is later than the one before.
 TEST(TripleBuffer, HandsOverWholeValues) {
   using Value = std::array<long, 64>;
   TripleBuffer<Value> buffer;
@@ -144,7 +145,7 @@ TEST(TripleBuffer, HandsOverWholeValues) {
   EXPECT_FALSE(buffer.take());
 }
 
-// Snapshots and inputs are set, outputs read, while the loop runs.
+// Snapshots and inputs are set and outputs are read while the loop runs.
 TEST(HighRateLoop, IsUsedByManyThreads) {
   HighRateLoop loop(wall_settings());
   TurnedClock clock;

@@ -1,4 +1,4 @@
-// The two inverse problems, refreshes and what happens without news.
+// The two inverse problems, snapshot updates, and missing updates.
 #include "sinew/control/high_rate_step.hpp"
 
 #include <cmath>
@@ -23,7 +23,7 @@ using sinew::testing::spread;
 using sinew::testing::wall;
 using sinew::testing::wall_settings;
 
-// A robot that touches nothing.
+// A robot without contacts.
 HighRateSettings free_settings() { return robot_settings(0, 0); }
 
 VectorX random_forces(Eigen::Index count, double size, Random& random) {
@@ -54,7 +54,7 @@ TEST(HighRateStep, FindsTheForcesThatSensorsSee) {
   EXPECT_EQ(output.state, HighRateState::running);
   EXPECT_LT((output.unknown - unknown).norm(), 1e-3) << "what the prior draws";
 
-  // The normal equations, by another way: a stacked least-squares problem.
+  // The same estimate as a stacked least-squares problem.
   MatrixX rows = MatrixX::Zero(17, 3);
   VectorX right = VectorX::Zero(17);
   for (std::size_t s = 0; s < settings.sensors.size(); ++s) {
@@ -70,7 +70,7 @@ TEST(HighRateStep, FindsTheForcesThatSensorsSee) {
   EXPECT_LT((output.deviation - covariance.diagonal().cwiseSqrt()).norm(), 1e-9);
 }
 
-// Twelve contacts and a hand answer to the push that is to be found.
+// Twelve contacts and a hand respond to the force that is to be estimated.
 TEST(HighRateStep, FindsForcesOfARobotThatTouches) {
   HighRateSettings settings = robot_settings(1, 12);
   add_sensors(settings);
@@ -213,7 +213,7 @@ TEST(HighRateStep, AHandIsPushedBackWithTheForceAskedFor) {
   EXPECT_EQ(step.step(nullptr, input, {}).hands[0], 0.0);
 }
 
-// Contacts that open and close on the way: efforts settle, as the laws have it.
+// Contacts open and close during the motion; the efforts settle according to the laws.
 TEST(HighRateStep, SettlesAmongContacts) {
   const HighRateSettings settings = robot_settings(0, 12);
   Random random(8);
@@ -232,7 +232,8 @@ TEST(HighRateStep, SettlesAmongContacts) {
   }
 }
 
-// Two walls in turn: at the same place the force goes from one to the other in equal parts.
+// One wall replaces another: at the same position, the force changes from one to the other in equal
+// parts.
 TEST(HighRateStep, ARefreshComesThroughInParts) {
   HighRateSettings settings = wall_settings();
   settings.blend = 5e-3;
@@ -254,8 +255,8 @@ TEST(HighRateStep, ARefreshComesThroughInParts) {
   EXPECT_EQ(step.step(nullptr, input, {}).jump, 0.0);
 }
 
-// Refreshes at 100 Hz of a wall that stiffens, k x + k_3 x^3 at 10 mm twice as stiff, linearised
-// where the hand was 10 ms before.
+// Updates at 100 Hz of a stiffening wall, k x + k_3 x^3 with twice the stiffness at 10 mm,
+// linearised at the hand's position 10 ms before.
 TEST(HighRateStep, RefreshesOfAStiffeningWallAreFelt) {
   const HighRateSettings settings = wall_settings();
   HighRateStep step(settings);
@@ -302,7 +303,7 @@ TEST(HighRateStep, HoldsAndLetsGoWithoutNews) {
   const HighRateOutput held = step.output();
   EXPECT_EQ(held.state, HighRateState::running);
   EXPECT_EQ(held.cause, StaleCause::none);
-  input.targets.setConstant(-3e-3);  // nothing follows this any more
+  input.targets.setConstant(-3e-3);  // no longer followed
   for (int k = 101; k <= 200; ++k) {
     const HighRateOutput& output = step.step(nullptr, input, {1e-3 * k, 0.0});
     EXPECT_EQ(output.state, HighRateState::holding);
@@ -322,7 +323,7 @@ TEST(HighRateStep, HoldsAndLetsGoWithoutNews) {
   EXPECT_EQ(step.output().driven[0], 1.0);
   EXPECT_EQ(step.output().driven.tail(7).norm(), 0.0);
   EXPECT_EQ(step.output().hands[0], 0.0);
-  // News: it comes back along the same ramp.
+  // A new snapshot: the efforts return along the same ramp.
   before = step.output().driven;
   fresh = given;
   fresh.number = 2;
@@ -376,7 +377,7 @@ TEST(HighRateStep, AllocatesNothing) {
     }
   };
   const std::vector<Snapshot> again = snapshots;
-  run(0, 200);  // the cone solver's memory grows to what it meets
+  run(0, 200);  // the cone solver's buffers grow
   snapshots = again;
   const long before = sinew::testing::allocations();
   run(0, 200);
@@ -384,7 +385,7 @@ TEST(HighRateStep, AllocatesNothing) {
   EXPECT_GT(step.law().cone_solutions(), 0);
 }
 
-// The same inputs give the same bits.
+// The same inputs give the same results, bit for bit.
 TEST(HighRateStep, IsDeterministic) {
   HighRateSettings settings = robot_settings(1, 12);
   add_sensors(settings);

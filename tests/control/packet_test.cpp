@@ -1,4 +1,4 @@
-// Packets as documented, byte by byte, and what is wrong with bad ones.
+// Packets byte by byte as documented, and rejection of bad ones.
 #include "sinew/control/packet.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What hands feel creates no energy.
+// The forces that hands feel create no energy.
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -21,12 +21,13 @@ using sinew::testing::wall_settings;
 struct Felt {
   double created = 0.0;       // J, counted here
   double by_the_step = 0.0;   // J, counted by the step
-  double pressing = 0.0;      // s, in the wall
-  double path = 0.0;          // m^2/s: integral of v^2 while it is pressed
+  double pressing = 0.0;      // s, contact time
+  double path = 0.0;          // m^2/s: integral of v^2 during contact
   double mean_damping = 0.0;  // N s/m
 };
 
-// A hand that goes its way whatever it feels. Energy: force held times motion.
+// A hand whose motion does not depend on the force. The energy is the force, held over a period,
+// times the motion.
 Felt feel(const HighRateSettings& settings, const auto& hand, double duration) {
   HighRateStep step(settings);
   HighRateInput input = HighRateInput::none(settings);
@@ -65,14 +66,14 @@ TEST(Passivity, NoEnergyComesFromAWallInAMinute) {
                                      felt.created, plain.created, theory, felt.mean_damping));
     EXPECT_LE(felt.created, 0.0) << name;
     EXPECT_NEAR(felt.by_the_step, felt.created, 1e-9 * plain.created) << name;
-    // Colgate & Schenkel: a spring K that is held for T creates what a damping of -K T/2 would.
+    // Colgate & Schenkel: a spring K held for T creates as much energy as a damping of -K T/2.
     EXPECT_NEAR(plain.created, theory, 0.05 * theory) << name;
     EXPECT_GT(theory, 0.01) << name;
   };
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u}) {
     const SeededHand hand(seed);
     expect_passive([&](double time) { return hand.at(time); }, "seed_" + std::to_string(seed));
-    // An encoder of 10 um.
+    // An encoder with a resolution of 10 um.
     expect_passive([&](double time) { return 1e-5 * std::round(1e5 * hand.at(time)); },
                    "encoder_" + std::to_string(seed));
   }
@@ -99,7 +100,7 @@ TEST(Passivity, AHandAtRestFeelsTheWholeStiffness) {
   EXPECT_EQ(step.step(nullptr, input, {}).hands[0], 0.0) << "a wall does not pull";
 }
 
-// K T/2 at constant speed, once the reserve is full.
+// At constant speed the damping is K T/2 once the reserve is full.
 TEST(Passivity, DampingIsThatOfTheoryAtConstantSpeed) {
   const HighRateSettings settings = wall_settings();
   HighRateStep step(settings);

@@ -1,4 +1,4 @@
-// Snapshots of simulations against their linearisation and against static solutions.
+// Snapshots of simulations, against their linearisation and static solutions.
 #include <gtest/gtest.h>
 
 #include "sinew/control/high_rate_settings.hpp"
@@ -50,7 +50,7 @@ TEST(TakeSnapshot, IsTheLinearisationWhereTheLoopDrivesEverything) {
   EXPECT_NO_THROW(check(snapshot, settings));
 }
 
-// Cables that the loop has no part in are held at their lengths.
+// Cables that the loop does not drive are held at their lengths.
 TEST(TakeSnapshot, HoldsWhatIsCommanded) {
   sim::Simulation simulation(beam());
   simulation.command(0, tension(1.0));
@@ -72,8 +72,8 @@ TEST(TakeSnapshot, HoldsWhatIsCommanded) {
       << "without the held cable it would go elsewhere";
 }
 
-// A beam that is pulled onto a wall: the law on the snapshot gives the forces of the equilibrium,
-// and foresees where the tip goes when it is pulled harder.
+// A beam pulled onto a wall: the law on the snapshot gives the equilibrium's forces and predicts
+// the tip's motion when it is pulled harder.
 TEST(TakeSnapshot, ContactsAnswerAsInTheSimulation) {
   BeamOptions options;
   options.wall = -0.011;

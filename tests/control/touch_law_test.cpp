@@ -57,7 +57,7 @@ TEST(TouchLaw, ContactsAreThoseOfTheConeSolver) {
   EXPECT_GT(open, 50);
 }
 
-// Boxes alone are a quadratic program.
+// Hands without contacts form a quadratic program.
 TEST(TouchLaw, HandsAreThoseOfAQuadraticProgram) {
   HighRateSettings settings = robot_settings(3, 0);
   settings.hands[1].max = 0.5;
@@ -84,7 +84,7 @@ TEST(TouchLaw, HandsAreThoseOfAQuadraticProgram) {
   }
 }
 
-// As long as no state changes, what settle() gives is what the slopes foretell.
+// As long as no state changes, settle() agrees with the slopes.
 TEST(TouchLaw, SlopesAreThoseOfDifferences) {
   const HighRateSettings settings = robot_settings(2);
   Random random(9);
@@ -97,7 +97,7 @@ TEST(TouchLaw, SlopesAreThoseOfDifferences) {
     VectorX hands(2);
     for (double& place : hands) place = 2e-3 * spread(random);
     law.settle(driving, hands);
-    law.settle(driving, hands);  // by the equations of its states, not by the cone solver
+    law.settle(driving, hands);  // by the states' equations, without the cone solver
     const VectorX foretold = law.free() + law.compliance() * driving;
     const VectorX touch = law.touch_free() + law.touch_slope() * driving;
     EXPECT_LT((foretold - motions(settings, snapshot, driving, law).head(foretold.size())).norm(),
@@ -141,7 +141,7 @@ TEST(TouchLaw, StoredEnergyIsWhatAHandGetsBack) {
   const VectorX way = VectorX::Constant(2, 3e-3);
   double work = 0.0;
   constexpr int kSteps = 20000;
-  for (int k = 0; k < kSteps; ++k) {  // by the middle of each step
+  for (int k = 0; k < kSteps; ++k) {  // midpoint rule
     law.settle(driving, start + way * ((k + 0.5) / kSteps));
     work += law.effort().head(2).dot(way) / kSteps;
   }
@@ -170,7 +170,7 @@ TEST(TouchLaw, AHandThatIsNotThereHasNoEffort) {
   EXPECT_GT(law.effort()[0], 0.0);
 }
 
-// Two equal contacts share what one of them carried.
+// Two equal contacts share the force of one.
 TEST(TouchLaw, RedundantContactsAreSolved) {
   const HighRateSettings settings = robot_settings(0, 2);
   Random random(12);

@@ -1,5 +1,5 @@
 // A simulated parallel device with six motors, capstans and flex sensors at the other end of a
-// socket, at 500 Hz of a clock that is turned by hand.
+// socket, at 500 Hz of a simulated clock.
 #include "sinew/control/udp_device.hpp"
 
 #include <array>
@@ -28,14 +28,13 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kPeriod = 2e-3;  // s
 
-/// A soft platform with six coordinates q, held by elastic legs that stiffen,
+/// A soft platform with six coordinates q on stiffening elastic legs,
 ///   f(q) = K q + k_3 |q|^2 q = H_a^T T + H_f^T f,
-/// moved by six cable loops that motors wind to and fro over capstans, and pushed by a hand at its
-/// knob.
+/// driven by six cable loops that motors wind over capstans, and pushed by a hand at its knob.
 struct ParallelDevice {
-  static constexpr double kRadius = 8e-3;    // m, of capstans
-  static constexpr double kTorque = 1e-4;    // N m, of the motors' resolution
-  static constexpr double kFlexStep = 2e-6;  // m, of the sensors' converters
+  static constexpr double kRadius = 8e-3;    // m, of the capstans
+  static constexpr double kTorque = 1e-4;    // N m, resolution of the motors
+  static constexpr double kFlexStep = 2e-6;  // m, resolution of the flex sensors
   Matrix6 stiffness, cables, flex;
   Eigen::Matrix<double, 3, 6> knob;
   Vector6 q = Vector6::Zero();
@@ -48,7 +47,7 @@ struct ParallelDevice {
     stiffness = 1000.0 * (Matrix6::Identity() + 0.2 * (mixed + mixed.transpose()));
     for (double& number : flex.reshaped()) number = 0.3 * entry();
     flex += Matrix6::Identity();
-    for (int k = 0; k < 6; ++k) {  // like the legs of a hexapod, and tilted
+    for (int k = 0; k < 6; ++k) {  // legs of a tilted hexapod
       const double angle = k * std::numbers::pi / 3.0;
       cables.row(k) << std::cos(angle), std::sin(angle), 0.5, (k % 2 == 0 ? 0.7 : -0.7),
           0.4 * std::sin(2.0 * angle), 0.4 * std::cos(2.0 * angle);
@@ -77,7 +76,7 @@ struct ParallelDevice {
     }
     return reading;
   }
-  /// Driven cables, the hand's force at the knob, flex sensors and the knob.
+  /// Rows: driven cables, the hand's force at the knob, flex sensors, the knob.
   Snapshot snapshot() const {
     Eigen::Matrix<double, 18, 6> rows;
     rows << cables, knob, flex, knob;
@@ -104,7 +103,7 @@ HighRateSettings device_settings() {
   return settings;
 }
 
-/// The device's end of the cable.
+/// The device's end of the connection.
 class Socket {
  public:
   explicit Socket(int port) : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
@@ -125,7 +124,7 @@ class Socket {
     header.sequence = sequence;
     send(std::span(bytes_).first(write_measurement(header, input, bytes_)));
   }
-  /// Waits for a command: on one machine none is lost.
+  /// Waits for a command; on one machine none is lost.
   void receive(HighRateOutput& output) {
     pollfd waiting{socket_, POLLIN, 0};
     ASSERT_EQ(::poll(&waiting, 1, 10000), 1);
@@ -198,19 +197,19 @@ TEST(UdpDevice, CountsAndIgnoresBadPackets) {
   EXPECT_TRUE(port.read(input));
   const std::array<std::byte, 5> noise{};
   socket.send(noise);
-  socket.send(5, VectorX::Constant(7, 1.0));  // of another device
+  socket.send(5, VectorX::Constant(7, 1.0));  // wrong length
   socket.send(6, VectorX::Constant(6, kInfinity));
-  socket.send(0xfffffffeu, second);  // repeated
-  socket.send(0xfffffffdu, second);  // overtaken
+  socket.send(0xfffffffeu, second);  // duplicate
+  socket.send(0xfffffffdu, second);  // out of order
   EXPECT_FALSE(port.read(input));
   EXPECT_EQ(input.sensors, first);
   EXPECT_EQ(port.report().invalid, 3);
   EXPECT_EQ(port.report().outdated, 2);
-  socket.send(3, second);  // beyond the wrap
+  socket.send(3, second);  // after the counter wraps
   EXPECT_TRUE(port.read(input));
   EXPECT_EQ(input.sensors, second);
   EXPECT_EQ(port.report().received, 2);
-  // A device that starts anew is heard after a second.
+  // A restarted device is accepted after a second.
   for (int k = 0; k < 500; ++k) port.read(input);
   socket.send(1, first);
   EXPECT_TRUE(port.read(input));
@@ -230,7 +229,7 @@ TEST(UdpDevice, WithoutMeasurementsTheLoopLetsGo) {
   HighRateOutput command = HighRateOutput::none(settings);
   std::array<int, 5> seen{};
   socket.send(1, VectorX::Zero(6));
-  loop.run(clock, 130);  // the socket holds so many commands
+  loop.run(clock, 130);  // the socket buffers this many commands
   for (int k = 0; k < 130; ++k) {
     ASSERT_NO_FATAL_FAILURE(socket.receive(command));
     ++seen[static_cast<std::size_t>(command.state)];

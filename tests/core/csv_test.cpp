@@ -154,7 +154,7 @@ TEST(CsvWriter, WritesRowsThatReadBackBitForBit) {
   const auto path = scratch("written.csv");
   CsvWriter writer(path, names);
   writer.write_row(std::vector{0.1, -1.0 / 3.0, 1e-310});
-  EXPECT_EQ(read_csv(path).values.rows(), 1);  // while the writer is still open
+  EXPECT_EQ(read_csv(path).values.rows(), 1);  // the writer is still open
   writer.write_row(std::vector{0.2, 5e300, -0.0});
   const Table table = read_csv(path);
   EXPECT_EQ(table.names, names);

@@ -12,7 +12,7 @@ namespace {
 
 std::uint64_t hash_of(double number) { return ValueHash().add(number).value(); }
 
-// Of whole and written numbers, and of their halves, quarters, ...: where digits jump.
+// Integers and decimal literals, and their halves, quarters, ..., where digits jump.
 TEST(ValueHash, IsTheSameForWhatRoundingMakesOfANumber) {
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
@@ -28,7 +28,7 @@ TEST(ValueHash, IsTheSameForWhatRoundingMakesOfANumber) {
       EXPECT_EQ(hash_of(off), hash_of(number)) << number;
     }
   }
-  EXPECT_LE(differ, 1);  // by chance 4 ulp of 2^29 to a digit: 1e-8 of all
+  EXPECT_LE(differ, 1);  // chance: 4 ulp of 2^29 per digit, 1e-8 of all
 }
 
 TEST(ValueHash, TellsNumbersApart) {

@@ -7,7 +7,8 @@ namespace {
 
 constexpr std::uint64_t kOnes = ~std::uint64_t{0};
 
-// The vectors of the authors' Random123 for philox4x64-10, and one more by numpy.random.Philox.
+// Test vectors for philox4x64-10 from the authors' Random123, and one more from
+// numpy.random.Philox.
 TEST(Philox, GivesThePublishedBits) {
   EXPECT_EQ(Philox(0, 0).bits({0, 0, 0, 0}),
             (Philox::Block{0x16554d9eca36314c, 0xdb20fe9d672d0fdc, 0xd7e772cee186176b,

@@ -7,7 +7,7 @@
 namespace sinew {
 namespace {
 
-// Against cos(a/2) and sin(a/2) of the axis, past half a turn of the other sign.
+// Compares with cos(a/2) and sin(a/2) of the axis; beyond half a turn the sign is reversed.
 TEST(UnitQuaternion, HasAScalarPartThatIsNotNegative) {
   for (const Vector3& axis :
        {Vector3(1, 0, 0), Vector3(0, -1, 0), Vector3(0, 0, 1), Vector3(-0.48, 0.6, -0.64)}) {

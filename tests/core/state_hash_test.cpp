@@ -34,7 +34,8 @@ TEST(StateHash, IsTheSameInParts) {
 }
 
 TEST(StateHash, IsPinned) {
-  // Stored hashes stay comparable between versions; change this number only with a state version.
+  // Stored hashes must remain comparable between versions: change this number only together with a
+  // state version.
   EXPECT_EQ(hash_doubles(std::vector{1.0, -2.5, 1e-3}), 0x65c55b952f031719ULL);
 }
 

@@ -18,7 +18,7 @@ TEST(ThreadPool, RunsEveryThreadOnceEachTime) {
   for (const int threads : {1, 2, 3, 4, 9}) {
     ThreadPool pool(threads);
     ASSERT_EQ(pool.size(), threads);
-    std::vector<int> calls(static_cast<std::size_t>(threads), 0);  // each thread writes its own
+    std::vector<int> calls(static_cast<std::size_t>(threads), 0);  // one entry per thread
     for (int round = 1; round <= 200; ++round) {
       pool.run([&](int thread) { ++calls[static_cast<std::size_t>(thread)]; });
       EXPECT_TRUE(std::all_of(calls.begin(), calls.end(), [=](int c) { return c == round; }));

@@ -9,8 +9,8 @@
 namespace sinew::estimate {
 namespace {
 
-// One measurement of a direction of singular value s lowers its deviation by 1/sqrt(1 + s^2): by
-// what it is about to do, and by the covariance that it leaves.
+// A measurement of a direction with singular value s reduces its standard deviation by the factor
+// 1/sqrt(1 + s^2); compares the prediction with the resulting covariance.
 TEST(Observability, TellsWhatAMeasurementLowers) {
   const VectorX prior{{2.0, 0.5, 1.0}}, variance{{0.04, 0.01}};
   const MatrixX sensitivity{{1.0, 2.0, 0.0}, {0.5, -1.0, 0.0}};

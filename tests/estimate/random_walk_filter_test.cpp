@@ -1,4 +1,4 @@
-// The filter against all measurements at once: a linear Gaussian problem has one posterior.
+// The filter against the batch solution: a linear Gaussian problem has one posterior.
 #include "sinew/estimate/random_walk_filter.hpp"
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace sinew::estimate {
 namespace {
 
 constexpr int kSteps = 12, kLags = 4;
-constexpr double kTime = 0.05;  // s a step
+constexpr double kTime = 0.05;  // s, per step
 
 struct Measurement {
   int step;
@@ -35,8 +35,8 @@ struct Problem {
     }
   }
 
-  // All steps' numbers in one vector: covariance of a random walk, prior^2 + walk^2 h min(i, j),
-  // then the textbook's posterior P H^T (H P H^T + R)^-1.
+  // Batch solution for the unknowns of all steps: covariance of a random walk, prior^2 + walk^2 h
+  // min(i, j), and the textbook gain P H^T (H P H^T + R)^-1.
   void posterior(VectorX& mean, MatrixX& covariance) const {
     const Eigen::Index all = 3 * kSteps;
     MatrixX p(all, all);
@@ -63,7 +63,7 @@ struct Problem {
     covariance = (p - gain * h * p).bottomRightCorner<3, 3>();
   }
 
-  // Every measurement `late` steps after it was taken, the last ones at the end.
+  // Filters every measurement `late` steps after it was taken, the last ones at the end.
   RandomWalkFilter filtered(int late) const {
     RandomWalkFilter filter(prior, walk, kLags);
     for (int step = 0; step < kSteps; ++step) {

@@ -1,4 +1,4 @@
-// The filter against Kalman's on the full state, with every matrix written out.
+// The filter against the Kalman filter on the full state with all matrices explicit.
 #include "sinew/estimate/reduced_rank_filter.hpp"
 
 #include <cmath>
@@ -13,14 +13,14 @@ namespace sinew::estimate {
 namespace {
 
 constexpr int kMasses = 6, kStates = 2 * kMasses, kChainSteps = 60, kChainLags = 3;
-constexpr double kChainTime = 0.02;  // s a step
+constexpr double kChainTime = 0.02;  // s, per step
 
-// A chain of masses between springs, held at one end, in steps of backward Euler; forces pull at
-// the last mass and at the middle; two positions are measured.
+// A chain of masses and springs, held at one end, in backward Euler steps. Forces act on the last
+// mass and the middle one; two positions are measured.
 struct Chain {
   MatrixX transition{kStates, kStates}, input{kStates, 2}, output = MatrixX::Zero(2, kStates);
   VectorX prior{{1.0, 0.5}}, walk{{2.0, 0.0}}, variance{{1e-4, 4e-4}};
-  std::vector<VectorX> measured;  // of each step
+  std::vector<VectorX> measured;  // per step
 
   Chain() {
     MatrixX stiffness = MatrixX::Zero(kMasses, kMasses);
@@ -53,7 +53,7 @@ struct Chain {
     }
   }
 
-  // Simon 2006, sec. 5.1, of (x, s).
+  // The Kalman filter for (x, s) (Simon 2006, sec. 5.1).
   void kalman(VectorX& mean, MatrixX& covariance) const {
     const Eigen::Index all = 2 + kStates;
     MatrixX step = MatrixX::Identity(all, all), seen = MatrixX::Zero(2, all);
@@ -76,7 +76,7 @@ struct Chain {
   }
 };
 
-// The chain's own path, with the forces as they are estimated.
+// Simulation of the chain with the estimated forces.
 struct Path {
   const Chain& chain;
   ReducedRankFilter filter;
@@ -129,7 +129,7 @@ TEST(ReducedRankFilter, IsKalmansWithAColumnForEachDimension) {
   }
 }
 
-// What few columns leave out is little beside what is uncertain anyway.
+// A few columns neglect little compared with the remaining uncertainty.
 TEST(ReducedRankFilter, FewColumnsComeNear) {
   const Chain chain;
   VectorX mean;
@@ -146,7 +146,7 @@ TEST(ReducedRankFilter, FewColumnsComeNear) {
   }
 }
 
-// At rest readings and states follow the inputs: y = G x, s = F x.
+// At rest, readings and states depend linearly on the inputs: y = G x, s = F x.
 TEST(ReducedRankFilter, AnEquilibriumIsLeastSquares) {
   const MatrixX g{{1.0, 0.5}, {0.2, -1.0}};
   const VectorX prior{{2.0, 1.0}}, variance{{0.01, 0.04}}, said{{0.7, -0.3}}, acted{{0.1, 0.2}};

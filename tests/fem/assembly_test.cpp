@@ -28,7 +28,7 @@ FemModelSettings law_settings(const mesh::Mesh& mesh, Law law = Law::corotationa
   return settings;
 }
 
-/// Three materials and both laws, none filling whole batches.
+/// Three materials and both laws; none of them fills whole batches.
 FemModelSettings mixed_settings(const mesh::Mesh& mesh) {
   FemModelSettings settings;
   settings.regions = {
@@ -45,7 +45,7 @@ FemModelSettings mixed_settings(const mesh::Mesh& mesh) {
 struct Case {
   const char* name;
   int cells[3];
-  double motion;  // edges
+  double motion;  // in edges
   bool mixed;
 };
 
@@ -65,9 +65,9 @@ TEST_P(AgainstReference, ForcesMatrixAndEnergyAgree) {
   const Reference expected = reference(*model, settings, positions, weights);
 
   const Eigen::Map<const VectorX> forces(assembly.forces().data(), 3 * model->free_count());
-  // where elements are inverted, the rotation itself is known to fewer digits
+  // The rotation of an inverted element is accurate to fewer digits.
   const double tolerance = expected.smallest_ratio > 0.0 ? 1e-13 : 1e-11;
-  const bool at_rest = given.motion == 0.0;  // then forces are small differences of E edge^2
+  const bool at_rest = given.motion == 0.0;  // then forces are differences of terms E edge^2
   const double force_scale =
       at_rest ? 450e3 * kEdge * kEdge : expected.forces.cwiseAbs().maxCoeff();
   EXPECT_LT((forces - expected.forces).cwiseAbs().maxCoeff(), tolerance * force_scale);
@@ -124,8 +124,8 @@ TEST_P(EveryTangent, EvaluationAllocatesNothing) {
   for (const int threads : {1, 4}) {
     ThreadPool pool(threads);
     Assembly assembly(model, pool);
-    const Points positions = moved(*mesh, kEdge, 0.4);  // through the fallback of the rotation too
-    assembly.evaluate(positions, {.tangent = GetParam()});  // takes this thread's records
+    const Points positions = moved(*mesh, kEdge, 0.4);      // also the rotation's fallback
+    assembly.evaluate(positions, {.tangent = GetParam()});  // allocates this thread's buffers
     const std::size_t before = allocation_count();
     for (int k = 0; k < 3; ++k) assembly.evaluate(positions, {.tangent = GetParam()});
     assembly.measure_volume(positions);
@@ -165,8 +165,8 @@ TEST(Assembly, ExactMatrixIsTheDerivativeOfTheForces) {
   EXPECT_LT(worst, 1e-7 * matrix.cwiseAbs().maxCoeff());
 }
 
-// What steps rely on where the exact matrix is indefinite: A >= 0 and A >= K, element by element
-// and so for the whole.
+// Steps rely on this property where the exact matrix K is indefinite: the projected matrix A
+// satisfies A >= 0 and A >= K for each element, hence for the whole.
 TEST(Assembly, ProjectedMatrixIsPositiveAndNeverLessThanTheExactOne) {
   const auto mesh = block_mesh(2, 2, 3, kEdge, 0.1);
   const auto model = std::make_shared<const FemModel>(mesh, mixed_settings(*mesh));
@@ -188,7 +188,7 @@ TEST(Assembly, ProjectedMatrixIsPositiveAndNeverLessThanTheExactOne) {
         << pressed;
   }
   EXPECT_TRUE(indefinite);
-  // Pulled apart, no mode is negative and there is nothing to project.
+  // In tension no mode is negative, so there is nothing to project.
   Points x = mesh->nodes;
   x *= 1.2;
   const MatrixX exact = matrix(x, Tangent::exact);
@@ -236,7 +236,7 @@ TEST(Assembly, RigidMotionsGiveNoForce) {
   }
 }
 
-/// A body that is turned as a whole has its forces and matrix turned with it.
+/// A rotation of the whole body rotates its forces and its matrix.
 TEST(Assembly, ForcesAndMatrixTurnWithTheBody) {
   const auto mesh = block_mesh(2, 2, 3, kEdge, 0.1);
   const auto model = std::make_shared<const FemModel>(mesh, law_settings(*mesh));
@@ -259,8 +259,8 @@ TEST(Assembly, ForcesAndMatrixTurnWithTheBody) {
   }
 }
 
-/// v . K v = V (2 mu D : D + lambda (tr D)^2) with D the rate of strain of the present shape, of a
-/// body that is far from its shape at rest; a spin has none.
+/// v . K v = V (2 mu D : D + lambda (tr D)^2), where D is the rate of strain in the present shape
+/// of a largely deformed body; a spin dissipates nothing.
 TEST(Assembly, RatesOfStrainAreResistedAndSpinsAreNot) {
   const auto mesh = block_mesh(1, 1, 1, kEdge, 0.1);
   FemModelSettings settings = law_settings(*mesh);
@@ -304,8 +304,8 @@ TEST(Assembly, RatesOfStrainAreResistedAndSpinsAreNot) {
   EXPECT_NEAR(on_nodes(v).dot(matrix * on_nodes(v)), power, 1e-12 * power);
 }
 
-/// Affine patch test: in a body of one material under a homogeneous deformation, interior nodes of
-/// a distorted mesh are in balance.
+/// Affine patch test: in a body of one material under a homogeneous deformation, the interior nodes
+/// of a distorted mesh are in equilibrium.
 TEST(Assembly, PassesTheAffinePatchTest) {
   const auto mesh = block_mesh(4, 4, 4, kEdge);
   std::mt19937 random(5);
@@ -344,7 +344,7 @@ TEST(Assembly, MatricesAreSymmetricAndTheRotatedOneIsPositive) {
   Assembly assembly(model, pool);
   for (const Tangent tangent : {Tangent::corotated, Tangent::exact}) {
     assembly.evaluate(moved(*mesh, kEdge, 0.2), {.tangent = tangent});
-    const MatrixX matrix = dense_matrix(assembly);  // off-diagonal blocks symmetric by storage
+    const MatrixX matrix = dense_matrix(assembly);  // storage makes off-diagonal blocks symmetric
     EXPECT_LT((matrix - matrix.transpose()).cwiseAbs().maxCoeff(),
               1e-15 * matrix.cwiseAbs().maxCoeff());
     const double smallest = linalg::symmetric_eigenvalues(matrix)[0];
@@ -402,7 +402,7 @@ TEST(Assembly, FindsTheWorstElement) {
   Assembly assembly(model, pool);
   Points positions = mesh->nodes;
   const NodeId corner = mesh->node_count() - 1;
-  positions.row(corner) -= Eigen::RowVector3d::Constant(1.2 * kEdge);  // through its cell
+  positions.row(corner) -= Eigen::RowVector3d::Constant(1.2 * kEdge);  // through its own cell
   assembly.evaluate(positions, {.tangent = Tangent::none});
   EXPECT_LT(assembly.minimum_volume_ratio(), 0.0);
   const auto& worst = mesh->tetrahedra[static_cast<std::size_t>(assembly.worst_element())];

@@ -1,4 +1,4 @@
-// The estimate of how much too stiff linear tetrahedra bend, against solved cantilevers.
+// The estimate of how much too stiff linear tetrahedra are in bending, against solved cantilevers.
 #include "sinew/fem/bending_stiffness.hpp"
 
 #include <cmath>
@@ -14,8 +14,9 @@ namespace {
 
 using namespace solid_bodies;
 
-/// Tip's motion by beam theory over that of n x n x 5n cells, pushed aside at its free end:
-/// F L^3/(3 E I) + F L/(k G A) with k = 5/6 of a rectangle.
+/// Ratio of the tip deflection of beam theory to that of a mesh of n x n x 5n cells, both under a
+/// transverse force at the free end. Theory: F L^3/(3 E I) + F L/(k G A) with k = 5/6 of a
+/// rectangle.
 double solved_ratio(int n, double nu) {
   const double young = 1e5, length = 5.0 * n * kEdge, width = n * kEdge;
   const auto mesh = block_mesh(n, n, 5 * n, kEdge);
@@ -37,7 +38,8 @@ double estimate(int n, double nu) {
   return bending_stiffness_ratio(*block_mesh(n, n, 5 * n, kEdge), nu);
 }
 
-// Within a factor of 1.6 of what is too much, which spans 0.3 to 13 here.
+// The estimated excess stiffness is within a factor of 1.6 of the true one, which spans 0.3 to 13
+// here.
 TEST(BendingStiffness, EstimateMeetsSolvedCantilevers) {
   for (const double nu : {0.3, 0.45, 0.49}) {
     for (const int n : {2, 4}) {
@@ -48,7 +50,8 @@ TEST(BendingStiffness, EstimateMeetsSolvedCantilevers) {
   }
 }
 
-// The strain of an interpolated field is wrong by the size of a cell, its energy by the square.
+// The strain error of an interpolated field is proportional to the cell size, its energy to the
+// square of it.
 TEST(BendingStiffness, ExcessFallsWithTheSquareOfTheCell) {
   for (const double nu : {0.0, 0.45, 0.499}) {
     const double coarse = estimate(2, nu) - 1.0, fine = estimate(4, nu) - 1.0;

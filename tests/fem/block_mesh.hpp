@@ -1,5 +1,5 @@
 /// @file
-/// Blocks of tetrahedra for tests and benchmarks.
+/// Tetrahedral block meshes for tests and benchmarks.
 #pragma once
 
 #include <array>

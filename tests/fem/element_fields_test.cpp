@@ -1,4 +1,5 @@
-// Fields of elements and nodes: against tensors computed apart, of every kind of element and law.
+// Element and node fields against independently computed tensors, for every kind of element and
+// law.
 #include "sinew/fem/element_fields.hpp"
 
 #include <algorithm>
@@ -44,7 +45,7 @@ std::shared_ptr<const mesh::Mesh> mesh_of(FieldKind kind) {
   return std::make_shared<mesh::Mesh>(mesh::with_middle_nodes(*tetrahedra));
 }
 
-/// A body that is put into any shape by hand.
+/// A body whose node positions are prescribed.
 struct Shown {
   explicit Shown(FieldKind kind, std::shared_ptr<const mesh::Mesh> mesh = nullptr) {
     FemBodySettings settings;
@@ -62,7 +63,7 @@ struct Shown {
     owned = model->create(pool, false, 0);
   }
   const HasMaterial& material() { return *mechanics::as<const HasMaterial>(*owned); }
-  /// x = move(X) at every node.
+  /// Sets x = move(X) at every node.
   template <typename Move>
   void deform(Move&& move) {
     std::vector<double> state(owned->state_size());
@@ -88,7 +89,7 @@ Matrix3 strong_deformation() {
   return f * u;
 }
 
-/// Every field at F from its definition, by Eigen's decompositions.
+/// Every field at F from its definition, with Eigen's decompositions.
 double expected(ElementField field, const Matrix3& f, FieldKind kind) {
   const Eigen::JacobiSVD<Matrix3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vector3& l = svd.singularValues();

@@ -131,7 +131,7 @@ TEST(FemModel, DensitiesScaleTogether) {
   settings.total_mass = 0.004;
   const FemModel model(mesh, settings);
   EXPECT_NEAR(model.total_mass(), 0.004, 1e-17);
-  // the lower cell holds 3 g: node 0 and its opposite are in six tetrahedra of it
+  // The lower cell has 3 g; node 0 and the opposite node belong to all six of its tetrahedra.
   EXPECT_NEAR(model.lumped_mass()[0], 0.003 / 4.0, 1e-17);
 }
 
@@ -151,7 +151,7 @@ TEST(FemModel, ConsistentMassIsTheIntegralOfTheKineticEnergy) {
   EXPECT_NEAR(energy(), mass * side * side / 3.0, 1e-14 * mass * side * side);
   velocity.setOnes();
   EXPECT_NEAR(energy(), 3.0 * mass, 1e-14);
-  // row sums are the lumped masses
+  // The row sums are the lumped masses.
   for (NodeId node = 0; node < 27; ++node) {
     EXPECT_NEAR(momentum(node, 2), model.lumped_mass()[node], 1e-17);
   }

@@ -1,4 +1,5 @@
-// Nodes on rollers in the matrix. How bodies on rollers deform is tested in Python and validated.
+// Nodes on rollers in the matrix. The deformation of bodies on rollers is covered by Python tests
+// and validation cases.
 #include <algorithm>
 #include <set>
 

@@ -1,4 +1,4 @@
-// Tangents whose pressures are linearised from where the body moved from (SolidOutput::start).
+// Tangents whose pressures are linearised about the start of the step (SolidOutput::start).
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -43,9 +43,9 @@ class LinearPressure : public testing::TestWithParam<Kind> {
 INSTANTIATE_TEST_SUITE_P(Kinds, LinearPressure,
                          testing::Values(Kind::tetrahedra, Kind::quadratic, Kind::hexahedra));
 
-// A turn by theta has det F = 1, but by the linear expansion from rest 1 + tr(R - I), so that the
-// tangents differ by kappa 2 (cos theta - 1) d2V/dx2; and V is homogeneous of degree 3 in x:
-// x^T (d2V/dx2) x = 6 V (Euler).
+// A rotation by theta has det F = 1, but the linear expansion about the rest shape gives
+// 1 + tr(R - I). The tangents therefore differ by kappa 2 (cos theta - 1) d2V/dx2. V is homogeneous
+// of degree 3 in x, so x^T (d2V/dx2) x = 6 V (Euler).
 TEST_P(LinearPressure, OfATurnIsThatOfItsLinearDilatation) {
   const MatrixX exact = body_.matrix(turned_, Tangent::exact);
   body_.assembly.linearise_from(&mesh_->nodes);

@@ -1,4 +1,4 @@
-// Layers on faces: an energy, its derivatives, and what they cost a body that turns or stretches.
+// Layers on faces: energy, its derivatives, and invariance under rigid motions.
 #include "sinew/fem/membrane.hpp"
 
 #include <cmath>
@@ -29,7 +29,7 @@ std::vector<mesh::Face> bottom_of(const mesh::Mesh& mesh) {
   return faces;
 }
 
-// The part of forces, matrix and energy that a layer on the bottom adds to a free box.
+// The contribution of a layer on the bottom of a free box to forces, matrix and energy.
 class Layer {
  public:
   explicit Layer(Kind kind) : mesh_(solid_bodies::box(kind, 2, 3, 1, 0.0)), pool_(1) {
@@ -67,7 +67,7 @@ class Layer {
   const Points& rest() const { return mesh_->nodes; }
   double area() const { return layered_->model().membranes().area(0); }
 
-  // Bent, sheared and moved about.
+  // Bent, sheared and randomly displaced positions.
   Points strained() const {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> shift(-0.08 * kEdge, 0.08 * kEdge);
@@ -113,8 +113,8 @@ TEST_P(Membrane, ForcesAndStiffnessAreDerivativesOfItsEnergy) {
   EXPECT_LT(stiffness_error, 1e-7 * here.matrix.cwiseAbs().maxCoeff());
 }
 
-// Homogeneous: E = (F^T F - I)/2 of the plane, U = h A/2 E_y/(1 - nu^2) (nu tr(E)^2 + (1 - nu)
-// E:E).
+// Homogeneous deformation: with the in-plane strain E = (F^T F - I)/2, U = h A/2 E_y/(1 - nu^2) (nu
+// tr(E)^2 + (1 - nu) E:E).
 TEST_P(Membrane, StoresThePlaneStressEnergyOfAHomogeneousStretch) {
   Layer layer(GetParam());
   Matrix3 gradient = Matrix3::Identity();
@@ -150,7 +150,7 @@ TEST_P(Membrane, ItsProjectedTangentIsNeverLessThanTheExactOne) {
       derivative(exact);
   EXPECT_GT(excess.eigenvalues().minCoeff(), -1e-9 * size);
   EXPECT_GT(own.eigenvalues().minCoeff(), -1e-9 * size);
-  EXPECT_LT(derivative.eigenvalues().minCoeff(), -1e-5 * size);  // it is compressed somewhere
+  EXPECT_LT(derivative.eigenvalues().minCoeff(), -1e-5 * size);  // compressed somewhere
 }
 
 TEST_P(Membrane, RatesOfStrainLeaveSpinsOut) {

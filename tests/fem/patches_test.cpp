@@ -1,4 +1,4 @@
-// Linear tetrahedra in patches, and quadratic ones' own dilatation: no locking in volume.
+// Volumetric locking: patches of linear tetrahedra, and the element dilatation of quadratic ones.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -39,8 +39,8 @@ TEST(Patches, PatchesCoverEveryTetrahedronOnce) {
   EXPECT_LT(mean, 1.25 * kPatchSize);
 }
 
-// A cantilever's stiffness hardly changes between nu = 0.45 and 0.4999 in patches; lone tetrahedra
-// lock.
+// With patches, a cantilever's stiffness hardly changes between nu = 0.45 and 0.4999; single
+// tetrahedra lock.
 TEST(Patches, PatchesDoNotLockInVolume) {
   const auto softness = [](Kind kind, double poisson_ratio) {
     const auto mesh = box(kind, 2, 2, 8, 0.1);
@@ -64,10 +64,9 @@ TEST(Patches, PatchesNeedALawWithAVolumetricPart) {
   EXPECT_THROW(FemModel(mesh, settings), Error);
 }
 
-// u_x = k (x - x_c)^2 / 2 has no mean dilatation over an element with centroid x_c, and small
-// strain e = k (x - x_c): energy density 2/3 mu e^2 of the deviator and kappa'/2 e^2 = mu/2 e^2,
-// whatever kappa is.
-// kappa'/2 (J - Jm)^2 with kappa' = 2 mu beside the 2/3 mu of the isochoric part.
+// u_x = k (x - x_c)^2 / 2 has zero mean dilatation over an element with centroid x_c, and the small
+// strain e = k (x - x_c). The energy density is 2/3 mu e^2 of the deviator plus kappa'/2
+// (J - Jm)^2 = mu e^2 with kappa' = 2 mu, whatever kappa is.
 TEST(Patches, QuadraticTetrahedraResistTheirOwnDilatationByTwiceTheShearModulus) {
   auto corners = std::make_shared<mesh::Mesh>();
   corners->nodes.resize(4, 3);

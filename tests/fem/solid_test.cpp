@@ -1,5 +1,5 @@
 // Hyperelastic tetrahedra and hexahedra: forces and matrix against differences of the energy, patch
-// tests, bodies of several materials and elements, threads, masses, points inside.
+// tests, bodies of several materials and elements, threads, masses, embedded points.
 #include <algorithm>
 #include <memory>
 #include <random>
@@ -67,7 +67,7 @@ TEST_P(EveryKind, TheRotatedMatrixIsPositive) {
   const auto mesh = box(GetParam(), 2, 2, 3);
   Body body(mesh, settings_of(GetParam(), *mesh, rubber(0.45)));
   Points x = mesh->nodes;
-  x.col(2) *= 0.55;  // pressed together: the exact tangent buckles
+  x.col(2) *= 0.55;  // compressed: the exact tangent is indefinite
   const auto lowest = [](const MatrixX& m) { return linalg::symmetric_eigenvalues(m)[0]; };
   const MatrixX exact = body.matrix(x, Tangent::exact);
   EXPECT_LT(lowest(exact), 0.0);
@@ -77,10 +77,11 @@ TEST_P(EveryKind, TheRotatedMatrixIsPositive) {
   EXPECT_LT((body.matrix(mesh->nodes, Tangent::corotated) - rest).norm(), 1e-9 * rest.norm());
 }
 
-// A mesh of both is not conforming: a hexahedron's face that meets those of two tetrahedra bends in
-// another way, and shares its forces in another way.
+// A mesh of hexahedra and tetrahedra is not conforming and is left out: a hexahedron's face and the
+// two tetrahedron faces that it meets interpolate differently and distribute forces differently.
 void expect_even_strain(Kind kind) {
-  // Affine motion of the boundary: inner nodes are in equilibrium where it takes them.
+  // Affine motion of the boundary: the inner nodes are in equilibrium where the same map takes
+  // them.
   const auto mesh = box(kind, 3, 3, 3, 0.15);
   FemModelSettings settings = settings_of(kind, *mesh, rubber());
   settings.fixed_nodes.clear();
@@ -116,7 +117,7 @@ TEST_P(EveryKind, ARotationStrainsNothing) {
   Points x = mesh->nodes * q.transpose();
   x.rowwise() += Eigen::RowVector3d(0.3, -0.2, 0.5);
   EXPECT_LT(body.forces(x).cwiseAbs().maxCoeff(), 1e-11 * 24e3 * kEdge * kEdge * 1e3);
-  // Rounding of sums of three powers that are 1 each.
+  // Rounding of sums of three powers that are each 1.
   EXPECT_LT(body.energy(x), 1e-14 * rubber().shear_modulus() * body.model->volume());
 }
 
@@ -154,7 +155,7 @@ TEST_P(EveryKind, TheWorstElementIsNamed) {
   const auto mesh = box(GetParam(), 2, 2, 3, 0.0);
   Body body(mesh, settings_of(GetParam(), *mesh, rubber()));
   Points x = mesh->nodes;
-  x(0, 2) += 3.0 * kEdge;  // far through the cell's upper face
+  x(0, 2) += 3.0 * kEdge;  // far beyond the cell's upper face
   const VolumeMeasure measure = body.assembly.measure_volume(x);
   EXPECT_LT(measure.smallest_ratio, 0.0);
   const auto tetrahedra = static_cast<int>(mesh->tetrahedra.size());
@@ -178,7 +179,7 @@ TEST_P(EveryKind, MassesAddUp) {
     settings.mass = mass;
     const FemModel model(mesh, settings);
     EXPECT_NEAR(model.total_mass(), 1070.0 * model.volume(), 1e-12 * model.total_mass());
-    // A rigid motion's momentum.
+    // Momentum of a rigid motion.
     VectorX velocity(3 * model.free_count()), momentum(velocity.size());
     for (int i = 0; i < model.free_count(); ++i) velocity.segment<3>(3 * i) = Vector3(1, 0, 0);
     model.apply_mass({velocity.data(), static_cast<std::size_t>(velocity.size())},
@@ -192,7 +193,7 @@ void expect_one_way(Kind kind) {
   material::Hyperelastic law = material::neo_hookean(25e3), two_halves = law;
   law.bulk_modulus = two_halves.bulk_modulus = 4e5;
   two_halves.powers.front().coefficient *= 0.5;
-  two_halves.powers.push_back(two_halves.powers.front());  // no longer taken for neo-Hookean
+  two_halves.powers.push_back(two_halves.powers.front());  // no longer recognised as neo-Hookean
   Body fast(mesh, settings_of(kind, *mesh, law)),
       general(mesh, settings_of(kind, *mesh, two_halves));
   const Points x = moved(*mesh, kEdge, 0.12);
@@ -210,13 +211,13 @@ TEST(Solid, NeoHookeanTetrahedraAreThoseOfTheGeneralWay) { expect_one_way(Kind::
 TEST(Solid, NeoHookeanPatchesAreThoseOfTheGeneralWay) { expect_one_way(Kind::patches); }
 
 TEST(Solid, HexahedraDoNotLockInVolume) {
-  // One cell sheared while its volume is kept has no volumetric energy however stiff the bulk is.
+  // A cell deformed at constant volume stores no volumetric energy, however large the bulk modulus.
   const auto mesh = box(Kind::hexahedra, 1, 1, 1, 0.0);
   const auto energy = [&](double poisson_ratio) {
     FemModelSettings settings = settings_of(*mesh, rubber(poisson_ratio));
     Body body(mesh, settings);
     Points x = mesh->nodes;
-    // An hourglass of the upper face, which changes no mean volume to first order.
+    // Hourglass mode of the upper face, which keeps the mean volume to first order.
     for (const auto& [node, sign] :
          {std::pair(4, 1), std::pair(5, -1), std::pair(7, -1), std::pair(6, 1)}) {
       x(node, 2) += sign * 0.05 * kEdge;
@@ -247,7 +248,8 @@ TEST(Solid, PointsInsideAreFoundAgain) {
   EXPECT_LT(in_hexahedra, 250);
 }
 
-// A motion quadratic in space is one of the element's own: the energy is exact up to quadrature.
+// A quadratic displacement field is represented by the element: the energy is exact up to
+// quadrature.
 TEST(Solid, QuadraticTetrahedraBendExactly) {
   const auto mesh = box(Kind::quadratic, 2, 1, 3, 0.0);
   const auto linear = box(Kind::tetrahedra, 2, 1, 3, 0.0);
@@ -265,8 +267,8 @@ TEST(Solid, QuadraticTetrahedraBendExactly) {
   FemModelSettings settings = settings_of(*mesh, law);
   settings.fixed_nodes.clear();
   Body quadratic(mesh, settings), tetrahedra(linear, settings);
-  // e_zz = -k (x - a) alone: energy density (lambda + 2 mu)/2 e^2 with the mean dilatation's part
-  // taken by element: between that of deviator alone and all of it.
+  // e_zz = -k (x - a) is the only strain. The mean dilatation is taken by element, so the energy
+  // lies between that of the deviator alone and the full density (lambda + 2 mu)/2 e^2.
   const double mu = 25e3, lambda = 1e5 - 2.0 / 3.0 * mu;
   const double moment =
       kEdge * 3 * kEdge * 2.0 / 3.0 * std::pow(kEdge, 3);  // integral of (x - a)^2
@@ -275,7 +277,7 @@ TEST(Solid, QuadraticTetrahedraBendExactly) {
   const double found = quadratic.energy(bent(*mesh));
   EXPECT_LT(found, full);
   EXPECT_GT(found, deviator);
-  EXPECT_GT(tetrahedra.energy(bent(*linear)), 1.2 * full);  // they shear as well
+  EXPECT_GT(tetrahedra.energy(bent(*linear)), 1.2 * full);  // linear tetrahedra also shear
 }
 
 TEST(Solid, PointsInsideQuadraticTetrahedraFollowTheirCurve) {
@@ -308,7 +310,7 @@ TEST(Solid, WeightOfQuadraticTetrahedraIsConsistent) {
   const FemModel model(mesh, settings);
   EXPECT_GT(model.lumped_mass().minCoeff(), 0.0);
   EXPECT_NEAR(model.load_mass().sum(), model.total_mass(), 1e-12);
-  // First moments: integral of x rho dV, by either.
+  // First moments, the integral of x rho dV, computed in two ways.
   Vector3 centre = Vector3::Zero();
   double volume = 0.0;
   for (const auto& t : mesh->tetrahedra) {

@@ -1,4 +1,4 @@
-// Points of a surface's triangles by the shape functions of the elements below.
+// Points on surface triangles, interpolated by the shape functions of the elements below.
 #include "sinew/mechanics/surface_trace.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 using namespace fem::solid_bodies;
 
-// What the elements of a kind represent exactly on flat faces along the axes.
+// A field that the elements of a kind represent exactly on flat faces along the axes.
 Vector3 field(Kind kind, const Vector3& x) {
   const Vector3 linear(1.0 + x[0] - 2.0 * x[1], 3.0 * x[2] - x[0], x[1] + 0.5 * x[2]);
   const Vector3 products(x[0] * x[1], x[1] * x[2], x[2] * x[0]);

@@ -137,12 +137,12 @@ TEST(Viscous, SaintVenantKirchhoffLikewise) {
   expect_derivatives(ViscousKind::tetrahedra, saint_venant());
 }
 
-// Shear keeps the volume, so that all of the stress relaxes: f(t) = f_law (1 + sum beta
-// exp(-t/tau)) after a sudden strain, whatever the steps.
+// Shear keeps the volume, so all of the stress relaxes: f(t) = f_law (1 + sum beta exp(-t/tau))
+// after a sudden strain, for any step length.
 TEST_P(EveryViscousKind, ASuddenStrainRelaxesAsTheSeriesSays) {
   for (const material::Hyperelastic& law : {rubber(), saint_venant()}) {
     if (GetParam() == ViscousKind::patches && law.saint_venant_shear > 0.0)
-      continue;  // are refused
+      continue;  // rejected for this law
     material::Hyperelastic elastic = law;
     elastic.prony.clear();
     Body body(GetParam(), law), slow(GetParam(), elastic);
@@ -167,7 +167,7 @@ TEST_P(EveryViscousKind, ASuddenStrainRelaxesAsTheSeriesSays) {
   }
 }
 
-/// G' and G'' over the law's own mu from the force on one node in the third cycle of a small
+/// G' and G'' relative to the law's mu, from the force on one node in the third cycle of a small
 /// sinusoidal shear.
 std::complex<double> complex_modulus(double omega, int steps) {
   material::Hyperelastic law = rubber();
@@ -214,7 +214,7 @@ TEST_P(EveryViscousKind, SoftenedForcesAreDerivativesToo) {
   expect_derivatives(GetParam(), both);
 }
 
-// Shear keeps the volume: all of the stress softens, by the formula of Ogden and Roxburgh.
+// Shear keeps the volume, so all of the stress softens by the formula of Ogden and Roxburgh.
 TEST_P(EveryViscousKind, UnloadingFollowsOgdenAndRoxburgh) {
   const material::Hyperelastic law = softening_rubber();
   material::Hyperelastic elastic = law;
@@ -239,7 +239,7 @@ TEST_P(EveryViscousKind, UnloadingFollowsOgdenAndRoxburgh) {
         1.0 -
         std::erf((largest - w) / (law.mullins->m + law.mullins->beta * largest)) / law.mullins->r;
     EXPECT_LT((found - eta * law_forces).norm(), 1e-9 * law_forces.norm()) << gamma;
-    EXPECT_LT(gamma == 0.1 ? eta : 0.0, 0.6);  // it does soften
+    EXPECT_LT(gamma == 0.1 ? eta : 0.0, 0.6);  // softening is active
   }
 }
 

@@ -1,4 +1,4 @@
-// Whatever the bytes, the reader returns or throws an Error; see CMakeLists.txt.
+// For any input the reader returns or throws an Error; see CMakeLists.txt.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     static_cast<void>(sinew::parse_csv(bytes, "fuzz"));
   } catch (const sinew::Error&) {
-    // What a broken input deserves.
+    // Expected for invalid input.
   }
   return 0;
 }

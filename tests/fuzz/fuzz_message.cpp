@@ -1,4 +1,4 @@
-// Whatever a browser sends, the parser returns or throws an Error; see CMakeLists.txt.
+// For any message from a browser the parser returns or throws an Error; see CMakeLists.txt.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     static_cast<void>(sinew::viewer::parse_message({reinterpret_cast<const char*>(data), size}));
   } catch (const sinew::Error&) {
-    // What a broken message deserves.
+    // Expected for an invalid message.
   }
   return 0;
 }

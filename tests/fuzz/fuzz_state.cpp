@@ -1,6 +1,6 @@
-// Whatever the bytes, loading a state restores it or throws an Error, and the robot can be stepped
-// after it; see CMakeLists.txt. The bytes are tried as they are, and once more as changes to a
-// sound state whose hash is then made to fit, so that what stands behind the hash is reached.
+// For any input, loading a state restores it or throws an Error, and the robot can be stepped
+// afterwards; see CMakeLists.txt. The bytes are tried as they are, and again as changes to a valid
+// state whose hash is then recomputed, to reach the code after the hash check.
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -48,11 +48,11 @@ void load_and_step(std::string_view bytes) {
     sinew::sim::parse_state(simulation(), bytes, "fuzz");
     simulation().step();
   } catch (const sinew::Error&) {
-    // What a broken input deserves.
+    // Expected for invalid input.
   }
 }
 
-// Bytes come in threes: where (two) and what is added there (one).
+// Bytes are triples: position (two bytes) and the value added there (one byte).
 std::string changed_state(std::span<const std::uint8_t> changes) {
   simulation().reset();
   static const std::string sound = sinew::sim::format_state(simulation());

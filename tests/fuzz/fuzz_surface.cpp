@@ -1,5 +1,5 @@
-// Whatever the bytes, the reader of surfaces and the checks of solids return or throw an Error; see
-// CMakeLists.txt. An input begins with the file's kind (stl, obj, ply) and a zero.
+// For any input, the surface reader and the checks of solids return or throw an Error; see
+// CMakeLists.txt. An input begins with the file type (stl, obj, ply) and a zero byte.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static_cast<void>(sinew::mesh::solid_moments(surface));
     sinew::mesh::require_solid(surface);
   } catch (const sinew::Error&) {
-    // What a broken input deserves.
+    // Expected for invalid input.
   }
   return 0;
 }

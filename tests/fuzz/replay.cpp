@@ -1,5 +1,5 @@
-// Feeds a fuzz target with every file of its corpus, and with damaged copies of each, in builds
-// without libFuzzer: replay FOLDER. Damage is seeded: the same on every run.
+// Runs a fuzz target on every file of its corpus and on damaged copies of each, in builds without
+// libFuzzer: replay FOLDER. The damage is seeded and thus the same in every run.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -14,8 +14,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 namespace {
 
-constexpr std::size_t kCuts = 200;     // prefixes of a file
-constexpr std::size_t kDamaged = 300;  // copies of a file with bytes changed
+constexpr std::size_t kCuts = 200;     // prefixes per file
+constexpr std::size_t kDamaged = 300;  // modified copies per file
 
 using Bytes = std::vector<std::uint8_t>;
 

@@ -1,4 +1,4 @@
-// Arms from synthetic motion capture: what is found is what made the records.
+// Arms from synthetic motion capture: the fit recovers the parameters that generated the records.
 #include "sinew/identify/arm_fit.hpp"
 
 #include <cmath>
@@ -25,7 +25,7 @@ const VectorX kFirst{{0.9, 0.4, 0.6, 0.5}}, kSecond{{-0.9, 0.7, -0.6, 0.8}},
     kThird{{0.6, -0.8, -0.4, 0.6}};
 constexpr Capture kCapture{.duration = 3.0, .noise = 3e-4};
 
-/// The fluidic arm with its parameters off.
+/// Initial guess: the fluidic arm with wrong parameters.
 ArmModel guess(const ArmModel& truth) {
   pcc::ArmSettings settings = truth.arm->settings();
   settings.centre = pcc::MassCentre::arc;
@@ -66,7 +66,7 @@ std::vector<double> true_values(const ArmModel& truth) {
   return values;
 }
 
-/// Actuated but for the first segment, hanging at rest until the volumes come.
+/// The arm with all segments but the first actuated, at rest until the volumes start.
 ArmModel actuated(pcc::MassCentre centre = pcc::MassCentre::arc) {
   pcc::ArmSettings settings = fluidic(centre);
   settings.actuation = MatrixX::Zero(4, 3);
@@ -87,7 +87,7 @@ MotionRecord driven(const ArmModel& truth, std::uint64_t seed, const std::string
     const pcc::Excitation volume(
         {.amplitude = 3e-5, .seed = 100 * seed + static_cast<std::uint64_t>(i)});
     inputs.col(i) = volume.sample(times);
-    // From rest, over half a second.
+    // Faded in from rest over half a second.
     for (Eigen::Index k = 0; k < samples; ++k) {
       inputs(k, i) *= std::pow(std::sin(1.5707963267948966 * std::min(1.0, times[k] / 0.5)), 2);
     }
@@ -129,7 +129,8 @@ TEST(ArmFit, IntervalsHoldTheTruthAsOftenAsTheySay) {
       inside += p.interval_lower <= values[k] && values[k] <= p.interval_upper ? 1 : 0;
       ++all;
     }
-    // Mahalanobis' distance, chi squared of five: the intervals of one fit go together.
+    // Mahalanobis distance, chi squared with five degrees of freedom: the intervals of one fit are
+    // correlated.
     std::vector<Eigen::Index> free = {0, 2, 3, 4, 5};
     VectorX error(5);
     for (Eigen::Index k = 0; k < 5; ++k) {
@@ -144,7 +145,8 @@ TEST(ArmFit, IntervalsHoldTheTruthAsOftenAsTheySay) {
   }
   EXPECT_EQ(all, 5 * kSeeds);
   EXPECT_GE(inside, 87);  // 95 expected
-  // Chi squared of 100 is outside of these with odds of one in a hundred.
+  // The probability that chi squared with 100 degrees of freedom is outside these limits is one per
+  // cent.
   EXPECT_GT(distance, 67.0);
   EXPECT_LT(distance, 140.0);
 }
@@ -156,12 +158,12 @@ TEST(ArmFit, ScaleIsReportedWhereMotionAloneIsSeen) {
   ASSERT_EQ(free.undetermined(), 1);
   const Direction& scale = free.fit.directions.back();
   EXPECT_LT(scale.singular_value, 1e-9 * free.fit.directions.front().singular_value);
-  // Masses, stiffness and damping grow by one factor.
+  // Masses, stiffness and damping scale by a common factor.
   for (Eigen::Index k = 0; k < 6; ++k) {
     EXPECT_NEAR(std::abs(scale.weights[k]), 1.0 / std::sqrt(6.0), 1e-6);
     EXPECT_FALSE(free.fit.parameters[static_cast<std::size_t>(k)].determined);
   }
-  // It costs nothing: the same motion is met as well.
+  // The scale is free: the motion fits equally well with a fixed mass.
   const ArmFit fixed = fit_arm(guess(truth), records, wide({"mass_1"}));
   EXPECT_EQ(fixed.undetermined(), 0);
   EXPECT_NEAR(free.fit.cost, fixed.fit.cost, 1e-6 * fixed.fit.cost);
@@ -181,7 +183,7 @@ TEST(ArmFit, ActuatedArmHasTwoNAndTwoParameters) {
   }
   const std::vector<MotionRecord> others = {driven(truth, 5, "c")};
   EXPECT_LT(validate_arm(fit.model, others, {.time_step = 5e-3})[0].nrmse, 0.05);
-  // The scale runs through the coefficients as well, and not through the delay.
+  // The scale also affects the actuators' coefficients, but not the delay.
   const ArmFit free = fit_arm(guess(truth), records, wide({}));
   ASSERT_EQ(free.undetermined(), 1);
   const VectorX& weights = free.fit.directions.back().weights;
@@ -206,7 +208,7 @@ TEST(ArmFit, KnownTorquesLeaveNoScale) {
 TEST(ArmFit, MovingStartsAreFitted) {
   const ArmModel truth{make(fluidic()), {}};
   MotionRecord record = release(truth, kFirst, kCapture, 4);
-  // Seen from 0.2 s on.
+  // The record starts at 0.2 s.
   const Eigen::Index from = 10, left = record.samples() - from;
   record.time = record.time.tail(left).eval();
   record.position = record.position.bottomRows(left).eval();
@@ -225,7 +227,7 @@ TEST(ArmFit, MeetsADistributedArmWithinPublishedBounds) {
   for (const RecordFit& record : fit.records) {
     EXPECT_LT(record.summed_error, 0.5 * record.start_summed_error);
   }
-  // The model is wrong, and the residuals say so.
+  // The model is wrong, and the residuals show it.
   EXPECT_GT(fit.fit.noise, 2.0 * kCapture.noise);
   for (const FittedParameter& p : fit.fit.parameters) {
     EXPECT_GE(p.value, p.lower) << p.name;

@@ -16,7 +16,7 @@ using pcc::BendingParameters;
 using pcc::ModulusKind;
 using sinew::testing::kind_of;
 
-/// A/2 (1 - cos(2 pi t/T)) above `floor`, at uneven times with a gap.
+/// Pressure A/2 (1 - cos(2 pi t/T)) above `floor`, at uneven times with a gap.
 TipRecord record_of(const BendingParameters& p, double floor, double amplitude, double noise) {
   TipRecord record;
   record.name = "made";
@@ -75,12 +75,12 @@ TEST(BendingFit, FindsThePolynomialAndTheDamping) {
     EXPECT_NEAR(fit.parameters.modulus.value(pressure) / truth.value(pressure), 1.0, 0.01);
   }
   EXPECT_EQ(kind_of([&] { fit.parameters.modulus.value(95e3); }), ErrorKind::out_of_range);
-  // What is left is the noise: 0.1 mm an axis, over some hundred rows.
+  // The residual is the noise: 0.1 mm per axis, over about a hundred rows.
   for (const TipErrors& errors : fit.errors) {
     EXPECT_NEAR(errors.root_mean_square[0], 1e-4, 2.5e-5);
     EXPECT_NEAR(errors.root_mean_square[1], 1e-4, 2.5e-5);
   }
-  // A constant cannot follow.
+  // A constant modulus fits worse.
   const BendingFit constant = fit_bending(robot(BendingModulus(0.2e6)), records, {});
   EXPECT_GT(constant.cost, 2.0 * fit.cost);
 }

@@ -1,4 +1,4 @@
-// Cylinders and actuators from synthetic records.
+// Drive cylinders and actuators from synthetic records.
 #include "sinew/identify/cylinder_fit.hpp"
 
 #include <cmath>
@@ -60,20 +60,20 @@ TEST(CylinderFit, OutputErrorHoldsTheTruthAndPredictsOtherRecords) {
                           kTrueCylinder.c.dot(shifted * kTrueCylinder.b)};
   for (std::size_t k = 0; k < 4; ++k) {
     const FittedParameter& p = fit.fit.parameters[k];
-    // Four standard errors: one run of one seed.
+    // Four standard errors, for one run with one seed.
     EXPECT_NEAR(p.value, truth[k], 4.0 * p.standard_error) << p.name;
   }
-  // b1 and b2 apart show at high frequencies alone, which the signal does not have.
+  // b1 and b2 separately act at high frequencies only, which the signal does not contain.
   EXPECT_LT(fit.fit.parameters[0].standard_error, 0.05);
   EXPECT_NEAR(fit.cylinder.gain(), 0.9, 0.01);
   EXPECT_NEAR(fit.fit.noise, kNoise, 0.1 * kNoise);
-  // Refinement never loses to its start, which noise biases.
+  // Refinement is never worse than its start, which is biased by noise.
   EXPECT_LE(fit.fit.cost, fit.fit.start_cost);
   std::vector<DriveRecord> others;
   for (std::uint64_t seed = 11; seed <= 14; ++seed)
     others.push_back(record_of(kTrueCylinder, kNoise, seed));
   for (const CylinderTrial& trial : validate_cylinder(fit.cylinder, others)) {
-    // Noise alone makes 1e-6 of a standard deviation near 1.4e-5.
+    // Noise alone gives 1e-6 over a standard deviation of about 1.4e-5.
     EXPECT_LT(trial.nrmse, 0.1) << trial.name;
     EXPECT_GT(trial.nrmse, 0.03) << trial.name;
   }
@@ -137,7 +137,7 @@ TEST(ActuatorFit, FindsCoefficientAndDelay) {
   Random random(9);
   record.torque = record.time.unaryExpr(
       [&](double t) { return truth.torque(volume.at(t - truth.delay)) + 1e-3 * random.normal(); });
-  // Before the record the volume is not known.
+  // The volume before the record is unknown.
   record.torque.head(10).setConstant(NAN);
   const ActuatorFit fit = fit_actuator(std::vector<ActuatorRecord>{record});
   const auto& cubic = fit.fit.parameter("cubic");
@@ -147,7 +147,7 @@ TEST(ActuatorFit, FindsCoefficientAndDelay) {
   EXPECT_LT(delay.standard_error, 1e-3);
   EXPECT_LT(cubic.standard_error, 0.02 * truth.cubic);
   EXPECT_EQ(fit.actuator.linear, 0.0);
-  // A linear part that is there is found.
+  // An existing linear term is identified.
   const pcc::FluidicActuator both{900.0, 4e12, 0.085};
   record.torque =
       record.time.unaryExpr([&](double t) { return both.torque(volume.at(t - both.delay)); });

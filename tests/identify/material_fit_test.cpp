@@ -57,7 +57,7 @@ TEST(MaterialFit, SameSeedSameFit) {
   EXPECT_EQ(a.coefficients[0].value, b.coefficients[0].value);
 }
 
-/// Every stress with an error of its own, of `size` of the test's largest.
+/// Adds an independent error to every stress, relative to the test's largest stress.
 std::vector<RubberTest> disturbed(std::vector<RubberTest> tests, double size) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal(0.0, size);
@@ -68,7 +68,7 @@ std::vector<RubberTest> disturbed(std::vector<RubberTest> tests, double size) {
   return tests;
 }
 
-// A law that stiffens as none of them does, so that every model has something to gain.
+// Tests of a law that none of the models represents, so richer models fit better.
 std::vector<RubberTest> strange_tests() {
   return disturbed(tests_of(material::yeoh({12e3, -300.0, 90.0})), 0.01);
 }
@@ -125,8 +125,8 @@ TEST(MaterialFit, RowsOutsideTheRangeDoNotCount) {
             ErrorKind::contradictory_limits);
 }
 
-// With errors that are independent, what made the data is best supported, though richer models come
-// nearer to them.
+// With independent errors, the information criterion prefers the model that generated the data,
+// although richer models fit more closely.
 TEST(MaterialFit, InformationTellsWhatMadeTheData) {
   const auto supported = [](const material::Hyperelastic& law) {
     const auto tests = disturbed(tests_of(law), 0.01);
@@ -147,7 +147,7 @@ TEST(MaterialFit, ATermsStressAndItsDerivative) {
        {DeformationMode::uniaxial, DeformationMode::equibiaxial, DeformationMode::planar}) {
     for (const double alpha : {-6.0, 0.3, 2.0, 11.0}) {
       for (const double stretch : {0.6, 1.0, 2.5}) {
-        // The share 1 of a shear modulus of 1 Pa: mu = 2/alpha.
+        // A term with the whole of a shear modulus of 1 Pa: mu = 2/alpha.
         const auto law =
             material::ogden({{2.0 / alpha, alpha}}, material::OgdenConvention::mu_over_alpha);
         const TermStress found = term_stress(mode, stretch, alpha);

@@ -1,4 +1,4 @@
-// Named parameters of any model, and records of motion.
+// Fits of named parameters of any model, and records of motion.
 #include "sinew/identify/parameter_fit.hpp"
 
 #include <cmath>
@@ -57,7 +57,7 @@ TEST(ParameterFit, IntervalsCoverAsTheySay) {
       inside[k] += p.interval_lower <= truth && truth <= p.interval_upper ? 1 : 0;
     }
   }
-  // 380 +- 4.4 expected of each; three standard errors.
+  // 380 +- 4.4 expected for each; within three standard errors.
   for (const int count : inside) EXPECT_NEAR(count, 380, 14);
 }
 
@@ -86,7 +86,7 @@ TEST(ParameterFit, SolutionsOnBoundsAreExact) {
   const ParameterFit bounded = fit_parameters(decay_model(), data, parameters);
   EXPECT_TRUE(bounded.parameters[1].at_bound);
   EXPECT_EQ(bounded.values[1], 1.2);
-  // The best of the others with the rate held there.
+  // The optimum of the other parameters with the rate fixed at its bound.
   parameters[1] = {"rate", 1.2, 0.0, 10.0, "", true};
   const ParameterFit held = fit_parameters(decay_model(), data, parameters);
   EXPECT_NEAR(bounded.cost, held.cost, 1e-9 * held.cost);
@@ -95,7 +95,7 @@ TEST(ParameterFit, SolutionsOnBoundsAreExact) {
 }
 
 TEST(ParameterFit, TellsDirectionsThatDataDoNotDetermine) {
-  // Only the product of size and gain shows.
+  // Only the product of size and gain affects the data.
   const auto predict = [](const VectorX& p) { return decay(VectorX{{p[0] * p[3], p[1], p[2]}}); };
   std::vector<Parameter> parameters = kParameters;
   parameters.push_back({"gain", 1.0, 0.0, 10.0});
@@ -113,7 +113,7 @@ TEST(ParameterFit, TellsDirectionsThatDataDoNotDetermine) {
 }
 
 TEST(ParameterFit, ManyStartsFindTheDeeperMinimum) {
-  // A frequency has a minimum near each of its aliases.
+  // The cost has a local minimum near each alias of the frequency.
   const auto predict = [](const VectorX& p) -> VectorX {
     return kTimes.unaryExpr([&](double t) { return std::sin(p[0] * t); });
   };

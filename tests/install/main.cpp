@@ -1,5 +1,5 @@
-// Uses the library as an outside program would: by its installed headers and targets alone. Built
-// twice, with and without the vector registers that the library uses.
+// Uses the library as an external program would, through its installed headers and targets only.
+// Built twice, with and without the vector instructions that the library uses.
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -22,7 +22,7 @@ void throws_the_librarys_errors() {
   }
 }
 
-// Eigen's objects are made on one side of the boundary, resized and read on the other.
+// Eigen objects are created on one side of the library boundary, and resized and read on the other.
 void solves_a_quadratic_program() {
   auto problem = sinew::qp::QuadraticProgram::sized(9, 0);
   problem.hessian.diagonal().setConstant(2.0);
@@ -46,8 +46,8 @@ void embeds_a_point() {
   expect(std::abs(found.weights[0] - 0.4) < 1e-12, "a barycentric weight");
 }
 
-// A block that stands on z = 0 with a cable along its edge: pulled, it bends towards the cable;
-// asked for the place where it went, the controller finds the tension again.
+// A block standing on z = 0 with a cable along its edge. When pulled, it bends towards the cable;
+// given the position reached, the controller finds the tension again.
 void bends_and_steers_a_beam() {
   using namespace sinew;
   sim::ModelBuilder builder;

@@ -1,4 +1,4 @@
-// A steady step allocates nothing, steered or not, on one thread or four.
+// In the steady state a step allocates nothing, controlled or not, on one thread or four.
 #include <memory>
 #include <string>
 #include <vector>
@@ -93,10 +93,10 @@ TEST_P(SteadyStep, OfContacts) {
     factorisation.threads = GetParam();
     sim::Simulation simulation(sinew::testing::block_on_plane(options).build(factorisation),
                                GetParam());
-    const auto land = [&] {  // sticks here and slides there
+    const auto land = [&] {  // some points stick, others slide
       for (int i = 0; i < 103; ++i) simulation.step();
     };
-    land();  // memory grows to the contacts that there are
+    land();  // buffers grow to the number of contacts
     simulation.reset();
     const long before = allocations();
     land();
@@ -105,7 +105,7 @@ TEST_P(SteadyStep, OfContacts) {
   }
 }
 
-// An arm with torques and a cable, told and steered.
+// An arm with torques and a cable, commanded or controlled.
 TEST_P(SteadyStep, OfConstantCurvatureArms) {
   for (const bool steered : {false, true}) {
     sim::StepSettings step;

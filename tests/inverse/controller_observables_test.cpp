@@ -1,4 +1,4 @@
-// What a controller adds to what can be observed.
+// Observables that a controller adds.
 #include "sinew/inverse/controller_observables.hpp"
 
 #include <cmath>

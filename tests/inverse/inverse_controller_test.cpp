@@ -29,7 +29,7 @@ InverseSettings to(const Vector3& place) {
   return {.tasks = {{0, Target::fixed(place), {1.0}}}, .actuators = {}};
 }
 
-// A place that the tip can be at: where two known tensions put it.
+// A reachable tip position, from two given tensions.
 Vector3 reachable(std::shared_ptr<const sim::Model> model) {
   Simulation simulation(std::move(model));
   simulation.command(0, sinew::testing::tension(1.5));
@@ -84,7 +84,7 @@ TEST(InverseController, MeetsAJumpWithinTheRateLimits) {
     for (int k = 0; k < 4; ++k) {
       const double moved =
           std::abs(simulation.actuator(k).motion - before[static_cast<std::size_t>(k)]);
-      EXPECT_LE(moved, 0.0002 * 1.05) << "step " << i;  // what the linearisation cannot foresee
+      EXPECT_LE(moved, 0.0002 * 1.05) << "step " << i;  // error of the linearisation
       before[static_cast<std::size_t>(k)] = simulation.actuator(k).motion;
     }
   }
@@ -116,17 +116,17 @@ TEST(InverseController, HoldsStillWhereTheTargetIsOutOfReach) {
 TEST(StepDamping, GrowsWhereTheLinearisationMisleadsAndShrinksWhereItHolds) {
   StepDamping damping;
   EXPECT_EQ(damping.value(), 1.0);
-  damping.review(1.0, 0.5, 0.5, 1e-12);  // as foreseen: nothing to let go of
+  damping.review(1.0, 0.5, 0.5, 1e-12);  // as predicted: nothing to reduce
   EXPECT_EQ(damping.value(), 1.0);
   damping.review(1.0, 0.5, 1.2, 1e-12);  // worse than before
   EXPECT_EQ(damping.value(), 4.0);
-  damping.review(1.0, 0.5, 0.9, 1e-12);  // a fifth of what was foreseen
+  damping.review(1.0, 0.5, 0.9, 1e-12);  // a fifth of the predicted decrease
   EXPECT_EQ(damping.value(), 16.0);
-  damping.review(1.0, 0.5, 0.7, 1e-12);  // neither good nor bad
+  damping.review(1.0, 0.5, 0.7, 1e-12);  // in between
   EXPECT_EQ(damping.value(), 16.0);
   damping.review(1.0, 0.5, 0.55, 1e-12);
   EXPECT_EQ(damping.value(), 8.0);
-  damping.review(1.0, 1.0, 1.0, 1e-12);  // at rest: nothing to judge by
+  damping.review(1.0, 1.0, 1.0, 1e-12);  // at rest: no information
   EXPECT_EQ(damping.value(), 8.0);
   damping.set(1.0);
   EXPECT_EQ(damping.value(), 1.0);
@@ -150,8 +150,8 @@ TEST(InverseController, KeepsLimitsOfTensionAndStroke) {
 
 TEST(InverseController, SaysWhenLimitsContradictEachOther) {
   BeamOptions options;
-  options.tension = {.min = 3.0, .max = 4.0};          // pulls by several millimetres,
-  options.displacement = {.min = -1e-5, .max = 1e-5};  // which the strokes forbid
+  options.tension = {.min = 3.0, .max = 4.0};          // requires several millimetres,
+  options.displacement = {.min = -1e-5, .max = 1e-5};  // which the stroke forbids
   Simulation simulation(beam(options));
   InverseController controller(simulation, to({0.099, 0.0, 0.0}));
   controller.step();
@@ -234,7 +234,7 @@ TEST(InverseController, BadSettingsAreErrors) {
   EXPECT_EQ(kind_of([&] { InverseController c(still, to({0.1, 0, 0})); }), ErrorKind::no_actuators);
 }
 
-// The tensions along each cable obey Coulomb's law while the controller chooses the first one.
+// Along each cable the tensions obey Coulomb's law while the controller chooses the first one.
 TEST(InverseController, ReachesItsTargetThroughFriction) {
   constexpr double kFriction = 0.3;
   const auto model = beam({.friction = kFriction});
@@ -248,7 +248,7 @@ TEST(InverseController, ReachesItsTargetThroughFriction) {
     for (int via = 0; via < model->cable(cable)->via_count(); ++via) {
       const auto k = static_cast<std::size_t>(via);
       const double turn = model->cable(cable)->turn(simulation.configuration(), via);
-      // The limits are those of the configuration in which the step was linearised.
+      // The friction limits are those of the configuration at which the step was linearised.
       const double slope = std::exp(kFriction * turn) * (1.0 + 1e-4);
       EXPECT_LE(tensions[k], tensions[k + 1] * slope + 1e-9) << cable << ' ' << via;
       EXPECT_LE(tensions[k + 1], tensions[k] * slope + 1e-9) << cable << ' ' << via;
@@ -258,7 +258,7 @@ TEST(InverseController, ReachesItsTargetThroughFriction) {
   EXPECT_GT(largest_drop, 1e-3);
 }
 
-// Pressed on a wall by one cable and bent along it by another.
+// Tip position of a beam that one cable presses on a wall and another one bends along it.
 Vector3 reachable_on_the_wall(std::shared_ptr<const sim::Model> model) {
   Simulation simulation(std::move(model));
   const auto pull = [&](int cable, double most) {
@@ -283,8 +283,8 @@ class OnAWall : public ::testing::TestWithParam<std::tuple<sim::Method, double>>
   }
 };
 
-// The target is the position of a robot that touches: a controller that knew nothing of the wall
-// would push into it without end.
+// The target is a tip position in contact: a controller that ignored the wall would push into it
+// without end.
 TEST_P(OnAWall, ReachesWhatIsReachedByTouching) {
   const auto model = this->model();
   const Vector3 goal = reachable_on_the_wall(model);

@@ -1,4 +1,4 @@
-// The program of a closed loop's step against the pseudo-inverse, and against other choices.
+// The program of a closed loop's step, against the pseudo-inverse and against other choices.
 #include "sinew/inverse/rate_program.hpp"
 
 #include <limits>
@@ -38,7 +38,8 @@ struct Case {
   RateLimits limits;
 };
 
-// With more actuators than directions, of all changes that serve the one of least energy.
+// With more actuators than task directions, the change is the one of least energy among all that
+// achieve the task.
 TEST(RateProgram, WithoutLimitsIsThePseudoInverse) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     Case one(seed);
@@ -80,7 +81,7 @@ TEST(RateProgram, WithinLimitsNoOtherChoiceIsBetter) {
   }
 }
 
-// Efforts come back within their limits, whatever motions may do.
+// Effort limits take priority over motion limits.
 TEST(RateProgram, EffortsComeBeforeMotions) {
   Case one(3);
   one.limits.effort.setConstant(2.0);

@@ -17,7 +17,7 @@ sim::Command tension(double newtons) {
   return {sim::CommandKind::effort, sim::Signal::constant(newtons)};
 }
 
-// Cables that end in the second body, which nothing but the weld holds.
+// The cables end in the second body, which is held by the weld only.
 TEST(WeldControl, SteersTheSecondBodyThroughTheFirst) {
   const auto model = cut_beam({.cables = 3});
   Simulation reference(model);

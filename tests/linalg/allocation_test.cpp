@@ -1,4 +1,4 @@
-// Counts every allocation of the program: a numeric phase must not allocate.
+// Counts every allocation of the program: the numeric phase must not allocate.
 #include <atomic>
 #include <cstdlib>
 #include <memory>
@@ -26,7 +26,8 @@ void* counted(std::size_t size, std::size_t alignment) {
 
 }  // namespace
 
-// GCC 12 at -O1 sees free() beside an inlined operator new and does not see that both are replaced.
+// GCC 12 at -O1 warns about free() next to an inlined operator new: it does not notice that both
+// are replaced.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 #endif

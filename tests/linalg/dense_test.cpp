@@ -22,7 +22,7 @@ MatrixX symmetric(Eigen::Index size, unsigned seed) {
   return a + a.transpose();
 }
 
-// By rounding: sums of up to 300 products of numbers near one.
+// Rounding of sums of up to 300 products of numbers near one.
 constexpr double kRounding = 1e-12;
 
 TEST(Dense, EigenvaluesAndVectorsDiagonalise) {
@@ -56,7 +56,8 @@ TEST(Dense, SingularVectorsComeThinAndFull) {
     EXPECT_EQ(thin_v.v.cols(), least);
     EXPECT_EQ(full_u.u.cols(), rows);
     EXPECT_EQ(full_v.v.cols(), columns);
-    // A^T u = s v, A v = s u: |A^T u| = |A v| = s; the rest of a full basis is the null space.
+    // A^T u = s v and A v = s u, so |A^T u| = |A v| = s. The other columns of a full basis span the
+    // null space.
     for (Eigen::Index k = 0; k < least; ++k) {
       EXPECT_NEAR((a.transpose() * thin_u.u.col(k)).norm(), thin_u.values[k], kRounding);
       EXPECT_NEAR((a * thin_v.v.col(k)).norm(), thin_v.values[k], kRounding);
@@ -86,7 +87,7 @@ TEST(Dense, UpperFactorIsACholeskyFactorOfTheProducts) {
   EXPECT_TRUE(r.isUpperTriangular(0.0));
 }
 
-// Penrose's four conditions, also where the rank is short.
+// Penrose's four conditions, rank-deficient matrices included.
 TEST(Dense, PseudoInverse) {
   MatrixX a = random_matrix(7, 4, 9);
   for (const bool deficient : {false, true}) {

@@ -41,7 +41,7 @@ double relative_error(const MatrixX& found, const MatrixX& expected) {
   return found.size() == 0 ? 0 : (found - expected).norm() / (expected.norm() + 1e-300);
 }
 
-/// Compares everything that a factorisation answers with dense LU of the same matrix.
+/// Compares all results of a factorisation with dense LU of the same matrix.
 void expect_agrees_with_dense(Factorisation& factorisation, const BlockSystem& system,
                               double tolerance) {
   const MatrixX a = system.dense_matrix();
@@ -49,7 +49,7 @@ void expect_agrees_with_dense(Factorisation& factorisation, const BlockSystem& s
   const VectorX b = system.dense_right();
   const Eigen::PartialPivLU<MatrixX> lu(a);
   MatrixX w(h.rows(), h.rows());
-  if (h.rows() > 0) w = h * lu.solve(h.transpose());  // Eigen 3.4 does not solve for no columns
+  if (h.rows() > 0) w = h * lu.solve(h.transpose());  // Eigen 3.4 cannot solve for zero columns
   EXPECT_LT(relative_error(factorisation.compliance(), w), tolerance);
   EXPECT_EQ(factorisation.compliance(), factorisation.compliance().transpose());
   EXPECT_LT(relative_error(factorisation.free_motion(), h * lu.solve(b)), tolerance);
@@ -78,7 +78,7 @@ TEST_P(RandomSystems, AgreeWithDense) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     RandomSettings random;
     random.nodes = nodes;
-    random.cliques = seed % 3 == 0 ? nodes / 2 : 2 * nodes;  // sparse ones fall to pieces
+    random.cliques = seed % 3 == 0 ? nodes / 2 : 2 * nodes;  // sparse graphs are disconnected
     random.clique_size = 2 + static_cast<int>(seed % 4);
     random.rows = static_cast<int>(seed * 5 % 17) * (seed % 5 == 0 ? 0 : 1);
     random.row_density = seed % 4 == 0 ? 1.0 : (seed % 4 == 1 ? 0.02 : 0.3);
@@ -122,7 +122,7 @@ TEST_P(RandomSystems, IndefiniteOnesHaveTheRightInertia) {
   EXPECT_GT(indefinite, 0);
 }
 
-/// Of the transient rows all, none, and some groups, against the inverse.
+/// Condenses all, none and some groups of the transient rows and compares with the inverse.
 void expect_transient_agrees(Factorisation& factorisation, const BlockSystem& system,
                              const BorderPattern& transient, const std::vector<double>& values) {
   const Eigen::PartialPivLU<MatrixX> lu(system.dense_matrix());
@@ -158,7 +158,7 @@ void expect_transient_agrees(Factorisation& factorisation, const BlockSystem& sy
       }
     }
     factorisation.condense_transient(chosen, own);
-    if (count == 0) continue;  // none may come; Eigen's dense solution is not for nothing
+    if (count == 0) continue;  // allowed; Eigen cannot solve for zero columns
     const MatrixX solved = lu.solve(rows.transpose());
     MatrixX coupling(count, border.rows() + 1);
     coupling << solved.transpose() * border.transpose(), solved.transpose() * right;
@@ -187,7 +187,7 @@ TEST_P(RandomSystems, TransientRowsAgreeWithDense) {
     random.rows = static_cast<int>(seed % 5);
     random.seed = seed * 100 + static_cast<unsigned>(nodes);
     const BlockSystem system = testing::random_system(random);
-    // Points on one node, or on several.
+    // Points on one node or on several.
     BorderPattern transient;
     std::vector<double> values;
     for (int g = 0; g < std::min(nodes, 20); ++g) {
@@ -378,7 +378,7 @@ TEST(Factorisation, PlanInUseIsShared) {
     for (const auto& plan : plans) EXPECT_EQ(plan, plans[0]);
 
     BorderPattern fewer;
-    fewer.row_start.push_back(0);  // a row that touches nothing
+    fewer.row_start.push_back(0);  // an empty row
     EXPECT_NE(analyse(system.pattern, fewer), plans[0]);
     EXPECT_NE(analyse(system.pattern, system.border, settings_of("eigen-ldlt")), plans[0]);
     FactorisationSettings two_threads;
@@ -421,7 +421,7 @@ TEST(Factorisation, RejectsWhatDoesNotFit) {
   EXPECT_EQ(kind_of(pattern, system.border, {}), ErrorKind::index_out_of_range);
 }
 
-// Factorisations of one plan lend each other the memory of their factors.
+// Factorisations of one plan share the memory of their factors.
 
 BlockSystem system_of(unsigned seed) {
   testing::RandomSettings random;
@@ -431,7 +431,7 @@ BlockSystem system_of(unsigned seed) {
   return testing::random_system(random);
 }
 
-/// W and A^-1 b of a system whose pattern the plan is of.
+/// W and A^-1 b of a system with the plan's pattern.
 struct Answer {
   MatrixX compliance;
   VectorX motion;
@@ -470,9 +470,9 @@ TEST(FactorMemory, OfFactorisationsInTurnHoldsOneFactor) {
   const std::size_t factor = first->bytes() - empty;
   EXPECT_GE(factor, sizeof(double) * plan->factor_entries());
   first->release();
-  first->release();  // once more does no harm
+  first->release();  // a second call does no harm
   EXPECT_EQ(first->bytes(), empty);
-  EXPECT_EQ(first->compliance(), alone.compliance);  // results stay
+  EXPECT_EQ(first->compliance(), alone.compliance);  // results are kept
   const Answer other(*second, softer);
   VectorX x(system.size());
   const std::span<double> solution(x.data(), static_cast<std::size_t>(x.size()));
@@ -481,7 +481,7 @@ TEST(FactorMemory, OfFactorisationsInTurnHoldsOneFactor) {
   EXPECT_THROW(first->solve_with_effort(effort, solution), Error);
   EXPECT_THROW(first->condense_transient(system.border, system.rows), Error);
   second->release();
-  EXPECT_TRUE(Answer(*first, system) == alone);  // where the other one's factor stood
+  EXPECT_TRUE(Answer(*first, system) == alone);  // in the memory of the other one's factor
   first->release();
   EXPECT_TRUE(Answer(*second, softer) == other);
 }

@@ -1,4 +1,4 @@
-// Symmetric indefinite matrices of chains against dense solutions.
+// Symmetric indefinite matrices with chain structure, against dense solutions.
 #include "sinew/linalg/frontal_factorisation.hpp"
 
 #include <random>
@@ -41,9 +41,9 @@ class Random {
   std::uniform_real_distribution<double> uniform_{-1.0, 1.0};
 };
 
-/// Optimality conditions of a chain: `knots` of `states` variables, each pair joined by `rows`
-/// equations (zero diagonal), curvature of either sign; `free`: one variable meets all equations.
-/// Unknowns are shuffled.
+/// KKT matrix of a chain of `knots` with `states` variables each. `rows` equations (zero diagonal)
+/// join each pair of neighbours; the curvature has either sign. With `free`, one more variable
+/// occurs in all equations. The unknowns are shuffled.
 Case chain(Random& random, int knots, int states, int rows, bool free, double spread) {
   const int variables = knots * states + (free ? 1 : 0);
   Case result{variables + (knots - 1) * rows, {}, {}};
@@ -58,7 +58,7 @@ Case chain(Random& random, int knots, int states, int rows, bool free, double sp
   for (int k = 0; k < knots; ++k) {
     for (int i = 0; i < states; ++i) {
       for (int j = 0; j <= i; ++j) add(k * states + i, k * states + j, random());
-      add(k * states + i, k * states + i, std::pow(10.0, spread * random()));  // a second time
+      add(k * states + i, k * states + i, std::pow(10.0, spread * random()));  // a duplicate entry
     }
     if (k == 0) continue;
     for (int r = 0; r < rows; ++r) {
@@ -82,7 +82,7 @@ void expect_solves(const Case& matrix, const char* what) {
   EXPECT_LT((product - right).norm(), 1e-13 * right.norm()) << what;
   VectorX x = right;
   factorisation.solve(x);
-  // Backward error: what a stable method leaves whatever the condition.
+  // A stable method has a small backward error whatever the condition number.
   EXPECT_LT((dense * x - right).norm(), 1e-10 * (dense.norm() * x.norm() + right.norm())) << what;
   const VectorX eigenvalues = symmetric_eigenvalues(dense);
   EXPECT_EQ(factorisation.negative(), (eigenvalues.array() < 0.0).count()) << what;
@@ -101,18 +101,18 @@ TEST(FrontalFactorisation, SolvesChainsAndCountsNegativeEigenvalues) {
 TEST(FrontalFactorisation, TakesLevelsOneByOne) {
   Random random(8);
   const Case matrix = chain(random, 30, 4, 3, false, 0.0);
-  // A knot and the equations behind it are a level each, or nearly.
+  // A knot, and the equations after it, take about one level each.
   EXPECT_GE(FrontalFactorisation(matrix.size, matrix.entries).levels(), 45);
   const Case bound = chain(random, 60, 4, 3, true, 0.0);
   EXPECT_GE(FrontalFactorisation(bound.size, bound.entries).levels(), 90);
 }
 
 TEST(FrontalFactorisation, WaitsWithPivotsThatAreTooSmall) {
-  // No diagonal at all: a path whose only perfect matching pairs neighbours, 0-1, 2-3, ...
+  // Zero diagonal: a path whose only perfect matching pairs neighbours, 0-1, 2-3, ...
   Case path{8, {}, {}};
   for (int i = 0; i < 7; ++i) path.add(i + 1, i, i % 2 == 0 ? 1.0 : 0.5);
   expect_solves(path, "path");
-  // The first level's own pivot is 1e-12 of its column.
+  // The pivot of the first level is 1e-12 of its column.
   Case small = path;
   small.add(0, 0, 1e-12);
   expect_solves(small, "small");
@@ -140,7 +140,7 @@ TEST(FrontalFactorisation, KnowsSingularMatrices) {
   EXPECT_FALSE(FrontalFactorisation(3, matrix.entries).factor(matrix.values));
   matrix.values[2] = 4.1;
   EXPECT_TRUE(FrontalFactorisation(3, matrix.entries).factor(matrix.values));
-  // Two equations that say the same.
+  // A repeated equation.
   Random random(2);
   Case twice = chain(random, 4, 3, 1, false, 0.0);
   const int row = twice.size++;

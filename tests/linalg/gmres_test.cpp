@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kSize = 40;
 
-// Near the unit matrix by a part of rank 6, and not symmetric.
+// The unit matrix plus an unsymmetric part of rank 6.
 MatrixX near_unit() {
   const auto wave = [](double rate) {
     return MatrixX(MatrixX::NullaryExpr(kSize, 6, [=](Eigen::Index i, Eigen::Index j) {

@@ -28,7 +28,7 @@ struct BlockSystem {
 
   int size() const { return 3 * pattern.nodes; }
 
-  /// Adds a 3x3 block at (i, j) and, by symmetry, its transpose at (j, i); i == j adds once.
+  /// Adds a 3x3 block at (i, j) and its transpose at (j, i); for i == j it is added once.
   void add(int i, int j, const Matrix3& block) {
     double* to = matrix.data() + kBlockStride * pattern.find(i, j);
     const Matrix3 lower = i >= j ? block : Matrix3(block.transpose());

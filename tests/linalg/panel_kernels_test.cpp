@@ -10,7 +10,7 @@
 namespace sinew::linalg {
 namespace {
 
-/// Rows in a column-major panel with room behind them, which may hold what kernels leave there.
+/// Rows in a column-major panel with padding, which kernels may overwrite.
 struct PanelRows {
   PanelRows(int rows, int columns, long leading, double rate)
       : height(rows),
@@ -35,7 +35,7 @@ Product product_of(PanelRows& a, PanelRows& b) {
   return {a.values.data(), a.stride, b.values.data(), b.stride, a.width, b.height};
 }
 
-// Columns that lie far apart are copied before they are multiplied, others are not.
+// Kernels copy columns that are far apart in memory before they multiply them.
 TEST(PanelKernels, ProductsAgreeWithEigensInEveryMode) {
   for (const int rows : {5, 131}) {
     for (const int columns : {51, 201}) {
@@ -79,7 +79,7 @@ TEST(PanelKernels, ProductsHaveTheSameBitsHoweverTheyAreCutAndStored) {
   }
 }
 
-/// [A; B] with A indefinite or not, factorised: L S L^T is A, and (B L^-T S) S L^T is B.
+/// Factorises [A; B], A definite or indefinite: L S L^T is A, and (B L^-T S) S L^T is B.
 void expect_factorised(int columns, int below, double shift) {
   const int height = columns + below;
   const long leading = (height + 15) / 8 * 8;

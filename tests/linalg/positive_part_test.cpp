@@ -17,8 +17,8 @@ TEST(PositivePart, KeepsPositiveEigenpairsAndDropsTheOthers) {
     const Matrix3 part = positive_part(m);
     const Eigen::SelfAdjointEigenSolver<Matrix3> left(part), rest(part - m);
     EXPECT_GE(left.eigenvalues().minCoeff(), -1e-14);
-    EXPECT_GE(rest.eigenvalues().minCoeff(), -1e-14);             // never less than the matrix
-    EXPECT_LE((part * (part - m)).cwiseAbs().maxCoeff(), 1e-14);  // and nearest to it
+    EXPECT_GE(rest.eigenvalues().minCoeff(), -1e-14);             // not below the matrix
+    EXPECT_LE((part * (part - m)).cwiseAbs().maxCoeff(), 1e-14);  // and the nearest such matrix
   }
 }
 

@@ -11,7 +11,7 @@
 namespace sinew::linalg {
 namespace {
 
-constexpr std::size_t kPadding = 7;  // of each take()
+constexpr std::size_t kPadding = 7;  // per take()
 
 bool on_cache_line(const double* pointer) {
   return reinterpret_cast<std::uintptr_t>(pointer) % 64 == 0;

@@ -13,7 +13,7 @@ namespace {
 
 using testing::BlockSystem;
 
-/// Points of so many nodes, in an order that is not that of the nodes.
+/// Points on the given number of nodes, in an order unlike that of the nodes.
 struct ManyPoints {
   BorderPattern pattern;
   std::vector<double> values;
@@ -54,7 +54,7 @@ Condensed condense(Factorisation& factorisation, const ManyPoints& points, int b
           factorisation.transient_coupling().topLeftCorner(points.rows(), border + 1)};
 }
 
-/// So many points that they are taken in several chunks.
+/// Enough points that they are processed in several chunks.
 void expect_many_points(const BlockSystem& system, int points) {
   const ManyPoints forward(system.pattern.nodes, points, false);
   const ManyPoints backward(system.pattern.nodes, points, true);

@@ -1,5 +1,5 @@
-// Hyperelastic laws: every energy, stress and tangent against differences, coefficients against
-// what they are known to mean, stability against where it is known to end.
+// Hyperelastic laws: energies, stresses and tangents against differences, coefficients against
+// their known meaning, stability against its known limit.
 #include "sinew/material/hyperelastic.hpp"
 
 #include <cmath>
@@ -146,7 +146,8 @@ TEST_P(EveryEnergy, TangentIsTheDerivativeOfTheStress) {
         const double scale = 1.0 + difference.norm();
         for (int r = 0; r < 3; ++r) {
           for (int c = 0; c < 3; ++c) {
-            // Near equal stretches the limit stands in for the quotient: 1e-4 apart, 1e-8 off.
+            // Near equal stretches the limit replaces the quotient: stretches 1e-4 apart give an
+            // error of 1e-8.
             EXPECT_NEAR(a.m[3 * r + c][3 * k + l][4], difference(r, c), 2e-7 * scale);
           }
         }
@@ -173,7 +174,7 @@ TEST_P(EveryEnergy, TheProjectionIsTheNearestPositiveOne) {
                              spectrum.vectors().transpose();
     indefinite += spectrum.values().minCoeff() < -1e-6 ? 1 : 0;
     EXPECT_LT((projected - expected).norm(), 1e-9 * (1.0 + a.norm()));
-    Eigen::Matrix<double, 9, 3> spins;  // W F for turns about the axes
+    Eigen::Matrix<double, 9, 3> spins;  // W F for spins about the axes
     for (int k = 0; k < 3; ++k) {
       const Matrix3 spin = cross_matrix(Vector3::Unit(k)) * f;
       for (int r = 0; r < 3; ++r) {
@@ -238,7 +239,7 @@ INSTANTIATE_TEST_SUITE_P(Laws, EveryEnergy, testing::ValuesIn(laws()),
                          [](const auto& tested) { return tested.param.name; });
 
 TEST(Hyperelastic, StressesAreThoseOfTextbooks) {
-  // Treloar, The Physics of Rubber Elasticity, 1975: neo-Hookean and Mooney-Rivlin in closed form.
+  // Neo-Hookean and Mooney-Rivlin in closed form (Treloar, The Physics of Rubber Elasticity, 1975).
   const double mu = 0.4, c10 = 0.15, c01 = 0.05;
   for (const double l : {0.5, 0.9, 1.0, 1.5, 4.0}) {
     EXPECT_NEAR(nominal_stress(neo_hookean(mu), DeformationMode::uniaxial, l),
@@ -269,7 +270,7 @@ TEST(Hyperelastic, ArrudaBoyceIsItsSeries) {
 }
 
 TEST(Hyperelastic, BothReadingsOfOgdensModuli) {
-  // Ecoflex 00-50: the sum of mu is the initial shear modulus in one reading only.
+  // Ecoflex 00-50: the sum of mu is the initial shear modulus under one convention only.
   const std::vector<OgdenTerm> terms = {{107.9e3, 1.55}, {21.47, 7.86}, {-87.1e3, -1.91}};
   const Hyperelastic as_sum = ogden(terms, OgdenConvention::two_mu_over_alpha_squared);
   EXPECT_NEAR(as_sum.shear_modulus(), 20.82e3, 5.0);
@@ -284,22 +285,23 @@ TEST(Hyperelastic, BothReadingsOfOgdensModuli) {
 }
 
 TEST(Hyperelastic, StabilityEndsWhereItIsKnownTo) {
-  // Ecoflex 00-30 as published, mu_3 > 0 with alpha_3 < 0, and with the sign that stabilises it.
+  // Ecoflex 00-30 as published, with mu_3 > 0 and alpha_3 < 0, and with the sign of mu_3 that
+  // stabilises it.
   const auto ecoflex = [](double third) {
     return ogden({{24.361e3, 1.7138}, {66.703, 7.0679}, {third, -3.3659}},
                  OgdenConvention::mu_over_alpha);
   };
   const auto [low, high] = stable_range(ecoflex(453.81), DeformationMode::uniaxial);
   EXPECT_NEAR(low, 0.31, 0.005);
-  // In tension it ends where the two equal lateral stretches t = l^-1/2 part:
-  // sum mu_p alpha_p t^alpha_p = 0.
+  // In tension, stability ends where the two equal lateral stretches t = l^-1/2 separate: sum mu_p
+  // alpha_p t^alpha_p = 0.
   const double t = 1.0 / std::sqrt(high);
   EXPECT_NEAR(24361 * 1.7138 * std::pow(t, 1.7138) + 66.703 * 7.0679 * std::pow(t, 7.0679) -
                   453.81 * 3.3659 * std::pow(t, -3.3659),
               0.0, 1.0);
   EXPECT_NEAR(high, 3.68, 0.01);
   EXPECT_EQ(stable_range(ecoflex(-453.81), DeformationMode::uniaxial), std::pair(0.1, 10.0));
-  // Yeoh with a falling end: W' changes its sign where 3 w_3 x^2 + 2 w_2 x + w_1 does.
+  // Yeoh with a negative last coefficient: W' changes sign where 3 w_3 x^2 + 2 w_2 x + w_1 does.
   EXPECT_LT(stable_range(yeoh({1.0, -0.1}), DeformationMode::uniaxial).second, 3.0);
   EXPECT_EQ(stable_range(neo_hookean(1.0), DeformationMode::planar), std::pair(0.1, 10.0));
 }

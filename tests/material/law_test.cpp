@@ -1,4 +1,4 @@
-/// One suite for every law: energy -> stress -> tangent.
+/// One test suite for every law: energy -> stress -> tangent.
 #include <cmath>
 
 #include <Eigen/LU>
@@ -20,7 +20,7 @@ struct Tested {
   static double energy(const Matrix3& f) { return at(f).energy[3]; }
   static Matrix3 stress(const Matrix3& f) { return lane_of(at(f).stress, 3); }
 
-  /// dP for dF = u b^T, column by column of the test gradient a.
+  /// dP for dF = u b^T.
   static Matrix3 exact(const Matrix3& f, const Vector3& u, const Vector3& b) {
     const Response response = at(f);
     const ExactTangent tangent = exact_tangent<law>(broadcast(f), moduli(), response);
@@ -61,7 +61,7 @@ TYPED_TEST(EveryLaw, StressIsTheDerivativeOfTheEnergy) {
 TYPED_TEST(EveryLaw, ExactTangentIsTheDerivativeOfTheStress) {
   constexpr double kStep = 1e-5;
   for (const auto& [name, f] : deformation_gradients()) {
-    // third derivatives grow as one over the square of the two smallest stretches' sum
+    // The third derivatives grow as the inverse square of the sum of the two smallest stretches.
     const double stiff = 1.0 / std::min(1.0, TypeParam::at(f).pair_sums[3]);
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) {
@@ -112,7 +112,8 @@ TEST(CorotationalLaw, HasNoStressUnderRotation) {
   }
 }
 
-/// psi = mu sum (s_i - 1)^2 + lambda/2 (sum s_i - 3)^2, by hand for one triple of stretches.
+/// psi = mu sum (s_i - 1)^2 + lambda/2 (sum s_i - 3)^2, computed by hand for one triple of
+/// stretches.
 TEST(CorotationalLaw, EnergyOfKnownStretches) {
   RandomMatrices random;
   const Matrix3 f = random.with_stretches(1.5, 1.0, 0.8);
@@ -121,7 +122,7 @@ TEST(CorotationalLaw, EnergyOfKnownStretches) {
   EXPECT_NEAR(Corotational::energy(inverted), kMu * (0.25 + 2.25) + 0.5 * kLambda * 1.0, 1e-12);
 }
 
-/// An inverted element is pushed back: the energy falls as the smallest stretch rises.
+/// An inverted element is pushed back: the energy decreases as the smallest stretch increases.
 TEST(CorotationalLaw, PushesInvertedElementsBack) {
   RandomMatrices random;
   const Matrix3 q = random.rotation(), w = random.rotation();

@@ -30,7 +30,7 @@ Reference reference(const Matrix3& f) {
 
 double pair_sums(const Vector3& s) { return (s[0] + s[1]) * (s[1] + s[2]) * (s[2] + s[0]); }
 
-/// A matrix of one of several kinds, from harmless to crushed and inverted.
+/// A matrix of one of several kinds, from benign to crushed and inverted.
 Matrix3 sample(int kind, RandomMatrices& random) {
   const auto tiny = [&] { return std::pow(10.0, 4.0 * random.uniform() - 4.0); };
   switch (kind) {
@@ -68,7 +68,8 @@ TEST(PolarDecomposition, AgreesWithSingularValuesOnManyMatrices) {
       const Reference expected = reference(given[lane]);
       const Matrix3 r = lane_of(polar.rotation, lane);
       const double size = expected.stretches[0];
-      // the rotation's condition: it turns by the change of F over the two smallest stretches' sum
+      // Condition of the rotation: it changes by the change of F over the sum of the two smallest
+      // stretches.
       const double gap = (expected.stretches[1] + expected.stretches[2]) / size;
       if (gap < 1e-9) continue;
       const double error = (r - expected.rotation).norm();
@@ -94,7 +95,7 @@ TEST(PolarDecomposition, IsExactAtModerateStretch) {
   }
 }
 
-/// Where R is not unique, it still is a proper rotation with a symmetric R^T F.
+/// Where R is not unique, the result is still a proper rotation with a symmetric R^T F.
 TEST(PolarDecomposition, StaysProperWhereItIsNotUnique) {
   RandomMatrices random;
   const Matrix3 q = random.rotation(), w = random.rotation();
@@ -116,7 +117,7 @@ TEST(PolarDecomposition, StaysProperWhereItIsNotUnique) {
             Matrix3::Identity());
 }
 
-/// A tetrahedron pushed through itself: the rotation does not jump.
+/// The rotation does not jump while a tetrahedron is inverted.
 TEST(PolarDecomposition, IsContinuousThroughInversion) {
   RandomMatrices random;
   const Matrix3 q = random.rotation(), w = random.rotation();
@@ -130,7 +131,7 @@ TEST(PolarDecomposition, IsContinuousThroughInversion) {
   }
 }
 
-/// On both sides of the switch to the singular value decomposition.
+/// Compares both sides of the switch to the singular value decomposition.
 TEST(PolarDecomposition, TheFallbackMeetsTheClosedForm) {
   RandomMatrices random;
   for (int k = 0; k < 500; ++k) {

@@ -1,4 +1,4 @@
-// Files that are cut, corrupted or lie about their sizes: always an Error, never a crash or a huge
+// Truncated or corrupt files, and files with false sizes: always an Error, never a crash or a huge
 // allocation.
 #include <algorithm>
 #include <random>
@@ -31,7 +31,7 @@ std::vector<std::filesystem::path> all_fixtures() {
   return paths;
 }
 
-/// Parses and checks; an Error is a good end, anything else that escapes fails the test.
+/// Parses and checks a file. An Error is a valid outcome; any other exception fails the test.
 bool survives(const std::string& bytes, const std::string& name) {
   try {
     Mesh mesh = parse_mesh(bytes, name);
@@ -85,7 +85,7 @@ const std::string kLegacyHead =
 struct Broken {
   std::string name, text;
   ErrorKind kind;
-  std::string part;  // of the message
+  std::string part;  // that the message must contain
 };
 
 class BrokenText : public testing::TestWithParam<Broken> {};
@@ -282,7 +282,7 @@ TEST(Codec, Base64RoundTripsAndJoinsRuns) {
     EXPECT_EQ(decode_base64(encode_base64("head") + " \n" + encode_base64(bytes), 1000),
               "head" + bytes);
   }
-  EXPECT_EQ(decode_base64("TWFu", 1000), "Man");  // RFC 4648's neighbourhood, known by heart
+  EXPECT_EQ(decode_base64("TWFu", 1000), "Man");  // in the style of RFC 4648, section 10
   EXPECT_FALSE(decode_base64("TWF", 1000));
   EXPECT_FALSE(decode_base64("T=Fu", 1000));
   EXPECT_FALSE(decode_base64("====", 1000));

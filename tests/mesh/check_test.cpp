@@ -1,4 +1,4 @@
-// What is a convention, what a defect, and how each is named.
+// Checks of meshes: which differences are conventions, which are defects, and how each is reported.
 #include "sinew/mesh/check.hpp"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ TEST(Check, PassesSoundMeshesUnchanged) {
 }
 
 TEST(Check, ReordersElementsOfTheOtherConvention) {
-  for (const std::size_t every : {1u, 3u}) {  // all of them, and a part
+  for (const std::size_t every : {1u, 3u}) {  // all of them, and a third
     Mesh mesh = small_block();
     const double sound = volume(mesh);
     int turned = 0;
@@ -56,7 +56,7 @@ TEST(Check, ReordersElementsOfTheOtherConvention) {
 }
 
 TEST(Check, TellsInvertedElementsFromReorderedOnes) {
-  // An inner node is pushed through the opposite faces of some of its elements.
+  // An inner node is displaced through the opposite faces of some of its elements.
   Mesh mesh = small_block();
   const NodeId inner = 1 + 4 * (1 + 4 * 1);
   mesh.nodes.row(inner) += Vector3(0.05, 0.05, 0.05).transpose();
@@ -115,7 +115,7 @@ TEST(Check, LetsUnusedNodesPassAndCountsThem) {
   Mesh mesh = one_tetrahedron();
   mesh.nodes.conservativeResize(6, 3);
   mesh.nodes.row(4) << 0.05, 0.05, 0.05;
-  mesh.nodes.row(5) = mesh.nodes.row(0);  // unused, so at the same place without harm
+  mesh.nodes.row(5) = mesh.nodes.row(0);  // unused, so the same position does no harm
   EXPECT_NO_THROW(check(mesh));
   EXPECT_EQ(describe(mesh).unused_nodes, 2);
 }
@@ -193,7 +193,7 @@ TEST(Check, RefusesHexahedraThatMeetTetrahedra) {
   EXPECT_EQ(defects.front().kind, ErrorKind::unsupported_element);
   EXPECT_NE(defects.front().message.find("(2 such in all)"), std::string::npos)
       << defects.front().message;
-  // Side by side without a common face they are sound but in two parts.
+  // Side by side without a common face they are valid, but form two parts.
   for (auto& nodes : mesh.tetrahedra) {
     for (NodeId& node : nodes) node += mesh.node_count();
   }

@@ -1,4 +1,4 @@
-// Points in elements: against brute force, on every kind of boundary, and outside.
+// Points in elements: against brute force, on every kind of boundary, and outside the mesh.
 #include "sinew/mesh/embedding.hpp"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ Vector3 position(const Mesh& mesh, const EmbeddedPoint& at) {
   return x;
 }
 
-/// Lowest element that holds the point, by trying all; -1 when none does.
+/// Lowest element that contains the point, by testing all; -1 if there is none.
 int brute_force_inside(const Mesh& mesh, const Vector3& point) {
   for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e) {
     const auto w = barycentric_weights(point, corners_of(mesh, e));
@@ -94,7 +94,7 @@ TEST(Embedding, KeepsPointsOnTheSurfaceDespiteRounding) {
   }
 }
 
-/// As files in millimetres keep it: in single precision, or in six decimal digits.
+/// The point as stored in files in millimetres: in single precision, or with six decimal digits.
 Vector3 single_precision(const Vector3& point) {
   return (1e3 * point).cast<float>().cast<double>() / 1e3;
 }
@@ -118,7 +118,7 @@ TEST_P(RoundedSurface, LiesOnTheMesh) {
     const Vector3 point = GetParam()(middle);
     const EmbeddedPoint at = embedder.locate(point, Outside::error, "p");
     EXPECT_EQ(at.distance, 0.0);
-    EXPECT_EQ(at.nodes.size(), 10U);  // moves as the curved face does
+    EXPECT_EQ(at.nodes.size(), 10U);  // follows the curved face
     Vector3 x = Vector3::Zero();
     for (std::size_t k = 0; k < at.nodes.size(); ++k) {
       x += at.weights[k] * mesh.nodes.row(at.nodes[k]).transpose();
@@ -158,11 +158,11 @@ TEST(Embedding, NamesThePointItsDistanceAndTheRemedy) {
 TEST(Embedding, ExtrapolatesAffinelyFromTheNearestElement) {
   const Mesh mesh = block({.size = {0.1, 0.1, 0.1}, .cells = {2, 2, 2}});
   const Embedder embedder(mesh);
-  const Vector3 point(0.12, 0.13, 0.14);  // nearest to a corner that one cube has
+  const Vector3 point(0.12, 0.13, 0.14);  // nearest to a corner of one cube only
   const EmbeddedPoint at = embedder.locate(point, Outside::nearest, "p");
   EXPECT_NEAR(at.distance, Vector3(0.02, 0.03, 0.04).norm(), 1e-15);
   EXPECT_LT(*std::min_element(at.weights.begin(), at.weights.end()), 0.0);
-  Matrix3 map;  // an affine motion of the nodes carries the point along
+  Matrix3 map;  // the point follows an affine motion of the nodes
   map << 1.1, 0.2, 0.0, -0.3, 0.9, 0.1, 0.0, 0.4, 1.2;
   Vector3 moved = Vector3::Zero();
   for (std::size_t k = 0; k < 4; ++k) {
@@ -172,7 +172,7 @@ TEST(Embedding, ExtrapolatesAffinelyFromTheNearestElement) {
 }
 
 TEST(Embedding, TakesTheMildestExtrapolationAmongEquallyNearElements) {
-  // Six elements meet at the edge and corners; the chosen one has the least negative weight.
+  // Six elements meet at this edge and at its ends; the chosen one has the least negative weight.
   const Mesh mesh = block({.size = {0.1, 0.1, 0.1}, .cells = {1, 1, 1}});
   const Embedder embedder(mesh);
   const Vector3 point(0.15, 0.14, 0.13);
@@ -189,7 +189,7 @@ TEST(Embedding, NeedsTetrahedra) {
   error_text(ErrorKind::no_volume_elements, [] { const Embedder embedder((Mesh())); });
 }
 
-/// Mean of f over an embedded point's nodes.
+/// Weighted mean of f over the nodes of an embedded point.
 template <typename F>
 double mean_of(const Mesh& mesh, const EmbeddedPoint& at, const F& f) {
   double sum = 0.0;
@@ -211,8 +211,8 @@ TEST(Spread, IsTheMeanOverTheBallAndKeepsItsCentre) {
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(mean_of(mesh, at, [&](const Vector3& x) { return x[axis]; }), centre[axis], 1e-14);
   }
-  // The mean of |x - c|^2 over a ball is 3/5 r^2; interpolation on the mesh adds a little (h^2/4 an
-  // axis at most), and a lattice of four steps along the radius has 3 % less.
+  // The mean of |x - c|^2 over a ball is 3/5 r^2. Interpolation on the mesh adds at most h^2/4 per
+  // axis, and a lattice with four steps along the radius is 3 % too low.
   const double moment =
       mean_of(mesh, at, [&](const Vector3& x) { return (x - centre).squaredNorm(); });
   EXPECT_NEAR(moment, 0.6 * radius * radius, 0.1 * 0.6 * radius * radius);
@@ -228,7 +228,7 @@ TEST(Spread, KeepsItsCentreBesideASurfaceAndIsThePointInACoarseMesh) {
     EXPECT_NEAR(mean_of(mesh, beside, [&](const Vector3& x) { return x[axis]; }), centre[axis],
                 1e-14);
   }
-  // Wholly inside one element: the same map from nodes as at the point.
+  // A ball inside one element has the same weights as its centre.
   const Vector3 inside = low + Vector3(0.0525, 0.055, 0.0575);
   const EmbeddedPoint point = embedder.locate(inside, Outside::error, "p");
   const EmbeddedPoint ball = embedder.spread(inside, 0.0004, Outside::error, "p");

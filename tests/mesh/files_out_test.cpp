@@ -131,7 +131,7 @@ TEST(WriteVtu, RoundTripsQuadraticTetrahedra) {
   EXPECT_EQ(back.nodes, mesh.nodes);
   EXPECT_EQ(back.tetrahedra, mesh.tetrahedra);
   EXPECT_EQ(back.quadratic, mesh.quadratic);
-  // Elements of the other ordering are turned, middle nodes with them.
+  // Elements with the other node order are reordered, together with their middle nodes.
   for (auto& t : mesh.quadratic) {
     std::swap(t[2], t[3]);
     std::swap(t[5], t[8]);

@@ -54,7 +54,7 @@ TEST(LineCuts, LeaveEachPieceInOneElement) {
   }
 }
 
-// A face of a distorted hexahedron, whose cut is known.
+// A face of a distorted hexahedron whose intersection is known.
 TEST(LineCuts, MeetBilinearFaces) {
   Mesh pair = block({.size = {0.02, 0.01, 0.01}, .cells = {2, 1, 1}}, Cells::hexahedra);
   for (Eigen::Index i = 0; i < pair.nodes.rows(); ++i) {

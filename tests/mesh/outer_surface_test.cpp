@@ -1,4 +1,5 @@
-// What is drawn of a mesh: triangles have the element behind them, and what is inside fills them.
+// The drawn part of a mesh: surface triangles with the element behind each, and an interior that
+// fills the surface.
 #include "sinew/mesh/outer_surface.hpp"
 
 #include <algorithm>
@@ -26,7 +27,7 @@ std::vector<std::vector<NodeId>> elements_of(const Mesh& mesh) {
   return result;
 }
 
-/// (vertices, 3) where a mesh's nodes are at x.
+/// (vertices, 3): positions of the vertices for node positions x.
 Points vertices_at(const OuterSurface& surface, const Interior& inside, const Points& x) {
   std::vector<Vector3> list;
   for (const NodeId node : surface.nodes) list.emplace_back(x.row(node).transpose());
@@ -43,7 +44,7 @@ Points vertices_at(const OuterSurface& surface, const Interior& inside, const Po
   return result;
 }
 
-/// m^3 of each of the tetrahedra.
+/// Volume of each tetrahedron, m^3.
 std::vector<double> volumes(const Interior& inside, const Points& x) {
   std::vector<double> result;
   for (std::size_t t = 0; t < inside.elements.size(); ++t) {
@@ -74,8 +75,8 @@ TEST_P(OuterSurfaceOf, HasTheTrianglesAndTheElementsBehindThem) {
   }
 }
 
-// Divergence theorem: the volume within the surface is that of all tetrahedra where these have no
-// gaps and do not overlap, and only then for any positions of the nodes.
+// Divergence theorem: if the tetrahedra have neither gaps nor overlaps, their total volume equals
+// the volume enclosed by the surface, for arbitrary node positions.
 TEST_P(OuterSurfaceOf, IsFilledByItsInteriorHoweverNodesMove) {
   const Mesh mesh = cylinder({.radius = 0.01, .height = 0.03, .rings = 3, .layers = 4}, GetParam());
   const OuterSurface surface = outer_surface(mesh);
@@ -113,7 +114,7 @@ TEST_P(OuterSurfaceOf, HasTetrahedraBetweenTheNodesOfTheirElement) {
     volume[static_cast<std::size_t>(inside.elements[t])] += parts[t];
     for (std::size_t k = 0; k < 4; ++k) {
       const std::size_t vertex = inside.tetrahedra[4 * t + k], outer = surface.nodes.size();
-      if (vertex >= outer + inside.nodes.size()) continue;  // a middle
+      if (vertex >= outer + inside.nodes.size()) continue;  // a centre vertex
       const NodeId node = vertex < outer ? surface.nodes[vertex] : inside.nodes[vertex - outer];
       ASSERT_TRUE(std::ranges::count(elements[static_cast<std::size_t>(inside.elements[t])], node));
     }

@@ -165,7 +165,7 @@ TEST(ReadMesh, MakesNoSetsOfCounters) {
   EXPECT_TRUE(parse_mesh(text, "ids.vtk").node_sets.empty());
 }
 
-// The meshes of published examples, where a checkout lies beside them; nothing otherwise.
+// Meshes of published examples; tested only if a checkout of them lies next to the repository.
 struct Published {
   std::string file;
   int nodes;

@@ -10,7 +10,7 @@
 namespace sinew::mesh {
 namespace {
 
-// A bar along x bent into an arc of `turn`; it closes on itself at a full turn.
+// A bar along x bent into an arc of `turn` radians; at a full turn it closes on itself.
 Points bent(const Points& rest, double length, double turn) {
   Points moved = rest;
   const double radius = length / turn;
@@ -29,12 +29,12 @@ TEST_P(SelfTouchTest, BarThatClosesOnItselfIsSeen) {
   EXPECT_FALSE(touch.find(mesh.nodes));
   constexpr double kTurn = 2.0 * std::numbers::pi;
   EXPECT_FALSE(touch.find(bent(mesh.nodes, 0.2, 0.98 * kTurn)));
-  // A little askew, so that no node falls on a face.
+  // Slightly skewed, so no node lies on a face.
   Points closed = bent(mesh.nodes, 0.2, 1.013 * kTurn);
   for (Eigen::Index i = 0; i < closed.rows(); ++i) closed(i, 1) += 1e-2 * mesh.nodes(i, 0);
   const auto found = touch.find(closed);
   ASSERT_TRUE(found);
-  // One end is in the other.
+  // One end penetrates the other.
   const double x = mesh.nodes(found->node, 0);
   EXPECT_TRUE(x < 0.02 || x > 0.18) << x;
   EXPECT_TRUE(touch.find(closed, 0.1));

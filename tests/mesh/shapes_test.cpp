@@ -1,4 +1,4 @@
-// Meshes of our own, their refinement, and picking parts of them.
+// Built-in shapes, their refinement, and selection of their parts.
 #include "sinew/mesh/shapes.hpp"
 
 #include <algorithm>
@@ -29,7 +29,8 @@ namespace {
 using test::error_text;
 using testing::HasSubstr;
 
-/// Sound, made in the positive order, closed, and its surface encloses its volume.
+/// Requires a valid, closed mesh with positively ordered elements whose surface encloses its
+/// volume.
 MeshReport require_sound(Mesh mesh) {
   check(mesh);
   EXPECT_EQ(mesh.notes.reordered_elements, 0);
@@ -61,8 +62,8 @@ TEST(Shapes, RoundSolidsHaveTheirVolume) {
   EXPECT_NEAR(
       require_sound(cylinder({.radius = 0.01, .height = 0.1, .rings = 3, .layers = 5})).volume,
       std::numbers::pi * 1e-4 * 0.1, 1e-15);
-  // A linear taper within straight prisms: V = pi h/3 (r0^2 + r0 r1 + r1^2) is met to second order
-  // in the layers, from the twisted faces of its tetrahedra.
+  // V = pi h/3 (r0^2 + r0 r1 + r1^2). The twisted faces of the tetrahedra give it to second order
+  // in the layer height only.
   const double taper = std::numbers::pi * 0.1 / 3 * (4e-4 + 2e-4 + 1e-4);
   EXPECT_NEAR(require_sound(cone({})).volume / taper, 1.0, 2e-3);
   const HollowCylinderShape tube{.around = 30};
@@ -82,7 +83,8 @@ TEST(Shapes, QuadraticTetrahedraFollowTheCircle) {
     on += std::abs(radius - 0.01) < 1e-12 ? 1 : 0;
   }
   EXPECT_GT(on, 3 * 12 + 2 * 12);
-  // A surface of four triangles a face on the arcs lies much nearer to the circle than 12 corners.
+  // With four triangles per curved face, the surface is much nearer to the circle than a polygon of
+  // 12 corners.
   const double volume = solid_moments(boundary_surface(mesh)).volume;
   EXPECT_NEAR(volume / (std::numbers::pi * 1e-4 * 0.02), 1.0, 0.015);
 }
@@ -110,8 +112,8 @@ TEST(Shapes, TheChamberIsAVoidOfItsVolume) {
 }
 
 struct HexahedraMeasures {
-  double volume = 0.0;          // as elements integrate it, m^3
-  double least_jacobian = 1.0;  // over its mean, at the points of integration
+  double volume = 0.0;          // m^3, by the elements' quadrature
+  double least_jacobian = 1.0;  // relative to its mean, at the quadrature points
 };
 
 HexahedraMeasures measure_hexahedra(const Mesh& mesh) {
@@ -132,7 +134,7 @@ HexahedraMeasures measure_hexahedra(const Mesh& mesh) {
 }
 
 TEST(Shapes, RoundSolidsOfHexahedraHaveTheirVolume) {
-  // Rings 2, 3, 4, 5: a square of 2, 4, 4, 6 cells a side.
+  // 2, 3, 4 and 5 rings have a core of 2, 4, 4 and 6 cells per side.
   for (const auto& [rings, around] : {std::pair(2, 8), {3, 16}, {4, 16}, {5, 24}}) {
     const Mesh mesh =
         cylinder({.radius = 0.01, .height = 0.1, .rings = rings, .layers = 5}, Cells::hexahedra);
@@ -140,7 +142,7 @@ TEST(Shapes, RoundSolidsOfHexahedraHaveTheirVolume) {
     EXPECT_NEAR(report.volume, std::numbers::pi * 1e-4 * 0.1, 1e-15) << rings;
     EXPECT_EQ(report.tetrahedra, 0);
     EXPECT_EQ(mesh.node_sets.at("side").size(), static_cast<std::size_t>(6 * around)) << rings;
-    // Nothing is flat: each cell's smallest Jacobian is a good part of its mean.
+    // No cell is degenerate: its smallest Jacobian is a good part of its mean.
     EXPECT_GT(measure_hexahedra(mesh).least_jacobian, 0.5);
   }
   EXPECT_NEAR(require_sound(hollow_cylinder({.around = 30}, Cells::hexahedra)).volume,
@@ -157,8 +159,8 @@ TEST(Shapes, AreOfGoodQuality) {
   EXPECT_GT(require_sound(hollow_cylinder({})).min_radius_ratio, 0.3);
 }
 
-constexpr double kBall = 4.0 / 3.0 * std::numbers::pi * 1e-6;  // of 10 mm, m^3
-constexpr double kTube = std::numbers::pi * 1e-4 * 0.03;       // 30 mm long, m^3
+constexpr double kBall = 4.0 / 3.0 * std::numbers::pi * 1e-6;  // m^3, radius 10 mm
+constexpr double kTube = std::numbers::pi * 1e-4 * 0.03;       // m^3, 30 mm long
 
 TEST(Shapes, BallsAndCapsulesHaveTheirVolume) {
   for (const int rings : {1, 2, 3, 4, 5}) {
@@ -204,8 +206,8 @@ TEST(Shapes, TheSurfaceOfABallIsOneOfItsSets) {
       for (const NodeId node : mesh.node_sets.at("bottom")) {
         EXPECT_LE(mesh.nodes(node, 2), -end + 1e-15);
       }
-      // Every node of the surface, also in the middle of an edge, has the same distance from the
-      // axis's segment; of quadratic elements the radius.
+      // All surface nodes, middle nodes included, have the same distance from the axis segment;
+      // with quadratic elements it equals the radius.
       const auto distance = [&](NodeId node) {
         const Vector3 x = mesh.nodes.row(node).transpose();
         return (x - Vector3(0.0, 0.0, std::clamp(x.z(), -end, end))).norm();
@@ -219,7 +221,7 @@ TEST(Shapes, TheSurfaceOfABallIsOneOfItsSets) {
 
 TEST(Shapes, AQuadraticBallIsRound) {
   const Mesh mesh = sphere({.radius = 0.01, .rings = 3}, Cells::quadratic);
-  const double volume = solid_moments(boundary_surface(mesh)).volume;  // four triangles a face
+  const double volume = solid_moments(boundary_surface(mesh)).volume;  // four triangles per face
   EXPECT_NEAR(volume / kBall, 1.0, 0.03);
 }
 
@@ -267,7 +269,7 @@ TEST(Shapes, TrunkHasBellowsAndRoomForCables) {
   EXPECT_LT(report.max_dihedral, 140.0);
   const Embedder embedder(mesh);
   EXPECT_EQ(embedder.locate({0, 0, 0.195}, Outside::error, "tip").distance, 0.0);
-  // Eight cables: the lines from 10 mm beside the axis to 2 mm, all inside.
+  // The lines of the cables, from 10 mm to 2 mm beside the axis, lie inside the mesh.
   for (int cable = 0; cable < 4; ++cable) {
     for (int k = 0; k <= 40; ++k) {
       const double z = 0.19 * k / 40, radius = 0.010 - 0.008 * z / 0.195;

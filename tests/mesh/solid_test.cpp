@@ -33,11 +33,11 @@ TEST(SolidMoments, OfABox) {
   expect_near(moments.second, second, 1e-12 * second.maxCoeff());
 }
 
-// Integrals of monomials over the unit simplex: x 1/24, x^2 1/60, x y 1/120.
+// Integrals over the unit simplex: x 1/24, x^2 1/60, x y 1/120.
 TEST(SolidMoments, OfATetrahedronUnderAnyLinearMap) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> number(-1.0, 1.0);
-  const Surface unit = boundary_surface(test::one_tetrahedron());  // of edges 0.1
+  const Surface unit = boundary_surface(test::one_tetrahedron());  // edges of 0.1
   for (int trial = 0; trial < 50; ++trial) {
     const Matrix3 map = Matrix3::NullaryExpr([&] { return number(random); });
     const Vector3 shift = Vector3::NullaryExpr([&] { return number(random); });
@@ -57,7 +57,7 @@ TEST(SolidMoments, OfATetrahedronUnderAnyLinearMap) {
 }
 
 TEST(SolidMoments, AddUp) {
-  // A box cut in two has the moments of its parts, shifted to their common centre.
+  // A box cut in two has the sum of its parts' moments, shifted to the common centre.
   const SolidMoments whole = solid_moments(box({0, 0, 0}, {3, 1, 2}));
   const SolidMoments left = solid_moments(box({0, 0, 0}, {1, 1, 2}));
   const SolidMoments right = solid_moments(box({1, 0, 0}, {2, 1, 2}));

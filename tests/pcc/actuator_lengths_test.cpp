@@ -1,4 +1,4 @@
-// Lengths of actuators along a bent segment and back.
+// Actuator lengths along a bent segment, and the inverse mapping.
 #include "sinew/pcc/actuator_lengths.hpp"
 
 #include <cmath>

@@ -80,7 +80,7 @@ TEST(ArmSimulation, LumpedMassesAreStiffAndExplicitStepsBlowUp) {
       linalg::symmetric_eigenvalues(equations.mass_matrix(VectorX::Constant(4, 0.1)))[0];
   EXPECT_GT(4.2e-3 / lowest, 1e3);  // 1/s
   const double step = 1e-3;
-  // Explicit: q' += h q'', q += h q' (symplectic Euler).
+  // Symplectic Euler: q' += h q'', q += h q'.
   VectorX q = VectorX::Constant(4, 0.1), rate = VectorX::Zero(4);
   bool blown = false;
   for (int i = 0; i < 100 && !blown; ++i) {
@@ -92,7 +92,7 @@ TEST(ArmSimulation, LumpedMassesAreStiffAndExplicitStepsBlowUp) {
   ArmSimulation simulation(arm, {.time_step = step, .integrator = Integrator::backward_euler});
   simulation.set_state(VectorX::Constant(4, 0.1), VectorX::Zero(4));
   for (int i = 0; i < 4000; ++i) simulation.step(VectorX::Zero(4));
-  EXPECT_LT(simulation.position().norm(), 0.5 * 0.2);  // a start of 0.2, lightly damped
+  EXPECT_LT(simulation.position().norm(), 0.5 * 0.2);  // from a norm of 0.2, lightly damped
 }
 
 TEST(ArmSimulation, SettlesWhereTheEquilibriumIs) {

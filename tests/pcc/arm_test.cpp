@@ -144,7 +144,7 @@ TEST(Pendulum, ShortStiffSegmentWithAMassIsOne) {
   settings.segments[1].stiffness = 1e3;
   settings.segments[1].damping = 0.0;
   ArmEquations equations(make(settings));
-  // With the second bend held straight, the first row of r is m l^2 theta'' + m g l sin theta.
+  // With the second bend held straight, the first entry of r is m l^2 theta'' + m g l sin theta.
   const double angle = 0.8;
   const VectorX r =
       equations.residual(VectorX{{angle, 0.0}}, VectorX{{1.3, 0.0}}, VectorX{{2.0, 0.0}});

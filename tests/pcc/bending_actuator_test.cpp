@@ -129,7 +129,7 @@ TEST(BendingActuator, EquilibriumBalancesAndIsStable) {
 
 TEST(BendingActuator, HeavyStandingActuatorFallsToOneSide) {
   BendingParameters p;
-  p.inclination = std::numbers::pi;  // stands
+  p.inclination = std::numbers::pi;  // upright
   p.modulus = BendingModulus(2e3);
   p.order.reset();
   const BendingActuator actuator(p);

@@ -15,7 +15,7 @@ const double kAngles[] = {-2.5, -0.7, -0.01, 0.02, 0.4, 1.3, 2.8, 6.2};
 
 BendingParameters under_water(std::optional<int> order) {
   BendingParameters p;
-  p.outer_radius = 9e-3;  // thicker on the far side
+  p.outer_radius = 9e-3;  // thicker wall on the far side
   p.filling_density = 1.2;
   p.surroundings_density = 1000.0;
   p.inclination = 0.6;
@@ -39,7 +39,7 @@ TEST(BendingEnergies, ExactOnesAgreeWithClosedForms) {
            (std::numbers::pi * (a * a + 0.25 * b * b) + inverse - 2.0 * std::numbers::pi);
   };
   for (const double theta : kAngles) {
-    if (std::abs(theta) < 0.1) continue;  // the closed forms cancel
+    if (std::abs(theta) < 0.1) continue;  // cancellation in the closed forms
     const BendingTerms terms = energies.at(theta);
     const double square = theta * theta;
     const double inertia = 2.0 * mass * l * l *
@@ -122,8 +122,8 @@ TEST(BendingEnergies, FifthOrderIsTheSeriesByHand) {
   EXPECT_NEAR(terms.gravity.value, net * p.gravity * l * lever, 1e-13 * net);
   const double inertia = 1.0 / 20.0 - std::pow(theta, 2) / 504.0 + std::pow(theta, 4) / 25920.0;
   EXPECT_NEAR(terms.inertia.value, mass * l * l * inertia, 1e-13 * mass * l * l);
-  // Moments of a disc about a line at the distance c: c^2 + R^2/4, c^3 + 3/4 c R^2,
-  // c^4 + 3/2 c^2 R^2 + R^4/8, c^5 + 5/2 c^3 R^2 + 5/8 c R^4 times its area.
+  // Moments of a disc about a line at the distance c, per area: c^2 + R^2/4, c^3 + 3/4 c R^2,
+  // c^4 + 3/2 c^2 R^2 + R^4/8, c^5 + 5/2 c^3 R^2 + 5/8 c R^4.
   const auto series = [&](double radius, double c) {
     const double r2 = radius * radius, k = kappa;
     return std::numbers::pi * r2 *

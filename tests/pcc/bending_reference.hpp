@@ -48,7 +48,7 @@ struct BruteForce {
   /// Position of a point on the arc of radius L/theta, in world axes. theta is not 0.
   Point place(double theta, double u, double height) const {
     const double radius = p.length / theta, angle = u * theta;
-    // Layer at `radius` from the centre of curvature, which lies towards x.
+    // The layer is at `radius` from the centre of curvature, which lies towards +x.
     const double x = radius - (radius + height) * std::cos(angle);
     const double axial = (radius + height) * std::sin(angle);
     const double s = std::sin(p.inclination), c = std::cos(p.inclination);

@@ -74,10 +74,10 @@ Matrix3 exponential(const Matrix3& a) {
   return result;
 }
 
-// exp of [F G; 0 0] h is [A B; 0 1] (Van Loan, IEEE Trans. Automatic Control 23, 1978).
+// exp([F G; 0 0] h) = [A B; 0 1] (Van Loan, IEEE Trans. Automatic Control 23, 1978).
 TEST(DriveCylinder, IsTheMatrixExponentialForAnyDamping) {
   const double w = 15.0, h = 0.02;
-  constexpr double kSquarings = 1e-13;  // rounding of the reference, doubled five times
+  constexpr double kSquarings = 1e-13;  // rounding of the reference, through five squarings
   for (const double zeta : {0.0, 0.4, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 3.0, 20.0}) {
     const auto cylinder = DriveCylinder::second_order(1.0, w, zeta, h);
     Matrix3 continuous = Matrix3::Zero();

@@ -69,7 +69,7 @@ class Derivatives : public ::testing::TestWithParam<Kind> {
     if (GetParam().free) x_[x_.size() - 1] = 0.35;
     multipliers_ = pcc::testing::random_vector(random, program_.constraints(), 1.0);
   }
-  /// Gradient of factor f + multipliers . c.
+  /// Gradient of factor f + multipliers . c, by the implementation.
   VectorX lagrangian_gradient(const VectorX& x, double factor) {
     VectorX result;
     program_.gradient(x, result);

@@ -184,7 +184,7 @@ TEST(Planner, AFreeDurationDoesNotCostMore) {
   task.grid.max_duration = 2.0;
   const Plan free = Planner(arm, task).plan(1);
   ASSERT_TRUE(free.found());
-  // Each to its own correction.
+  // Each plan has its own correction.
   EXPECT_LE(free.objective, fixed.objective * (1.0 + 1e-2));
   EXPECT_GE(free.duration(), 1.0 - 1e-8);
   EXPECT_LE(free.duration(), 2.0 + 1e-8);
@@ -234,7 +234,7 @@ TEST(Planner, RefusesTasksThatMakeNoSense) {
   task.limits.torque_lower[1] = 0.2;
   EXPECT_EQ(kind_of(task), ErrorKind::contradictory_limits);
   task = grab();
-  task.limits.angle_lower = VectorX::Constant(4, 0.1);  // the straight start is outside
+  task.limits.angle_lower = VectorX::Constant(4, 0.1);  // excludes the straight start
   EXPECT_EQ(kind_of(task), ErrorKind::contradictory_limits);
   task = grab();
   task.limits.rate = VectorX::Zero(3);

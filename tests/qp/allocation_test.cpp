@@ -1,5 +1,5 @@
-// Counts every allocation of the program, by replacing the C library's entry points; operator new
-// ends there too. A sanitizer replaces them itself, so the guard is off in such builds.
+// Counts every allocation of the program by replacing the C library's allocation functions, which
+// operator new calls too. Sanitizers replace them themselves, so the guard is off in such builds.
 #include <algorithm>
 #include <cstdlib>
 
@@ -19,7 +19,7 @@ namespace {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define SINEW_COUNTS_ALLOCATIONS 1
 extern "C" {
-// NOLINTBEGIN(bugprone-reserved-identifier): glibc calls them so
+// NOLINTBEGIN(bugprone-reserved-identifier): glibc's names
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* block, std::size_t size);
@@ -117,7 +117,7 @@ TEST(Allocation, HappensInConeSolveOnlyForLargerProblems) {
         newton_steps += solver.solve({matrices[k], offsets[k], boxes, cones}, x).newton_steps;
       }
     };
-    solve_all();  // memory grows to what these problems need
+    solve_all();  // buffers grow to the size of these problems
     const long before = allocations;
     solve_all();
     EXPECT_EQ(allocations, before) << count << " cones, friction " << friction;
@@ -125,7 +125,7 @@ TEST(Allocation, HappensInConeSolveOnlyForLargerProblems) {
   }
 }
 
-// Parts, of which some are sparse: a tower and a heap of bodies that do not touch it.
+// Independent parts, some of them sparse: a tower, and a heap of bodies that do not touch it.
 TEST(Allocation, NeverHappensWhereAPatternIsSolvedAgain) {
   Random random(12);
   for (const RigidContacts& scene : {tower(12), heap(40, 3, 0.1, random)}) {

@@ -16,7 +16,8 @@ MatrixX random_matrix(int rows, int columns, std::mt19937_64& engine) {
   return made;
 }
 
-// Its leading block is symmetric with eigenvalues of at least one, the rest is not.
+// A matrix whose leading block is symmetric with eigenvalues of at least one; the rest is
+// unsymmetric.
 MatrixX random_case(int leading, int rest, std::mt19937_64& engine) {
   MatrixX a = random_matrix(leading + rest, leading + rest, engine);
   const MatrixX root = random_matrix(leading, leading, engine);
@@ -29,7 +30,7 @@ void fill(BorderedFactor& factor, const MatrixX& a, int leading) {
   const int rest = static_cast<int>(a.rows()) - leading;
   factor.reshape(leading, rest);
   factor.leading() = a.topLeftCorner(leading, leading);
-  // What is above the diagonal is not read.
+  // Entries above the diagonal are not read.
   factor.leading().triangularView<Eigen::StrictlyUpper>().setConstant(
       std::numeric_limits<double>::quiet_NaN());
   factor.left() = a.bottomLeftCorner(rest, leading);
@@ -37,7 +38,7 @@ void fill(BorderedFactor& factor, const MatrixX& a, int leading) {
   factor.corner() = a.bottomRightCorner(rest, rest);
 }
 
-// One factor for all sizes, so that what a larger matrix left behind would show. 97 and 200 take
+// One factor for all sizes, which would reveal remains of a larger matrix. Sizes 97 and 200 need
 // more than one panel.
 TEST(BorderedFactor, SolvesAsLuDoes) {
   std::mt19937_64 engine(3);
@@ -50,10 +51,10 @@ TEST(BorderedFactor, SolvesAsLuDoes) {
       fill(factor, a, leading);
       ASSERT_TRUE(factor.factorise()) << leading << " and " << rest;
       const VectorX expected = a.partialPivLu().solve(b);
-      for (int again = 0; again < 2; ++again) {  // a solution leaves the factors as they are
+      for (int again = 0; again < 2; ++again) {  // solving does not change the factors
         VectorX x = b;
         factor.solve(x);
-        // Both errors are bounded by the condition of A, some 1e4 here.
+        // Both errors are bounded by the condition number of A, about 1e4 here.
         EXPECT_LT((x - expected).norm(), 1e-10 * expected.norm()) << leading << " and " << rest;
       }
     }

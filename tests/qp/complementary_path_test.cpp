@@ -18,7 +18,7 @@ struct Case {
   VectorX offset, slope;
 };
 
-// At t = 0 z = 0 solves it. @param lowest eigenvalue of the matrix.
+// A random case that z = 0 solves at t = 0. @param lowest smallest eigenvalue of the matrix.
 Case random_case(int size, double lowest, unsigned seed) {
   std::mt19937_64 engine(seed);
   std::uniform_real_distribution<double> number(-1.0, 1.0);
@@ -41,7 +41,7 @@ VectorX held_values(const ComplementaryPath& path, Eigen::Index size) {
   return z;
 }
 
-// By its definition. All solutions at one t, by trying every set of held entries.
+// All solutions at a given t, from the definition: tries every set of held entries.
 std::vector<VectorX> all_solutions(const Case& of, double t) {
   const auto size = static_cast<int>(of.offset.size());
   const VectorX offset = of.offset + t * of.slope;
@@ -68,7 +68,7 @@ double distance(const std::vector<VectorX>& all, const VectorX& z) {
   return least;
 }
 
-// Where the matrix is positive definite there is one solution at every t, and t never turns.
+// If the matrix is positive definite, there is one solution at every t, and t never turns back.
 TEST(ComplementaryPath, IsTheSolutionOfEveryParameter) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     const Case of = random_case(6, 0.05, seed);
@@ -93,7 +93,7 @@ TEST(ComplementaryPath, IsTheSolutionOfEveryParameter) {
   }
 }
 
-// Where it is not, t turns in some corners, and the path goes on through other solutions.
+// Otherwise t turns back at some corners, and the path continues through other solutions.
 TEST(ComplementaryPath, TurnsWhereTheMatrixIsNegative) {
   int turned = 0, met = 0;
   for (unsigned seed = 0; seed < 60; ++seed) {
@@ -112,14 +112,14 @@ TEST(ComplementaryPath, TurnsWhereTheMatrixIsNegative) {
       t += left * before;
       ASSERT_TRUE(path.turn());
       turned += path.direction() != before ? 1 : 0;
-      if (++corners == 20) break;  // some are loops
+      if (++corners == 20) break;  // some paths are loops
     }
   }
   EXPECT_GT(turned, 20);
   EXPECT_GT(met, 100);
 }
 
-// The other way it comes back through the same corners to where it began.
+// Reversed, the path returns through the same corners to its start.
 TEST(ComplementaryPath, GoesBackTheWayItCame) {
   const Case of = random_case(5, -0.1, 3);
   ComplementaryPath path(of.matrix, of.slope, std::vector<char>(5, 0), of.offset, kBlur);
@@ -144,7 +144,7 @@ TEST(ComplementaryPath, GoesBackTheWayItCame) {
   for (Eigen::Index i = 0; i < 5; ++i) EXPECT_NEAR(path.value(i), of.offset[i], 1e-9);
 }
 
-// Four equal points under one plate: all close at once, and the tie is broken.
+// Four equal points under one plate close at the same time: ties are broken.
 TEST(ComplementaryPath, PassesTies) {
   const MatrixX matrix = MatrixX::Identity(4, 4) + 0.3 * MatrixX::Ones(4, 4);
   const VectorX slope = -VectorX::Ones(4);
@@ -177,7 +177,7 @@ TEST(ComplementaryPath, StartsWithWhatIsHeld) {
   EXPECT_NEAR(rest.look_ahead(), whole.look_ahead(), 1e-9 * whole.look_ahead());
 }
 
-// What cannot be moved ends the path.
+// The path ends at an entry with zero compliance.
 TEST(ComplementaryPath, SaysWhereItLeadsNowhere) {
   const MatrixX matrix{{0.0}};
   ComplementaryPath path(matrix, VectorX::Constant(1, -1.0), {0}, VectorX::Ones(1), kBlur);

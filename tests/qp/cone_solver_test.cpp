@@ -16,7 +16,7 @@
 namespace sinew::qp {
 namespace {
 
-/// W = J J^T of `contacts` contacts on `coordinates` coordinates, and an offset.
+/// W = J J^T for contacts of bodies with `coordinates` coordinates, and an offset.
 struct Contacts {
   MatrixX matrix;
   VectorX offset;
@@ -30,13 +30,14 @@ Contacts random_contacts(int contacts, int coordinates, double friction, Random&
   Contacts result;
   const MatrixX jacobian = random.matrix(3 * contacts, coordinates);
   result.matrix = jacobian * jacobian.transpose();
-  // Offsets that efforts can undo: the free motion of the coordinates.
+  // Offsets that efforts can cancel: they come from a free motion of the coordinates.
   result.offset = jacobian * random.vector(coordinates);
   for (int i = 0; i < contacts; ++i) result.cones.push_back({3 * i, friction});
   return result;
 }
 
-// The laws written out, independently of how the solver judges itself; all relative.
+// The contact laws, evaluated independently of the solver's own residual; all tolerances are
+// relative.
 void expect_laws(const Contacts& contacts, const VectorX& x, double tolerance) {
   const VectorX motion = contacts.matrix * x + contacts.offset;
   const double effort = x.cwiseAbs().maxCoeff() + 1e-300;
@@ -48,7 +49,7 @@ void expect_laws(const Contacts& contacts, const VectorX& x, double tolerance) {
     EXPECT_LE(across, cone.friction * r[0] * (1.0 + 1e-14));
     EXPECT_GE(u[0], -tolerance * length);
     EXPECT_LE(std::abs(u[0] * r[0]), tolerance * length * effort);
-    // Greatest dissipation: r_t . u_t = -mu r_n |u_t|.
+    // Maximum dissipation: r_t . u_t = -mu r_n |u_t|.
     EXPECT_LE(std::abs(r.tail<2>().dot(u.tail<2>()) + cone.friction * r[0] * travel),
               tolerance * length * effort);
   }
@@ -63,7 +64,7 @@ TEST(ProjectOnCone, IsTheNearestPoint) {
     const Vector3 nearest = project_on_cone(r, mu);
     EXPECT_GE(nearest[0], 0.0);
     EXPECT_LE(nearest.tail<2>().norm(), mu * nearest[0] + 1e-15);
-    // r - P(r) is in the polar cone and orthogonal to P(r).
+    // r - P(r) lies in the polar cone and is orthogonal to P(r).
     const Vector3 rest = r - nearest;
     EXPECT_NEAR(rest.dot(nearest), 0.0, 1e-14);
     EXPECT_LE(rest[0] + mu * rest.tail<2>().norm(), 1e-14);
@@ -84,7 +85,7 @@ TEST(ConeEquation, ObeysSignoriniAndCoulombInEveryState) {
     equation.set(w, mu);
     const Vector3 r = equation.solve(q);
     const Vector3 u = w * r + q;
-    // Rounding of u: that of the terms it is summed from.
+    // Rounding of u, relative to the terms that are summed.
     const double rounding = 1e-13 * (w.norm() * r.norm() + q.norm());
     ASSERT_TRUE(r.allFinite());
     EXPECT_LE(cone_residual(r, u, mu, w.trace() / 3.0) * w.trace() / 3.0, 100.0 * rounding)
@@ -102,7 +103,7 @@ TEST(ConeEquation, ObeysSignoriniAndCoulombInEveryState) {
   for (const int count : seen) EXPECT_GT(count, 200);
 }
 
-// All directions of sliding, scanned: the best of them is no better than the solution.
+// Scans all sliding directions: one that satisfies the law is near the solution.
 TEST(ConeEquation, AgreesWithScanningTheDirectionOfSliding) {
   Random random(5);
   int slips = 0;
@@ -116,7 +117,8 @@ TEST(ConeEquation, AgreesWithScanningTheDirectionOfSliding) {
     const Vector3 r = equation.solve(q);
     if ((w * r + q).tail<2>().norm() < 1e-9) continue;
     ++slips;
-    // On the cone at u_n = 0 with effort at angle a, motion must be opposite: scan the mismatch.
+    // With u_n = 0 and the effort on the cone at angle a, the motion must be opposite to the
+    // friction: scan the residual.
     double nearest = kInfinity;
     constexpr int kAngles = 200000;
     for (int k = 0; k < kAngles; ++k) {
@@ -153,7 +155,7 @@ TEST(ConeSolver, SolvesRandomContacts) {
   }
 }
 
-// Without friction the problem is min 1/2 x^T W x + q^T x over normal efforts >= 0.
+// Without friction, the problem is min 1/2 x^T W x + q^T x over normal efforts >= 0.
 TEST(ConeSolver, WithoutFrictionIsTheQuadraticProgram) {
   Random random(31);
   for (int trial = 0; trial < 20; ++trial) {
@@ -205,8 +207,8 @@ TEST(ConeSolver, BoxesAreTheQuadraticProgram) {
   }
 }
 
-// A rigid block of 2 kg, 0.2 x 0.1 x 0.05 m, on four corners and on four times as many points as it
-// needs, in one step of h from rest on an incline.
+// A rigid block of 2 kg, 0.2 x 0.1 x 0.05 m, on a grid of points, from its four corners to many
+// more than it needs, in one step of h from rest on an incline.
 struct RigidBlock {
   static constexpr double kMass = 2.0, kStep = 1e-3, kGravity = 9.81;
   Contacts contacts;
@@ -285,9 +287,9 @@ TEST(ConeSolver, RigidBlockSticksBelowTheFrictionAngleAndSlidesAboveIt) {
   }
 }
 
-// A nearly rigid body that lands: Gauss-Seidel alone would take as many sweeps as it is stiffer in
-// its own shape than in its free motion. (With more friction some of these are not solved from a
-// cold start: docs/contact.md.)
+// Landing of a nearly rigid body. The number of sweeps of Gauss-Seidel alone would grow with the
+// ratio of the body's elastic stiffness to that of its free motion. With more friction, some of
+// these problems are not solved from a cold start (docs/contact.md).
 TEST(ConeSolver, SolvesStiffBodies) {
   Random random(71);
   for (const double softness : {1e-2, 1e-4, 1e-6}) {
@@ -310,8 +312,8 @@ TEST(ConeSolver, SolvesStiffBodies) {
   }
 }
 
-// Two flat surfaces all over each other: what a point does is felt by all, and Gauss-Seidel crawls
-// (a residual of 5e-3 after 2000 sweeps). 529 points are 1587 unknowns with friction.
+// Two flat surfaces in contact everywhere: all points are coupled, and Gauss-Seidel stalls (a
+// residual of 5e-3 after 2000 sweeps). 529 points with friction are 1587 unknowns.
 Contacts touching_all_over(int side) {
   const int points = side * side;
   const auto at = [&](int k) -> Eigen::Vector2d {
@@ -342,13 +344,14 @@ TEST(ConeSolver, SolvesSurfacesThatTouchAllOver) {
     VectorX x = VectorX::Zero(3 * points);
     const auto& result = solver.solve(contacts.problem(), span_of(x));
     EXPECT_EQ(result.status, ConeStatus::solved) << friction << ": " << result.residual;
-    EXPECT_LT((x - expected).cwiseAbs().maxCoeff(), 1e-5) << friction;  // condition 2e4
+    EXPECT_LT((x - expected).cwiseAbs().maxCoeff(), 1e-5) << friction;  // condition number 2e4
     expect_laws(contacts, x, 1e-8);
   }
 }
 
-// The same surfaces slide over each other, each point its own way: far, so that its direction is as
-// good as given, or so little that it may as well stick; some stick, and some are open.
+// The same surfaces slide over each other, each point in its own direction. Some slip so far that
+// their direction is practically known, some so little that they might as well stick; others stick
+// or are open.
 TEST(ConeSolver, SolvesSurfacesThatSlideAllOver) {
   constexpr double kFriction = 0.4;
   Contacts contacts = touching_all_over(17);
@@ -378,7 +381,7 @@ TEST(ConeSolver, SolvesSurfacesThatSlideAllOver) {
     EXPECT_EQ(cold.status, ConeStatus::solved) << fastest << ": " << cold.residual;
     EXPECT_LT((x - expected).cwiseAbs().maxCoeff(), 1e-5) << fastest;
     expect_laws(contacts, x, 1e-8);
-    // The next step's problem is near.
+    // The problem of the next step is similar.
     contacts.offset *= 1.0 + 1e-6;
     const auto& warm = solver.solve(contacts.problem(), span_of(x));
     EXPECT_EQ(warm.status, ConeStatus::solved) << fastest << ": " << warm.residual;
@@ -392,7 +395,7 @@ TEST(ConeSolver, TakesOffWhereNothingPresses) {
   RigidBlock block(4, 0.0, 0.5);
   block.contacts.offset *= -1.0;
   ConeSolver solver;
-  VectorX x = VectorX::Constant(48, 3.0);  // from a start that presses
+  VectorX x = VectorX::Constant(48, 3.0);  // a start with compressive efforts
   const ConeResult& result = solver.solve(block.contacts.problem(), span_of(x));
   EXPECT_EQ(result.status, ConeStatus::solved);
   EXPECT_TRUE(x.isZero(0.0));
@@ -413,7 +416,7 @@ TEST(ConeSolver, StartsFromTheLastSolution) {
   EXPECT_LT((x - before).norm(), 1e-9 * before.norm());
 }
 
-// A box and a contact that push against each other: a spring of the box's row through the matrix.
+// Boxes and contacts that are coupled through the matrix.
 TEST(ConeSolver, SolvesBoxesAndConesTogether) {
   Random random(51);
   for (int trial = 0; trial < 20; ++trial) {
@@ -447,7 +450,7 @@ TEST(ConeSolver, SaysWhatItCannotSolve) {
   Contacts c = random_contacts(3, 10, 0.5, random);
   ConeSolver solver;
   VectorX x = VectorX::Zero(9);
-  // Two surfaces squeeze a point that can only move along their common normal.
+  // Two surfaces squeeze a point that can move only along their common normal.
   Contacts held = c;
   held.cones.resize(2);
   MatrixX jacobian = MatrixX::Zero(9, 3);

@@ -12,7 +12,8 @@
 namespace sinew::qp {
 namespace {
 
-/// min |x|^2 / 2 over 0 <= x <= 1, x_0 + x_1 >= 3, x_0 <= 0.5: bounds leave at most 2 for row 0.
+/// min |x|^2 / 2 over 0 <= x <= 1, x_0 + x_1 >= 3, x_0 <= 0.5. The bounds leave at most 2 for row
+/// 0.
 QuadraticProgram two_rows() {
   QuadraticProgram problem = QuadraticProgram::sized(2, 2);
   problem.hessian.setIdentity();
@@ -43,8 +44,8 @@ TEST(Elastic, IsThePlainProblemWhenRowsAgree) {
 }
 
 TEST(Elastic, SharesTheWorstViolation) {
-  // Worst: 3 - x_0 - x_1 = x_0 - 0.5 with x_1 = 1: x_0 = 1.25 > 1, so x = (1, 1): violations 1,
-  // 0.5, but row 0 alone sets the worst, 1, which needs x_0 = x_1 = 1; row 1 then keeps 0.5.
+  // With x_1 = 1, equal violations 3 - x_0 - x_1 = x_0 - 0.5 would need x_0 = 1.25 > 1. Hence row 0
+  // alone determines the worst violation, 1, which requires x = (1, 1) and leaves 0.5 for row 1.
   const ElasticResult result = solve_elastic(two_rows());
   ASSERT_EQ(result.status, ElasticStatus::relaxed);
   EXPECT_NEAR(result.qp.x[0], 1.0, 1e-12);
@@ -64,8 +65,9 @@ TEST(Elastic, WeighsRows) {
 }
 
 TEST(Elastic, MinimisesTheObjectiveAmongEquallyViolatingPoints) {
-  // x_0 >= 1 against x_0 <= 0 (two rows): the sum is 1 for every x_0 in [0, 1]; the objective
-  // (x_0 - 0.3)^2 / 2 + (x_1 + 2)^2 / 2 then chooses. The worst is least at x_0 = 0.5 only.
+  // x_0 >= 1 conflicts with x_0 <= 0 (two rows). The sum of the violations is 1 for every x_0 in
+  // [0, 1], so the objective (x_0 - 0.3)^2 / 2 + (x_1 + 2)^2 / 2 decides. The worst violation is
+  // smallest at x_0 = 0.5 only.
   QuadraticProgram problem = QuadraticProgram::sized(2, 2);
   problem.hessian.setIdentity();
   problem.gradient << -0.3, 2.0;
@@ -83,7 +85,8 @@ TEST(Elastic, MinimisesTheObjectiveAmongEquallyViolatingPoints) {
 }
 
 TEST(Elastic, LoosensNoRowThatIsNotInTheWay) {
-  // Rows 0 and 1 conflict by 2; row 2 asks x_1 >= 0.1 against the objective's -5 and can be met.
+  // Rows 0 and 1 conflict by 2; row 2 requires x_1 >= 0.1, against the -5 of the objective, and can
+  // be satisfied.
   QuadraticProgram problem = QuadraticProgram::sized(2, 3);
   problem.hessian.setIdentity();
   problem.gradient << 0.0, 5.0;
@@ -128,8 +131,8 @@ TEST(Elastic, PassesOnOtherFailures) {
 
 class ElasticRandom : public ::testing::TestWithParam<ElasticMeasure> {};
 
-// Convexity makes a local minimum of the violation a global one; against_cvxopt.py compares the
-// least violation itself with a linear program's.
+// By convexity, a local minimum of the violation is global; against_cvxopt.py compares the minimum
+// itself with that of a linear program.
 TEST_P(ElasticRandom, BeatsEveryNearbyPoint) {
   Random random(42);
   ElasticSolver solver(8, 16, {.measure = GetParam()});

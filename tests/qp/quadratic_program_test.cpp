@@ -66,8 +66,8 @@ INSTANTIATE_TEST_SUITE_P(Kinds, RandomProblems,
                                            ProblemKind::infeasible, ProblemKind::semidefinite),
                          kind_of_case);
 
-// A controller's problems: the target moves a little, limits move with the state, and now and then
-// they contradict each other. Warm and cold starts must agree at each step.
+// Sequences as a controller solves them: the target moves slightly, limits change with the state,
+// and occasionally they conflict. Warm and cold starts must agree at each step.
 class Sequences : public ::testing::TestWithParam<ProblemKind> {};
 
 TEST_P(Sequences, WarmAndColdStartsAgree) {
@@ -278,7 +278,7 @@ TEST(QpSolver, NamesEachStatusOnce) {
   EXPECT_EQ(names.size(), 6u);
 }
 
-// Two cables on one path share the pull; where one is at its limit the other takes the rest.
+// Two cables on one path share the effort; if one is at its limit, the other takes the rest.
 TEST(QpSolver, TwinsShareEvenlyWithinTheirLimits) {
   QuadraticProgram problem = QuadraticProgram::sized(3, 0);
   problem.hessian << 1.0, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 2.0;
@@ -289,15 +289,14 @@ TEST(QpSolver, TwinsShareEvenlyWithinTheirLimits) {
   EXPECT_EQ(solver.solve(problem).status, QpStatus::optimal);
   problem.upper[0] = 1.0;
   EXPECT_LE((solver.solve(problem).x - Vector3(1.0, 2.0, 1.0)).norm(), 1e-14);
-  problem.upper[1] = 1.5;  // not enough: the limits' multipliers are the pull that is missing
+  problem.upper[1] = 1.5;  // too little: the multipliers are the missing pull
   const QpResult& result = solver.solve(problem);
   EXPECT_LE((result.x - Vector3(1.0, 1.5, 1.0)).norm(), 1e-14);
   EXPECT_LE((result.bound_multiplier - Vector3(-0.5, -0.5, 0.0)).norm(), 1e-8);
   EXPECT_LE(kkt_residual(problem, result), 1e-12);
 }
 
-// The last variables of a program that has no quadratic part: a linear program, whose optimal edge
-// leaves a choice.
+// A linear program (no quadratic part) whose optimal edge leaves a choice.
 TEST(QpSolver, SolvesLinearProgramsToTheLeastPoint) {
   QuadraticProgram problem = QuadraticProgram::sized(3, 1);
   problem.gradient << -1.0, -1.0, 0.0;
@@ -315,7 +314,7 @@ TEST(QpSolver, NamesTheRayOfAnUnboundedProblem) {
   QuadraticProgram problem = QuadraticProgram::sized(4, 1);
   problem.hessian(0, 0) = 1.0;
   problem.hessian.block(1, 1, 2, 2) << 2.0, 2.0, 2.0, 2.0;
-  problem.gradient << -7.0, 1.0, -1.0, 0.0;  // twins pulled apart
+  problem.gradient << -7.0, 1.0, -1.0, 0.0;  // drives the twins apart
   QpSolver solver(4, 1);
   const QpResult& result = solver.solve(problem);
   ASSERT_EQ(qp_status_name(result.status), "unbounded");

@@ -1,4 +1,4 @@
-// Contacts of rigid bodies: more of them than the bodies have coordinates, and bodies apart.
+// Contacts of rigid bodies: more rows than coordinates, and separate islands.
 #include "rigid_contacts.hpp"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ TEST(RigidContacts, HeapsThatSlideAreSolved) {
   }
 }
 
-// The weight of all planks stands on the ground, whatever the distribution.
+// The ground carries the weight of all planks, however it is distributed.
 TEST(RigidContacts, TowerRestsOnItsFeet) {
   const RigidContacts scene = tower(12);
   const auto w = scene.matrix();
@@ -70,7 +70,7 @@ TEST(RigidContacts, TowerRestsOnItsFeet) {
   const ConeSolution solution =
       solve_cones(w, q, std::vector<double>(static_cast<std::size_t>(scene.contacts()), 0.5));
   ASSERT_EQ(solution.status, ConeStatus::solved);
-  double held = 0.0;  // the first level stands on the first sixteen points, N s
+  double held = 0.0;  // N s; the first 16 points carry the first level
   for (int k = 0; k < 16; ++k) held += solution.x[3 * k];
   const double mass = 24 * RigidContacts::kDensity * 0.117 * 0.0234 * 0.0078;
   EXPECT_NEAR(held, mass * RigidContacts::kGravity * RigidContacts::kStep, 1e-6 * held);
@@ -87,13 +87,13 @@ TEST(RigidContacts, DenseAndSparseAgree) {
     const ConeSolution dense = solve_cones(MatrixX(w), q, friction);
     EXPECT_EQ(sparse.status, ConeStatus::solved);
     EXPECT_EQ(sparse.iterations, dense.iterations);
-    EXPECT_EQ((sparse.x - dense.x).cwiseAbs().maxCoeff(), 0.0);  // the same blocks, the same bits
+    EXPECT_EQ((sparse.x - dense.x).cwiseAbs().maxCoeff(), 0.0);  // same blocks, same bits
     EXPECT_EQ(sparse.states, dense.states);
   }
 }
 
-// Bodies apart, their contacts dealt out at random among each other: the solution of the whole is
-// that of each.
+// Separate groups of bodies with their contacts in shuffled order: the solution equals that of each
+// group alone.
 TEST(RigidContacts, IslandsAreSolvedEachByItself) {
   Random random(6);
   std::vector<RigidContacts> scenes;
@@ -123,7 +123,7 @@ TEST(RigidContacts, IslandsAreSolvedEachByItself) {
     first += static_cast<std::size_t>(scene.contacts());
   }
   const std::vector<ConeBlock> cones = cones_of(contacts, 0.4);
-  ConeSolver solver;  // measured by blocks
+  ConeSolver solver;  // residual by blocks
   VectorX x = VectorX::Zero(3 * contacts);
   ASSERT_EQ(solver.solve({w, q, {}, cones}, span_of(x)).status, ConeStatus::solved);
   EXPECT_LE(natural_map(w.sparseView(), q, cones, x), 1e-8);
@@ -144,8 +144,8 @@ TEST(RigidContacts, IslandsAreSolvedEachByItself) {
   }
 }
 
-/// A tower some of whose normal forces have limits and some of whose planks are held by rows of
-/// their own: boxes before, between and behind the contacts.
+/// A tower in which every tenth contact is a frictionless support (a box), some with a limited
+/// force: boxes among cones.
 TEST(RigidContacts, BoxesBesideCones) {
   const RigidContacts scene = tower(10);
   const auto w = scene.matrix();
@@ -153,7 +153,7 @@ TEST(RigidContacts, BoxesBesideCones) {
   std::vector<ConeBlock> cones;
   std::vector<BoxBlock> boxes;
   for (int k = 0; k < scene.contacts(); ++k) {
-    if (k % 10 == 7) {  // a support without friction, at most so strong
+    if (k % 10 == 7) {  // a frictionless support, some of limited force
       boxes.push_back({3 * k, 0.0, k % 20 == 7 ? kInfinity : 1e-5, 0.0});
     } else {
       cones.push_back({3 * k, 0.5});
@@ -174,7 +174,7 @@ TEST(RigidContacts, BoxesBesideCones) {
       const double effort = x[box.row];
       EXPECT_GE(effort, 0.0);
       EXPECT_LE(effort, box.upper);
-      EXPECT_EQ(x[box.row + 1], 0.0);  // rows in no block keep theirs
+      EXPECT_EQ(x[box.row + 1], 0.0);  // rows in no block keep their effort
       if (effort > 0.0) {
         EXPECT_LE(u[box.row], 1e-8 * size);
       }
@@ -244,7 +244,7 @@ TEST(RigidContacts, SaysWhatIsWrongInASparseMatrix) {
   EXPECT_THROW(solve_cones(w, q, std::vector<double>(cones.size(), 0.5), 0.0), Error);
 }
 
-// Values that are not symmetric, on the pattern of a tower with some nodes of one row.
+// Unsymmetric values on the pattern of a tower, where some nodes have one row.
 TEST(BlockLu, SolvesWhatDenseEliminationSolves) {
   Random random(9);
   const RigidContacts scene = tower(8);
@@ -280,7 +280,8 @@ TEST(BlockLu, SolvesWhatDenseEliminationSolves) {
   }
 }
 
-// Elimination of leading columns is block elimination: P A = L U above, a Schur complement below.
+// Eliminating the leading columns is block elimination: P A = L U above, the Schur complement
+// below.
 TEST(Eliminate, LeavesTheSchurComplement) {
   Random random(10);
   for (const int size : {1, 5, 8, 30, 100, 200}) {

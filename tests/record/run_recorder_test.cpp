@@ -451,7 +451,7 @@ TEST_F(RunRecorderTest, ASeriesForParaviewReplacesAnOlderOne) {
     EXPECT_NE(written.find(fmt::format("Name=\"{}\"", info.name)), std::string::npos) << info.name;
   }
   simulation.reset();
-  record_pull(simulation, settings(), 1);  // without a series
+  record_pull(simulation, settings(), 1);  // no series
   EXPECT_FALSE(fs::exists(run / "run.pvd"));
   EXPECT_FALSE(fs::exists(run / "run"));
 }
@@ -484,7 +484,7 @@ TEST_F(RunRecorderTest, AKilledRunIsReadable) {
       recorder.after_step();
       if (i == 29) recorder.finish();
     }
-    kill(getpid(), SIGKILL);  // nothing is closed
+    kill(getpid(), SIGKILL);  // no file is closed
   }
   int status = 0;
   waitpid(child, &status, 0);

@@ -299,7 +299,7 @@ TEST(ClosedLoop, OwnsItsActuators) {
   EXPECT_NEAR(run.simulation->actuator(0).effort, 1.0, 1e-9);
 }
 
-// In scenes.
+// Scene files.
 
 std::string hold(const std::string& keys, const std::string& sensors = "[tip]") {
   return "controllers:\n  hold: {type: closed-loop, sensors: " + sensors + ", " + keys + "}\n";

@@ -1,4 +1,4 @@
-// Scenes for the tests of this folder: the documented example and edits of it.
+// Scenes for these tests: the documented example and modifications of it.
 #pragma once
 
 #include <filesystem>

@@ -32,7 +32,7 @@ struct ArchOptions {
   std::optional<collision::Shape> below;  ///< surface in place of the plane
 };
 
-// A part of the arch along x.
+// The part of the arch between two values of x.
 inline fem::FemBodySettings arch_part(const char* name, double from, double to) {
   fem::FemBodySettings body;
   body.name = name;

@@ -1,4 +1,4 @@
-// Constant-curvature arms as bodies: the same motion as the arm by itself, cables, control, states.
+// Constant-curvature arms as bodies: the same motion as the arm alone, cables, control, states.
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -53,7 +53,7 @@ const VectorX& coordinates(const Simulation& simulation) {
   return mechanics::as<const mechanics::HasCoordinates>(simulation.body(0))->coordinates();
 }
 
-/// The fluidic arm under torques on its last three segments.
+/// The fluidic arm with torques on its last three segments.
 std::shared_ptr<const Model> driven(const StepSettings& step, MassCentre centre) {
   ModelBuilder builder(step);
   builder.add_arm(fluidic(centre));
@@ -86,7 +86,7 @@ TEST(ArmBody, MovesAsTheArmByItself) {
   }
 }
 
-/// The fluidic arm with all bends commanded, and a wall at x = far that points along it may touch.
+/// The fluidic arm with commanded bends in all segments, and a wall at x = far for points along it.
 std::shared_ptr<const Model> commanded(const StepSettings& step, double angle, double far,
                                        double friction) {
   ModelBuilder builder(step);
@@ -110,7 +110,7 @@ std::shared_ptr<const Model> commanded(const StepSettings& step, double angle, d
   return builder.build();
 }
 
-// A jump makes the gyroscopic part of A large, which the law does not see.
+// A jump of the angle makes the gyroscopic part of A large, which the law does not include.
 TEST(ArmBody, NewtonReachesACommandedAngleInOneStep) {
   for (const auto integrator :
        {mechanics::Integrator::backward_euler, mechanics::Integrator::bdf2}) {
@@ -129,7 +129,7 @@ TEST(ArmBody, NewtonReachesACommandedAngleInOneStep) {
   }
 }
 
-// Held bends leave a compliance of nothing but rounding to points that may touch.
+// With all bends held, the compliance of the contact points is mere rounding.
 TEST(ArmBody, HeldBendsAreNoHindranceToOpenContacts) {
   for (const Method method : {Method::one_linearisation, Method::newton}) {
     for (const double friction : {0.0, 0.5}) {
@@ -140,7 +140,7 @@ TEST(ArmBody, HeldBendsAreNoHindranceToOpenContacts) {
       for (int k = 0; k < 5; ++k) simulation.step();
       EXPECT_NEAR(simulation.actuator(0).motion, 0.1, 1e-9);
       EXPECT_EQ(simulation.contacts().resultant(0).normal_force, 0.0);
-      // Where they lead into the wall, no force can help.
+      // If the commanded bends lead into the wall, no contact force can satisfy the law.
       Simulation blocked(commanded(step, 0.5, 0.05, friction));
       Simulation mirrored(commanded(step, -0.5, 0.05, friction));
       int failed = 0;
@@ -169,8 +169,8 @@ TEST(ArmBody, SettlesInTheArmsEquilibrium) {
 }
 
 TEST(ArmBody, CableDoesTheWorkOfItsLength) {
-  // Everything at once: turned segments, dead lengths, extension. r(q) = -T dl/dq with the length l
-  // by differences.
+  // All features at once: rotated segments, dead lengths, extension. r(q) = -T dl/dq, with the
+  // derivative of the length l by differences.
   StepSettings step;
   step.integrator = mechanics::Integrator::quasi_static;
   ArmSettings settings = mixed();

@@ -1,4 +1,4 @@
-// Bodies whose fixed nodes move.
+// Bodies with moving bases.
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -31,7 +31,7 @@ namespace {
 using mechanics::Integrator;
 
 constexpr double kAmplitude = 1e-3;  // m
-constexpr double kFrequency = 40.0;  // Hz, above the block's lowest
+constexpr double kFrequency = 40.0;  // Hz, above the block's fundamental
 
 struct Options {
   Integrator integrator = Integrator::bdf2;
@@ -42,13 +42,13 @@ struct Options {
   material::Law law = material::Law::linear;
   bool hung = false;          ///< a mass at the tip, another in the lowest cells
   bool moving_frame = false;  ///< the base stands still, and an acceleration acts instead
-  double shake = kAmplitude;  ///< m: how far the base moves
-  double turn = 0.0;          ///< rad: and turns
+  double shake = kAmplitude;  ///< m, amplitude of the base's displacement
+  double turn = 0.0;          ///< rad, amplitude of its rotation
   double frequency = kFrequency;
   std::optional<AdaptiveStep> adaptive;
 };
 
-// How a base goes to and fro from rest: 1 - cos(w t), times an amplitude.
+// Oscillation of a base from rest: amplitude (1 - cos(w t)).
 Signal to_and_fro(double amplitude, double frequency) {
   return Signal::sine({.mean = amplitude,
                        .amplitude = amplitude,
@@ -111,7 +111,7 @@ double base_at(double time) {
   return kAmplitude * (1.0 - std::cos(2.0 * std::numbers::pi * kFrequency * time));
 }
 
-// The tip beside its base at every 5 ms up to the end.
+// Displacement of the tip relative to the base, every 5 ms up to the end.
 std::vector<Vector3> sway(const Options& options, double end = 0.1) {
   Simulation simulation(block(options));
   const auto stride = std::lround(0.005 / options.time_step);
@@ -141,9 +141,9 @@ std::string case_name(const ::testing::TestParamInfo<ShakenCase>& test) {
 
 class ShakenBases : public ::testing::TestWithParam<ShakenCase> {};
 
-// In the frame of a base that is shifted, the motion is that above a resting base under -y'', which
-// knows neither the inertia nor the damping forces of moving nodes: the two runs converge to each
-// other with the integrator's order.
+// In the frame of a translating base, the motion is that over a resting base under the acceleration
+// -y'', where moving nodes have no inertia or damping forces. The two runs converge to each other
+// with the integrator's order.
 TEST_P(ShakenBases, ConvergesToTheMotionInItsFrame) {
   const auto [integrator, mass, damping, hung] = GetParam();
   Options options;
@@ -178,7 +178,7 @@ INSTANTIATE_TEST_SUITE_P(
         ShakenCase{Integrator::bdf2, fem::MassMatrix::lumped, 2e-3, true}),
     case_name);
 
-// A base that turns, with damping: against a run of much smaller steps.
+// A rotating base with damping, against a run with much smaller steps.
 TEST(TurnedBase, DampingKeepsTheOrder) {
   Options options;
   options.law = material::Law::corotational;
@@ -200,7 +200,7 @@ TEST(TurnedBase, DampingKeepsTheOrder) {
   }
 }
 
-// Carried along at an even speed, a body that is not strained is not damped either.
+// An unstrained body that moves at constant velocity is not damped.
 TEST(ShakenBase, EvenSpeedIsNotDamped) {
   for (const auto method : {Method::newton, Method::one_linearisation}) {
     Options options;
@@ -213,11 +213,12 @@ TEST(ShakenBase, EvenSpeedIsNotDamped) {
       simulation.move_base(0, {0.0, 0.0, 2e-4 * k}, Vector3::Zero(), Vector3::Zero());
       simulation.step();
     }
-    // The start, a jump of speed, is quelled; what is left rides along.
+    // The vibration after the initial jump of velocity decays; the uniform motion remains.
     const double kinetic = 0.5 * 1000.0 * 0.02 * 0.02 * 0.06 * 0.2 * 0.2;
     EXPECT_LT(simulation.energies().strain, 1e-6 * kinetic);
     EXPECT_NEAR(simulation.energies().kinetic, kinetic, 1e-4 * kinetic);
-    // Of the shock's energy, which is that of the motion in the base's frame, nothing else is lost.
+    // The damping dissipates the energy of the initial shock, which is the kinetic energy relative
+    // to the base, and nothing else.
     EXPECT_GT(simulation.ledger().dissipated, 0.3 * kinetic);
     EXPECT_LT(simulation.ledger().dissipated, 1.1 * kinetic);
   }
@@ -231,7 +232,7 @@ std::string integrator_case(const ::testing::TestParamInfo<Integrator>& test) {
 
 class BaseStates : public ::testing::TestWithParam<Integrator> {};
 
-// Saved in the midst of a motion, put back, taken to the start again: the same run, bit for bit.
+// A state saved during a motion, restored, and reset to the start: the same run, bit for bit.
 TEST_P(BaseStates, GoOnBitForBit) {
   Options options;
   options.integrator = GetParam();
@@ -275,7 +276,7 @@ TEST_P(BaseStates, KeepWhatAScriptMoved) {
   }
   parse_state(second, format_state(first), "memory");
   for (int k = 11; k <= 20; ++k) {
-    if (k < 15) {  // and then it stands
+    if (k < 15) {  // then the base stops
       move(first, k);
       move(second, k);
     }
@@ -295,7 +296,7 @@ INSTANTIATE_TEST_SUITE_P(Integrators, BaseStates,
                                            Integrator::bdf2, Integrator::generalized_alpha),
                          integrator_case);
 
-// A substep that is taken back takes the base back, too.
+// A rejected substep also resets the base.
 TEST(Substeps, TakeTheBaseAlong) {
   Options options;
   options.integrator = Integrator::generalized_alpha;

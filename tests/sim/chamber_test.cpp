@@ -90,7 +90,7 @@ TEST(Chamber, GasFollowsItsLaw) {
                 gas.ambient_pressure * std::pow((1.5 * kVoid + amount) / volume, exponent),
                 1e-8 * pressure);
     EXPECT_NEAR(simulation.drive_state(0)[0], 1.5 * kVoid + amount, 1e-9 * kVoid);
-    // Statics find the same place.
+    // The static solution is the same.
     const double growth = simulation.actuator(0).motion;
     simulation.solve_static();
     EXPECT_NEAR(simulation.actuator(0).motion, growth, 1e-7 * growth);
@@ -113,11 +113,11 @@ TEST(Chamber, ASupplyFillsItInTimeThatStepsDoNotChange) {
       last = simulation.actuator(0).effort;
     }
     half_way.push_back(last);
-    EXPECT_LT(last, 4e3);  // still on its way
+    EXPECT_LT(last, 4e3);  // not yet filled
     while (simulation.time() < 2.0) simulation.step();
     EXPECT_NEAR(simulation.actuator(0).effort, 5e3, 1e-3);
   }
-  // First order: differences halve with the step.
+  // First order: the differences halve with the step.
   for (std::size_t k = 2; k < half_way.size(); ++k) {
     const double ratio = (half_way[k - 1] - half_way[k - 2]) / (half_way[k] - half_way[k - 1]);
     EXPECT_NEAR(ratio, 2.0, 0.2);
@@ -184,7 +184,7 @@ TEST(Chamber, BadSettingsAreRefused) {
   EXPECT_EQ(kind(gas), ErrorKind::out_of_range);
 }
 
-// The beam of the other tests with a spring from above its tip.
+// The beam of the other tests with a spring from above to its tip.
 std::shared_ptr<const Model> sprung(double damping, bool tension_only,
                                     std::optional<SmaSettings> wire = std::nullopt) {
   ModelBuilder builder(StepSettings{});
@@ -271,7 +271,7 @@ TEST(Spring, ShapeMemoryWireStiffensWhenHot) {
     return simulation.actuator(0).effort / (length - 0.055);
   };
   EXPECT_NEAR(stiffness(), cold, 1e-3 * cold);
-  simulation.command(0, input(1.0));  // W: 100 K above ambient in the end
+  simulation.command(0, input(1.0));  // W: finally 100 K above ambient
   for (int i = 0; i < 600; ++i) simulation.step();
   EXPECT_NEAR(simulation.drive_state(0)[0], 393.15, 0.5);
   EXPECT_DOUBLE_EQ(simulation.drive_state(0)[1], 1.0);
@@ -287,7 +287,8 @@ TEST(Spring, PhaseHasHysteresis) {
   SmaDrive drive(wire, 0.06);
   std::array<double, Drive::kMaxStates> state{};
   drive.rest(state);
-  // A power whose end is between the two ranges of temperature: heating leaves martensite.
+  // A power whose steady temperature is between the two transformation ranges: on heating, the wire
+  // remains martensite.
   const double power = wire.heat_loss * (333.0 - wire.ambient);
   const auto settle = [&](double watts) {
     const Drive::Step step{CommandKind::input, watts, 1e9, 0.0, state};
@@ -300,8 +301,8 @@ TEST(Spring, PhaseHasHysteresis) {
   EXPECT_DOUBLE_EQ(settle(0.0), 0.0);
 }
 
-// A cube of one layer of bricks blown up to a ball of 10 mm with a wall of 1 mm, held at its
-// bottom.
+// A spherical shell of one layer of hexahedra, radius 10 mm, wall 1 mm, held at its bottom; mapped
+// from a hollow cube.
 std::shared_ptr<const Model> balloon() {
   constexpr int kCells = 8;
   mesh::Mesh made =
@@ -340,7 +341,7 @@ std::shared_ptr<const Model> balloon() {
   return builder.build();
 }
 
-// A balloon has a greatest pressure; beyond it the error says so, and where.
+// A balloon has a maximum pressure; above it, the error message gives this limit.
 TEST(Chamber, PressureBeyondTheLimitPointIsNamed) {
   const auto model = balloon();
   Simulation held(model);

@@ -22,7 +22,7 @@ void offer(Channel& channel, double time, double value) {
   channel.offer(time, truth);
 }
 
-// Samples of a constant, one every step.
+// Samples of a constant, one per step.
 std::vector<double> samples(const ChannelSettings& settings, double truth, int count = kSamples) {
   Channel channel(settings, 1);
   std::vector<double> values;
@@ -34,7 +34,7 @@ std::vector<double> samples(const ChannelSettings& settings, double truth, int c
 }
 
 struct Moments {
-  double mean = 0.0, variance = 0.0, lag = 0.0;  // lag: correlation of neighbours
+  double mean = 0.0, variance = 0.0, lag = 0.0;  // lag: correlation of successive samples
 };
 
 Moments moments_of(const std::vector<double>& x) {
@@ -48,9 +48,9 @@ Moments moments_of(const std::vector<double>& x) {
   return m;
 }
 
-// Of n independent normal samples the mean has the standard deviation s/sqrt(n), the variance
-// s^2 sqrt(2/n), the correlation of neighbours 1/sqrt(n). Five of each: one right generator in two
-// million fails a check.
+// For n independent normal samples, the standard deviation of the mean is s/sqrt(n), that of the
+// variance s^2 sqrt(2/n), and that of the correlation of successive samples 1/sqrt(n). The
+// tolerance is five of each: one correct generator in two million fails a check.
 TEST(Channel, NoiseIsWhiteAndNormal) {
   const double truth = 3.0, noise = 0.2;
   const auto values = samples({.noise = noise, .bias = 0.05, .seed = 3}, truth);
@@ -59,7 +59,7 @@ TEST(Channel, NoiseIsWhiteAndNormal) {
   EXPECT_NEAR(m.mean, truth + 0.05, 5.0 * noise / std::sqrt(kSamples));
   EXPECT_NEAR(m.variance, noise * noise, 5.0 * noise * noise * std::sqrt(2.0 / kSamples));
   EXPECT_NEAR(m.lag, 0.0, 5.0 / std::sqrt(kSamples));
-  // The share within one standard deviation, of the binomial distribution.
+  // The fraction within one standard deviation, which has a binomial distribution.
   const double p = std::erf(std::sqrt(0.5));
   double within = 0.0;
   for (const double v : values) within += std::abs(v - truth - 0.05) <= noise ? 1.0 : 0.0;
@@ -81,7 +81,7 @@ TEST(Channel, ComponentsAndStreamsAreIndependent) {
   EXPECT_NEAR(across, 0.0, 5.0 / std::sqrt(kSamples));
 }
 
-// After a time t the walk has the variance drift^2 t, whatever the rate of samples.
+// After a time t, the random walk has the variance drift^2 t, whatever the sampling rate.
 TEST(Channel, DriftGrowsWithTheRootOfTime) {
   constexpr int kWalks = 4000;
   for (const double step : {0.01, 0.1}) {
@@ -111,11 +111,11 @@ TEST(Channel, RoundsToTheQuantumAndSaturates) {
       EXPECT_LE(std::abs(y - x), 0.5 * quantum * (1.0 + 1e-12)) << x;
     }
   }
-  // Of a value that varies evenly, rounding errs by quantum/sqrt(12).
+  // The rounding error of a uniformly varying value is quantum/sqrt(12).
   double squares = 0.0;
   Channel fine({.quantum = quantum}, 1);
   for (int k = 0; k < kSamples; ++k) {
-    const double x = 1e-4 * k;  // eight whole quanta
+    const double x = 1e-4 * k;  // over eight quanta
     offer(fine, k * kStep, x);
     squares += (fine.value()[0] - x) * (fine.value()[0] - x) / kSamples;
   }
@@ -126,7 +126,7 @@ TEST(Channel, SamplesAtItsRateAndDeliversWithItsDelayToTheStep) {
   Channel channel({.rate = 20.0, .delay = 0.03}, 1);
   for (int k = 0; k < 1000; ++k) {
     offer(channel, k * kStep, k);
-    // Samples at every fifth step arrive three steps later.
+    // Samples are taken at every fifth step and arrive three steps later.
     const int last = (k - 3) / 5 * 5;
     EXPECT_EQ(channel.fresh(), k >= 3 && (k - 3) % 5 == 0) << k;
     if (k < 3) {
@@ -229,7 +229,7 @@ TEST(Channel, SettlesWithAFreshSampleOfItsOwn) {
     EXPECT_EQ(channel.time(), 0.0);
     values.push_back(channel.value()[0]);
   }
-  const Moments m = moments_of(values);  // what was on its way is forgotten, and each has its noise
+  const Moments m = moments_of(values);  // delayed samples are dropped; each has its noise
   EXPECT_NEAR(m.mean, 1.0, 5.0 * 0.1 / std::sqrt(2000.0));
   EXPECT_NEAR(m.variance, 0.01, 5.0 * 0.01 * std::sqrt(2.0 / 2000.0));
   for (int k = 1; k <= 4; ++k) offer(channel, k * kStep, 9.0);
@@ -243,7 +243,7 @@ TEST(Channel, TakesRealSamplesInPlaceOfSimulatedOnes) {
   channel.receive(0.004, std::array{1.0, 2.0});
   EXPECT_TRUE(channel.fresh());
   channel.offer(0.01, truth);
-  EXPECT_TRUE(channel.fresh());  // since the step before
+  EXPECT_TRUE(channel.fresh());  // since the previous step
   channel.offer(0.02, truth);
   EXPECT_FALSE(channel.fresh());
   EXPECT_EQ(channel.value()[1], 2.0);

@@ -1,4 +1,4 @@
-// An elastic bar thrown against a wall: energy, impulse and time of contact.
+// An elastic bar thrown against a wall: energy, impulse and contact time.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -36,9 +36,9 @@ struct Throw {
 };
 
 struct Outcome {
-  double growth = 0.0;   ///< largest energy over that before, less 1
-  double left = 0.0;     ///< energy after, over that before
-  double impulse = 0.0;  ///< over m v; 2 for an elastic bar
+  double growth = 0.0;   ///< largest relative increase of the energy
+  double left = 0.0;     ///< energy after, relative to that before
+  double impulse = 0.0;  ///< relative to m v; 2 for an elastic bar
   double time = 0.0;     ///< s, from the first force to the last; 2 L/c
 };
 
@@ -101,7 +101,7 @@ Outcome impact(const Throw& options) {
   return outcome;
 }
 
-// Wherever in a step the bar arrives.
+// For any phase of the impact within a step.
 TEST(Impact, SecondOrderStepsNeverGainEnergy) {
   for (const auto mass : {fem::MassMatrix::lumped, fem::MassMatrix::consistent}) {
     for (const double time_step : {2.5e-5, 1e-4}) {
@@ -112,8 +112,8 @@ TEST(Impact, SecondOrderStepsNeverGainEnergy) {
                                         .mass = mass});
         EXPECT_LT(outcome.growth, 1e-4) << phase;
         EXPECT_GT(outcome.left, 0.9) << phase;
-        // What the vibration that stays behind has of the momentum depends on the phase; a model of
-        // one dimension gives 1.890 to 1.976.
+        // The momentum of the residual vibration depends on the phase; a one-dimensional model
+        // gives 1.890 to 1.976.
         EXPECT_NEAR(outcome.impulse, 2.0, 0.12) << phase;
         EXPECT_NEAR(outcome.time, 0.02, 1e-3) << phase;
       }
@@ -121,7 +121,7 @@ TEST(Impact, SecondOrderStepsNeverGainEnergy) {
   }
 }
 
-// What a bar loses is the energy of the nodes that the wall stops.
+// A bar loses the energy of the nodes that the wall stops.
 TEST(Impact, LossesGoWithTheMesh) {
   double before = 1.0;
   for (const int cells : {5, 10, 20}) {
@@ -132,7 +132,8 @@ TEST(Impact, LossesGoWithTheMesh) {
   }
 }
 
-// Generalized-alpha makes a step that stops a point by backward Euler, whatever it damps elsewhere.
+// Generalized-alpha takes the steps that stop a point by backward Euler, whatever its damping
+// elsewhere.
 TEST(Impact, GeneralizedAlphaNeverGainsEnergy) {
   for (const double radius : {0.0, 0.8, 1.0}) {
     for (const double phase : {0.02, 0.4, 0.9}) {
@@ -149,8 +150,8 @@ TEST(Impact, GeneralizedAlphaNeverGainsEnergy) {
   }
 }
 
-// While the bar's end stays on the wall, and while it is free, errors fall with the square of the
-// step.
+// As long as the bar's end remains on the wall, or remains free, the error decreases with the
+// square of the step.
 class Smooth : public ::testing::TestWithParam<Integrator> {};
 TEST_P(Smooth, PhasesKeepTheSecondOrder) {
   const auto pressed = [](double time_step) {
@@ -159,14 +160,14 @@ TEST_P(Smooth, PhasesKeepTheSecondOrder) {
     Simulation& simulation = *bar;
     State state = simulation.state();
     const auto size = static_cast<std::size_t>(simulation.body(0).positions().size());
-    // The lowest vibration of a bar whose end rests: no wave hits the wall.
+    // Fundamental vibration of a bar whose end rests on the wall: no shock wave hits it.
     const double speed = std::sqrt(kModulus / kDensity);
     for (std::size_t i = 2; i < size; i += 3) {
       state.bodies[0][size + i] =
           -kSpeed * std::sin(0.5 * std::numbers::pi * state.bodies[0][i] / kLength);
     }
     simulation.restore(state);
-    const double eighth = 0.5 * kLength / speed;  // of its period
+    const double eighth = 0.5 * kLength / speed;  // of the period
     const auto steps = std::lround(eighth / time_step);
     for (long k = 0; k < steps; ++k) {
       simulation.step();

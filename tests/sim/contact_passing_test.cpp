@@ -1,4 +1,4 @@
-// Bodies that pass curved surfaces: no force where they miss, no way through where they do not.
+// Bodies that pass curved surfaces: no force if they miss, no penetration if they hit.
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -35,7 +35,8 @@ struct Flight {
   std::optional<BaseMotion> motion;  ///< of the surface
 };
 
-/// A free block, 40 x 40 x 20 mm about the origin, its bottom at z = 0; every node may touch.
+/// A free block, 40 x 40 x 20 mm, centred over the origin, its bottom at z = 0; every node may
+/// touch.
 std::unique_ptr<Simulation> flying(const Flight& flight) {
   BlockOptions options{.floor = false};
   options.step.time_step = flight.time_step;
@@ -70,7 +71,7 @@ std::vector<collision::Shape> obstacles(double x, double below) {
   const double radius = 0.005, z = -below - radius;
   return {collision::Sphere{{x, 0.0, z}, radius},
           collision::Capsule{{x, -0.01, z}, {x + 0.004, 0.01, z}, radius},
-          collision::Capsule{{x, -0.3, z}, {x, 0.3, z}, radius}};  // a cylinder across the way
+          collision::Capsule{{x, -0.3, z}, {x, 0.3, z}, radius}};  // a rod across the path
 }
 
 TEST(Passing, BodiesThatMissFeelNothing) {
@@ -100,7 +101,7 @@ TEST(Passing, BodiesThatMissFeelNothing) {
   }
 }
 
-// The same motion as the surface's: it passes a body at rest.
+// The same relative motion, made by the surface: it passes a body at rest.
 TEST(Passing, SurfacesThatMissAreNotFelt) {
   for (const collision::Shape& surface : obstacles(0.06, 0.001)) {
     BaseMotion motion;
@@ -115,7 +116,7 @@ TEST(Passing, SurfacesThatMissAreNotFelt) {
   }
 }
 
-/// x of the middle of the block's front, m.
+/// x coordinate of the centre of the block's front, m.
 double front(const Simulation& simulation) {
   const mechanics::Body& body = simulation.body(0);
   const Points& rest = body.model().mesh().nodes;
@@ -127,7 +128,7 @@ double front(const Simulation& simulation) {
   return NAN;
 }
 
-// A step that would take the block's front over and beyond the obstacle stops at it.
+// A step that would carry the block's front past the obstacle stops at it.
 TEST(Passing, NothingGoesThroughASurface) {
   for (const double speed : {1.0, 5.0}) {
     for (const double phase : {0.0, 0.3, 0.7}) {
@@ -144,12 +145,13 @@ TEST(Passing, NothingGoesThroughASurface) {
             simulation.step();
             const ContactResultant resultant = simulation.contacts().resultant(0);
             EXPECT_GE(resultant.smallest_gap, -1e-9);
-            // A fraction of a millimetre is slip. Later on, or in Newton's later iterates, the
-            // front may slip off sideways: a ball before its middle is no rest.
+            // Allows a fraction of a millimetre of slip. Later, or in later Newton iterations, the
+            // front may slip off sideways, since a ball in front of its middle gives no stable
+            // rest.
             if (!touched && method == Method::one_linearisation) {
               EXPECT_LT(front(simulation), x - radius + 1e-4);
             }
-            // In a step that is made in parts it may touch and slip off.
+            // In a subdivided step it may touch and slip off.
             touched |= resultant.normal_force > 0.0 || mean_velocity(simulation)[0] < 0.9 * speed;
           }
           EXPECT_TRUE(touched);
@@ -162,8 +164,8 @@ TEST(Passing, NothingGoesThroughASurface) {
   }
 }
 
-// Where the lower front edge meets a ball, the normal is that of the place of the impact, whatever
-// the step: 3 mm below the edge and 4 mm behind it lies the ball's centre.
+// When the lower front edge hits a ball, the normal is that at the place of impact, for any step:
+// the ball's centre is 3 mm below and 4 mm beyond the edge.
 TEST(Passing, ImpactsAreThoseOfThePlaceWhereTheyHappen) {
   const collision::Sphere ball{{0.045, 0.0, -0.003}, 0.005};
   for (const double time_step : {1e-3, 4e-3, 1e-2}) {
@@ -182,8 +184,8 @@ TEST(Passing, ImpactsAreThoseOfThePlaceWhereTheyHappen) {
         most = point.normal_force;
         normal = point.normal;
       }
-      // Newton's planes are those of the ways that its last iterate foresees, which the impact
-      // bends.
+      // Newton's method takes the tangent planes from the paths predicted by its last iterate,
+      // which the impact bends.
       const double bent = method == Method::newton ? 40.0 * time_step : 1e-6;
       EXPECT_LT((normal - Vector3(-0.8, 0.0, 0.6)).norm(), bent) << time_step;
     }
@@ -202,7 +204,7 @@ TEST(Passing, RunsGoOnFromASavedStateBitForBit) {
     second->restore(state);
     for (int k = 0; k < 9; ++k) second->step();
     EXPECT_EQ(second->state().hash(), whole->state().hash());
-    EXPECT_LT(mean_velocity(*whole)[0], 0.99);  // it did touch
+    EXPECT_LT(mean_velocity(*whole)[0], 0.99);  // contact occurred
   }
 }
 
@@ -211,7 +213,7 @@ std::size_t allocated() {
   return info.uordblks + info.hblkhd;
 }
 
-// Of a plate whose whole outside may touch a plane far below: what one more simulation takes.
+// Memory of one more simulation of a plate, all of whose nodes may touch a plane far below.
 std::size_t memory_of_a_simulation(bool contact) {
   sim::ModelBuilder builder({.time_step = 0.01, .integrator = Integrator::backward_euler});
   fem::FemBodySettings body;

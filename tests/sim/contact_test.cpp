@@ -59,7 +59,7 @@ TEST(Contact, BlockSticksBelowTheFrictionAngle) {
 TEST(Contact, BlockSlidesAsCoulombSaysAboveIt) {
   for (const double angle : {0.55, 0.8}) {
     Simulation simulation(block_on_plane({.angle = angle}).build());
-    // The settling of the rubber dies away first.
+    // Wait until the rubber has settled.
     for (int k = 0; k < 600; ++k) simulation.step();
     const double before = mean_velocity(simulation)[0];
     for (int k = 0; k < 400; ++k) simulation.step();
@@ -77,7 +77,7 @@ double total(Simulation& simulation) {
   return energies.strain + energies.kinetic + energies.gravity;
 }
 
-// Without friction the forces at rest are the static ones, whatever led there.
+// Without friction, the forces at rest are the static ones, whatever the history.
 TEST(Contact, RestingForcesDoNotDependOnTheTimeStep) {
   std::vector<double> first;
   for (const double time_step : {1e-3, 4e-3, 10e-3}) {
@@ -124,7 +124,7 @@ TEST(Contact, ImpactTakesEnergyAndNeverGivesAny) {
   }
 }
 
-// Impulse and time of an impact, and its energy, are measured in contact_impact_test.cpp.
+// Impulse, contact time and energy of an impact are measured in contact_impact_test.cpp.
 TEST(Contact, SecondOrderStepsDoNotGainEnergyInAnImpact) {
   BlockOptions options{.angle = 0.3, .height = 0.005, .modulus = 1e5};
   options.damping = {};
@@ -140,8 +140,9 @@ TEST(Contact, SecondOrderStepsDoNotGainEnergyInAnImpact) {
   }
 }
 
-// strain + kinetic + gravity + what friction, impacts and damping took never exceeds what was there
-// and what surfaces put in; the difference is what backward Euler loses.
+// strain + kinetic + gravity + dissipation by friction, impacts and damping never exceeds the
+// initial energy plus the work of the surfaces; the difference is the numerical dissipation of
+// backward Euler.
 TEST(Contact, LedgerOfACarriedBlock) {
   BlockOptions options{.friction = 0.5, .floor = false};
   ModelBuilder builder = block_on_plane(options);
@@ -167,7 +168,7 @@ TEST(Contact, LedgerOfACarriedBlock) {
     EXPECT_GE(now, lost - 1e-12);
     lost = now;
   }
-  // The belt runs at 0.2 m/s; the block slips until it has its speed, then it sticks.
+  // The belt runs at 0.2 m/s; the block slips until it has this speed, then it sticks.
   EXPECT_NEAR(mean_velocity(simulation)[0], 0.2, 1e-6);
   EXPECT_GT(simulation.contacts().resultant(0).sticking, 20);
   const double kinetic = simulation.energies().kinetic;
@@ -181,7 +182,7 @@ mesh::Mesh block_mesh(int cells) {
                       .cells = {cells, cells, cells / 2}});
 }
 
-/// The block, its bottom fixed, and a ball that comes down on its top, quasi-statically.
+/// The block with fixed bottom, and a ball that is lowered onto its top quasi-statically.
 std::shared_ptr<const Model> pressed_by_a_ball(Method method, double friction, double depth) {
   BlockOptions options{.floor = false};
   options.step = {.time_step = 0.1, .method = method};
@@ -225,7 +226,7 @@ TEST(Contact, BallPressedIntoABlockIsNotPenetrated) {
   }
 }
 
-// The same static forces by one long step and by many, without friction, which has no history.
+// Fast and slow paths give the same static forces, since frictionless contact has no history.
 TEST(Contact, FrictionlessStaticsDoNotDependOnTheWay) {
   Simulation slow(pressed_by_a_ball(Method::newton, 0.0, 0.004));
   for (int k = 0; k < 10; ++k) slow.step();
@@ -237,7 +238,7 @@ TEST(Contact, FrictionlessStaticsDoNotDependOnTheWay) {
   EXPECT_LT((fast.contacts().resultant(0).force - expected).norm(), 1e-6 * expected.norm());
 }
 
-/// Two capsules along y that close on a block from both sides and hold it by friction.
+/// Two capsules along y close on a block from both sides and hold it by friction.
 TEST(Contact, TwoCapsulesHoldABlockByFriction) {
   for (const double friction : {0.6, 0.05}) {
     BlockOptions options{.floor = false};
@@ -253,7 +254,7 @@ TEST(Contact, TwoCapsulesHoldABlockByFriction) {
       finger.nodes = mesh.node_sets.at(side < 0.0 ? "x_min" : "x_max");
       finger.friction = friction;
       BaseMotion motion;
-      // Deep enough, the dent alone would carry the block.
+      // A deep indentation alone would support the block.
       const double depth = friction > 0.5 ? 3e-3 : 1e-4;
       motion.translation[0] = Signal::ramp({0.0, -side * depth, 0.0, 0.02});
       finger.motion = motion;
@@ -312,13 +313,13 @@ TEST(Contact, ActuatorsAndContactsShareOneProblem) {
       EXPECT_NEAR(state.effort, pushed, 1e-12);
       EXPECT_LT(state.motion, 0.004);
     } else {
-      EXPECT_LT(state.effort, pushed);  // the stroke ends first
+      EXPECT_LT(state.effort, pushed);  // the stroke limit is reached first
       EXPECT_NEAR(state.motion, 0.004, 1e-9);
     }
   }
 }
 
-/// A block, its end fixed, that a cable with friction bends towards a floor `below` it.
+/// A block with one end fixed that a cable with friction bends towards a floor `below` it.
 Simulation bent_to_a_floor(double below, bool floor, bool led) {
   ModelBuilder builder(
       StepSettings{.time_step = 0.01, .method = Method::newton, .tolerance = 1e-10});
@@ -365,7 +366,7 @@ TEST(Contact, CablesWithFrictionAndContactsShareOneProblem) {
     const ContactResultant resultant = near.contacts().resultant(0);
     EXPECT_GE(resultant.smallest_gap, -1e-9);
     EXPECT_GT(resultant.normal_force, 0.01);
-    // Along the cable the tension falls by no more than friction takes.
+    // Along the cable, the tension changes by no more than friction allows.
     const auto tensions = near.model().cable(0)->tensions(near.efforts());
     for (int via = 0; via + 1 < static_cast<int>(tensions.size()); ++via) {
       const auto i = static_cast<std::size_t>(via);
@@ -376,7 +377,8 @@ TEST(Contact, CablesWithFrictionAndContactsShareOneProblem) {
   }
 }
 
-/// A block that falls onto the floor and slides, and whose whole outside or bottom alone may touch.
+/// A block that falls onto the floor and slides; all its nodes may touch, or only those of its
+/// bottom.
 Simulation sliding(bool whole, Method method) {
   BlockOptions options{.angle = 0.6, .height = 2e-3, .floor = false};
   options.step.method = method;
@@ -417,7 +419,7 @@ TEST(Contact, PointsThatStayAwayChangeNothing) {
   }
 }
 
-// One step takes the block across a gap that is far larger than what counts as near.
+// One step carries the block across a gap much larger than the distance that counts as near.
 TEST(Contact, PointsThatArriveUnexpectedlyAreTakenIn) {
   for (const Method method : {Method::one_linearisation, Method::newton}) {
     for (const double pushed : {0.05, 1.5}) {
@@ -481,7 +483,7 @@ TEST(Contact, RunsGoOnFromASavedStateBitForBit) {
   EXPECT_EQ(second.state().hash(), whole.state().hash());
 }
 
-/// The fingerprint of a block with one contact, changed.
+/// The fingerprint of a block with one modified contact.
 std::uint64_t fingerprint(const std::function<void(ContactSettings&)>& change) {
   ModelBuilder builder = block_on_plane({.floor = false});
   ContactSettings contact;

@@ -38,8 +38,8 @@ std::vector<double> normal_forces(const Simulation& simulation) {
   return forces;
 }
 
-// Without friction nothing but the spread of forces tells zones from points. Overlaps of 1 % of how
-// far a zone is pressed in are left, and a point is stiffer than its zone.
+// Without friction, zones differ from points only in how forces are distributed. Zones leave
+// overlaps of 1 % of their indentation, and a point is stiffer than its zone.
 TEST(ContactZones, ForcesOfABlockAtRestAreThoseOfItsPoints) {
   Simulation points(block_on_plane(options(0.0, 0.0)).build());
   Simulation zones(block_on_plane(options(kZone, 0.0)).build());
@@ -58,7 +58,7 @@ TEST(ContactZones, ForcesOfABlockAtRestAreThoseOfItsPoints) {
   EXPECT_LT(zones.world().problem().contacts.size(), points.world().problem().contacts.size() / 2);
 }
 
-// Each point in its own cone, and the block slides at g (sin - mu cos).
+// The force of each point lies in its own cone, and the block slides at g (sin - mu cos).
 TEST(ContactZones, ABlockSlidesAsCoulombSays) {
   const double angle = 0.5, friction = 0.3;
   Simulation simulation(block_on_plane(options(kZone, friction, angle)).build());
@@ -74,7 +74,7 @@ TEST(ContactZones, ABlockSlidesAsCoulombSays) {
   }
 }
 
-// delta = delta_free + W lambda of zones is the mean of what their points do.
+// delta = delta_free + W lambda of a zone is the mean over its points.
 TEST(ContactZones, ComplianceIsThatOfTheSpreadForces) {
   Simulation simulation(block_on_plane(options(kZone, 0.5, 0.2)).build());
   for (int k = 0; k < 20; ++k) simulation.step();
@@ -90,7 +90,7 @@ TEST(ContactZones, ComplianceIsThatOfTheSpreadForces) {
     world.numbering().spread(row, 0.0, unit);
     VectorX motion;
     world.bodies().solve(loaded - rest, motion);
-    // H motion, row by row: forces of a unit effort times the motion.
+    // H times the motion, row by row: the forces of a unit effort times the motion.
     for (const int other : {0, 2, rows - 2}) {
       world.numbering().spread(other, 1.0, unit);
       world.bodies().imbalance(unit, loaded);

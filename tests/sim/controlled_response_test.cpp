@@ -1,4 +1,4 @@
-// How effectors and actuators answer to a controller's efforts.
+// Response of effectors and actuators to a controller's efforts.
 #include "sinew/sim/controlled_response.hpp"
 
 #include <vector>
@@ -22,7 +22,7 @@ using sinew::testing::tension;
 
 Command length(double metres) { return {CommandKind::motion, Signal::constant(metres)}; }
 
-// Two cables are controlled; the others have tensions, which stay.
+// Two cables are controlled; the others keep their commanded tensions.
 TEST(ControlledResponse, OfEffortsIsTheCompliance) {
   Simulation simulation(beam());
   for (int k = 0; k < 4; ++k) simulation.command(k, tension(1.0 + k));
@@ -39,7 +39,7 @@ TEST(ControlledResponse, OfEffortsIsTheCompliance) {
   EXPECT_LT((response.actuators - w(controlled, controlled)).norm(), 1e-12 * w.norm());
 }
 
-// Held lengths keep what controlled efforts move: W_cc - W_ch W_hh^-1 W_hc.
+// Held lengths change the response to W_cc - W_ch W_hh^-1 W_hc.
 TEST(ControlledResponse, HeldLengthsStay) {
   Simulation simulation(beam());
   for (int k = 0; k < 4; ++k) simulation.command(k, tension(2.0));

@@ -1,4 +1,4 @@
-// What a step does when nothing is asked of it: the right number, or word that it is not.
+// A step with default settings: an accurate result, or a status that says otherwise.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ using sinew::testing::tension;
 
 double distance(const Points& a, const Points& b) { return (a - b).rowwise().norm().maxCoeff(); }
 
-// The last state of `steps` steps against the equilibrium that is found from there.
+// Distance between the present state and the equilibrium found from there.
 double distance_to_rest(Simulation& simulation) {
   const Points stepped = simulation.body(0).positions();
   simulation.solve_static();
@@ -60,7 +60,7 @@ TEST(DefaultStep, GravityThatComesAtOnceHangsTheBeamWhereItRests) {
   EXPECT_LT(distance_to_rest(simulation), 1e-6);
 }
 
-// The iterations of a step, whatever comes of it.
+// Number of iterations of a step, whether it converges or not.
 int count_iterations(Simulation& simulation) {
   int iterations = 0;
   simulation.watch([&](const StepProgress& step) { iterations = step.iterations; });
@@ -73,7 +73,7 @@ int count_iterations(Simulation& simulation) {
   return iterations;
 }
 
-// A cable that folds the beam: what docs/solver.md says of the longest search.
+// A cable that folds the beam; docs/solver.md states the bound on the longest search.
 TEST(DefaultStep, TheSearchForWhatIsNotThereEnds) {
   BeamOptions options;
   options.young_modulus = 2e4;
@@ -86,7 +86,8 @@ TEST(DefaultStep, TheSearchForWhatIsNotThereEnds) {
   }
 }
 
-// Where the step before found nothing, this one looks no farther than Newton's method does.
+// If the previous step ended far out of balance, this step stops with Newton's method and does not
+// search further.
 TEST(DefaultStep, AStepFromFarOutOfBalanceIsNotSearchedForLong) {
   BeamOptions options;
   options.young_modulus = 2e4;
@@ -126,8 +127,8 @@ TEST(DefaultStep, OneLinearisationSaysThatItLeftEquilibrium) {
   EXPECT_TRUE(flagged);
 }
 
-// With one linearisation about the start a swing gains energy, which its status says; solved steps
-// do not.
+// A swing gains energy with one linearisation per step about its start, and the status reports it;
+// solved steps do not gain energy.
 TEST(DefaultStep, ASwingKeepsItsEnergyOrSaysThatItDoesNot) {
   for (const auto integrator : {mechanics::Integrator::backward_euler, mechanics::Integrator::bdf2,
                                 mechanics::Integrator::generalized_alpha}) {
@@ -171,7 +172,7 @@ BeamOptions swinging() {
   return options;
 }
 
-// The energy that a run is judged by is part of its state: it goes on as if nothing had been.
+// The reference energy of the check is part of the state, so a restored run continues unchanged.
 TEST(DefaultStep, TheWatchOfEnergyGoesWithTheState) {
   const auto model = beam(swinging());
   Simulation run(model), loaded(model);
@@ -188,7 +189,7 @@ TEST(DefaultStep, TheWatchOfEnergyGoesWithTheState) {
   }
 }
 
-// What a static solution takes from gravity and commands, no step has gained.
+// Energy that a static solution takes from gravity and commands does not count as gained by a step.
 TEST(DefaultStep, AStaticSolutionGainsNoEnergy) {
   Simulation simulation(beam(swinging()));
   for (int k = 0; k < 3; ++k) simulation.step();
@@ -196,7 +197,7 @@ TEST(DefaultStep, AStaticSolutionGainsNoEnergy) {
   simulation.solve_static();
   for (int k = 0; k < 10; ++k) EXPECT_EQ(simulation.step().status, StepStatus::solved) << k;
   EXPECT_NEAR(simulation.report().energy_gained, 0.0, 1e-9);
-  for (const double newtons : {0.4, 0.2}) {  // one of them stores more than the equilibrium above
+  for (const double newtons : {0.4, 0.2}) {  // one stores more than the above equilibrium
     simulation.command(0, tension(newtons));
     simulation.follow_path({});
     for (int k = 0; k < 10; ++k) EXPECT_EQ(simulation.step().status, StepStatus::solved) << k;

@@ -1,4 +1,4 @@
-// A step gives the same bits on any number of threads, all of which work, and allocates nothing.
+// A step gives the same bits on any number of threads, uses all of them, and allocates nothing.
 #include <atomic>
 #include <cstdlib>
 #include <new>

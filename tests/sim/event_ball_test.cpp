@@ -1,4 +1,4 @@
-// A ball that bounces, against the closed form of its flights.
+// A bouncing ball against the closed form of its flights.
 #include <cmath>
 #include <utility>
 
@@ -14,7 +14,7 @@ namespace {
 constexpr double kHeight = 0.5;  // m, of the lowest point above the floor
 constexpr double kRadius = 0.05;
 
-// On a floor that leans by `slope` rad.
+// On a floor inclined by `slope`, rad.
 std::unique_ptr<sim::Simulation> ball(double time_step, double restitution, double slope) {
   sim::ModelBuilder builder(events(time_step, restitution));
   const Vector3 normal(std::sin(slope), 0.0, std::cos(slope));
@@ -23,13 +23,13 @@ std::unique_ptr<sim::Simulation> ball(double time_step, double restitution, doub
   return std::make_unique<sim::Simulation>(builder.build());
 }
 
-// Across the floor the ball falls with g cos(slope) from h cos(slope): its flights last as long as
-// those on a level floor.
+// Normal to the floor, the ball falls with g cos(slope) from the height h cos(slope), so its
+// flights last as long as on a level floor.
 struct Flights {
   Flights(double e, double slope) : fall(kGravity * std::cos(slope)), restitution(e) {}
 
   double end() const { return first * (1.0 + restitution) / (1.0 - restitution); }
-  // m and m/s across the floor, and the moment (s) of the last impact.
+  // Height (m) and velocity (m/s) normal to the floor, and time (s) of the last impact.
   struct Place {
     double height = 0.0, rate = 0.0, begin = 0.0;
   };
@@ -46,7 +46,7 @@ struct Flights {
     return place;
   }
 
-  double fall, restitution;  // m/s^2
+  double fall, restitution;  // fall: m/s^2
   double first = std::sqrt(2.0 * kHeight / kGravity);
 };
 
@@ -76,7 +76,7 @@ TEST_P(BouncingBall, FollowsItsFlights) {
     const Flights::Place place = flights.at(time);
     EXPECT_NEAR(height, place.height, 1e-10);
     EXPECT_NEAR(speed, place.rate, 1e-8);
-    // The moment of the last impact, by the flight since.
+    // Time of the last impact, computed back from the present flight.
     const double left = std::sqrt(speed * speed + 2.0 * flights.fall * height);
     const double begin = time - (left - speed) / flights.fall;
     if (time > flights.first) {
@@ -85,7 +85,7 @@ TEST_P(BouncingBall, FollowsItsFlights) {
   }
 }
 
-// Along the slope nothing but gravity acts.
+// Along the slope only gravity acts.
 TEST_P(BouncingBall, SlidesFreely) {
   const auto [slope, e, h] = GetParam();
   const auto simulation = ball(h, e, slope);
@@ -98,7 +98,7 @@ TEST_P(BouncingBall, SlidesFreely) {
   EXPECT_NEAR(rate(*simulation), 0.0, 1e-11);
 }
 
-// So many steps end 0.1 % before the closed form's end, and 0.1 % behind it.
+// The steps end 0.1 % before, and 0.1 % after, the closed form's time of rest.
 TEST_P(BouncingBall, ComesToRestInTime) {
   const auto [slope, e, h] = GetParam();
   const double end = flights().end();
@@ -115,7 +115,7 @@ TEST_P(BouncingBall, ComesToRestInTime) {
   }
 }
 
-// Between impacts its energy stays; each impact leaves e^2 of that across the floor.
+// Energy is constant between impacts; each impact leaves e^2 of the energy normal to the floor.
 TEST_P(BouncingBall, LosesEnergyInImpactsAlone) {
   const auto [slope, e, h] = GetParam();
   const auto simulation = ball(h, e, slope);
@@ -158,7 +158,7 @@ TEST(EventDriven, WithoutRestitutionItStaysWhereItLands) {
   EXPECT_NEAR(simulation->efforts()[0], 2.0 * kGravity, 1e-7);
 }
 
-// In flight, between rebounds, and at rest.
+// States saved in flight, between rebounds, and at rest.
 TEST(EventDriven, StatesGoOnBitForBit) {
   const auto simulation = ball(20e-3, 0.9, 0.2);
   const std::uint64_t start = simulation->state().hash();

@@ -41,8 +41,8 @@ TEST(EventImpact, BallsHeadOn) {
   }
 }
 
-// Along the line of centres the balls obey Newton's law, across it nothing acts. The planes of the
-// gap follow the balls until they touch.
+// Along the line of centres the balls obey Newton's law; no impulse acts across it. The tangent
+// planes follow the balls until they touch.
 TEST(EventImpact, BallsThatMeetAskew) {
   const double e = 0.7, offset = 0.06;
   sim::ModelBuilder builder(events(20e-3, e));
@@ -57,7 +57,7 @@ TEST(EventImpact, BallsThatMeetAskew) {
   EXPECT_LT((velocity(simulation, 0) - (Vector3(5.0, 0, 0) - given)).norm(), 1e-7);
 }
 
-// Balls that fly past each other by a hair's breadth do not touch, however long the step.
+// Balls that narrowly miss each other do not touch, however long the step.
 TEST(EventImpact, AMissIsNone) {
   sim::ModelBuilder builder(events(50e-3, 1.0));
   const int first = add_ball(builder, "first", Vector3(-0.5, 0, 0), Vector3(20.0, 0, 0), kNone);
@@ -70,7 +70,7 @@ TEST(EventImpact, AMissIsNone) {
   EXPECT_LT((velocity(simulation, 0) - Vector3(20.0, 0, 0)).norm(), 1e-11);
 }
 
-// A ball between others does not fly through them in one step.
+// A ball between others does not pass through them in one step.
 TEST(EventImpact, NothingTunnels) {
   sim::ModelBuilder builder(events(50e-3, 1.0));
   const int first = add_ball(builder, "first", Vector3(-0.5, 0, 0), Vector3(40.0, 0, 0), kNone);
@@ -82,9 +82,9 @@ TEST(EventImpact, NothingTunnels) {
   EXPECT_NEAR(velocity(simulation, 0)[0], 0.0, 1e-9);
 }
 
-// Newton's law takes simultaneous contacts as one impact: of three equal balls that touch, the
-// first goes back with a third of its speed, and the others go on together with two thirds. Energy
-// and momentum are kept. Where they do not touch, the impacts follow each other.
+// Newton's law treats simultaneous contacts as one impact: of three equal balls that touch, the
+// first rebounds with a third of its speed, and the others move on together with two thirds. Energy
+// and momentum are conserved. If the balls are apart, the impacts follow each other.
 TEST(EventImpact, Cradle) {
   for (const double gap : {0.0, 1e-4}) {
     sim::ModelBuilder builder(events(20e-3, 1.0));
@@ -102,8 +102,9 @@ TEST(EventImpact, Cradle) {
   }
 }
 
-// The point of a ball has the inertia m along the normal and 2/7 m across it. Sticking, its slip
-// becomes -e times itself; sliding, the impulse is at the limit.
+// The effective mass of a ball's contact point is m along the normal and 2/7 m across it. If it
+// sticks, its slip velocity becomes -e times itself; if it slides, the impulse is at the friction
+// limit.
 TEST(EventImpact, SpinAndFriction) {
   const double e = 0.6, radius = 0.05, mass = 2.0;
   for (const double friction : {0.1, 0.8}) {
@@ -145,7 +146,7 @@ std::unique_ptr<sim::Simulation> box(double lean, double restitution, double ste
   return std::make_unique<sim::Simulation>(builder.build());
 }
 
-// All four corners strike at once.
+// All four corners hit at the same time.
 TEST(EventImpact, ABoxThatLandsFlatBouncesLikeABall) {
   const double e = 0.5, first = std::sqrt(2.0 * 0.25 / kGravity);
   const auto simulation = box(0.0, e, 10e-3);
@@ -161,7 +162,7 @@ TEST(EventImpact, ABoxThatLandsFlatBouncesLikeABall) {
   EXPECT_LT(velocity(*simulation, 0).norm(), 1e-8);
 }
 
-// An edge at x beside the centre strikes with p = (1 + e) m v/(1 + m x^2/I).
+// An edge at the horizontal distance x from the centre hits with p = (1 + e) m v/(1 + m x^2/I).
 TEST(EventImpact, ABoxThatLandsOnAnEdgeTurns) {
   const double e = 0.4, lean = 0.3, mass = 2.0, inertia = mass * 0.01 / 6.0;
   const auto simulation = box(lean, e, 10e-3);
@@ -176,8 +177,8 @@ TEST(EventImpact, ABoxThatLandsOnAnEdgeTurns) {
   EXPECT_NEAR(pose(*simulation, 0).angular_velocity().norm(), impulse * beside / inertia, 1e-7);
 }
 
-// It tumbles, and comes to rest on a face. Its energy never grows beyond the error of the midpoint
-// rule, by which a box turns about its edge.
+// The box tumbles and comes to rest on a face. Its energy never grows beyond the error of the
+// midpoint rule in rotations about an edge.
 TEST(EventImpact, ABoxComesToRest) {
   for (const double e : {0.0, 0.5}) {
     const auto simulation = box(0.3, e, 5e-3);
@@ -194,7 +195,7 @@ TEST(EventImpact, ABoxComesToRest) {
   }
 }
 
-// Of a pendulum, which strikes a wall at its lowest point: L = l + 2 r^2/(5 l).
+// A pendulum that hits a wall at its lowest point. Its reduced length is L = l + 2 r^2/(5 l).
 class Pendulum {
  public:
   Pendulum(double step, double e) {
@@ -219,7 +220,7 @@ class Pendulum {
     return std::atan2(at[0], -at[2]);
   }
   double rate() const { return -pose(*simulation, 0).angular_velocity()[1]; }
-  // s, of a whole swing to an angle.
+  // Period of a swing of the given amplitude, s.
   static double period(double angle) {
     return 4.0 * std::sqrt(kReduced / kGravity) * std::comp_ellint_1(std::sin(0.5 * angle));
   }
@@ -228,8 +229,8 @@ class Pendulum {
   std::unique_ptr<sim::Simulation> simulation;
 };
 
-// Each impact leaves e of the speed, w = 2 sqrt(g/L) sin(angle/2), and half a period later the next
-// one follows.
+// Each impact leaves e of the angular velocity w = 2 sqrt(g/L) sin(angle/2); the next one follows
+// half a period later.
 TEST(EventImpact, APendulumStrikesAWallInTime) {
   const double e = 0.8;
   double errors[2] = {};
@@ -241,7 +242,7 @@ TEST(EventImpact, APendulumStrikesAWallInTime) {
     while (struck < 4) {
       if (pendulum.simulation->step().impacts == 0) continue;
       ++struck;
-      // The angle is next to nothing: it has grown at a constant rate since.
+      // The angle is small and has grown at a constant rate since the impact.
       const double found = pendulum.simulation->time() - pendulum.angle() / pendulum.rate();
       errors[fine] = std::max(errors[fine], std::abs(found - moment) / moment);
       sine *= e;
@@ -252,8 +253,8 @@ TEST(EventImpact, APendulumStrikesAWallInTime) {
   EXPECT_NEAR(errors[0] / errors[1], 4.0, 1.0);  // second order
 }
 
-// A block of rubber that falls beside a ball. While it is in flight, the ball moves as it would
-// alone; while it touches the floor, by backward Euler's steps, which lose g h t/2 of height.
+// A rubber block falls next to a ball. While the block is in flight, the ball moves as if alone;
+// while the block touches the floor, steps are by backward Euler, which lose g h t/2 of height.
 TEST(EventDriven, ADeformableBodyFallsBesideABall) {
   BlockOptions options{.step = events(2e-3, 0.5), .height = 0.01};
   sim::ModelBuilder builder = block_on_plane(options);
@@ -305,7 +306,7 @@ TEST(EventDriven, ABallReboundsFromADeformableBody) {
   EXPECT_GT(fastest, 0.1);
 }
 
-// What cannot be combined is refused, with the way out.
+// Unsupported combinations are rejected with a remedy.
 class Refused : public ::testing::Test {
  protected:
   template <class Build>

@@ -1,5 +1,5 @@
-// Impacts of rigid bodies with surfaces of triangles: against closed forms, and against the same
-// bodies as exact shapes.
+// Impacts of rigid bodies with triangle surfaces: against closed forms, and against the same bodies
+// as exact shapes.
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -16,7 +16,7 @@ namespace sinew::testing {
 namespace {
 
 constexpr double kEdge = 0.1;    // m, of the cube
-constexpr double kAbove = 0.25;  // m, of its lowest point over the floor
+constexpr double kAbove = 0.25;  // m, of its lowest point above the floor
 
 enum class Kind { shape, surface, hull };
 
@@ -30,7 +30,7 @@ rigid::RigidSettings cube(Kind kind) {
   return body;
 }
 
-// On a fixed slab, of triangles unless the cube is a shape.
+// A cube falls onto a fixed slab, which is a mesh unless the cube is a shape.
 std::unique_ptr<sim::Simulation> dropped(Kind kind, const Matrix3& rotation, double h, double e,
                                          double friction = 0.0) {
   sim::ModelBuilder builder(events(h, e));
@@ -63,8 +63,8 @@ class FallingCube : public ::testing::TestWithParam<Fall> {
   }
 };
 
-// Flat or on a corner, it strikes below its centre, and bounces like a ball: each impact leaves e
-// of its speed, and it rests at sqrt(2 h/g) (1 + e)/(1 - e).
+// Flat or on a corner, the cube hits below its centre and bounces like a ball: each impact leaves e
+// of its speed, and it is at rest at sqrt(2 h/g) (1 + e)/(1 - e).
 TEST_P(FallingCube, BouncesLikeABall) {
   const double e = 0.5, h = 10e-3;
   const auto simulation = dropped(GetParam().kind, rotation(), h, e);
@@ -113,7 +113,7 @@ Matrix3 askew() {
       .toRotationMatrix();
 }
 
-// Askew, with and without friction, it goes as the same cube as a shape, from impact to impact.
+// Tilted, with and without friction, the mesh moves like the exact shape from impact to impact.
 TEST(EventMesh, ACubeTumblesAsTheShapeDoes) {
   for (const double friction : {0.0, 0.4}) {
     const auto mesh = dropped(Kind::surface, askew(), 5e-3, 0.5, friction);
@@ -147,7 +147,7 @@ TEST(EventMesh, ACubeComesToRest) {
   }
 }
 
-// Two cubes that meet in free flight, each spinning.
+// Two spinning cubes that collide in free flight.
 std::unique_ptr<sim::Simulation> meeting(double e, double speed, double spin, double friction,
                                          bool swapped = false) {
   sim::ModelBuilder builder(events(10e-3, e));
@@ -169,7 +169,7 @@ std::unique_ptr<sim::Simulation> meeting(double e, double speed, double spin, do
   return std::make_unique<sim::Simulation>(builder.build());
 }
 
-// Of a cube the inertia is a multiple of the identity.
+// Total linear and angular momentum; the inertia of a cube is a multiple of the identity.
 Vector3 linear_momentum(const sim::Simulation& simulation, int first) {
   return 2.0 * pose(simulation, first).linear_velocity() +
          3.0 * pose(simulation, 1 - first).linear_velocity();
@@ -208,7 +208,7 @@ TEST(EventMesh, CubesThatMeetKeepTheirMomentum) {
   }
 }
 
-// Without rebound they slide on each other, corner on turning face, and round an edge.
+// Without rebound they slide on each other, corner on rotating face, and round an edge.
 TEST(EventMesh, CubesThatDoNotReboundSlideOff) {
   const auto simulation = meeting(0.0, 2.0, 5.0, 0.3);
   const Vector3 linear = linear_momentum(*simulation, 0);
@@ -234,7 +234,7 @@ TEST(EventMesh, TheOrderOfBodiesDoesNotMatter) {
   }
 }
 
-// 80 m/s go 0.8 m in a step, through the other cube and far beyond.
+// At 80 m/s a step covers 0.8 m, through the other cube and far beyond.
 TEST(EventMesh, FastCubesDoNotPass) {
   for (const double spin : {0.0, 40.0}) {
     const auto simulation = meeting(0.5, 40.0, spin, 0.3);
@@ -243,7 +243,7 @@ TEST(EventMesh, FastCubesDoNotPass) {
   }
 }
 
-// Corners that pass beside each other, by a hair's breadth.
+// Corners that narrowly pass each other.
 TEST(EventMesh, AMissIsNone) {
   for (const double beside : {-1e-5, 1e-5}) {
     sim::ModelBuilder builder(events(20e-3, 1.0));

@@ -1,4 +1,4 @@
-// Impacts on surfaces that move by themselves, against closed forms of the relative motion.
+// Impacts on surfaces with prescribed motion, against closed forms of the relative motion.
 #include <cmath>
 #include <memory>
 
@@ -13,8 +13,8 @@
 namespace sinew::testing {
 namespace {
 
-constexpr double kBall = 0.05;  // m, its radius
-constexpr double kOver = 0.35;  // m, of its lowest point over the table at the start
+constexpr double kBall = 0.05;  // m, radius
+constexpr double kOver = 0.35;  // m, initial height of its lowest point above the table
 
 sim::BaseMotion rising(double speed, double start = 0.0) {
   sim::BaseMotion motion;
@@ -22,7 +22,7 @@ sim::BaseMotion rising(double speed, double start = 0.0) {
   return motion;
 }
 
-// What carries the ball: a surface of the world, or a body, which is a shape or a mesh.
+// The support of the ball: a surface of the world, or a body given by a shape or a mesh.
 enum class Table { plane, shape, mesh };
 
 std::unique_ptr<sim::Simulation> ball_on(Table table, const sim::BaseMotion& motion,
@@ -52,15 +52,15 @@ double speed(const sim::Simulation& simulation) { return pose(simulation, 0).lin
 
 class MovingTable : public ::testing::TestWithParam<Table> {};
 
-// Beside a table that rises steadily a ball bounces as it does beside one at rest: it falls from
-// above with the table's speed towards it. On a mesh it lands on the lowest corner of its
-// triangles, which is below its centre.
+// On a table that rises at constant speed, the ball bounces as on a resting one: it approaches with
+// the table's speed added. On a mesh it lands on the lowest corner of its own triangles, which is
+// below its centre.
 TEST_P(MovingTable, RisesUnderABouncingBall) {
   const double e = 0.6, rise = 0.4, h = 20e-3;
   const auto simulation = ball_on(GetParam(), rising(rise), events(h, e));
   const double small = 1e-9;
   const double above = GetParam() == Table::mesh ? kApart : 0.0;
-  // Of the ball beside the table, when a flight begins.
+  // State of the ball relative to the table at the start of a flight.
   double at = kOver - above, rate = -rise, begin = 0.0;
   const double end =
       std::sqrt(rise * rise + 2.0 * kGravity * at) / kGravity * (1.0 + e) / (1.0 - e);
@@ -82,13 +82,13 @@ TEST_P(MovingTable, RisesUnderABouncingBall) {
   }
 }
 
-// It lies on a table that swings, and goes with it: midpoint steps are of second order.
+// The ball rests on an oscillating table and follows it: midpoint steps are of second order.
 TEST_P(MovingTable, SwingsWithABallOnIt) {
   sim::BaseMotion swing;
   swing.translation[2] = sim::Signal::sine({0.0, 5e-3, 1.0, 0.0});
   const double pace = 2.0 * M_PI;
   const auto simulation = ball_on(GetParam(), swing, events(10e-3, 0.5), 0.0);
-  // It is struck at the start, where the table begins to move at once, and comes to rest on it.
+  // The table's velocity jumps at the start and hits the ball, which then comes to rest on it.
   while (simulation->time() < 0.2) simulation->step();
   const double start = height(*simulation) - 5e-3 * std::sin(pace * simulation->time());
   int impacts = 0;
@@ -101,7 +101,7 @@ TEST_P(MovingTable, SwingsWithABallOnIt) {
   EXPECT_EQ(impacts, 0);
 }
 
-// A table that starts at once throws the ball with (1 + e) times its speed.
+// A table whose velocity jumps throws the ball with (1 + e) times its speed.
 TEST_P(MovingTable, StartsAtOnceAndThrowsTheBall) {
   const double e = 0.5, rise = 0.3, start = 0.0437;
   const auto simulation = ball_on(GetParam(), rising(rise, start), events(10e-3, e), 0.0);
@@ -131,8 +131,8 @@ TEST_P(MovingTable, GoesOnFromAStateBitForBit) {
 INSTANTIATE_TEST_SUITE_P(Tables, MovingTable,
                          ::testing::Values(Table::plane, Table::shape, Table::mesh));
 
-// What the floor does to the ball is work from outside; what an impact takes out is (1 - e^2) of
-// the kinetic energy beside the floor.
+// The work of the floor on the ball is external work; an impact dissipates (1 - e^2) of the kinetic
+// energy relative to the floor.
 TEST(EventMotion, EnergiesAddUp) {
   const double e = 0.6, rise = 0.4, mass = 2.0;
   const auto simulation = ball_on(Table::plane, rising(rise), events(20e-3, e));
@@ -150,9 +150,8 @@ TEST(EventMotion, EnergiesAddUp) {
   }
 }
 
-// A floor that turns about a line beside the ball strikes it with the speed that it has there.
-// Within a part of length h the normal at the ball turns, and its gap is off by up to r (w h)^2/8
-// = 1.4e-6 m.
+// A floor that rotates about a distant line hits the ball with its local velocity. Within a substep
+// of length h the normal at the ball rotates, so its gap is off by up to r (w h)^2/8 = 1.4e-6 m.
 TEST(EventMotion, AFloorThatTurnsStrikes) {
   const double e = 0.7, pace = 1.5, beside = 0.4;
   sim::ModelBuilder builder(events(10e-3, e));
@@ -167,10 +166,10 @@ TEST(EventMotion, AFloorThatTurnsStrikes) {
   floor.motion->angle = sim::Signal::ramp({0.0, 10.0 * pace, 0.0, 10.0});
   builder.add_contact(floor);
   sim::Simulation simulation(builder.build());
-  // The ball waits at (x, z): it is touched where z cos a - x sin a = r.
+  // The ball rests at (x, z) and is hit when z cos a - x sin a = r.
   const double far = std::hypot(beside, 0.2);
   const double angle = std::atan2(0.2, beside) - std::asin(kBall / far);
-  const double along = std::sqrt(far * far - kBall * kBall);  // of the point that is struck
+  const double along = std::sqrt(far * far - kBall * kBall);  // lever arm of the contact point
   int impacts = 0;
   while (simulation.time() < angle / pace + 0.02) impacts += simulation.step().impacts;
   EXPECT_EQ(impacts, 1);
@@ -179,9 +178,10 @@ TEST(EventMotion, AFloorThatTurnsStrikes) {
             1e-6);
 }
 
-// On a belt a ball slides until it rolls, at 5/7 of the belt's speed beside it: of a ball at rest
-// the point that touches has the speed V, and friction takes 2/7 of it. A slip of less than 5 % of
-// the speed changes its sign from step to step under the midpoint rule: the mean of two counts.
+// A ball at rest on a moving belt slides until it rolls: the contact point slips with the belt's
+// speed V, and friction gives the ball 2/7 of it, which leaves 5/7 V relative to the belt. Under
+// the midpoint rule a slip of less than 5 % of the speed changes sign from step to step, so the
+// mean of two steps is tested.
 TEST(EventMotion, ABeltCarriesABall) {
   sim::ModelBuilder builder(events(5e-3, 0.0));
   const int ball = add_ball(builder, "ball", Vector3(0.0, 0.0, kBall));
@@ -201,7 +201,7 @@ TEST(EventMotion, ABeltCarriesABall) {
   }
   EXPECT_NEAR(0.5 * (before + pose(simulation, 0).linear_velocity()[0]), 2.0 / 7.0, 1e-3);
   EXPECT_NEAR(pose(simulation, 0).origin()[2], kBall, 1e-9);
-  // Energy from the belt: its force times its way.
+  // Work of the belt: its force times its displacement.
   const double kinetic = simulation.energies().kinetic;
   EXPECT_NEAR(simulation.ledger().outside - simulation.ledger().dissipated, kinetic, 1e-4);
   EXPECT_NEAR(simulation.ledger().outside, 2.0 * 2.0 / 7.0, 0.02);

@@ -30,10 +30,11 @@ using sinew::testing::tension;
 
 constexpr double kFriction = 0.3;
 
-/// A block with a cable that runs straight in, along a quarter of a circle of 40 mm, and out.
+/// A block with a cable that runs straight in, along a quarter circle of radius 40 mm, and straight
+/// out.
 std::shared_ptr<const Model> bollard(int points_on_arc) {
   StepSettings step;
-  step.tolerance = 1e-11;  // the laws of friction are checked to the last digits
+  step.tolerance = 1e-11;  // friction laws are checked to the last digits
   step.method = Method::newton;
   ModelBuilder builder(step);
   fem::FemBodySettings body;
@@ -62,7 +63,8 @@ std::vector<double> tensions(const Simulation& simulation, int actuator = 0) {
   return simulation.model().cable(actuator)->tensions(simulation.efforts());
 }
 
-// Every ratio of neighbouring tensions within Coulomb's limits; whether all are at one of them.
+// Every ratio of neighbouring tensions is within Coulomb's limits, and at the limit of `sign`
+// unless that is 0.
 void expect_friction(const Simulation& simulation, double sign) {
   const auto& model = simulation.model();
   const auto& configuration = simulation.configuration();
@@ -101,7 +103,8 @@ TEST(Friction, ReleasedRopeSticksBeforeItSlides) {
   const double behind = tensions(simulation).back();
   simulation.command(0, tension(2.7));
   simulation.step();
-  // Behind the points that slide back, a release by a tenth is felt by the block's motion alone.
+  // Behind the points that slide back, a release by a tenth acts only through the motion of the
+  // block.
   EXPECT_NEAR(tensions(simulation).back(), behind, 5e-3 * behind);
   EXPECT_NEAR(tensions(simulation).front(), 2.7, 1e-9);
   expect_friction(simulation, 0.0);
@@ -119,20 +122,21 @@ TEST(Friction, ForcesOfRowsAreThoseOfTheSegments) {
   const auto& body = *mechanics::as<const fem::HasMaterial>(simulation.body(0));
   Points forces = Points::Zero(body.positions().rows(), 3);
   body.add_row_forces(simulation.efforts(), forces);
-  // What the straight ends pull at the block, but for the world's pull point.
+  // The resultant is that of the straight ends, without the one at the world's pull point.
   const auto own = tensions(simulation);
   const Points points = model->cable(0)->points(simulation.configuration());
   const Vector3 first = (points.row(1) - points.row(0)).transpose().normalized();
-  // Forces on fixed nodes are not listed: the cable stays away from them but for the sum along y.
+  // Forces on fixed nodes are not included; the cable stays away from these, so the sum is
+  // complete.
   const Vector3 sum = forces.colwise().sum().transpose();
   const Vector3 expected = -own.front() * first;
   EXPECT_LT((sum - expected).norm(), 1e-6 * own.front());
 }
 
-// The same length costs more tension.
+// With friction, the same length requires more tension.
 TEST(Friction, BentBeamLosesTensionAlongItsCable) {
   StepSettings step;
-  step.tolerance = 1e-11;  // the laws of friction are checked to the last digits
+  step.tolerance = 1e-11;  // friction laws are checked to the last digits
   step.method = Method::newton;
   Simulation smooth(beam({.step = step})), rough(beam({.step = step, .friction = kFriction}));
   for (Simulation* simulation : {&smooth, &rough}) {
@@ -148,7 +152,7 @@ TEST(Friction, BentBeamLosesTensionAlongItsCable) {
 
 TEST(Friction, CyclesDissipate) {
   StepSettings step;
-  step.tolerance = 1e-11;  // the laws of friction are checked to the last digits
+  step.tolerance = 1e-11;  // friction laws are checked to the last digits
   step.method = Method::newton;
   const auto work_of_cycle = [&](double friction) {
     Simulation simulation(beam({.step = step, .cables = 1, .friction = friction}));
@@ -161,7 +165,7 @@ TEST(Friction, CyclesDissipate) {
         const double from = simulation.actuator(0).motion;
         simulation.command(0, tension(0.2 + 2.0 * share));
         simulation.step();
-        // Trapezoidal rule: the sum of end-of-step efforts overstates the work at first order.
+        // Trapezoidal rule: end-of-step efforts alone overestimate the work at first order.
         const double mean = 0.5 * (before + simulation.actuator(0).effort);
         if (second) work += mean * (simulation.actuator(0).motion - from);
       }

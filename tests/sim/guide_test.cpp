@@ -1,4 +1,4 @@
-// Guides of cables: tubes of a radius set along a conduit.
+// Cable guides: tubes of a given radius along a conduit.
 #include <cmath>
 #include <memory>
 
@@ -56,7 +56,7 @@ TEST(Guides, SpacingSetsTheGuidesThatOneWouldWrite) {
   EXPECT_NE(same->fingerprint(), block_with(set, 4).build()->fingerprint());
 }
 
-/// How far the end of a cable that pulls a point of the block sideways by 1 N moves, m.
+/// Displacement of the end of a cable that pulls a point of the block sideways with 1 N, m.
 double pulled(double radius, int cells_across) {
   CableSettings cable;
   cable.points = rows({{0.07, 0.02, 0.2}, {0.07, 0.02, 0.02}});

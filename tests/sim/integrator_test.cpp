@@ -40,7 +40,7 @@ Vector3 tip_after(const BeamOptions& options, double duration) {
   return simulation.effector_value(0);
 }
 
-// Errors against a run of much smaller steps fall as h or h^2.
+// The error against a run with much smaller steps decreases as h or h^2.
 TEST(Integrator, OrdersAreAsPublished) {
   constexpr double kEnd = 0.04;
   for (const bool damped : {false, true}) {
@@ -61,7 +61,7 @@ TEST(Integrator, OrdersAreAsPublished) {
           Expected{Integrator::generalized_alpha, 1.0, 2.0}}) {
       std::vector<double> errors;
       for (const double step : {4e-4, 2e-4}) {
-        const double scale = order == 1.0 ? 0.25 : 0.5;  // the first order shows later
+        const double scale = order == 1.0 ? 0.25 : 0.5;  // the first order appears at smaller steps
         errors.push_back((tip_after(options(integrator, scale * step, rho), kEnd) - exact).norm());
       }
       const double found = std::log2(errors[0] / errors[1]);
@@ -85,7 +85,7 @@ TEST(Integrator, TheSpectralRadiusIsAKnobForDamping) {
       simulation.step();
       swing = std::max(swing, simulation.energies().kinetic);
     }
-    const double lost = -energy(simulation) / swing;  // it started from rest, with none
+    const double lost = -energy(simulation) / swing;  // from rest, with zero energy
     EXPECT_LT(lost, before) << rho;
     if (rho == 1.0) {
       EXPECT_LT(std::abs(lost), 0.02);
@@ -117,8 +117,8 @@ TEST(Integrator, SavedStatesGoOnBitForBit) {
   }
 }
 
-// One linearisation a step with damping: the matrix holds the damping, and its force at the start
-// comes from the velocity that the integrator carries over.
+// One linearisation per step with damping: the matrix contains the damping, and its force at the
+// start of the step uses the velocity that the integrator carries over.
 TEST(Integrator, OneLinearisationConvergesToTheSameMotion) {
   for (const auto integrator : {Integrator::bdf2, Integrator::generalized_alpha}) {
     BeamOptions options = falling(integrator, 2.5e-4);
@@ -174,7 +174,7 @@ TEST(Adaptive, RetriesWhereAStepFails) {
   EXPECT_NEAR(simulation->actuator(0).motion, 0.01, 1e-9);
 }
 
-// The next step does not try again what has just failed, and a saved state knows of it.
+// The next step does not repeat a failed step length, and a saved state remembers it.
 TEST(Parts, TheNextStepBeginsWithPartsOfTheLastOnes) {
   BeamOptions options = falling(Integrator::backward_euler, 0.05);
   options.cables = 4;
@@ -196,7 +196,7 @@ TEST(Parts, TheNextStepBeginsWithPartsOfTheLastOnes) {
   EXPECT_EQ(other.step().substeps, second.substeps);
   EXPECT_EQ(other.state().hash(), simulation.state().hash());
 
-  // The robot comes to rest, where whole steps succeed.
+  // At rest, whole steps succeed again.
   int substeps = 0;
   for (int k = 0; k < 40; ++k) substeps = simulation.step().substeps;
   EXPECT_EQ(substeps, 1);

@@ -1,4 +1,5 @@
-// What quasi-static steps leave to the next one, and which must not leave anything.
+// The residual that quasi-static steps may leave to the next one, and the cases in which they must
+// not.
 #include <cmath>
 #include <vector>
 
@@ -23,7 +24,7 @@ constexpr double kSide = 0.02;  // m
 constexpr double kC1 = 1e4, kC2 = 2e2, kC3 = 5.0;
 constexpr material::MullinsEffect kSoftening{.r = 1.6, .m = 900.0, .beta = 0.05};
 
-// A cube on rollers, one hexahedron, that four forces stretch along x.
+// A cube on rollers (one hexahedron), stretched along x by four forces.
 std::shared_ptr<const Model> cube(material::Hyperelastic rubber, const StepSettings& step) {
   ModelBuilder builder(step);
   fem::FemBodySettings body;
@@ -54,7 +55,7 @@ std::shared_ptr<const Model> cube(material::Hyperelastic rubber, const StepSetti
   return builder.build({});
 }
 
-// Pa, over the area at rest, after each step to a stretch.
+// Nominal stress after each step to a stretch, Pa.
 std::vector<double> stresses(const std::shared_ptr<const Model>& model,
                              const std::vector<double>& stretches) {
   Simulation simulation(model);
@@ -71,7 +72,7 @@ std::vector<double> stresses(const std::shared_ptr<const Model>& model,
   return result;
 }
 
-// Up, down, farther up, and down.
+// Loading, unloading, loading to a larger stretch, unloading.
 std::vector<double> cycles() {
   std::vector<double> stretches;
   double last = 1.0;
@@ -82,7 +83,8 @@ std::vector<double> cycles() {
   return stretches;
 }
 
-// Ogden & Roxburgh, Proc. R. Soc. A 455 (1999) 2861, of an incompressible Yeoh solid in tension.
+// Incompressible Yeoh solid in tension with softening (Ogden & Roxburgh, Proc. R. Soc. A 455 (1999)
+// 2861).
 double softened_stress(double stretch, double& peak) {
   const double i = stretch * stretch + 2.0 / stretch - 3.0;
   const double energy = kC1 * i + kC2 * i * i + kC3 * i * i * i;
@@ -115,7 +117,7 @@ TEST(Lag, ViscousRubberKeepsNoErrorOfAStep) {
   }
 }
 
-// The largest relative residual of the steps of a beam that a cable bends.
+// Largest relative residual over the steps of a beam that a cable bends.
 double largest_residual(const StepSettings& step) {
   BeamOptions options;
   options.step = step;
@@ -129,7 +131,7 @@ double largest_residual(const StepSettings& step) {
   return largest;
 }
 
-// What is asked for is kept, though it be the default's.
+// An explicit tolerance is met, even if it equals the default.
 TEST(Lag, AToleranceThatIsAskedForIsKept) {
   EXPECT_GT(largest_residual({}), 1.2 * kQuasiStaticTolerance);
   for (const double tolerance : {kQuasiStaticTolerance, 1e-6}) {

@@ -1,4 +1,4 @@
-// Motions of all nodes for efforts of rows, and what a step leaves of its linearisation.
+// Node displacements per unit effort of each row, and the linearisation of the last step.
 #include "sinew/sim/linearisation.hpp"
 
 #include <cmath>
@@ -24,7 +24,7 @@ using sinew::testing::CutBeam;
 
 constexpr double kStep = 1e-4;  // N
 
-// Row motions by a force on one node of the second part, from differences of equilibria.
+// Row displacements per force on one node of the second part, from differences of equilibria.
 VectorX by_differences(Simulation& simulation, NodeId node, const Vector3& force) {
   auto* second = mechanics::as<mechanics::TakesForces>(simulation.body(1));
   const auto motions = [&](double scale) {
@@ -38,7 +38,7 @@ VectorX by_differences(Simulation& simulation, NodeId node, const Vector3& force
   return result;
 }
 
-// The welds' efforts answer too; the columns must hold with them.
+// The columns must include the response of the welds' efforts.
 TEST(Fields, AreTheRowsAnswersToForcesOnNodesThroughWelds) {
   CutBeam options{.gravity = {0.0, 0.0, -2.0}, .cables = 1, .push = true};
   Simulation simulation(cut_beam(options));
@@ -84,7 +84,7 @@ void expect_same(const Linearisation& one, const Linearisation& other) {
   EXPECT_EQ(one.negative_pivots, other.negative_pivots);
 }
 
-// W of statics is far from that of a step, so that a query's would be seen.
+// The static W is far from that of a step, so an overwrite by a query would show.
 TEST(LastLinearisation, StaysThatOfTheStepAfterQueries) {
   Simulation simulation(cut_beam({.gravity = {0.0, 0.0, -2.0}, .cables = 1, .push = true}));
   simulation.command(0, {CommandKind::effort, Signal::constant(2.0)});

@@ -1,4 +1,4 @@
-// The way along a load, where steps of a certain length fail.
+// Incremental loading when steps above a certain length fail.
 #include "sinew/sim/load_steps.hpp"
 
 #include <cmath>
@@ -9,7 +9,7 @@ namespace sinew::sim {
 namespace {
 
 struct Way {
-  double left = 1.0;  // the share at the end
+  double left = 1.0;  // remaining load fraction
   int successes = 0, failures = 0;
 };
 
@@ -38,7 +38,7 @@ TEST(LoadSteps, OneStepWhereAllSucceed) {
   EXPECT_EQ(way.successes, 1);
 }
 
-// Steps that are doubled after every success fail as often as they succeed.
+// If the step doubled after every success, it would fail as often as it succeeds.
 TEST(LoadSteps, FailuresGrowRarer) {
   for (const double longest : {1.0 / 16, 1.0 / 64, 1.0 / 256}) {
     const Way way = go({.first = 0.5}, longest);

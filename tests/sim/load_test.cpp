@@ -74,7 +74,7 @@ class LoadTest : public ::testing::TestWithParam<Kind> {
   std::vector<mesh::Face> faces_;
 };
 
-// Pressure with a gradient on some faces: all of -df/dx, symmetric part and rest.
+// Pressure with a gradient on some faces: the whole of -df/dx, symmetric part and remainder.
 TEST_P(LoadTest, StiffnessOfPressureIsTheDerivativeOfItsForces) {
   std::vector<mesh::Face> some(faces_.begin(),
                                faces_.begin() + static_cast<long>(faces_.size() / 3));
@@ -96,7 +96,8 @@ TEST_P(LoadTest, StiffnessOfPressureIsTheDerivativeOfItsForces) {
   EXPECT_GT((here.rest * d).norm(), 1e-3 * found.norm());
 }
 
-// On a closed surface what is not symmetric cancels, and water carries what it displaces.
+// On a closed surface the unsymmetric part cancels, and buoyancy equals the weight of the displaced
+// water.
 TEST_P(LoadTest, WaterRoundABodyCarriesTheWaterItDisplaces) {
   const Vector3 weight_density(0.0, 0.0, -9810.0);
   const fem::LoadSet loads({fem::PressureLoad{.faces = faces_, .gradient = weight_density}},
@@ -105,14 +106,14 @@ TEST_P(LoadTest, WaterRoundABodyCarriesTheWaterItDisplaces) {
   const Points x = wobbled(mesh_.nodes, 7, 5e-4), none = Points::Zero(x.rows(), 3);
   const Result here = evaluate(loads, x, none, none, 0.0, 0.0);
   EXPECT_LT(here.rest.cwiseAbs().maxCoeff(), 1e-9 * here.symmetric.cwiseAbs().maxCoeff());
-  // The volume by the divergence theorem, from unit pressure gradients along x.
+  // The volume, by the divergence theorem from a unit pressure gradient along x.
   const fem::LoadSet unit({fem::PressureLoad{.faces = faces_, .gradient = Vector3::UnitX()}},
                           mesh_.nodes);
   const double volume = -evaluate(unit, x, none, none, 0.0, 0.0).forces.col(0).sum();
   EXPECT_NEAR(volume, 0.04 * 0.03 * 0.02, 0.05 * 0.04 * 0.03 * 0.02);
   const Vector3 force = here.forces.colwise().sum().transpose();
   EXPECT_LT((force + volume * weight_density).norm(), 1e-10);
-  // At rest the block's centre is known: no moment about it.
+  // At rest the block's centre is known, and the moment about it is zero.
   const Vector3 about(0.02, 0.015, 0.01);
   Vector3 moment = Vector3::Zero();
   const Result rest = evaluate(loads, mesh_.nodes, none, none, 0.0, 0.0);
@@ -147,7 +148,7 @@ TEST_P(LoadTest, DampingOfWaterIsTheDerivativeOfItsDrag) {
 INSTANTIATE_TEST_SUITE_P(Elements, LoadTest,
                          ::testing::Values(Kind::tet4, Kind::tet10, Kind::hex8));
 
-// Drag and added mass of a cylinder across the flow and of its shape alone.
+// Drag and added mass of a cylinder in cross flow follow from its shape only.
 TEST(Water, CylinderHasTheDragAndInertiaOfItsWidth) {
   const mesh::Mesh mesh = mesh::cylinder({.radius = 0.01, .height = 0.2, .rings = 5, .layers = 40});
   const auto faces = mesh::boundary_faces(mesh);
@@ -168,7 +169,7 @@ TEST(Water, CylinderHasTheDragAndInertiaOfItsWidth) {
   EXPECT_NEAR(-forces.col(0).sum(), 2.0 * displaced, 0.03 * 2.0 * displaced);
 }
 
-// A free body as heavy as water stays where it is.
+// A free body with the density of water stays in place.
 TEST(Water, BodyAsHeavyAsWaterFloatsWhereItIs) {
   for (const double density : {1000.0, 1100.0}) {
     StepSettings step;
@@ -190,7 +191,8 @@ TEST(Water, BodyAsHeavyAsWaterFloatsWhereItIs) {
     if (density == 1000.0) {
       EXPECT_LT(std::abs(fall), 1e-6);
     } else {
-      // Sinks towards sqrt(2 (rho - rho_w) g L / (rho_w c_n)) of a face ahead and one behind.
+      // Sinks towards the terminal velocity sqrt(2 (rho - rho_w) g L / (rho_w c_n)) of a front and
+      // a rear face.
       EXPECT_LT(fall, -5e-3);
       EXPECT_LT(simulation.body(0).velocities().col(2).mean(), -0.05);
       const double terminal = std::sqrt(100.0 * 9.81 * 0.02 / (1000.0 * 0.9));
@@ -200,7 +202,8 @@ TEST(Water, BodyAsHeavyAsWaterFloatsWhereItIs) {
   }
 }
 
-// A pressure on the end face of a cantilever: the full tangent converges as Newton does.
+// Pressure on the upper side of a cantilever: with the full tangent, Newton's method converges
+// quadratically.
 TEST(Pressure, OpenSurfaceConvergesQuadraticallyInStatics) {
   ModelBuilder builder;
   fem::FemBodySettings body;
@@ -220,14 +223,14 @@ TEST(Pressure, OpenSurfaceConvergesQuadraticallyInStatics) {
       {.name = "wind", .load = PressureLoadSettings{faces}, .factor = Signal::constant(60.0)});
   Simulation simulation(builder.build());
   simulation.solve_static();
-  // Near the solution, a tangent without its unsymmetric part would gain a digit an iteration.
+  // Near the solution, a tangent without its unsymmetric part would gain one digit per iteration.
   simulation.set_load(0, Signal::constant(60.5));
   const StaticReport report = simulation.solve_static();
   EXPECT_EQ(report.status, NewtonStatus::converged);
   EXPECT_LE(report.iterations, 5);
   const double tip = (simulation.body(0).positions() - mesh->nodes).col(2).minCoeff();
-  EXPECT_LT(tip, -0.02);  // large: the load turns with the beam
-  // The top has turned towards +x, and what presses on it points the other way.
+  EXPECT_LT(tip, -0.02);  // large: the load rotates with the beam
+  // The top has rotated towards +x, so the pressure on it acts towards -x.
   const Vector3 load = mechanics::as<mechanics::TakesLoads>(simulation.body(0))
                            ->load_forces()
                            .colwise()
@@ -236,7 +239,8 @@ TEST(Pressure, OpenSurfaceConvergesQuadraticallyInStatics) {
   EXPECT_LT(load.x(), -0.01);
 }
 
-// Shares of a line inside a tetrahedron, entry and exit, by its four planes; none: {1, 0}.
+// Parameters of a line's entry into and exit from a tetrahedron, from its four planes; {1, 0} if it
+// misses.
 std::array<double, 2> clip(const Eigen::Matrix<double, 3, 4>& x, const Vector3& from,
                            const Vector3& to) {
   double enter = 0.0, leave = 1.0;
@@ -252,7 +256,7 @@ std::array<double, 2> clip(const Eigen::Matrix<double, 3, 4>& x, const Vector3& 
   return {enter, leave};
 }
 
-// As of a linearisation at rest.
+// Load forces, evaluated by a linearisation at rest.
 Points forces_of_the_load(Simulation& simulation) {
   auto& body = *mechanics::as<mechanics::TakesLoads>(simulation.body(0));
   body.set_load_factor(0, 1.0);
@@ -260,8 +264,8 @@ Points forces_of_the_load(Simulation& simulation) {
   return body.load_forces();
 }
 
-// A line through 200 cells: in every tetrahedron that it crosses, the integral of linear shape
-// functions is the length of the piece times their values at its middle.
+// A line through 200 cells. In every tetrahedron that it crosses, the integral of the linear shape
+// functions is the length of the segment times their values at its midpoint.
 TEST(LineLoad, IsExactInEveryElement) {
   ModelBuilder builder;
   fem::FemBodySettings body;
@@ -308,7 +312,7 @@ TEST(LineLoad, IsExactInEveryElement) {
   EXPECT_LT((moment - 0.5 * (from + to).cross((to - from).norm() * by)).norm(), 1e-13);
 }
 
-// What lies beside the body is held by what is nearest: no force is lost.
+// Parts of the line outside the body act on the nearest part of the body: no force is lost.
 TEST(LineLoad, MayLeaveTheBody) {
   for (const auto cells : {mesh::Cells::quadratic, mesh::Cells::hexahedra}) {
     ModelBuilder builder;

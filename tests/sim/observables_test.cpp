@@ -1,4 +1,4 @@
-// What can be observed of a run: every value against the simulation's own, in one order, read once.
+// Observables of a run: every value against the simulation's own, in a fixed order, read once.
 #include "sinew/sim/observables.hpp"
 
 #include <algorithm>
@@ -50,7 +50,7 @@ Command ramp(CommandKind kind, double to) {
   return {kind, Signal::ramp({.from = 0.0, .to = to, .start = 0.0, .duration = 0.1})};
 }
 
-// A block that slides down a plane, pushed by a force, and an arm beside it: two bodies, dynamics.
+// A block that slides down a plane, pushed by a force, and an arm next to it: two bodies, dynamics.
 std::shared_ptr<const Model> block_and_arm() {
   BlockOptions options{.angle = 0.5, .height = 1e-4};
   options.step.time_step = 2e-3;
@@ -256,7 +256,7 @@ TEST(Observables, AStateThatIsTakenUpShowsTheSame) {
   mine.refresh();
   for (std::size_t k = 0; k < mine.list().size(); ++k) {
     const Observable& one = mine.list()[k];
-    if (one.kind >= ObservableKind::ledger) continue;  // the last step is no part of a state
+    if (one.kind >= ObservableKind::ledger) continue;  // a state does not contain the last step
     const auto a = mine.read(k), b = theirs.read(k);
     EXPECT_TRUE(std::ranges::equal(a, b, [](double x, double y) {
       return x == y || (std::isnan(x) && std::isnan(y));

@@ -28,7 +28,7 @@ using sinew::testing::block_on_plane;
 using sinew::testing::pull;
 using sinew::testing::tension;
 
-constexpr double kAgrees = 1e-6;  // of sizes and forces
+constexpr double kAgrees = 1e-6;  // relative, of sizes and forces
 
 struct Visit {
   double depth = 0.0, normal = 0.0;
@@ -67,8 +67,8 @@ Followed follow(Simulation& simulation, const PathSettings& settings) {
   return result;
 }
 
-// Falling on the unstable branch, the crown meets the floor: the load turns in that corner and
-// rises. A commanded motion passes the same points one by one.
+// On the unstable branch the crown meets the floor: the load turns at that corner and rises again.
+// A commanded motion passes through the same points.
 TEST(PathContact, ASnapThatAFloorEndsAgreesWithControlByMotion) {
   Simulation loaded(arch({.floor = 0.003})), moved(arch({.by_load = false, .floor = 0.003}));
   loaded.set_load(0, Signal::constant(20.0));
@@ -113,8 +113,8 @@ TEST(PathContact, WeldsHoldBesideAFloor) {
   EXPECT_EQ(all.turns(), 2);
 }
 
-// A beam is drawn onto a plane by one cable and off it by another: point after point closes, and
-// opens. Every point of the path is what a static solution from rest finds.
+// One cable draws a beam onto a plane, another one off it: points close and open one after the
+// other. Every point of the path equals a static solution from rest.
 TEST(PathContact, ABeamIsLaidDownAndLifted) {
   const auto model = beam({.wall = -0.0102, .wall_friction = 0.0});
   Simulation path(model);
@@ -128,7 +128,7 @@ TEST(PathContact, ABeamIsLaidDownAndLifted) {
     for (std::size_t k = 0; k < all.path.size(); ++k) {
       Simulation fresh(model);
       const double load_fraction = all.path[k].load_fraction;
-      if (load_fraction > 1.0) continue;  // the cable that loosens would push
+      if (load_fraction > 1.0) continue;  // the slackening cable would push
       fresh.command(2, tension(down + load_fraction * (next_down - down)));
       fresh.command(0, tension(up + load_fraction * (next_up - up)));
       fresh.solve_static();
@@ -145,7 +145,7 @@ TEST(PathContact, ABeamIsLaidDownAndLifted) {
   EXPECT_EQ(touching.back(), 0);
 }
 
-// Bottoms that bulge close in groups of four and eight points at once.
+// The points of a bulging bottom close in symmetric groups of four and eight.
 TEST(PathContact, SymmetricPointsCloseTogether) {
   ModelBuilder builder = block_on_plane({.friction = 0.0, .height = 2e-4, .top_fixed = true});
   builder.add_load({.name = "draw", .body = 0, .load = BodyLoadSettings{{0.0, 0.0, -4000.0}}});
@@ -170,7 +170,7 @@ TEST(PathContact, SymmetricPointsCloseTogether) {
   EXPECT_GE(touching.back(), 5);
 }
 
-// Coulomb's law of what a path really does, from one point to the next.
+// Coulomb's law for the actual motion from one point of a path to the next.
 void check_friction(const Followed& all, double friction, double size, int& stuck, int& slid) {
   for (std::size_t k = 1; k < all.visits.size(); ++k) {
     for (std::size_t i = 0; i < all.visits[k].points.size(); ++i) {
@@ -204,7 +204,8 @@ TEST(PathContact, FrictionObeysCoulombsLawThroughASnap) {
   EXPECT_EQ(all.turns(), 2);
 }
 
-/// A strip of rubber, one end clamped, that its weight holds on a plane and a load pulls along it.
+/// A rubber strip with one end clamped, held on a plane by its weight and pulled along it by a
+/// load.
 std::shared_ptr<const Model> pulled_strip(double friction) {
   ModelBuilder builder;
   fem::FemBodySettings body;
@@ -231,7 +232,7 @@ std::shared_ptr<const Model> pulled_strip(double friction) {
   return builder.build();
 }
 
-// Pulled and pushed back, friction turns round only as far as the motion does.
+// When the load is reversed, friction reverses only as far as the motion does.
 TEST(PathContact, FrictionTurnsWithTheMotion) {
   const double friction = 0.5;
   Simulation path(pulled_strip(friction));
@@ -251,7 +252,7 @@ TEST(PathContact, FrictionTurnsWithTheMotion) {
   EXPECT_GT(slid, 200);
 }
 
-// What a static solution makes of the same load, as one slow motion from the point before.
+// Equals the static solution for the same load, as one slow motion from the previous point.
 TEST(PathContact, FrictionIsThatOfSlowMotionsFromPointToPoint) {
   const auto model = pulled_strip(0.5);
   Simulation path(model), still(model);
@@ -272,7 +273,7 @@ TEST(PathContact, FrictionIsThatOfSlowMotionsFromPointToPoint) {
   EXPECT_GE(all.path.size(), 5u);
 }
 
-// Balls and rods: their tangent planes turn with the points.
+// Balls and rods, whose tangent planes rotate as the points move.
 TEST(PathContact, CurvedSurfacesEndASnap) {
   const collision::Sphere ball{{0.002, 0.002, -0.004}, 0.007};
   const collision::Capsule across{{0.002, -0.02, -0.001}, {0.002, 0.02, -0.001}, 0.004};
@@ -284,7 +285,8 @@ TEST(PathContact, CurvedSurfacesEndASnap) {
     const Followed all = follow(loaded, {.first_step = 2e-3, .largest_step = 5e-3});
     for (std::size_t k = 0; k < all.path.size(); ++k) {
       moved.command(0, pull(all.visits[k].depth));
-      // It ends where gaps are right to 1e-9, and normals to the root of that: again, then.
+      // A solution ends with gaps accurate to 1e-9, but normals only to its square root; so repeat
+      // it.
       for (int again = 0; again < 6; ++again) moved.solve_static();
       const double load = 0.2 * all.path[k].load_fraction;
       EXPECT_NEAR(moved.actuator(0).effort, load, kAgrees * std::max(load, 0.02)) << k;
@@ -296,7 +298,7 @@ TEST(PathContact, CurvedSurfacesEndASnap) {
   }
 }
 
-/// A beam along x whose end is pressed onto the top of a ball, and pushed aside.
+/// A beam along x whose end is pressed onto the top of a ball, with a small sideways load.
 std::shared_ptr<const Model> beam_on_a_ball() {
   ModelBuilder builder;
   fem::FemBodySettings body;
@@ -327,9 +329,9 @@ std::shared_ptr<const Model> beam_on_a_ball() {
   return builder.build();
 }
 
-// The force of a ball turns away with the point: from some load on it would slide off. Static
-// solutions, each with the plane where the last one ended, then leave the top, where they came back
-// to it before.
+// The contact force of a ball rotates as the point moves, so above some load the point would slide
+// off. Repeated static solutions, each with the tangent plane where the last one ended, then leave
+// the top; below that load they return to it.
 TEST(PathContact, ABallLetsGoOfWhatIsPressedOnIt) {
   const auto model = beam_on_a_ball();
   Simulation path(model);
@@ -380,7 +382,7 @@ TEST(PathContact, RefusesBodiesThatContactsAloneHold) {
   EXPECT_EQ(loose.state().hash(), before);
 }
 
-// What touches at the start is found, though nothing was solved before.
+// Contacts that are closed at the start are found although nothing was solved before.
 TEST(PathContact, BeginsWithTheWeightOnTheFloor) {
   BeamOptions options{.gravity = {0.0, 0.0, -9.81}, .wall = -0.0105, .wall_friction = 0.0};
   const auto model = beam(options);

@@ -15,7 +15,7 @@ namespace {
 
 using sinew::testing::arch;
 
-// The path of the load is that which a commanded motion passes point by point.
+// Path following gives the same points as a commanded motion.
 TEST(Path, SnapThroughAgreesWithControlByMotion) {
   Simulation loaded(arch({})), moved(arch({.by_load = false}));
   std::vector<double> depth, load_fraction;
@@ -44,8 +44,8 @@ TEST(Path, SnapThroughAgreesWithControlByMotion) {
   EXPECT_EQ(path.front().negative_pivots, 0);
 }
 
-// Joints are held along the path, and the springs that hold a loose body are no part of it: the
-// whole arch passes the same points.
+// Joints hold along the path, and the springs that stabilise a loose body do not affect it: the
+// uncut arch passes through the same points.
 TEST(Path, OfAnArchThatIsCutAndWelded) {
   Simulation cut(arch({.cut = true})), whole(arch({.by_load = false}));
   std::vector<double> depth;
@@ -67,7 +67,7 @@ TEST(Path, OfAnArchThatIsCutAndWelded) {
   EXPECT_EQ(path.back().negative_pivots, 0);
 }
 
-// From the end of the path the load itself is a small step away.
+// The equilibrium at the full load is close to the end of the path.
 TEST(Path, EndsNextToTheEquilibriumOfTheFullLoad) {
   Simulation loaded(arch({}));
   loaded.follow_path({.first_step = 2e-3, .largest_step = 1e-2});

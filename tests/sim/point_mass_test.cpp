@@ -1,4 +1,4 @@
-// Masses that hang on points of bodies.
+// Point masses attached to bodies.
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -74,20 +74,20 @@ TEST_P(HungMass, SagsTheBeamAsItsWeightDoes) {
   const Points moved = a.body(0).positions() - a.body(0).model().mesh().nodes;
   EXPECT_LT(moved.col(2).minCoeff(), -2e-3);
   EXPECT_LT((a.body(0).positions() - b.body(0).positions()).cwiseAbs().maxCoeff(), 1e-10);
-  // Its potential is that of the height it lost.
+  // Its potential energy is that of the height it lost.
   const MassModel& mass = a.model().masses()[0];
   const double lost = kPoint.z() - a.body(0).position(mass.point).z();
   EXPECT_NEAR(b.energies().gravity - a.energies().gravity, 0.02 * kGravity * lost,
               1e-8 * kGravity * lost);
 }
 
-// M = M of the material + m N^T N: by the energy of any motion, by the momentum that is its
-// derivative, and in the matrix that a step factorises.
+// M = M of the material + m N^T N, checked by the kinetic energy of arbitrary velocities, by the
+// momentum (its derivative), and in the matrix that a step factorises.
 TEST_P(HungMass, HasTheInertiaOfItsPoint) {
   for (const auto matrix : {fem::MassMatrix::lumped, fem::MassMatrix::consistent}) {
     std::mt19937 random(4);
     std::normal_distribution<double> noise(0.0, 1.0);
-    // The second one hangs in an element with fixed nodes.
+    // The second mass is in an element with fixed nodes.
     std::vector<fem::PointMassSettings> masses{hung(0.02), hung(0.03, {0.004, 0.003, 0.008})};
     masses[1].name = "low";
     auto bare_settings = cantilever(GetParam()), settings = cantilever(GetParam(), masses);
@@ -123,8 +123,8 @@ INSTANTIATE_TEST_SUITE_P(Elements, HungMass,
                          ::testing::Values(PointMassKind::tet4, PointMassKind::patches,
                                            PointMassKind::tet10, PointMassKind::hex8));
 
-// A light beam with a mass at its end: sqrt(3 E I / (L^3 (m + 33/140 m_beam))) (Rayleigh, Theory of
-// Sound, 1877, art. 182).
+// Frequency of a light beam with a mass at its end: sqrt(3 E I / (L^3 (m + 33/140 m_beam)))
+// (Rayleigh, Theory of Sound, 1877, art. 182).
 TEST(PointMass, SwingsALightBeamAtItsFrequency) {
   const double young = 1e6, length = 0.2, side = 0.01, density = 1000.0, end = 0.2;
   StepSettings step;
@@ -172,7 +172,7 @@ TEST(PointMass, SwingsALightBeamAtItsFrequency) {
   EXPECT_NEAR(crossings[2] - crossings[0], period, 0.005 * period);
 }
 
-// Energy of a swing with a heavy mass, and of a throw.
+// Energy of a swing with a heavy mass, and momentum of a throw.
 TEST(PointMass, KeepsEnergyAndMomentum) {
   StepSettings step;
   step.integrator = Integrator::generalized_alpha;
@@ -210,7 +210,7 @@ TEST(PointMass, KeepsEnergyAndMomentum) {
   EXPECT_GT(swing, 5e-3);
   EXPECT_LT(drift, 0.01 * swing);
   const double t = simulation.time();
-  // The first step is one of backward Euler, h g t / 2 off.
+  // The first step is by backward Euler, which is off by h g t / 2.
   const Vector3 flight(0.3 * t, 0.0, t - 0.5 * kGravity * t * t);
   EXPECT_LT((centre() - start - flight).norm(), 0.6 * step.time_step * kGravity * t);
 }

@@ -27,8 +27,8 @@ namespace sinew::testing {
 
 inline constexpr double kRightAngle = 1.57079632679489662;
 
-/// A clamped silicone beam along x, 100 x 20 x 20 mm, with four cables along its edges at 6 mm from
-/// the axis (up, left, down, right) and its tip as effector.
+/// A clamped silicone beam along x, 100 x 20 x 20 mm, with four cables at 6 mm from its axis (up,
+/// left, down, right) and its tip as effector.
 struct BeamOptions {
   sim::StepSettings step;
   Vector3 gravity = Vector3::Zero();

@@ -1,4 +1,4 @@
-// What sensors read of a block that is put into known shapes by hand.
+// Sensor readings of a block with prescribed deformations.
 #include <array>
 #include <cmath>
 #include <memory>
@@ -48,7 +48,7 @@ class SensorBlock : public ::testing::Test, public ShapedBlock {
 };
 
 TEST_F(SensorBlock, CurvatureOfAnArcIsOneOverItsRadius) {
-  // All points are nodes: between them elements are straight.
+  // All points are nodes, since elements are straight between them.
   add("axis", SensorCurvature{0, line(0.0), {0.03, 0.05, 0.08}, 0.04, {}});
   add("side", SensorCurvature{0, line(0.01), {0.05}, 0.02, {}});
   finish();
@@ -66,7 +66,7 @@ TEST_F(SensorBlock, CurvatureAboutAnAxisHasASign) {
   add("y", SensorCurvature{0, line(0.0), {0.05}, 0.04, Vector3(0.0, 1.0, 0.0)});
   add("x", SensorCurvature{0, line(0.0), {0.05}, 0.04, Vector3(1.0, 0.0, 0.0)});
   finish();
-  bend(0.8);  // about y a turn from x to z is by the left hand
+  bend(0.8);  // a rotation from x to z is left-handed about y
   EXPECT_NEAR(truth("y")[0], -0.8 / kLength, 1e-9);
   EXPECT_NEAR(truth("x")[0], 0.0, 1e-9);
   bend(-0.8);
@@ -94,7 +94,7 @@ TEST_F(SensorBlock, LightIsLostByLengthAndTurn) {
   EXPECT_NEAR(truth("light")[0], 20.0 * chords + 1.5 * 9 * piece, 1e-9);
 }
 
-// Nanson: areas da n = J F^-T dA N. A layer between parallel plates keeps its volume J A d.
+// Nanson's formula: da n = J F^-T dA N. The volume of a layer between parallel plates is J A d.
 TEST_F(SensorBlock, CapacitanceOfPlatesIsThatOfAnAffineLayer) {
   const auto faces = [&](const char* set) {
     return mesh::select_faces(*mesh_, mesh::NamedRegion{set}, set);
@@ -105,7 +105,7 @@ TEST_F(SensorBlock, CapacitanceOfPlatesIsThatOfAnAffineLayer) {
   EXPECT_NEAR(truth("plates")[0], at_rest, 1e-9 * at_rest);
   std::vector<Matrix3> gradients(3, Matrix3::Identity());
   gradients[0].diagonal() << 1.4, 0.9, 0.8;
-  gradients[1](0, 2) = 0.7;  // shear moves the plates along each other
+  gradients[1](0, 2) = 0.7;  // shear moves the plates parallel to each other
   gradients[2] << 1.1, 0.2, -0.3, 0.1, 0.9, 0.2, 0.05, -0.1, 1.2;
   for (const Matrix3& f : gradients) {
     deform([&](const Vector3& x) -> Vector3 { return f * x; });

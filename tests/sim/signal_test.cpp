@@ -29,7 +29,7 @@ TEST(Signal, ConstantHoldsForEver) {
   EXPECT_EQ(signal.end_time(), 0.0);
 }
 
-// Against differences to the side that is asked for; corners are where these differ.
+// Compares with one-sided differences; at corners the two sides differ.
 TEST(Signal, RatesOnBothSidesOfCorners) {
   constexpr auto on_before = Signal::Side::before, on_after = Signal::Side::after;
   const Signal signals[] = {
@@ -84,7 +84,7 @@ TEST(Signal, StepsHoldUntilTheNext) {
 }
 
 TEST(Signal, RoundingOfStepTimesDelaysNoStep) {
-  // n h may fall an ulp short of the decimal that a user writes: every step must come at its step.
+  // n h may be an ulp below the decimal that a user writes, but every jump must come at its step.
   const double h = 0.01;
   for (int n = 1; n < 2000; ++n) {
     const double written = n / 100.0;

@@ -122,7 +122,7 @@ TEST(Simulation, StaticSolutionIsInEquilibriumWithItsTensions) {
   const StaticReport report = simulation.solve_static();
   EXPECT_LE(report.relative_residual, 1e-10);
   EXPECT_NEAR(simulation.actuator(1).motion, 0.002, 1e-11);
-  // One more quasi-static step has nothing left to do.
+  // Another quasi-static step changes nothing.
   const Vector3 tip = simulation.effector_value(0);
   simulation.step();
   EXPECT_LT((simulation.effector_value(0) - tip).norm(), 1e-9);
@@ -148,7 +148,7 @@ TEST(Simulation, NewtonStepsMeetTheEquationOfBackwardEuler) {
   }
 }
 
-// Newton's result does not depend on the tangent that led to it.
+// Newton's result does not depend on the tangent.
 TEST(Simulation, RotatedAndExactTangentLeadToTheSameStep) {
   BeamOptions options;
   options.step.integrator = mechanics::Integrator::backward_euler;
@@ -180,7 +180,7 @@ TEST(Simulation, FreeFallIsExactForBackwardEuler) {
   const double h = options.step.time_step;
   const double fall = -9.81 * h * h * n * (n + 1) / 2;
   const Points moved = simulation.body(0).positions() - start;
-  // Exact but for the rounding of 50 solves, which depends on how the library was compiled.
+  // Exact up to the rounding of 50 solves, which depends on how the library was compiled.
   EXPECT_NEAR(moved.col(2).maxCoeff() / fall, 1.0, 1e-11);
   EXPECT_NEAR(moved.col(2).minCoeff() / fall, 1.0, 1e-11);
   EXPECT_LT(moved.leftCols(2).cwiseAbs().maxCoeff(), 1e-12);
@@ -212,7 +212,7 @@ TEST(Simulation, QuasiStaticStateDoesNotDependOnTheTimeStep) {
   EXPECT_LT((tips[0] - tips[1]).norm() + (tips[0] - tips[2]).norm(), 1e-12);
 }
 
-// An effort and its motion per step do not depend on the step: W carries h, not lambda.
+// Efforts do not depend on the step: W carries the factor h, not lambda.
 TEST(Simulation, DynamicTensionIsInNewtons) {
   for (const double h : {1e-3, 1e-2}) {
     BeamOptions options;
@@ -322,7 +322,7 @@ TEST(Simulation, BackendsAgree) {
   EXPECT_LT((tips[0] - tips[2]).norm(), 1e-11);
 }
 
-// W is the derivative of the nonlinear equilibrium, by central differences of tensions.
+// W is the derivative of the nonlinear equilibrium; central differences of tensions.
 TEST(Simulation, ComplianceIsTheDerivativeOfTheStatics) {
   Simulation simulation(beam());
   const std::vector<double> at = {1.2, 0.5, 0.2, 0.8};

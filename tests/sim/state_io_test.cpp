@@ -80,7 +80,7 @@ TEST(StateIo, WrongBytesAreRefused) {
 TEST(StateIo, NumbersThatAreNotFiniteAreRefused) {
   Simulation simulation(beam());
   std::string bytes = format_state(simulation);
-  const double largest_energy = 0.125;  // a number that stands nowhere else
+  const double largest_energy = 0.125;  // occurs nowhere else
   State state = simulation.state();
   state.ledger.largest = largest_energy;
   simulation.restore(state);

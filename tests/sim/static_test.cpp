@@ -1,5 +1,5 @@
-// Statics: stable equilibria, loads that Newton alone does not follow, nearly incompressible
-// bodies, and where rounding ends a search.
+// Statics: stable equilibria, loads at which Newton's method alone fails, nearly incompressible
+// bodies, and searches that end at rounding.
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -49,7 +49,7 @@ fem::FemBodySettings block(const Vector3& size, const std::array<int, 3>& cells,
   return body;
 }
 
-/// A slender column along x, clamped at one end; its tip can be pressed along x by an actuator.
+/// A slender column along x, clamped at one end; an actuator can compress its tip along x.
 std::shared_ptr<const Model> column() {
   ModelBuilder builder;
   builder.add_fem_body(
@@ -72,7 +72,7 @@ Vector3 tip_motion(const Simulation& simulation) {
 
 double aside(const Simulation& simulation) { return tip_motion(simulation).tail<2>().norm(); }
 
-/// N, of the column's own mesh, to 1e-3: the straight column's first negative pivot.
+/// Buckling load of the column's mesh to 1e-3, N: the first negative pivot of the straight column.
 double buckling_load(const std::shared_ptr<const Model>& model) {
   const double inertia = std::pow(kSide, 4) / 12.0;
   const double euler = std::pow(std::numbers::pi / (2.0 * kLength), 2) * 1e6 * inertia;
@@ -84,14 +84,15 @@ double buckling_load(const std::shared_ptr<const Model>& model) {
     const auto report = straight.solve_static({.stability = StabilityChoice::any});
     (report.negative_pivots > 0 ? high : low) = load;
   }
-  // Two hexahedra across bend too stiffly.
+  // Two hexahedra across are too stiff in bending.
   EXPECT_GT(0.5 * (low + high), 0.98 * euler);
   EXPECT_LT(0.5 * (low + high), 1.4 * euler);
   return 0.5 * (low + high);
 }
 
-/// Deflection and approach of the tip over the length of a clamped-free elastica under a dead load
-/// of so many times Euler's (Timoshenko & Gere, Theory of Elastic Stability, 1961, sec. 2.7):
+/// Deflection and approach of the tip, relative to the length, of a clamped-free elastica under a
+/// dead load of `ratio` times Euler's (Timoshenko & Gere, Theory of Elastic Stability, 1961, sec.
+/// 2.7):
 ///   K(k) = pi/2 sqrt(P/P_E), y = 2 k / K, x = 1 - (2 E(k)/K - 1).
 std::pair<double, double> elastica(double ratio) {
   const double wanted = 0.5 * std::numbers::pi * std::sqrt(ratio);
@@ -138,15 +139,15 @@ TEST(Statics, AnUnstableBranchIsKeptAndNamed) {
   Simulation simulation(column());
   simulation.command(0, sinew::testing::tension(2e-2));
   const StaticReport report = simulation.solve_static({.stability = StabilityChoice::any});
-  EXPECT_EQ(report.negative_pivots, 2);  // to either side
+  EXPECT_EQ(report.negative_pivots, 2);  // one per lateral direction
   EXPECT_FALSE(report.stable);
   EXPECT_LT(aside(simulation), 1e-6);
 }
 
-/// m: about three times what presses the straight column until it buckles, L P_E/(E A).
+/// m, about three times the shortening L P_E/(E A) at which the straight column buckles.
 constexpr double kThrice = 1.5e-4;
 
-// Pressed together by a commanded motion, the column still turns aside.
+// Compressed by a commanded motion, the column still buckles sideways.
 TEST(Statics, ACommandedMotionHoldsWhatItCommandsAlone) {
   const auto model = column();
   const double critical = buckling_load(model);
@@ -162,7 +163,8 @@ TEST(Statics, ACommandedMotionHoldsWhatItCommandsAlone) {
   EXPECT_NEAR(simulation.actuator(0).effort, critical, 0.1 * critical);
 }
 
-// The count and the curvature against the dense tangent on the null space of the held row.
+// Compares the number of negative pivots and the curvature with the dense tangent on the null space
+// of the held row.
 TEST(Statics, StabilityAgreesWithTheDenseTangent) {
   for (const bool held : {false, true}) {
     Simulation simulation(column());
@@ -187,7 +189,7 @@ TEST(Statics, StabilityAgreesWithTheDenseTangent) {
       inverse.col(j) = column;
     }
     MatrixX tangent = linalg::solve(inverse, MatrixX::Identity(rest.size(), rest.size()));
-    if (held) {  // far above, what is along the row
+    if (held) {  // moves the direction of the row far above
       const VectorX along = row.normalized();
       const MatrixX across =
           MatrixX::Identity(rest.size(), rest.size()) - along * along.transpose();
@@ -210,7 +212,7 @@ TEST(Statics, StabilityAgreesWithTheDenseTangent) {
   }
 }
 
-/// A strip whose upper side is pressed by a pressure of the load's factor, Pa.
+/// A strip under a pressure on its upper side, Pa per load factor.
 std::shared_ptr<const Model> strip() {
   ModelBuilder builder;
   auto body = block({0.1, 0.02, 0.01}, {20, 4, 2}, mesh::Cells::hexahedra, 1e5, 0.4);
@@ -237,8 +239,8 @@ TEST(Statics, AStripIsCurledPastItsBaseByAPressureThatFollowsIt) {
   }
 }
 
-// A cantilever under its weight bends by a third of its length, at any compressibility in a few
-// iterations and almost equally far.
+// A cantilever sags under its weight by a third of its length, in a few iterations and by nearly
+// the same amount at any compressibility.
 TEST(Statics, IterationsDoNotGrowTowardsIncompressibility) {
   for (const auto kind : {mesh::Cells::hexahedra, mesh::Cells::quadratic}) {
     double first = 0.0;
@@ -261,7 +263,7 @@ TEST(Statics, IterationsDoNotGrowTowardsIncompressibility) {
   }
 }
 
-// Nothing to solve, and M/h^2 eps |x| of rounding in the residual.
+// There is nothing to solve, but the residual contains rounding of M/h^2 eps |x|.
 TEST(Newton, EndsWhereRoundingDoesInSmallSteps) {
   for (const auto integrator : {mechanics::Integrator::backward_euler, mechanics::Integrator::bdf2,
                                 mechanics::Integrator::generalized_alpha}) {

@@ -1,4 +1,4 @@
-// Contact between the surfaces of two blocks whose meshes do not match.
+// Contact between the surfaces of two blocks with non-matching meshes.
 #include <memory>
 #include <utility>
 #include <vector>
@@ -39,7 +39,7 @@ void add_block(ModelBuilder& builder, const char* name, const mesh::BlockShape& 
   builder.add_fem_body(std::move(body));
 }
 
-// A small block falls on a wide one, by 10 um.
+// A small block falls by 10 um onto a wide one.
 std::shared_ptr<const Model> two_blocks(bool held, int threads = 1) {
   ModelBuilder builder({.time_step = 1e-3, .integrator = mechanics::Integrator::backward_euler});
   const Vector3 gravity(0.0, 0.0, -9.81);
@@ -88,7 +88,7 @@ TEST(SurfaceContact, RowsPushEquallyAndOppositely) {
   }
   ASSERT_EQ(at, forces.rows());
   EXPECT_LT(force.cwiseAbs().maxCoeff(), 1e-12);
-  // Places are apart by a separation of 1e-7 of the body's size.
+  // The two points of a pair are apart by the separation, 1e-7 of the body's size.
   EXPECT_LT(moment.cwiseAbs().maxCoeff(), 1e-8);
 }
 

@@ -1,4 +1,4 @@
-// A hand's spring on a robot, and what is seen on a deformed one.
+// Spring of a hand on a robot, and fields of a deformed robot.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,7 +25,7 @@ mechanics::TakesForces& pulled(sim::Simulation& simulation) {
   return *mechanics::as<mechanics::TakesForces>(simulation.body(0));
 }
 
-// The three nodes of the first tetrahedron's face that lies at the beam's free end.
+// A tether on the first tetrahedron face at the beam's free end.
 mechanics::Tether end_tether(const mesh::Mesh& mesh, double stiffness, const Vector3& anchor) {
   const double end = mesh.nodes.col(0).maxCoeff();
   for (const auto& tetrahedron : mesh.tetrahedra) {
@@ -58,7 +58,7 @@ TEST(Tether, HoldsTheBodyAsTheSameForceWould) {
   EXPECT_LT(difference, 1e-9);
 }
 
-// Explicitly applied, a spring stiffer than the robot would throw it about ever farther.
+// Applied explicitly, a spring stiffer than the robot would make its motion grow without bound.
 TEST(Tether, MayBeFarStifferThanTheRobot) {
   sim::Simulation simulation(testing::beam());
   mechanics::TakesForces& body = pulled(simulation);
@@ -118,10 +118,11 @@ TEST(ElementFields, CableForceIsWhatTheCablePutsOnTheBody) {
   const auto force = fem::row_force_field(material, simulation.efforts());
   Points sum = Points::Zero(body.positions().rows(), 3);
   material.add_row_forces(simulation.efforts(), sum);
-  // A straight cable along x, from the clamp to its anchor near the tip, pulls towards the clamp.
+  // A straight cable along x, from the clamp to its anchor near the tip, pulls the tip towards the
+  // clamp.
   const Vector3 total = sum.colwise().sum();
   EXPECT_NEAR(total.x(), -2.0, 0.05);
-  EXPECT_NEAR(total.norm(), 2.0, 1e-9);  // what the pull point holds
+  EXPECT_NEAR(total.norm(), 2.0, 1e-9);  // balanced by the pull point
   EXPECT_GT(*std::ranges::max_element(force), 0.1);
   const auto moved = fem::displacement_field(body);
   EXPECT_GT(*std::ranges::max_element(moved), 1e-4);

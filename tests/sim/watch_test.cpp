@@ -1,4 +1,4 @@
-// Steps and searches that are watched, and ended from outside.
+// Progress callbacks of steps and searches, and cancellation through them.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ using sinew::testing::tension;
 
 struct Ended {};
 
-// Ends the work at the `calls`th call; whether it was reached.
+// Cancels the work at its `calls`th progress callback; returns whether that was reached.
 template <class Work>
 bool ends_at(Simulation& simulation, int calls, Work&& work) {
   simulation.watch([&calls](const StepProgress&) {
@@ -38,8 +38,8 @@ bool ends_at(Simulation& simulation, int calls, Work&& work) {
   return ended;
 }
 
-// Ends a step at its first, second, ... and at some later calls, until it is done before; each time
-// the state is that before the step. What follows is what follows without a watcher.
+// Cancels a step at its first, second, ... and some later callbacks, until it completes; each time
+// the state is restored. The run then continues as without a callback.
 void expect_steps_that_can_be_ended(const std::shared_ptr<const Model>& model, Command command,
                                     int least_calls) {
   Simulation plain(model), ended(model);
@@ -66,7 +66,8 @@ TEST(Watch, AQuasiStaticStepEndsAsIfItHadNotBegun) {
   expect_steps_that_can_be_ended(beam(), pull(0.01), 5);
 }
 
-// A strip that a cable folds at once goes through parts and downhill.
+// A soft beam that a cable folds in one step: the search takes parts of the load and descends the
+// energy.
 BeamOptions soft() {
   BeamOptions options;
   options.young_modulus = 2e4;
@@ -106,7 +107,7 @@ TEST(Watch, AStepWithContactsEndsWithinALawToo) {
     last = step.iterations;
   });
   for (int k = 0; k < 20; ++k) simulation.step();
-  EXPECT_GT(within, 0);  // calls that are not of an iteration of Newton's
+  EXPECT_GT(within, 0);  // callbacks within a Newton iteration
   simulation.watch({});
   const State before = simulation.state();
   Simulation plain(model);

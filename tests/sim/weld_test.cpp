@@ -1,4 +1,4 @@
-// Bodies that welds hold together, and cables that run through both.
+// Bodies joined by welds, and cables that run through both.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -77,7 +77,7 @@ TEST(Weld, DefaultStepsOfTheCutBeamAreThoseOfTheUncut) {
         simulation->command(0, pull_cable(2e-4 * std::min(k, 20)));
         EXPECT_EQ(simulation->step().status, StepStatus::solved);
       }
-      // The curvature of the cable between the bodies is as exact as that within them.
+      // The cable's geometric stiffness between the bodies is as exact as within them.
       EXPECT_LE(cut.report().iterations, whole.report().iterations + 1) << k;
       EXPECT_LT((tip_of(cut) - tip_of(whole)).norm(), 1e-7 * kBeamLength)
           << mechanics::integrator_name(integrator) << " step " << k;
@@ -90,7 +90,7 @@ TEST(Weld, CarriesTheWeightOfWhatHangsOnIt) {
   simulation.solve_static();
   const JointLoad load = joint_load(simulation, 0);
   const double weight = 0.5 * kBeamLength * 0.02 * 0.02 * 1070.0 * kBeamGravity;
-  // The force on the second body, which carries the first.
+  // The force on the weld's second body, which carries the first.
   EXPECT_LT((load.force - Vector3(0.0, 0.0, -weight)).norm(), 1e-8 * weight);
   const Vector3 middle = simulation.body(1).positions().colwise().mean();
   const Vector3 expected = (middle - load.centre).cross(Vector3(0.0, 0.0, -weight));
@@ -98,7 +98,7 @@ TEST(Weld, CarriesTheWeightOfWhatHangsOnIt) {
   EXPECT_GT(load.moment[1], 0.9 * expected[1]);
 }
 
-// Between meshes that do not match, the seam is that of a coarser mesh.
+// With non-matching meshes, the seam behaves like that of the coarser mesh.
 TEST(Weld, FinerPartBendsAsTheCoarserOneOrMore) {
   const auto sag = [](const CutBeam& options) {
     Simulation simulation(cut_beam(options));
@@ -182,7 +182,7 @@ TEST(Weld, IsNoActuator) {
     EXPECT_EQ(efforts.actuation[k], is_of(cable) ? simulation.efforts()[k] : 0.0) << row;
   }
   EXPECT_GT(held, 0.1);
-  EXPECT_EQ(cable.row_count(), 4);  // guides rub in three points
+  EXPECT_EQ(cable.row_count(), 4);  // friction at three guide points
 }
 
 TEST(Weld, HoldsBetweenTwoBodiesThatAreFixed) {

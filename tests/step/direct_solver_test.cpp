@@ -35,7 +35,7 @@ BlockCounts random_counts(Random& random) {
   return counts;
 }
 
-// Every block obeys its law with the motion that the efforts lead to, whatever stands beside it.
+// Every block obeys its law for the resulting motion, whatever other blocks there are.
 TEST(DirectSolver, AnyBlocksObeyTheirLawsTogether) {
   Random random(5);
   int solved = 0;
@@ -63,7 +63,7 @@ TEST(DirectSolver, AnyBlocksObeyTheirLawsTogether) {
   EXPECT_EQ(solved, 1000);
 }
 
-// The same law met from another start: the solution is unique where friction is not.
+// Without friction the solution is unique, so another start gives the same one.
 TEST(DirectSolver, DoesNotDependOnItsStartWithoutFriction) {
   Random random(6);
   for (int trial = 0; trial < 200; ++trial) {
@@ -90,7 +90,7 @@ TEST(DirectSolver, DoesNotDependOnItsStartWithoutFriction) {
   }
 }
 
-// Motions of the contacts' rows where these have given efforts and all else obeys its law.
+// Motions of the contact rows for given contact forces, while all other blocks obey their laws.
 VectorX contact_motion(const RandomProblem& robot, std::vector<double> effort,
                        const VectorX& forces) {
   StepProblem rest = robot.problem;
@@ -107,7 +107,8 @@ VectorX contact_motion(const RandomProblem& robot, std::vector<double> effort,
   return (rest.delta_free + rest.compliance * all).segment(first, forces.size());
 }
 
-// The problem of the contacts alone has the step's efforts and motions; W is how the rest answers.
+// The reduced problem of the contacts has the efforts and motions of the step; its W includes the
+// response of all other blocks.
 TEST(DirectSolver, ContactsByThemselvesAreThoseOfTheStep) {
   Random random(7);
   for (int trial = 0; trial < 300; ++trial) {
@@ -132,7 +133,7 @@ TEST(DirectSolver, ContactsByThemselvesAreThoseOfTheStep) {
         EXPECT_EQ(alone.effort[own + c], effort[static_cast<std::size_t>(block.row + c)]);
       }
     }
-    if (counts.capstans > 0) continue;  // sliding ones would follow the tensions
+    if (counts.capstans > 0) continue;  // friction limits would follow the tensions
     const double step = 1e-5;
     const VectorX turn = random.vector(static_cast<int>(alone.effort.size()));
     const VectorX slope = (contact_motion(robot, effort, alone.effort + step * turn) -
@@ -142,7 +143,7 @@ TEST(DirectSolver, ContactsByThemselvesAreThoseOfTheStep) {
   }
 }
 
-// Rows that repeat each other: held at one motion they share the effort evenly.
+// Identical rows that are held at one motion share the effort evenly.
 TEST(DirectSolver, TwinHeldRowsShareTheEffort) {
   StepProblem problem;
   problem.compliance = MatrixX::Constant(2, 2, 0.5);
@@ -156,9 +157,10 @@ TEST(DirectSolver, TwinHeldRowsShareTheEffort) {
   EXPECT_NEAR(effort[1], 1.0, 1e-12);
 }
 
-// Rows whose motions are asked for within limits, of a body that welds hold. W = c U U^T + (left,
-// 0; 0, 0) of `apart` motions is an anchor's, c = -1e5, and the welds' rows leave `left` of it.
-// @param rows (n,) which of `left` each row is.
+// Rows with commanded motions and effort limits, on a body that is held by welds only. With an
+// anchor, W = c U U^T + (left, 0; 0, 0) with c = -1e5; after elimination of the welds' rows, `left`
+// remains of it.
+// @param rows (n,) the row of `left` that each row repeats.
 StepProblem behind_welds(const MatrixX& left, const VectorX& free, std::span<const int> rows,
                          Random& random) {
   constexpr double kAnchor = -1e5;
@@ -203,8 +205,8 @@ VectorX solve_and_obey(StepProblem& problem) {
   return x;
 }
 
-// A motor and a brake in one hinge, and three cables, in two orders. What is left of the twins
-// would be indefinite, since each has its own rounding.
+// A motor and a brake in one hinge, and three cables, in two orders. After elimination the block of
+// the twins would be indefinite, because each has its own rounding.
 TEST(DirectSolver, TwinsBehindWeldsShareInAnyOrder) {
   Random random(23);
   for (int trial = 0; trial < 200; ++trial) {
@@ -226,8 +228,7 @@ TEST(DirectSolver, TwinsBehindWeldsShareInAnyOrder) {
   }
 }
 
-// Three cables on two motions: no two are twins, and of what is left of their W rounding makes an
-// indefinite matrix.
+// Three cables on two motions: no two are twins, but rounding makes the rest of their W indefinite.
 TEST(DirectSolver, RedundantRowsBehindWeldsAreSolved) {
   Random random(24);
   const std::vector<int> rows{0, 1, 2};
@@ -241,8 +242,8 @@ TEST(DirectSolver, RedundantRowsBehindWeldsAreSolved) {
   }
 }
 
-// A brake and a motor in one hinge, W with the row twice: the motor moves it as it is told, and the
-// brake is at its limit against that, exactly, or idle where nothing moves.
+// A brake and a motor in one hinge, so W contains the row twice: the motor follows its command, and
+// the brake opposes it exactly at its limit, or is idle if nothing moves.
 TEST(DirectSolver, ABrakeBesideWhatHoldsItsRowIsAtItsLimit) {
   Random random(18);
   for (int trial = 0; trial < 200; ++trial) {
@@ -281,7 +282,7 @@ TEST(DirectSolver, ABrakeBesideWhatHoldsItsRowIsAtItsLimit) {
   }
 }
 
-// The problem as A with springs at `rows` makes it (Sherman, Morrison & Woodbury).
+// The problem that results if springs at `rows` are added to A (Sherman, Morrison & Woodbury).
 StepProblem anchored(const StepProblem& problem, const std::vector<int>& rows, double stiffness) {
   StepProblem result = problem;
   const auto count = static_cast<Eigen::Index>(rows.size());
@@ -339,7 +340,7 @@ TEST(DirectSolver, AnchorsChangeNothing) {
   }
 }
 
-// A robot that is anchored is stable where it is without the anchors.
+// The stability of an anchored robot is that without the anchors.
 TEST(Stabilised, CountsWithoutAnchors) {
   Random random(9);
   for (int trial = 0; trial < 100; ++trial) {
@@ -360,8 +361,9 @@ TEST(Stabilised, CountsWithoutAnchors) {
   }
 }
 
-// What moves nothing takes the effort commanded or, where its motion is as commanded, the least
-// that its limits allow; where it is not, that of the limit on its side. Without one there is none.
+// A row that moves nothing takes its commanded effort. If its motion is commanded and already
+// reached, it takes the smallest effort within its limits; otherwise the limit on that side, and
+// without a limit there is no solution.
 TEST(DirectSolver, WhatMovesNothingTakesLeastEffort) {
   StepProblem problem;
   problem.compliance = MatrixX::Zero(4, 4);

@@ -35,7 +35,7 @@ class CubicDrive : public Drive {
   double rest_, slope_, cubic_;
 };
 
-/// A problem and the drives that it points to.
+/// A problem together with the drives that it refers to.
 struct RandomProblem {
   StepProblem problem;
   std::vector<std::unique_ptr<Drive>> drives;
@@ -105,7 +105,7 @@ inline RandomProblem random_problem(const BlockCounts& counts, Random& random) {
   }
   for (int i = 0; i < counts.contacts; ++i, row += 3) {
     problem.contacts.push_back({row, random.uniform(0.0, 0.8)});
-    problem.delta_free[row] -= 0.5;  // most of them press
+    problem.delta_free[row] -= 0.5;  // most contacts are compressed
   }
   for (int i = 0; i < counts.bilaterals; ++i, ++row) {
     problem.bilaterals.push_back({row, random.uniform(-0.3, 0.3), 1.0});

@@ -44,8 +44,8 @@ std::vector<double> solve_direct(const StepProblem& problem, std::vector<double>
   return effort;
 }
 
-// The response is the derivative of what the direct solver finds, but where a block changes its
-// state within the difference.
+// The response is the derivative of the direct solution, except where a block changes its state
+// within the difference.
 TEST(Response, IsTheDerivativeOfTheDirectSolution) {
   Random random(11);
   constexpr double kStep = 1e-6;
@@ -59,7 +59,7 @@ TEST(Response, IsTheDerivativeOfTheDirectSolution) {
     response.form(robot.problem, here);
     ASSERT_EQ(response.controlled(), (std::vector<int>{0, 1}));
     const VectorX owned = Eigen::Map<const VectorX>(here.data(), kOwned);
-    // At the efforts themselves it is exact.
+    // It is exact at the given efforts.
     const VectorX at = response.free() + response.compliance() * owned;
     EXPECT_LT((at - robot.motion(here)).cwiseAbs().maxCoeff(), 1e-7) << trial;
     for (int k = 0; k < kOwned; ++k) {
@@ -82,7 +82,7 @@ TEST(Response, IsTheDerivativeOfTheDirectSolution) {
   EXPECT_LT(skipped, 20);
 }
 
-/// Chooses what brings the last two rows nearest to a goal, without limits: least squares.
+/// Controller that brings the last rows nearest to a goal: least squares without limits.
 class Nearest : public Controller {
  public:
   explicit Nearest(VectorX goal) : goal_(std::move(goal)) {}
@@ -133,15 +133,15 @@ class Nearest : public Controller {
   std::vector<double> multipliers_;
 };
 
-// Through contacts, drives, passive actuators and friction the controller reaches its goal in the
-// problem of the step, and everything else obeys its law there.
+// Through contacts, drives, passive actuators and friction, the controller reaches its goal in the
+// step's problem, and all other blocks obey their laws.
 TEST(StepSolver, AControllerReachesItsGoalThroughAnyBlocks) {
   Random random(12);
   int reached = 0, trials = 300;
   for (int trial = 0; trial < trials; ++trial) {
     RandomProblem robot = random_problem(counts_beside_a_controller(random), random);
     const auto rows = static_cast<std::size_t>(robot.problem.delta_free.size());
-    // A goal that some efforts reach.
+    // A goal that is reachable.
     std::vector<double> wanted(rows, 0.0);
     for (int k = 0; k < kOwned; ++k) wanted[static_cast<std::size_t>(k)] = random.uniform(0.0, 1.0);
     wanted = solve_direct(robot.problem, wanted);
@@ -157,13 +157,13 @@ TEST(StepSolver, AControllerReachesItsGoalThroughAnyBlocks) {
     EXPECT_LT(violation(robot.problem, effort, LawStatus::solved), 1e-8) << trial;
     if ((robot.problem.delta.tail(2) - goal).norm() < 1e-6) ++reached;
   }
-  // The others rest at an optimum of their own, where blocks change their states.
+  // The other trials end at a local optimum where blocks change their states.
   EXPECT_GE(reached, trials * 97 / 100);
 }
 
 // Without friction every piece is a convex program, and the best of all 2^k pieces is the optimum
 // of the mathematical program with complementarity constraints. The solver ends at a stationary
-// place, as a rule at that optimum.
+// point, usually this optimum.
 TEST(StepSolver, EndsWhereNoNeighbouringPieceServesBetter) {
   Random random(14);
   constexpr int kTrials = 1020;  // of which 20 have twelve contacts
@@ -202,7 +202,7 @@ TEST(StepSolver, EndsWhereNoNeighbouringPieceServesBetter) {
       if (controller.choose(robot.problem, piece, Guards::kept, choice) != LawStatus::solved)
         continue;
       best = std::min(best, controller.foreseen());
-      // Of neighbours, those that begin where the solver ended.
+      // Considers only neighbouring pieces that contain the solver's solution.
       const bool begins_here = std::ranges::all_of(piece.guards(), [&](const Guard& guard) {
         const auto number = static_cast<std::size_t>(&guard - piece.guards().data());
         const VectorX at = Eigen::Map<const VectorX>(effort.data(), kOwned);
@@ -214,7 +214,7 @@ TEST(StepSolver, EndsWhereNoNeighbouringPieceServesBetter) {
     EXPECT_GE(neighbour, found - 1e-9 * (1.0 + found)) << trial;
     EXPECT_LT(certificate.violation, 1e-8) << trial;
     EXPECT_LT(certificate.stays, 1e-8) << trial;
-    EXPECT_LT(certificate.cold, 1e-8) << trial;  // a definite W without friction
+    EXPECT_LT(certificate.cold, 1e-8) << trial;  // definite W, no friction
     ASSERT_NE(certificate.stationarity, Stationarity::none) << trial;
     EXPECT_EQ(certificate.best_nearby, nearby >= found - 1e-8 * (1.0 + found)) << trial;
     ++kinds[static_cast<std::size_t>(certificate.stationarity)];
@@ -232,8 +232,8 @@ TEST(StepSolver, EndsWhereNoNeighbouringPieceServesBetter) {
   EXPECT_EQ(kinds.back(), kTrials);  // strongly stationary
 }
 
-// At the best place where no contact has a gap or a force, whatever kind of optimum that is: what
-// is said of pieces that meet there agrees with the pieces themselves.
+// Evaluates the best point where every contact has neither gap nor force, whatever its kind of
+// stationarity: the certificate must agree with the adjacent pieces.
 TEST(Certificate, NamesTheStationarityOfAnyPlace) {
   Random random(15);
   std::array<int, 5> kinds{};
@@ -285,7 +285,7 @@ TEST(Certificate, NamesTheStationarityOfAnyPlace) {
   EXPECT_GT(kinds[static_cast<std::size_t>(Stationarity::weak)], 20);
   EXPECT_GT(kinds[static_cast<std::size_t>(Stationarity::clarke)], 20);
 
-  // A place that is no optimum of any piece.
+  // A point that is not optimal in any piece.
   BlockCounts counts;
   counts.owned = kOwned;
   counts.contacts = 2;

@@ -1,4 +1,5 @@
-// Replaces the C library's entry points, where operator new and Eigen's aligned allocations end.
+// Replaces the C library's allocation functions, which operator new and Eigen's aligned allocations
+// call.
 #include "allocation_guard.hpp"
 
 #include <atomic>
@@ -12,7 +13,7 @@ std::atomic<long> count{0};
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define SINEW_COUNTS_ALLOCATIONS 1
 extern "C" {
-// NOLINTBEGIN(bugprone-reserved-identifier): glibc calls them so
+// NOLINTBEGIN(bugprone-reserved-identifier): glibc's names
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t number, std::size_t size);
 void* __libc_realloc(void* block, std::size_t size);

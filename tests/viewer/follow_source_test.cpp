@@ -1,4 +1,4 @@
-// A script steps, the page looks on: who has its turn when, and what the page may do.
+// A script makes the steps and the page follows: order of turns, and what the page may do.
 #include "viewer/follow_source.hpp"
 
 #include <atomic>

@@ -55,7 +55,7 @@ RecordedState moment(RobotState& state) {
   return recorded;
 }
 
-// A recorded observable.
+// The values of a recorded observable.
 std::vector<double>& numbers_of(RecordedState& recorded, RobotState& state, const char* name) {
   const std::size_t index = state.observables().find(name);
   return std::ranges::find(recorded.values, index, &RecordedState::Value::observable)->numbers;

@@ -463,7 +463,7 @@ TEST(Server, BearsTenThousandBrokenMessages) {
     if (k % 500 == 0) witness.next_step();  // a view that is silent for too long is disconnected
     try {
       Client client(shown.server->port());
-      if (k % 3 == 0) {  // not even a WebSocket
+      if (k % 3 == 0) {  // no WebSocket at all
         std::string noise(1 + random() % 200, ' ');
         for (char& c : noise) c = static_cast<char>(random());
         asio::write(client.raw().socket(), asio::buffer(noise));
@@ -527,7 +527,7 @@ TEST(Server, StopsAtOnceWhateverBrowsersDo) {
   auto shown = std::make_unique<Shown>(200000);
   Client stuck(shown->server->port());
   stuck.greet();
-  Client half(shown->server->port());  // connected, says nothing
+  Client half(shown->server->port());  // connected but silent
   std::this_thread::sleep_for(200ms);
   auto stopped = std::async(std::launch::async, [&] { shown.reset(); });
   ASSERT_EQ(stopped.wait_for(30s), std::future_status::ready) << "it waits for a browser";

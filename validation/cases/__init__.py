@@ -1,1 +1,1 @@
-"""One module a case; see docs/validation.md for what each holds."""
+"""One module per case; docs/validation.md describes each."""

@@ -19,7 +19,7 @@ by at most 2 % of the largest force in all steps. For smaller zones the number o
 SOURCES = {"points": "the same scene without aggregate"}
 COST = 60
 ZONES = (0.008, 0.012, 0.02)  # m
-AIMED = 0.012  # m, three to six edges: rows fall by 5 or more at 2 % of the force
+AIMED = 0.012  # m, three to six edges: at least a fifth of the rows, within 2 % of the force
 SILICONE = {"model": "neo-hookean", "young_modulus": 1e5, "poisson_ratio": 0.45}
 
 
@@ -45,7 +45,7 @@ def soft():
 
 
 def pressed(other, friction, edge, zone, steps=22):
-    """Depth in mm, force in N of each step; rows and the largest overlap at the end."""
+    """Force (N) after each step, the number of contact rows, and the overlap (m) at the end."""
     sim = scene(other, friction, edge, zone)
     forces = []
     for _ in range(steps):

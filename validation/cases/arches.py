@@ -29,7 +29,7 @@ G, RADIUS, COUNT, DEPTH, DENSITY = 9.81, 0.25, 25, 0.05, 2300.0
 
 
 def corners(k, count, thickness):
-    """(4, 2) m, x and z of a stone, counter-clockwise seen along y."""
+    """Corners (4, 2) of a stone: x and z in m, counter-clockwise seen along y."""
     angles = np.pi * np.array([k, k + 1]) / count
     ray = np.column_stack([np.cos(angles), np.sin(angles)])
     inner, outer = RADIUS - 0.5 * thickness, RADIUS + 0.5 * thickness
@@ -43,7 +43,7 @@ def area_and_centre(points):
 
 
 def admissible(thickness, friction, count=COUNT):
-    """Whether forces exist that balance all stones. Unknowns of a joint: pressure at its inner and outer end, shear."""
+    """Whether joint forces exist that balance all stones. Unknowns per joint: pressures at its inner and outer end, shear."""
     joints = count + 1
     balance, weight = np.zeros((3 * count, 3 * joints)), np.zeros(3 * count)
     for k in range(count):
@@ -52,7 +52,7 @@ def admissible(thickness, friction, count=COUNT):
         for joint, sense in ((k, 1.0), (k + 1, -1.0)):
             angle = np.pi * joint / count
             ray, along = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
-            # The thinner neighbour bounds a joint; the first and the last have one.
+            # All stones are equally thick.
             half = 0.5 * thickness
             for column, at, force in ((0, (RADIUS - half) * ray, along), (1, (RADIUS + half) * ray, along), (2, RADIUS * ray, ray)):
                 lever = at - centre
@@ -74,7 +74,7 @@ def least(stands, low, high):
 
 
 def write_stone(path, points, depth):
-    """A prism over (4, 2) points, as OBJ."""
+    """Writes a prism over (4, 2) points as OBJ."""
     nodes = [(x, y, z) for y in (-0.5 * depth, 0.5 * depth) for x, z in points]
     triangles = [(0, 1, 2), (0, 2, 3), (4, 6, 5), (4, 7, 6)]
     for k in range(4):
@@ -113,7 +113,7 @@ class Arch:
         return float(crept), float(moved)
 
     def outlines(self):
-        """(4, 2) present corners of every stone."""
+        """Present corners (4, 2) of every stone."""
         drawn = []
         for name, shape in zip(self.names, self.shapes):
             body = self.sim.body(name)
@@ -123,7 +123,7 @@ class Arch:
         return drawn
 
     def overlap(self):
-        """Overlap of neighbours / R: how deep a corner of one is behind the plane of the other's joint, within its height."""
+        """Overlap of neighbours / R: the largest depth of a corner behind the plane of the other stone's joint face."""
         outlines, deepest = self.outlines(), 0.0
         for one, following in zip(outlines, outlines[1:]):
             for stone, face, points in ((one, one[[2, 3]], following[[0, 1]]), (following, following[[0, 1]], one[[2, 3]])):

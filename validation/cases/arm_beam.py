@@ -50,9 +50,9 @@ def fem():
 
 
 def arm(count):
-    """The same of an arm of so many segments."""
+    """The same for an arm with this number of segments."""
     lengths = np.full(count, L / count)
-    def model(gravity):  # hanging along -z with gravity along +x is level with gravity across
+    def model(gravity):  # the arm extends along -z: gravity along +x acts as on a level beam
         return sinew.pcc.Arm(lengths, RHO * B * B * lengths, sinew.pcc.beam_stiffness(EI, lengths), 0.0,
                              centre="distributed", gravity=[gravity, 0, 0])
 

@@ -26,7 +26,7 @@ RAMP = "{tension: {ramp: {to: 3 N, duration: 1.5 s}}}"
 
 
 def curl(cables, size, *more, may_end=False):
-    """Times (s), tips (k, 3) mm, whether and when it touches (s), elements, the axis at the end, wall time (s)."""
+    """Times (s), tip positions (k, 3) in mm, time of self-contact (s) or None, number of elements, final axis (mm), wall time (s)."""
     told = [f"actuators.{name}.command=" + (RAMP if name in cables else "{tension: 0 N}")
             for name in ("east", "north", "west", "south")]
     sim = sinew.load(REPOSITORY / "examples" / "arm" / "underwater.yaml",
@@ -37,7 +37,7 @@ def curl(cables, size, *more, may_end=False):
     while sim.time < 1.5 - 1e-9:
         try:
             sim.step()
-        except sinew.RunError:  # Newton finds no end of this step, nor of a sixteenth of it
+        except sinew.RunError:  # Newton's method fails even for a sixteenth of this step
             if not may_end:
                 raise
             break

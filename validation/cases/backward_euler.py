@@ -60,12 +60,12 @@ def swing(h, duration):
         sim.step()
         times.append(sim.time)
         energy.append(body.kinetic_energy + body.gravity_energy + body.strain_energy)
-    # The hinge is the edge x = 0, z = length; the centre lies at (side/2, -length/2) from it.
+    # The hinge is the edge x = 0, z = length; the centre of mass is at (side/2, -length/2) relative to it.
     mass = 1000 * side * side * length
     arm = np.hypot(side / 2, length / 2)
     inertia = mass * (side**2 + length**2) / 3
-    start = np.arctan2(side / 2, length / 2)  # angle of the centre from -z
-    down = np.arctan2(gravity[0], -gravity[2])  # where gravity points, measured like the angle
+    start = np.arctan2(side / 2, length / 2)  # angle of the centre of mass from -z
+    down = np.arctan2(gravity[0], -gravity[2])  # direction of gravity, as an angle from -z
     potential = mass * G * arm
     angle, turn, level = start, 0.0, []
     for _ in range(round(duration / h)):

@@ -40,7 +40,7 @@ def wave(amplitude, period, step=0.01):
 
 
 def potential(theta, shear, around):
-    """Strain and gravity energy of an angle by adaptive quadrature: nothing of the library."""
+    """Strain and gravity energy at an angle by adaptive quadrature, independent of the library."""
     length, r, wall = SIZES["length"], SIZES["chamber_radius"], SIZES["wall_thickness"]
     outer = r + wall
 
@@ -105,7 +105,7 @@ def motion(case):
     def right(t, y):
         return [y[1], model.acceleration(y[0], y[1], pressure(t))]
     start = model.equilibrium(0.0)
-    # Beta makes the equation stiff, and DOP853 pays for that in steps.
+    # The stiffness damping beta makes the equation stiff, so DOP853 needs many steps.
     common = np.arange(1, 126) * 0.04
     reference = integrate.solve_ivp(right, (0, end), [start, 0.0], "DOP853", rtol=1e-11, atol=1e-13,
                                     t_eval=common)
@@ -128,17 +128,17 @@ def motion(case):
         time = np.arange(0.0, 1.0, step)
         run = free.simulate(time, np.full(len(time), 40e3), angle=0.0, longest_step=step, spectral_radius=1.0)
         energy = total(run, 40e3)
-        # Over the work of the pressure; the start is a pose without energy.
+        # Relative to the work of the pressure; the initial energy is zero.
         drifts.append(abs(energy - energy[0]).max() / (40e3 * free.moment_per_pressure * run["angle"].max()))
     case.check("undamped, 1 s: order of the energy drift", observed_order(steps, drifts), 2.0, 0.1, relative=False, source="theory")
     case.report("undamped, 1 s at 0.2 ms: energy drift / work of the pressure", 100 * drifts[-1], unit="%", source="theory")
 
 
 def beam(case):
-    """A solid round beam under its weight: E = 4 G along it, as wound fibres make it."""
+    """A solid round beam under its weight; wound fibres give E = 4 G along it."""
     radius, length, modulus, density = 8e-3, 0.1, 0.8e6, 1070.0
     area, second = np.pi * radius**2, np.pi * radius**4 / 4
-    # The same beam as an actuator: EI about its own middle by scaling the modulus, no chamber to speak of.
+    # The same beam as an actuator with a negligible chamber; the scaled modulus gives EI about the beam's own axis.
     plain = pcc.BendingActuator(length, 1e-4, radius - 1e-4, 1.0, gravity=0.0)
     scaled = pcc.BendingModulus(modulus * second / plain.second_moment, kind="bending")
     model = pcc.BendingActuator(length, 1e-4, radius - 1e-4, scaled, inclination=np.pi / 2, order=None, silicone_density=density,

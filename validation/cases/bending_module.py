@@ -25,7 +25,7 @@ RUNS = (("Ecoflex 00-30", "ecoflex-00-30", 0.01, 3.0, 0.01), ("Ecoflex 00-50", "
 
 
 def bend(sim):
-    """Angle by which the tip's face turned (degrees), by the rotation vector."""
+    """Rotation angle of the tip's face (degrees), from its rotation vector."""
     return np.degrees(np.linalg.norm(sim.effector("bend").rotation))
 
 
@@ -43,7 +43,7 @@ def run(case):
             try:
                 sim.step(max(1, round(0.01 / step)))
             except sinew.Error:
-                break  # blown up: the wall has thinned beyond what its mesh bears
+                break  # ballooning: the wall is thinner than its mesh can resolve
             now = np.array(tip.position)
             times.append(sim.time)
             angles.append(bend(sim))

@@ -56,7 +56,7 @@ def bounces(case, axis):
                 if first < sim.time < 0.95 * end:
                     begin = sim.time - (np.sqrt(rate**2 + 2.0 * fall * gap) - rate) / fall
                     errors.append(np.abs(begins - begin).min() / begin)
-                # Before it rests, the rest of the series follows from the flight that it is in.
+                # While the ball bounces, the present flight determines the rest of the series.
                 speed = np.sqrt(max(rate**2 + 2.0 * fall * gap, 0.0))
                 if speed > 1e-6:
                     last = sim.time + (speed + rate) / fall + 2.0 * restitution * speed / fall / (1.0 - restitution)

@@ -33,7 +33,7 @@ def bar(friction):
 
 
 def later(one):
-    """When the initial jump of the disturbance has decayed."""
+    """Mask of the samples after the initial jump of the disturbance has decayed."""
     return one.times > one.disturbed_from + 0.02
 
 

@@ -46,7 +46,7 @@ def run(case):
     case.check("as heavy as water: motion in 1 s / (1/2 g t^2)", height(sim) / (0.5 * G), 0.0, 1e-6, relative=False,
                source="Archimedes")
 
-    # Flat, so that it floats upright: a cube of this density lies on an edge.
+    # A flat slab floats upright; a cube of this density would float on an edge.
     slab = {"shape": "block", "length": 0.04, "width": 0.04, "height": 0.01, "element_size": 0.0034}
     sim = scene(slab, 600.0, 0.01, level=0.005, normal_drag=3.0)
     sim.step(200)
@@ -59,7 +59,7 @@ def run(case):
                source="Archimedes")
 
     length, diameter, density = 0.2, 0.02, 1400.0
-    # The shape stands along z: gravity along x makes it sink across its axis.
+    # The cylinder's axis is z: with gravity along x it sinks broadside.
     sim = sinew.load({
         "sinew": 1, "gravity": [-G, 0, 0], "time_step": 0.001, "integrator": "backward-euler",
         "solver": {"method": "newton", "tolerance": 1e-9},

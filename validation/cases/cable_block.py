@@ -35,7 +35,7 @@ def measure(cells, offset):
             "command": {"tension": TENSION}}},
     }
     sim = sinew.load(scene)
-    sim.step()  # linear: one step is the solution
+    sim.step()  # linear, so one step gives the solution
     body = sim.body("block")
     rest = np.array(body.rest_positions)
     moved = np.array(body.positions) - rest

@@ -41,7 +41,7 @@ def cells_of(body, element):
 
 
 def both(case, element, size, duration):
-    """Times, and vertical displacements (m) of the end's middle by Sinew and by CalculiX."""
+    """Times, and vertical displacements (m) of the end face's centre by Sinew and by CalculiX."""
     sim = sinew.load(scene(element, size))
     body = sim.body("beam")
     rest = np.array(body.rest_positions)
@@ -60,7 +60,7 @@ def both(case, element, size, duration):
 
 
 def first_trough(times, heights):
-    """Time and depth of the first trough, by a parabola through three points."""
+    """Time and depth of the first minimum, by a parabola through three points."""
     k = next(k for k in range(1, len(heights) - 1) if heights[k] < heights[k - 1] and heights[k] <= heights[k + 1])
     a, b, c = heights[k - 1:k + 2]
     part = 0.5 * (a - c) / (a - 2 * b + c)
@@ -68,7 +68,7 @@ def first_trough(times, heights):
 
 
 def first_frequency(body, mass_of_element):
-    """Hz at rest, with element masses V rho times a (4, 4) matrix."""
+    """First frequency at rest (Hz), with element masses V rho times a (4, 4) matrix."""
     import scipy.sparse as sparse
     from scipy.sparse.linalg import eigsh
 
@@ -114,7 +114,7 @@ def run(case):
                         100 * shift, unit="%", source="CalculiX")
             limits = troughs[-1]
             what = f"{1e3 * sizes[-1]:g} mm"
-        else:  # second order in the size of cells
+        else:  # second order in the cell size
             limits = troughs[-1] + (troughs[-1] - troughs[0]) / ((sizes[0] / sizes[-1]) ** 2 - 1)
             what = "extrapolated to zero cell size"
             order = np.log(apart[0] / apart[1]) / np.log(sizes[0] / sizes[1])

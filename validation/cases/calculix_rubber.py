@@ -25,7 +25,7 @@ LAWS = {
 
 
 def ours(law):
-    """The body at equilibrium, its rest positions and the load on each node."""
+    """The body in equilibrium, its rest positions, and the nodal loads."""
     sim = sinew.load({
         "sinew": 1, "gravity": [0, 0, 0], "solver": SOLVER,
         "bodies": {"body": {

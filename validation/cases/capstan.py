@@ -22,7 +22,7 @@ PULL, MIDDLE, RADIUS = 3.0, np.array([0.05, 0.05]), 0.04
 
 
 def bollard(friction, wrap, points):
-    """A simulation; the cable's arc begins at the top of its circle."""
+    """A simulation of a cable on an arc that starts at the top of its circle."""
     angles = np.arange(points) * wrap / points + 0.5 * wrap / points
     arc = [[*(MIDDLE + RADIUS * np.array([np.sin(a), np.cos(a)])), 0.01] for a in angles]
     enter = [0.0, MIDDLE[1] + RADIUS, 0.01]
@@ -49,7 +49,7 @@ def run(case):
             rope.tension = PULL
             sim.step()
             ratio = rope.tensions[0] / rope.tensions[-1]
-            if friction * rope.wrap < 1.6:  # beyond, see SETUP
+            if friction * rope.wrap < 1.6:  # see SETUP for larger values
                 worst = max(worst, abs(ratio / np.exp(friction * rope.wrap) - 1.0))
             else:
                 case.report(f"mu = {friction}, {degrees} degrees: T_1/T_2 / e^(mu theta)",

@@ -25,7 +25,7 @@ SOURCES = {"statics": "a ladder against another: mu = cot(t)/2 for thin cards; w
            "Coulomb": "contact with friction: no creep at rest; impacts without rebound dissipate"}
 COST = 15
 G, ANGLE, LENGTH, THICK, WIDTH, DENSITY = 9.81, np.radians(60), 0.09, 0.002, 0.06, 1000.0
-PITCH = 0.104  # of the tents
+PITCH = 0.104  # m, spacing of the tents
 LESS, NARROWER, CUT, BEVEL = 1e-4, 0.004, 1e-3, 2e-4
 EXPLODES = "surfaces of triangles whose edges cross as they slip: the step has no solution, or gains energy"
 
@@ -41,7 +41,7 @@ class Card:
         self.centre = ((self.points + following) * cross[:, None]).sum(axis=0) / (3.0 * cross.sum())
 
     def body(self, folder):
-        """Its file has the origin at the centre of mass."""
+        """Writes the mesh with the origin at the centre of mass; returns the body."""
         path, count = folder / f"{self.name}.obj", len(self.points)
         nodes = [(x, y, z) for y in (-0.5 * self.width, 0.5 * self.width) for x, z in (self.points - self.centre).tolist()]
         triangles = [t for k in range(1, count - 1) for t in ((0, k, k + 1), (count, count + k + 1, count + k))]
@@ -95,7 +95,7 @@ class House:
                 floor += THICK
 
     def admissible(self, friction):
-        """Whether forces exist: pressure and shear of each contact."""
+        """Whether contact forces (pressure and shear) exist that balance all cards."""
         count, rows = len(self.contacts), {card.name: 3 * k for k, card in enumerate(self.cards)}
         balance, weight, cone = np.zeros((3 * len(self.cards), 2 * count)), np.zeros(3 * len(self.cards)), np.zeros((2 * count, 2 * count))
         for card in self.cards:
@@ -131,7 +131,7 @@ class House:
         return np.array([self.sim.body(name).position for name in self.names])
 
     def watch(self):
-        """Creep from 0.1 s to ten seconds / length of a card."""
+        """Creep from 0.1 s to 10 s / length of a card."""
         self.sim.run(duration=0.1)
         settled, crept = self.places(), 0.0
         while self.sim.time < 10.0 - 1e-6:
@@ -149,7 +149,7 @@ class House:
 
 
 def box_house(levels=3, gap=0.002, pitch=0.102):
-    """Cards as boxes: bodies of a scene. Each plate lies on two neighbouring tents."""
+    """Bodies of a scene with boxes as cards. Each plate lies on two neighbouring tents."""
     bodies, floor = {}, 0.0
     along, up = np.array([np.cos(ANGLE), np.sin(ANGLE)]), np.array([-np.sin(ANGLE), np.cos(ANGLE)])
 
@@ -161,7 +161,7 @@ def box_house(levels=3, gap=0.002, pitch=0.102):
         tents = levels - level
         for k in range(tents):
             top = pitch * (k - 0.5 * (tents - 1))
-            centre = -0.5 * LENGTH * along + 0.5 * THICK * up  # its lower corner at the top is at 0
+            centre = -0.5 * LENGTH * along + 0.5 * THICK * up  # the lower corner at the top is the origin
             height = floor + 0.5 * LENGTH * along[1] + 0.5 * THICK * up[1]
             for side, sense in (("left", 1.0), ("right", -1.0)):
                 bodies[f"card_{level}_{k}_{side}"] = box(LENGTH, [top + sense * centre[0], height], ANGLE if sense > 0 else np.pi - ANGLE)
@@ -176,7 +176,7 @@ def box_house(levels=3, gap=0.002, pitch=0.102):
 
 
 def falls(case, name, house, axis, label, known=""):
-    """Whether it falls, and the largest energy gain in a step / (its weight times a card's length)."""
+    """Whether the house falls, and the largest energy gain in a step / (weight of the house times length of a card)."""
     moved, gained, reason = 0.0, 0.0, ""
     first, before = house.places(), 0.0
     try:

@@ -26,17 +26,17 @@ SOURCES = {"Mindlin": "C. Cattaneo, Rend. Accad. Naz. Lincei 27 (1938) 342; R. D
 COST = 60
 POISSON, FRICTION, RADIUS = 0.49, 0.5, SPOT / 0.01
 SHEAR = (2.0 - POISSON) * 2.0 * (1.0 + POISSON) / E  # S
-MOST = 3.0 / 16.0 * FRICTION / SPOT * SHEAR * 4.0 / 3.0 * E / (1.0 - POISSON**2) * SPOT**3 / RADIUS  # d_t where it slips
-PRESS = 3  # steps of 1 s that press the ball down
+MOST = 3.0 / 16.0 * FRICTION / SPOT * SHEAR * 4.0 / 3.0 * E / (1.0 - POISSON**2) * SPOT**3 / RADIUS  # d_t at full slip
+PRESS = 3  # number of 1 s steps that press the ball down
 
 
 def moved(fraction):
-    """d_t / that of full slip."""
+    """d_t / d_t at full slip, for a fraction of the friction limit."""
     return 1.0 - (1.0 - fraction)**(2.0 / 3.0)
 
 
 class Push:
-    """The ball, pressed down; it then follows `ways` over MOST, one a step."""
+    """A ball that is pressed down and then displaced by `ways`, in units of MOST, one per step."""
 
     def __init__(self, case, cells, ways):
         spacing = SPOT / cells
@@ -59,11 +59,11 @@ class Push:
         self.ways = ways
 
     def radius(self, forces):
-        """Of a disc with Hertz's distribution of these forces, m."""
+        """Radius (m) of a disc whose Hertzian pressure has the second moment of these forces."""
         return np.sqrt(2.5 * forces @ self.distance**2 / forces.sum())
 
     def steps(self):
-        """(k, 6): d_t m, P N, Q N, a m, c m from tractions, c m from the nodes' states."""
+        """(k, 6): d_t (m), P (N), Q (N), a (m), c (m) from tractions, c (m) from the nodes' states."""
         seen = []
         for way in self.ways:
             self.sim.step()

@@ -44,7 +44,7 @@ def example():
 
 
 def left(shown, plant, kind, command, goal=None):
-    """Errors (steps,) m of one run, and the loop after it."""
+    """Errors (steps,) in m of one run, and the loop after it."""
     sim = shown.trunk(**plant, more=[shown.CAMERA])
     loop = shown.make(kind, command, sim)
     if goal is not None:
@@ -86,7 +86,7 @@ CABLES = ["east", "north", "west", "south"]
 
 
 def finger(stiffness=1.0, delay=None):
-    """At rest under 3 N in each cable; with a delay (s), a camera measures it."""
+    """The finger at rest under 3 N in each cable; with a delay (s), a camera measures its tip."""
     camera = f"sensors={{camera: {{type: marker, body: finger, point: 0 0 80 mm, delay: {delay} s}}}}"
     sim = sinew.load(ROOT / "python" / "tests" / "scenes" / "finger.yaml",
                      set=[f"bodies.finger.material.young_modulus={400 * stiffness} kPa", *([camera] if delay is not None else [])])
@@ -101,7 +101,7 @@ def dies_out(plant, model, gain):
     """Whether a step of 20 um towards x decays, with a rate of gain/T and commanded tensions."""
     start = np.array(plant.effector("tip").position)
     plant, step = plant.clone(), 2e-5
-    plant.solve_static()  # the camera has seen it rest
+    plant.solve_static()  # the camera's samples are those at rest
     loop = control.ClosedLoop(model.clone(), {"tip": start + [step, 0.0, 0.0]}, CABLES, gains=gain / plant.time_step, command="effort",
                               weights={"tip": [1, 0, 0]}, change=0.0, relaxation=0.0, real_jacobian="model",
                               sensors={"tip": plant.sensor("camera")})
@@ -112,7 +112,7 @@ def dies_out(plant, model, gain):
         errors.append(abs(plant.effector("tip").position[0] - start[0] - step))
         if errors[-1] > 100 * step:
             return False
-    # What grows ends in a cycle between limits, many steps wide.
+    # An unstable loop ends in a limit cycle much larger than the step.
     return max(errors[80:]) < min(2 * step, max(errors[40:80]))
 
 
@@ -132,7 +132,7 @@ def gains_and_delays(case, panel):
                               weights={"tip": [1, 0, 0]}, change=0.0, relaxation=0.0,
                               real_jacobian=lambda: control.jacobian(softer, ["tip"], CABLES, command="effort"))
     loop.step({"tip": model.effector("tip").position}, 0.0)
-    factor = loop.least_eigenvalue  # of a single direction the only one
+    factor = loop.least_eigenvalue  # the only one, for a single direction
     found = {}
     for name, stiffness, scale in (("exact model", 1.0, 1.0), ("model too stiff", 1.0 / 1.3, factor)):
         found[name] = [largest_gain(finger(stiffness, delay * model.time_step), model, exact[delay] / scale) for delay in DELAYS]

@@ -35,7 +35,7 @@ def deltas(sim):
 
 
 def compare(sim, tension):
-    """Largest relative error over the columns of W, deflection (m) and the two W."""
+    """Largest relative error of a column of W, deflection (m), and W with the exact and the corotated tangent."""
     settle(sim, tension)
     rest = np.array([0.0, 0.0, 0.195])
     bend = np.linalg.norm(np.array(sim.effector("tip").position) - rest)

@@ -27,7 +27,7 @@ SIZE, CELLS, YOUNG = np.array([0.04, 0.04, 0.02]), (5, 5, 3), 1e5
 
 
 def distorted(case, element):
-    """A block whose nodes are displaced at random; nodes on faces stay in them."""
+    """A block with randomly displaced nodes; nodes on faces stay in their faces."""
     counts = np.array(CELLS)
     grid = np.stack(np.meshgrid(*[np.arange(n + 1) for n in counts], indexing="ij"), axis=-1).reshape(-1, 3)
     inside = (grid > 0) & (grid < counts)
@@ -52,7 +52,7 @@ def block(case, element):
 
 
 def consistent(case, element, at):
-    """(n,) m^2: the share of the top face at rest of each contact point, by its position at rest."""
+    """(n,) m^2: the part of the top face at rest that belongs to each contact point, found by its position at rest."""
     path = case.scratch / ("block.vtu" if element == "hex8" else "split.vtu")
     mesh = meshio.read(path)
     top = mesh.points[:, 2] > SIZE[2] * (1.0 - 1e-9)
@@ -100,7 +100,7 @@ TOP = {"plane": plane_of("z", SIZE[2])}
 
 
 def under_a_plane(case, element):
-    """Areas that belong to the nodes (m^2) and their forces (N)."""
+    """Areas (m^2) and forces (N) of the nodes."""
     sim = sinew.load({**scene(case, element), "contacts": {"press": {
         "body": "block", "nodes": TOP, "surface": {"plane": {"point": [0, 0, SIZE[2]], "normal": [0, 0, -1]}},
         "motion": {"z": {"ramp": {"to": -0.1 * SIZE[2], "duration": 1.0}}}}}})
@@ -138,7 +138,7 @@ def half(element, cells, height, face, **more):
 
 
 def between_blocks(case, element):
-    """Errors of the displacement / displacement of the top, on meshes that do not match."""
+    """Errors of the displacement / displacement of the top, for non-matching meshes."""
     way, errors = 0.2 * SIZE[2], []
     for cells in ((4, 4), (4, 5), (6, 7)):
         sim = sinew.load({

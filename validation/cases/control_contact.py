@@ -45,7 +45,7 @@ def touching_targets(scene, rng, count):
     tips = []
     while len(tips) < count:
         sim = sinew.load(scene)
-        # Towards the wall, which is where cables 0 pull.
+        # Towards the wall, the side of the cables 0.
         tensions = 12.0 * rng.uniform(size=8) * (rng.uniform(size=8) < 0.4)
         names = list(sim.actuators)
         strongest = 3 if rng.uniform() < 0.5 else 0

@@ -86,7 +86,7 @@ def targets(equilibria, rng):
 
 
 def steered(made, target):
-    """The simulation of a scene, and its controller, which has come to rest as near to the target as it can."""
+    """The simulation of a scene and its controller, once it is at rest as near to the target as possible."""
     sim = sinew.load(made)
     ik = sinew.InverseController(sim, targets={"tip": target})
     for _ in range(60):

@@ -1,4 +1,4 @@
-"""The rest of inverse control against a wall with friction, against the best rest that a ramp of the cables leads to from there."""
+"""Inverse control against a wall with friction, compared with the best equilibrium that a ramp of the cables reaches from its result."""
 
 import warnings
 
@@ -22,7 +22,7 @@ SOURCES = {"Powell": "M. J. D. Powell, Computer Journal 7 (1964) 155-162, and J.
            "aim": "what the project asks of itself: no farther than 0.1 mm beyond the optimum found from its answer"}
 COST = 60
 FRICTION, RAMP, STARTS = 0.3, 4, 20
-FAR = 1.0  # m: of a ramp that leads to no rest
+FAR = 1.0  # m, distance assigned to a ramp without equilibrium
 
 
 def rough(method="newton"):
@@ -32,7 +32,7 @@ def rough(method="newton"):
 
 
 class Rests:
-    """Where a straight ramp of the tensions (N) ends, from a state."""
+    """Equilibria at the end of a linear ramp of the tensions (N) from a given state."""
 
     def __init__(self):
         self.sim = sinew.load(rough())
@@ -43,7 +43,7 @@ class Rests:
         self.state, self.tensions = state, np.array(tensions)
 
     def tip(self, tensions, steps=RAMP):
-        """(3,) m; None where a step finds no equilibrium."""
+        """Tip (3,) in m; None if a step finds no equilibrium."""
         self.count += 1
         self.sim.restore(self.state)
         goal = np.clip(tensions, 0.0, LIMIT)
@@ -63,7 +63,7 @@ class Rests:
         return FAR if tip is None else float(np.linalg.norm(tip - target))
 
     def search(self, target, start, thorough):
-        """The least distance found (m), and its tensions."""
+        """The smallest distance found (m), and its tensions."""
         bounds = [(0.0, LIMIT)] * len(CABLES)
         found = minimize(lambda t: self.distance(target, t), np.clip(start, 0.0, LIMIT), method="Powell", bounds=bounds,
                          options={"xtol": 1e-4, "ftol": 1e-7, "maxfev": 400 if thorough else 100})  # fmt: skip
@@ -74,7 +74,7 @@ class Rests:
 
 
 def targets(rests, rng, count=4):
-    """(2 count, 3) m: reached from the unloaded finger, and beyond those."""
+    """(2 count, 3) in m: tips reached from the unloaded finger, and points beyond these."""
     inside = []
     while len(inside) < count:
         tip = rests.tip(rng.uniform(0.0, LIMIT, 4) * (rng.uniform(size=4) < 0.6))

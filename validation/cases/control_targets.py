@@ -39,7 +39,7 @@ def trunk():
 
 
 def settle(sim, tensions):
-    """The static equilibrium of these tensions, found from rest."""
+    """Tip position in the static equilibrium under these tensions, solved from the rest shape."""
     sim.reset()
     for name, tension in zip(sim.actuators, tensions):
         sim.actuator(name).tension = float(tension)
@@ -60,7 +60,7 @@ def reachable_targets(sim, rng):
 
 
 def approach(scene, target, steps=MOST_STEPS):
-    """The controller's status and distance once it rests, and its tensions."""
+    """The simulation and its controller, once it is at rest."""
     sim = sinew.load(scene)
     ik = sinew.InverseController(sim, targets={"tip": target})
     for _ in range(steps // BLOCK):

@@ -27,7 +27,7 @@ CELLS = (4, 8, 16, 32)
 
 
 def panel(folder, n, element):
-    """The mesh as VTU in mm."""
+    """Writes the mesh as VTU, in mm."""
     xi, eta = np.meshgrid(np.arange(n + 1) / n, np.arange(n + 1) / n)
     x, y = 48 * xi, 44 * xi + eta * (44 - 28 * xi)
     layer = np.column_stack([x.ravel(), y.ravel()])
@@ -39,7 +39,7 @@ def panel(folder, n, element):
     path = folder / f"{element}_{n}.vtu"
     if element == "hex8":
         blocks = [("hexahedron", cells)]
-    else:  # Kuhn's six, round the diagonal 0-6
+    else:  # Kuhn's division into six, around the diagonal 0-6
         ring = [1, 2, 3, 7, 4, 5, 1]
         blocks = [("tetra", np.vstack([cells[:, [0, a, b, 6]] for a, b in zip(ring, ring[1:])]))]
     meshio.Mesh(points, blocks).write(path)
@@ -47,7 +47,7 @@ def panel(folder, n, element):
 
 
 def corner(folder, n, element, scale):
-    """Vertical displacement (mm) of the corner / fraction `scale` of the load."""
+    """Vertical displacement (mm) of the corner under the fraction `scale` of the load, divided by it."""
     sim = sinew.load({
         "sinew": 1, "gravity": [0, 0, 0], "solver": SOLVER,
         "bodies": {"panel": {

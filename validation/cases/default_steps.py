@@ -65,7 +65,7 @@ def hang_strip(case):
 
 
 def random_robot(rng):
-    """A scene, and how long its commands last (s)."""
+    """A random scene, and the duration of its commands (s)."""
     length = rng.uniform(0.06, 0.2)
     width, height = length * rng.uniform(0.08, 0.3, 2)
     modulus = 10.0 ** rng.uniform(4.5, 6.5)
@@ -110,7 +110,7 @@ def to_plain(tree):
 
 
 def run_robot(seed):
-    """'right', 'wrong', 'flagged' (and wrong), 'flagged though right', 'stopped'; and the error over the travel."""
+    """'right', 'wrong', 'flagged' (and wrong), 'flagged though right' or 'stopped', and the error relative to the travel."""
     scene, lasts = random_robot(np.random.default_rng(seed))
     sim = sinew.load(scene)
     start, travel = sim.effector("tip").position.copy(), 0.0
@@ -149,7 +149,7 @@ def random_robots(case, axis, count=60):
 
 
 def swing(integrator, element, model):
-    """Largest energy beyond the start's over the swing's; when it passes below the hinge, s; heights over time."""
+    """Largest energy gain relative to the energy of the swing, time at which the tip passes below the hinge (s), heights over time."""
     sim = sinew.load({"sinew": 1, "gravity": [0, 0, -9.81], "integrator": integrator, "bodies": {"beam": {
         "type": "fem", "density": 1000.0, "element": element,
         "mesh": {"shape": "block", "length": 0.1, "width": 0.02, "height": 0.02, "element_size": 0.01},
@@ -171,12 +171,12 @@ def swing(integrator, element, model):
 
 
 def quarter_period():
-    """Of a rigid plate 100 x 20 mm hinged at its lower edge, from level to the tip below the hinge, s."""
+    """Time (s) in which a rigid plate, 100 x 20 mm, hinged at its lower edge, swings from level until its tip is below the hinge."""
     arm = np.hypot(0.05, 0.01)
     moment = (0.1**2 + 0.02**2) / 12.0 + arm**2
-    tilt = np.arctan2(0.01, 0.05)  # of the centre above the level
-    down = 0.5 * np.pi + np.arctan2(0.01, 0.1)  # the turn that brings the tip below the hinge
-    turned = down * np.linspace(0.0, 1.0, 200001)[1:] ** 2  # fine where it starts from rest
+    tilt = np.arctan2(0.01, 0.05)  # elevation of the centre
+    down = 0.5 * np.pi + np.arctan2(0.01, 0.1)  # rotation until the tip is below the hinge
+    turned = down * np.linspace(0.0, 1.0, 200001)[1:] ** 2  # fine near the start from rest
     rate = np.sqrt(np.maximum(2.0 * 9.81 * arm / moment * (np.sin(tilt) - np.sin(tilt - turned)), 1e-30))
     return float(np.sum(np.diff(np.concatenate([[0.0], turned])) / rate))
 

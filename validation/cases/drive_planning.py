@@ -67,7 +67,7 @@ def two_stages(plant, goal, cylinders, seed, duration, rate=2.0):
 
 
 def otherwise(plant, goal, cylinders, drive):
-    """The final tip by the simulator of the identification, which interpolates the volumes itself."""
+    """The final tip by the simulator of `identify`, which interpolates the volumes independently."""
     arm, actuators, _ = plant.model()
     volumes = np.stack([c.simulate(u) for c, u in zip(cylinders, drive["command"].T)], axis=1)
     ends = identify.predict_motion(arm, drive["times"], np.zeros(4), inputs=volumes, actuators=actuators,
@@ -76,7 +76,7 @@ def otherwise(plant, goal, cylinders, drive):
 
 
 def finely(plant, goal, drive):
-    """The run almost without discretisation: continuous cylinders under held commands."""
+    """The run with nearly continuous cylinders under held commands."""
     arm, actuators, _ = plant.model()
     task = plan.Task(arm, plant.GOALS[goal])
     given = plant.MODEL["cylinder"]
@@ -86,7 +86,7 @@ def finely(plant, goal, drive):
 
 
 def compare(case, plant, frequency, goal, duration, ways):
-    """Final tip speed (cm/s) of each method, worst of its starts."""
+    """Final tip speed (cm/s) of each method: the worst of its starts."""
     cylinders = [plant.cylinder(frequency=frequency / plant.MODEL["cylinder"]["frequency"])] * 3
     speeds = {}
     for name, (way, scored) in ways.items():

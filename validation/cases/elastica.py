@@ -19,11 +19,11 @@ COST = 40
 LENGTH, WIDTH, YOUNG, POISSON = 0.1, 0.001, 1e6, 0.3
 # w/L and u/L by elliptic integrals.
 REFERENCE = {1: (0.30172, 0.05643), 2: (0.49346, 0.16064), 5: (0.71379, 0.38763), 10: (0.81061, 0.55500)}
-TOLERANCE = 0.01  # bar against three-dimensional clamp and finite strain
+TOLERANCE = 0.01  # the theory has no clamp in three dimensions and no finite strain
 
 
 def end_shares(rest):
-    """(n,) fraction of a uniform traction on the face x = L for each node: a quarter of each cell's."""
+    """(n,) fraction of a uniform traction on the face x = L per node: a quarter of each adjacent cell's."""
     shares = np.zeros(len(rest))
     end = np.flatnonzero(rest[:, 0] > LENGTH - 1e-9)
     inside = [(rest[end, c] > 1e-9) & (rest[end, c] < WIDTH - 1e-9) for c in (1, 2)]
@@ -32,7 +32,7 @@ def end_shares(rest):
 
 
 def bent(cells):
-    """(w/L, u/L) for each load."""
+    """w/L and u/L for each load."""
     sim = sinew.load({
         "sinew": 1, "gravity": [0, 0, 0], "solver": SOLVER,
         "bodies": {"body": {

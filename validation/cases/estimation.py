@@ -28,8 +28,8 @@ SOURCES = {
 COST = 330
 CABLES = [f"{kind}_{k}" for kind in ("long", "short") for k in range(4)]
 MARKERS = {"rim": ("trunk", (0.0085, 0.0, 0.195)), "mid": ("trunk", (-0.012, -0.007, 0.125)), "low": ("trunk", (0.0, 0.017, 0.06))}
-NOISE = 1e-4  # m, of markers
-COARSE, FINE = (1e-4, 0.05), (1e-5, 0.01)  # deviations of lengths (m) and tensions (N)
+NOISE = 1e-4  # m, of the markers
+COARSE, FINE = (1e-4, 0.05), (1e-5, 0.01)  # standard deviations of lengths (m) and tensions (N)
 PATCHES, PUSHES, FORCES = 48, 100, 500
 
 
@@ -42,7 +42,7 @@ def twin(unknowns, grade=COARSE, **settings):
 
 
 def read(model, pull, generator):
-    """Noisy readings of the model in its present state."""
+    """Noisy sensor readings in the model's present state."""
     readings = dict(zip(model.outputs, model.read() + model.noise * generator.standard_normal(len(model.outputs))))
     deviation = {sensor.name: sensor.std for sensor in model.measured}
     for cable, length in zip(CABLES, pull):
@@ -68,7 +68,7 @@ def known_place(case, grade, count, label):
         try:
             model.predict(np.concatenate([force, pull]))
         except sinew.RunError:
-            continue  # it buckles
+            continue  # the trunk buckles
         shape = np.array(model.sim.body("trunk").positions)
         found = estimate.solve(model, read(model, pull, generator))
         error = found.unknowns[:3] - force

@@ -20,7 +20,7 @@ E, NU, SIDE = 1e6, 0.3, 0.01
 
 
 def critical(ratio):
-    """N, by bisection between stable and unstable."""
+    """Critical load (N), by bisection between stable and unstable."""
     length = ratio * SIDE
     sim = sinew.load({
         "sinew": 1, "solver": SOLVER,

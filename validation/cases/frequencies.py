@@ -20,7 +20,7 @@ L, B, H, E, NU, RHO = 0.1, 0.010, 0.012, 1e6, 0.3, 1000.0
 
 
 def timoshenko(count):
-    """Hz, from the determinant of the clamped-free conditions of the exact mode shapes."""
+    """Frequencies (Hz), from the determinant of the clamped-free conditions on the exact mode shapes."""
     area, inertia = B * H, B * H**3 / 12
     shear = E / (2 * (1 + NU)) * area * 10 * (1 + NU) / (12 + 11 * NU)
 

@@ -33,7 +33,7 @@ E, SPOT, LARGE = 1e5, 1e-3, 50.0
 
 
 def pressed(path, poisson, surface, depth, sliding, young=E, nodes=None, **more):
-    """The contact after the surface moved down by `depth`; nodes on planes of symmetry slide in them."""
+    """The contact after the surface has moved down by `depth`; nodes on symmetry planes slide in these."""
     sim = sinew.load({
         "sinew": 1, "time_step": 0.25, "solver": {"ordering": "metis"},
         "bodies": {"block": {"type": "fem", "mesh": {"file": str(path), "unit": "m"}, "fixed": [{"set": "far"}, *sliding],
@@ -51,21 +51,21 @@ def in_plane(axis):
 
 
 def core_cells(cells):
-    """Even cells out to at least 1.25 a."""
+    """Number of uniform cells that covers at least 1.25 a."""
     return -(-5 * cells // 4)
 
 
 def stretched(at, spacing):
-    """(n,) spacings along one axis, around nodes of an even grid that now have these coordinates; half at the plane of symmetry."""
+    """(n,) present spacings along one axis at the nodes of a deformed uniform grid; half a spacing at the symmetry plane."""
     index = np.rint(at / spacing).astype(int)
-    first = np.bincount(index, at) / np.bincount(index)  # of a row of the grid, the mean
+    first = np.bincount(index, at) / np.bincount(index)  # mean coordinate of each row of the grid
     width = np.gradient(first)
     width[0] *= 0.5
     return width[index]
 
 
 class Ball:
-    """Force, peak pressure and contact radius / Hertz's, with `cells` over the contact radius."""
+    """Force, peak pressure and contact radius relative to Hertz's, with `cells` cells per contact radius."""
 
     def __init__(self, case, cells, poisson, slender=0.01, element="hex8"):
         radius, spacing = SPOT / slender, SPOT / cells
@@ -91,7 +91,7 @@ class Ball:
 
 
 class Cylinder:
-    """Peak pressure and half width / Hertz's for the same force per length."""
+    """Peak pressure and half width relative to Hertz's for the same force per length."""
 
     def __init__(self, case, cells, young=E, radius=0.1, pressed_by=2.2, poisson=0.3):
         spacing = SPOT / cells
@@ -135,7 +135,7 @@ def cylinders(case, convergence, profile):
 
 
 def benchmark(case):
-    """CB1, scaled: half widths of about SPOT, a/R as in the benchmark."""
+    """CB1, scaled to a half width of about SPOT, with the a/R of the benchmark."""
     scale = 6.2146e-3 / SPOT
     young = 1.0 / (1.0 / 210e9 + 1.0 / 70e9)
     wanted, depth = 35e6 / scale, 2.2

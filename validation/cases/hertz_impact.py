@@ -28,7 +28,7 @@ LOST = lost_to_the_border(POISSON) * (1.0 + POISSON) / (2.0 * np.pi * E * LARGE 
 
 
 def force_at(depth):
-    """Of the half ball, N."""
+    """Contact force on the half ball, N."""
     if depth <= 0.0:
         return 0.0
     hertz = 4.0 / 3.0 * MODULUS * np.sqrt(RADIUS)
@@ -36,7 +36,7 @@ def force_at(depth):
 
 
 def reference():
-    """Times and depths until it leaves."""
+    """Times and depths until the ball leaves."""
     def left(_, state):
         return state[0] + 1e-12
 
@@ -47,7 +47,7 @@ def reference():
 
 
 def impact(case, cells, step, duration):
-    """Times, depths, forces and the final speed of the ball; a quarter of the ball hits a quarter of the block."""
+    """Times, depths, forces and final speed of the ball. A quarter of the ball hits a quarter of the block."""
     spacing = SPOT / cells
     path = shapes.half_ball(case.scratch / "half_ball.vtu", core_cells(cells) * spacing, core_cells(cells), LARGE * SPOT)
     sim = sinew.load({

@@ -34,13 +34,13 @@ RADIUS, YOUNG, POISSON = 0.05, 20e9, 0.3
 
 
 def centre_of(height):
-    """The node in the middle of a ball's mid-plane: a base motion needs one that is held in all directions."""
+    """The central node of a ball's mid-plane; a base motion requires a node that is held in all directions."""
     small = 1e-4 * RADIUS
     return {"box": [-small, -small, height - small, small, small, height + small]}
 
 
 class Balls:
-    """Force / Hertz's at this depth; peak pressure over that at this depth, contact radius over that at this force."""
+    """Force and peak pressure relative to Hertz's at the same depth, contact radius relative to Hertz's at the same force."""
 
     def __init__(self, case, cells, slender=0.01, radii=(RADIUS, RADIUS), young=(YOUNG, YOUNG), poisson=(POISSON, POISSON), whole=False):
         spot = slender * RADIUS
@@ -66,7 +66,7 @@ class Balls:
         self.measure(spot)
 
     def nodes(self, name, reach):
-        """Positions and forces (N) of nodes of the round face out to that radius (m)."""
+        """Positions and forces (N) of the round face's nodes within the radius `reach` (m)."""
         body, side = self.sim.body(name), 1.0 if name == "up" else -1.0
         radius = self.radii[name == "up"]
         rest = body.rest_positions - [0.0, 0.0, (self.apart if side > 0.0 else 0.0) + side * radius]
@@ -92,7 +92,7 @@ class Balls:
             self.profiles.append((distance, forces))
         self.highest = highest
         low, up = self.nodes("low", 1.3 * spot)[0], self.nodes("up", 1.3 * spot)[0]
-        low = low[np.hypot(low[:, 0], low[:, 1]) < 0.9 * spot]  # where both are flat, faces cut along either diagonal are alike
+        low = low[np.hypot(low[:, 0], low[:, 1]) < 0.9 * spot]  # nearly flat region, where the diagonal of a face does not matter
         over = low[:, 2] - LinearNDInterpolator(up[:, :2], up[:, 2])(low[:, 0], low[:, 1])
         self.overlap = max(0.0, np.nanmax(over))
 

@@ -70,9 +70,9 @@ def stops(case, axis):
     steps, errors = [2e-3, 1e-3, 5e-4, 2.5e-4], []
     for step in steps:
         sim = block(step=step, modulus=1e7)
-        sim.step(round(0.1 / step))  # rests
+        sim.step(round(0.1 / step))  # comes to rest
         push = sim.body("block")
-        # All nodes get the speed at once: a force of m v/h in one step.
+        # A force of m v/h in one step gives all nodes the speed v.
         mass = np.full(len(push.positions), 0.0)
         mass[:] = nodal_mass(sim)
         before = push.positions[:, 0].mean()
@@ -91,7 +91,7 @@ def stops(case, axis):
 
 
 def nodal_mass(sim):
-    """(n,) kg, lumped: each node gets a quarter of the mass of its tetrahedra."""
+    """Lumped masses (n,) in kg: a quarter of the mass of each adjacent tetrahedron."""
     points = sim.body("block").positions
     tetrahedra = sim.body("block").tetrahedra
     edges = points[tetrahedra[:, 1:]] - points[tetrahedra[:, :1]]

@@ -40,7 +40,7 @@ WALL = box([-0.05, 0.0, 0.5], [0.1, 2.0, 1.2], fixed=True)
 
 
 def ladder(angle, step, wall, floor, integrator="backward-euler"):
-    """Leans on the plane x = 0, its foot at x > 0."""
+    """A ladder that leans on the plane x = 0, with its foot at x > 0."""
     foot = np.array([RADIUS + LENGTH * np.cos(angle), 0.0, RADIUS])
     top = np.array([RADIUS, 0.0, RADIUS + LENGTH * np.sin(angle)])
     body = {"type": "rigid", "shape": {"capsule": {"radius": RADIUS, "length": LENGTH}}, "mass": MASS,
@@ -77,7 +77,7 @@ def tents(case, length=0.1, thick=0.001, lean=np.radians(60)):
     along, across = np.array([np.cos(lean), 0.0, np.sin(lean)]), np.array([-np.sin(lean), 0.0, np.cos(lean)])
     # The left card leans to the right: it stands on the corner at -along, -across, and meets the other one at +along, -across.
     foot, head = -0.5 * length * along - 0.5 * thick * across, 0.5 * length * along - 0.5 * thick * across
-    least = abs(foot[0]) / (head[2] - foot[2])  # the weight turns it about its foot, the other card holds its head
+    least = abs(foot[0]) / (head[2] - foot[2])  # moment balance about the foot: weight against the other card
     for ratio in (1.01, 0.99):
         cards = {}
         for name, side in (("left", 1.0), ("right", -1.0)):

@@ -35,7 +35,7 @@ SOURCES = {
 COST = 60
 HERE = pathlib.Path(__file__).resolve()
 TABLES = HERE.parents[1] / "reference"
-AGAIN = 4  # of the further plants
+AGAIN = 4  # number of further plants that are run again
 
 
 def example():
@@ -49,7 +49,7 @@ def example():
 
 
 def read(name):
-    """{seed: (goal, distances in m)}, by seed."""
+    """{seed: (goal, distances in m)}."""
     with (TABLES / name).open() as file:
         return {int(row[0]): (row[1], [float(value) / 100 for value in row[2:6]]) for row in list(csv.reader(file))[1:]}
 
@@ -96,7 +96,7 @@ def run(case):
     rate(case, ilc, "further plants, without rehearsal, attempt 1", excited[:, 0], "table")
     rate(case, ilc, "further plants, without rehearsal, all attempts", excited, "table")
 
-    # Single distances hang on the start's deviation, and plans on the last bits of numbers; medians do not.
+    # Single distances depend on the initial deviation, and plans on the last bits; medians do not.
     before, again = [], []
     for seed in list(table)[:AGAIN]:
         goal, distances = table[seed]

@@ -16,7 +16,7 @@ SIZES = (10.0, 5.0, 2.5)  # mm
 
 
 def sinks(element, size):
-    """mm."""
+    """Sag (mm)."""
     sim = sinew.load({
         "sinew": 1, "gravity": [0, 0, -9.81], "solver": SOLVER,
         "bodies": {"beam": {

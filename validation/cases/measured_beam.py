@@ -49,7 +49,7 @@ def beam(young, cell=0.005, damping=0.0, **world):
 
 
 def hang(sim, force):
-    """A dead load along the upper edge of the end, evenly by length."""
+    """Applies a dead load along the upper edge of the end, uniform per length."""
     body = sim.body("beam")
     rest = np.array(body.rest_positions)
     edge = np.flatnonzero((rest[:, 0] > LENGTH - 1e-9) & (rest[:, 2] > WIDTH - 1e-9))
@@ -67,7 +67,7 @@ def sag(young, force, cell=0.005):
 
 
 def targets(path):
-    """Measured displacements (mm) and COMSOL's by case and marker."""
+    """Measured and COMSOL's displacements (mm), by case and marker."""
     with open(path, newline="") as file:
         rows = list(csv.DictReader(file))
     return {(r["case"], r["marker"]): (np.array([float(r[f"d{c}_mm"]) for c in "xyz"]),
@@ -107,7 +107,7 @@ def motion(path):
 def released(young, damping, duration=2.6, step=0.002):
     """Times and vertical displacement (mm) of Tip-2 after the release."""
     sim = beam(young, time_step=step, damping=damping, integrator={"type": "generalized-alpha", "spectral_radius": 1.0},
-               solver={**SOLVER, "method": "newton"})  # one linearisation a step would damp by itself
+               solver={**SOLVER, "method": "newton"})  # one linearisation per step would add numerical damping
     tip, heights = sim.effector("Tip-2"), [0.0]
     for _ in range(round(duration / step)):
         sim.step()
@@ -116,7 +116,7 @@ def released(young, damping, duration=2.6, step=0.002):
 
 
 def ring(times, heights):
-    """Frequency (Hz) and damping ratio by a decaying cosine from 0.3 s on."""
+    """Frequency (Hz) and damping ratio, fitted by a decaying cosine from 0.3 s on."""
     use = (times > 0.3) & (times < 2.5)
     t, z = times[use], heights[use]
 

@@ -30,11 +30,11 @@ SOURCES = {
 }
 COST = 60
 MOTORS_DISK = [1, 2, 0, 2, 0, 1]  # the disk that each motor pulls
-# Motion of the tip (x, z) by each motor, mm per degree, of the linear fit to drive_0g: where the search begins.
+# Tip displacement (x, z) per motor angle, mm per degree, from a linear fit to drive_0g; starting point of the search.
 DIRECTIONS = np.array([(1.01, -1.10), (-0.36, -1.19), (-1.05, -0.09), (-1.19, 0.37), (-0.36, 0.92), (1.31, 1.22)])
 GRAVITY, PAYLOAD, DECAY = 9.81, 0.2, 2.70  # m/s^2, kg, Hz
 TRUNK_MASS = 0.2  # kg, prior
-MARKER_STD = 0.01  # m: what a static model without friction leaves
+MARKER_STD = 0.01  # m, residual of a static model without friction
 
 
 # The beam
@@ -79,7 +79,7 @@ def beam(case, folder):
     share = np.where((place[edge, 1] < 1e-9) | (place[edge, 1] > 0.03 - 1e-9), 0.5, 1.0)
     weight = estimate.NodalForce("weight", "beam", edge, share / share.sum(), prior=1.0, directions=[[0, 0, -1]])
     found = estimate.solve(loaded.with_unknowns([weight]), readings("load52"))
-    # The modulus is not known better than its fit: what that is in force adds to the deviation.
+    # The uncertainty of the fitted modulus, converted to a force, adds to the deviation.
     by_modulus = (found.values["weight.0"] + 0.6 * 0.944) * fitted.std[modulus.path] / young
     deviation = np.hypot(found.std["weight.0"], by_modulus)
     case.check("beam: force of the suspended weight", found.values["weight.0"], measured_beam.HUNG, 0.03, unit="N", source="measured beam",
@@ -99,7 +99,7 @@ def drive(folder, name):
 
 
 class Trunk:
-    """Statics of the trunk at one set of parameters, of a total mass of 1 and a gravity g that says how it compares with stiffness:
+    """Statics of the trunk for given parameters, with a total mass of 1 and a gravity g that sets the ratio of weight to stiffness:
         dV/dtheta (arm, gravity) + sum_k kappa_k a_k (a_k . theta) = sum_k g_k a_k phi_k + t_0 + J_tip^T m_p g
     """
 
@@ -118,7 +118,7 @@ class Trunk:
         self.frame = np.array([[1, 0, tilt[0]], [0, 1, tilt[1]], [-tilt[0], -tilt[1], 1]])
 
     def imbalance(self, theta, angles, payload=0.0):
-        """(n, 6)."""
+        """Generalised imbalance (n, 6)."""
         still = np.zeros(6)
         forces = np.array([self.arm.inverse_dynamics(q, still, still) for q in theta])
         forces += theta @ self.tendons - angles @ self.transmission.T - self.rest
@@ -127,14 +127,14 @@ class Trunk:
         return forces
 
     def slope(self, theta, angles, payload=0.0):
-        """(n, 6, 6) of the imbalance, by differences."""
+        """Derivative (n, 6, 6) of the imbalance, by differences."""
         start, columns = self.imbalance(theta, angles, payload), []
         for k in range(6):
             columns.append((self.imbalance(theta + 1e-6 * np.eye(6)[k], angles, payload) - start) / 1e-6)
         return np.stack(columns, axis=2)
 
     def solve(self, angles, theta, payload=0.0):
-        """Equilibria (n, 6) and the slopes there: Newton's method with slopes kept for a few steps."""
+        """Equilibria (n, 6) and the derivatives there, by Newton's method with a Jacobian that is kept for three iterations."""
         for k in range(12):
             if k % 3 == 0:
                 slopes = self.slope(theta, angles, payload)
@@ -146,12 +146,12 @@ class Trunk:
         return theta, slopes
 
     def places(self, theta):
-        """(n, 3, 3) m, of the markers."""
+        """Marker positions (n, 3, 3) in m."""
         own = np.array([[self.arm.point(q, k, 1.0, offset=tuple(self.offset[k])) for k in range(3)] for q in theta])
         return own @ self.frame.T + self.base
 
 
-# Names, start and standard deviation of the prior: stiffness in N m of a trunk of 1 kg, logarithms for what is positive.
+# Names, start and standard deviation of the prior: stiffness in N m for a trunk of 1 kg; logarithms of positive parameters.
 PRIOR = {
     "stiffness": (np.full(3, np.log(0.15)), 1.0), "tendon": (np.full(6, np.log(0.3)), 1.0),
     "motor": (0.3 * DIRECTIONS * [1, -1] / np.linalg.norm(DIRECTIONS, axis=1)[:, None], 10.0),
@@ -171,7 +171,7 @@ def trunk_of(x, gravity):
 
 
 def derivative(x, gravity, trunk, theta, angles, slopes):
-    """(9 n, parameters) of places at equilibrium, by the implicit function theorem."""
+    """Derivative (9 n, parameters) of the marker positions in equilibrium, by the implicit function theorem."""
     start, imbalance = trunk.places(theta).reshape(len(theta), 9), trunk.imbalance(theta, angles)
     turned = [trunk.places(theta + 1e-6 * np.eye(6)[k]).reshape(len(theta), 9) for k in range(6)]
     by_theta = np.stack([(places - start) / 1e-6 for places in turned], axis=2)
@@ -184,7 +184,7 @@ def derivative(x, gravity, trunk, theta, angles, slopes):
 
 
 def fit(angles, places, gravity, x=START, rounds=15):
-    """Maximum a posteriori by Levenberg and Marquardt's method; the parameters and the derivative there."""
+    """Maximum a posteriori parameters by the Levenberg-Marquardt method, and the derivative there, scaled by noise and prior."""
     damping, theta = 1e-2, np.zeros((len(angles), 6))
 
     def look(x, theta):
@@ -214,13 +214,13 @@ def fit(angles, places, gravity, x=START, rounds=15):
 
 
 def error(trunk, angles, places, payload=0.0):
-    """RMS of the tip, mm."""
+    """RMS error of the tip, mm."""
     theta, _ = trunk.solve(angles, np.zeros((len(angles), 6)), payload)
     return 1e3 * np.sqrt(((trunk.places(theta) - places)[:, 2] ** 2).sum(axis=1).mean())
 
 
 def frequency(trunk, mass):
-    """Hz, of the slowest mode at rest with the payload, motors held. @param mass kg of the trunk."""
+    """Frequency (Hz) of the slowest mode at rest with the payload and held motors, for a trunk of this mass (kg)."""
     payload, still = PAYLOAD / mass, np.zeros((1, 6))
     theta, slopes = trunk.solve(still, np.zeros((1, 6)), payload)
     tip = np.asarray(trunk.arm.jacobian(theta[0], 2))
@@ -233,7 +233,7 @@ def trunk_case(case, folder):
     angles, places = drive(folder, "drive_0g.csv")
     loaded_angles, loaded = drive(folder, "drive_200g.csv")
     few, more = slice(50, None, 60), slice(50, None, 15)
-    # One number says how heavy the trunk is beside its stiffness; three values of it fit the unloaded run alike.
+    # Three values of the ratio of weight to stiffness fit the unloaded run about equally well.
     fits, x = {}, START
     for gravity in (9.81, 2.0, 0.5):
         x, jacobian = fit(angles[few], places[few], gravity, x)
@@ -245,7 +245,7 @@ def trunk_case(case, folder):
                 remark="the least: " + "; ".join(seen.unobservable[-2:]) + "; in addition the ratio of weight to stiffness")
 
     def scaled(mass):
-        """The fit whose slowest mode agrees with the decay, for a trunk of this mass (kg)."""
+        """The fit whose slowest mode has the frequency of the measured decay, for a trunk of this mass (kg)."""
         logs = np.log([[gravity, frequency(trunk, mass)] for gravity, (trunk, _) in fits.items()])
         wanted = float(np.exp(np.interp(np.log(DECAY), logs[:, 1], logs[:, 0])))
         return trunk_of(fit(angles[few], places[few], wanted, x)[0], wanted)

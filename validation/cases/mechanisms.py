@@ -46,7 +46,7 @@ def load(bodies, joints, step, integrator, **more):
 
 
 def bar_energy(start, end, rate_start, rate_end, mass=MASS):
-    """Kinetic and gravity energy of a bar from its ends."""
+    """Kinetic and gravity energy of a bar, from its end points."""
     length = np.linalg.norm(np.subtract(end, start))
     centre, turn = 0.5 * np.add(rate_start, rate_end), np.subtract(rate_end, rate_start) / length
     inertia = mass * (length**2 + THICK**2) / 12.0
@@ -54,20 +54,20 @@ def bar_energy(start, end, rate_start, rate_end, mass=MASS):
 
 
 def rates(points, angle):
-    """Derivatives of the points of a linkage by its angle, by central differences to about 1e-10."""
+    """Derivatives of a linkage's points with respect to its angle, by central differences accurate to about 1e-10."""
     step = 1e-5
     return [(b - a) / (2.0 * step) for a, b in zip(points(angle - step), points(angle + step))]
 
 
 def reduced(points, bars, angle):
-    """I and V of a linkage with one degree of freedom; `bars` are (first point, second point, mass)."""
+    """Inertia I and potential V of a linkage with one degree of freedom; `bars` are (first point, second point, mass)."""
     at, rate = points(angle), rates(points, angle)
     energies = [bar_energy(at[i], at[j], rate[i], rate[j], mass) for i, j, mass in bars]
     return 2.0 * sum(e[0] for e in energies), sum(e[1] for e in energies)
 
 
 def slopes(points, bars, angle, step=1e-4):
-    """Derivatives of I and V by the angle."""
+    """Derivatives of I and V with respect to the angle."""
     first, second = reduced(points, bars, angle - step), reduced(points, bars, angle + step)
     return [(b - a) / (2.0 * step) for a, b in zip(first, second)]
 
@@ -76,7 +76,7 @@ CRANK, COUPLER, ROCKER, GROUND, START, RATE = 0.04, 0.12, 0.08, 0.10, 0.7, 10.0
 
 
 def four_bar(angle):
-    """Shaft, knee, pin, post."""
+    """Positions of shaft, knee, pin and post."""
     knee, post = CRANK * np.array([np.cos(angle), np.sin(angle)]), np.array([GROUND, 0.0])
     across = post - knee
     far = np.linalg.norm(across)
@@ -103,7 +103,7 @@ def turns(case, axis):
                 angle = START + sim.joint("shaft").angle
                 points, rate = four_bar(angle), rates(four_bar, angle)
                 apart = max(apart, np.abs(sim.body("coupler").position[:2] - 0.5 * (points[1] + points[2])).max())
-                if sim.time > 0.4:  # the jump from rest has died away
+                if sim.time > 0.4:  # the transient of the start has decayed
                     wanted = RATE * 0.5 * (rate[1] + rate[2])
                     slow = np.abs(sim.body("coupler").velocity[:2] - wanted).max()
                     angles.append(angle)
@@ -127,7 +127,7 @@ def turns(case, axis):
 
 
 def slider_crank(angle, crank=0.05, rod=0.15):
-    """Shaft, knee, pin."""
+    """Positions of shaft, knee and pin."""
     knee = crank * np.array([np.cos(angle), np.sin(angle)])
     return [np.zeros(2), knee, np.array([knee[0] + np.sqrt(rod**2 - knee[1]**2), 0.0])]
 
@@ -195,7 +195,7 @@ def chains(case, axis, count=12, length=0.05, span=0.4):
 
     def drawing(unknown):
         across, left = unknown
-        lift = left - np.concatenate([[0.0], np.cumsum(masses * G)])  # what pulls up at each joint on what follows
+        lift = left - np.concatenate([[0.0], np.cumsum(masses * G)])  # upward force at each joint on the rest of the chain
         angles = np.arctan2(-0.5 * (lift[:-1] + lift[1:]), across)
         steps = length * np.column_stack([np.cos(angles), np.sin(angles)])
         return np.concatenate([[[0.0, 0.0]], np.cumsum(steps, axis=0)])

@@ -45,7 +45,7 @@ def strip(case):
     strain, size, stiffness = STRETCH, STRIP, STIFFNESS
     bodies = block(size, 0.002, 1e3, [{"set": "x_min", "axes": "x"}, {"set": "y_min", "axes": "y"}, {"set": "z_min", "axes": "z"}])
     force = stiffness * size[1] * (strain + strain**2 / 2.0) * (1.0 + strain) + 1e3 * size[1] * size[2] * strain
-    # The force acts on the film's edge, not on the soft block above it.
+    # The force acts on the film's edge only, not on the soft block above.
     edge = {"edge": {"type": "line", "body": "block", "points": [[size[0], 0.0, 0.0], [size[0], size[1], 0.0]],
                      "force_per_length": [force / size[1], 0.0, 0.0]}}
     sim = sinew.load({**NO_GRAVITY, "bodies": bodies, "membranes": film(stiffness, {"set": "z_min"}), "loads": edge})
@@ -69,7 +69,7 @@ def strip(case):
 
 
 def quadratic(points, triangles, middle=lambda a, b: 0.5 * (a + b)):
-    """Six-node triangles: corners (n, 2) and (m, 3), the middle of an edge by its ends."""
+    """Six-node triangles from corners (n, 2) and triangles (m, 3); `middle` gives the mid-edge point."""
     nodes, numbers, rows = list(points), {}, []
     for corners in triangles:
         row = list(corners)
@@ -84,7 +84,7 @@ def quadratic(points, triangles, middle=lambda a, b: 0.5 * (a + b)):
 
 
 def strip_in_calculix(case, stretch, cells=(8, 2)):
-    """The force (N) of the film alone, free to contract laterally, and its contraction."""
+    """Force (N) of the film alone, free to contract laterally, and its lateral contraction."""
     length, width, _ = STRIP
     at = np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, n + 1) for n in cells], indexing="ij"), axis=-1)
     number = np.arange(at[..., 0].size).reshape(at.shape[:2])
@@ -100,7 +100,7 @@ def strip_in_calculix(case, stretch, cells=(8, 2)):
 
 
 def disc(rings):
-    """Corners (n, 2) of a disc of RADIUS, 6 k on ring k, and its triangles (m, 3)."""
+    """Corners (n, 2) of a disc of radius RADIUS, 6 k on ring k, and its triangles (m, 3)."""
     points, triangles = [np.zeros(2)], []
     for k in range(1, rings + 1):
         inner, outer = 1 + 3 * (k - 1) * (k - 2) if k > 1 else 0, len(points)
@@ -117,7 +117,7 @@ def disc(rings):
 
 
 def film_in_calculix(case, rings=8):
-    """Radius (m) of the nodes, and their heights (m)."""
+    """Radii (m) and heights (m) of the nodes."""
 
     def middle(a, b):
         radii, between = np.hypot(*a), 0.5 * (a + b)
@@ -154,7 +154,7 @@ def skin(case):
 
 
 def hencky(ratio, load, tension, radius):
-    """The height of the middle, m. tension: E h, N/m. Scaled by (E h q^2 a^2)^(1/3) and a."""
+    """Height of the centre, m; `tension` is E h, N/m. The equations are scaled by (E h q^2 a^2)^(1/3) and a."""
     start = 1e-3
 
     def solve(middle):

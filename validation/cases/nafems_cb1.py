@@ -31,7 +31,7 @@ RADIUS, LOAD, WIDE, PEAK = 0.05, 35e6, 6.2146e-3, 3585.4e6  # m, N/m, m, Pa
 
 
 class Press:
-    """Cells over the half width on block and cylinder."""
+    """A cylinder pressed on a block; `cells` are the cells per half width on block and cylinder."""
 
     def __init__(self, case, cells, friction=0.0, slides=False, law="neo-hookean"):
         self.slides, self.law = slides, law
@@ -48,10 +48,10 @@ class Press:
 
     def prepare(self, case, cells, friction, steps):
         self.friction, self.steps = friction, steps
-        self.apart = 2e-8  # 1e-7 of the size, where surfaces rest on each other
+        self.apart = 2e-8  # m, separation of resting surfaces, 1e-7 of the size
         core = [core_cells(count) * WIDE / count for count in cells]
         self.thick = 0.5 * WIDE / cells[1]
-        flat = shapes.half_disc(case.scratch / "flat.vtu", 0.5 * core[1], core_cells(cells[1]), RADIUS)  # rounded() doubles it at the pole
+        flat = shapes.half_disc(case.scratch / "flat.vtu", 0.5 * core[1], core_cells(cells[1]), RADIUS)  # rounded() doubles lengths at the pole
         self.paths = (shapes.graded_plate(case.scratch / "block.vtu", core[0], core_cells(cells[0]), (0.1, self.thick, 0.2)),
                       shapes.rounded(case.scratch / "cylinder.vtu", flat, RADIUS, turned=True))
 
@@ -69,7 +69,7 @@ class Press:
         self.force = 2.0 * abs(self.sim.contact("press").force[2]) / self.thick
 
     def line(self, name):
-        """(n, 2) m: deformed x, z of the surface's nodes near the contact, in order of x; (n,) N/m: their forces."""
+        """Deformed x, z (n, 2) in m of the surface nodes near the contact, sorted by x, and their forces (n,) in N/m."""
         body = self.sim.body(name)
         rest = body.rest_positions
         height = rest[:, 2] if name == "block" else np.hypot(rest[:, 0], rest[:, 2] - self.apart - RADIUS) - RADIUS

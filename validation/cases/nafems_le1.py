@@ -18,7 +18,7 @@ CELLS = (8, 16, 32, 64)
 
 
 def stress(case, n):
-    """MPa at (2, 0)."""
+    """Stress sigma_yy (MPa) at (2, 0)."""
     angle = np.linspace(0, np.pi / 2, n + 1)
     part = np.linspace(0, 1, n + 1)
     inner = np.column_stack([2 * np.cos(angle), np.sin(angle)])
@@ -47,7 +47,7 @@ def stress(case, n):
     body.external_forces[:] = loads
     sim.solve_static()
     sigma = np.array(body.cauchy_stresses)[:, 1, 1] * 1e-3
-    # Elements of the first row round the hole's end: radial positions i = 0, 1 and angular j = 0, 1.
+    # The four elements at the end of the hole: radial index i = 0, 1 and angular index j = 0, 1.
     place = {(a, b): k for k, (a, b) in enumerate(zip(i.ravel(), j.ravel()))}
     along = [1.5 * sigma[place[0, k]] - 0.5 * sigma[place[1, k]] for k in (0, 1)]
     return 1.5 * along[0] - 0.5 * along[1]

@@ -22,7 +22,7 @@ KUHN = [(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0
 
 
 def grid(n, layers):
-    """Points (p, 3) m, hexahedra (m, 8), and the number of a node by (through the ring, round it, up)."""
+    """Points (p, 3) in m, hexahedra (m, 8), and node numbers indexed by (radial, around, up)."""
     angle, part = np.linspace(0, np.pi / 2, n + 1), np.linspace(0, 1, n + 1)
     inner = np.column_stack([2 * np.cos(angle), np.sin(angle)])
     outer = np.column_stack([3.25 * np.cos(angle), 2.75 * np.sin(angle)])
@@ -31,14 +31,14 @@ def grid(n, layers):
     points = np.vstack([np.column_stack([flat, np.full(len(flat), z)])
                         for z in np.linspace(0, THICKNESS, layers + 1)])
     number = np.arange(len(points)).reshape(layers + 1, n + 1, n + 1).transpose(1, 2, 0)
-    a, b = number[:-1], number[1:]  # inwards and outwards of a cell
+    a, b = number[:-1], number[1:]  # inner and outer side of a cell
     low = [a[:, :-1], b[:, :-1], b[:, 1:], a[:, 1:]]
     corners = [x[:, :, :-1] for x in low] + [x[:, :, 1:] for x in low]
     return points, np.column_stack([c.ravel() for c in corners]), number
 
 
 def pressure(body, element, rest):
-    """Forces (n, 3) N of a unit pressure on the upper face: each element's face by its own shape functions."""
+    """Nodal forces (n, 3) in N of a unit pressure on the upper face, consistent with the elements' shape functions."""
     loads = np.zeros_like(rest)
     upper = rest[:, 2] > THICKNESS - 1e-9
     cells = body.hexahedra if element == "hex8" else body.quadratic_tetrahedra
@@ -52,7 +52,7 @@ def pressure(body, element, rest):
                     du = np.array([v - 1, 1 - v, 1 + v, -1 - v]) / 4 @ rest[ring]
                     dv = np.array([u - 1, -1 - u, 1 + u, 1 - u]) / 4 @ rest[ring]
                     loads[ring, 2] -= shape * abs(du[0] * dv[1] - du[1] * dv[0])
-        else:  # straight edges: corners nothing, middles a third of the area each
+        else:  # straight edges: nothing at the corners, a third at each middle
             corner = [k for k in cell[:4] if upper[k]]
             sides = rest[corner[1:]] - rest[corner[0]]
             area = 0.5 * abs(sides[0, 0] * sides[1, 1] - sides[0, 1] * sides[1, 0])
@@ -62,7 +62,7 @@ def pressure(body, element, rest):
 
 
 def stress(case, element, n):
-    """MPa at D, and the number of nodes."""
+    """Stress (MPa) at D, and the number of nodes."""
     layers = max(2, 2 * round(n / 8))
     points, cells, number = grid(n, layers)
     outer = np.isin(np.arange(len(points)), number[-1])

@@ -36,7 +36,7 @@ KINDS = {
 
 
 def independent_end(arm, found):
-    """Final position (3,) m and speed m/s of the tip under the plan's torques, by SciPy."""
+    """Final position (3,) in m and speed in m/s of the tip under the plan's torques, by SciPy."""
     count = arm.coordinates
     state = np.zeros(2 * count)
     for begin, end in zip(found.times, found.times[1:]):  # torques have kinks at knots

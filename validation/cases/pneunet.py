@@ -38,7 +38,7 @@ def moved(mesh, cavity, pressure, paper):
 
 
 def gradients(corners):
-    """Of the shape functions of simplices, (m, k, 3), and their measures. corners: (m, k, 3), triangles or tetrahedra."""
+    """Gradients (m, k, 3) of the shape functions of triangles or tetrahedra with corners (m, k, 3), and their areas or volumes."""
     edges = corners[:, 1:] - corners[:, :1]
     metric = edges @ edges.transpose(0, 2, 1)
     inner = np.linalg.solve(metric, edges)
@@ -47,7 +47,7 @@ def gradients(corners):
 
 
 def stiffness(nodes, elements, first, second, weight):
-    """Sum of w (lambda g_a g_b^T + mu (g_b g_a^T + (g_a . g_b) P)), P the projector on the space of the gradients."""
+    """Sum of w (lambda g_a g_b^T + mu (g_b g_a^T + (g_a . g_b) P)), where P projects onto the span of the gradients."""
     g, size = gradients(nodes[elements])
     if elements.shape[1] == 3:
         edges = nodes[elements][:, 1:] - nodes[elements][:, :1]
@@ -74,7 +74,7 @@ def on_side(nodes, tetrahedra):
 
 
 def pressed(nodes, tetrahedra, cavity, pressure):
-    """(3 n,) N of the pressure on the walls."""
+    """Nodal forces (3 n,) in N of the pressure on the cavity walls."""
     surface = meshio.read(cavity)
     points, triangles = surface.points * 1e-3, surface.cells_dict["triangle"]
     corners = points[triangles]

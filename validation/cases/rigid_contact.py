@@ -140,7 +140,7 @@ def rocks(case, axis):
             landings.append(k * step)
             state = np.array([-state[0], -state[1] * (1.0 - 1.5 * np.sin(alpha)**2)])
         reference.append(state[0])
-    # It stands on one edge, and its centre is a radius away from that.
+    # The block stands on one edge; its centre is `radius` away from it.
     centre = radius * np.array([0.0, -np.sin(alpha - begin), np.cos(alpha - begin)])
     sim = scene({"block": {"type": "rigid", "shape": {"box": [0.02, width, height]}, "mass": mass,
                            "pose": {"position": list(centre), "rotation": [-begin, 0.0, 0.0]}}, "table": table()},

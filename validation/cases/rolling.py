@@ -28,7 +28,7 @@ G, INCLINE, RADIUS, TIME = 9.81, np.radians(10), 0.02, 0.4
 
 
 class Wheel:
-    """A wheel of 6 `rings` points on the incline, whose plane is its lowest facet."""
+    """A wheel with 6 `rings` rim points, whose lowest facet lies on the incline."""
 
     def __init__(self, case, rings, modulus, step, integrator):
         path = case.scratch / f"wheel_{rings}.vtu"
@@ -37,7 +37,7 @@ class Wheel:
         rim = mesh.nodes[mesh.node_sets["side"]]
         angles = np.unique(np.round(np.arctan2(rim[:, 1], rim[:, 0]), 9))
         self.points, self.radius = len(angles), np.hypot(rim[0, 0], rim[0, 1])
-        down = 0.5 * (angles[0] + angles[1])  # the middle of a facet
+        down = 0.5 * (angles[0] + angles[1])  # midpoint of a facet
         normal = -np.array([np.cos(down), np.sin(down), 0.0])
         self.downhill = np.array([normal[1], -normal[0], 0.0])
         self.sim = sinew.load({
@@ -53,7 +53,7 @@ class Wheel:
         self.inertia = float(self.share @ (mesh.nodes[:, :2]**2).sum(axis=1)) / self.radius**2  # k
 
     def way(self):
-        """Positions of the centre of mass, m, after every step; and the largest energy gain in a step / energy of the whole descent."""
+        """Displacement of the centre of mass (m) after every step, and the largest energy gain in a step / energy of the whole descent."""
         body, energies, ways = self.sim.body("wheel"), [], [0.0]
         while self.sim.time < TIME - 1e-9:
             self.sim.step()
@@ -66,7 +66,7 @@ class Wheel:
         return G * np.sin(INCLINE) / (1.0 + self.inertia)
 
     def rolled_rigid(self, step=2e-5):
-        """2 x/t^2 of the rigid wheel of points."""
+        """Mean acceleration 2 x/t^2 of a rigid wheel with the same points."""
         k, r, facet = self.inertia, self.radius, 2.0 * np.pi / self.points
 
         def slope(state):
@@ -115,7 +115,7 @@ def rolls(case, axis, right):
 
 
 def spin(integrator, step, rate=20.0, duration=0.5, start=0.05):
-    """Angular momentum over time after the block was set spinning in `start` s, over its first; and its first rate, rad/s."""
+    """Angular momentum over time, relative to its first value after a spin-up of `start` s, and the initial rate, rad/s."""
     sim = sinew.load({
         "sinew": 1, "integrator": integrator, "time_step": step, "solver": {**SOLVER, "method": "newton"},
         "bodies": {"block": {"type": "fem", "density": 1000.0,
@@ -134,7 +134,7 @@ def spin(integrator, step, rate=20.0, duration=0.5, start=0.05):
         body.external_forces = mass[:, None] * rate / start * np.column_stack([-arm[:, 1], arm[:, 0], 0.0 * arm[:, 0]])
         sim.step()
     body.external_forces = np.zeros_like(body.positions)
-    sim.step(10)  # a two-step formula feels the end of the torque for a while
+    sim.step(10)  # transient of a two-step formula after the end of the torque
     arm, first = state()
     seen = [1.0]
     for _ in range(round(duration / step)):

@@ -143,7 +143,7 @@ class Disc:
         self.sim = load({"disc": disc, "table": table()}, {"floor": {"between": ["disc", "table"], "friction": 0.9}}, step, integrator)
 
     def state(self):
-        """Lean of its axis (deg) and energy (J)."""
+        """Lean of the axis (degrees) and energy (J)."""
         body = self.sim.body("disc")
         w, x, y, z = body.rotation
         axis, velocity = np.array([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)]), np.array(body.velocity)

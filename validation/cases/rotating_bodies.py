@@ -27,7 +27,7 @@ COLORS = {"backward-euler": plots.THIRD, "bdf2": plots.OURS, "generalized-alpha"
 
 
 def turned(quaternion, vectors):
-    """Vectors of the body (n, 3) in the world."""
+    """Body-fixed vectors (n, 3) in world axes."""
     w, axis = quaternion[0], np.asarray(quaternion[1:])
     return vectors + 2.0 * np.cross(axis, np.cross(axis, vectors) + w * vectors)
 
@@ -47,7 +47,7 @@ def flips_every():
 
 
 def tumbles(integrator, step, duration=2.0):
-    """Times at which the intermediate axis is normal to the spin, and relative drifts of momentum and energy."""
+    """Times at which the intermediate axis is normal to the angular velocity, and relative drifts of momentum and energy."""
     sim = sinew.load({"sinew": 1, "time_step": step, "integrator": integrator,
                       "bodies": {"box": {"type": "rigid", "shape": {"box": list(BOX)}, "mass": BOX_MASS, "velocity": {"angular": list(SPIN)}}}})
     body, middle, momenta, energies = sim.body("box"), [SPIN[1]], [], []
@@ -101,9 +101,9 @@ ARM, DISC, HEIGHT, MASS, LEAN, TURN = 0.1, 0.05, 0.02, 0.2, np.radians(60), 200.
 
 
 def top_reference(times):
-    """(n, 3): the direction of the axis."""
+    """Direction of the axis, (n, 3)."""
     axial, across = 0.5 * MASS * DISC**2, MASS * (0.25 * DISC**2 + HEIGHT**2 / 12.0 + ARM**2)
-    own, vertical = axial * TURN, axial * TURN * np.cos(LEAN)  # the two momenta
+    own, vertical = axial * TURN, axial * TURN * np.cos(LEAN)  # the two conserved momenta
 
     def motion(_, state):
         angle, rate, _ = state

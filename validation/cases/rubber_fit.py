@@ -28,7 +28,7 @@ def measured(path):
 
 
 def ogden(mu, alpha):
-    """mu in Pa."""
+    """An Ogden material; mu in Pa."""
     return sinew.material({"model": "ogden", "mu": mu, "alpha": alpha, "convention": "mu-over-alpha",
                            "poisson_ratio": 0.49})
 

@@ -19,7 +19,7 @@ STEPS, LAST = 800, 50
 
 
 def pulled(pull, damping):
-    """Tip positions (steps, 3) m of a run, and the static equilibrium."""
+    """Tip positions (steps, 3) in m of a run, and in static equilibrium."""
     scene = own_trunk()
     scene["integrator"] = "backward-euler"
     body = scene["bodies"]["trunk"]

@@ -35,7 +35,7 @@ def load(bodies, contacts, step, integrator="backward-euler", gravity=(0.0, 0.0,
 
 
 def write_box(folder, edges):
-    """A box of triangles about the origin, as OBJ."""
+    """Writes a box of triangles, centred at the origin, as OBJ."""
     corners = 0.5 * np.array(edges) * (2.0 * np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) - 1.0)
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     path = folder / "block.obj"
@@ -63,7 +63,7 @@ class Slope:
         return float(body.position[0]), float(body.velocity[0])
 
     def watch(self):
-        """Creep and acceleration in the second of two seconds."""
+        """Creep and acceleration during the second of two seconds."""
         self.sim.run(duration=1.0)
         place, speed = self.state()
         self.sim.run(duration=1.0)
@@ -108,7 +108,7 @@ RADIUS, FRICTION, EDGE, TIME = 0.1, 0.5, 0.004, 0.4
 
 
 def turned(ratio, step, given=False):
-    """Distance that the box has moved outwards, after each step."""
+    """Outward displacement of the box after each step."""
     rate = float(np.sqrt(ratio * FRICTION * G / RADIUS))
     plate, more = {"type": "rigid", "shape": {"cylinder": {"radius": 0.3, "height": 0.02}}, "pose": {"position": [0, 0, -0.01]}}, {}
     if given:
@@ -134,7 +134,7 @@ def point_on_turntable(ratio, times):
         slip = state[2:] - rate * np.array([-state[1], state[0]])
         return [*state[2:], *(-FRICTION * G * slip / np.linalg.norm(slip))]
 
-    # It begins to slip outwards; so small a speed only names the direction.
+    # A tiny initial outward velocity determines the slip direction.
     state = solve_ivp(motion, (0.0, TIME), [RADIUS, 0.0, 1e-7, rate * RADIUS], method="DOP853", rtol=1e-11, atol=1e-13, t_eval=times).y
     return np.hypot(state[0], state[1]) - RADIUS
 

@@ -39,7 +39,7 @@ def sphere(case, law, ratio, around, through, command):
 
 
 def radial(sim, radius):
-    """Mean radial displacement of the nodes at a radius at rest."""
+    """Mean radial displacement of the nodes with this radius at rest."""
     body = sim.body("shell")
     rest = np.array(body.rest_positions)
     at = np.abs(np.linalg.norm(rest, axis=1) - radius) < 1e-9

@@ -28,7 +28,7 @@ EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 
 
 def edge_shares(body, rest):
-    """(n,) fractions of a traction on the right edge that the nodes carry."""
+    """(n,) fractions of a traction on the right edge, per node."""
     shares = np.zeros(len(rest))
     right = rest[:, 0] > 0.048 - 1e-9
     cells = body.quadratic_tetrahedra if len(body.quadratic_tetrahedra) else body.tetrahedra
@@ -47,7 +47,7 @@ def edge_shares(body, rest):
 
 
 def corner(folder, n, element, poisson_ratio):
-    """Vertical displacement (mm) of the membrane's corner / fraction of the load."""
+    """Vertical displacement (mm) of the membrane's corner under a fraction of the load, divided by it."""
     cells = "hex8" if element == "hex8" else "tet4"
     sim = sinew.load({
         "sinew": 1, "gravity": [0, 0, 0], "solver": SOLVER,
@@ -62,13 +62,13 @@ def corner(folder, n, element, poisson_ratio):
     rest = np.array(body.rest_positions)
     force = SCALE * cook_membrane.TRACTION * 0.016 * 0.001
     body.external_forces[:, 1] = force * edge_shares(body, rest)
-    sim.solve_static(tolerance=1e-5)  # of forces that cancel in a stiff volume
+    sim.solve_static(tolerance=1e-5)  # the volumetric forces nearly cancel, so rounding is larger
     at = np.isclose(rest[:, 0], 0.048) & np.isclose(rest[:, 1], 0.060)
     return 1e3 * float(np.mean((np.array(body.positions) - rest)[at, 1])) / SCALE
 
 
 def module(element, size):
-    """mm; benchmarks/pareto.py has the same."""
+    """Tip displacement (mm), as in benchmarks/pareto.py."""
     sim = sinew.load({
         "sinew": 1, "gravity": [0, 0, 0], "solver": {"ordering": "metis"},
         "bodies": {"module": {

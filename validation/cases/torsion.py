@@ -46,7 +46,7 @@ class Rod:
     def __init__(self, case, element, rings, law, both=False):
         c1, c2 = LAWS[law]
         mesh = {"shape": "cylinder", "radius": A, "height": A, "element_size": A / rings}
-        if element == "tet10":  # the shape's own middle nodes stand on circles, where no point of a row can be
+        if element == "tet10":  # the shape's own middle nodes lie on the circle, where rows cannot have points
             path = case.scratch / f"cylinder_{rings}.vtu"
             sinew.mesh.cylinder(radius=A, height=A, rings=rings, layers=rings).write(str(path))
             mesh = {"file": str(path), "unit": "m"}
@@ -60,7 +60,7 @@ class Rod:
         led = {(n, c) for n in self.top for c in range(3)}
         if both:
             scene["bodies"]["rod"]["fixed"] = [{"set": "bottom", "axes": "z"}]
-            # the matrix without rows must be regular: what never moves of the bottom's x axis is fixed
+            # fixes the bottom's stationary x axis, so the matrix without rows is regular
             still = {(n, c) for n in self.bottom for c in range(2) if abs(self.rest[n, c]) < 1e-9 * A
                      and abs(self.rest[n, 1]) < 1e-9 * A}
             scene["bodies"]["rod"]["fixed"] += [
@@ -75,7 +75,7 @@ class Rod:
         self.rows = {key: self.sim.actuator(f"n{key[0]}_{key[1]}") for key in led}
 
     def lead(self, angle, stretch=1.0):
-        """Turns the top by an angle and pulls it to a stretch."""
+        """Rotates the top by an angle and extends the cylinder to a stretch."""
         c, s = np.cos(angle), np.sin(angle)
         goal = self.rest / np.sqrt(stretch)
         goal[:, 2] = self.rest[:, 2] * stretch
@@ -96,7 +96,7 @@ class Rod:
         return torque, pull
 
     def borne(self):
-        """Torque and axial force of the fixed bottom, with the signs of the top."""
+        """Torque and axial force on the fixed bottom, with the signs of the top."""
         at, force = np.array(self.body.positions)[self.bottom], np.array(self.body.reactions)[self.bottom]
         return -np.sum(at[:, 0] * force[:, 1] - at[:, 1] * force[:, 0]), -force[:, 2].sum()
 
@@ -147,7 +147,7 @@ def root(function, low, high):
 
 
 def free_length(case, element, rings):
-    """Elongation where the axial force vanishes, neo-Hookean."""
+    """Elongation at zero axial force, neo-Hookean."""
     rod, stretch = Rod(case, element, rings, "neo-Hookean", both=True), 1.0
     for turn in (0.5, 1.0):
         expected = root(lambda x: exact("neo-Hookean", turn / (A * x), x)[1], 1.0, 1.1)

@@ -50,7 +50,7 @@ def write_cube(path):
 
 
 class Tower:
-    """Cubes one on another, on a fixed plate."""
+    """Stacked cubes on a fixed plate."""
 
     def __init__(self, masses, step=5e-3, integrator="backward-euler", shape=None, offset=0.0):
         self.masses, self.names = masses, [f"cube_{k}" for k in range(len(masses))]
@@ -67,7 +67,7 @@ class Tower:
         return max(abs(self.sim.contact(f"on_{k}").normal_force / (G * sum(self.masses[k:])) - 1.0) for k in range(len(self.names)))
 
     def watch(self, duration):
-        """Times and the creep since 0.1 s / edge."""
+        """Times, and the creep since 0.1 s / edge."""
         self.sim.run(duration=0.1)
         start, times, crept = self.places(), [], []
         while self.sim.time < duration - 1e-6:

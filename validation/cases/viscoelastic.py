@@ -28,7 +28,7 @@ THREE = [(0.2, 0.02), (0.15, 0.2), (0.1, 2.0)]
 
 
 class Cube:
-    """The cube under a stress that may change from step to step."""
+    """A cube under a stress that may change in every step."""
 
     def __init__(self, series, step, integrator="quasi-static", element="hex8", **solver):
         self.sim = sinew.load({
@@ -47,7 +47,7 @@ class Cube:
         self.areas = self.shares(body, element)
 
     def shares(self, body, element):
-        """(top,) m^2 of the top face that each of its nodes carries."""
+        """(top,) m^2: part of the top face that belongs to each of its nodes."""
         areas = np.zeros(len(self.rest))
         if element == "hex8":
             edges = [np.isclose(self.rest[self.top, c] % SIDE, 0.0, atol=1e-9) |
@@ -62,7 +62,7 @@ class Cube:
         return SIDE**2 * areas[self.top] / areas.sum()
 
     def strain(self, stress):
-        """After one step under a nominal stress, Pa."""
+        """Strain after one step under a nominal stress, Pa."""
         body = self.sim.body("cube")
         body.external_forces[self.top, 2] = stress * self.areas
         self.sim.step()
@@ -90,7 +90,7 @@ def creep(case, axis):
     for name, options in runs.items():
         cube = Cube(SOLID, step, **options)
         strains = np.array([cube.strain(LOAD) for _ in times])
-        first = 40 if "adaptive" in name else 3  # small substeps see the cube swing after the load's shock
+        first = 40 if "adaptive" in name else 3  # small substeps resolve the vibration after the sudden load
         error = np.abs(strains[first:] / expected[first:] - 1.0)
         case.bound(f"creep, {name}: largest error of the strain from {5 * (first + 1)} ms on", 100 * error.max(),
                    1.0, unit="%", source="theory")
@@ -115,7 +115,7 @@ def cycles(case, axis):
         phases = 2 * np.pi * np.arange(1, settle + per_cycle + 1) / per_cycle
         stress = LOAD * np.sin(phases)
         strains = np.array([cube.strain(s) for s in stress])
-        last = strains[-per_cycle:] - strains[-per_cycle:].mean()  # slow parts have not settled
+        last = strains[-per_cycle:] - strains[-per_cycle:].mean()  # slow modes have not settled
         turn = np.sin(phases[-per_cycle:]) + 1j * np.cos(phases[-per_cycle:])
         compliance = 2 / per_cycle * np.sum(last * turn) * 3 * SHEAR / LOAD
         expected = 1 / ratio(THREE, omega)

@@ -27,7 +27,7 @@ FORCE, DURATION = DENSITY * WAVE * SPEED * SECTION, 2.0 * LENGTH / WAVE
 
 
 class Impact:
-    """Histories of 1.5 durations, and the bar's speeds at a quarter of the duration."""
+    """Histories over 1.5 contact durations, and the velocities along the bar at a quarter of the duration."""
 
     def __init__(self, case, count, integrator, courant=0.25):
         edge = np.sqrt(SECTION)

@@ -40,7 +40,7 @@ def pushed(friction, slope=0.1):
 
 
 class Belt:
-    """Pulled at its end; a tail has an eighth as many elements as the wrap."""
+    """A belt pulled at its end; each tail has an eighth as many elements as the wrap."""
 
     def __init__(self, case, friction, degrees, count=60, slender=0.01, tail=None):
         self.wrap, self.friction, self.thick = np.radians(degrees), friction, slender * RADIUS
@@ -77,7 +77,7 @@ class Belt:
         return np.exp(self.friction * self.wrap / (1.0 + 0.5 * self.thick / RADIUS))
 
     def profile(self):
-        """Angles (rad), and the tension behind each / T1, from the sum of friction along the belt."""
+        """Angles (rad) and the tension T / T1 behind each, by summing the friction along the belt."""
         drum = self.sim.contact("drum")
         at, force = np.asarray(drum.positions), np.asarray(drum.friction_forces)
         angle = np.arctan2(at[:, 0], at[:, 2]) % (2.0 * np.pi)
@@ -121,7 +121,7 @@ def converge(case, axis):
 
 
 def without_tails(case):
-    """A belt that is clamped where it meets the drum."""
+    """A belt that is clamped at the start of the drum."""
     belt = Belt(case, 0.3, 342, tail=0)
     case.check("belt, mu = 0.3, 342 degrees, without tails: T1/T2", belt.ratio(), belt.euler(), 0.02, source="Euler")
 

@@ -80,15 +80,15 @@ def cut_and_whole(case):
     apart = np.abs(tips[0] - tips[1]).max(axis=1)
     case.check("cut: tip compared with one body, at rest after 50 default steps", apart[-1], 0.0, 1e-9,
                source="one body", unit="m", relative=False)
-    # What a step leaves for the next one is judged by the sum of all forces, which counts those
-    # that the weld carries.
+    # The residual that a step may leave is relative to the sum of all forces, which includes
+    # those that the weld carries.
     case.report("cut: largest distance in the transient", apart.max(), unit="m", source="one body")
 
 
 def two_materials(case):
     young, force = (200e3, 50e3), 1e-4
     inertia, area = SIDE**4 / 12, SIDE**2
-    kappa = 10 / 12  # at nu = 0, so that the clamp leaves the cross-section its shape
+    kappa = 10 / 12  # at nu = 0, where the clamp does not deform the cross-section
     expected = force * (
         7 * LENGTH**3 / (24 * young[0] * inertia) + LENGTH**3 / (24 * young[1] * inertia)
         + sum(LENGTH / 2 / (kappa * e / 2 * area) for e in young))
@@ -103,7 +103,7 @@ def two_materials(case):
 def weight(case):
     scene, _ = beam(True)
     scene["gravity"] = [0, 0, -GRAVITY]
-    # Stiff, so that lever arms are those at rest.
+    # Stiff, so the lever arms are those at rest.
     for body in scene["bodies"].values():
         body["material"]["young_modulus"] = 2e9
     _, sim = sag(scene)
@@ -125,7 +125,7 @@ def meshes(case):
     reference = deflection((0.0025, 0.0025))
     rows = []
     for inner, outer in ((0.01, 0.01), (0.01, 0.005), (0.005, 0.01), (0.005, 0.005), (0.005, 0.0025)):
-        # The finer mesh first.
+        # The body with the finer mesh comes first.
         order = ("outer", "inner") if outer <= inner else ("inner", "outer")
         error = deflection((inner, outer), order) / reference - 1
         case.report(f"meshes: inner {1e3 * inner:g} mm, outer {1e3 * outer:g} mm, error", error,

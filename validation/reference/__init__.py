@@ -1,1 +1,1 @@
-"""Independent references: hand formulas and small NumPy codes that share nothing with Sinew."""
+"""Independent references: closed forms and small NumPy codes that share nothing with Sinew."""

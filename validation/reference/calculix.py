@@ -1,7 +1,7 @@
 """CalculiX (Dhondt and Wittig, www.calculix.de; Debian's calculix-ccx) as an independent code.
 
 Statics and dynamics of hyperelastic solids. Their energies are U = U_iso + 1/D (J - 1)^2 (manual, section
-6.8.5 of version 2.20, after Abaqus' theory manual), so that D = 2/kappa; Ogden's moduli are those of
+6.8.5 of version 2.20, after Abaqus' theory manual), so D = 2/kappa; Ogden's moduli follow the convention
 sum 2 mu/alpha^2 (...). Elements: C3D4, C3D10 (four points) and C3D8 (2 x 2 x 2 points, full integration); their node
 order is VTK's. Dynamics are the alpha method of Hilber, Hughes and Taylor with consistent masses.
 
@@ -17,23 +17,23 @@ import subprocess
 
 import numpy as np
 
-# Two further coefficients D multiply terms of higher order: 1/D vanishes.
+# Further coefficients D belong to terms of higher order, which vanish for a large D.
 NO_FURTHER_TERM = 1e12
 TYPES = {4: "C3D4", 8: "C3D8", 10: "C3D10"}
 
 
 def present() -> bool:
-    """Whether this machine has it."""
+    """Whether CalculiX is installed."""
     return shutil.which("ccx") is not None
 
 
 def real(value: float) -> str:
-    """In the twenty characters that CalculiX reads of a number."""
+    """Formats a number in the twenty characters that CalculiX reads."""
     return f"{float(value):.12e}"
 
 
 def cards(law: dict) -> tuple[str, list[float]]:
-    """The *HYPERELASTIC card and its constants of a scene's material, a dict of plain numbers (Pa)."""
+    """The *HYPERELASTIC card and its constants for the material of a scene, a dict of plain numbers (Pa)."""
     compliance = 2 / law["bulk_modulus"]
     match law["model"]:
         case "neo-hookean":
@@ -51,7 +51,7 @@ def cards(law: dict) -> tuple[str, list[float]]:
 
 
 def body_cards(nodes, cells, fixed, law: dict, density: float | None = None) -> list[str]:
-    """Nodes (n, 3) m, cells (m, 4, 8 or 10), clamped nodes (n,) bool, material, kg/m^3."""
+    """Cards of a body: nodes (n, 3) in m, cells (m, 4, 8 or 10), clamped nodes (n,) bool, material, density in kg/m^3."""
     key, constants = cards(law)
     lines = ["*NODE, NSET=ALL"]
     lines += [f"{i + 1}, " + ", ".join(real(x) for x in row) for i, row in enumerate(nodes)]
@@ -67,18 +67,18 @@ def body_cards(nodes, cells, fixed, law: dict, density: float | None = None) -> 
 
 
 def point_loads(forces) -> list[str]:
-    """Dead loads (n, 3) N on nodes."""
+    """Cards of dead loads (n, 3) in N on the nodes."""
     return ["*CLOAD"] + [f"{i + 1}, {c + 1}, {real(forces[i, c])}"
                          for i in np.flatnonzero(np.any(forces != 0, axis=1)) for c in range(3)]
 
 
 def solve(folder: pathlib.Path, lines: list[str], threads: int = 1) -> list[tuple[float, np.ndarray]]:
-    """Runs a deck; the times and values (p, 3) of all its node prints, in order of nodes.
+    """Runs a deck; returns the times and values (p, 3) of all its node prints, in the order of the nodes.
 
     Raises
     ------
     RuntimeError
-        When ccx printed nothing, with the end of what it said.
+        If ccx printed no results, with the end of its output.
     """
     (folder / "body.inp").write_text("\n".join([*lines, ""]), encoding="utf-8")
     done = subprocess.run(["ccx", "-i", "body"], cwd=folder, capture_output=True, text=True, check=False,
@@ -98,7 +98,7 @@ def solve(folder: pathlib.Path, lines: list[str], threads: int = 1) -> list[tupl
 
 
 def displacements(folder: pathlib.Path, nodes, cells, fixed, law: dict, forces, threads: int = 1) -> np.ndarray:
-    """(n, 3) m at equilibrium, to the seven digits that CalculiX prints."""
+    """Displacements (n, 3) in m in equilibrium, to the seven digits that CalculiX prints."""
     prints = solve(folder, [
         *body_cards(nodes, cells, fixed, law), "*STEP, NLGEOM, INC=1000", "*STATIC", "0.05, 1., 1e-6, 0.1",
         "*CONTROLS, PARAMETERS=FIELD", "1e-10, 1e-8", *point_loads(forces),
@@ -110,7 +110,7 @@ def displacements(folder: pathlib.Path, nodes, cells, fixed, law: dict, forces, 
 
 def motion(folder: pathlib.Path, nodes, cells, fixed, law: dict, density: float, gravity, watched, *, step: float,
            duration: float, alpha: float = 0.0, threads: int = 1) -> tuple[np.ndarray, np.ndarray]:
-    """Released under gravity (3,) m/s^2 at t = 0: times (k,) and displacements (k, 3) m of a node, at even steps."""
+    """Motion after release under gravity (3,) m/s^2 at t = 0: times (k,) and displacements (k, 3) in m of a node, at equal steps."""
     size = float(np.linalg.norm(gravity))
     toward = ", ".join(real(x / size) for x in gravity)
     prints = solve(folder, [
@@ -125,34 +125,34 @@ def motion(folder: pathlib.Path, nodes, cells, fixed, law: dict, density: float,
 
 def shell(folder: pathlib.Path, nodes, triangles, thickness: float, young_modulus: float, poisson_ratio: float, held,
           *, pressure: float = 0.0, displaced=None, threads: int = 1) -> tuple[np.ndarray, np.ndarray]:
-    """A thin shell of six-node triangles at equilibrium.
+    """A thin shell of six-node triangles in equilibrium.
 
     Parameters
     ----------
     nodes : (n, 3) array
         m, at rest.
     triangles : (m, 6) array
-        Corners, then the middles of edges 01 12 20.
+        Corners, then the middles of the edges 01, 12, 20.
     thickness, young_modulus, poisson_ratio : float
         m, Pa, -.
     held : list
         Pairs of a mask (n,) of nodes and an axis, 0 to 2: no displacement along it.
     pressure : float
-        Pa, along the normal from which the triangles turn counter-clockwise; it follows the shell.
+        Pa, along the normal from which the triangles appear counter-clockwise; it follows the shell.
     displaced : tuple
         Mask (n,), axis and displacement (m), or None.
 
     Returns
     -------
     displacements, reactions : (n, 3) arrays
-        m, and N. RuntimeError where it does not converge.
+        m, and N. Raises RuntimeError if the solution does not converge.
     """
     lines = ["*NODE, NSET=ALL", *[f"{i + 1}, " + ", ".join(real(x) for x in row) for i, row in enumerate(nodes)]]
     lines += ["*ELEMENT, TYPE=S6, ELSET=FILM", *[f"{i + 1}, " + ", ".join(str(n + 1) for n in row) for i, row in enumerate(triangles)]]
     lines += ["*MATERIAL, NAME=LAYER", "*ELASTIC", f"{real(young_modulus)}, {real(poisson_ratio)}",
               "*SHELL SECTION, ELSET=FILM, MATERIAL=LAYER", real(thickness), "*BOUNDARY"]
     lines += [f"{i + 1}, {axis + 1}, {axis + 1}" for mask, axis in held for i in np.flatnonzero(mask)]
-    # A flat shell yields at first by bending alone: small steps to begin with.
+    # A flat shell resists at first by bending only: start with small steps.
     lines += ["*STEP, NLGEOM, INC=1000", "*STATIC", "0.001, 1., 1e-6, 0.2", "*CONTROLS, PARAMETERS=FIELD", "1e-7, 1e-7"]
     if pressure != 0.0:
         lines += ["*DLOAD", f"FILM, P, {real(pressure)}"]

@@ -1,4 +1,4 @@
-"""Forces of linear and corotational tetrahedra, written anew in NumPy and SciPy.
+"""Forces of linear and corotational tetrahedra: an independent implementation in NumPy and SciPy.
 
 P = R (2 mu (S - I) + lambda tr(S - I) I), F = R S by scipy.linalg.polar, and the linear law with the
 small strain in place of S - I (Etzmuss, Keckeisen and Strasser 2003; Mueller and Gross 2004, eq. 6).
@@ -59,8 +59,8 @@ def linear_stiffness(nodes, tetrahedra, young, poisson) -> scipy.sparse.csr_matr
 
 
 def element_forces(corners, grads, volumes, young, poisson) -> np.ndarray:
-    """Forces (m, 4, 3) N of corotational tetrahedra at their corners' positions (m, 4, 3) m, all at
-    once; the rotation by singular values, F = U s V^T, R = U V^T."""
+    """Forces (m, 4, 3) in N of all corotational tetrahedra for corner positions (m, 4, 3) in m; the
+    rotation from the singular value decomposition F = U s V^T is R = U V^T."""
     lam, mu = lame(young, poisson)
     deformation = np.einsum("eai,eaj->eij", corners, grads)
     left, stretches, right = np.linalg.svd(deformation)

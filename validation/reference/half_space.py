@@ -1,4 +1,4 @@
-"""An elastic half space under a force, and a half ball of it that is held at its border."""
+"""An elastic half space under a point force, compared with a half ball that is fixed at its round border."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import numpy as np
 
 
 def lost_to_the_border(poisson: float, terms: int = 40, points: int = 400) -> float:
-    """What a half ball of radius L, held at its round border, gives less under a point force F than the half space: c in
-    c F/(4 pi G L), to leading order in the size of the loaded spot over L.
+    """The coefficient c of the displacement c F/(4 pi G L) by which a half ball of radius L, fixed at its round border, yields
+    less under a point force F than the half space, to leading order in the size of the loaded spot over L.
 
-    Boussinesq's displacement at the border (K. L. Johnson, Contact Mechanics, 1985, eq. 3.19) is taken away by fields
+    Boussinesq's displacement at the border (K. L. Johnson, Contact Mechanics, 1985, eq. 3.19) is cancelled by fields
     2 G u = grad(phi + z psi) - 4 (1 - nu) psi e_z (Papkovich, Neuber) of harmonic polynomials h_n = r^n P_n(cos). They leave the
     plane free of traction if phi holds, with every h_n of psi, a_n h_(n+1): a_n = (1 - 2 nu)/(n + 1) for even n and
-    2 (1 - nu)/(n + 1) for odd n. At the force only the translation among them moves.
+    2 (1 - nu)/(n + 1) for odd n. At the force only the translation among these fields contributes.
     """
     cosine = np.cos(0.5 * np.pi * (np.arange(points) + 0.5) / points)
     sine = np.sqrt(1.0 - cosine**2)

@@ -15,18 +15,18 @@ def _write(path: pathlib.Path, points, cells, kind: str, sets) -> pathlib.Path:
 
 
 def write_hexahedra(path: pathlib.Path, points, cells, sets=None) -> pathlib.Path:
-    """(n, 3) m, (m, 8) in VTK order, and by name masks (n,) of nodes."""
+    """Writes points (n, 3) in m, cells (m, 8) in VTK order, and named node sets as masks (n,)."""
     return _write(path, points, cells, "hexahedron", sets)
 
 
 def write_tetrahedra(path: pathlib.Path, points, cells, sets=None) -> pathlib.Path:
-    """As write_hexahedra(), (m, 4)."""
+    """As write_hexahedra(), with cells (m, 4)."""
     return _write(path, points, cells, "tetra", sets)
 
 
 def hollow_sphere(path: pathlib.Path, inner: float, outer: float, around: int, through: int) -> pathlib.Path:
-    """A spherical shell: each face of a cube in around x around cells, blown up on a sphere at equal angles,
-    and `through` layers of even thickness. Radii in m."""
+    """A spherical shell: each face of a cube has around x around cells, projected to a sphere at equal angles,
+    and there are `through` layers of equal thickness. Radii in m."""
     angles = np.tan(np.linspace(-np.pi / 4, np.pi / 4, around + 1))
     numbers: dict[tuple, int] = {}
     points: list[np.ndarray] = []
@@ -56,17 +56,17 @@ def hollow_sphere(path: pathlib.Path, inner: float, outer: float, around: int, t
 
 
 def _to_the_border(cells: int, outer: float) -> tuple[np.ndarray, np.ndarray]:
-    """Scales of the layers around a core, 1 to `outer`, and how round each is, 0 to 1.
+    """Scales of the layers around a core, 1 to `outer`, and the roundness of each, 0 to 1.
 
-    What a load moves falls with the distance s, so that layers may grow: they are even in s^-0.3, which leaves the least
-    error for their number under a point load.
+    Displacements decay with the distance s, so layers may grow: they are uniform in s^-0.3, which has the smallest error
+    under a point load for a given number of layers.
     """
     scale = np.linspace(1.0, outer**-0.3, 3 * cells + 1) ** (-1.0 / 0.3)
     return scale, np.minimum(1.0, np.log(scale) / np.log(4.0))
 
 
 def half_ball(path: pathlib.Path, core: float, cells: int, outer: float, *, whole: bool = False) -> pathlib.Path:
-    """A quarter of a half ball, x >= 0, y >= 0, z <= 0, or its half y >= 0 if `whole`: even cells in a cube of edge
+    """A quarter of a half ball, x >= 0, y >= 0, z <= 0, or its half y >= 0 if `whole`: uniform cells in a cube of edge
     `core` at the origin, then layers that grow to the radius `outer`. Sets 'far', 'core' (the cube's face z = 0). Lengths in m."""
     scale, roundness = _to_the_border(cells, outer / core)
     layers = len(scale) - 1
@@ -101,7 +101,7 @@ def half_ball(path: pathlib.Path, core: float, cells: int, outer: float, *, whol
 
 
 def half_disc(path: pathlib.Path, core: float, cells: int, outer: float) -> pathlib.Path:
-    """The like in the plane, x >= 0, z <= 0, one cell of `core` / `cells` thick along y."""
+    """The plane equivalent of half_ball(), x >= 0, z <= 0, one cell of thickness `core` / `cells` along y."""
     scale, roundness = _to_the_border(cells, outer / core)
     layers = len(scale) - 1
     numbers: dict[tuple, int] = {}
@@ -138,7 +138,7 @@ def _sets_of_half(points: np.ndarray, core: float, outer: float) -> dict:
 
 
 def split_into_tetrahedra(path: pathlib.Path, source: pathlib.Path) -> pathlib.Path:
-    """A mesh of hexahedra as twelve tetrahedra each, between its centre and its faces, which are cut at their least node; sets stay."""
+    """Splits each hexahedron into twelve tetrahedra between its centre and its faces, cut at their lowest node; sets are kept."""
     mesh = meshio.read(source)
     hexahedra, count = mesh.cells[0].data, len(mesh.points)
     points = np.vstack([mesh.points, mesh.points[hexahedra].mean(axis=1)])
@@ -154,12 +154,12 @@ def split_into_tetrahedra(path: pathlib.Path, source: pathlib.Path) -> pathlib.P
 
 
 def rounded(path: pathlib.Path, source: pathlib.Path, radius: float, *, turned: bool = False) -> pathlib.Path:
-    """The half ball, or half disc, of this radius from half_ball() or half_disc() as the lower half of a ball or cylinder: its
-    plane face becomes the round one, its round border ('far') the plane through the centre. The pole is at the origin, with the
-    body below it, or above it if `turned` (x and y then change places in a ball, y is reflected in a cylinder).
+    """Maps a half ball of half_ball(), or half disc of half_disc(), to the lower half of a ball or cylinder of the same radius:
+    its plane face becomes round, and its round border ('far') the plane through the centre. The pole is at the origin, with the
+    body below it, or above it if `turned` (which swaps x and y in a ball and reflects y in a cylinder).
 
     With w = rho + i z, rho the distance from the axis, w -> R (w + i R)/(R + i w) turns the lens between both faces by 90
-    degrees about its edge, rho = R. It is conformal, so that cells keep their angles, and doubles lengths at the pole.
+    degrees about its edge, rho = R. The map is conformal, so cells keep their angles, and it doubles lengths at the pole.
     """
     mesh = meshio.read(source)
     points, cells = mesh.points.copy(), mesh.cells[0].data
@@ -173,7 +173,7 @@ def rounded(path: pathlib.Path, source: pathlib.Path, radius: float, *, turned: 
         points[:, 1] *= grown
     points[:, 2] = place.imag - radius
     pole = np.abs(points).max(axis=1) < 1e-12 * radius
-    points[pole, 2] = 0.0  # without it, rounding makes bodies overlap
+    points[pole, 2] = 0.0  # otherwise rounding would make the bodies overlap
     if turned:
         points = points * [1.0, 1.0, -1.0] if flat else points[:, [1, 0, 2]] * [1.0, 1.0, -1.0]
         if flat:
@@ -182,7 +182,7 @@ def rounded(path: pathlib.Path, source: pathlib.Path, radius: float, *, turned: 
 
 
 def completed(path: pathlib.Path, source: pathlib.Path) -> pathlib.Path:
-    """A quarter of a body, x >= 0 and y >= 0, with its mirror images: the whole body. Sets stay."""
+    """The whole body: a quarter, x >= 0 and y >= 0, with its mirror images. Sets are kept."""
     mesh = meshio.read(source)
     quarter, count = mesh.cells[0].data, len(mesh.points)
     points, cells = [], []
@@ -198,8 +198,8 @@ def completed(path: pathlib.Path, source: pathlib.Path) -> pathlib.Path:
 
 
 def graded_plate(path: pathlib.Path, core: float, cells: int, size: tuple[float, float, float], growth: float = 1.15) -> pathlib.Path:
-    """A block 0 <= x <= size[0], 0 <= y <= size[1], -size[2] <= z <= 0 of one cell along y: `cells` even ones out to `core` from the
-    origin along x and z, and then ones that grow. Set 'far': z = -size[2]. Lengths in m."""
+    """A block 0 <= x <= size[0], 0 <= y <= size[1], -size[2] <= z <= 0 with one cell along y: along x and z, `cells` uniform cells
+    from the origin to `core`, then growing ones. Set 'far': z = -size[2]. Lengths in m."""
 
     def lines(end: float) -> np.ndarray:
         layers = np.log(1.0 + (end - core) * cells / core * (1.0 - 1.0 / growth)) / np.log(growth)

@@ -1,8 +1,8 @@
-"""Static equilibrium of a corotational robot with cables, by a Newton method of its own.
+"""Static equilibrium of a corotational robot with cables, by its own Newton's method.
 
 Energy: strain energy of the tetrahedra + sum over cables of T L(x) - weights . x. A cable of constant
 tension T is the load -T dL/dx, its tangent T d2L/dx2 (segment of length l along u: (I - u u^T)/l).
-Nothing of Sinew is used but the mesh, which is given.
+Nothing of Sinew is used except the mesh, which is an argument.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from . import tetrahedra as geometry
 
 
 def embed(points, nodes, tetrahedra) -> np.ndarray:
-    """Weights (p, n) of every node in each point: barycentric in the element that holds it best, found
-    by trying all."""
+    """Weights (p, n) of the nodes for each point: barycentric in the element that contains it best, found by
+    testing all elements."""
     weights = np.zeros((len(points), len(nodes)))
     corners = nodes[tetrahedra]
     edges = corners[:, 1:] - corners[:, :1]
@@ -43,7 +43,7 @@ class Robot:
     young, poisson : float
         Pa, 1.
     cables : list of (points, world)
-        Points (p, 3) m at rest, pull point first; `world`: it does not move.
+        Points (p, 3) m at rest, pull point first; `world`: the pull point is fixed in the world.
     """
 
     def __init__(self, nodes, tetrahedra, fixed, young, poisson, cables):
@@ -63,7 +63,7 @@ class Robot:
         return np.vstack([held, weights @ x])
 
     def length(self, cable, x) -> float:
-        """Its length (m)."""
+        """Length (m) of a cable at node positions x."""
         return float(np.linalg.norm(np.diff(self.way(cable, x), axis=0), axis=1).sum())
 
     def residual(self, x, loads, tensions):
@@ -104,7 +104,7 @@ class Robot:
         return matrix.tocsr()
 
     def settle(self, loads, tensions, *, load_steps=1, tolerance=1e-11):
-        """Node positions (n, 3) m in equilibrium; loads and tensions grow in equal steps."""
+        """Node positions (n, 3) m in equilibrium; loads and tensions are applied in equal steps."""
         x = self.nodes.copy()
         scale = np.linalg.norm(loads) + np.abs(tensions).sum()
         for share in np.arange(1, load_steps + 1) / load_steps:

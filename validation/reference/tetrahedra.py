@@ -6,7 +6,7 @@ import numpy as np
 
 
 def boundary(tetrahedra: np.ndarray) -> np.ndarray:
-    """Triangles (t, 3) that belong to one tetrahedron only, counter-clockwise seen from outside."""
+    """Triangles (t, 3) of only one tetrahedron, counter-clockwise seen from outside."""
     faces = np.concatenate([tetrahedra[:, list(f)]
                             for f in ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))])
     _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True,

@@ -1,1 +1,1 @@
-"""What every validation case stands on: checks and verdicts, scorecard, plots, robots."""
+"""Shared parts of the validation cases: checks and verdicts, scorecard, plots, robots."""

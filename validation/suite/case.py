@@ -1,4 +1,4 @@
-"""A case's checks: quantity, ours, reference, error, tolerance, verdict, source."""
+"""Checks of a case: quantity, our value, reference, error, tolerance, verdict, source."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SKIPPED = "skipped"
 
 @dataclass
 class Check:
-    """One line of the scorecard. Numbers are text already, so that they print the same everywhere."""
+    """One line of the scorecard. Numbers are stored as text, so they print the same everywhere."""
 
     quantity: str
     ours: str
@@ -130,7 +130,7 @@ class Case:
         known_miss: str = "",
         remark: str = "",
     ) -> bool:
-        """A quantity whose reference is zero; its magnitude may be at most `tolerance`, in `unit`."""
+        """Checks a quantity whose reference is zero: its magnitude may be at most `tolerance`, in `unit`."""
         self._require(source)
         held = bool(abs(ours) <= tolerance)
         text = number(abs(ours), unit, 3)
@@ -157,7 +157,7 @@ class Case:
         known_miss: str = "",
         remark: str = "",
     ) -> bool:
-        """A quantity that is exact up to rounding: its relative error is given by its power of ten."""
+        """Checks a quantity that is exact up to rounding; its relative error is shown as a power of ten."""
         self._require(source)
         held = bool(abs(error) <= tolerance)
         text = power_of_ten(error)
@@ -177,7 +177,7 @@ class Case:
     def agree(
         self, quantity: str, ours: object, reference: object, *, source: str, remark: str = ""
     ) -> bool:
-        """Two values that must be equal, such as hashes or statuses; shown as text."""
+        """Checks that two values are equal, such as hashes or statuses; they are shown as text."""
         self._require(source)
         held = ours == reference
         self._add(
@@ -203,7 +203,7 @@ class Case:
         reference: float | None = None,
         remark: str = "",
     ) -> None:
-        """A number without a reference that could decide; it never counts as a pass."""
+        """Reports a number without a decisive reference; it never counts as a pass."""
         self._require(source)
         text = ours if isinstance(ours, str) else number(ours, unit)
         told = "none" if reference is None else number(reference, unit)
@@ -212,7 +212,7 @@ class Case:
         )
 
     def skip(self, quantity: str, why: str, *, source: str) -> None:
-        """A check for which this machine lacks something."""
+        """Records a check that this machine cannot run."""
         self._require(source)
         self.checks.append(Check(quantity, "", "", "", "", SKIPPED, source, why))
 
@@ -241,7 +241,7 @@ class Case:
 
 
 def number(value: float, unit: str = "", digits: int = 5) -> str:
-    """With few enough significant digits that rounding errors do not show."""
+    """Formats a number with few enough significant digits to hide rounding errors."""
     if not math.isfinite(value):
         return str(value)
     return f"{value:.{digits}g} {unit}".rstrip()
@@ -254,7 +254,7 @@ def percent(value: float) -> str:
 
 
 def power_of_ten(error: float) -> str:
-    """'< 1e-13': the next larger power of ten, at least 1e-15."""
+    """Formats the next larger power of ten, at least 1e-15, as '< 1e-13'."""
     if not math.isfinite(error):
         return str(error)
     if error <= 0.0:
@@ -268,8 +268,8 @@ def observed_order(steps, errors) -> float:
 
 
 def shared_data(*parts: str) -> pathlib.Path | None:
-    """A file of published data, or None if it is not present: $SINEW_SHARED_DATA, or
-    ../shared/data beside the repository."""
+    """A file of published data in $SINEW_SHARED_DATA, or in ../shared/data next to the
+    repository; None if it is absent."""
     given = os.environ.get("SINEW_SHARED_DATA")
     folder = pathlib.Path(given) if given else REPOSITORY.parent / "shared" / "data"
     path = folder.joinpath(*parts)

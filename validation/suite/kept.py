@@ -1,4 +1,4 @@
-"""Results of cases that have ended, so that an interrupted run can be resumed."""
+"""Stored results of finished cases, to resume an interrupted run."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FOLDER = VALIDATION.parent / "build" / "validation"
 
 @functools.cache
 def _code() -> bytes:
-    """A digest of what every case runs: the Python package with its library, the suite, the reference solutions."""
+    """A digest of the code that every case runs: the Python package with its library, the suite, the reference solutions."""
     package = importlib.util.find_spec("sinew")
     digest = hashlib.sha256()
     for folder in (pathlib.Path(package.origin).parent, VALIDATION / "suite", VALIDATION / "reference"):
@@ -33,7 +33,7 @@ def _stamp(name: str) -> str:
 
 
 def keep(result: Result) -> None:
-    """Writes a case's result to build/validation; one that an error stopped is not kept."""
+    """Writes a case's result to build/validation, unless an error stopped the case."""
     if result.failure:
         return
     FOLDER.mkdir(parents=True, exist_ok=True)
@@ -42,7 +42,7 @@ def keep(result: Result) -> None:
 
 
 def find(name: str, images: pathlib.Path) -> Result | None:
-    """The kept result, where the same code made it and its figures are still there."""
+    """The stored result, if it was made by the same code and its figures still exist."""
     try:
         kept = json.loads((FOLDER / f"{name}.json").read_text())
     except (FileNotFoundError, json.JSONDecodeError):

@@ -1,4 +1,4 @@
-"""One look for all plots."""
+"""Common style of all plots."""
 
 from __future__ import annotations
 

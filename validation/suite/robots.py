@@ -1,4 +1,4 @@
-"""Scenes that several cases share, as dicts."""
+"""Scenes shared by several cases, as dicts."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import sinew
 
 from .case import REPOSITORY, shared_data
 
-# The ordering is named, since the one found fastest may differ from run to run in the last bits.
+# A fixed ordering: the default picks the fastest one, which may change the last bits from run to run.
 SOLVER = {"ordering": "amd"}
 TRUNK_FOLDER = REPOSITORY / "examples" / "trunk"
 LIMITS = {
@@ -30,7 +30,7 @@ def write_block(folder: pathlib.Path, size, cells) -> pathlib.Path:
 
 def body_scene(mesh: pathlib.Path, *, young: float, poisson: float, model: str = "corotational",
                fixed: list | None = None, density: float | None = None, **world) -> dict:
-    """A scene of one body called 'body'; further keys of the scene by name."""
+    """A scene with one body called 'body'; further keys of the scene as keyword arguments."""
     body = {
         "type": "fem",
         "mesh": {"file": str(mesh), "unit": "m"},
@@ -62,7 +62,7 @@ def _trunk_scene(body: dict, cables: dict, tip_forces: bool, world: dict) -> dic
 
 
 def own_trunk(*, tip_forces: bool = False, model: str = "corotational", **world) -> dict:
-    """The trunk of examples/trunk: our own mesh, eight cables, effector 'tip', no gravity."""
+    """The trunk of examples/trunk: built-in mesh, eight cables, effector 'tip', no gravity."""
     body = {
         "type": "fem", "mesh": {"shape": "trunk"}, "mass": "42 g",
         "material": {"model": model, "young_modulus": "450 kPa", "poisson_ratio": 0.45},
@@ -80,7 +80,7 @@ def own_trunk(*, tip_forces: bool = False, model: str = "corotational", **world)
 def published_trunk(*, tip_forces: bool = False, model: str = "corotational",
                     **world) -> dict | None:
     """The trunk of Coevoet's and later publications, mesh trunk.vtk (SofaDefrost/SofaGym), or None
-    where the mesh is not present."""
+    if the mesh is not present."""
     mesh = shared_data("trunk", "trunk.vtk")
     if mesh is None:
         return None

@@ -17,7 +17,7 @@ are in [performance.md](performance.md).
 
 
 def totals(results: list[Result]) -> str:
-    """'120 checks: 118 passed, 2 missed, 1 skipped; 4 numbers not scored'."""
+    """A summary such as '120 checks: 118 passed, 2 missed, 1 skipped; 4 numbers not scored'."""
     def count(*verdicts):
         return sum(result.count(*verdicts) for result in results)
 
@@ -36,7 +36,7 @@ def totals(results: list[Result]) -> str:
 
 
 def write(results: list[Result], path: pathlib.Path, images: pathlib.Path) -> None:
-    """All cases in the given order, which is that of their file names."""
+    """Writes all cases in the given order, that of their file names."""
     text = HEAD + f"**{totals(results)}.**\n\n"
     text += "| case | passed | missed | not scored | skipped |\n|---|---|---|---|---|\n"
     for result in results:
@@ -51,7 +51,7 @@ def write(results: list[Result], path: pathlib.Path, images: pathlib.Path) -> No
 
 
 def section(result: Result, folder: pathlib.Path, images: pathlib.Path) -> str:
-    """One case."""
+    """The scorecard's section for one case."""
     text = f'<a id="{result.name}"></a>\n## {result.title}\n\n{result.setup.strip()}\n\n'
     if result.failure:
         text += f"**Stopped with an error:** `{result.failure.strip().splitlines()[-1]}`\n\n"

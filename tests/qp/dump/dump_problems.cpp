@@ -1,4 +1,4 @@
-// Writes random problems with our answers as JSON, for tests/qp/against_cvxopt.py:
+// Writes random problems and Sinew's solutions as JSON, for tests/qp/against_cvxopt.py:
 // dump_qp_problems FILE.
 #include <cstdio>
 #include <fstream>
@@ -17,7 +17,7 @@ namespace {
 using namespace sinew;
 using namespace sinew::qp;
 
-// JSON has no infinities: null stands for an absent limit.
+// JSON has no infinity: null denotes an absent limit.
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : "null";
 }
