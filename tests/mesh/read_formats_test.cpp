@@ -133,12 +133,18 @@ TEST(ReadMesh, PutsPiecesOneAfterTheOther) {
       "NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points>"
       "<Cells><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray>"
       "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">4</DataArray>"
-      "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">10</DataArray></Cells></Piece>";
+      "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">10</DataArray></Cells>";
+  const std::string mask =
+      "<PointData><DataArray type=\"UInt8\" Name=\"held\" format=\"ascii\">0 1 0 1</DataArray>"
+      "</PointData>";
   const std::string text = "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\"><UnstructuredGrid>" +
-                           piece + piece + "</UnstructuredGrid></VTKFile>";
+                           piece + "</Piece>" + piece + mask +
+                           "</Piece></UnstructuredGrid></VTKFile>";
   const Mesh mesh = parse_mesh(text, "pieces.vtu");
   EXPECT_EQ(mesh.node_count(), 8);
   EXPECT_THAT(mesh.tetrahedra.at(1), ElementsAre(4, 5, 6, 7));
+  ASSERT_EQ(mesh.node_sets.size(), 1U) << "what a piece lacks is no set of its own";
+  EXPECT_THAT(mesh.node_sets.at("held"), ElementsAre(5, 7));
 }
 
 TEST(ReadMesh, UnderstandsOddLegacySections) {

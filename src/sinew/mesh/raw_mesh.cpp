@@ -179,7 +179,7 @@ void for_each_label(const IntegerField& field, const Add& add) {
   const std::set<std::int64_t> labels = [&] {
     std::set<std::int64_t> distinct;
     for (const std::int64_t value : field.values) {
-      distinct.insert(value);
+      if (value != kNoLabel) distinct.insert(value);
       if (distinct.size() > kMaxLabels) break;
     }
     return distinct;
@@ -187,6 +187,7 @@ void for_each_label(const IntegerField& field, const Add& add) {
   if (labels.size() > kMaxLabels) return;
   const bool mask = field.mask && !labels.empty() && *labels.begin() >= 0 && *labels.rbegin() <= 1;
   for (std::size_t i = 0; i < field.values.size(); ++i) {
+    if (field.values[i] == kNoLabel) continue;
     if (mask) {
       if (field.values[i] == 1) add(field.name, i);
     } else {

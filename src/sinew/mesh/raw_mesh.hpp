@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,9 @@ enum CellType : int {
   kQuadraticTetrahedron = 24,
   kQuadraticHexahedron = 25,
 };
+
+/// Value of a point or cell without a value in the file. It belongs to no set.
+inline constexpr std::int64_t kNoLabel = std::numeric_limits<std::int64_t>::min();
 
 /// An integer value for each point or cell.
 struct IntegerField {

@@ -84,8 +84,8 @@ class VtuReader {
     raw_.types.insert(raw_.types.end(), types.begin(), types.end());
   }
 
-  /// Keeps integer arrays with one component; arrays that are missing in a piece are filled with
-  /// -1.
+  /// Keeps integer arrays with one component; an array that is missing in a piece has no label
+  /// there.
   void read_fields(pugi::xml_node node, std::size_t count, std::size_t before,
                    std::vector<IntegerField>& fields) {
     for (const pugi::xml_node array : node.children("DataArray")) {
@@ -100,10 +100,10 @@ class VtuReader {
         fields.push_back({.name = name, .mask = bytes_of(type) == 1, .values = {}});
         field = fields.end() - 1;
       }
-      field->values.resize(before, -1);
+      field->values.resize(before, kNoLabel);
       field->values.insert(field->values.end(), values.begin(), values.end());
     }
-    for (IntegerField& field : fields) field.values.resize(before + count, -1);
+    for (IntegerField& field : fields) field.values.resize(before + count, kNoLabel);
   }
 
   VtuFile file_;
