@@ -1,5 +1,5 @@
-// Time of one step of a bending actuator, and of what it is made of. The argument is the order of
-// its energies; 0 stands for exact ones.
+// Times one step of a bending actuator and its parts. The argument is the order of the energies; 0
+// means exact energies.
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -22,7 +22,7 @@ std::shared_ptr<const BendingActuator> actuator(const benchmark::State& state) {
   return std::make_shared<const BendingActuator>(p);
 }
 
-// 0.2 Hz between 0 and 90 kPa, steps of 1 ms.
+// A pressure of 0 to 90 kPa at 0.2 Hz, with steps of 1 ms.
 void bending_step(benchmark::State& state, mechanics::Integrator integrator) {
   BendingMotion motion(actuator(state), {}, {.integrator = integrator});
   long k = 0;

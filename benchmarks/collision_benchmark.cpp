@@ -1,5 +1,5 @@
-// Time of collision: a million continuous queries, and what a step of two surfaces of 3888
-// triangles each needs. The argument is the number of threads.
+// Times collision detection: a million continuous queries, and the queries of a step with two
+// surfaces of 3888 triangles each. The argument is the number of threads.
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -55,7 +55,7 @@ void a_million_impacts(benchmark::State& state, bool faces, double way) {
       count, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-// Two balls that nearly touch, the second one pressed flat where it faces the first.
+// Two balls that nearly touch. The second is flattened on the side that faces the first.
 struct Scene {
   explicit Scene(int threads)
       : pool(threads), ball(unit_sphere(18)), first(ball.topology()), second(ball.topology()) {

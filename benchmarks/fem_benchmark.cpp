@@ -1,8 +1,8 @@
 /// @file
-/// Time to evaluate all elements and assemble forces and matrix, by mesh, material, tangent and
-/// threads; us_an_element is the same per element.
-/// Meshes: `SINEW_BENCHMARK_MESHES` names VTK files in mm, separated by ':'; without it, blocks of
-/// about the size of a small and of a large robot.
+/// Times the evaluation of all elements and the assembly of forces and matrix, by mesh, material,
+/// tangent and threads; us_an_element is the time per element. `SINEW_BENCHMARK_MESHES` names VTK
+/// files in mm, separated by ':'. The default meshes are blocks of about the size of a small and a
+/// large robot.
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -29,7 +29,7 @@ Eigen::Index longest_axis(const mesh::Mesh& mesh) {
   return axis;
 }
 
-/// Bent by 0.8 rad along the longest axis and stretched by some per cent across it.
+/// Bends a mesh by 0.8 rad along its longest axis, and stretches it across by a few per cent.
 Points bent(const mesh::Mesh& mesh) {
   const Eigen::Index along = longest_axis(mesh), across = (along + 1) % 3, aside = (along + 2) % 3;
   const double start = mesh.nodes.col(along).minCoeff();
@@ -79,7 +79,7 @@ material::Hyperelastic neo_hookean() {
   return law;
 }
 
-/// @param material "" for the corotational one.
+/// @param material name; "" means corotational.
 void add_benchmarks(const std::shared_ptr<const mesh::Mesh>& mesh, const std::string& material,
                     const std::optional<material::Hyperelastic>& law) {
   const Eigen::Index axis = longest_axis(*mesh);

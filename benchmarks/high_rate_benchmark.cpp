@@ -1,7 +1,7 @@
-// Time of one period of a high-rate loop: eight driven rows, three unknown forces from fourteen
-// sensors, a task of three rows, one hand, and contacts, all near their surfaces while the robot
-// moves; a new snapshot every ten periods. The last table is that of the loop's own thread at 1
-// kHz.
+// Times one period of a high-rate loop with eight driven rows, three unknown forces estimated from
+// fourteen sensors, a task of three rows, one hand, and contacts near their surfaces. The robot
+// moves, and there is a new snapshot every ten periods. The last table is measured on the loop's
+// own thread at 1 kHz.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -29,7 +29,7 @@ HighRateSettings robot(int contacts) {
   return settings;
 }
 
-// Its contacts carry what they do without efforts.
+// Sets the efforts of contacts to those without actuation.
 void settle(const HighRateSettings& settings, Snapshot& snapshot) {
   TouchLaw law(settings);
   law.begin(snapshot);
@@ -39,7 +39,7 @@ void settle(const HighRateSettings& settings, Snapshot& snapshot) {
   snapshot.effort.tail(law.rows()) = law.effort();
 }
 
-// A robot that bends on: W and gaps change little from one snapshot to the next.
+// A bending robot, whose W and gaps change little between snapshots.
 std::vector<Snapshot> bending(const HighRateSettings& settings, double friction, int count) {
   Random random(1);
   Snapshot first = sinew::testing::random_snapshot(settings, random, friction);
@@ -104,7 +104,7 @@ void loop(double seconds) {
   high_rate.start();
   HighRateInput input = HighRateInput::none(settings);
   const auto begin = std::chrono::steady_clock::now();
-  for (int k = 0; k < static_cast<int>(100.0 * seconds); ++k) {  // the model, at 100 Hz
+  for (int k = 0; k < static_cast<int>(100.0 * seconds); ++k) {  // the model runs at 100 Hz
     std::this_thread::sleep_until(begin + std::chrono::milliseconds(10 * k));
     high_rate.publish(snapshots[static_cast<std::size_t>(k) % 100]);
     move(input, 10 * k);

@@ -21,7 +21,7 @@ struct Query {
   bool collides = false;
 };
 
-// Eight lines a query: numerators and denominators of x, y, z, and the answer.
+// A query has eight lines with numerators and denominators of x, y, z, and the answer.
 std::vector<Query> read_queries() {
   std::vector<Query> queries;
   Query query;
@@ -37,7 +37,7 @@ std::vector<Query> read_queries() {
   return queries;
 }
 
-// Least time of a few rounds: what the query needs when nothing disturbs it.
+// Minimum time of several rounds, to exclude disturbances.
 template <typename Ask>
 double nanoseconds(const Ask& ask) {
   constexpr int kRounds = 5, kCalls = 20;

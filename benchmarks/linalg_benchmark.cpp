@@ -1,8 +1,8 @@
 /// @file
-/// Time of one factorisation with its border and of the solves after it, by matrix, backend,
-/// ordering and threads, beside Eigen's SimplicialLDLT and CHOLMOD on the same matrix. Meshes:
-/// `SINEW_BENCHMARK_MESHES` names VTK files in mm, separated by ':'; without it, blocks and tubes
-/// of about the size of a small and of a large robot.
+/// Times a factorisation with its border, and the solves after it, by matrix, backend, ordering and
+/// threads, in comparison with Eigen's SimplicialLDLT and CHOLMOD. `SINEW_BENCHMARK_MESHES` names
+/// VTK files in mm, separated by ':'. The default meshes are blocks and tubes of about the size of
+/// a small and a large robot.
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -26,12 +26,12 @@ using namespace sinew;
 using linalg::testing::BlockSystem;
 using linalg::testing::CholmodSolver;
 
-/// Eight cables and an effector.
+/// Number of rows: eight cables and an effector.
 constexpr int kRows = 11;
 
 using SystemPointer = std::shared_ptr<const BlockSystem>;
 
-/// Elasticity of a mesh whose lowest 5 % along its longest axis are held.
+/// Linear elasticity of a mesh, of which the lowest 5 % along its longest axis are fixed.
 BlockSystem system_of(const mesh::Mesh& mesh) {
   Eigen::Index axis = 0;
   const auto extent = mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff();
@@ -41,7 +41,7 @@ BlockSystem system_of(const mesh::Mesh& mesh) {
   for (const auto& tet : mesh.tetrahedra) {
     for (const int node : tet) used[static_cast<std::size_t>(node)] = 1;
   }
-  // The held nodes first, as elastic_system() wants them.
+  // elastic_system() requires the fixed nodes first.
   std::vector<int> number(used.size(), 0);
   linalg::testing::TetrahedralMesh sorted;
   int fixed = 0;
@@ -175,8 +175,8 @@ void add(const std::string& name, BlockSystem made) {
   }
 }
 
-/// CHOLMOD and its BLAS start threads of their own, which would be measured against one of ours,
-/// and read their number before main(): set it and begin again.
+/// Limits the threads of CHOLMOD and its BLAS for a fair comparison with one thread. They read the
+/// number before main(), so it is set and the program restarted.
 void start_over_on_one_thread(char** argv) {
   if (std::getenv("OMP_THREAD_LIMIT") != nullptr) return;
   setenv("OMP_THREAD_LIMIT", "1", 1);

@@ -1,5 +1,5 @@
-// Time of a constant-curvature arm's equations and steps: the four-segment fluidic arm, lumped and
-// distributed masses.
+// Times the equations and steps of the four-segment fluidic arm, with lumped and distributed
+// masses.
 #include <benchmark/benchmark.h>
 
 #include "sinew/pcc/arm_simulation.hpp"

@@ -1,4 +1,4 @@
-// Time of plans for the published arm: from a cold start, and anew from a plan before.
+// Times plans for the published arm, from a cold start and from a previous plan.
 #include <algorithm>
 #include <chrono>
 #include <vector>
@@ -24,7 +24,7 @@ PlanTask task_of(const benchmark::State& state) {
 
 std::shared_ptr<const pcc::Arm> arm() { return pcc::testing::make(pcc::testing::fluidic()); }
 
-/// Plans one after the other; what they needed goes to the counters.
+/// Makes plans in sequence, and adds their effort to the counters.
 template <typename Make>
 void plan_each(benchmark::State& state, const Make& make) {
   std::vector<double> seconds;
@@ -47,14 +47,14 @@ void plan_each(benchmark::State& state, const Make& make) {
   state.counters["found"] = found / runs;
 }
 
-/// One seed an iteration: the first guess and the solver.
+/// Cold starts with one seed per iteration, including the initial guess.
 void cold(benchmark::State& state) {
   Planner planner(arm(), task_of(state));
   std::uint64_t seed = 0;
   plan_each(state, [&] { return planner.plan(++seed); });
 }
 
-/// The goal moves by up to 2 cm.
+/// Replans after the goal has moved by up to 2 cm.
 void warm_goal(benchmark::State& state) {
   const PlanTask task = task_of(state);
   const Plan before = Planner(arm(), task).plan(1);
@@ -67,7 +67,7 @@ void warm_goal(benchmark::State& state) {
   });
 }
 
-/// The start is up to 0.05 rad off.
+/// Replans from an initial state that differs by up to 0.05 rad.
 void warm_start(benchmark::State& state) {
   const PlanTask task = task_of(state);
   const Plan before = Planner(arm(), task).plan(1);

@@ -1,5 +1,5 @@
-// Time of one quadratic program as a controller meets it: a moving target, rows that come and go.
-// The first argument is the number of variables, the second of rows.
+// Times a quadratic program as in a controller, with a moving target and changing active rows. The
+// arguments are the numbers of variables and of rows.
 #include <cmath>
 #include <vector>
 

@@ -11,7 +11,7 @@
 
 #include "sinew/core/error.hpp"
 
-// From assets.S, made by CMake of what web/build.mjs wrote.
+// From assets.S, which CMake makes from the output of web/build.mjs.
 extern "C" {
 extern const char sinew_web_index_begin[], sinew_web_index_end[];
 extern const char sinew_web_script_begin[], sinew_web_script_end[];
@@ -26,7 +26,7 @@ std::string_view between(const char* begin, const char* end) {
   return {begin, static_cast<std::size_t>(end - begin)};
 }
 
-// "gzip;q=0.5" is the coding "gzip" of quality 0.5; 1 where none is given.
+// "gzip;q=0.5" is the coding "gzip" with quality 0.5. The default quality is 1.
 bool wants_gzip(std::string_view entry) {
   std::string word;
   for (const char letter : entry) {
@@ -42,8 +42,8 @@ bool wants_gzip(std::string_view entry) {
 
 }  // namespace
 
-// A gzip member without optional fields, as build.mjs writes it (RFC 1952, section 2.3): 10 bytes,
-// deflated data, CRC-32, and the length before compression.
+// The file is a gzip member without optional fields (RFC 1952, section 2.3): a header of 10 bytes,
+// deflated data, CRC-32, and the uncompressed length.
 std::string unpack(const Asset& asset) {
   constexpr std::size_t kHeader = 10, kTrailer = 8;
   std::uint32_t length = 0;

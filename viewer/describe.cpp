@@ -32,7 +32,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Half as far again as a robot's size is a slider's end where a scene sets none.
+// Ends of sliders of actuators without limits.
 constexpr double kFarPull = 0.25;         // of the robot's size
 constexpr double kStrongPull = 10.0;      // N
 constexpr double kFarBend = 1.5;          // rad
@@ -55,7 +55,7 @@ Json quantity_json(const sim::QuantityName& quantity, const sim::Limits& limits,
           {"high", std::isfinite(limits.max) ? limits.max : high}};
 }
 
-// Ends of the sliders of an actuator without limits.
+// Ends of a slider.
 struct Ends {
   double low, high;
 };
@@ -92,8 +92,7 @@ Ends input_ends(const sim::Model& model, int index) {
   return {-0.5 * volume, 2.0 * volume};
 }
 
-// What can be commanded, what the scene commands first; without a command a cable's pull, a force's
-// force, a chamber's pressure.
+// The quantities that can be commanded. The first is the one that the scene commands.
 Json quantities_json(const sim::Model& model, int index) {
   const sim::ActuatorModel& actuator = model.actuators()[static_cast<std::size_t>(index)];
   Json quantities = Json::array();
@@ -119,7 +118,7 @@ Json actuator_json(const sim::Model& model, const scene::Robot& robot, int index
   const sim::ActuatorModel& actuator = model.actuators()[static_cast<std::size_t>(index)];
   const auto& description = robot.description.actuators[static_cast<std::size_t>(index)];
   const bool wire = model.cable(index) != nullptr;
-  // As many as the frames hold: guides between those written included.
+  // Number of points in frames, including guide points added between those in the scene.
   const auto points = static_cast<std::size_t>(wire ? model.cable(index)->via_count() + 2 : 0);
   return {{"name", actuator.name},
           {"type", actuator.words().type},
@@ -143,7 +142,7 @@ std::string plain(std::string name) {
   return name;
 }
 
-// Signals of one unit that are plotted together.
+// Group of signals of one unit that are plotted together.
 std::string group_of(const sim::Observable& observable) {
   const std::string& unit = observable.unit;
   const std::string_view quantity = observable.quantity;
@@ -214,7 +213,8 @@ void add_signals(const sim::Observable& observable, std::vector<SignalInfo>& lis
   }
 }
 
-// Keys of the signals of probes, sensors, contacts and joints: there may be thousands.
+// Index of the signal keys of probes, sensors, contacts and joints, of which there may be
+// thousands.
 class SignalKeys {
  public:
   explicit SignalKeys(const sim::Observables& observables) {
@@ -242,7 +242,7 @@ Json probe_json(const SignalKeys& keys, const constraint::Probe& probe) {
           {"signals", keys.of(sim::ObservableKind::probe, probe.name())}};
 }
 
-// Drawn as probes are.
+// A sensor, which is drawn like a probe.
 Json sensor_json(const SignalKeys& keys, const sim::SensorModel& sensor) {
   const constraint::Probe* probe = sensor.source->probe();
   return {{"name", sensor.name},
@@ -252,7 +252,7 @@ Json sensor_json(const SignalKeys& keys, const sim::SensorModel& sensor) {
           {"signals", keys.of(sim::ObservableKind::sensor, sensor.name)}};
 }
 
-// A rigid body's own surface is drawn with it.
+// The surface of a contact. That of a rigid body is drawn with the body.
 Json surface_json(const constraint::Contact& contact) {
   if (contact.other_body() >= 0) return {{"kind", "body"}};
   const collision::Shape& surface =
@@ -306,7 +306,7 @@ std::string material_text(const fem::MaterialRegion& region) {
   return fmt::format("{}, E = {:.4g} kPa", law, 1e-3 * region.young_modulus());
 }
 
-// In the order of the regions: the body's own, where elements are left to it, then its parts.
+// Materials in the order of regions: that of the body, if any elements have it, then its parts.
 Json materials_json(const scene::Robot& robot, const mechanics::BodyModel& model) {
   Json list = Json::array();
   const auto* own = mechanics::as<const fem::HasElements>(model);
@@ -383,8 +383,7 @@ Json controllers_json(const scene::Robot& robot) {
 
 }  // namespace
 
-// Vectors of contacts and targets are drawn in the picture. A replay cannot tell what work was
-// done.
+// Vectors of contacts and targets are drawn instead. A replay does not know the work.
 bool is_signal(const sim::Observable& observable) {
   switch (observable.kind) {
     case sim::ObservableKind::time:
@@ -397,7 +396,7 @@ bool is_signal(const sim::Observable& observable) {
       return !observable.owner.empty() && observable.size() == 1;
     case sim::ObservableKind::contact:
       return observable.size() == 1;
-    case sim::ObservableKind::probe:  // the points of a line are seen
+    case sim::ObservableKind::probe:  // the points of a line are drawn
       return observable.quantity == "value";
     case sim::ObservableKind::sensor:
       return observable.quantity != "sample_time";

@@ -1,5 +1,5 @@
 /// @file
-/// What a page is told of a robot before the first frame.
+/// Makes the description of a robot that a page receives before the first frame.
 #pragma once
 
 #include <string>
@@ -16,14 +16,14 @@ class BodyModel;
 
 namespace sinew::viewer {
 
-/// Whether the numbers of an observable are among Frame::signals. Signals have the order of the
+/// Whether Frame::signals contains the numbers of an observable. Signals are in the order of the
 /// list.
 bool is_signal(const sim::Observable& observable);
 
-/// What is drawn of a body.
+/// The surface of a body as it is drawn.
 DisplaySurface display_surface(const mechanics::BodyModel& body);
 
-/// Everything at once. @param robot what is shown. @param observables of its simulation.
+/// Makes the whole description. @param robot to be shown. @param observables of its simulation.
 Description describe(const scene::Robot& robot, const sim::Observables& observables);
 
 }  // namespace sinew::viewer

@@ -1,5 +1,5 @@
 /// @file
-/// What bodies can be coloured by, and what is told of a node or an element.
+/// Fields by which bodies are coloured, and values at a node or an element.
 #pragma once
 
 #include <functional>
@@ -17,21 +17,22 @@ class Body;
 
 namespace sinew::viewer {
 
-/// Fields that bodies can be coloured by: the displacement, and of finite elements those of the
-/// elements and the force of the actuators on each node. In the order of Description::fields.
+/// A field by which bodies can be coloured: the displacement or, for finite elements, a field of
+/// the elements or the force of the actuators on each node.
 struct FieldInfo {
   std::string name, label, unit, description;
-  /// (n,) at all nodes; zero where the body has no such field. @param body,simulation one of its
-  /// bodies. @param mean of that body; null of one without elements.
+  /// Computes the values (n,) at all nodes; zero if the body does not have the field. The arguments
+  /// are a body, its simulation, and the nodal mean of the body (null for one without elements).
   std::function<std::vector<double>(const mechanics::Body&, const sim::Simulation&,
                                     const fem::NodalMean*)>
       values;
 };
+/// All fields, in the order of Description::fields.
 const std::vector<FieldInfo>& list_fields();
-/// What is known of a node or an element, from the elements round it alone: its values of
-/// list_fields(), NaN where there is none.
-/// @param simulation where it is. @param at which; its body has it. @param materials of the body's
-///   elements, DisplaySurface::materials.
+/// Values of list_fields() at a node or an element, computed only from the elements around it; NaN
+/// where there is no value.
+/// @param simulation of the body. @param at an existing node or element. @param materials of the
+/// elements, DisplaySurface::materials.
 PickFrame values_of(const sim::Simulation& simulation, const Picked& at,
                     const std::vector<int>& materials);
 

@@ -1,5 +1,5 @@
 /// @file
-/// A robot that a script steps, seen and helped from a browser.
+/// Shows a robot that a script steps, and lets a browser interact with it.
 #pragma once
 
 #include <chrono>
@@ -10,12 +10,13 @@
 
 namespace sinew::viewer {
 
-/// The script and the source take turns: in hand_over() the source carries out what browsers asked
-/// for and makes a frame; it then lets the script go on, unless the page has paused it or the clock
-/// is not there yet. Outside of these turns the simulation is the script's alone.
+/// A source whose simulation is stepped by a script. The script and the source take turns. After
+/// hand_over(), the source carries out requests of browsers and makes a frame. It then returns the
+/// turn, unless the page has paused it or the clock is not there yet. During its turn, the script
+/// has exclusive use of the simulation.
 class FollowSource final : public LiveSource {
  public:
-  /// @param robot,simulation what is shown. @param settings controller and gallery are not used.
+  /// @param robot,simulation to be shown. @param settings whose controller is not used.
   FollowSource(scene::Robot robot, std::shared_ptr<sim::Simulation> simulation,
                const LiveSettings& settings);
   ~FollowSource() override { FollowSource::stop(); }
@@ -23,16 +24,16 @@ class FollowSource final : public LiveSource {
   std::string_view mode() const override { return "follow"; }
   void stop() override;
 
-  // The script's side; of one thread.
+  // Functions for the script, called from one thread.
 
-  /// The controller that is to be shown; see RobotState. Before hand_over().
+  /// Sets the controller that is shown, see RobotState::observe(). Call it before hand_over().
   void observe(const std::string& name, inverse::TargetController* controller) {
     state().observe(name, controller);
   }
-  /// Begins the source's turn.
+  /// Starts the turn of the source.
   void hand_over();
-  /// Waits for its end; the first turn, in which a first frame is made, begins with start(). False
-  /// when it has not ended within the time.
+  /// Waits until the turn of the source ends; false if it has not ended within the time. The first
+  /// turn, in which the first frame is made, starts with start().
   bool wait_turn(std::chrono::milliseconds time);
   /// Whether the source was stopped.
   bool ended() const;
@@ -45,7 +46,7 @@ class FollowSource final : public LiveSource {
  private:
   bool script_turn();
 
-  mutable std::mutex turn_mutex_;  // of the next two
+  mutable std::mutex turn_mutex_;  // protects the next two members
   bool of_script_ = false, ended_ = false;
   std::condition_variable turn_;
 };

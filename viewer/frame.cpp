@@ -117,7 +117,7 @@ void put_timeline(const TimelineFrame& timeline, Writer& writer) {
 
 namespace {
 
-// Header of a message about a body: two counts, and room for the rest.
+// Starts a message about a body: its header with two counts, and reserved memory.
 void begin_message(Writer& writer, Kind kind, int body, std::size_t first, std::size_t second,
                    std::uint16_t generation) {
   constexpr std::size_t kMaxCount = std::numeric_limits<std::uint32_t>::max() / 16;

@@ -32,8 +32,8 @@ FrameMaker::FrameMaker(const sim::Simulation& simulation, sim::Observables& obse
   find_contacts();
 }
 
-// They are listed in the order of the contacts, each with its pose first. There may be thousands,
-// too many to find each by its name.
+// Finds the observables of contacts, which are in the order of contacts, each starting with its
+// pose. There may be thousands, so a search by name would be too slow.
 void FrameMaker::find_contacts() {
   static const std::map<std::string_view, std::size_t ContactPlaces::*> members = {
       {"pose", &ContactPlaces::pose},
@@ -118,7 +118,7 @@ void FrameMaker::fill_points(Frame& frame) {
   for (const sim::SensorModel& sensor : model.sensors()) {
     if (const constraint::Probe* probe = sensor.source->probe()) put_marks(*probe);
   }
-  // Rotations are no points.
+  // Rotations are not points.
   const auto put_numbers = [&](std::vector<float>& list, std::size_t observable) {
     const int effector = model.effector_index(observables_.list()[observable].owner);
     const bool point = model.effector(effector).kind() == constraint::EffectorKind::point;

@@ -1,5 +1,5 @@
 /// @file
-/// Frames of a simulation.
+/// Makes frames of a simulation.
 #pragma once
 
 #include <cstddef>
@@ -15,13 +15,14 @@
 
 namespace sinew::viewer {
 
+/// Makes frames of one robot.
 class FrameMaker {
  public:
   /// @param simulation,observables,description of one robot; must outlive this.
   FrameMaker(const sim::Simulation& simulation, sim::Observables& observables,
              const Description& description);
 
-  /// What is to be seen of the robot now. @param wishes beside positions.
+  /// Makes a frame of the current state. @param wishes parts of the frame besides positions.
   std::shared_ptr<Frame> make(const FrameWishes& wishes);
 
  private:
@@ -30,7 +31,7 @@ class FrameMaker {
   void fill_points(Frame& frame);
   void fill_contacts(Frame& frame);
 
-  /// Where a contact's numbers are among the observables.
+  /// Indices of the observables of a contact.
   struct ContactPlaces {
     std::size_t pose, position, normal, normal_force, friction_force, state;
   };
@@ -39,7 +40,7 @@ class FrameMaker {
   const sim::Simulation& simulation_;
   sim::Observables& observables_;
   const Description& description_;
-  std::vector<std::unique_ptr<fem::NodalMean>> means_;  ///< one a body; none of an arm
+  std::vector<std::unique_ptr<fem::NodalMean>> means_;  ///< one per body; null for an arm
   std::vector<ContactPlaces> contacts_;
 };
 

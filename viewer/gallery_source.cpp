@@ -16,8 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-// "# A soft trunk ...": what a scene says of itself in the first sentence of its first comment,
-// which may go on over several lines.
+// The title of a scene: the first sentence of its first comment ("# A soft trunk ..."), which may
+// extend over several lines.
 std::string first_sentence(const fs::path& path) {
   std::ifstream file(path);
   std::string text;

@@ -1,5 +1,5 @@
 /// @file
-/// The examples, to choose one of.
+/// The gallery, from which the user opens an example.
 #pragma once
 
 #include <filesystem>
@@ -10,18 +10,18 @@
 
 namespace sinew::viewer {
 
-/// A scene that the gallery offers.
+/// A scene in the gallery.
 struct Example {
-  std::string name;   ///< "trunk/circle": folder and file without extension
-  std::string title;  ///< the first sentence of the scene's first comment
+  std::string name;   ///< folder, and file without extension: "trunk/circle"
+  std::string title;  ///< first sentence of the scene's first comment
   std::filesystem::path scene, thumbnail;
 };
 
-/// The scenes below a folder, by name.
-/// @param folder of examples; each *.yaml in it or in one of its folders is one.
+/// Finds the scenes in a folder, sorted by name.
+/// @param folder of examples; each *.yaml in it or in one of its subfolders is one.
 std::vector<Example> find_examples(const std::filesystem::path& folder);
 
-/// Shows no robot, only what there is to open. Opening goes by names of its own list.
+/// A source that shows no robot, but a list of examples. It opens only names in this list.
 class GallerySource final : public Source {
  public:
   /// @param examples see find_examples().

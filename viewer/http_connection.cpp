@@ -14,8 +14,8 @@ namespace http = boost::beast::http;
 
 namespace {
 
-// Nothing from other origins runs or is loaded, and no page but of this machine, a notebook, may
-// frame this one.
+// Forbids scripts and resources of other origins, and embedding in pages that are not from this
+// machine (such as a notebook).
 constexpr const char* kPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
     "img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
@@ -23,7 +23,7 @@ constexpr const char* kPolicy =
 
 std::string_view text(boost::beast::string_view view) { return {view.data(), view.size()}; }
 
-/// A request's target as path and query.
+/// Splits the target of a request into path and query.
 std::pair<std::string_view, std::string_view> split_target(std::string_view target) {
   const std::size_t mark = target.find('?');
   if (mark == std::string_view::npos) return {target, {}};
@@ -67,8 +67,8 @@ void HttpConnection::on_read(beast::error_code error) {
   answer();
 }
 
-// A page of another origin that a browser shows may not reach this server, whatever name it found
-// for it (DNS rebinding).
+// Whether a request comes from a page of this server. Pages of other origins are refused, whatever
+// host name they use (DNS rebinding).
 bool HttpConnection::from_here() const {
   const auto& request = parser_->get();
   const std::string_view host = text(request[http::field::host]);

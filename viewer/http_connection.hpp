@@ -1,5 +1,5 @@
 /// @file
-/// One HTTP connection: files of the page, downloads, or the door to a view.
+/// An HTTP connection: serves files of the page and downloads, and opens views.
 #pragma once
 
 #include <functional>
@@ -15,25 +15,26 @@
 
 namespace sinew::viewer {
 
-/// What HTTP connections ask of the server. All on its thread.
+/// The interface of the server to HTTP connections. All functions run on its thread.
 class Door {
  public:
   virtual ~Door() = default;
   virtual bool knows_host(std::string_view host) const = 0;
-  /// Whether the query of a request (what follows "?") carries the token, if one is asked for.
+  /// Whether the query of a request (the part after "?") has the token, if one is required.
   virtual bool admits(std::string_view query) const = 0;
   virtual void fetch(std::string_view name, std::function<void(std::optional<Download>)> done) = 0;
   virtual void open_view(
       boost::beast::tcp_stream&& stream,
       const boost::beast::http::request<boost::beast::http::empty_body>& request) = 0;
-  /// Counts connections; false: there are too many.
+  /// Counts a new connection; false if there are too many.
   virtual bool enter() = 0;
   virtual void leave() = 0;
 };
 
+/// One HTTP connection.
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
  public:
-  /// @param socket of the browser. @param door outlives the connection.
+  /// @param socket of the browser. @param door interface of the server.
   HttpConnection(boost::asio::ip::tcp::socket&& socket, std::shared_ptr<Door> door);
   ~HttpConnection();
   HttpConnection(const HttpConnection&) = delete;

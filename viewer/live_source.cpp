@@ -57,7 +57,7 @@ std::shared_ptr<const Frame> LiveSource::frame(const FrameWishes& wishes, double
   return frame;
 }
 
-// The present becomes the latest moment, so that one can return to it.
+// The current state becomes the latest moment, so that the user can return to it.
 void LiveSource::go_back(std::int64_t number) {
   if (timeline_.empty()) {
     throw Error(ErrorKind::not_in_this_version, {}, "a script steps this robot",
@@ -107,7 +107,7 @@ void LiveSource::fetch(std::string_view name, std::function<void(std::optional<D
       done(table ? Download{"run.csv", "text/csv; charset=utf-8", saved->csv()}
                  : Download{"motion.glb", "model/gltf-binary", saved->glb()});
     } catch (const std::exception&) {
-      done(std::nullopt);  // a motion too long for one file, or no memory for it
+      done(std::nullopt);  // the motion is too long for one file, or memory is exhausted
     }
   });
 }

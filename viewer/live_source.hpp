@@ -1,5 +1,5 @@
 /// @file
-/// A running robot, driven by a browser.
+/// Shows a running simulation, controlled by a browser.
 #pragma once
 
 #include <functional>
@@ -18,23 +18,24 @@
 
 namespace sinew::viewer {
 
+/// Settings of a LiveSource.
 struct LiveSettings {
-  std::string controller;  ///< attached at the start: a name of the scene's, or empty for none
+  std::string controller;  ///< attached initially: a name in the scene, or empty for none
   bool playing = true;
-  double speed = 1.0;  ///< simulated seconds a second; 0: as fast as it can
-  /// Where the page goes back to; none: nowhere.
+  double speed = 1.0;  ///< simulated seconds per second; 0: as fast as possible
+  /// Makes the gallery to which the page can return; none: there is no gallery.
   std::function<std::unique_ptr<Source>()> gallery;
 };
 
-/// Steps a simulation, and records it when asked to.
+/// A source that steps a simulation, and records it on request.
 class LiveSource : public SourceThread {
  public:
-  /// @param robot is simulated with its own threads. @param settings see there.
-  /// Throws Error(unknown-name) for a controller that the scene does not have.
+  /// Makes a simulation with the number of threads of the robot. Throws Error(unknown-name) for an
+  /// unknown controller. @param robot to be simulated. @param settings of the source.
   explicit LiveSource(const scene::Robot& robot, const LiveSettings& settings = {});
-  /// A simulation that others own and leave alone between start() and stop().
-  /// @param robot,simulation what is shown. @param first,settings the one in place of the
-  ///   other's controller.
+  /// Uses a simulation that its owner does not touch between start() and stop().
+  /// @param robot,simulation to be shown. @param first controller attached initially; replaces that
+  /// of `settings`. @param settings of the source.
   LiveSource(scene::Robot robot, std::shared_ptr<sim::Simulation> simulation,
              std::optional<scene::SceneController> first, const LiveSettings& settings);
   ~LiveSource() override { LiveSource::stop(); }
@@ -42,10 +43,10 @@ class LiveSource : public SourceThread {
   std::string_view mode() const override { return "live"; }
   const Description& description() const override { return description_; }
   void stop() override;
-  /// "run.csv" and "motion.glb" of what was recorded, once the recording has ended.
+  /// Provides "run.csv" and "motion.glb" of a recording, once it has ended.
   void fetch(std::string_view name, std::function<void(std::optional<Download>)> done) override;
 
-  /// As RobotState's; only while the source does not run.
+  /// See RobotState::take_controller(). Call it only while the source is not running.
   auto take_controller() { return state_.take_controller(); }
 
  protected:
@@ -59,25 +60,25 @@ class LiveSource : public SourceThread {
   std::string status_members() const override;
 
   RobotState& state() { return state_; }
-  /// Appends the present state, when recording.
+  /// Appends the current state to the recording, if it is on.
   void record();
 
  private:
-  /// Whether a step or a search came to its end: not where the source is to stop meanwhile. The
-  /// state is then that before it.
+  /// Runs a step or solver. Returns false if the source is stopped meanwhile; the state is then
+  /// that before the call.
   bool complete(void (RobotState::*work)());
   void record(bool on);
   void go_back(std::int64_t number);
 
   RobotState state_;
-  Timeline timeline_;  ///< empty where a script steps
+  Timeline timeline_;  ///< empty if a script steps
   Description description_;
   std::function<std::unique_ptr<Source>()> gallery_;
-  std::shared_ptr<Recording> recording_;  ///< under way, or ended
+  std::shared_ptr<Recording> recording_;  ///< running or ended
   bool recording_on_ = false;
-  std::mutex mutex_;  // of saved_
+  std::mutex mutex_;  // protects saved_
   std::shared_ptr<const Recording> saved_;
-  boost::asio::thread_pool writer_{1};  ///< makes files of what was recorded
+  boost::asio::thread_pool writer_{1};  ///< makes files of recordings
 };
 
 }  // namespace sinew::viewer

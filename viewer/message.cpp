@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 
 constexpr int kDeepest = 2;  // an object of numbers, texts and lists
 constexpr std::size_t kLongestName = 256;
-constexpr double kFarthest = 1e4;  // m or rad; of anything that a browser names
+constexpr double kFarthest = 1e4;  // m or rad, bound of all numbers from a browser
 constexpr double kLargestId = 9007199254740992.0, kLargestIndex = 2147483647.0;
 
 [[noreturn]] void fail(ErrorKind kind, const std::string& item, const std::string& message,
@@ -29,7 +29,7 @@ constexpr double kLargestId = 9007199254740992.0, kLargestIndex = 2147483647.0;
   throw Error(kind, {.item = item}, message, remedy);
 }
 
-/// Parses strictly: no key twice in an object, no deeper than kDeepest, nothing after the object.
+/// Strict parser: refuses duplicate keys, nesting deeper than kDeepest, and text after the object.
 Json parse(std::string_view text) {
   std::vector<std::set<std::string>> keys;
   const auto watch = [&](int depth, Json::parse_event_t event, Json& value) {
@@ -71,7 +71,7 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
-/// The keys of a message, each taken once; what is left over is an error.
+/// The keys of a message. Each is taken once; remaining keys are an error.
 class Fields {
  public:
   explicit Fields(Json object) : object_(std::move(object)) {

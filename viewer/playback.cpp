@@ -42,11 +42,11 @@ void Playback::put_body(const sim::Observable& what, const std::vector<double>& 
       mechanics::as<const mechanics::HasCoordinates>(simulation_.body(body)) != nullptr;
   if (what.quantity != (of_coordinates ? "coordinates" : "positions")) return;
   std::vector<double>& own = state.bodies[static_cast<std::size_t>(body)];
-  std::ranges::fill(own, 0.0);  // a moment at rest
+  std::ranges::fill(own, 0.0);  // a state at rest
   std::ranges::copy(numbers, own.begin());
 }
 
-// A rigid body is recorded by its position and rotation.
+// Sets the poses of rigid bodies, which are recorded as position and rotation.
 void Playback::put_poses(const RecordedState& recorded, sim::State& state) const {
   for (int body = 0; body < simulation_.bodies(); ++body) {
     const auto* rigid = mechanics::as<const mechanics::HasPose>(simulation_.body(body));
@@ -67,7 +67,7 @@ void Playback::put_poses(const RecordedState& recorded, sim::State& state) const
   }
 }
 
-// An actuator of a replay has the command that it had, whether a controller or the scene gave it.
+// Sets an actuator. Its command is the recorded one, whether from a controller or the scene.
 void Playback::put_actuator(const sim::Observable& what, double number, sim::State& state) {
   const int index = simulation_.model().actuator_index(what.owner);
   const auto place = static_cast<std::size_t>(index);

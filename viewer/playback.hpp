@@ -1,5 +1,5 @@
 /// @file
-/// Recorded moments of a run, shown in place of a simulation's own.
+/// Shows recorded states of a run on a simulation.
 #pragma once
 
 #include <cstdint>
@@ -10,26 +10,26 @@
 
 namespace sinew::viewer {
 
-/// A moment of a recorded run.
+/// The state of a recorded run at one time.
 struct RecordedState {
-  /// What was recorded of an observable.
+  /// The recorded values of an observable.
   struct Value {
-    std::size_t observable;       ///< of the list that is played back into
-    std::vector<double> numbers;  ///< as many as it has
+    std::size_t observable;       ///< index in the list of the playback
+    std::vector<double> numbers;  ///< (size of the observable,)
   };
-  std::vector<Value> values;  ///< at least positions, or an arm's coordinates, efforts and motions
+  std::vector<Value> values;  ///< at least positions (of an arm coordinates), efforts and motions
   std::int64_t step = 0;
 };
 
-/// Puts recorded moments in place of the present one.
+/// Replaces the state of a simulation by recorded states.
 class Playback {
  public:
   /// @param simulation,observables of one robot; must outlive this.
   Playback(sim::Simulation& simulation, sim::Observables& observables)
       : simulation_(simulation), observables_(observables) {}
 
-  /// What was not recorded is computed anew, with velocities of zero. Throws Error(malformed-file)
-  /// for numbers of another robot.
+  /// Shows a recorded state. Values that were not recorded are computed with zero velocities.
+  /// Throws Error(malformed-file) for numbers of another robot.
   void show(const RecordedState& recorded);
 
  private:

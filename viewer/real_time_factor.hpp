@@ -1,5 +1,5 @@
 /// @file
-/// How fast simulated time runs beside the clock.
+/// Measures the real-time factor.
 #pragma once
 
 #include <chrono>
@@ -8,20 +8,20 @@
 
 namespace sinew::viewer {
 
-/// The mean of the last half second, or of one step where that takes longer.
+/// The real-time factor, averaged over the last half second or, if that is longer, one step.
 class RealTimeFactor {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
   void restart() { samples_.clear(); }
 
-  /// @param now of the clock. @param simulated time then, s.
+  /// Adds a sample. @param now clock time. @param simulated time, s.
   void add(Time now, double simulated) {
     samples_.push_back({now, simulated});
     while (samples_.size() > 2 && now - samples_[1].clock >= kWindow) samples_.pop_front();
   }
 
-  /// Simulated seconds a second; NaN until there is enough to measure.
+  /// Simulated seconds per second; NaN until there are enough samples.
   double value() const {
     if (samples_.empty()) return std::numeric_limits<double>::quiet_NaN();
     const Sample &first = samples_.front(), &last = samples_.back();

@@ -37,7 +37,7 @@ std::size_t Recording::bytes() const { return values_.size() * sizeof(double) + 
 bool Recording::add(const Frame& frame) {
   full_ = full_ || (values_.size() + columns_) * sizeof(double) > limits::kRecordedRows;
   if (full_) return false;
-  // A frame's step may be one that was seen already: after a reset, or when nothing went on.
+  // The step of a frame may not be new, after a reset or in a paused run.
   if (rows_ == 0) first_time_ = frame.time;
   last_time_ = frame.time;
   values_.push_back(frame.time);

@@ -1,5 +1,5 @@
 /// @file
-/// A run that the page records, to be saved as a table and as a motion.
+/// A recording started from the page, to be saved as a table and as a motion.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,14 @@
 
 namespace sinew::viewer {
 
-/// Keeps every step's numbers, and the motion as record::MotionRecorder does. The table is full
-/// when its memory is (see limits.hpp).
+/// Records the numbers of every step, and the motion by record::MotionRecorder. The memory of the
+/// table is limited (see limits.hpp).
 class Recording {
  public:
-  /// @param shown what frames that are added belong to; outlives the recording. @param name of
-  ///   the motion.
+  /// @param shown description of the frames, must outlive this. @param name of the motion.
   Recording(const Description& shown, std::string name);
 
-  /// Appends a step. False, and nothing appended, when full.
+  /// Appends a step. Returns false, and appends nothing, if the table is full.
   bool add(const Frame& frame);
 
   bool full() const { return full_; }
@@ -28,8 +27,8 @@ class Recording {
   double seconds() const { return last_time_ - first_time_; }  ///< s, simulated
   std::size_t bytes() const;
 
-  /// `time [s]`, `step`, every signal as "tip.x [m]", targets as "tip.target_x [m]" (nan: none),
-  /// and the force of the hand; one row a step.
+  /// The table with one row per step: `time [s]`, `step`, every signal as "tip.x [m]", targets as
+  /// "tip.target_x [m]" (nan: none), and the force of the mouse spring.
   std::string csv() const;
   std::string glb() const { return record::write_glb(motion_.motion()); }
 

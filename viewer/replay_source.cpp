@@ -22,7 +22,7 @@ using Json = nlohmann::json;
 
 fs::path file_of(const fs::path& path) { return fs::is_directory(path) ? path / "run.h5" : path; }
 
-// What a moment cannot be shown without; all formats have it.
+// Whether a state cannot be shown without an observable. All formats have these.
 bool is_needed(const sim::Observable& observable) {
   switch (observable.kind) {
     case sim::ObservableKind::body:
@@ -154,7 +154,7 @@ std::string ReplaySource::status_members() const {
   return fmt::format(R"({{"frame":{},{})", at_, state_.status_members().substr(1));
 }
 
-// At most as many frames as the motion keeps.
+// Reads at most as many frames as the motion keeps.
 std::string ReplaySource::motion() {
   Recording recording(description_, state_.robot().description.name);
   const std::int64_t shown = at_, frames = file_.frames();
@@ -168,7 +168,7 @@ std::string ReplaySource::motion() {
   return recording.glb();
 }
 
-// The run's own table, or its motion; nothing else of its folder.
+// Provides the table of the run or its motion, but no other file of its folder.
 std::optional<Download> ReplaySource::download(std::string_view name) {
   if (name == "motion.glb") return Download{"motion.glb", "model/gltf-binary", motion()};
   if (name != "run.csv") return std::nullopt;

@@ -1,5 +1,5 @@
 /// @file
-/// A recorded run, played again.
+/// Replays a recorded run.
 #pragma once
 
 #include <filesystem>
@@ -13,14 +13,12 @@
 
 namespace sinew::viewer {
 
-/// Shows the states of run.h5 on the robot of the scene that is recorded in it, with the numbers
-/// that were recorded. Fields, and what an older recording lacks, are computed anew from the
-/// states.
+/// A source that shows the states and numbers of a run.h5 on the robot of its recorded scene.
+/// Fields, and numbers that an older recording lacks, are computed from the states.
 class ReplaySource final : public SourceThread {
  public:
-  /// @param path of a run's folder or of its run.h5. @param playing,speed at the start.
-  /// Throws what record::RunFile and scene::build() do, and Error(missing-key) when no states were
-  /// recorded.
+  /// Throws what record::RunFile and scene::build() throw, and Error(missing-key) if no states were
+  /// recorded. @param path of a run's folder or its run.h5. @param playing,speed initially.
   ReplaySource(const std::filesystem::path& path, bool playing, double speed);
   ~ReplaySource() override { end(); }
 
@@ -49,15 +47,15 @@ class ReplaySource final : public SourceThread {
   RobotState state_;
   Description description_;
   struct Series {
-    std::size_t observable;     ///< of state_.observables()
-    std::string dataset;        ///< where it was recorded
-    std::vector<double> small;  ///< (frames, size) all numbers of it where a frame has few
+    std::size_t observable;     ///< index in state_.observables()
+    std::string dataset;        ///< path in the file
+    std::vector<double> small;  ///< (frames, size), kept if a frame has few numbers
   };
   std::vector<Series> series_;
-  std::int64_t at_ = 0;  ///< the frame that is shown
+  std::int64_t at_ = 0;  ///< the shown frame
 };
 
-/// Whether a path is a recorded run: a folder that holds run.h5, or an HDF5 file.
+/// Whether a path is a recorded run: a folder with a run.h5, or an HDF5 file.
 bool is_recorded_run(const std::filesystem::path& path);
 
 }  // namespace sinew::viewer

@@ -43,7 +43,7 @@ RobotState::~RobotState() { release(); }
 sim::Observables RobotState::list_observables() {
   sim::Observables list(*simulation_);
   std::vector<int> effectors(simulation_->model().effectors().size());
-  std::iota(effectors.begin(), effectors.end(), 0);  // any may get a target
+  std::iota(effectors.begin(), effectors.end(), 0);  // any of them may get a target
   inverse::add_controller(
       list, [this] { return controller_; }, effectors);
   list.add({{"real_time_factor",

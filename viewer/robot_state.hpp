@@ -1,5 +1,5 @@
 /// @file
-/// A simulation with its controllers and what a browser has done to it; makes frames of it. Not
+/// A simulation with its controllers and the interactions of a browser. Makes frames. Not
 /// thread-safe: one thread owns it.
 #pragma once
 
@@ -26,20 +26,21 @@
 
 namespace sinew::viewer {
 
-/// Why a run ended before its time.
+/// Why a run stopped early.
 struct StoppedRun {
   std::int64_t step = 0;
   std::string kind, message, remedy;
 };
 
+/// The state of a robot in the view.
 class RobotState {
  public:
-  /// @param robot,simulation what is shown, and what steps; a hand's spring is taken off it at the
-  ///   end. @param first attached now and by reset(); its targets need not be
-  ///   the scene's.
+  /// @param robot to be shown. @param simulation of the robot; the destructor removes the mouse
+  /// spring from it. @param first controller attached now and by reset(); its targets may differ
+  /// from those of the scene.
   RobotState(scene::Robot robot, std::shared_ptr<sim::Simulation> simulation,
              std::optional<scene::SceneController> first);
-  /// A simulation of its own, which nothing steers.
+  /// Makes a simulation of its own, without controller.
   explicit RobotState(const scene::Robot& robot)
       : RobotState(robot, std::make_shared<sim::Simulation>(robot.model, robot.threads()), {}) {}
   ~RobotState();
@@ -51,41 +52,41 @@ class RobotState {
   const sim::Simulation& simulation() const { return *simulation_; }
   double time_step() const { return simulation_->model().step().time_step; }
   const std::optional<StoppedRun>& stopped() const { return stopped_; }
-  /// What is shown in numbers: of the simulation, of its controller and the real-time factor. In a
-  /// replay, what was recorded.
+  /// The observables of the simulation, the controller and the real-time factor. In a replay they
+  /// have the recorded values.
   sim::Observables& observables() { return observables_; }
 
-  /// One step; what it throws is kept as stopped().
+  /// Advances one step. If it throws Error, keeps that as stopped().
   void step();
-  /// While the result lives, step() and settle() tell how far they are.
+  /// While the result exists, step() and settle() report their progress to `watcher`.
   sim::Watched watch(sim::StepWatcher watcher) { return {*simulation_, std::move(watcher)}; }
-  /// The simulation was stepped by others.
+  /// Call it after other code has stepped the simulation.
   void moved() { ++shape_; }
-  /// Shows a controller that others attach and detach: from now on none is attached here.
-  /// @param name,controller null: nothing steers.
+  /// Shows a controller that other code attaches and detaches. From now on, none is attached here.
+  /// @param name,controller to be shown; null: there is none.
   void observe(const std::string& name, inverse::TargetController* controller);
-  /// The controller that is attached, with its name: it stays attached.
+  /// Releases ownership of the controller, which stays attached. Returns it with its name.
   std::pair<std::string, std::unique_ptr<inverse::TargetController>> take_controller();
   void reset();
   void settle();
   void command(const SetCommand& command);
   void choose_controller(const std::optional<std::string>& name);
   void set_target(const SetTarget& target);
-  /// Playback::show().
+  /// See Playback::show().
   void show(const RecordedState& recorded);
   void pull(const Pull& pull);
   void release();
-  /// The present moment, to come back to.
+  /// The current moment, for go_back().
   Moment moment();
-  /// Back to a moment: its state, commands, controller and targets, after which the run goes on bit
-  /// for bit as it did. The hand lets go.
+  /// Restores the state, commands, controller and targets of a moment, and releases the mouse
+  /// spring. The run then continues as it did before, bit for bit.
   void go_back(const Moment& moment);
 
-  /// Everything that is to be seen now.
-  /// @param wishes beside positions. @param real_time_factor is among the signals; NaN: none.
+  /// Makes a frame of the current state.
+  /// @param wishes parts of the frame besides positions. @param real_time_factor signal; NaN: none.
   std::shared_ptr<Frame> frame(const FrameWishes& wishes, double real_time_factor);
-  /// JSON of the status message without what the source itself knows: controller, commands,
-  /// targets, troubles, stopped.
+  /// JSON object with the members of the status message that belong to the robot: controller,
+  /// commands, targets, troubles, stopped.
   std::string status_members() const;
 
  private:
@@ -103,13 +104,13 @@ class RobotState {
   FrameMaker frames_;
   double real_time_factor_ = 0.0;
   std::unique_ptr<inverse::TargetController> own_;
-  inverse::TargetController* controller_ = nullptr;  ///< own_, or one that others look after
+  inverse::TargetController* controller_ = nullptr;  ///< own_, or an observed one
   std::string controller_name_;
   std::optional<scene::SceneController> first_;
   bool observing_ = false;
   std::map<std::string, Vector3> targets_;
-  std::optional<int> pulled_;             ///< body
-  std::shared_ptr<const Acting> acting_;  ///< null: changed since it was last asked for
+  std::optional<int> pulled_;             ///< body with the mouse spring
+  std::shared_ptr<const Acting> acting_;  ///< null if changed since the last moment()
   std::optional<StoppedRun> stopped_;
   std::uint64_t shape_ = 0;
 };

@@ -31,7 +31,7 @@ namespace {
 
 constexpr int kMaxFields = 16;
 constexpr int kUsualPort = 8080;
-constexpr int kPortsToTry = 20;  // after it
+constexpr int kPortsToTry = 20;  // after the usual one
 
 std::string random_hex(int bytes) {
   std::random_device device;
@@ -40,7 +40,7 @@ std::string random_hex(int bytes) {
   return text;
 }
 
-/// Takes as long whatever the first difference.
+/// Compares texts in constant time.
 bool same(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;
@@ -62,7 +62,7 @@ std::string reply(std::optional<std::int64_t> id, const Outcome& outcome) {
 
 }  // namespace
 
-/// Everything that connections share; lives on the server's thread but for what Publisher says.
+/// The shared part of all connections. It is used only on the server's thread, except Publisher.
 class Server::Hub final : public Publisher,
                           public Connections,
                           public Door,
@@ -99,13 +99,13 @@ class Server::Hub final : public Publisher,
     views_.clear();
     status_timer_.reset();
     acceptor_.reset();
-    io_.reset();  // and with it what waits in it, which holds this object
+    io_.reset();  // and its pending operations, which keep this object alive
   }
 
   std::uint16_t port() const { return port_; }
   const std::string& url() const { return url_; }
 
-  // Publisher: any thread.
+  // Publisher, called from any thread.
   void publish(std::shared_ptr<const Frame> frame) override {
     const std::lock_guard lock(mutex_);
     latest_ = std::move(frame);
@@ -232,7 +232,7 @@ class Server::Hub final : public Publisher,
   std::array<std::atomic<int>, kMaxFields> wishes_;
   std::atomic<int> inside_ = 0;  ///< connections that want what is inside
 
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // protects the members below
   std::shared_ptr<const Frame> latest_;
   std::string status_ = "{}";
   std::map<int, Picked> picks_;  ///< by the connections' numbers
@@ -423,7 +423,7 @@ void Server::Hub::receive(ViewConnection& view, const Message& message) {
   try {
     if (const auto* field = std::get_if<ChooseField>(&message.request)) {
       choose_field(view, field->name);
-      source_->submit(message.request, [](const Outcome&) {});  // a robot at rest is shown anew
+      source_->submit(message.request, [](const Outcome&) {});  // a paused robot needs a frame
       return answer({});
     }
     if (const auto* pick = std::get_if<Pick>(&message.request)) {

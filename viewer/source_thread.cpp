@@ -14,7 +14,7 @@ namespace {
 using Seconds = std::chrono::duration<double>;
 
 constexpr Seconds kFrameTime{1.0 / 60.0};
-/// A run that is this far behind the clock lets the clock go.
+/// Lag behind the clock at which a run gives up catching up.
 constexpr Seconds kLargestLag{0.1};
 constexpr double kSlow = 0.9;
 
@@ -113,8 +113,8 @@ bool SourceThread::asked() {
   return stopping_ || !queue_.empty();
 }
 
-// Steps until simulated time has caught up with the clock, a frame's time is over, or something is
-// asked for.
+// Steps until simulated time has caught up with the clock, the time of a frame is over, or a
+// request arrives.
 void SourceThread::catch_up() {
   const auto begin = Clock::now();
   while (playing_) {
@@ -174,7 +174,7 @@ void SourceThread::do_request(const Request& request) {
     restart_clock();
   } else if (!std::holds_alternative<ChooseField>(request) &&
              !std::holds_alternative<Pick>(request) &&
-             !std::holds_alternative<ShowInside>(request)) {  // which the publisher tells
+             !std::holds_alternative<ShowInside>(request)) {  // which the publisher handles
     handle(request);
   }
 }
@@ -189,13 +189,13 @@ void SourceThread::publish() {
   const bool slow = playing_ && speed_ > 0.0 && factor < kSlow * speed_;
   std::string status = fmt::format(R"({{"playing":{},"speed":{},"slow":{},{})", playing_, speed_,
                                    slow, status_members().substr(1));
-  // The status first: whoever has a frame has the status that goes with it.
+  // The status is published first, so that a receiver of the frame has its status.
   if (status != last_status_) {
     last_status_ = status;
     publisher_->publish_status(std::move(status));
   }
   publisher_->publish(frame(wishes, factor));
-  // Sixty a second on average, however late one of them is.
+  // Keeps an average of 60 frames per second, even if one of them is late.
   frame_due_ = std::max(frame_due_, Clock::now() - ticks(kFrameTime)) + ticks(kFrameTime);
   dirty_ = false;
 }

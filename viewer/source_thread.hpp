@@ -1,6 +1,6 @@
 /// @file
-/// A source with a thread of its own that goes on in time with the clock: what running robots and
-/// recorded runs have in common.
+/// A source with a thread of its own, which advances in time with the clock: the common base of
+/// running robots and recorded runs.
 #pragma once
 
 #include <chrono>
@@ -15,48 +15,50 @@
 
 namespace sinew::viewer {
 
-/// Requests are carried out between steps, in the order in which they came. All protected functions
-/// are called on the thread.
+/// Runs a source on a thread. Requests are carried out between steps, in the order of arrival. All
+/// virtual protected functions are called on this thread.
 class SourceThread : public Source {
  public:
   ~SourceThread() override;
   void start(Publisher& publisher) override;
   void stop() override;
   void submit(const Request& request, std::function<void(Outcome)> done) override;
-  /// Does not play until a page has drawn its first frame, so that it sees the run from its start,
-  /// or until it is asked to. Before start().
+  /// Delays playing until a page has drawn its first frame, so that it shows the run from the
+  /// start, or until a page requests it. Call it before start().
   void await_page() { awaits_page_ = true; }
   void fetch(std::string_view name, std::function<void(std::optional<Download>)> done) override;
 
  protected:
-  /// @param playing,speed from the start on; speed 0: as fast as it can.
+  /// @param playing,speed initially; speed 0: as fast as possible.
   SourceThread(bool playing, double speed) : playing_(playing), speed_(speed) {}
 
-  /// Once, after the first frame.
+  /// Called once, after the first frame.
   virtual void begin() {}
   virtual double time() const = 0;       ///< s, simulated
   virtual double time_step() const = 0;  ///< s
-  /// Goes on by one step; false when that is not possible any more.
+  /// Advances by one step; false if that is no longer possible.
   virtual bool advance() = 0;
   /// Carries out a request other than play, pause, step and speed. Throws Error.
   virtual void handle(const Request& request) = 0;
-  /// Throws Error when play and step are refused.
+  /// Throws Error if play and step are to be refused.
   virtual void require_ready() const {}
-  /// @param wishes beside positions. @param real_time_factor NaN: not measured.
+  /// Makes a frame. @param wishes parts besides positions. @param real_time_factor NaN: not
+  /// measured.
   virtual std::shared_ptr<const Frame> frame(const FrameWishes& wishes,
                                              double real_time_factor) = 0;
-  /// JSON object of the status message without playing, speed and slow.
+  /// JSON object with the members of the status message except playing, speed and slow.
   virtual std::string status_members() const = 0;
-  /// "run.csv" and the like; none unless overridden.
+  /// A file such as "run.csv"; none unless overridden.
   virtual std::optional<Download> download(std::string_view) { return std::nullopt; }
 
   void pause() { playing_ = false; }
-  /// Whether end() waits for the thread.
+  /// Whether the thread is to end.
   bool stopping();
   Publisher& publisher() { return *publisher_; }
-  /// Time was changed other than by advance().
+  /// Call it after time has changed other than by advance().
   void restart_clock();
-  /// Ends the thread; for destructors of classes whose functions it calls.
+  /// Ends the thread. Destructors of derived classes call it, since the thread calls their
+  /// functions.
   void end();
 
  private:
@@ -78,15 +80,15 @@ class SourceThread : public Source {
 
   Publisher* publisher_ = nullptr;
   std::thread thread_;
-  std::mutex mutex_;  // of the next three
+  std::mutex mutex_;  // protects the next three members
   std::condition_variable wake_;
   std::deque<Item> queue_;
   bool stopping_ = false;
 
-  // The thread's own.
+  // Used only on the thread.
   bool playing_;
   double speed_;
-  bool dirty_ = true;  ///< something has changed since the last frame
+  bool dirty_ = true;  ///< whether something has changed since the last frame
   bool awaits_page_ = false;
   Clock::time_point clock_start_, frame_due_;
   double time_start_ = 0.0;  ///< s, simulated

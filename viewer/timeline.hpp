@@ -1,5 +1,5 @@
 /// @file
-/// The last seconds of a run, to go back to and to go on from.
+/// The last seconds of a run, to which the user can go back.
 #pragma once
 
 #include <cstddef>
@@ -19,43 +19,43 @@
 
 namespace sinew::viewer {
 
-/// What acts on a run beside its state. Moments between which nothing of it has changed share one.
+/// The inputs of a run besides its state. Moments between which these have not changed share one.
 struct Acting {
-  sim::Inputs inputs;                                ///< without the hand's spring
-  std::string controller;                            ///< its name; empty without one
-  std::optional<inverse::InverseSettings> settings;  ///< of the controller, targets included
-  std::map<std::string, Vector3> targets;            ///< those that the page has set
+  sim::Inputs inputs;                                ///< without the mouse spring
+  std::string controller;                            ///< name; empty: none
+  std::optional<inverse::InverseSettings> settings;  ///< of the controller, including targets
+  std::map<std::string, Vector3> targets;            ///< set by the page
 };
 
-/// All that decides how a run goes on from here.
+/// Everything that determines how a run continues from one time.
 struct Moment {
   sim::State state;
   std::shared_ptr<const Acting> acting;
   double time = 0.0;  ///< s, simulated
 };
 
-/// Moments of a run, the oldest dropped when they span too long a time or take too much memory (see
-/// limits.hpp). They are numbered from 0 since the start.
+/// The moments of a run, numbered from 0. The oldest are dropped if they span too long a time or
+/// take too much memory (see limits.hpp).
 class Timeline {
  public:
-  /// Whether the present is to be kept: there are thirty moments a simulated second.
+  /// Whether a moment at this time (s) is to be kept: there are 30 moments per simulated second.
   bool due(double time) const;
-  /// Appends the present. Moments after the one that was gone back to are dropped, for the run has
-  /// taken another way; so is one of the same step.
+  /// Appends a moment. It drops moments after the shown one, since the run has taken another path,
+  /// and a moment of the same step.
   void keep(Moment moment);
-  /// The moment with a number, or the nearest that is kept; it is the one shown from now on. There
-  /// must be one.
+  /// Goes back to the moment with a number or the nearest one that is kept, which is shown from now
+  /// on. The timeline must not be empty.
   const Moment& go_back(std::int64_t number);
-  /// The run goes on from the moment that is shown.
+  /// Continues the run from the shown moment; drops the moments after it.
   void go_on();
   void clear();
 
   bool empty() const { return moments_.empty(); }
-  /// Whether a moment before the latest is shown.
+  /// Whether the shown moment is earlier than the latest.
   bool in_past() const { return shown_.has_value(); }
   std::size_t size() const { return moments_.size(); }
   std::size_t bytes() const { return bytes_; }  ///< of the states
-  /// @param time now, s.
+  /// The timeline as sent to the page. @param time current time, s.
   TimelineFrame describe(double time) const;
 
  private:
@@ -63,8 +63,8 @@ class Timeline {
   void drop_latest();
 
   std::deque<Moment> moments_;
-  std::int64_t first_ = 0;             ///< number of the oldest
-  std::optional<std::int64_t> shown_;  ///< none: the present
+  std::int64_t first_ = 0;             ///< number of the oldest moment
+  std::optional<std::int64_t> shown_;  ///< none: the current state
   std::size_t bytes_ = 0;
 };
 

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// A limit counts as reached within this part of the range.
+/// Distance from a limit at which it counts as reached, relative to the range.
 constexpr double kAtLimit = 1e-6;
 
 bool at(double value, double limit, double scale) {
@@ -47,7 +47,7 @@ void add_limits(const sim::ActuatorModel& model, const sim::ActuatorState& state
                            fmt::format("{} is at its limit, {:.3g} {}", model.words().motion.name,
                                        state.motion, model.words().motion.unit)));
   }
-  // A cable that nobody pulls, and the antagonist of one that is pulled, may well be slack.
+  // A cable without command, or the antagonist of a pulled cable, may be slack.
   if (state.slack && state.command.signal.value(time) != 0.0) {
     list.push_back(trouble("info", "slack", model.name, "the cable is slack"));
   }

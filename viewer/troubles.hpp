@@ -1,5 +1,5 @@
 /// @file
-/// What the user of a view should know of a robot's present state.
+/// Problems in a robot's current state that the user of a view should know.
 #pragma once
 
 #include <string>
@@ -15,9 +15,9 @@ class Simulation;
 
 namespace sinew::viewer {
 
-/// Limits that are reached, slack cables, what the controller cannot do, and a flagged step: each
-/// with level, kind, subject and text. @param simulation of the robot, as it is now.
-/// @param controller,name what steers, null: nothing.
+/// Lists reached limits, slack cables, problems of the controller and a flagged step, each with
+/// level, kind, subject and text. @param simulation in its current state.
+/// @param controller,name of the controller; null: none.
 nlohmann::json list_troubles(const sim::Simulation& simulation,
                              const inverse::TargetController* controller, const std::string& name);
 

@@ -147,7 +147,8 @@ void ViewConnection::pump() {
                              field_,
                              pick_,
                              inside_};
-    // A frame from before the inside was asked for lacks it: the next one has it, moved or not.
+    // An older frame may lack the requested interior. The next one is then sent in full, even
+    // without motion.
     last_shape_ = inside_ && !last_frame_->inside ? kNoShape : last_frame_->shape;
     encode_frame(*last_frame_, choice, bytes_);
     socket_.binary(true);
@@ -170,7 +171,7 @@ void ViewConnection::close(websocket::close_code code, const std::string& reason
   closing_ = true;
   hello_timer_.cancel();
   auto self = shared_from_this();
-  // A control frame holds 123 bytes of reason.
+  // The reason in a control frame is limited to 123 bytes.
   socket_.async_close({code, reason.substr(0, 120)}, [self](beast::error_code) { self->end(); });
 }
 

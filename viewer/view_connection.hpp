@@ -1,5 +1,5 @@
 /// @file
-/// One browser's WebSocket: messages in, texts and the latest frame out.
+/// The WebSocket of one browser: receives messages, and sends texts and the latest frame.
 #pragma once
 
 #include <chrono>
@@ -23,7 +23,7 @@ namespace sinew::viewer {
 
 class ViewConnection;
 
-/// What a connection tells whoever looks after all of them. All on the server's thread.
+/// The owner of all connections, which they notify. All functions run on the server's thread.
 class Connections {
  public:
   virtual ~Connections() = default;
@@ -33,23 +33,23 @@ class Connections {
   virtual std::uint16_t generation() const = 0;
 };
 
-/// Lives as long as something is under way on its socket.
+/// A WebSocket connection. It exists as long as operations on its socket are pending.
 class ViewConnection : public std::enable_shared_from_this<ViewConnection> {
  public:
   using Socket = boost::beast::websocket::stream<boost::beast::tcp_stream>;
 
-  /// @param stream of an HTTP connection that asked for a WebSocket. @param owner is told of what
-  /// comes; outlives the connection. @param number tells connections apart.
+  /// @param stream of an HTTP connection that requested a WebSocket. @param owner is notified of
+  /// messages. @param number identifies the connection.
   ViewConnection(boost::beast::tcp_stream&& stream, std::shared_ptr<Connections> owner, int number);
 
   void accept(const boost::beast::http::request<boost::beast::http::empty_body>& request);
-  /// Queues a text; a reader too slow for its queue is closed.
+  /// Queues a text. Closes the connection if its queue is too long.
   void send(std::string text);
   /// Queues bytes that are never dropped (surfaces).
   void send(std::shared_ptr<const std::vector<std::byte>> bytes);
-  /// The frame to be sent next; replaces one that was not sent yet.
+  /// Sets the frame to be sent next. It replaces a frame that has not been sent yet.
   void offer(std::shared_ptr<const Frame> frame);
-  /// Another robot is shown: nothing that was sent before counts.
+  /// Forgets the frames sent so far, since another robot is shown.
   void forget_frames() {
     last_shape_ = kNoShape;
     frame_.reset();
@@ -65,9 +65,9 @@ class ViewConnection : public std::enable_shared_from_this<ViewConnection> {
   bool inside() const { return inside_; }
   void show_inside(bool on) {
     inside_ = on;
-    last_shape_ = kNoShape;  // positions of what is inside are to come
+    last_shape_ = kNoShape;  // positions of the interior are still to be sent
   }
-  int pending = 0;  ///< requests not yet answered
+  int pending = 0;  ///< number of unanswered requests
 
  private:
   using Text = std::string;

@@ -1,5 +1,5 @@
 /// @file
-/// What planning and reach share of a scene's arm.
+/// Limits and inputs of a scene's arm, for the commands plan and reach.
 #pragma once
 
 #include "sinew/plan/task.hpp"
@@ -8,10 +8,10 @@
 
 namespace sinew::cli {
 
-/// The scene's limits, those left out as none.
+/// The limits of the scene's arm; omitted ones are +-kNoBound.
 plan::ArmLimits limits_of(const ArmScene& scene);
 
-/// Throws Error(no-actuators) where no torque drives the arm.
+/// Throws Error(no-actuators) if no torque drives the arm.
 void require_inputs(const ArmScene& scene);
 
 }  // namespace sinew::cli

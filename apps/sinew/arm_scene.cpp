@@ -87,7 +87,7 @@ std::vector<std::string> left_out(const SceneDescription& scene, const std::stri
   return names;
 }
 
-// Actuators as the arm's inputs, with their limits; those of several on one bend are all kept.
+// Makes actuators the inputs of the arm. The limits of several actuators on one bend all apply.
 void take_inputs(ArmScene& scene, pcc::ArmSettings settings,
                  const std::vector<const ActuatorDescription*>& torques) {
   const pcc::Arm plain(settings);
@@ -117,7 +117,7 @@ void take_inputs(ArmScene& scene, pcc::ArmSettings settings,
 
 ArmScene load_arm_scene(const ArmSceneOptions& options) {
   ArmScene result;
-  // Built as it would be to run, so that what is wrong in it is said here as it is there.
+  // Builds the whole scene, so that it gives the same errors as when it is run.
   result.description = scene::load(options.file, options.overrides).description;
   try {
     const BodyDescription& body = choose(result.description, options.body);

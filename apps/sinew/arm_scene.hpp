@@ -1,5 +1,5 @@
 /// @file
-/// A constant-curvature arm of a scene, as planning and identification take it.
+/// Reads a constant-curvature arm from a scene, for planning and identification.
 #pragma once
 
 #include <filesystem>
@@ -15,33 +15,32 @@ namespace sinew::cli {
 
 class Command;
 
-/// What the command line says about a scene with an arm.
+/// Command-line options for a scene with an arm.
 struct ArmSceneOptions {
   std::filesystem::path file;
   std::vector<std::string> overrides;  ///< "path=value"
-  std::string body;                    ///< empty: the only arm
-  bool takes_contacts = false;         ///< the command makes use of contacts with the arm
+  std::string body;                    ///< name of the arm; empty: the only arm
+  bool takes_contacts = false;         ///< whether the command uses contacts of the arm
 };
 
-/// The arm alone: its inputs are the scene's actuators of type torque, in the scene's order.
+/// An arm without the rest of its scene. Its inputs are the scene's actuators of type torque, in
+/// their order.
 struct ArmScene {
   scene::SceneDescription description;
   std::shared_ptr<const pcc::Arm> arm;
   std::vector<std::string> inputs;         ///< names of the actuators
-  VectorX torque_lower, torque_upper;      ///< (inputs,) N m; without a limit +-infinity
-  VectorX torque_rate;                     ///< (inputs,) N m/s; likewise
+  VectorX torque_lower, torque_upper;      ///< (inputs,) N m; +-infinity without limit
+  VectorX torque_rate;                     ///< (inputs,) N m/s; infinity without limit
   VectorX angle_lower, angle_upper, rate;  ///< (coordinates,) rad, rad/s; likewise
-  std::vector<std::string> left_out;       ///< what else acts on the arm, "cable 'pull'"
+  std::vector<std::string> left_out;       ///< whatever else acts on the arm: "cable 'pull'"
 };
 
-/// Reads a scene and takes its arm. Throws what scene::load() does, and Error(unknown-name) where
-/// the body is none of the scene's, Error(wrong-type) where it is no arm or the scene has none,
-/// Error(bad-argument) where it has several and none was named.
-/// @param options see there.
+/// Reads a scene and extracts its arm. Throws what scene::load() throws, and Error: unknown-name
+/// (no such body), wrong-type (the body is not an arm, or the scene has none), bad-argument (the
+/// scene has several arms, and none was named). @param options of the command line.
 ArmScene load_arm_scene(const ArmSceneOptions& options);
 
-/// Says what of the scene a command does not take into account, if anything.
-/// @param scene which.
+/// Prints the parts of the scene that the command ignores, if any. @param scene of the arm.
 void print_left_out(const ArmScene& scene);
 
 /// Adds SCENE, --set and --body to a command.

@@ -1,4 +1,4 @@
-// sinew bench: how long the stages of a step take, without recording.
+// sinew bench: times the stages of a step, without recording.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,7 +32,7 @@ namespace sinew::cli {
 namespace {
 
 constexpr int kMaxSteps = 10'000'000;
-constexpr int kWarmUp = 20;           // steps, where no target says how long a turn is
+constexpr int kWarmUp = 20;           // steps, if no target defines the duration of a turn
 constexpr double kEigenBudget = 5.0;  // s, about
 
 struct BenchOptions {
@@ -43,7 +43,7 @@ struct BenchOptions {
   bool compare_eigen = false;
 };
 
-// What was measured; times in s.
+// The measurements; times in s.
 struct Samples {
   std::array<std::vector<double>, sim::kStageCount + 1> stages;  // the last one is the whole step
   double error_sum = 0.0, error_max = 0.0;                       // m or rad
@@ -63,7 +63,7 @@ const char* stage_name(std::size_t stage) {
   return stage < sim::kStageCount ? sim::kStageNames[stage] : "total";
 }
 
-// Which actuators are slack or stand at a limit: the part of the law's active set that one can see.
+// Reads which actuators are slack or at a limit, which is the visible part of the active set.
 void read_active_set(const sim::Simulation& simulation, std::vector<int>& active) {
   active.clear();
   for (std::size_t a = 0; a < simulation.model().actuators().size(); ++a) {
@@ -113,7 +113,7 @@ Samples measure(const BenchOptions& options, Session& session, int warm_up) {
   for (auto& stage : samples.stages) stage.reserve(static_cast<std::size_t>(options.steps));
   try {
     measure_steps(options, session, warm_up, samples);
-  } catch (const Interrupted&) {  // what was measured counts
+  } catch (const Interrupted&) {  // results so far are kept
   }
   if (!options.compare_eigen || samples.stages.back().empty()) return samples;
   const double once = eigen_factorisation_times(session.simulation(), 1).front();

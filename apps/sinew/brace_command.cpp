@@ -1,4 +1,4 @@
-// sinew brace: where an arm leans on what is around it, and how much steadier its tip is.
+// sinew brace: finds where an arm can lean on an object, and how much steadier its tip then is.
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -44,7 +44,7 @@ struct BraceOptions {
   std::string out, plot;
 };
 
-/// A name of a pair of surfaces, or one coefficient, or two.
+/// Parses friction: the name of a pair of surfaces, one coefficient, or two.
 plan::FrictionRange friction_of(const std::string& text) {
   if (text.find_first_of("0123456789") == std::string::npos) return plan::friction_range(text);
   const std::vector<double> values = parse_list(text, dimension::kNone, -1, {.item = "--friction"});
@@ -54,7 +54,7 @@ plan::FrictionRange friction_of(const std::string& text) {
               "write 0.6, \"0.6 0.9\", silicone-on-steel or coated-rigid");
 }
 
-/// Surfaces of the scene's contacts with the arm; their names.
+/// The surfaces of the scene's contacts with the arm, and their names.
 std::vector<std::string> take_objects(const BraceOptions& options, const ArmScene& scene,
                                       BraceTask& task) {
   std::vector<std::string> names;
@@ -215,7 +215,7 @@ int find_and_carry_out(const BraceOptions& options) {
   require_range("--segment", options.segments, 0, scene.arm->segments());
   std::vector<std::string> names;
   const BraceTask task = task_of(options, scene, names);
-  static_cast<void>(run_settings(options));  // what is wrong is said before the search
+  static_cast<void>(run_settings(options));  // reports errors before the search
   print_left_out(scene);
   const Brace brace = search(options, scene, task);
   print_brace(brace, task, names);
@@ -246,7 +246,7 @@ void add_brace(CommandLine& line) {
   Command command =
       line.add_command("brace", "Find where an arm can lean on its environment to steady its tip");
   const auto options = std::make_shared<BraceOptions>();
-  options->scene.takes_contacts = true;  // its objects
+  options->scene.takes_contacts = true;  // contacts are its objects
   add_arm_scene_options(command, options->scene);
   command.add_option("--goal", options->goal, "Goal of the tip, e.g. \"5 0 -53 cm\"")
       .required()

@@ -16,7 +16,7 @@ using plan::Brace;
 using plan::BraceRun;
 using plan::BraceTask;
 
-constexpr int kPosePoints = 8;  // a segment, of a drawn pose
+constexpr int kPosePoints = 8;  // per segment of a drawn pose
 
 using Json = nlohmann::ordered_json;
 
@@ -49,7 +49,7 @@ Json object_json(const constraint::SmoothSurface& surface, const std::string& na
   return result;
 }
 
-/// The arm's axis when the run was at a time.
+/// The axis of the arm at a time of the run.
 Json pose_json(const ArmScene& scene, const BraceRun& run, const char* label, double time) {
   pcc::ArmEquations equations(scene.arm);
   Eigen::Index row = 0;

@@ -1,5 +1,5 @@
 /// @file
-/// What `sinew brace` writes.
+/// The output of `sinew brace`.
 #pragma once
 
 #include <cstdint>
@@ -14,17 +14,17 @@
 
 namespace sinew::cli {
 
-/// The same disturbance with the brace and without.
+/// Two runs under the same disturbance: with the brace and without.
 struct BraceTrial {
   std::uint64_t seed = 0;
   plan::BraceRun braced, bare;
 };
 
-/// A run as CSV, a row a step. @param scene of the arm. @param run of it.
+/// A run as CSV, with one row per step. @param scene of the arm. @param run of the arm.
 std::string brace_table(const ArmScene& scene, const plan::BraceRun& run);
 
-/// The figures. @param scene of the arm. @param task,names objects and what they are called.
-/// @param brace found or not. @param trials of it.
+/// The results as JSON. @param scene of the arm. @param task that was solved. @param names of its
+/// objects. @param brace found or not. @param trials of the brace.
 nlohmann::ordered_json brace_json(const ArmScene& scene, const plan::BraceTask& task,
                                   const std::vector<std::string>& names, const plan::Brace& brace,
                                   const std::vector<BraceTrial>& trials);

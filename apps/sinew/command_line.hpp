@@ -1,6 +1,6 @@
 /// @file
-/// The program's command line: commands, their options, and what each does. CLI11, which costs
-/// seconds in every source that includes it, is named in the source of this header alone.
+/// The command line of the program: commands, their options and actions. Only the source of this
+/// header includes CLI11, which adds seconds to the compilation of every source that includes it.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ class Option;
 
 namespace sinew::cli {
 
-/// What a chosen command does; returns the exit code.
+/// The action of a command; returns the exit code.
 using Action = std::function<int()>;
 
 /// An option or a positional argument of a command.
@@ -28,24 +28,25 @@ class Option {
   explicit Option(CLI::Option* option) : option_(option) {}
 
   Option& required(bool needed = true);
-  /// @param name what help calls the value: "FILE".
+  /// @param name of the value in the help: "FILE".
   Option& type_name(const std::string& name);
-  /// @param separator between the values of one argument.
+  /// @param separator of the values in one argument.
   Option& delimiter(char separator);
-  /// @param allowed whether it takes all arguments that follow.
+  /// @param allowed whether the option takes all arguments that follow.
   Option& allow_extra_args(bool allowed);
 
  private:
   CLI::Option* option_;
 };
 
-/// One command. Values are written when the command line is read, and must live until then.
+/// A command. Values of its options are set when the command line is parsed, and must exist until
+/// then.
 class Command {
  public:
   Command(CLI::App* app, Action* action) : app_(app), action_(action) {}
 
-  /// @param names "-o,--out", or "FILE" for a positional argument. @param value keeps what it holds
-  /// unless the option is given. @param help one line.
+  /// Adds an option. @param names "-o,--out", or "FILE" for a positional argument. @param value
+  /// unchanged unless the option is given. @param help one line.
   /// @{
   Option add_option(const std::string& names, std::string& value, const std::string& help);
   Option add_option(const std::string& names, std::filesystem::path& value,
@@ -62,13 +63,13 @@ class Command {
                     const std::string& help);
   /// @}
   Option add_flag(const std::string& names, bool& value, const std::string& help);
-  /// @param text behind the options in the command's help.
+  /// Sets the text after the options in the command's help. @param text of any length.
   void footer(const std::string& text);
-  /// Left out of the program's help.
+  /// Hides the command in the program's help.
   void hide();
-  /// Takes any arguments, known or not.
+  /// Accepts unknown arguments.
   void allow_extras();
-  /// @param action what the command does.
+  /// Sets the action of the command. @param action called if the command is chosen.
   void set_action(Action action);
 
  private:
@@ -76,37 +77,37 @@ class Command {
   Action* action_;
 };
 
-/// An option as help tells of it.
+/// An option as described in the help.
 struct OptionWords {
   std::vector<std::string> names;  ///< "--out", "-o"
   std::string description;
   bool takes_value = false;
 };
-/// A command likewise.
+/// A command as described in the help.
 struct CommandWords {
   std::string name, description;
   std::vector<OptionWords> options;
 };
 
-/// See the file.
+/// The command line of the program.
 class CommandLine {
  public:
-  /// @param description,version,footer of the program's help and of --version.
+  /// @param description,version,footer texts of the help and of --version.
   CommandLine(const std::string& description, const std::string& version,
               const std::string& footer);
   ~CommandLine();
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
 
-  /// @param name of the command. @param description one line.
+  /// Adds a command. @param name of the command. @param description one line.
   Command add_command(const std::string& name, const std::string& description);
 
-  /// The commands of the program's help, and their options.
+  /// The commands in the program's help, with their options.
   std::vector<CommandWords> commands() const;
 
-  /// Reads the arguments of main() and does what the chosen command does; prints help or version
-  /// where that is asked for. Returns the exit code. Throws Error for a wrong command line:
-  /// unknown commands and options with the nearest known one, missing and superfluous arguments.
+  /// Parses the arguments of main() and runs the chosen command, or prints the help or version.
+  /// Returns the exit code. Throws Error for an invalid command line: unknown commands and options
+  /// (naming the nearest known one), missing and superfluous arguments.
   int run(int argc, const char* const* argv);
 
  private:

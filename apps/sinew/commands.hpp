@@ -1,6 +1,6 @@
 /// @file
-/// The commands of the program, one a file. Each adds itself to the command line and runs when it
-/// was chosen; what goes wrong is thrown as Error.
+/// The commands of the program, each in a file of its own. Each function adds its command to the
+/// command line. Actions of commands throw Error.
 #pragma once
 
 #include "command_line.hpp"
@@ -8,7 +8,7 @@
 namespace sinew::cli {
 
 /// @name Commands
-/// @param line to add to.
+/// @param line to which the command is added.
 /// @{
 void add_run(CommandLine& line);
 void add_bench(CommandLine& line);

@@ -14,7 +14,8 @@ namespace {
 
 using Choices = std::map<std::string, std::vector<std::string>>;
 
-/// In single quotes, as all three shells take it. @param escape that stands for a quote within.
+/// Quotes a text with single quotes, for all three shells. @param escape replaces quotes in the
+/// text.
 std::string quoted(std::string_view text, std::string_view escape) {
   std::string result = "'";
   for (const char c : text) {
@@ -66,7 +67,7 @@ complete -o filenames -F _sinew sinew
                      values, names, options);
 }
 
-/// WORD:DESCRIPTION of zsh's _describe.
+/// An argument WORD:DESCRIPTION for zsh's _describe.
 std::string zsh_entry(const std::string& word, const std::string& description) {
   std::string plain = word;
   for (std::size_t at = 0; (at = plain.find(':', at)) != std::string::npos; at += 2) {

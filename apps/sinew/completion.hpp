@@ -1,5 +1,5 @@
 /// @file
-/// Scripts by which shells complete commands, options, choices and file names.
+/// Scripts with which shells complete commands, options, choices and file names.
 #pragma once
 
 #include <map>
@@ -11,13 +11,13 @@
 
 namespace sinew::cli {
 
-/// "bash", "zsh", "fish".
+/// The supported shells: "bash", "zsh", "fish".
 std::span<const char* const> completed_shells();
 
-/// @param shell one of completed_shells(). Throws Error(unknown-choice) for another one.
-/// @param commands of the program.
-/// @param choices of options, and of commands' arguments, that take one of several words:
-///   {"--shape", {"block", "cone"}}, {"completion", {"bash"}}.
+/// The completion script of a shell. Throws Error(unknown-choice) for an unsupported shell.
+/// @param shell one of completed_shells(). @param commands of the program.
+/// @param choices words of options and command arguments that take one of several words:
+/// {"--shape", {"block", "cone"}}, {"completion", {"bash"}}.
 std::string completion_script(const std::string& shell, const std::vector<CommandWords>& commands,
                               const std::map<std::string, std::vector<std::string>>& choices);
 

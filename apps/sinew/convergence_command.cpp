@@ -1,4 +1,4 @@
-// sinew convergence: what the mesh of a scene costs in accuracy, from Python.
+// sinew convergence: the discretisation error of a scene's mesh, in Python.
 #include <memory>
 #include <optional>
 #include <string>

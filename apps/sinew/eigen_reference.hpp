@@ -1,5 +1,5 @@
 /// @file
-/// The yardstick of `sinew bench --compare-eigen`.
+/// The reference factorisation of `sinew bench --compare-eigen`.
 #pragma once
 
 #include <vector>
@@ -8,11 +8,10 @@
 
 namespace sinew::cli {
 
-/// Seconds that Eigen's SimplicialLDLT (AMD ordering, lower triangle of scalars) takes for its
-/// numeric factorisation alone, analysis excluded, of the matrix that a step at the simulation's
-/// present state factorises, on this thread; all bodies together.
-/// @param simulation at rest between two steps. @param repeats how often to time; one more runs
-/// first.
+/// Times Eigen's SimplicialLDLT (AMD ordering, lower triangle of scalars) on the matrix of a step
+/// at the current state, for all bodies together, on this thread. Only the numeric factorisation is
+/// timed, without analysis. Throws Error(singular-matrix).
+/// @param simulation between two steps. @param repeats number of timings; one more runs first.
 /// @return (repeats,) s.
 std::vector<double> eigen_factorisation_times(const sim::Simulation& simulation, int repeats);
 

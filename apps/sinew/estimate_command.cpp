@@ -1,4 +1,4 @@
-// sinew estimate: forces, shape and numbers of a robot from recorded readings, from Python.
+// sinew estimate: forces, shape and parameters of a robot from recorded samples, in Python.
 #include <memory>
 #include <optional>
 #include <string>

@@ -76,7 +76,7 @@ std::size_t least(std::span<const double> values) {
   return static_cast<std::size_t>(std::ranges::min_element(values) - values.begin());
 }
 
-/// All rows, the best ones marked. Which one the tests support best.
+/// Formats all rows, marks the best ones, and names the one that the tests support best.
 std::size_t print_rows(const std::vector<FitResult>& fits) {
   std::vector<double> costs;
   for (const FitResult& fit : fits) costs.push_back(fit.cost);
@@ -94,7 +94,7 @@ std::size_t print_rows(const std::vector<FitResult>& fits) {
   return supported;
 }
 
-/// Ogden's law may need fewer terms than were asked for.
+/// Ogden's law may need fewer terms than requested.
 void print_terms(const FitResult& fit) {
   if (!fit.model.starts_with("ogden")) return;
   const std::size_t asked = static_cast<std::size_t>(fit.model.back() - '0');

@@ -59,7 +59,7 @@ bool holds_volumes(const std::string& file) {
   return std::ranges::any_of(table.names, [](const auto& n) { return n.starts_with("volume_"); });
 }
 
-// What drove the arm must be what the model is told: nothing, torques, or volumes.
+// Reads a record, and checks that its inputs match the model: none, torques, or volumes.
 MotionRecord read_record(const std::string& file, const IdentifyOptions& options,
                          const ArmScene& scene) {
   MotionRecord record = identify::read_motion_record(file, scene.arm->segments());
@@ -122,7 +122,7 @@ ArmFitSettings settings_of(const IdentifyOptions& options) {
 
 identify::ArmModel model_of(const IdentifyOptions& options, const ArmScene& scene) {
   identify::ArmModel model{scene.arm, {}};
-  if (options.passive) {  // inputs that nothing drives would be asked for in the records
+  if (options.passive) {  // else the records would need inputs
     pcc::ArmSettings settings = scene.arm->settings();
     settings.actuation = MatrixX::Zero(scene.arm->coordinates(), 0);
     model.arm = std::make_shared<const pcc::Arm>(std::move(settings));
@@ -187,7 +187,7 @@ nlohmann::ordered_json to_json(const ArmScene& scene, const ArmFit& found,
   return json;
 }
 
-// Measured and predicted ends of each record; what was not seen is null.
+// Measured and predicted positions of the ends in each record; missing ones are null.
 std::string plot_data(const std::vector<MotionRecord>& measured,
                       const std::vector<RecordFit>& predicted, std::size_t fitted) {
   auto json = nlohmann::json::array();
@@ -211,7 +211,7 @@ std::string plot_data(const std::vector<MotionRecord>& measured,
   return nlohmann::json{{"records", std::move(json)}}.dump();
 }
 
-// The scene with the arm as it was identified.
+// The scene with the identified arm.
 std::string scene_yaml(const IdentifyOptions& options, const ArmScene& scene, const ArmFit& found) {
   const pcc::ArmSettings& settings = found.model.arm->settings();
   scene::Node tree = scene.description.tree;

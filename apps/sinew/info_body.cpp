@@ -41,7 +41,7 @@ void add_arm(ordered_json& json, std::string& text, const pcc::Arm& arm) {
       arm.settings().name, arm.segments(), arm.coordinates(), 1e3 * arm.length(), 1e3 * mass);
 }
 
-// What a check of a surface refuses; none where it holds.
+// The error of a check of a surface; none if it passes.
 std::optional<Error> defect(const mesh::Surface& surface, void (*check)(const mesh::Surface&)) {
   try {
     check(surface);

@@ -1,5 +1,5 @@
 /// @file
-/// What `sinew info` says of bodies and of the solids that surfaces enclose.
+/// The output of `sinew info` about bodies and about the solids that surfaces enclose.
 #pragma once
 
 #include <string>
@@ -11,14 +11,15 @@
 
 namespace sinew::cli {
 
-/// The three numbers as a list.
+/// A vector as a JSON list.
 nlohmann::ordered_json triple(const Vector3& v);
 
-/// Adds what a surface encloses, or why it encloses nothing.
-/// @param json,text the same facts for programs and for people.
+/// Adds the properties of the solid that a surface encloses, or the reason why it encloses none.
+/// @param json,text output for programs and for people. @param surface of the solid.
 void add_solid(nlohmann::ordered_json& json, std::string& text, const mesh::Surface& surface);
 
-/// Adds an entry to `bodies`, and its lines. @param json,text as for add_solid().
+/// Adds a body to `bodies`, and its lines. @param json,text as for add_solid(). @param body to
+/// describe.
 void add_body(nlohmann::ordered_json& json, std::string& text, const mechanics::BodyModel& body);
 
 }  // namespace sinew::cli

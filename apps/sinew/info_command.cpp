@@ -1,4 +1,4 @@
-// sinew info: what a file of any kind holds.
+// sinew info: describes a file of any kind.
 #include <algorithm>
 #include <fstream>
 #include <memory>

@@ -1,4 +1,4 @@
-// sinew mesh: a volume mesh from a closed surface, or one of our own shapes.
+// sinew mesh: makes a volume mesh from a closed surface or a built-in shape.
 #include <memory>
 #include <optional>
 #include <string>

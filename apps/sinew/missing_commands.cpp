@@ -1,4 +1,4 @@
-// Commands of parts that this program was built without: they say what is missing.
+// Replaces commands of parts that were not built; they report what is missing.
 #include <string>
 
 #include <fmt/format.h>

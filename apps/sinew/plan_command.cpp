@@ -1,4 +1,4 @@
-// sinew plan: torques that swing an arm's tip to a goal.
+// sinew plan: finds torques that swing an arm's tip to a goal.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -35,9 +35,10 @@ using plan::Replay;
 
 constexpr int kMaxSeeds = 1000;
 constexpr int kMaxIntervals = 10000;
-// How far a free duration goes below and above what was asked for.
+// Range of a free duration, relative to the requested one.
 constexpr double kMinShare = 0.5, kMaxShare = 2.0;
-// A jump of a torque, as rows of a table whose times grow; a share of an interval.
+// Time over which a table has a jump of torque, as a fraction of an interval, since times must
+// increase.
 constexpr double kJump = 1e-6;
 
 struct PlanOptions {
@@ -53,7 +54,7 @@ struct PlanOptions {
   std::string out, plot;
 };
 
-/// What one random start led to.
+/// The result of one random start.
 struct Attempt {
   std::uint64_t seed = 0;
   Plan plan;
@@ -68,7 +69,7 @@ CollocationMethod method_of(const std::string& name) {
               fmt::format("there is no method '{}'", name), "write radau or backward-euler");
 }
 
-// A torque's dimension is an energy's, so that its rate is a power's, and would be called one.
+// Torque has the dimension of energy, so errors would call its rate a power.
 double torque_rate(const std::string& text) {
   try {
     return positive_quantity("--rate-limit", text, dimension::kPower);
@@ -141,7 +142,7 @@ void print_attempts(const std::vector<Attempt>& attempts) {
              format_table(rows));
 }
 
-// The cheapest plan; null when there is none.
+// The plan of least cost; null if there is none.
 const Attempt* best_of(const std::vector<Attempt>& attempts) {
   const Attempt* best = nullptr;
   for (const Attempt& attempt : attempts) {
@@ -170,7 +171,7 @@ const Attempt* best_of(const std::vector<Attempt>& attempts) {
       "the torque limits");
 }
 
-// Times and torques as signals of files read them: straight lines between rows.
+// Times and torques in the form of signal files, which are linear between rows.
 std::string torque_table(const ArmScene& scene, const Plan& plan) {
   std::vector<std::string> names = {"time [s]"};
   for (const std::string& input : scene.inputs) names.push_back(input + " [N m]");
@@ -188,7 +189,7 @@ std::string torque_table(const ArmScene& scene, const Plan& plan) {
   const bool constant = plan.method == CollocationMethod::backward_euler;
   if (!constant) add(times[0], 0);
   for (Eigen::Index k = 1; k < times.size(); ++k) {
-    // An interval's constant torque is that of its end.
+    // The constant torque of an interval is that at its end.
     const double jump = k == 1 ? 0.0 : kJump * (times[k] - times[k - 1]);
     if (constant) add(times[k - 1] + jump, k);
     add(times[k], k);

@@ -1,4 +1,4 @@
-// sinew plot: pictures of a recorded run, or of a sweep.
+// sinew plot: plots a recorded run or a sweep.
 #include <filesystem>
 #include <memory>
 #include <string>

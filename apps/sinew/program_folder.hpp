@@ -1,12 +1,12 @@
 /// @file
-/// Where this program lies.
+/// The folder of the running program.
 #pragma once
 
 #include <filesystem>
 
 namespace sinew::cli {
 
-/// Empty where the system does not tell.
+/// The folder of the running program; empty if the system does not provide it.
 inline std::filesystem::path program_folder() {
   std::error_code problem;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", problem);

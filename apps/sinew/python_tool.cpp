@@ -29,7 +29,7 @@ void use_own_python_package() {
 
 namespace {
 
-// Beside this program's build, in the tree that it was built from, or installed.
+// The plotting script: in the build of this program, in its source tree, or installed.
 std::filesystem::path plot_script() {
   const std::filesystem::path around = program_folder().parent_path();
   for (const std::filesystem::path& path :
@@ -41,7 +41,7 @@ std::filesystem::path plot_script() {
               "the plotting script is missing", "install the Python package");
 }
 
-// As execv() takes them.
+// The arguments of execv().
 std::vector<char*> pointers_to(std::vector<std::string>& words) {
   std::vector<char*> pointers;
   pointers.reserve(words.size() + 1);

@@ -1,5 +1,5 @@
 /// @file
-/// Parts of the program that are Python: validation and plots.
+/// Runs the parts of the program that are written in Python, such as validation and plots.
 #pragma once
 
 #include <optional>
@@ -10,18 +10,17 @@
 
 namespace sinew::cli {
 
-/// Debian's interpreter, the one that sees Debian's packages.
+/// Debian's interpreter, which finds Debian's packages.
 inline constexpr const char* kInterpreter = "/usr/bin/python3";
 
-/// Puts the Python package of the same build as this program on the interpreter's path.
+/// Adds the Python package of the same build as this program to PYTHONPATH.
 void use_own_python_package();
 
-/// Runs the package's plot.py and waits; its exit code.
-/// @param arguments what to draw. Throws Error(tool-missing) when the script or the interpreter is
-///   not there.
+/// Runs the package's plot.py, waits, and returns its exit code. Throws Error(tool-missing) if the
+/// script or the interpreter is missing. @param arguments of plot.py.
 int draw_plot(const std::vector<std::string>& arguments);
 
-/// The words with which a command calls its Python part, option by option: "--name=value".
+/// Collects the arguments with which a command calls its Python part: "--name=value".
 class PythonWords {
  public:
   void add(const char* option, const std::string& value) {
@@ -34,11 +33,11 @@ class PythonWords {
   void add(const char* option, const std::optional<T>& value) {
     if (value) add(option, fmt::format("{}", *value));
   }
-  /// "--name" where it is set.
+  /// Adds "--name" if it is set.
   void add_flag(const char* option, bool set) {
     if (set) words_.push_back(fmt::format("--{}", option));
   }
-  /// All words, and after them the operands, which may begin with a dash.
+  /// All words, then "--" and the operands, which may start with a dash.
   std::vector<std::string> with(const std::vector<std::string>& operands) const {
     std::vector<std::string> all = words_;
     all.emplace_back("--");
@@ -50,26 +49,24 @@ class PythonWords {
   std::vector<std::string> words_;
 };
 
-/// Runs the interpreter in place of this program, where `import sinew` finds the package of its
-/// build.
-/// @param words of the interpreter: a script, or "-m" and a module, and their arguments. @param
-/// what
-///   says what for, where there is no interpreter. Throws Error(tool-missing) then.
+/// Replaces this program by the interpreter, in which `import sinew` finds the package of the same
+/// build. Throws Error(tool-missing) if there is no interpreter.
+/// @param words arguments of the interpreter: a script, or "-m" and a module, and their arguments.
+/// @param what purpose, for the error.
 int become_python(std::vector<std::string> words, const std::string& what);
 
-/// Runs a module of the package in place of this program: signals and the terminal are its own, and
-/// its exit code is the program's.
-/// @param module "sinew.sweep". @param arguments of it. Throws Error(tool-missing) when the
-///   interpreter is not there.
+/// Replaces this program by a module of the package, which then owns signals, terminal and exit
+/// code. Throws Error(tool-missing) if there is no interpreter.
+/// @param module such as "sinew.sweep". @param arguments of the module.
 int become_python_module(const std::string& module, const std::vector<std::string>& arguments);
 
-/// Runs a module of the package and waits; its exit code.
-/// @param module,arguments,throws as become_python_module().
+/// Runs a module of the package, waits, and returns its exit code. Throws what
+/// become_python_module() throws. @param module,arguments as for become_python_module().
 int run_python_module(const std::string& module, const std::vector<std::string>& arguments);
 
-/// Draws figures of a command; the exit code of draw_plot().
-/// @param kind what plot.py is to draw: "fit". @param json the figures. @param out PNG file.
-/// Throws what draw_plot() and write_file() do.
+/// Plots the results of a command, and returns the exit code of draw_plot(). Throws what
+/// draw_plot() and write_file() throw.
+/// @param kind of plot, such as "fit". @param json the results. @param out PNG file.
 int draw_json(const std::string& kind, const std::string& json, const std::string& out);
 
 }  // namespace sinew::cli

@@ -1,4 +1,4 @@
-// sinew reach: where an arm's tip can be held at rest.
+// sinew reach: the positions at which an arm's tip can be held at rest.
 #include <cstdint>
 #include <cstdio>
 #include <memory>

@@ -1,4 +1,4 @@
-// sinew run: a scene from its start to its end, recorded.
+// sinew run: runs and records a scene.
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -47,7 +47,7 @@ struct RunOptions {
   bool check = false;
 };
 
-// What bodies are made of.
+// Describes the bodies.
 std::vector<std::vector<std::string>> body_rows(const sim::Model& model) {
   std::vector<std::vector<std::string>> rows;
   for (const auto& body : model.bodies()) {
@@ -58,7 +58,7 @@ std::vector<std::vector<std::string>> body_rows(const sim::Model& model) {
   return rows;
 }
 
-// What would run, without a step of it.
+// Describes the run without a step.
 int print_check(const Session& session, double duration, std::int64_t steps) {
   const sim::Model& model = *session.robot().model;
   auto rows = body_rows(model);
@@ -72,7 +72,7 @@ int print_check(const Session& session, double duration, std::int64_t steps) {
   return 0;
 }
 
-// What happened, for the table at the end.
+// Statistics of the run, for the final table.
 struct Tally {
   std::int64_t steps = 0;
   double wall = 0.0;  ///< s
@@ -124,7 +124,7 @@ double run_duration(const scene::Robot& robot) {
               "add --duration 5s, or duration: 5 s to the scene");
 }
 
-// An error is of the largest of all tasks, in m where none of them is an orientation.
+// The error is the largest of all tasks, in m if none of them is an orientation.
 std::string error_text(const Session& session, double error) {
   for (const inverse::EffectorTask& task : session.controller()->settings().tasks) {
     const auto kind = session.robot().model->effector(task.effector).kind();
@@ -158,7 +158,7 @@ std::vector<std::vector<std::string>> summary(const Tally& tally, Session& sessi
   return rows;
 }
 
-// What the steps' statuses mean for those who use the numbers, on stderr.
+// Prints warnings about flagged steps on stderr.
 void warn(const Tally& tally) {
   for (const auto& [status, flagged] : tally.flagged) {
     fmt::print(stderr, "sinew: warning: {} of {} steps are {}, the first at t = {:g} s; {}\n",
@@ -167,7 +167,7 @@ void warn(const Tally& tally) {
   }
 }
 
-// What keeps a run.
+// The recorders of a run.
 struct Records {
   std::optional<record::RunRecorder> run;
   std::optional<record::RunMotion> motion;
@@ -195,7 +195,7 @@ void advance(Session& session, Records& records, std::int64_t steps, bool quiet,
   }
 }
 
-// Ends the program before a run whose video could not be written; the renderer says why.
+// Checks before the run that its video can be written; the renderer reports the reason if not.
 int check_video(const RunOptions& options, const scene::Robot& robot) {
   if (options.video.empty()) return 0;
   if (!robot.description.record.states) {
@@ -206,7 +206,7 @@ int check_video(const RunOptions& options, const scene::Robot& robot) {
   return run_python_module("sinew.render", {"--check", "--video", options.video});
 }
 
-// Likewise of the motion.
+// Checks that the motion can be written.
 void check_glb(const std::filesystem::path& file) {
   if (file.empty()) return;
   if (file.extension() != ".glb") {
@@ -273,12 +273,12 @@ int run(const RunOptions& options) {
   };
   try {
     advance(session, records, steps, options.quiet, tally);
-  } catch (const Interrupted&) {  // told of below
+  } catch (const Interrupted&) {  // reported below
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::recording_failed) finish();
     try {
       write_motion();
-    } catch (const Error&) {  // what ended the run is told
+    } catch (const Error&) {  // the error that ended the run is reported
     }
     throw;
   }
@@ -292,7 +292,7 @@ int run(const RunOptions& options) {
         session.simulation().time(), duration);
     return tally.flagged.empty() || options.keep_going ? 0 : 1;
   }
-  records.run.reset();  // closes run.h5, which others may then read
+  records.run.reset();  // closes run.h5, so that other programs can read it
   if (const int problem = draw_video(options, settings.folder); problem != 0) return problem;
   return tally.flagged.empty() || options.keep_going ? 0 : 1;
 }

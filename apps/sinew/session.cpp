@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kMaxThreads = 256;
 constexpr double kSlowStep = 2.0;         // s, of wall time
-constexpr std::size_t kManyPoints = 500;  // of contacts, whose law then takes most of a step
+constexpr std::size_t kManyPoints = 500;  // of contacts, which then dominate the time of a step
 
 scene::Robot load(const SceneOptions& options) {
   std::vector<std::string> overrides = options.overrides;
@@ -32,7 +32,7 @@ scene::Robot load(const SceneOptions& options) {
   return robot;
 }
 
-// Advice where the contacts have many points; else empty.
+// Advice if the contacts have many points; else empty.
 std::string contact_hint(const sim::Model& model) {
   std::size_t points = 0;
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
@@ -42,7 +42,7 @@ std::string contact_hint(const sim::Model& model) {
   return fmt::format("; the contacts have {} points: use fewer, or `aggregate`", points);
 }
 
-// The controller to attach: none, the one that was named, or the first.
+// The controller to attach: none, the named one, or the first.
 const scene::SceneController* choose(const scene::Robot& robot, const std::string& name) {
   if (name == "none") return nullptr;
   if (name.empty()) return robot.first_controller();

@@ -1,5 +1,5 @@
 /// @file
-/// A scene made ready to run, as `run` and `bench` need it.
+/// Scenes and simulations for commands such as `run` and `bench`.
 #pragma once
 
 #include <cstdint>
@@ -19,45 +19,43 @@ namespace sinew::cli {
 class Command;
 class ProgressBar;
 
-/// What the command line says about a scene.
+/// Command-line options for a scene.
 struct SceneOptions {
   std::filesystem::path file;
   std::vector<std::string> overrides;  ///< "path=value"
   std::optional<int> threads;
-  std::string controller;  ///< a name, "none", or empty for the scene's first
+  std::string controller;  ///< a name, "none", or empty for the first of the scene
 };
 
-/// A scene as the command line asks for it.
+/// A scene loaded with the options of the command line.
 struct LoadedScene {
   scene::Robot robot;
-  std::string controller;  ///< to be attached; empty for none
+  std::string controller;  ///< name of the controller to attach; empty for none
 };
 
-/// Reads, builds and prints the warnings. Throws what scene::load() does, and Error(unknown-name)
-/// for a controller that the scene does not have.
-/// @param options see there.
+/// Reads and builds a scene, and prints its warnings. Throws what scene::load() throws, and
+/// Error(unknown-name) for an unknown controller. @param options of the command line.
 LoadedScene load_scene(const SceneOptions& options);
 
-/// A robot, one simulation of it, and the controller that steers it.
+/// A robot with one simulation and its controller.
 class Session {
  public:
-  /// Reads, builds, prints the warnings and attaches. Throws what scene::load() does, and
-  /// Error(unknown-name) for a controller that the scene does not have.
-  /// @param options see there.
+  /// Reads and builds a scene, prints its warnings and attaches the controller. Throws what
+  /// load_scene() throws. @param options of the command line.
   explicit Session(const SceneOptions& options);
 
   const scene::Robot& robot() const { return robot_; }
   sim::Simulation& simulation() { return *simulation_; }
-  /// Null when nothing steers.
+  /// The controller; null if there is none.
   const inverse::TargetController* controller() const { return controller_.get(); }
   const std::string& controller_name() const { return controller_name_; }
   void step() { simulation_->step(); }
 
-  /// When the first turn of all targets is over, s; 0 without any that move.
+  /// Time at which all targets have completed their first turn, s; 0 if none moves.
   double first_turn() const;
   /// The largest distance of an effector from its target, m or rad; 0 without a controller.
   double error() const { return controller_ ? controller_->error() : 0.0; }
-  /// The scene as resolved: overrides applied, paths absolute; YAML.
+  /// The resolved scene as YAML, with overrides applied and absolute paths.
   std::string resolved_scene() const;
 
  private:
@@ -68,14 +66,14 @@ class Session {
   std::unique_ptr<inverse::TargetController> controller_;
 };
 
-/// While the result lives, Ctrl-C ends the step in hand (by Interrupted, see terminal.hpp), and
-/// steps that take more than two seconds are told of.
-/// All outlive it. @param bar tells. @param done the steps that it counts.
+/// While the result exists, Ctrl-C ends the current step (by throwing Interrupted, see
+/// terminal.hpp), and steps of more than two seconds are reported. All arguments must outlive the
+/// result.
+/// @param simulation to be watched. @param bar shows the report. @param done steps so far.
 sim::Watched watch_steps(sim::Simulation& simulation, ProgressBar& bar, const std::int64_t& done);
 
-/// Adds SCENE (which must be given unless `optional`), --set, --threads and --controller to a
-/// command.
-/// @param command to add to. @param options to fill.
+/// Adds SCENE, --set, --threads and --controller to a command.
+/// @param command to add to. @param options to fill. @param optional whether SCENE may be omitted.
 void add_scene_options(Command& command, SceneOptions& options, bool optional = false);
 
 }  // namespace sinew::cli

@@ -1,4 +1,4 @@
-// sinew schema, reference and validate: each a few lines.
+// sinew schema, reference and validate.
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The environment's choice, the tree that this program was built from, or the installed one.
+// The folder set by the environment, that of the source tree, or the installed one.
 fs::path validation_script() {
   std::vector<fs::path> folders;
   if (const char* chosen = std::getenv("SINEW_VALIDATION_DIR")) {

@@ -1,4 +1,4 @@
-// sinew sweep: a scene for many values of its parameters, on Dask's workers, from Python.
+// sinew sweep: runs a scene for many values of its parameters on Dask workers, in Python.
 #include <memory>
 #include <optional>
 #include <string>

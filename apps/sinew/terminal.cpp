@@ -12,7 +12,7 @@ namespace sinew::cli {
 
 namespace {
 
-// Signal handlers reach nothing but globals.
+// Signal handlers can access only globals.
 volatile std::sig_atomic_t interrupted = 0;
 
 void note_interrupt(int) { interrupted = 1; }

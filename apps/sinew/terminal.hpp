@@ -1,5 +1,5 @@
 /// @file
-/// What the program shows while it works, and how it is stopped.
+/// Progress, warnings and interruption of the program in a terminal.
 #pragma once
 
 #include <chrono>
@@ -12,11 +12,11 @@
 
 namespace sinew::cli {
 
-/// Thrown by work that a signal ends early: no error.
+/// Thrown by work that a signal ends early. It is not an error.
 struct Interrupted {};
 
-/// While it lives, the first Ctrl-C or SIGTERM only raises a flag, so that work ends where it can
-/// go on; a second one ends the program at once.
+/// While it exists, the first Ctrl-C or SIGTERM only sets a flag, so that work can stop in a
+/// consistent state. A second one ends the program immediately.
 class Interrupt {
  public:
   Interrupt();
@@ -24,29 +24,30 @@ class Interrupt {
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 
-  /// Whether one was received.
+  /// Whether a signal was received.
   static bool requested();
-  /// Throws Interrupted if so.
+  /// Throws Interrupted if a signal was received.
   static void check();
 };
 
-/// A line on standard error that shows how far work has come.
+/// A progress bar on standard error.
 class ProgressBar {
  public:
-  /// @param total amount of work. @param shown false: never drawn.
+  /// @param total amount of work. @param shown whether it is drawn at all.
   ProgressBar(std::int64_t total, bool shown);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Redraws at most ten times a second; nothing unless standard error is a terminal.
-  /// @param done of the work. @param note behind the bar.
+  /// Redraws the bar, at most ten times a second and only if standard error is a terminal.
+  /// @param done amount of work so far. @param note text after the bar.
   void update(std::int64_t done, const std::string& note);
-  /// True when a call of update() would draw, so that its note is worth making.
+  /// Whether update() would draw now, so that its note is worth composing.
   bool due() const;
-  /// Of work that does not go on for long: the same on a terminal, else a line every ten seconds.
+  /// Reports work that is stuck for long: like update() on a terminal, else prints a line every ten
+  /// seconds.
   void update_slow(std::int64_t done, const std::string& note);
-  /// As due().
+  /// Whether update_slow() would draw or print now.
   bool slow_due() const;
 
  private:
@@ -56,11 +57,11 @@ class ProgressBar {
   std::chrono::steady_clock::time_point last_{};
 };
 
-/// Warnings on standard error, a line each, as errors are printed; remarks are left out.
+/// Prints warnings on standard error, one line each, in the format of errors. Omits remarks.
 void print_warnings(std::span<const Notice> notices);
 
-/// Rows of text with columns under each other.
-/// @param rows of cells; the first column is set left, the others right.
+/// Formats a table with aligned columns.
+/// @param rows of cells; the first column is left-aligned, the others are right-aligned.
 std::string format_table(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace sinew::cli

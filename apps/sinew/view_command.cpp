@@ -1,4 +1,4 @@
-// sinew view: a scene in the browser.
+// sinew view: shows a scene in the browser.
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -40,7 +40,7 @@ struct ViewOptions {
 
 #ifdef SINEW_HAS_VIEWER
 
-// The tree that this program was built from, or the installed one.
+// The folder in the source tree, or the installed one.
 std::filesystem::path examples_folder() {
   std::error_code problem;
   std::filesystem::path built = SINEW_EXAMPLES_DEFAULT;
@@ -49,7 +49,7 @@ std::filesystem::path examples_folder() {
   return self.parent_path().parent_path() / "share/sinew/examples";
 }
 
-/// What is shown: a scene that runs, a run that was recorded, or the examples.
+/// The source to be shown: a scene, a recorded run, or the gallery.
 std::unique_ptr<viewer::Source> source_of(const ViewOptions& options) {
   if (options.scene.file.empty()) {
     return std::make_unique<viewer::GallerySource>(viewer::find_examples(examples_folder()));

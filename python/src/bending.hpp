@@ -1,5 +1,5 @@
 /// @file
-/// What the parts of the bindings of bending actuators share.
+/// Shared parts of the bindings of bending actuators.
 #pragma once
 
 #include <array>
@@ -19,19 +19,20 @@ using BendingActuatorClass =
     py::class_<pcc::BendingActuator, std::shared_ptr<pcc::BendingActuator>>;
 
 void bind_bending_modulus(py::module_& module);
-/// Its equations. @param type the actuator's.
+/// Binds the equations. @param type of the actuator.
 void bind_bending_model(BendingActuatorClass& type);
-/// simulate(). @param type the actuator's.
+/// Binds simulate(). @param type of the actuator.
 void bind_bending_history(BendingActuatorClass& type);
 void bind_bending_motion(py::module_& module);
 
-/// Throws Error(unknown-choice).
-/// @param integrator by its name. @param spectral_radius of generalized-alpha.
+/// Makes motion settings. Throws Error(unknown-choice).
+/// @param integrator name. @param spectral_radius of generalized-alpha.
 pcc::BendingMotionSettings to_motion_settings(const std::string& integrator,
                                               double spectral_radius);
 
-/// f of every entry of arrays that broadcast against each other; a float for numbers.
-/// @param place names the arguments. @param values from Python. @param f of N numbers.
+/// Applies f to every entry of arrays that broadcast against each other. For numbers, the result is
+/// a float. Throws Error(wrong-shape), and what to_array() throws.
+/// @param place names the arguments. @param values from Python. @param f function of N numbers.
 template <std::size_t N, typename F>
 py::object for_each(const char* place, const std::array<py::object, N>& values, F&& f) {
   py::list given;

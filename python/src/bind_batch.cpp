@@ -14,7 +14,7 @@ namespace sinew::python {
 
 namespace {
 
-// Of bools, as it stands.
+// A selection of simulations: an array of bools, and a view of it.
 struct Choice {
   py::array_t<bool, py::array::c_style> array;
   std::span<const bool> which;

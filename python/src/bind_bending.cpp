@@ -1,4 +1,4 @@
-// Bending actuators of one angle, without a scene.
+// Binds bending actuators with one angle, without a scene.
 #include <memory>
 #include <optional>
 

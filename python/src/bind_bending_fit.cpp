@@ -1,4 +1,4 @@
-// Calibration of bending actuators. python/sinew/pcc.py puts records and results into shape.
+// Binds the calibration of bending actuators. python/sinew/pcc.py prepares records and results.
 #include <memory>
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// The equations of a bending actuator.
+// Binds the equations of a bending actuator.
 #include "sinew/pcc/bending_motion.hpp"
 
 #include "arrays.hpp"

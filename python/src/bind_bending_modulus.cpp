@@ -1,4 +1,4 @@
-// The modulus of bending actuators.
+// Binds the modulus of bending actuators.
 #include <fmt/format.h>
 
 #include "arrays.hpp"

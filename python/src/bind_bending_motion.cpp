@@ -1,4 +1,4 @@
-// Bending actuators over time.
+// Binds the motion of bending actuators.
 #include <memory>
 #include <optional>
 #include <vector>

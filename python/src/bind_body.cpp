@@ -58,7 +58,8 @@ const mechanics::HasShape* shape(const Body& self) {
 }
 
 py::array points_view(const Body& self, const Points& points, bool writable = false) {
-  // Bodies of few coordinates work their points out when asked; there is nothing to look at live.
+  // Bodies with few coordinates compute their points on demand, so there is no array for a live
+  // view.
   const bool few = mechanics::as<const mechanics::HasCoordinates>(body(self)) != nullptr ||
                    mechanics::as<const mechanics::HasPose>(body(self)) != nullptr;
   if (few) return copy(points);
@@ -79,7 +80,7 @@ Points positions_from(const Body& self, const py::object& positions, const char*
                    now.rows());
 }
 
-// Internal forces on free nodes as a row for every node.
+// Expands internal forces on free nodes to one row per node.
 Array internal_forces(const Body& self, const py::object& positions) {
   const Session::Use use(*self.session);
   const Points at = positions_from(self, positions, "internal_forces");
@@ -96,7 +97,7 @@ Array internal_forces(const Body& self, const py::object& positions) {
   return copy(forces);
 }
 
-// The stored lower blocks as a whole matrix in block compressed rows of scipy.
+// Converts the stored lower blocks to a full matrix in scipy's block compressed row format.
 py::object stiffness(const Body& self, const py::object& positions, const std::string& tangent) {
   const fem::Tangent chosen = fem::element_tangent(to_tangent(tangent, "stiffness(tangent)"));
   const Session::Use use(*self.session);
@@ -282,7 +283,7 @@ such as the dent around a point load.
           "(n, 3) ndarray: forces of the scene's loads on all nodes (N) in the last step.");
 }
 
-// (m, k) of k nodes each.
+// Element nodes (m, k), with k nodes each.
 template <std::size_t k>
 auto numbers_view(const Body& self, const std::vector<std::array<NodeId, k>>& list) {
   return view<NodeId>(list.empty() ? nullptr : list.front().data(),
@@ -412,7 +413,7 @@ Returns
 )");
 }
 
-// What a rigid body alone has.
+// Binds members of rigid bodies.
 void bind_pose(py::class_<Body>& type) {
   type.def_property_readonly(
           "position",

@@ -1,4 +1,4 @@
-// Bracing: objects, what is found, and how it is carried out.
+// Binds bracing: objects, search and simulation.
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,14 +16,14 @@ namespace sinew::python {
 
 namespace {
 
-/// What Python knows as sinew.plan.Brace.
+/// The class behind sinew.plan.Brace.
 struct BraceOf {
   std::shared_ptr<const pcc::Arm> arm;
   plan::BraceTask task;
   plan::Brace brace;
 };
 
-/// A name of a pair of surfaces, a coefficient, or (least, most).
+/// Converts friction: the name of a pair of surfaces, a coefficient, or (minimum, maximum).
 plan::FrictionRange friction_of(const py::object& value) {
   if (py::isinstance<py::str>(value)) return plan::friction_range(value.cast<std::string>());
   const Array array = to_array(value, "friction", "a number or (2,)");

@@ -1,4 +1,4 @@
-// A triangle surface, and where points stand with respect to it.
+// Binds triangle surfaces and queries of points.
 #include <algorithm>
 #include <memory>
 #include <string>

@@ -1,4 +1,4 @@
-// Many small queries at once: nearest points, rigid shapes, exact intersection, impacts.
+// Binds batches of small queries: nearest points, rigid shapes, exact intersection, impacts.
 #include <array>
 #include <optional>
 #include <string>
@@ -19,7 +19,7 @@ namespace sinew::python {
 
 namespace {
 
-/// (n, count, 3) as it stands in the caller's memory.
+/// An array (n, count, 3) in the memory of the caller.
 class PointGroups {
  public:
   /// @param value from Python. @param place names the argument. @param count of points in a query.
@@ -49,7 +49,7 @@ void check_same_length(std::size_t first, std::size_t second, const char* item) 
               "give as many of each");
 }
 
-// Calls of each query without the interpreter's lock.
+// Runs each query without the GIL.
 template <typename Result, typename Query>
 std::vector<Result> answers(std::size_t count, Query query) {
   const py::gil_scoped_release others;
@@ -122,7 +122,7 @@ py::tuple impact_times(const py::object& queries, const py::object& separation,
                         numbers<double>(times, [](double time) { return time; }));
 }
 
-/// pybind11 takes a bare variant for a choice of types.
+/// Wraps a variant, which pybind11 would otherwise convert to one of its types.
 struct RigidShape {
   collision::Shape shape;
 };

@@ -1,4 +1,4 @@
-// Contacts of a step by themselves, and files of such problems.
+// Binds contact problems of a step, and their files.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -16,7 +16,7 @@ namespace sinew::python {
 
 namespace {
 
-/// u = W r + q: W dense, or sparse as scipy has it; r None where there is no solution.
+/// A problem u = W r + q in Python. W is dense, or sparse of scipy; r is None without a solution.
 struct ContactProblem {
   py::object w;
   Array q, friction;
@@ -37,7 +37,7 @@ py::object by_columns(const Eigen::SparseMatrix<double>& matrix) {
       .attr("csc_matrix")(parts, py::arg("shape") = py::make_tuple(columns, columns));
 }
 
-// Problems of fewer points are small as they stand; above, up to this part of W stands as sparse.
+// Problems with fewer points are dense. Above, W is sparse up to this density.
 constexpr Eigen::Index kFewPoints = 32;
 constexpr double kSparse = 0.25;
 

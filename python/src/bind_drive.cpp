@@ -1,4 +1,4 @@
-// What drives an arm: fluidic actuators, drive cylinders, excitation.
+// Binds the drives of an arm: fluidic actuators, drive cylinders, excitation.
 #include <fmt/format.h>
 
 #include "sinew/core/types.hpp"

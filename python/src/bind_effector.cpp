@@ -38,7 +38,7 @@ Array value_of(const Effector& self, bool orientation) {
   return value(self);
 }
 
-// For positions the point's velocity; for orientations its rows, which are the angular velocity.
+// Velocity of the point for positions, angular velocity for orientations.
 Array velocity(const Effector& self) {
   const Session::Use use(*self.session);
   const sim::Simulation& simulation = self.session->simulation();

@@ -1,4 +1,4 @@
-// The numbers of a high-rate loop; python/sinew/high_rate.py gives them names.
+// Binds high-rate loops, by numbers; python/sinew/high_rate.py adds names.
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,7 +17,7 @@ namespace {
 
 using namespace control;
 
-// Turned by hand: a period takes no time, and ends when the next one is due.
+// A clock without real time: a period takes no time, and sleeping sets the time.
 class IdealClock : public Clock {
  public:
   double now() override { return time_; }
@@ -33,7 +33,7 @@ struct NativeLoop {
   IdealClock clock;
 };
 
-// Rows of a table, which may hold infinities: Python has checked it.
+// Converts rows of a table that Python has checked and that may contain infinities.
 template <typename Row, typename Make>
 std::vector<Row> to_rows(const Array& table, Make&& make) {
   std::vector<Row> rows;

@@ -1,4 +1,4 @@
-// Identification of constant-curvature arms from motion capture.
+// Binds the identification of constant-curvature arms from motion capture.
 #include <fmt/format.h>
 
 #include "sinew/identify/arm_fit.hpp"
@@ -36,7 +36,7 @@ MotionRecord make_record(const py::object& time, const py::object& positions,
   return record;
 }
 
-/// (samples, segments, 3).
+/// An array (samples, segments, 3).
 py::array by_segment(const MatrixX& ends) {
   return copy(ends).reshape({ends.rows(), ends.cols() / 3, Eigen::Index{3}});
 }

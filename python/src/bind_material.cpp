@@ -1,4 +1,4 @@
-// Materials by themselves: what a scene's law or a name of the library means.
+// Binds materials without a scene: laws, and materials of the library.
 #include <fmt/format.h>
 
 #include "sinew/material/library.hpp"
@@ -19,7 +19,7 @@ struct Material {
   double density = 0.0;
 };
 
-// By the scene's own reader: a scene of nothing but a block of this material.
+// Reads a material with the scene reader, in a scene with one block.
 Material read_material(const py::object& spec) {
   py::dict mesh, body, bodies, tree;
   mesh["shape"] = "block";

@@ -1,4 +1,4 @@
-// Constant-curvature arms by themselves, without a scene.
+// Binds constant-curvature arms without a scene.
 #include <array>
 #include <string>
 #include <utility>
@@ -16,7 +16,7 @@ namespace sinew::python {
 
 namespace {
 
-/// (n,) from an array of that length or one number for all.
+/// Converts an array (n,), or one number for all.
 VectorX spread(const py::handle& value, const std::string& place, Eigen::Index n,
                const std::string& unit) {
   const Array array = to_array(value, place, fmt::format("({},) {}", n, unit));

@@ -1,4 +1,4 @@
-// Planning for constant-curvature arms: tasks, plans, replays, regulators.
+// Binds planning for constant-curvature arms: tasks, plans, replays, regulators.
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,7 +18,7 @@ namespace sinew::python {
 
 namespace {
 
-/// What Python knows as sinew.plan.Task.
+/// The class behind sinew.plan.Task.
 struct PlanTask {
   std::shared_ptr<const pcc::Arm> arm;
   plan::PlanTask task;

@@ -1,4 +1,4 @@
-// From planned torques to the commands of drive cylinders.
+// Binds the inversion of planned torques to commands of drive cylinders.
 #include <string>
 #include <vector>
 

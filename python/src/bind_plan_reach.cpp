@@ -1,4 +1,4 @@
-// Static reach of constant-curvature arms: samples, the nearest equilibrium, the proof.
+// Binds the static reach of constant-curvature arms: samples, nearest equilibrium, proof.
 #include <string>
 
 #include "sinew/plan/reach.hpp"

@@ -1,4 +1,4 @@
-// Contacts with friction solved by themselves.
+// Binds the solver of frictional contact problems.
 #include <optional>
 #include <string>
 #include <vector>

@@ -15,7 +15,7 @@ namespace {
 
 using sim::Signal;
 
-// Python's classes of signals; each is a Signal.
+// The Python classes of signals; each is a Signal.
 struct Ramp : Signal {};
 struct Sine : Signal {};
 struct Steps : Signal {};

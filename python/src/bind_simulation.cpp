@@ -1,4 +1,4 @@
-// sinew.Simulation, and how a scene becomes one.
+// Binds sinew.Simulation, and loading of scenes.
 #include <fmt/format.h>
 
 #include "sinew/scene/renamed_words.hpp"

@@ -1,4 +1,4 @@
-// How motions of a simulation follow from efforts.
+// Binds the linearised response of motions to efforts.
 #include <string>
 
 #include "sinew/sim/model.hpp"

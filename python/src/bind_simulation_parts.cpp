@@ -1,4 +1,4 @@
-// The parts of a simulation by their names.
+// Binds access to parts of a simulation by name.
 #include <functional>
 #include <string>
 #include <string_view>
@@ -13,7 +13,7 @@ namespace sinew::python {
 
 namespace {
 
-// The part of a name, whose number the model knows.
+// The part with a name.
 template <class One>
 auto named(int (sim::Model::*index)(std::string_view) const) {
   return [index](const std::shared_ptr<Session>& self, const std::string& name) {
@@ -21,7 +21,7 @@ auto named(int (sim::Model::*index)(std::string_view) const) {
   };
 }
 
-// All parts of a kind by name, in the order of the model's list.
+// All parts of a kind by name, in the order of the model.
 template <class One, class List>
 auto all(List list) {
   return [list](const std::shared_ptr<Session>& self) {

@@ -1,4 +1,4 @@
-// What a simulation tells of itself.
+// Binds reports and observables of a simulation.
 #include <string>
 
 #include "sinew/scene/scene.hpp"

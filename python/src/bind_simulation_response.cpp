@@ -1,4 +1,4 @@
-// How effectors follow from the efforts of controlled actuators.
+// Binds the response of effectors to the efforts of controlled actuators.
 #include <set>
 #include <string>
 #include <vector>

@@ -14,7 +14,7 @@ namespace {
 
 using inverse::Target;
 
-// Python's classes of targets; each is a Target.
+// The Python classes of targets; each is a Target.
 struct Circle : Target {};
 struct Polyline : Target {};
 struct Trajectory : Target {};

@@ -1,6 +1,6 @@
 /// @file
-/// One function for each part of the module; module.cpp calls them in order. Docstrings start with
-/// "name($self, ...)\n--\n\n", from which Python's inspect and help() take the signature.
+/// Functions that bind the parts of the module; module.cpp calls them in order. Docstrings start
+/// with "name($self, ...)\n--\n\n", from which Python's inspect and help() take the signature.
 #pragma once
 
 #include <cstdint>
@@ -66,7 +66,7 @@ void bind_identify(py::module_& module);
 void bind_identify_arm(py::module_& module);
 void bind_identify_material(py::module_& module);
 
-/// A part of a simulation: keeps the whole alive.
+/// A part of a simulation, which it keeps alive.
 struct Part {
   std::shared_ptr<Session> session;
   int index = 0;
@@ -82,26 +82,25 @@ struct Contact : Part {};
 struct Joint : Part {};
 struct Body : Part {};
 
-/// The part of bind_body() about stress and strain.
-/// @param module,type where it goes.
+/// Binds stress and strain of bodies. @param module,type to which they are added.
 void bind_fields(py::module_& module, py::class_<Body>& type);
 
-/// A controller with the simulation that it steers, which it keeps alive.
+/// A controller and the simulation that it steers, which it keeps alive.
 struct Controller {
   std::shared_ptr<Session> session;
   std::shared_ptr<AttachedController> attached;
 };
 
-/// Runs and records; see Simulation.run in bind_simulation_stepping.cpp.
+/// Runs and records a simulation; see Simulation.run in bind_simulation_stepping.cpp.
 py::dict run(const std::shared_ptr<Session>& session, const py::object& duration,
              const py::object& record, const py::object& every, const py::object& progress);
 
-/// A target from a Target object or three numbers. Throws Error(wrong-type | wrong-shape |
+/// Converts a Target object or three numbers to a target. Throws Error(wrong-type | wrong-shape |
 /// not-finite).
 /// @param value from Python. @param place names the argument.
 inverse::Target to_target(const py::handle& value, const std::string& place);
 
-/// A signal from a Signal object, a number, or (n, 2) samples of time and value.
+/// Converts a Signal object, a number, or (n, 2) samples of time and value to a signal.
 /// @param value from Python. @param place names the argument. @param unit "N" or "m".
 sim::Signal to_signal(const py::handle& value, const std::string& place, const std::string& unit);
 

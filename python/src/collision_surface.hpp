@@ -1,5 +1,5 @@
 /// @file
-/// A triangle surface as Python holds it.
+/// The triangle surface behind sinew.collision.Surface.
 #pragma once
 
 #include <memory>
@@ -8,8 +8,8 @@
 
 namespace sinew::python {
 
-/// It never changes, so that threads may share it. Surfaces made from one by moving it share its
-/// topology, and their boxes are refitted, not built anew.
+/// An immutable surface, which threads may share. Surfaces made by moving it share its topology,
+/// and their bounding boxes are refitted instead of rebuilt.
 struct CollisionSurface {
   std::shared_ptr<const collision::SurfaceTopology> topology;
   collision::SurfaceTree tree;

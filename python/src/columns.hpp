@@ -1,5 +1,5 @@
 /// @file
-/// Lists of things as NumPy arrays of what each of them has.
+/// Converts lists of structs to NumPy arrays of their members.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace sinew::python {
 
-/// (n, columns): of each entry what get() returns, a std::array of as many numbers.
+/// An array (n, columns). get() returns the numbers of an entry as a std::array.
 template <typename Scalar, std::size_t Columns, typename Entry, typename Get>
 py::array_t<Scalar> rows(const std::vector<Entry>& list, Get get) {
   py::array_t<Scalar> array({list.size(), Columns});
@@ -20,7 +20,7 @@ py::array_t<Scalar> rows(const std::vector<Entry>& list, Get get) {
   return array;
 }
 
-/// (n,): of each entry the number that get() returns.
+/// An array (n,). get() returns the number of an entry.
 template <typename Scalar, typename Entry, typename Get>
 py::array_t<Scalar> numbers(const std::vector<Entry>& list, Get get) {
   py::array_t<Scalar> array(static_cast<py::ssize_t>(list.size()));
@@ -29,7 +29,7 @@ py::array_t<Scalar> numbers(const std::vector<Entry>& list, Get get) {
   return array;
 }
 
-/// (n, 3): of each entry the Vector3 that get() returns.
+/// An array (n, 3). get() returns the Vector3 of an entry.
 template <typename Entry, typename Get>
 Array vectors(const std::vector<Entry>& list, Get get) {
   Array array({list.size(), std::size_t{3}});

@@ -1,5 +1,5 @@
 /// @file
-/// How C++ errors become sinew.Error and sinew.RunError, and notices sinew.Notice.
+/// Converts C++ errors to sinew.Error and sinew.RunError, and notices to sinew.Notice.
 #pragma once
 
 #include <string>
@@ -14,19 +14,21 @@ namespace sinew::python {
 
 namespace py = pybind11;
 
-/// Thrown when two threads use one simulation at the same time; becomes sinew.Error of kind
-/// "simulation-busy". It stands here since only Python can share a simulation by accident.
+/// Thrown if two threads use one simulation at the same time; becomes sinew.Error of kind
+/// "simulation-busy". It belongs to the bindings since only Python can share a simulation by
+/// accident.
 struct SimulationBusy {};
 
-/// The Python exception for an error: an instance of sinew.Error, or sinew.RunError for a failed
+/// The Python exception of an error: an instance of sinew.Error, or sinew.RunError for a failed
 /// run.
 py::object to_python(const Error& error);
 
-/// A sinew.Notice.
+/// The sinew.Notice of a notice.
 py::object to_python(const Notice& notice);
 
-/// The value of `make()`; an Error without a place gets the argument's name.
-/// @param argument as "Ramp". @param make called once.
+/// Returns `make()`. If that throws an Error without a location, the Error gets the argument's
+/// name.
+/// @param argument such as "Ramp". @param make called once.
 template <typename Make>
 auto at_argument(const std::string& argument, Make&& make) {
   try {
@@ -36,7 +38,7 @@ auto at_argument(const std::string& argument, Make&& make) {
   }
 }
 
-/// Lets every bound function throw Error and SimulationBusy.
+/// Registers the translation of Error and SimulationBusy for all bound functions.
 void register_errors();
 
 }  // namespace sinew::python

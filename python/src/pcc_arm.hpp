@@ -1,5 +1,5 @@
 /// @file
-/// What Python knows as sinew.pcc.Arm: the arm and a workspace of its equations.
+/// The class behind sinew.pcc.Arm: an arm, and a workspace of its equations.
 #pragma once
 
 #include <initializer_list>
@@ -19,11 +19,11 @@ namespace sinew::python {
 struct PccArm {
   explicit PccArm(std::shared_ptr<const pcc::Arm> of) : arm(std::move(of)), equations(arm) {}
 
-  /// (coordinates,) from Python. @param value,place,unit see to_list().
+  /// Converts coordinates (coordinates,). @param value,place,unit as for to_list().
   VectorX angles(const py::handle& value, const std::string& place, const std::string& unit) const {
     return to_vector(value, place, arm->coordinates(), unit);
   }
-  /// A point of its material. Throws Error(out-of-range).
+  /// A material point of the arm. Throws Error(out-of-range).
   pcc::ArmPoint place(int segment, double fraction, const std::pair<double, double>& offset) const;
 
   std::shared_ptr<const pcc::Arm> arm;
@@ -32,13 +32,13 @@ struct PccArm {
 
 using PccArmClass = py::class_<PccArm>;
 
-/// Sizes, places and equations of motion. @param arm where they go.
+/// Binds sizes, positions and equations of motion. @param arm class to which they are added.
 void bind_arm_equations(PccArmClass& arm);
-/// equilibrium() and simulate(). @param arm where they go.
+/// Binds equilibrium() and simulate(). @param arm class to which they are added.
 void bind_arm_simulation(PccArmClass& arm);
 
-/// What a word means. @param word,place from Python, and the argument. @param choices all words.
-/// Throws Error(unknown-choice).
+/// The value of a word. Throws Error(unknown-choice).
+/// @param word from Python. @param place names the argument. @param choices all words with values.
 template <typename T>
 T choose(const std::string& word, const std::string& place,
          std::initializer_list<std::pair<const char*, T>> choices) {

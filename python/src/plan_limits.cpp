@@ -9,7 +9,7 @@ namespace sinew::python {
 
 namespace {
 
-/// Lower and upper limits from (n,), either way, or (2, n).
+/// Sets lower and upper limits from absolute limits (n,), or from (2, n).
 void set_limits(const py::object& value, const std::string& place, Eigen::Index n,
                 const std::string& unit, VectorX& lower, VectorX& upper) {
   if (value.is_none()) return;

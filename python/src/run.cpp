@@ -1,4 +1,4 @@
-// Simulation.run: steps, and writes what was asked for into arrays.
+// Simulation.run: steps a simulation, and records requested observables in arrays.
 
 #include <algorithm>
 #include <chrono>
@@ -21,13 +21,13 @@ namespace sinew::python {
 
 namespace {
 
-// A column of the result.
+// One array of the result.
 struct Column {
   std::size_t observable;  // of the list
   std::vector<double> values;
 };
 
-// What is recorded, and what of it was.
+// The recorded observables and their values.
 struct Recording {
   sim::Observables observables;
   std::vector<Column> columns;
@@ -43,8 +43,8 @@ sim::Observables list_observables(Session& session) {
   return list;
 }
 
-// Large arrays, what evaluates all elements, and what differs from run to run are recorded on
-// request only.
+// Whether an observable is recorded by default: not large arrays, observables that evaluate all
+// elements, or those that differ from run to run.
 bool is_default(const sim::Observable& observable) {
   switch (observable.kind) {
     case sim::ObservableKind::body:

@@ -1,6 +1,6 @@
 /// @file
-/// A simulation as Python holds it: the robot it came from, the simulation, the controller attached
-/// to it, and a guard against use from two threads at once.
+/// The class behind sinew.Simulation: the robot, the simulation, the attached controller, and a
+/// guard against use by two threads at once.
 #pragma once
 
 #include <atomic>
@@ -24,36 +24,36 @@
 
 namespace sinew::python {
 
-/// A controller and the name that it has in the scene; empty for one made from Python.
+/// A controller and its name in the scene. The name is empty for a controller made in Python.
 struct AttachedController {
   std::string name;
   std::unique_ptr<inverse::TargetController> law;
   bool attached = true;
 };
 
-/// A scene made ready, and the folder that its relative paths start from.
+/// A robot, and the folder at which relative paths of its scene start.
 struct LoadedRobot {
   scene::Robot robot;
   std::filesystem::path folder;
 };
 
-/// The tangent of that name. Throws Error(unknown-choice) for any other word.
-/// @param argument as "linearise(tangent)".
+/// The tangent of a name. Throws Error(unknown-choice) for any other word.
+/// @param word from Python. @param argument such as "linearise(tangent)", for errors.
 mechanics::Tangent to_tangent(const std::string& word, const std::string& argument);
 
-/// A state of a simulation of this process, or the bytes of one (sim/state_io.hpp).
+/// A saved state: either a state of a simulation in this process, or its bytes (sim/state_io.hpp).
 class SavedState {
  public:
   explicit SavedState(std::string bytes) : bytes_(std::move(bytes)) {}
   SavedState(std::shared_ptr<const sim::State> state, std::shared_ptr<const sim::Model> model)
       : state_(std::move(state)), model_(std::move(model)) {}
 
-  /// Of a state of this process made when they are first asked for, with the interpreter's lock:
-  /// most states are only restored.
+  /// The bytes of the state. For a state of this process, they are made at the first call, since
+  /// most states are only restored. Requires the GIL.
   const std::string& bytes() const;
-  /// Null where only bytes are known, or the model is another one.
+  /// The state; null if only bytes are known, or the model has another fingerprint.
   const sim::State* of(const sim::Model& model) const;
-  /// Throws Error(state-corrupt), Error(state-version).
+  /// Number of steps so far. Throws Error(state-corrupt), Error(state-version).
   std::int64_t steps() const;
 
  private:
@@ -62,14 +62,14 @@ class SavedState {
   std::shared_ptr<const sim::Model> model_;
 };
 
-/// See the file.
+/// A simulation in Python.
 class Session {
  public:
-  /// Attaches the scene's first controller.
+  /// Makes a simulation with the scene's first controller attached.
   /// @param robot shared with clones. @param threads inside a step.
   Session(std::shared_ptr<const LoadedRobot> robot, int threads);
 
-  /// Exclusive use for as long as it lives. Throws SimulationBusy when another thread has it.
+  /// Gives exclusive use while it exists. Throws SimulationBusy if another Use exists.
   class Use {
    public:
     explicit Use(const Session& session);
@@ -81,63 +81,65 @@ class Session {
     const Session& session_;
   };
 
-  /// Another simulation of the same robot at the same state, commands and controller included.
+  /// Makes a simulation of the same robot with the same state, commands and controller.
   std::shared_ptr<Session> clone() const;
 
   const LoadedRobot& robot() const { return *robot_; }
   const sim::Model& model() const { return simulation_.model(); }
-  /// Only while a Use is held.
+  /// To be used only while a Use is held.
   sim::Simulation& simulation() { return simulation_; }
   const sim::Simulation& simulation() const { return simulation_; }
-  /// Their ledger counts from the start. Only while a Use is held.
+  /// The observables, with an energy ledger that counts from the start. To be used only while a Use
+  /// is held.
   sim::Observables& observables() { return observables_; }
 
-  /// May be asked at any time, from any thread.
+  /// busy(), steps() and time() may be called at any time, from any thread.
   bool busy() const { return busy_.load(std::memory_order_acquire); }
   std::int64_t steps() const { return steps_.load(std::memory_order_relaxed); }
   double time() const { return static_cast<double>(steps()) * model().step().time_step; }
 
-  /// Advances `count` steps without the interpreter's lock; looks for Ctrl-C now and then, within
-  /// steps, too, as the searches below do: the state is then that of the last step. Warns
-  /// (sinew.SinewWarning) of flagged steps, of each status once until the next reset. Throws
-  /// what sim::Simulation::step() does, and Error(not-finite) for external forces that are not.
+  /// Advances `count` steps without the GIL. Like the solvers below, it checks regularly for
+  /// Ctrl-C, also within a step; the state is then that of the last complete step. It warns
+  /// (sinew.SinewWarning) of flagged steps, once per status until the next reset. Throws what
+  /// sim::Simulation::step() throws, and Error(not-finite) for external forces.
   void advance(std::int64_t count);
-  /// The same by any thread that does not hold the interpreter's lock, without looking for Ctrl-C
-  /// or warning. @param ended asked after each step; true: it is the last one.
+  /// Advances from a thread that does not hold the GIL, without checking for Ctrl-C or warning.
+  /// @param count maximum number of steps. @param ended called after each step; true ends the run.
   void advance_unlocked(std::int64_t count, const std::function<bool()>& ended);
-  /// Of flagged steps; see advance().
+  /// Warns of flagged steps, see advance().
   void warn();
   sim::StaticReport solve_static(const sim::StaticSettings& settings);
-  /// @param visit is called without the interpreter's lock.
+  /// @param visit called without the GIL.
   std::vector<sim::PathPoint> follow_path(const sim::PathSettings& settings,
                                           const std::function<void()>& visit);
-  /// Simulation::reset(), and external forces set to zero.
+  /// Calls Simulation::reset(), and sets external forces to zero.
   void reset();
   SavedState state() const;
-  /// Throws as sim::parse_state().
+  /// Restores a state. Throws what sim::parse_state() throws.
   void restore(const SavedState& state);
-  /// sim::load_state() and sim::save_state().
+  /// Call sim::load_state() and sim::save_state().
   void load_state(const std::filesystem::path& path);
   void save_state(const std::filesystem::path& path) const;
 
   sim::Linearisation linearise(const sim::LinearisationChoice& choice);
   sim::Linearisation last_linearisation();
 
-  /// Null when there is none.
+  /// The attached controller; null if there is none.
   const std::shared_ptr<AttachedController>& controller() const { return controller_; }
-  /// Attaches. Throws Error(actuator-owned) while another one is.
+  /// Attaches a controller. Throws Error(actuator-owned) if another one is attached.
   std::shared_ptr<AttachedController> attach(inverse::InverseSettings settings, std::string name);
   /// Detaches `controller` if it is attached.
   void detach(AttachedController& controller);
 
-  /// For whoever steps the simulation while it holds a Use: detaches the controller, which Python
-  /// goes on to see as attached, and tells its settings; none without one.
+  /// For code that holds a Use and steps the simulation itself: detaches the controller, which
+  /// Python still sees as attached, and returns its settings; none if there is no controller.
   std::optional<inverse::InverseSettings> lend_controller();
-  /// What came of it: null, or the controller that is attached now.
+  /// Takes back the controller after lend_controller().
   /// @param same whether it is the one that was lent. @param name of another one.
+  /// @param law the controller that is now attached, or null.
   void take_back(bool same, const std::string& name,
                  std::unique_ptr<inverse::TargetController> law);
-  /// After others have stepped.
+  /// Updates steps() after other code has stepped the simulation.
   void count_steps() { steps_ = simulation_.steps(); }
 
  private:

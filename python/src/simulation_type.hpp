@@ -1,5 +1,5 @@
 /// @file
-/// sinew.Simulation, whose parts are bound in files of their own.
+/// The functions that bind sinew.Simulation, each in a file of its own.
 #pragma once
 
 #include <memory>
@@ -13,20 +13,20 @@ namespace sinew::python {
 
 using SimulationType = py::class_<Session, std::shared_ptr<Session>>;
 
-/// Its actuators, effectors, bodies and so on, by their names.
+/// Binds access to actuators, effectors, bodies and so on, by their names.
 void bind_simulation_parts(SimulationType& type);
-/// Copies, states and files of states.
+/// Binds copies, states and state files.
 void bind_simulation_state(SimulationType& type);
-/// What it tells of itself.
+/// Binds reports and observables.
 void bind_simulation_reports(SimulationType& type);
-/// Whatever moves it.
+/// Binds steps and solvers.
 void bind_simulation_stepping(SimulationType& type);
-/// How motions follow from efforts.
+/// Binds the linearised response of motions to efforts.
 void bind_simulation_linearisation(SimulationType& type);
-/// How effectors follow from the efforts of controlled actuators.
+/// Binds the response of effectors to the efforts of controlled actuators.
 void bind_simulation_response(SimulationType& type);
-/// Problems of contacts by themselves: their files, and Simulation.contact_problem().
-/// @param module,type where they go.
+/// Binds contact problems: their files, and Simulation.contact_problem().
+/// @param module,type to which they are added.
 void bind_contact_problem(py::module_& module, SimulationType& type);
 
 }  // namespace sinew::python

@@ -1,5 +1,5 @@
 /// @file
-/// A Python dict as a scene tree.
+/// Converts a Python dict to a scene tree.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -8,10 +8,9 @@
 
 namespace sinew::python {
 
-/// Dicts become maps; lists, tuples and arrays become lists; numbers, text, paths, booleans and
-/// None become scalars.
-/// Throws Error(wrong-type) for anything else, with the dotted path of where it stands, and
-/// Error(size-limit) when it is nested too deeply (as a dict that holds itself).
+/// Converts a Python value. Dicts become maps; lists, tuples and arrays become lists; numbers,
+/// text, paths, booleans and None become scalars. Throws Error(wrong-type) with the dotted path for
+/// anything else, and Error(size-limit) for excessive nesting, such as a dict that contains itself.
 /// @param value from Python.
 scene::Node to_tree(const pybind11::handle& value);
 

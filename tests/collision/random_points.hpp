@@ -1,4 +1,4 @@
-// Random points for the tests of collision.
+// Random points for collision tests.
 #pragma once
 
 #include "sinew/core/random.hpp"
@@ -6,18 +6,18 @@
 
 namespace sinew::collision::testing {
 
-/// Uniform in a cube of half width `size`.
+/// A point uniformly distributed in a cube of half width `size`.
 inline Vector3 random_point(Random& random, double size = 1.0) {
   const double x = random.uniform(-size, size), y = random.uniform(-size, size);
   return {x, y, random.uniform(-size, size)};
 }
 
-/// A whole number from 0 to `most`.
+/// An integer from 0 to `most`.
 inline int random_integer(Random& random, int most) {
   return static_cast<int>(random.bits() % static_cast<std::uint64_t>(most + 1));
 }
 
-/// Whole coordinates from 0 to `most`: many coincidences.
+/// A point with integer coordinates from 0 to `most`, so that many points coincide.
 inline Vector3 random_grid_point(Random& random, int most) {
   const int x = random_integer(random, most), y = random_integer(random, most);
   return Vector3(x, y, random_integer(random, most));

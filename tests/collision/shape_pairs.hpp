@@ -1,4 +1,4 @@
-// Pairs of rigid shapes for the tests of what they share.
+// Pairs of rigid shapes for tests of contact between shapes.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ inline Shape moved(const Shape& shape, const Matrix3& turn, const Vector3& shift
 
 inline constexpr int kKinds = 5;
 
-// About 1 m wide, about the origin.
+// A shape about 1 m wide, near the origin.
 inline Shape random_shape(Random& random, int kind) {
   const auto size = [&] { return random.uniform(0.1, 0.6); };
   const Vector3 half = size() * Vector3::UnitZ();
@@ -54,14 +54,14 @@ inline const TouchingPoint& deepest(const TouchingPoints& points) {
                            [](const auto& a, const auto& b) { return a.gap < b.gap; });
 }
 
-// Two shapes of given kinds, the second one `far` from the origin.
+// Two shapes of given kinds, the second at a distance `far` from the origin.
 struct Pair {
   Shape first, second;
 };
 inline Pair random_pair(Random& random, int first, int second, double far) {
   Pair pair{random_shape(random, first), random_shape(random, second)};
   Vector3 way = random_point(random).normalized();
-  if (first == 0) {  // out of what is solid, else it is deep in there
+  if (first == 0) {  // outside the half space, since it would be deep inside otherwise
     const Vector3 up = std::get<Plane>(pair.first).normal;
     if (way.dot(up) < 0.0) way = -way;
   }
@@ -69,7 +69,7 @@ inline Pair random_pair(Random& random, int first, int second, double far) {
   return pair;
 }
 
-// Calls test(pair) with random poses of every pair of kinds.
+// Calls test(pair) for random poses of every pair of kinds.
 template <class Test>
 void with_every_pair(std::uint64_t seed, int trials, const Test& test) {
   Random random(seed);
@@ -83,7 +83,7 @@ void with_every_pair(std::uint64_t seed, int trials, const Test& test) {
   }
 }
 
-// The solids' own extents, by definition.
+// Extent of a shape along a direction, from its definition.
 inline double highest(const Shape& shape, const Vector3& up) {
   if (const auto* own = std::get_if<Sphere>(&shape)) return up.dot(own->centre) + own->radius;
   if (const auto* own = std::get_if<Capsule>(&shape)) {
@@ -99,7 +99,8 @@ inline double highest(const Shape& shape, const Vector3& up) {
   const auto& plane = std::get<Plane>(shape);
   return (up - plane.normal).norm() < 1e-9 ? up.dot(plane.point) : kInfinity;
 }
-// How far the first has to go along a direction until it is free of the second; negative apart.
+// Distance by which the first shape must move along a direction to clear the second; negative if
+// apart.
 inline double push(const Pair& pair, const Vector3& way) {
   return highest(pair.first, -way) + highest(pair.second, way);
 }

@@ -1,4 +1,4 @@
-// Triangle surfaces for the tests and benchmarks of collision.
+// Triangle surfaces for collision tests and benchmarks.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,7 @@ inline Points to_points(const std::vector<Vector3>& nodes) {
   return points;
 }
 
-/// The box [0, 1]^3, two triangles a cell of `cells` x `cells` on every side.
+/// The box [0, 1]^3, with `cells` x `cells` cells of two triangles on every side.
 inline TestSurface unit_box(int cells = 1) {
   std::map<std::array<int, 3>, NodeId> number;
   std::vector<Vector3> nodes;
@@ -68,7 +68,7 @@ inline TestSurface unit_box(int cells = 1) {
   return result;
 }
 
-/// A box whose nodes were moved onto the unit sphere: 12 cells^2 triangles.
+/// A box whose nodes are projected onto the unit sphere: 12 cells^2 triangles.
 inline TestSurface unit_sphere(int cells) {
   TestSurface result = unit_box(cells);
   for (Eigen::Index k = 0; k < result.nodes.rows(); ++k) {
@@ -77,7 +77,7 @@ inline TestSurface unit_sphere(int cells) {
   return result;
 }
 
-/// n x n cells of the square [0, 1]^2 at z = 0, normals up; open.
+/// The square [0, 1]^2 at z = 0 with cells x cells cells and normals up; an open surface.
 inline TestSurface unit_square(int cells) {
   TestSurface result;
   std::vector<Vector3> nodes;
@@ -96,7 +96,7 @@ inline TestSurface unit_square(int cells) {
   return result;
 }
 
-/// A ring around the z axis with normals outwards: not convex.
+/// A torus around the z axis with outward normals; not convex.
 inline TestSurface torus(double radius, double tube, int around, int across) {
   TestSurface result;
   std::vector<Vector3> nodes;
@@ -116,7 +116,7 @@ inline TestSurface torus(double radius, double tube, int around, int across) {
   return result;
 }
 
-/// Both as one surface.
+/// Joins two surfaces to one.
 inline TestSurface joined(const TestSurface& first, const TestSurface& second) {
   TestSurface result = first;
   const auto shift = static_cast<NodeId>(first.nodes.rows());
@@ -128,7 +128,7 @@ inline TestSurface joined(const TestSurface& first, const TestSurface& second) {
   return result;
 }
 
-/// nodes -> rotation nodes * scale + shift.
+/// Transforms nodes to scale * rotation nodes + shift.
 inline Points placed(const Points& nodes, const Matrix3& rotation, const Vector3& shift,
                      double scale = 1.0) {
   return (scale * (nodes * rotation.transpose())).rowwise() + shift.transpose();
@@ -139,7 +139,7 @@ inline Matrix3 random_rotation(Random& random) {
   return Eigen::AngleAxisd(random.uniform(0.0, 3.0), axis).toRotationMatrix();
 }
 
-/// Every node moved by up to `size` along each axis.
+/// Moves every node at random by up to `size` along each axis.
 inline Points shaken(const Points& nodes, Random& random, double size) {
   Points result = nodes;
   for (Eigen::Index k = 0; k < result.rows(); ++k) {

@@ -1,4 +1,4 @@
-// Features beside each other: what every scene must do, whatever it combines.
+// Combinations of features: requirements on every scene, whatever it combines.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -14,12 +14,12 @@
 namespace sinew::combine {
 namespace {
 
-// Scenes are tried in blocks, which run side by side.
+// Scenes are tried in blocks, which run in parallel.
 constexpr std::uint64_t kBlock = 15;
 constexpr int kRandomBlocks = 2;
 constexpr std::uint64_t kChangedScenes = 30;
 
-// The levels that are named, and of all other features the first.
+// A selection with the named levels, and the first level of all other features.
 Selection select(const std::map<std::string, std::string>& levels) {
   Selection selection;
   for (const Feature& feature : features()) {
@@ -31,7 +31,7 @@ Selection select(const std::map<std::string, std::string>& levels) {
   return selection;
 }
 
-// A scene is refused exactly where its features cannot stand together.
+// A scene is refused exactly if its features are incompatible.
 void expect_sound(const Selection& selection, std::uint64_t seed) {
   const Outcome outcome = try_scene(selection, seed);
   EXPECT_NE(outcome.kind, Outcome::Kind::wrong) << outcome.cause << "\n"
@@ -61,9 +61,9 @@ TEST(Combination, TheCoverHasEveryPairOfLevels) {
   EXPECT_EQ(missing, refused);
 }
 
-// A motor, a brake and a limit repeat each other in one hinge, whose body hangs on a weld. In one
-// order of actuators rounding made their matrix indefinite; the step then failed and was made in
-// halves, which moved nodes by 1e-5 m.
+// A motor, a brake and a limit of one hinge are redundant, and its body is held by a weld. In one
+// order of actuators, rounding made their matrix indefinite. The step then failed and was halved,
+// which moved nodes by 1e-5 m.
 TEST(Combination, OrderDoesNotMatterWhereManyHoldOneJoint) {
   const Selection selection = select({{"bodies", "fem pcc"},
                                       {"mesh", "hollow-cylinder"},
@@ -130,9 +130,9 @@ TEST_P(RandomScenes, RunAndReproduce) {
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenes, ::testing::Range(0, kRandomBlocks));
 
-// Of thousands that were tried: controllers beside a contact that stops a point under
-// generalized-alpha, which crashed, and a limited cable under event-driven integration, which went
-// on differently from a saved state.
+// Defects found among thousands of scenes: a crash of controllers with a contact that stops a point
+// under generalized-alpha, and a limited cable under event-driven integration, whose run continued
+// differently from a saved state.
 TEST(Combination, ScenesThatFailedOnce) {
   for (const std::uint64_t seed : {92224, 93068, 94417}) {
     expect_sound(random_selection(seed), seed);

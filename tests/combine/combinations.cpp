@@ -1,5 +1,5 @@
-// Tries combinations of features by the thousand, each in a process of its own so that a crash is
-// counted as one.
+// Tries thousands of combinations of features, each in its own process, so that a crash counts as
+// one outcome.
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -23,7 +23,7 @@ constexpr const char* kUsage =
     "combinations --pairs [--from K] [--count N]  the cover of all pairs of levels\n"
     "combinations [--pairs] --print SEED          the scene of a seed\n";
 
-// In a child process; a crash is an outcome, too.
+// Tries a scene in a child process. A crash is also an outcome.
 std::string try_apart(const Selection& selection, std::uint64_t seed) {
   int ends[2];
   if (pipe(ends) != 0) std::abort();

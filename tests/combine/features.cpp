@@ -17,7 +17,7 @@ using scene::Form;
 using scene::KeyTable;
 using scene::Shape;
 
-// Of a later version.
+// Whether a word belongs to a later version.
 bool is_later(const KeyTable& table, const std::string& key) {
   const scene::Key* found = table.find(key);
   return found != nullptr && found->later;
@@ -35,7 +35,7 @@ std::vector<std::string> words(const KeyTable& table, std::string_view key) {
   return words(form_of(table, key, Shape::choice));
 }
 
-// The form with variants told by a key.
+// The variants form that a key selects.
 const Form& variants(const std::vector<Form>& forms, std::string_view telltale) {
   const auto found = std::ranges::find_if(forms, [&](const Form& form) {
     return form.shape == Shape::variants && form.telltale == telltale;
@@ -46,7 +46,7 @@ const Form& variants(const std::vector<Form>& forms, std::string_view telltale) 
   return *found;
 }
 
-// What the names of a section stand for.
+// The forms of the entries in a section.
 const std::vector<Form>& items(std::string_view section) {
   return form_of(scene::grammar(), section, Shape::names).items;
 }
@@ -59,7 +59,7 @@ const KeyTable& variant_table(std::string_view section, std::string_view word) {
                          std::string(word));
 }
 
-// The keys that stand in place of each other: those of the group that holds `key`.
+// The alternatives of `key`, including itself.
 std::vector<std::string> alternatives(const KeyTable& table, std::string_view key) {
   const scene::Alternatives* group = table.alternatives_of(key);
   if (group == nullptr) {
@@ -81,7 +81,7 @@ std::vector<std::string> or_none(std::vector<std::string> levels) {
   return levels;
 }
 
-// A level more or less than the words of the grammar: a default, a way of our own.
+// Levels in addition to the words of the grammar, such as a default, or without some of them.
 std::vector<std::string> with(std::vector<std::string> levels,
                               std::initializer_list<const char*> more) {
   levels.insert(levels.end(), more.begin(), more.end());
@@ -112,7 +112,7 @@ std::vector<Feature> list_features() {
   const std::vector<std::string> switched{"none", "yes"};
   return {
       {"bodies", {"fem", "pcc", "fem fem", "fem pcc", "pcc fem"}},
-      // A trunk has more nodes than a test of a thousand scenes has time for, and a ball no ends.
+      // A trunk has too many nodes for a test of a thousand scenes, and a ball has no ends.
       {"mesh",
        without(without(words(variants(fem.find("mesh")->forms, "shape")), "trunk"), "sphere")},
       {"element", or_none(words(fem, "element"))},
@@ -143,7 +143,7 @@ std::vector<Feature> list_features() {
       {"torque", or_none(alternatives(map_of(torque, "command"), "torque"))},
       {"load", or_none(words(variants(items("loads"), "type")))},
       {"mass", switched},
-      // A surface of the world, a rigid or a soft body that flies by, or the body itself.
+      // Contact with a fixed surface, a passing rigid or soft body, or the body itself.
       {"contact",
        or_none(with(alternatives(map_of(contact, "surface"), "plane"), {"body", "soft", "self"}))},
       {"contact_friction", switched},
@@ -160,7 +160,7 @@ std::vector<Feature> list_features() {
       {"effector", or_none(without(alternatives(effector, "point"), "points"))},
       {"probe", or_none(without(alternatives(probe, "point"), "points"))},
       {"sensor", or_none(words(variants(items("sensors"), "type")))},
-      // A closed loop stands in its place where there is feedback.
+      // With feedback, a closed loop replaces it.
       {"controller",
        or_none(without(words(variants(items("controllers"), "type")), "closed-loop"))},
       {"regularisation", words(map_of(controller, "regularisation"), "of")},
@@ -181,8 +181,8 @@ int find_feature(std::string_view name) {
   return static_cast<int>(found - all.begin());
 }
 
-// Whether this version refuses two levels beside each other: event-driven integration makes parts
-// of steps several times, by Newton's method.
+// Whether this version refuses two levels together: event-driven integration repeats parts of
+// steps, by Newton's method.
 bool is_refused(int first, int first_level, int second, int second_level) {
   const auto is = [&](int feature, int chosen, std::string_view name, std::string_view wanted) {
     const Feature& of = features()[static_cast<std::size_t>(feature)];
@@ -199,7 +199,7 @@ bool is_refused(int first, int first_level, int second, int second_level) {
          both("integrator", "event-driven", "controller", "");
 }
 
-// Pairs of levels of two features that no selection has had yet.
+// Pairs of levels of two features that no selection has covered yet.
 class OpenPairs {
  public:
   OpenPairs() {
@@ -220,8 +220,8 @@ class OpenPairs {
 
   int left() const { return left_; }
 
-  // How many open pairs a level would close beside the levels chosen so far (others are -1); -1
-  // where one of them refuses it.
+  // Number of uncovered pairs that a level would cover with the levels chosen so far (others are
+  // -1); -1 if one of them refuses it.
   int gain(const Selection& selection, int feature, int wanted) const {
     int sum = 0;
     for (int other = 0; other < static_cast<int>(selection.size()); ++other) {
@@ -233,7 +233,7 @@ class OpenPairs {
     return sum;
   }
 
-  // Any open pair, to begin a selection with: {feature, level, feature, level}.
+  // Any uncovered pair, as the start of a selection: {feature, level, feature, level}.
   std::array<int, 4> some() const {
     const int features_count = static_cast<int>(first_.size());
     for (int a = 0; a < features_count; ++a) {
@@ -273,7 +273,7 @@ class OpenPairs {
     here = open_[at(b, j, a, i)] = open;
   }
 
-  std::vector<int> first_;  // of each feature among all levels
+  std::vector<int> first_;  // index of each feature's first level
   int count_ = 0;
   int left_ = 0;
   std::vector<char> open_;
@@ -308,7 +308,7 @@ std::vector<Selection> pairwise_cover() {
       if (chosen >= 0) continue;
       const int count =
           static_cast<int>(features()[static_cast<std::size_t>(feature)].levels.size());
-      const int start = random.below(count);  // among equals
+      const int start = random.below(count);  // a random choice among equals
       int most = -1, best = 0;
       for (int k = 0; k < count; ++k) {
         const int candidate = (start + k) % count;

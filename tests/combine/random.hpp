@@ -1,6 +1,6 @@
 /// @file
-/// Random numbers that are the same on every machine: the standard's engines are, its
-/// distributions are not.
+/// Random numbers that are the same on every machine. The engines of the standard library are
+/// portable, but its distributions are not.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
 
-  /// 0 .. count - 1.
+  /// An integer from 0 to count - 1.
   int below(int count) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(count)); }
   double uniform(double from, double to) {
     return from + (to - from) * static_cast<double>(engine_() >> 11) * 0x1p-53;

@@ -19,7 +19,7 @@ namespace {
       level, feature));
 }
 
-// "key: text" of a level, out of a table of all levels.
+// "key: text" of a level, from a table of all levels.
 std::string look_up(std::string_view feature, const std::string& level,
                     const std::map<std::string, std::string>& texts) {
   const auto found = texts.find(level);
@@ -31,7 +31,7 @@ std::string vector_text(const std::array<double, 3>& mm) {
   return fmt::format("{:.6g} {:.6g} {:.6g} mm", mm[0], mm[1], mm[2]);
 }
 
-// Where things are on a body, mm at rest. All bodies are 60 mm long from their base to their tip.
+// Positions on a body at rest, mm. All bodies are 60 mm long from base to tip.
 struct BodyShape {
   std::string mesh;  // of finite elements
   std::string base, tip, side;
@@ -40,7 +40,7 @@ struct BodyShape {
   std::array<double, 3> half{};    // of the cross-section, mm
   double sense = 1.0;              // of the axis from base to tip
 
-  // (3,) mm. @param a 0 at the base, 1 at the tip. @param u,v -1 .. 1 across.
+  // A point, (3,) mm. @param a 0 at the base, 1 at the tip. @param u,v -1 .. 1 across.
   std::array<double, 3> at(double a, double u, double v) const {
     std::array<double, 3> result = origin;
     const auto axis = static_cast<std::size_t>(along);
@@ -49,7 +49,7 @@ struct BodyShape {
     result[(axis + 2) % 3] += v * half[(axis + 2) % 3];
     return result;
   }
-  // The direction in which contacts lie: against the second axis across.
+  // The direction of contacts: opposite to the second axis across.
   int below() const { return (along + 2) % 3; }
 };
 
@@ -63,7 +63,7 @@ BodyShape block_shape() {
           {30.0, 10.0, 5.0}};
 }
 
-// A spine of 6 mm along x, and ribs on it with gaps where nothing is attached.
+// A spine of 6 mm along x with ribs. The gaps are where nothing is attached.
 BodyShape ribbed_shape() {
   BodyShape shape = block_shape();
   shape.mesh =
@@ -145,7 +145,7 @@ class Drafter {
   double draw(double from, double to) { return random_.uniform(from, to); }
   bool dynamic() const { return of("integrator") != "quasi-static"; }
 
-  // The first body of elements, or the first arm; none: nullptr.
+  // The first finite-element body or the first arm; nullptr if there is none.
   const Body* body(bool fem) const {
     const auto found = std::ranges::find_if(
         bodies_, [&](const Body& own) { return own.fem == fem && !own.rigid; });
@@ -158,15 +158,15 @@ class Drafter {
 
   void write_settings() {
     const std::string& integrator = of("integrator");
-    // Newton's steps of rubber with a matrix that is too large take hundreds of iterations each,
-    // and quadratic elements (the default) tenths of a second an iteration: such levels stand
-    // together with others.
+    // Newton's method for rubber with a matrix that is too stiff needs hundreds of iterations, and
+    // quadratic elements (the default) need tenths of a second per iteration. Such scenes use the
+    // exact tangent.
     const bool quadratic = !has("element") || of("element") == "tet10";
     const bool slow = of("method") == "newton" && hyperelastic() && (!dynamic() || quadratic);
     const std::string tangent = slow ? "exact" : of("tangent");
     std::string solver = fmt::format("method: {}, tangent: {}, factorisation: {}, ordering: {}",
                                      of("method"), tangent, of("factorisation"), of("ordering"));
-    // A matrix that is not the derivative converges linearly: an iteration more or less would show.
+    // An inexact matrix converges linearly, so that the number of iterations would affect results.
     if (of("method") == "newton" && tangent != "exact") solver += ", tolerance: 1e-11";
     if (has("adaptive")) solver += ", adaptive: {tolerance: 1e-3, smallest: 2.5 ms}";
     settings_ = fmt::format("sinew: 1\ntime_step: {} ms\nintegrator: {}\nsolver: {{{}}}\n",
@@ -232,7 +232,7 @@ class Drafter {
     }
   }
 
-  // @param held how: fixed where it is, or placed and left to a joint.
+  // @param held how the body is held: fixed, or placed and held by a joint.
   void add_fem_body(const Body& body, std::string held = {}) {
     const bool loose = !held.empty();
     if (!loose) held = fmt::format("fixed: {{set: {}}}", body.shape.base);
@@ -256,8 +256,8 @@ class Drafter {
     add("bodies", body.id, "{" + text + "}");
   }
 
-  // A block of 20 mm on the side of a body, near its tip: where it hangs it bends the body. Things
-  // that act on any body act on it, too.
+  // A block of 20 mm on the side of a body, near its tip, whose weight bends the body. Everything
+  // that acts on any body also acts on it.
   void add_link() {
     if (!has("link")) return;
     if (of("link") != "weld") return add_rigid_link();
@@ -274,7 +274,7 @@ class Drafter {
           fmt::format("points: [{}, {}, {}]", vector_text(shape.at(0.0, 0.0, 0.0)),
                       vector_text(shape.at(0.0, 0.6, 0.0)), vector_text(shape.at(0.1, 0.0, 0.6)))},
          {"touching", ""}});
-    // Sections of an arm are rigid, and its mesh is a picture.
+    // Sections of an arm are rigid, and its mesh is only drawn.
     if (text.empty() && !on.fem) text = "region: " + region;
     if (!text.empty()) text = ", " + text + ", outside: nearest";
     add("joints", "seam",
@@ -283,14 +283,14 @@ class Drafter {
     add_fem_body(bodies_.back(), fmt::format("position: {}", vector_text(at)));
   }
 
-  // In statics something must hold it: other joints stand for hinges there, and a motor for none.
+  // In statics it must be held, so other joints replace hinges, and there is no motor.
   std::string link_type() const {
     const std::string& type = of("link");
     return dynamic() || type == "slider" ? type : "hinge";
   }
 
-  // What a rigid link is joined to: a section of an arm, a point of elements where that will do, or
-  // else a bracket that is welded to them.
+  // The part to which a rigid link is joined: a section of an arm, a point of finite elements if
+  // possible, or else a bracket that is welded to them.
   std::string link_base(const Body& on, const std::array<double, 3>& at, const std::string& type) {
     if (!on.fem || type == "ball") return on.id;
     add("bodies", "bracket",
@@ -306,10 +306,10 @@ class Drafter {
     return "bracket";
   }
 
-  // A rigid body of 60 mm along x from a joint on a body near its tip.
+  // A rigid body of 60 mm along x, which starts at a joint near the tip of a body.
   void add_rigid_link() {
     const Body on = some_body();
-    const std::array<double, 3> at = on.shape.at(0.8, 0.0, 0.8);  // beside bores and chambers
+    const std::array<double, 3> at = on.shape.at(0.8, 0.0, 0.8);  // clear of bores and chambers
     const std::string type = link_type(), base = link_base(on, at, type);
     Body link{"link", false, block_shape(), true};
     link.shape.origin = at;
@@ -365,7 +365,7 @@ class Drafter {
     add("actuators", "motor", "{" + text + "}");
   }
 
-  // A value over time that ends at so many units.
+  // A signal that ends at a given value.
   std::string signal(double value, const char* unit) {
     return look_up(
         "cable_signal", of("cable_signal"),
@@ -519,7 +519,8 @@ class Drafter {
             on->id, on->shape.side));
   }
 
-  // A box on its way along an axis; in statics it stands still, or goes where bases go, too.
+  // A box that moves along an axis. In statics it is at rest, or has a prescribed motion like a
+  // base.
   void add_stone(const std::array<double, 3>& centre, std::size_t along, const char* axis) {
     std::string moves = "fixed: true";
     flies_ |= dynamic();
@@ -536,7 +537,7 @@ class Drafter {
                     vector_text(centre), moves));
   }
 
-  // The same of silicone; in statics it is held at its far side.
+  // A silicone box that moves likewise. In statics it is fixed at its far side.
   void add_pillow(const std::array<double, 3>& centre, std::size_t along, const char* axis) {
     const std::string moves = dynamic() ? fmt::format("initial_velocity: {{linear: {} m/s}}", axis)
                                         : fmt::format("fixed: [{{set: {}_min}}]", "xyz"[along]);
@@ -551,7 +552,7 @@ class Drafter {
             vector_text(corner), moves));
   }
 
-  // What two bodies' surfaces touch with, or one's with itself; rigid bodies and arms meet a stone.
+  // Contact of two surfaces, or of one with itself. Rigid bodies and arms touch a stone.
   std::string touching(const Body& on, std::size_t below, const std::array<double, 3>& centre) {
     const char* axes[] = {"1 0 0", "0 1 0", "0 0 1"};
     if (on.fem && of("contact") == "self") return fmt::format("between: [<{0}>, <{0}>]", on.id);
@@ -570,7 +571,7 @@ class Drafter {
                        on.rigid ? ", outside: nearest" : "");
   }
 
-  // Surfaces lie a little beside the tip.
+  // Surfaces are slightly apart from the tip.
   void add_contact() {
     if (!has("contact")) return;
     const Body& on = some_body();
@@ -611,7 +612,7 @@ class Drafter {
     if (kind == "none" && has("controller")) kind = "point";
     if (kind == "none") return;
     const Body* chosen = &some_body();
-    // A closed loop is refused where none of its actuators moves its effector.
+    // A closed loop is refused if none of its actuators moves its effector.
     if (has_loop()) chosen = &*std::ranges::find(bodies_, steerable_.front().body, &Body::id);
     const Body& on = *chosen;
     if (kind == "set" && !on.fem) kind = "point";
@@ -629,7 +630,7 @@ class Drafter {
                                              vector_text(shape.at(0.9, 0.0, 0.5)))}});
     add("effectors", "tip", fmt::format("{{body: <{}>, outside: nearest, {}}}", on.id, what));
     if (!has_loop()) return;
-    // The sensor that measures it has the same place, in its own words.
+    // The sensor that measures the effector has the same position, in its own keys.
     const bool turns = kind == "orientation" || kind == "section";
     const std::string place = turns ? "at" + what.substr(what.find(':')) : what;
     add("sensors", "measured",
@@ -637,7 +638,7 @@ class Drafter {
                     turns ? "orientation" : "marker", on.id, place));
   }
 
-  // Its response has no inertia: a link that swings freely moves too far for it, or without end.
+  // Its response has no inertia, so a freely swinging link would move too far or without bound.
   bool has_loop() const {
     if (!has("controller") || !has("feedback") || steerable_.empty()) return false;
     return steerable_.front().body != "link" || of("link") == "weld";
@@ -671,7 +672,7 @@ class Drafter {
     return std::ranges::any_of(sections_[section], [&](const Item& one) { return one.id == id; });
   }
 
-  // What a sensor of a type reads; empty where the robot has no such thing.
+  // The quantity that a sensor of a type measures; empty if the robot does not have it.
   std::string sensed(const std::string& kind, const Body& on) {
     const BodyShape& shape = on.shape;
     const std::string middle = vector_text(shape.at(0.5, 0.2, 0.0));
@@ -723,12 +724,13 @@ class Drafter {
         fmt::format("{{type: {}, {}, delay: 15 ms, dropout: 20 %}}", kind, what));
   }
 
-  // Of a force that is or is not there, or what an actuator does beside its command. The first has
-  // a robot with inertia, the second one at rest, unlike a body that flies or swings.
+  // An estimator of a force that may be absent, or of an effort besides the command. The first has
+  // a model with inertia, and the second a quasi-static one, which excludes flying or swinging
+  // bodies.
   void add_estimator() {
     if (!has("estimator")) return;
     const bool held = !flies_ && (!has("link") || of("link") == "weld");
-    // Each of its steps is made once a column: two integrators stand for all that move.
+    // It makes each step once per column, so only two integrators represent all dynamic ones.
     const bool dynamic = of("integrator") == "bdf2" || of("integrator") == "event-driven";
     const bool moves = of("estimator") == "force" && dynamic;
     if (!moves && !held) return;
@@ -758,7 +760,7 @@ class Drafter {
     std::string actuators;
     for (const Steerable& one : steerable_) {
       actuators += (actuators.empty() ? "" : ", ") + ("<" + one.id + ">");
-      if (random_.below(3) == 0) break;  // others obey their commands
+      if (random_.below(3) == 0) break;  // the other actuators follow their commands
     }
     if (has_loop()) {
       add("controllers", "follow",
@@ -773,7 +775,7 @@ class Drafter {
                     task, actuators, force_task(), of("regularisation")));
   }
 
-  // What the controller asks of the contact with the floor.
+  // The controller's task for the contact with the floor.
   std::string force_task() {
     if (!has("force_task") || !stands("contacts", "floor")) return "";
     const std::string& kind = of("force_task");
@@ -795,10 +797,10 @@ class Drafter {
   std::vector<Steerable> steerable_;
   std::array<double, 3> tip_{};
   bool orientation_ = false;
-  bool flies_ = false;  // a body that nothing holds
+  bool flies_ = false;  // whether there is a free body
 };
 
-// Other names that sort the other way round.
+// Other names with the opposite alphabetical order.
 std::string other_name(const std::string& id) {
   return fmt::format("z{:03}_{}", 999 - static_cast<int>(id.size()) * 7 - id.back(), id);
 }

@@ -1,5 +1,5 @@
 /// @file
-/// Scenes from levels of features: valid ones, small enough to run by the hundred.
+/// Makes scenes from levels of features. They are valid, and small enough to run hundreds of them.
 #pragma once
 
 #include <cstdint>
@@ -11,32 +11,32 @@
 
 namespace sinew::combine {
 
-/// One named thing of a scene. References to others stand as "<id>" in its text.
+/// A named part of a scene. Its text has references to other parts as "<id>".
 struct Item {
   std::string id;
-  std::string text;  ///< YAML, in one line
+  std::string text;  ///< YAML on one line
 };
 
-/// A scene whose names and order are still open.
+/// A scene before names and order are chosen.
 struct SceneDraft {
-  std::string settings;  ///< the keys without names
+  std::string settings;  ///< the keys without named parts
   std::vector<std::pair<std::string, std::vector<Item>>> sections;
 };
 
-/// What a selection means. Levels that cannot stand together give way: chambers bring their own
-/// mesh, elements follow the material, what only some bodies have goes to one that can.
-/// @param seed of the numbers.
+/// Makes the scene of a selection. Incompatible levels are adapted: chambers have their own mesh,
+/// elements follow the material, and a part that only some bodies support goes to such a body.
+/// @param selection level of each feature. @param seed of the numbers.
 SceneDraft draft_scene(const Selection& selection, std::uint64_t seed);
 
-/// How names and order are chosen.
+/// Choice of names and order.
 struct Layout {
-  bool renamed = false;   ///< other names, in the same order
+  bool renamed = false;   ///< other names, with the same order
   bool reversed = false;  ///< bodies and actuators in the opposite order
-  /// Newton's method leaves nothing to the next step, where the scene gives no tolerance.
+  /// Newton's method converges fully, unless the scene gives a tolerance.
   bool converged = false;
 };
 
-/// The scene as a YAML file.
+/// Writes the scene as YAML.
 std::string write_scene(const SceneDraft& draft, const Layout& layout = {});
 
 }  // namespace sinew::combine

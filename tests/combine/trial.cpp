@@ -38,15 +38,16 @@ namespace {
 
 constexpr int kSteps = 6;
 constexpr int kHalf = 3;
-// Of the robot's size: another order of bodies sums forces in another order. With adaptive steps a
-// rounding may decide whether a substep is accepted; the runs then differ by a part of its error.
+// Tolerances relative to the robot's size. Another order of bodies sums forces in another order.
+// With adaptive steps, rounding may decide whether a substep is accepted, and runs then differ by a
+// fraction of its error.
 constexpr double kOrderTolerance = 1e-9;
 constexpr double kPartOfError = 0.1;
-// A gap below 1e-9 of the size is closed: a rounding may decide whether it is now or a part of the
-// step later, and impacts multiply that.
+// A gap below 1e-9 of the size counts as closed. Rounding may decide whether it closes now or later
+// in the step, and impacts amplify the difference.
 constexpr double kEventTolerance = 1e-7;
-constexpr double kEnergyTolerance = 1e-10;  // of an energy
-// J: what bodies at rest have by rounding alone.
+constexpr double kEnergyTolerance = 1e-10;  // relative to an energy
+// Energy of bodies at rest due to rounding, J.
 constexpr double kNoEnergy = 1e-15;
 
 // A simulation with the controllers of its scene.
@@ -102,7 +103,7 @@ scene::Robot build(const std::string& text) {
   return scene::build(scene::parse_scene_text(text, "scene.yaml", {}));
 }
 
-// "body at 12", "volume ratio": every number by its name.
+// Names all numbers: "body at 12", "volume ratio".
 std::vector<std::pair<std::string, double>> numbers_of(const sim::State& state) {
   std::vector<std::pair<std::string, double>> numbers;
   sim::State::visit(state, [&](std::string_view name, const auto& part) {
@@ -122,14 +123,14 @@ bool is_finite(const sim::State& state) {
                              [](const auto& number) { return std::isfinite(number.second); });
 }
 
-// Of the robot's size.
+// Relative to the robot's size.
 double order_tolerance(const sim::Model& model) {
   if (model.step().event_driven()) return kEventTolerance;
   const auto& adaptive = model.step().adaptive;
   return adaptive ? kPartOfError * adaptive->tolerance : kOrderTolerance;
 }
 
-// m, between the nodes of two runs whose bodies stand in opposite orders.
+// Distance between the nodes of two runs with bodies in opposite orders, m.
 double largest_distance(const sim::Simulation& one, const sim::Simulation& other) {
   double largest = 0.0;
   const auto count = static_cast<int>(one.model().bodies().size());
@@ -189,7 +190,7 @@ class Trial {
       resumed.advance(kSteps - kHalf);
       compare("a saved state", resumed.states, kHalf);
       Run cloned(*robot, std::move(copy));
-      cloned.simulation.restore(state);  // once more: the controllers' memory
+      cloned.simulation.restore(state);  // again, for the memory of controllers
       cloned.advance(kSteps - kHalf);
       compare("a clone", cloned.states, kHalf);
     }
@@ -215,13 +216,13 @@ class Trial {
       }
       compare("other names", renamed.states, 0);
     }
-    // A step that is flagged may have wandered, and a choice that did not settle may be another,
-    // where rounding decides.
+    // A flagged step may have diverged, and an active set that did not converge may depend on
+    // rounding.
     if (!sim::is_flagged(first->condition) && !first->choice_held) {
       double distance = distance_of_order({.reversed = true}, first->simulation);
       const double tolerance = order_tolerance(*robot->model) * robot->model->size();
       if (!(distance <= tolerance)) {
-        // What quasi-static steps leave to the next one may be another by rounding.
+        // The residual that a quasi-static step leaves to the next one may depend on rounding.
         Run converged(build(write_scene(draft_, {.converged = true})));
         converged.advance(kSteps);
         distance = distance_of_order({.reversed = true, .converged = true}, converged.simulation);
@@ -244,13 +245,12 @@ class Trial {
     return largest_distance(from, reversed.simulation);
   }
 
-  // What is recorded reads back bit for bit, and a copy of the simulation lets one observe the
-  // same.
+  // A record reads back bit for bit, and a copy of the simulation has the same observables.
   void check_records(const scene::Robot& robot) {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / fmt::format("sinew_trial_{}", ::getpid());
     Run run(robot);
-    std::vector<std::vector<double>> seen;  // of each observable, all frames one after the other
+    std::vector<std::vector<double>> seen;  // values by observable, for all frames in turn
     sim::Observables list = run.observables();
     const auto look = [&] {
       list.refresh();
@@ -285,11 +285,11 @@ class Trial {
     sim::Observables theirs = copy.observables();
     for (std::size_t k = 0; k < seen.size(); ++k) {
       const sim::Observable& one = list.list()[k];
-      // Work since the first reading and the last step's report are no part of a state.
+      // Work since the first read, and the report of the last step, are not part of a state.
       if (one.kind >= sim::ObservableKind::ledger) {
         continue;
       }
-      // A step sums energies in another order than a look at the elements does.
+      // A step sums energies in another order than their evaluation over elements.
       const bool same = one.kind == sim::ObservableKind::energy
                             ? std::abs(list.number(k) - theirs.number(k)) <=
                                   kEnergyTolerance * std::abs(list.number(k)) + kNoEnergy
@@ -302,7 +302,7 @@ class Trial {
 
   void fail(const std::string& what) { wrong_ += (wrong_.empty() ? "" : "; ") + what; }
 
-  // @param states of the steps from `from` on.
+  // Compares states. @param states of the steps from `from` on.
   void compare(const char* way, const std::vector<sim::State>& states, std::size_t from) {
     const std::size_t expected = reference_.size() - std::min(from, reference_.size());
     for (std::size_t k = 0; k < std::min(states.size(), expected); ++k) {
@@ -341,8 +341,8 @@ Outcome try_scene(const Selection& selection, std::uint64_t seed) {
 
 std::string try_changed_number(const Selection& selection, std::uint64_t seed) {
   const std::string text = write_scene(draft_scene(selection, seed));
-  // Group 4 is a number of the robot; what stands before it in the pattern are inputs, settings,
-  // and an estimator with its sensor, which do not act on it.
+  // Group 4 is a number of the robot. The alternatives before it in the pattern are inputs,
+  // settings, and an estimator with its sensor, which do not act on the robot.
   static const std::regex number(
       "(command|factor|pressure|target|rotation): (\\{[^}]*\\}[^}]*\\}|[^,}]*)|"
       "(?:seen|guess|solver): [^\\n]*|sinew: 1|time_step: [^\\n]*|fixed: [^\\n,]*|"

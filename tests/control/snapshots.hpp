@@ -1,4 +1,4 @@
-// Random snapshots: a stiff and a soft robot's rows with hands and contacts.
+// Random snapshots with rows of a stiff and a soft robot, hands and contacts.
 #pragma once
 
 #include <Eigen/QR>
@@ -11,7 +11,7 @@ namespace sinew::testing {
 
 inline double spread(Random& random) { return random.uniform(-1.0, 1.0); }
 
-/// Eight driven rows, three unknown forces, six of effectors, `hands` hands.
+/// Settings with eight driven rows, three unknown forces, six effector rows and `hands` hands.
 inline control::HighRateSettings robot_settings(int hands = 1, int contacts = 12) {
   control::HighRateSettings settings;
   settings.driven.assign(8, {.effort_min = 0.0, .effort_max = 20.0});
@@ -23,14 +23,14 @@ inline control::HighRateSettings robot_settings(int hands = 1, int contacts = 12
   return settings;
 }
 
-/// Lengths of all driven rows and all effectors, in micrometres.
+/// Adds sensors for the lengths of all driven rows and all effectors, with micrometre deviations.
 inline void add_sensors(control::HighRateSettings& settings) {
   for (int row = 0; row < 8; ++row) settings.sensors.push_back({row, 1e-6});
   for (int row = 11; row < 17; ++row) settings.sensors.push_back({row, 1e-6});
 }
 
-/// W is that of a random body of as many coordinates as rows and some more: definite, around
-/// 1 mm/N. Gaps are around a millimetre, of either sign.
+/// A random snapshot. Its W is that of a random body with more coordinates than rows: positive
+/// definite, of about 1 mm/N. Gaps are about a millimetre, of either sign.
 inline control::Snapshot random_snapshot(const control::HighRateSettings& settings, Random& random,
                                          double friction = 0.3) {
   const Eigen::Index rows = settings.first_contact() + 3 * Eigen::Index{settings.max_contacts};

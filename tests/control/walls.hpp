@@ -1,4 +1,4 @@
-// A virtual wall as a snapshot, and a hand whose motion is seeded.
+// A virtual wall as a snapshot, and a hand with a seeded motion.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace sinew::testing {
 
 inline constexpr double kWallStiffness = 1000.0;  // N/m
 
-/// One hand that pushes on a wall, which begins at 0 and lies at x > 0.
+/// Settings with one hand that pushes on a wall, which occupies x > 0.
 inline control::HighRateSettings wall_settings() {
   control::HighRateSettings settings;
   settings.hands = {{.min = 0.0}};
@@ -29,8 +29,8 @@ inline control::Snapshot wall(double stiffness = kWallStiffness) {
   return snapshot;
 }
 
-/// Eight sines of seeded phases and frequencies up to 6 Hz about the wall's surface; the farthest
-/// place in a minute is 10 mm.
+/// A motion of eight sines about the surface of the wall, with seeded phases and frequencies up to
+/// 6 Hz. Its largest displacement in a minute is 10 mm.
 class SeededHand {
  public:
   explicit SeededHand(std::uint64_t seed) {
@@ -43,7 +43,7 @@ class SeededHand {
     for (int k = 0; k < 60000; ++k) farthest = std::max(farthest, std::abs(at(1e-3 * k)));
     scale_ *= 10e-3 / farthest;
   }
-  /// m. @param time s.
+  /// Position, m. @param time s.
   double at(double time) const {
     double place = 0.0;
     for (std::size_t k = 0; k < frequency_.size(); ++k) {

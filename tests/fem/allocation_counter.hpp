@@ -1,5 +1,5 @@
 /// @file
-/// Counts every `new` of this test program, aligned ones included, on all threads.
+/// Counts every `new` of this test program, including aligned ones, on all threads.
 #pragma once
 
 #include <cstddef>

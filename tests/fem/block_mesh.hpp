@@ -10,10 +10,10 @@
 
 namespace sinew::fem {
 
-inline constexpr double kEdge = 0.01;  ///< m, of a cell in most tests
+inline constexpr double kEdge = 0.01;  ///< m, edge of a cell in most tests
 
-/// A box of nx x ny x nz cells of edge `size` (m), six tetrahedra each (Kuhn's division), nodes
-/// inside and out moved at random by up to `jitter` edges in each direction.
+/// A box of nx x ny x nz cells with edges of `size` (m) and six tetrahedra each (Kuhn's
+/// subdivision). All nodes are moved at random by up to `jitter` edges in each direction.
 inline std::shared_ptr<mesh::Mesh> block_mesh(int nx, int ny, int nz, double size,
                                               double jitter = 0.0) {
   auto result = std::make_shared<mesh::Mesh>();
@@ -40,14 +40,14 @@ inline std::shared_ptr<mesh::Mesh> block_mesh(int nx, int ny, int nz, double siz
         ++at[static_cast<std::size_t>(kAxes[k][a])];
         tetrahedron[a + 1] = number(at[0], at[1], at[2]);
       }
-      if (k >= 3) std::swap(tetrahedron[2], tetrahedron[3]);  // odd permutations turn the other way
+      if (k >= 3) std::swap(tetrahedron[2], tetrahedron[3]);  // odd permutations are mirrored
       result->tetrahedra.push_back(tetrahedron);
     }
   }
   return result;
 }
 
-/// The nodes with z = 0 in mesh coordinates, up to half an edge.
+/// The nodes with z < size / 2 in mesh coordinates.
 inline std::vector<NodeId> bottom_nodes(const mesh::Mesh& mesh, double size) {
   std::vector<NodeId> result;
   for (NodeId node = 0; node < mesh.node_count(); ++node) {
@@ -56,7 +56,7 @@ inline std::vector<NodeId> bottom_nodes(const mesh::Mesh& mesh, double size) {
   return result;
 }
 
-/// Every node moved at random by up to `size` edges in each direction.
+/// Moves every node at random by up to `size` edges in each direction.
 inline Points moved(const mesh::Mesh& mesh, double edge, double size, unsigned seed = 1) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-size, size);

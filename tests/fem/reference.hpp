@@ -1,6 +1,6 @@
 /// @file
-/// Forces and matrices of a body, one tetrahedron at a time in dense Eigen algebra: an oracle that
-/// shares no formula with the library beyond the law itself.
+/// Reference forces and matrices of a body, computed one tetrahedron at a time in dense Eigen
+/// algebra. It shares no formula with the library except the material law.
 #pragma once
 
 #include <cmath>
@@ -37,10 +37,10 @@ inline Matrix3 polar_rotation(const Matrix3& f, Matrix3& stretch) {
   return u * svd.matrixV().transpose();
 }
 
-/// vec of columns.
+/// Stacks the columns of a matrix.
 inline Eigen::Matrix<double, 9, 1> vec(const Matrix3& m) { return m.reshaped(); }
 
-/// d vec(R) / d vec(F): R [w]x with (tr(S) I - S) w = axial(R^T dF - dF^T R), by a linear solve.
+/// d vec(R) / d vec(F): dR = R [w]x, where (tr(S) I - S) w = axial(R^T dF - dF^T R) is solved.
 inline Matrix9 rotation_derivative(const Matrix3& r, const Matrix3& stretch) {
   Matrix9 result;
   const Matrix3 g = stretch.trace() * Matrix3::Identity() - stretch;
@@ -56,7 +56,7 @@ inline Matrix9 rotation_derivative(const Matrix3& r, const Matrix3& stretch) {
   return result;
 }
 
-/// dP/dF of the small-strain law in the frame of R, rotation held fixed.
+/// dP/dF of the small-strain law in the frame of R, with R held fixed.
 inline Matrix9 rotated_moduli(const Matrix3& r, double mu, double lambda) {
   Matrix9 result;
   for (int k = 0; k < 9; ++k) {
@@ -70,7 +70,8 @@ inline Matrix9 rotated_moduli(const Matrix3& r, double mu, double lambda) {
 
 }  // namespace detail
 
-/// @param settings those of the model.
+/// Computes the reference of a model. @param model,settings the model, and its settings.
+/// @param positions (n, 3) m. @param weights of the assembly.
 inline Reference reference(const FemModel& model, const FemModelSettings& settings,
                            const Points& positions, const AssemblyWeights& weights) {
   const mesh::Mesh& mesh = model.mesh();
@@ -149,7 +150,7 @@ inline Reference reference(const FemModel& model, const FemModelSettings& settin
   return result;
 }
 
-/// The assembled matrix, dense and with both triangles.
+/// The assembled matrix in dense form, with both triangles.
 inline MatrixX dense_matrix(const Assembly& assembly) {
   const linalg::BlockPattern& pattern = assembly.model().pattern();
   MatrixX result = MatrixX::Zero(3 * pattern.nodes, 3 * pattern.nodes);

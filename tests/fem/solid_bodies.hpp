@@ -1,5 +1,5 @@
 /// @file
-/// Boxes of every kind of solid element, of one rubber or of several materials.
+/// Boxes of every kind of solid element, with one rubber or several materials.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ inline material::Hyperelastic soft_rubber() {
 
 enum class Kind { tetrahedra, patches, quadratic, hexahedra, both };
 
-/// A box of cells, inner nodes moved about; `both` has hexahedra below and tetrahedra above.
+/// A box of cells with jittered nodes; `both` has hexahedra below and tetrahedra above.
 inline std::shared_ptr<mesh::Mesh> box(Kind kind, int nx, int ny, int nz, double jitter = 0.12) {
   auto result = block_mesh(nx, ny, nz, kEdge, jitter);
   if (kind == Kind::tetrahedra || kind == Kind::patches) return result;
@@ -53,7 +53,7 @@ inline std::shared_ptr<mesh::Mesh> box(Kind kind, int nx, int ny, int nz, double
       }
     }
   }
-  // Six tetrahedra a cell, cell by cell from below.
+  // There are six tetrahedra per cell, cell by cell from below.
   result->tetrahedra.erase(result->tetrahedra.begin(),
                            result->tetrahedra.begin() + 6 * nx * ny * layers);
   return result;
@@ -66,7 +66,8 @@ inline FemModelSettings settings_of(const mesh::Mesh& mesh, const material::Hype
   return settings;
 }
 
-/// Elements dealt out in turn to two rubbers and, tetrahedra, to a corotational material.
+/// Assigns elements in turn to two rubbers and, for tetrahedra, a corotational material (if
+/// quadratic, a third rubber).
 inline FemModelSettings mixed_settings(const mesh::Mesh& mesh) {
   FemModelSettings settings;
   settings.regions = {{.constants = {}, .density = 1000.0, .hyperelastic = rubber()},
@@ -85,7 +86,7 @@ inline FemModelSettings mixed_settings(const mesh::Mesh& mesh) {
   return settings;
 }
 
-/// Those of mixed_settings(), or two rubbers in patches.
+/// As above, or for patches two rubbers in separate parts.
 inline FemModelSettings mixed_settings(Kind kind, const mesh::Mesh& mesh) {
   FemModelSettings settings = mixed_settings(mesh);
   if (kind != Kind::patches) return settings;
@@ -126,7 +127,7 @@ struct Body {
     assembly.evaluate(x, {.tangent = tangent});
     return dense_matrix(assembly);
   }
-  /// x with free coordinate k moved by `step`.
+  /// Returns x with its free coordinate k changed by `step`.
   Points stepped(Points x, Eigen::Index k, double step) const {
     x(model->free_nodes()[static_cast<std::size_t>(k / 3)], k % 3) += step;
     return x;

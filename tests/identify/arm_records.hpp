@@ -13,12 +13,12 @@ namespace sinew::identify::testing {
 struct Capture {
   double duration = 3.0, rate = 50.0;  // s, Hz
   double noise = 1e-3;                 // m
-  double gaps = 0.02;                  // share of the markers not seen
-  double jitter = 0.3;                 // of the frames' times, of their distance
-  double time_step = 5e-3;             // s, of the simulation that makes it
+  double gaps = 0.02;                  // fraction of marker positions that are missing
+  double jitter = 0.3;                 // of the frames' times, as a fraction of their distance
+  double time_step = 5e-3;             // s, of the simulation
 };
 
-/// An arm let go from a bent pose, as seen by cameras.
+/// A camera record of an arm that is released from a bent pose.
 inline MotionRecord release(const ArmModel& model, const VectorX& pose, const Capture& capture,
                             std::uint64_t seed, MatrixX inputs = {}, std::string name = "release") {
   Random random(seed);

@@ -1,6 +1,6 @@
 /// @file
-/// A block system as a CHOLMOD matrix, for comparison. CHOLMOD holds GPL modules: tests and
-/// benchmarks may use it, the library never.
+/// Solves a block system with CHOLMOD, for comparison. CHOLMOD has GPL modules, so only tests and
+/// benchmarks may use it, but not the library.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace sinew::linalg::testing {
 
-/// CHOLMOD's state, with the methods that are asked for.
+/// A CHOLMOD factorisation of a block system.
 class CholmodSolver {
  public:
   CholmodSolver(const BlockSystem& system, bool supernodal) {
@@ -38,7 +38,7 @@ class CholmodSolver {
     return cholmod_factorize(matrix_, factor_, &common_) != 0 && common_.status == CHOLMOD_OK;
   }
 
-  /// A^-1 right, column by column.
+  /// Computes A^-1 right, column by column.
   MatrixX solve(const MatrixX& right) {
     const auto rows = static_cast<std::size_t>(right.rows());
     cholmod_dense b{};

@@ -1,5 +1,5 @@
 /// @file
-/// Block systems for tests and benchmarks: random graphs of any size, and linear elasticity of
+/// Block systems for tests and benchmarks: random graphs of any size, and linear elasticity on
 /// structured tetrahedral blocks and tubes of the size of real soft robots.
 #pragma once
 
@@ -18,7 +18,7 @@
 
 namespace sinew::linalg::testing {
 
-/// A, H and b in the library's layouts.
+/// Matrix A, rows H and right-hand side b in the layouts of the library.
 struct BlockSystem {
   BlockPattern pattern;
   BorderPattern border;
@@ -55,7 +55,7 @@ struct BlockSystem {
     return full;
   }
 
-  /// A x, block by block.
+  /// Computes A x, block by block.
   VectorX multiply(const VectorX& x) const {
     VectorX y = VectorX::Zero(size());
     for (int j = 0; j < pattern.nodes; ++j) {
@@ -91,19 +91,19 @@ struct BlockSystem {
   }
 };
 
-/// How a random system looks.
+/// Settings of a random system.
 struct RandomSettings {
   int nodes = 10;
   int cliques = 20;
   int clique_size = 4;
   int rows = 0;
-  double row_density = 0.2;  ///< chance that a border row touches a node; 1 touches all
-  double negative = 0;       ///< chance that a clique has the opposite sign
+  double row_density = 0.2;  ///< probability that a border row touches a node; 1: all
+  double negative = 0;       ///< probability that a clique has the opposite sign
   unsigned seed = 1;
 };
 
-/// Sum over random cliques of C C^T, plus a positive diagonal: positive definite where no clique is
-/// negative. Rows of the border may be empty.
+/// A random system: the sum of C C^T over random cliques, plus a positive diagonal. It is positive
+/// definite if no clique is negative. Border rows may be empty.
 inline BlockSystem random_system(const RandomSettings& settings) {
   std::mt19937 random(settings.seed);
   std::uniform_int_distribution<int> node(0, settings.nodes - 1);
@@ -148,13 +148,14 @@ inline BlockSystem random_system(const RandomSettings& settings) {
   return system;
 }
 
-/// Nodes (metres) and tetrahedra.
+/// A tetrahedral mesh with nodes in m.
 struct TetrahedralMesh {
   std::vector<Vector3> nodes;
   std::vector<std::array<int, 4>> tets;
 };
 
-/// A block of cells, six tetrahedra each (Kuhn); `bent(p)` moves every node of the unit-cell grid.
+/// A block of cells with six tetrahedra each (Kuhn); `bent(p)` maps the nodes of the unit-cell
+/// grid.
 template <typename Bend>
 TetrahedralMesh cell_mesh(int nx, int ny, int nz, Bend&& bent) {
   TetrahedralMesh mesh;
@@ -184,8 +185,8 @@ TetrahedralMesh cell_mesh(int nx, int ny, int nz, Bend&& bent) {
   return mesh;
 }
 
-/// Linear elasticity (Young 450 kPa, Poisson 0.45) of a mesh whose first `fixed` nodes are held,
-/// with `rows` border rows, each along a line of nodes, and a right side.
+/// Linear elasticity (Young's modulus 450 kPa, Poisson's ratio 0.45) on a mesh whose first `fixed`
+/// nodes are fixed, with `rows` border rows, each along a line of nodes, and a right-hand side.
 inline BlockSystem elastic_system(const TetrahedralMesh& mesh, int fixed, int rows) {
   constexpr double kYoung = 450e3;
   constexpr double kPoisson = 0.45;
@@ -251,7 +252,7 @@ inline BlockSystem elastic_block(int nx, int ny, int nz, int rows) {
   return elastic_system(mesh, (nx + 1) * (ny + 1), rows);
 }
 
-/// A half tube of wall thickness `layers` cells, clamped at one end.
+/// A half tube, clamped at one end, whose wall is `layers` cells thick.
 inline BlockSystem elastic_half_tube(int layers, int around, int along, int rows) {
   const TetrahedralMesh mesh = cell_mesh(layers, around, along, [&](const Vector3& p) {
     const double radius = 0.02 + 0.002 * p.x();

@@ -1,5 +1,5 @@
 /// @file
-/// Between Eigen matrices and lanes, and deformation gradients worth testing.
+/// Conversions between Eigen matrices and lanes, and deformation gradients for tests.
 #pragma once
 
 #include <random>
@@ -55,7 +55,7 @@ class RandomMatrices {
   std::normal_distribution<double> normal_;
 };
 
-/// Named deformation gradients: everything a tetrahedron may meet while R has a derivative.
+/// Named deformation gradients that cover all cases in which the derivative of R exists.
 inline std::vector<std::pair<std::string, Matrix3>> deformation_gradients() {
   RandomMatrices random;
   std::vector<std::pair<std::string, Matrix3>> result{{"identity", Matrix3::Identity()}};

@@ -1,5 +1,5 @@
 /// @file
-/// What the mesh tests share.
+/// Shared helpers of the mesh tests.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@
 
 namespace sinew::mesh::test {
 
-/// Runs `action`, which must throw Error of this kind; returns its full text.
+/// Runs `action`, expects an Error of this kind, and returns its full text.
 template <typename Action>
 std::string error_text(ErrorKind kind, const Action& action) {
   try {
@@ -31,7 +31,7 @@ inline std::filesystem::path data_folder() {
   return std::filesystem::path(SINEW_SOURCE_DIR) / "tests/mesh/data";
 }
 
-/// A folder of the test's own, empty at the start and removed at the end.
+/// A temporary folder of one test, initially empty and removed at the end.
 class ScratchFolder {
  public:
   ScratchFolder() {
@@ -60,7 +60,7 @@ inline void write_text(const std::filesystem::path& path, const std::string& tex
   std::ofstream(path, std::ios::binary) << text;
 }
 
-/// One regular corner tetrahedron with edges of 0.1 m.
+/// A corner tetrahedron with three perpendicular edges of 0.1 m.
 inline Mesh one_tetrahedron() {
   Mesh mesh;
   mesh.name = "one";

@@ -1,4 +1,4 @@
-// Motion to a given accuracy: against explicit steps where they can follow, and against itself.
+// Motion to a given accuracy: compared with explicit steps where these are stable, and with itself.
 #include "sinew/pcc/adaptive_motion.hpp"
 
 #include <cmath>
@@ -27,7 +27,8 @@ VectorX state_of(const AdaptiveMotion& motion) {
   return y;
 }
 
-/// Steps of second order come to the same motion, four times nearer with half their length.
+/// Steps of second order converge to the same motion; half the step size gives a quarter of the
+/// error.
 TEST(AdaptiveMotion, IsTheLimitOfTheImplicitSteps) {
   const auto arm = make(testing::fluidic());
   const double end = 0.5;
@@ -45,8 +46,8 @@ TEST(AdaptiveMotion, IsTheLimitOfTheImplicitSteps) {
   EXPECT_GT(apart[0] / apart[1], 3.0);
 }
 
-/// A hundredth of the error for a hundredth of the tolerance and better: what is asked for is
-/// what steps are chosen by, of the published arm too, whose fastest decay is 1e7 1/s.
+/// A hundredth of the tolerance gives a hundredth of the error or less, also for the published arm,
+/// whose fastest decay rate is 1e7 1/s.
 TEST(AdaptiveMotion, AccuracyIsWhatIsAskedFor) {
   const auto arm = make(testing::fluidic());
   const VectorX q{{0.05, -0.05, 0.05, 0.02}}, rate{{0.5, -1.0, 0.2, 0.4}};

@@ -1,4 +1,4 @@
-// Derivatives of motions by parameters and starts.
+// Derivatives of motions with respect to parameters and initial states.
 #include "sinew/pcc/arm_sensitivity.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ TEST(ArmEquations, MassRegressorIsTheDerivativeByMasses) {
     const VectorX acceleration = testing::random_vector(random, n, 20.0);
     const MatrixX found = equations.mass_regressor(q, rate, acceleration);
     for (int s = 0; s < 3; ++s) {
-      // Linear: two masses a whole kilogram apart.
+      // The residual is linear in the mass, so a difference of 1 kg is exact.
       ArmSettings heavier = settings;
       heavier.segments[static_cast<std::size_t>(s)].mass += 1.0;
       ArmEquations other(make(heavier));
@@ -50,8 +50,8 @@ TEST(ArmEquations, EndpointJacobianIsTheirDerivative) {
   }
 }
 
-/// Parameters: mass of segment 1, all stiffness, all damping, a torque's size, the first angle, the
-/// second rate.
+/// The parameters are the mass of segment 1, all stiffness, all damping, the amplitude of a torque,
+/// the first initial angle, and the second initial rate.
 constexpr Eigen::Index kParameters = 6;
 
 struct Run {

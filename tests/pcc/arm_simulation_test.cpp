@@ -1,4 +1,4 @@
-// Arms in time: orders of the integrators, energy, stiffness of the lumped model, equilibria.
+// Simulation of arms: orders of integrators, energy, stiffness of the lumped model, equilibria.
 #include "sinew/pcc/arm_simulation.hpp"
 
 #include <cmath>
@@ -18,14 +18,14 @@ using mechanics::Integrator;
 using testing::fluidic;
 using testing::make;
 
-/// An arm of distributed mass without damping, which is not stiff.
+/// An undamped arm with distributed mass, which is not stiff.
 std::shared_ptr<const Arm> lossless() {
   ArmSettings settings = fluidic(MassCentre::distributed);
   for (Segment& segment : settings.segments) segment.damping = 0.0;
   return make(settings);
 }
 
-/// Position after half a second's swing from a bent start.
+/// Position after half a second of swinging from a bent pose.
 VectorX swing(const std::shared_ptr<const Arm>& arm, Integrator integrator, double step) {
   ArmSimulation simulation(
       arm,

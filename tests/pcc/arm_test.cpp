@@ -65,7 +65,7 @@ TEST(Stumpff, DerivativesAgreeWithComplexStep) {
 }
 
 TEST(Transform, IsTheProductOfItsFactors) {
-  // R_z(gamma) T_z(L_P) R_y(theta/2) T_z(d) R_y(theta/2), behind the base R_x(pi).
+  // R_z(gamma) T_z(L_P) R_y(theta/2) T_z(d) R_y(theta/2), after the base R_x(pi).
   ArmSettings settings = fluidic();
   settings.segments.resize(2);
   settings.segments[0].gamma = 0.7;
@@ -131,7 +131,7 @@ TEST(Centres, ArcAndChordAreWhereTheyAreSaidToBe) {
 }
 
 TEST(Pendulum, ShortStiffSegmentWithAMassIsOne) {
-  // A dead length with a short bend at its top and the mass far below: theta'' = -(g/l) sin theta.
+  // A short bend with the mass far below is a pendulum, theta'' = -(g/l) sin theta.
   ArmSettings settings = fluidic();
   settings.segments.resize(2);
   settings.segments[0].length = 1e-5;
@@ -186,14 +186,14 @@ TEST_P(ArmKinds, CoriolisMatrixGivesTheForcesAndLeavesASkewMatrix) {
 }
 
 TEST_P(ArmKinds, ResidualIsThatOfTheLagrangian) {
-  // d/dt dT/dq' - dT/dq + dV/dq + b q' by differences of the energies alone.
+  // d/dt dT/dq' - dT/dq + dV/dq + b q' by finite differences of the energies only.
   const VectorX q = random_vector(random, n, 1.0), rate = random_vector(random, n, 2.0);
   const VectorX acceleration = random_vector(random, n, 5.0);
   const double h = 1e-5;
   const auto momentum = [&](double t, Eigen::Index k) {
     const VectorX at = q + t * rate + 0.5 * t * t * acceleration;
     VectorX up = rate + t * acceleration, down = up;
-    up[k] += 0.1;  // T is quadratic in the rates: differences are exact
+    up[k] += 0.1;  // T is quadratic in the rates, so differences are exact
     down[k] -= 0.1;
     return (equations.energy(at, up).kinetic - equations.energy(at, down).kinetic) / 0.2;
   };
@@ -268,7 +268,7 @@ TEST_P(ArmKinds, ForwardDynamicsInvertsInverseDynamics) {
   const VectorX acceleration = equations.acceleration(q, rate, torque);
   EXPECT_LT((equations.residual(q, rate, acceleration) - torque).norm(), 1e-11);
   const auto forward = equations.forward_derivatives(q, rate, torque);
-  // Lumped masses make H nearly singular and its inverse steep: by complex step.
+  // Uses complex steps, since lumped masses make H nearly singular and its inverse steep.
   ArmDynamics<Complex> complex(arm);
   const auto size = static_cast<std::size_t>(n);
   const double tiny = 1e-30;

@@ -1,4 +1,4 @@
-// Arms that the tests share.
+// Arms shared by tests.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@ namespace sinew::pcc::testing {
 
 inline ArmSettings fluidic(MassCentre centre = MassCentre::arc) { return published_arm(centre); }
 
-/// Turned, extensible, with dead lengths, a skew base and a load: everything at once.
+/// An arm with all features: rotated and extensible segments, dead lengths, a skew base and a load.
 inline ArmSettings mixed(MassCentre centre = MassCentre::distributed) {
   ArmSettings settings = fluidic(centre);
   settings.segments.resize(3);
@@ -31,7 +31,7 @@ inline ArmSettings mixed(MassCentre centre = MassCentre::distributed) {
   return settings;
 }
 
-/// In one plane, with dead lengths, a base and a gravity that are skew to it, and loads.
+/// A planar arm with dead lengths, loads, and a base and gravity that are skew to its plane.
 inline ArmSettings planar(MassCentre centre = MassCentre::distributed) {
   ArmSettings settings = fluidic(centre);
   settings.segments[0].dead_length = 0.02;
@@ -48,7 +48,7 @@ inline std::shared_ptr<const Arm> make(ArmSettings settings) {
   return std::make_shared<const Arm>(std::move(settings));
 }
 
-/// (n,) uniform in [-size, size].
+/// A vector (n,) with components uniform in [-size, size].
 inline VectorX random_vector(std::mt19937& random, Eigen::Index n, double size) {
   std::uniform_real_distribution<double> spread(-size, size);
   VectorX result(n);

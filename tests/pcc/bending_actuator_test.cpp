@@ -29,7 +29,7 @@ TEST(BendingActuator, MomentIsThatOfThePressureOnTheEndCap) {
   BendingParameters p;
   p.outer_radius = 10e-3;
   const BendingActuator actuator(p);
-  // Strips of the chamber's disc, at their height above the layer.
+  // Sums over strips of the chamber's disc, by their height above the layer.
   double moment = 0.0;
   constexpr int kStrips = 20000;
   for (int i = 0; i < kStrips; ++i) {
@@ -38,7 +38,7 @@ TEST(BendingActuator, MomentIsThatOfThePressureOnTheEndCap) {
     moment += (p.chamber_height() + y) * width * 2.0 * p.chamber_radius / kStrips;
   }
   EXPECT_NEAR(actuator.moment_per_pressure(), moment, 1e-5 * moment);
-  // And the work of the pressure: the volume of the bent chamber, cell by cell.
+  // Work of the pressure, from the volume of the bent chamber, cell by cell.
   const auto volume = [&](double theta) {
     double sum = 0.0;
     for (int i = 0; i < kStrips; ++i) {
@@ -53,8 +53,8 @@ TEST(BendingActuator, MomentIsThatOfThePressureOnTheEndCap) {
   EXPECT_NEAR(actuator.chamber_volume(0.8), volume(0.8), 1e-5 * volume(0.8));
 }
 
-// d/dt dL/dtheta' - dL/dtheta = Q with L by sums over material points and its derivatives by
-// differences, against the closed form.
+// Compares the closed form with d/dt dL/dtheta' - dL/dtheta = Q, where L is a sum over material
+// points and its derivatives are finite differences.
 TEST(BendingActuator, EquationOfMotionIsThatOfTheDifferentiatedLagrangian) {
   for (const MassLine line : {MassLine::layer, MassLine::section}) {
     BendingParameters p = damped();
@@ -69,7 +69,7 @@ TEST(BendingActuator, EquationOfMotionIsThatOfTheDifferentiatedLagrangian) {
     for (const auto& at :
          {std::array{0.7, 3.0, 40e3}, std::array{1.6, -12.0, 80e3}, std::array{-0.5, 6.0, 0.0}}) {
       const double theta = at[0], rate = at[1], pressure = at[2];
-      // T is quadratic in the rate, so that a difference of one rad/s is exact.
+      // T is quadratic in the rate, so a difference of 1 rad/s is exact.
       const auto momentum = [&](double angle) {
         return 0.5 * (lagrangian(angle, rate + 1.0) - lagrangian(angle, rate - 1.0));
       };
@@ -79,7 +79,8 @@ TEST(BendingActuator, EquationOfMotionIsThatOfTheDifferentiatedLagrangian) {
           (momentum(theta + step) - momentum(theta - step)) / (2.0 * step) * rate;
       const double slope =
           (lagrangian(theta + step, rate) - lagrangian(theta - step, rate)) / (2.0 * step);
-      // Rayleigh's stiffness part is that of the straight pose: the second difference there.
+      // The stiffness part of Rayleigh damping is that of the straight pose, from a second
+      // difference there.
       const double straight = (brute.strain(step) + brute.strain(-step)) / (step * step);
       const double friction =
           (p.mass_damping * inertia + p.stiffness_damping * shear * straight) * rate;
@@ -87,7 +88,7 @@ TEST(BendingActuator, EquationOfMotionIsThatOfTheDifferentiatedLagrangian) {
                             (p.chamber_radius + p.wall_thickness);
       const double expected = (moment + slope - carried - friction) / inertia;
       const double found = actuator.acceleration(theta, rate, pressure);
-      // The grid and the differences: parts in a thousand of the terms, which nearly cancel.
+      // Grid and differences have errors of 1e-3 of the terms, which nearly cancel.
       const double size = (moment + std::abs(slope) + std::abs(friction)) / inertia;
       EXPECT_NEAR(found, expected, 2e-3 * size) << theta;
     }
@@ -107,7 +108,7 @@ TEST(BendingActuator, SmallAnglesAreThoseOfTheBeam) {
                 moment * p.length / (0.8e6 * actuator.second_moment()), 1e-15);
     EXPECT_NEAR(actuator.equilibrium(100.0) / actuator.linear_angle(100.0), 1.0, 3e-4);
   }
-  // The second moment of a ring about its own middle, moved by its radius (Steiner).
+  // The second moment of a ring about its centre, shifted by its radius (parallel axis theorem).
   const double outer = p.outer(), r = p.chamber_radius;
   const double area = std::numbers::pi * (outer * outer - r * r);
   EXPECT_NEAR(BendingActuator(p).second_moment(),
@@ -122,7 +123,7 @@ TEST(BendingActuator, EquilibriumBalancesAndIsStable) {
     EXPECT_NEAR(actuator.acceleration(theta, 0.0, pressure), 0.0, 1e-7) << pressure;
     EXPECT_GT(actuator.stiffness(theta, pressure), 0.0);
   }
-  // Far beyond what curls it up.
+  // Far beyond the pressure that curls it up.
   EXPECT_EQ(kind_of([&] { actuator.equilibrium(5e6); }), ErrorKind::not_converged);
 }
 
@@ -145,7 +146,7 @@ TEST(BendingActuator, WeightLessBuoyancy) {
   const double wall = std::numbers::pi * (outer * outer - r * r) * p.length,
                inside = std::numbers::pi * r * r * p.length;
   EXPECT_NEAR(BendingActuator(p).net_weight(), (1070.0 - 1000.0) * wall * 9.81, 1e-12);
-  p.filling_density = 0.0;  // empty in water: it floats
+  p.filling_density = 0.0;  // empty in water, so it floats
   EXPECT_NEAR(BendingActuator(p).net_weight(), (70.0 * wall - 1000.0 * inside) * 9.81, 1e-12);
   EXPECT_LT(BendingActuator(p).net_weight(), 0.0);
   p.surroundings_density = 0.0;
@@ -158,7 +159,7 @@ TEST(BendingActuator, PointsLieOnTheArc) {
   p.inclination = 0.8;
   const BendingActuator actuator(p);
   for (const double theta : {-1.2, -1e-5, 0.0, 1e-5, 0.6, 3.0}) {
-    // Two frames: from the base with the arc's formula, and the length of a fine polyline.
+    // Checks the formula of the arc in the frame of the base, and the length of a fine polyline.
     double length = 0.0;
     Eigen::Vector2d before = actuator.point(theta, 0.0);
     EXPECT_LT(before.norm(), 1e-15);
@@ -267,7 +268,7 @@ TEST(BendingModulus, RefusesWhatIsNoModulus) {
   EXPECT_EQ(fit({1e5, -2.0}, 0.0, 1e5), ErrorKind::out_of_range);
   EXPECT_EQ(fit({1e5, std::nan("")}, 0.0, 1e5), ErrorKind::not_finite);
   EXPECT_EQ(fit({1e5}, 1e5, 0.0), ErrorKind::contradictory_limits);
-  // The published polynomial from -25 kPa on: negative there.
+  // The published polynomial is negative at -25 kPa.
   EXPECT_EQ(fit(BendingModulus::published().coefficients(), -25e3, 110e3), ErrorKind::out_of_range);
   EXPECT_EQ(kind_of([] { BendingModulus(0.0); }), ErrorKind::out_of_range);
   EXPECT_EQ(kind_of([] { BendingModulus{std::numeric_limits<double>::infinity()}; }),

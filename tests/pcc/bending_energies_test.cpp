@@ -30,8 +30,8 @@ TEST(BendingEnergies, ExactOnesAgreeWithClosedForms) {
   p.order.reset();
   const BendingEnergies energies(p);
   const double l = p.length, mass = mass_sum(p).total * l, net = net_mass_sum(p).total * l;
-  // int over a disc of (a + b x)^-2, x from -1 to 1, is 2 pi/b^2 (a/sqrt(a^2 - b^2) - 1) R^2; of
-  // (a + b x)^2 it is pi R^2 (a^2 + b^2/4).
+  // The integral over a disc of (a + b x)^-2, x from -1 to 1, is 2 pi/b^2 (a/sqrt(a^2 - b^2) - 1)
+  // R^2, and that of (a + b x)^2 is pi R^2 (a^2 + b^2/4).
   const auto disc = [&](double theta, double radius, double centre) {
     const double a = 1.0 + theta * centre / l, b = theta * radius / l;
     const double inverse = 2.0 * std::numbers::pi / (b * b) * (a / std::sqrt(a * a - b * b) - 1.0);
@@ -64,7 +64,7 @@ TEST(BendingEnergies, ExactOnesAgreeWithSumsOverMaterialPoints) {
     const double scale = std::abs(brute.gravity(1.0));
     for (const double theta : {-1.1, 0.3, 2.0, 5.0}) {
       const BendingTerms terms = energies.at(theta);
-      // The grid's own error: cells of 1/60 and 1/200.
+      // The error of the grid, with cells of 1/60 and 1/200.
       EXPECT_NEAR(terms.inertia.value / brute.inertia(theta), 1.0, 3e-4) << theta;
       EXPECT_NEAR(terms.strain.value / brute.strain(theta), 1.0, 3e-4) << theta;
       EXPECT_NEAR(terms.gravity.value, brute.gravity(theta), 3e-4 * scale) << theta;
@@ -72,7 +72,8 @@ TEST(BendingEnergies, ExactOnesAgreeWithSumsOverMaterialPoints) {
   }
 }
 
-// Five-point differences: error h^4/30 of the fifth derivative, rounding 1e-16/h.
+// Five-point differences have an error of h^4/30 times the fifth derivative, and rounding of
+// 1e-16/h.
 double slope(const std::function<double(double)>& f, double x) {
   constexpr double h = 1e-2;
   return (8.0 * (f(x + h) - f(x - h)) - (f(x + 2.0 * h) - f(x - 2.0 * h))) / (12.0 * h);
@@ -156,7 +157,7 @@ TEST(BendingEnergies, TaylorIsWithinItsBoundWhichIsNoWiderThanNeeded) {
         keep(worst.gravity_slope, a.gravity.first, b.gravity.first);
         keep(worst.inertia, a.inertia.value, b.inertia.value);
       }
-      // Rounding beside the terms themselves, where the bound is far below them.
+      // Rounding is relative to the terms, if the bound is far below them.
       const BendingTerms size = exact.at(end);
       const double slack = 1e-14;
       EXPECT_LE(worst.strain, bound.strain + slack * size.strain.value) << order << ' ' << end;
@@ -181,7 +182,7 @@ TEST(BendingEnergies, TaylorConvergesWithItsOrder) {
       return std::abs(BendingEnergies(under_water(n)).at(angle).strain.value -
                       exact.at(angle).strain.value);
     };
-    // Halving the angle divides the error by 2^(order + 1), a little less for its own next term.
+    // Half the angle divides the error by 2^(order + 1), slightly less due to the next term.
     const double rate = std::log2(error(theta, order) / error(0.5 * theta, order));
     EXPECT_NEAR(rate, order + 1, 0.25) << order;
     EXPECT_LT(error(theta, order), 0.02 * wanted);

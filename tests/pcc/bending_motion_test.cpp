@@ -27,7 +27,7 @@ Shared undamped(std::optional<int> order = 5) {
   return actuator([&](BendingParameters& p) { p.order = order; });
 }
 
-/// Classical Runge-Kutta with so small a step that its error is that of rounding.
+/// The classical Runge-Kutta method with a step so small that its error is rounding.
 std::pair<double, double> runge_kutta(const BendingActuator& a, double theta, double rate,
                                       double end, const auto& pressure) {
   constexpr int kSteps = 20000;
@@ -73,8 +73,8 @@ TEST(BendingMotion, ConvergesToRungeKuttaWithItsOrder) {
   }
 }
 
-// Without damping the energy's error shrinks by the method's order; strain, gravity and kinetic
-// energy and the work of a constant pressure together stay.
+// Without damping, the sum of strain, gravity and kinetic energy minus the work of a constant
+// pressure is conserved, up to an error that decreases with the order of the method.
 TEST(BendingMotion, EnergyIsConservedWithTheOrderOfTheMethod) {
   for (const std::optional<int> order : {std::optional<int>(), std::optional(5)}) {
     const Shared a = undamped(order);
@@ -139,7 +139,8 @@ TEST(BendingMotion, DampingTakesEnergyAtEveryStep) {
   EXPECT_NEAR(motion.state().angle, a->equilibrium(0.0), 1e-3);
 }
 
-// The fundamental turns by over ten radians a step of 0.1 s, where explicit methods blow up.
+// The phase of the fundamental mode advances by over 10 rad in a step of 0.1 s, where explicit
+// methods diverge.
 TEST(BendingMotion, IsStableAtStepsThatResolveNothing) {
   for (const std::optional<int> order : {std::optional<int>(), std::optional(5)}) {
     const Shared a = undamped(order);
@@ -193,7 +194,7 @@ TEST(BendingMotion, FailedStepLeavesTheState) {
 
 TEST(Simulate, UnevenHistoriesAgreeWithEvenOnes) {
   const Shared a = actuator([](BendingParameters& p) { p.stiffness_damping = 5e-3; });
-  // A ramp by two points or by many: the same straight line.
+  // A ramp given by two points or by many is the same line.
   const std::vector<double> coarse_t{0.0, 1.0}, coarse_p{0.0, 60e3};
   std::vector<double> t, p;
   for (int k = 0; k <= 50; ++k) {

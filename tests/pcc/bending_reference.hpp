@@ -1,5 +1,5 @@
-// A bending actuator by brute force: sums over a grid of material points whose positions follow
-// from the arc alone. Shares no formula with the library.
+// A reference bending actuator: sums over a grid of material points whose positions follow only
+// from the arc. It shares no formula with the library.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@ struct BruteForce {
     double height, area, density, net, wall;
   };
 
-  /// Midpoints of polar cells of a disc.
+  /// Adds the midpoints of the polar cells of a disc.
   void add_disc(std::vector<Cell>& cells, double radius, double centre, double density, double net,
                 double wall) const {
     for (int i = 0; i < rings; ++i) {
@@ -45,7 +45,7 @@ struct BruteForce {
   struct Point {
     double x, z;
   };
-  /// On the arc of radius L/theta, in world axes. theta is not 0.
+  /// Position of a point on the arc of radius L/theta, in world axes. theta is not 0.
   Point place(double theta, double u, double height) const {
     const double radius = p.length / theta, angle = u * theta;
     // Layer at `radius` from the centre of curvature, which lies towards x.
@@ -55,7 +55,7 @@ struct BruteForce {
     return {x * c + axial * s, x * s - axial * c};
   }
 
-  /// I with velocities by differences of positions.
+  /// I, with velocities by finite differences of positions.
   double inertia(double theta) const {
     const double step = 1e-4;
     double sum = 0.0;
@@ -82,7 +82,7 @@ struct BruteForce {
     return sum;
   }
 
-  /// V_s/G: sum of squares of stretches along, round (1) and through the wall.
+  /// V_s/G, from the squares of the stretches along, around (1) and through the wall.
   double strain(double theta) const {
     double sum = 0.0;
     for (const Cell& cell : section()) {

@@ -1,4 +1,4 @@
-// Fluidic actuators, drive cylinders and the signals that excite them.
+// Fluidic actuators, drive cylinders and excitation signals.
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -61,7 +61,7 @@ TEST(DriveCylinder, FollowsTheStepResponseOfASecondOrderSystem) {
   EXPECT_NEAR(cylinder.spectral_radius(), std::exp(-zeta * w * h), 1e-12);
 }
 
-/// exp(a) by its series of a / 2^k, squared k times.
+/// exp(a) by the series for a / 2^k, squared k times.
 Matrix3 exponential(const Matrix3& a) {
   const int halvings = std::max(0, static_cast<int>(std::ceil(std::log2(a.norm()))) + 1);
   const Matrix3 small = a / std::pow(2.0, halvings);
@@ -86,7 +86,7 @@ TEST(DriveCylinder, IsTheMatrixExponentialForAnyDamping) {
     EXPECT_LT((cylinder.a - held.topLeftCorner<2, 2>()).norm(), kSquarings) << zeta;
     EXPECT_LT((cylinder.b - held.topRightCorner<2, 1>()).norm(), kSquarings) << zeta;
   }
-  // A mode that has died out leaves zeros, not infinity times zero.
+  // A mode that has decayed completely gives zeros, not infinity times zero.
   const auto stiff = DriveCylinder::second_order(1.0, 1e3, 1e3, 1.0);
   EXPECT_TRUE(stiff.a.allFinite());
   EXPECT_NEAR(stiff.a(0, 0), std::exp(-0.5), 1e-6);
@@ -130,8 +130,8 @@ TEST(Bretschneider, EnergyIsTheIntegralOfTheDensity) {
 }
 
 TEST(Excitation, HasTheSpectrumThatWasAskedFor) {
-  // Periodograms of sampled signals, averaged over seeds and summed over bands of four sines,
-  // against the integral of S over these.
+  // Compares periodograms of sampled signals, averaged over seeds and summed over bands of four
+  // sines, with the integral of S over these bands.
   constexpr int kSamples = 4096, kSeeds = 4, kBands = 10;
   constexpr double kRate = 16.0;
   const ExcitationSettings settings{.amplitude = 1.5};
@@ -165,12 +165,12 @@ TEST(Excitation, HasTheSpectrumThatWasAskedFor) {
     for (double w = low + 0.5 * step; w < high; w += step) wanted += step * spectrum.density(w);
     EXPECT_NEAR(found[static_cast<std::size_t>(band)], wanted, 0.05 * wanted) << "band " << band;
   }
-  // The band holds nearly all of (V_max/2)^2.
+  // The band contains nearly all of (V_max/2)^2.
   EXPECT_NEAR(variance, 0.25 * settings.amplitude * settings.amplitude, 0.01);
 }
 
 TEST(Excitation, IsTheSameEverywhere) {
-  // SplitMix64's published sequence of seed 1234567.
+  // The published sequence of SplitMix64 for the seed 1234567.
   Random random(1234567);
   EXPECT_EQ(random.bits(), 6457827717110365317u);
   EXPECT_EQ(random.bits(), 3203168211198807973u);

@@ -1,4 +1,4 @@
-// Braces: exact derivatives, the three conditions, what is found and what is not.
+// Braces: exact derivatives, the three conditions, and results of the search.
 #include "sinew/plan/brace.hpp"
 
 #include <cmath>
@@ -24,7 +24,7 @@ namespace {
 using pcc::testing::make;
 using testing::grab;
 
-/// A bar across the arm's plane, beside its last segment.
+/// A bar perpendicular to the arm's plane, near its last segment.
 BraceTask bar() {
   BraceTask task;
   task.goal = {0.05, 0.0, -0.53};
@@ -34,7 +34,8 @@ BraceTask bar() {
   return task;
 }
 
-/// Jacobian against constraints, Hessian against Jacobian and gradient, everywhere.
+/// Compares the Jacobian with differences of constraints, and the Hessian with those of Jacobian
+/// and gradient.
 void check_derivatives(BraceProgram& program, std::mt19937& random) {
   const int size = program.variables();
   const Eigen::Index rows = program.constraint_bounds().lower.size();
@@ -92,7 +93,7 @@ BraceProblem problem(const pcc::Arm& arm, const constraint::SmoothSurface& surfa
   result.goal = {0.1, 0.05, -0.3};
   result.point = {.segment = arm.segments() - 2, .fraction = 0.7, .x = 0.01, .y = -0.015};
   result.patch = patches_of(surface)[patch];
-  result.tolerance = 0.3;  // so that all terms are of one size
+  result.tolerance = 0.3;  // so that all terms have similar size
   result.friction = 0.6;
   result.reserve = 0.4;
   result.force_weight = 0.1;
@@ -143,7 +144,7 @@ TEST(Brace, IsAnEquilibriumWithinItsCone) {
   const BraceTask task = bar();
   const Brace brace = find_brace(arm, task, 4);
   ASSERT_TRUE(brace.found());
-  // The balance once more, from the arm's own equations and the point's Jacobian.
+  // Checks the balance with the equations of the arm and the Jacobian of the point.
   pcc::ArmEquations equations(arm);
   const VectorX still = VectorX::Zero(4);
   const MatrixX jacobian = equations.point(brace.point, brace.position, still).jacobian;
@@ -161,7 +162,7 @@ TEST(Brace, IsAnEquilibriumWithinItsCone) {
   EXPECT_LT(brace.tip_compliance, 0.2 * free_tip_compliance(arm, brace.position));
   EXPECT_LT(brace.peak_compliance,
             0.2 * free_tip_compliance(arm, brace.position, task.hold_frequency));
-  // It would not stick where friction is that of a coated rigid surface.
+  // It would not stick with the friction of a coated rigid surface.
   BraceTask coated = task;
   coated.objects[0].friction = kCoatedRigid;
   const Brace none = find_brace(arm, coated, 4);
@@ -171,7 +172,7 @@ TEST(Brace, IsAnEquilibriumWithinItsCone) {
   EXPECT_LT(none.hold_force, task.hold_force);
 }
 
-/// Against the saddle point system [A, -J^T; J, 0] that the null space of J stands for.
+/// Compares with the saddle-point system [A, -J^T; J, 0], which the null space of J eliminates.
 TEST(Brace, AnswersForcesOnTheTip) {
   std::mt19937 random(5);
   const int n = 6;
@@ -189,7 +190,7 @@ TEST(Brace, AnswersForcesOnTheTip) {
     double gain = 0.0, compliance = 0.0, rest = 0.0;
     for (int k = 0; k <= 512; ++k) {
       const double omega = 2.0 * std::numbers::pi * frequency * k / 512.0;
-      // Unknowns: real and imaginary motions, then real and imaginary forces.
+      // The unknowns are real and imaginary motions, then real and imaginary forces.
       MatrixX saddle = MatrixX::Zero(2 * n + 6, 2 * n + 6);
       const MatrixX in_phase = of.stiffness - omega * omega * of.mass, lag = omega * of.damping;
       saddle.topLeftCorner(2 * n, 2 * n) << in_phase, -lag, lag, in_phase;
@@ -201,7 +202,7 @@ TEST(Brace, AnswersForcesOnTheTip) {
       load.topRows(n) = of.tip.transpose();
       const MatrixX answer = linalg::solve(saddle, load);
       const MatrixX real = of.tip * answer.topRows(n), imaginary = of.tip * answer.middleRows(n, n);
-      // The largest of |(R + i S) a|^2 over complex a: an eigenvalue of the real form's square.
+      // The maximum of |(R + i S) a|^2 over complex a is an eigenvalue of the squared real form.
       MatrixX whole(6, 6);
       whole << real, -imaginary, imaginary, real;
       compliance = std::max(compliance,
@@ -251,7 +252,7 @@ TEST(Brace, HoldsInContactAndSteadiesTheTip) {
   EXPECT_LT(braced.spread, 0.2 * bare.spread);
   EXPECT_LT(braced.mean_error, 0.5 * bare.mean_error);
   EXPECT_GT(braced.spread, 1e-5);
-  // Planned anew, the braced point is where it was.
+  // In the replanned brace, the braced point is at the same position.
   pcc::ArmEquations equations(arm);
   const VectorX still_arm = VectorX::Zero(4);
   EXPECT_LT((equations.point(brace.point, braced.measured, still_arm).position -
@@ -259,7 +260,7 @@ TEST(Brace, HoldsInContactAndSteadiesTheTip) {
                 .norm(),
             1e-8);
 
-  // It sticks under what it says it does (a sine along x and one along z), not under much more.
+  // It sticks up to its hold force (a sine along x and one along z), but not far beyond.
   settings.disturbance.sines = 1;
   settings.disturbance.force = 0.45 * still.after.hold_force;
   EXPECT_EQ(run_brace(arm, task, brace, settings).slips, 0);
@@ -303,7 +304,7 @@ TEST(Brace, RefusesWhatMakesNoSense) {
   EXPECT_THROW(completed(*make(tilted), task), Error);
 }
 
-/// A base that turns brings the arm's plane to where the goal and the bar are.
+/// A rotating base moves the arm's plane to the goal and the bar.
 TEST(Brace, TurnsTheBase) {
   const auto arm = make(pcc::testing::fluidic());
   const Matrix3 turn = Eigen::AngleAxisd(0.5, Vector3::UnitZ()).toRotationMatrix();

@@ -1,4 +1,4 @@
-// Exact derivatives of every part of the program against differences.
+// Compares the exact derivatives of every part of the program with finite differences.
 #include "sinew/plan/collocation.hpp"
 
 #include <Eigen/LU>
@@ -46,8 +46,8 @@ class Derivatives : public ::testing::TestWithParam<Kind> {
     }
     return task;
   }
-  /// Volumes and torques about one, so that differences are good: with delays that are no whole
-  /// samples, with and without feedthrough, one at rest as its limits demand.
+  /// Drives with volumes and torques of about one, for accurate differences: with fractional
+  /// delays, with and without feedthrough, and one that its limits keep at rest.
   static DriveTrain drive() {
     DriveTrain drive;
     for (const double delay : {0.0, 0.033, 0.05, 0.0771}) {
@@ -147,7 +147,7 @@ TEST_P(Derivatives, HessianIsThatOfTheLagrangian) {
 
 TEST_P(Derivatives, KnotsPackAndUnpack) {
   if (GetParam().driven) {
-    // Commands before the plan are not free, and volumes are what they cause.
+    // Commands before the plan are fixed, and volumes follow from commands.
     const VectorX& lower = program_.variable_bounds().lower;
     const VectorX& upper = program_.variable_bounds().upper;
     x_ = (lower.array() == upper.array()).select(lower, x_);
@@ -167,8 +167,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Kind{"RadauDriven", CollocationMethod::radau, false, false, true}),
     [](const auto& kind) { return kind.param.name; });
 
-/// Radau's stages are exact where the position is a cubic, its last where it is of degree four;
-/// backward Euler on a straight line.
+/// The stages of Radau are exact for cubic positions, and the last one for degree four. Backward
+/// Euler is exact on a straight line.
 TEST(Transcription, IsExactOnPolynomials) {
   const double h = 0.3;
   const auto quartic = [](double t, double fourth) {
@@ -189,7 +189,7 @@ TEST(Transcription, IsExactOnPolynomials) {
     for (const CollocationStage& stage : rules.stages) {
       const VectorX motion = stage.state.value * knots;
       const auto expected = quartic(stage.time * h, fourth);
-      // The position within is that of a cubic.
+      // The position at inner stages is exact for a cubic.
       for (int b = fourth == 0.0 || stage.time == 1.0 ? 0 : 1; b < 3; ++b) {
         EXPECT_NEAR(motion[b], expected[static_cast<std::size_t>(b)], 1e-12) << b;
       }
@@ -203,8 +203,8 @@ TEST(Transcription, IsExactOnPolynomials) {
   EXPECT_NEAR((euler.stages[0].state.value * line)[2], 0.0, 1e-15);
 }
 
-/// v' = -rate v over one interval: a mode that is faster than the knots is gone at its end, where
-/// Hermite-Simpson would keep it whole.
+/// For v' = -rate v over one interval, a mode that is faster than the knots decays by its end,
+/// while Hermite-Simpson would keep its full size.
 TEST(Transcription, DampsWhatKnotsDoNotResolve) {
   const double h = 0.032;
   const Transcription rules(CollocationMethod::radau, h);
@@ -219,7 +219,7 @@ TEST(Transcription, DampsWhatKnotsDoNotResolve) {
       right[i] = -row.head(3).dot(start);
     }
     const double after = left.partialPivLu().solve(right)[1], z = -rate * h;
-    // The (2, 3) entry of Pade's table (Hairer & Wanner 1996, IV.5).
+    // The (2, 3) Pade approximant (Hairer & Wanner 1996, IV.5).
     const double stability = (1.0 + 2.0 / 5.0 * z + z * z / 20.0) /
                              (1.0 - 3.0 / 5.0 * z + 3.0 / 20.0 * z * z - z * z * z / 60.0);
     EXPECT_NEAR(after, stability, 1e-9);

@@ -1,4 +1,4 @@
-// Commands of drive cylinders from volumes and from planned torques.
+// Inversion of volumes and planned torques to commands of drive cylinders.
 #include "sinew/plan/drive_inversion.hpp"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ DriveCylinder cylinder_of(double frequency = 40.0) {
   return DriveCylinder::second_order(1.1, frequency, 0.8, kStep);
 }
 
-/// Smooth commands, about 3e-5 m^3.
+/// Smooth commands of about 3e-5 m^3.
 VectorX commands(int count) {
   VectorX u(count);
   for (int k = 0; k < count; ++k) {
@@ -34,7 +34,7 @@ VectorX commands(int count) {
   return u;
 }
 
-/// A plan of one input whose torque rises and falls, linear between knots.
+/// A plan with one input, whose torque rises and falls, linear between knots.
 Plan swing(double size = 0.15) {
   constexpr int kIntervals = 50;
   Plan plan;
@@ -56,7 +56,7 @@ TEST(CylinderInversion, FindsCommandsBackWhereNoLimitBinds) {
     const CylinderInversion found = invert_cylinder(cylinder, volume, {start, 1e-11});
     ASSERT_EQ(found.status, QpStatus::optimal);
     EXPECT_LT((found.volume - volume).cwiseAbs().maxCoeff(), 1e-7 * volume.cwiseAbs().maxCoeff());
-    // The last command moves no volume where there is no feedthrough.
+    // Without feedthrough, the last command does not affect any volume.
     EXPECT_LT((found.command - u).head(149).cwiseAbs().maxCoeff(), 1e-3 * u.cwiseAbs().maxCoeff());
     EXPECT_LT((cylinder.simulate(found.command, start) - found.volume).cwiseAbs().maxCoeff(),
               1e-12 * volume.cwiseAbs().maxCoeff());
@@ -69,7 +69,7 @@ TEST(CylinderInversion, KeepsLimits) {
   cylinder.highest_input = 4e-5;
   cylinder.lowest_volume = -2.5e-5;
   cylinder.highest_volume = 3e-5;
-  VectorX volume = VectorX::Constant(120, -4e-5);  // more than it holds, at once
+  VectorX volume = VectorX::Constant(120, -4e-5);  // beyond its limits, with a jump
   volume.segment(20, 50).setConstant(4e-5);
   const CylinderInversion found = invert_cylinder(cylinder, volume);
   ASSERT_EQ(found.status, QpStatus::optimal);
@@ -78,7 +78,7 @@ TEST(CylinderInversion, KeepsLimits) {
   EXPECT_GE(found.command.minCoeff(), cylinder.lowest_input - rounding);
   EXPECT_LE(found.volume.maxCoeff(), cylinder.highest_volume + rounding);
   EXPECT_GE(found.volume.minCoeff(), cylinder.lowest_volume - rounding);
-  // All four are reached, or they would not have been at stake.
+  // All four limits are reached, so the test is meaningful.
   EXPECT_NEAR(found.command.maxCoeff(), cylinder.highest_input, rounding);
   EXPECT_NEAR(found.command.minCoeff(), cylinder.lowest_input, rounding);
   EXPECT_NEAR(found.volume.maxCoeff(), cylinder.highest_volume, rounding);
@@ -86,7 +86,7 @@ TEST(CylinderInversion, KeepsLimits) {
   EXPECT_LT((cylinder.simulate(found.command) - found.volume).cwiseAbs().maxCoeff(), rounding);
 }
 
-/// No small change of the commands within their limits brings the volumes nearer.
+/// No small change of the commands within their limits reduces the error of the volumes.
 TEST(CylinderInversion, IsLeast) {
   DriveCylinder cylinder = cylinder_of();
   cylinder.lowest_input = -4e-5;
@@ -133,7 +133,7 @@ TEST(DriveInversion, TorqueActsFromTheLeadOn) {
   EXPECT_DOUBLE_EQ(found.times[found.times.size() - 1], 1.9);
   double worst = 0.0;
   for (Eigen::Index k = 0; k < found.times.size(); ++k) {
-    // What the volume at t becomes at t + delay, t + delay - lead into the plan.
+    // The volume at t acts at t + delay, which is t + delay - lead in the plan.
     const double torque = channel.actuator.torque(found.volume(k, 0));
     worst = std::max(worst, std::abs(torque - plan.torque(found.times[k] + delay - lead)[0]));
     EXPECT_NEAR(channel.actuator.torque(found.wanted(k, 0)),

@@ -1,4 +1,4 @@
-// Plans of the commands of drives: what they do through the whole chain.
+// Plans of drive commands, simulated through the whole chain.
 #include <cmath>
 #include <string>
 
@@ -24,7 +24,7 @@ using testing::TipEnd;
 
 constexpr double kLead = 0.25;
 
-/// @param frequency rad/s, of the cylinders.
+/// A drive. @param frequency of the cylinders, rad/s.
 DriveTrain drive(double frequency) {
   DriveTrain drive;
   drive.lead = kLead;
@@ -48,8 +48,8 @@ PlanTask driven(const Vector3& goal, double frequency) {
 
 class DrivePlan : public ::testing::TestWithParam<double> {};
 
-/// The plan's commands end where the plan says, after the whole chain; torques that are planned
-/// first and inverted then end faster the slower the cylinders are.
+/// Planned commands reach the planned end through the whole chain. Torques that are planned first
+/// and then inverted end with a higher tip speed, the slower the cylinders are.
 TEST_P(DrivePlan, EndsAtTheGoalThroughTheChain) {
   const auto arm = make(pcc::testing::fluidic());
   for (const Vector3& goal : {kGoals[1], kGoals[2]}) {
@@ -97,7 +97,7 @@ TEST(DrivePlan, KeepsItsLimits) {
   const MatrixX change =
       run.command.bottomRows(run.command.rows() - 1) - run.command.topRows(run.command.rows() - 1);
   EXPECT_LE(change.cwiseAbs().maxCoeff() / 0.01, rate * (1.0 + rounding));
-  // All are reached, or they would not have been at stake; the tip is at the goal all the same.
+  // All limits are reached, so the test is meaningful, and the tip still reaches the goal.
   EXPECT_GT(run.volume.maxCoeff(), volume * 0.999);
   EXPECT_GT(run.command.maxCoeff(), command * 0.999);
   EXPECT_GT(change.cwiseAbs().maxCoeff() / 0.01, rate * 0.999);
@@ -125,7 +125,7 @@ TEST(DrivePlan, CostsMoreTheSlowerTheCylindersAre) {
 TEST(DrivePlan, BeginsAtATorqueHeld) {
   const auto arm = make(pcc::testing::fluidic());
   PlanTask task = driven(kGoals[1], 30.0);
-  // Whole samples, so that one stands where the plan begins.
+  // The lead is a whole number of samples, so that one sample is at the beginning of the plan.
   for (DriveChannel& channel : task.drive->channels) channel.actuator.delay = 0.08;
   task.start.torque = VectorX{{0.0, 0.02, -0.03, 0.04}};
   pcc::ArmSimulation simulation(arm, {.time_step = 5e-3});
@@ -140,7 +140,7 @@ TEST(DrivePlan, BeginsAtATorqueHeld) {
   const Replay after = replay(arm, task, run);
   EXPECT_LT(after.tip_error, 3e-3);
   EXPECT_LT(after.tip_speed, 1e-2);
-  // A plan made anew from the old one for a goal nearby.
+  // Replans for a nearby goal.
   task.goal.position += Vector3(0.01, 0.0, 0.0);
   const Plan next = Planner(arm, task).replan(found);
   ASSERT_TRUE(next.found());

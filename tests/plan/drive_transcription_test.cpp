@@ -1,4 +1,4 @@
-// Drives in a plan's program: their rows, volumes and bounds, and what commands cause.
+// Drives in the program of a plan: rows, volumes, bounds, and effects of commands.
 #include "sinew/plan/drive_transcription.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using testing::make;
 
 constexpr double kDriveStep = 0.01;
 
-/// Of the published arm's four inputs, of which the first has no torque.
+/// Drives for the four inputs of the published arm, of which the first has no torque.
 PlanTask driven(double lead = -1.0) {
   PlanTask task = grab();
   DriveTrain drive;
@@ -36,7 +36,7 @@ PlanTask driven(double lead = -1.0) {
   return completed(*make(pcc::testing::fluidic()), task);
 }
 
-/// Smooth commands from rest, which begin with the plan.
+/// Smooth commands from rest, starting with the plan.
 DriveRun commands(const PlanTask& task) {
   const Eigen::Index count =
       sample_count(task.drive->channels[0].cylinder, task.drive->lead + task.grid.duration) + 3;
@@ -71,7 +71,7 @@ TEST(SampleWeights, AreExactOnParabolas) {
   }
 }
 
-/// What cylinders do satisfies the rows, in which their states are eliminated, for any lead.
+/// The simulated cylinders satisfy the rows, in which their states are eliminated, for any lead.
 TEST(DriveTranscription, RowsAreTheCylinders) {
   for (const double lead : {-1.0, 0.0771, 0.25}) {
     const PlanTask task = driven(lead);
@@ -81,18 +81,19 @@ TEST(DriveTranscription, RowsAreTheCylinders) {
     VectorX x = VectorX::Zero(variable + drive.variables());
     x.tail(drive.variables()) = drive.pack(run);
     EXPECT_LT(rows_at(drive, x, row).cwiseAbs().maxCoeff(), 1e-18) << lead;
-    // A volume that is not theirs does not.
+    // A different volume violates the rows.
     VectorX wrong = x;
     wrong[drive.volume(1, 0.8).at[1]] += 1e-6;
     EXPECT_GT(rows_at(drive, wrong, row).cwiseAbs().maxCoeff(), 1e-7);
-    // They lie within the bounds, which keep what is before the plan at rest.
+    // They satisfy the bounds, which keep samples before the plan at rest.
     const auto own = x.tail(drive.variables());
     EXPECT_TRUE((own.array() >= drive.variable_bounds().lower.array() - 1e-18).all());
     EXPECT_TRUE((own.array() <= drive.variable_bounds().upper.array() + 1e-18).all());
   }
 }
 
-/// The delay is a shift of time: the torque at a time within the plan is that of the form's volume.
+/// The delay is a shift of time: the torque at a time in the plan is that at the volume of the
+/// linear form.
 TEST(DriveTranscription, VolumesActAfterTheDelay) {
   const PlanTask task = driven(0.25);
   const DriveTranscription drive(task, 0.1, 0, 0);
@@ -106,12 +107,12 @@ TEST(DriveTranscription, VolumesActAfterTheDelay) {
       EXPECT_NEAR(actuator.torque(volume), torque[i], 1e-15) << time << " " << i;
     }
   }
-  // The cylinder's volume of that moment, the delay ago.
+  // The volume of the cylinder earlier by the delay.
   const double at = 0.8 + 0.25 - 0.05;
   const auto sample = static_cast<Eigen::Index>(std::lround(at / kDriveStep));
   EXPECT_NEAR(run.torque(0.8)[2], task.drive->channels[2].actuator.torque(run.volume(sample, 2)),
               1e-15);
-  // And back, as far as commands act within the plan.
+  // Converts back, for commands that act within the plan.
   const DriveRun back = drive.unpack(x);
   for (Eigen::Index k = 0; k < back.times.size(); ++k) {
     for (Eigen::Index i = 0; i < 4; ++i) {

@@ -1,4 +1,4 @@
-// Meshes: which intervals are cut.
+// Refinement of meshes.
 #include "sinew/plan/mesh.hpp"
 
 #include <gtest/gtest.h>
@@ -8,11 +8,11 @@ namespace {
 
 TEST(Mesh, CutsWhereTheDefectIs) {
   const VectorX fractions{{0.25, 0.5, 0.25}};
-  // 3 d / 0.1 to the power 1/4: 0.4, 2.3, and more than four.
+  // (3 d / 0.1)^(1/4) is 0.4, 2.3, and more than four.
   const VectorX cut = refined(fractions, VectorX{{1e-3, 1.0, 1e6}});
   EXPECT_TRUE(cut.isApprox(
       VectorX{{0.25, 0.5 / 3, 0.5 / 3, 0.5 / 3, 0.0625, 0.0625, 0.0625, 0.0625}}, 1e-15));
-  // None that would do alone: all.
+  // No interval needs division, so all are halved.
   EXPECT_TRUE(refined(fractions, VectorX::Zero(3))
                   .isApprox(VectorX{{0.125, 0.125, 0.25, 0.25, 0.125, 0.125}}, 1e-15));
 }

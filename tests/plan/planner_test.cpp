@@ -1,4 +1,4 @@
-// Plans carried out, warm starts, limits, obstacles, and what cannot be.
+// Plans: replays, warm starts, limits, obstacles, and infeasible tasks.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,15 +29,15 @@ ErrorKind kind_of(const PlanTask& task) {
   return ErrorKind::internal;
 }
 
-/// What a plan says of its end is what its torques do, by an integration that has nothing in common
-/// with the planner's, and within the tolerances; with limits on the torques' rates and without.
+/// The final errors of a plan agree with an independent integration of its torques and are within
+/// the tolerances, with and without limits on the rates of torques.
 TEST(Planner, ClaimsAreThoseOfAnIndependentIntegration) {
   const auto arm = fluidic();
   std::vector<Vector3> goals(std::begin(kGoals), std::end(kGoals));
   goals.emplace_back(0.35, 0.0, -0.28);
   for (const double rate : {kNoBound, 2.0}) {
     for (const Vector3& goal : goals) {
-      // Torques that change by 2 N m/s at most do not swing the arm so high in this time.
+      // With rates of torque limited to 2 N m/s, the arm cannot swing as high in this time.
       if (rate < kNoBound && goal == goals.back()) continue;
       PlanTask task = grab(goal);
       task.limits.torque_rate = VectorX::Constant(4, rate);
@@ -52,7 +52,7 @@ TEST(Planner, ClaimsAreThoseOfAnIndependentIntegration) {
   }
 }
 
-/// Backward Euler's damping at 80 ms is the plan's alone.
+/// The damping of backward Euler at 80 ms exists only in the plan.
 TEST(Planner, SaysWhereTheMotionOfTheTorquesMisses) {
   const auto arm = fluidic();
   PlanTask task = grab(kGoals[2]);
@@ -68,7 +68,7 @@ TEST(Planner, SaysWhereTheMotionOfTheTorquesMisses) {
   EXPECT_NEAR((end.position - task.goal.position).norm(), plan.tip_error, 1e-5);
 }
 
-/// Few knots are too coarse: what is missed moves the aim or cuts intervals.
+/// Too few knots lead to a corrected aim or a finer mesh.
 TEST(Planner, CorrectsWhatCoarseKnotsMiss) {
   const auto arm = fluidic();
   PlanTask task = grab(kGoals[0]);
@@ -79,7 +79,7 @@ TEST(Planner, CorrectsWhatCoarseKnotsMiss) {
   ASSERT_TRUE(plan.found());
   EXPECT_GT(plan.corrections, 0);
   EXPECT_NEAR(plan.fractions().sum(), 1.0, 1e-12);
-  // A plan made anew keeps the knots.
+  // Replanning keeps the knots.
   task.goal.position.x() += 0.005;
   const Plan next = Planner(arm, task).replan(plan);
   ASSERT_TRUE(next.found());
@@ -104,7 +104,7 @@ TEST(Planner, PlansThatAreCarriedOutReachTheirGoals) {
   }
 }
 
-/// Backward Euler's knots are the states of the simulation's steps of backward Euler.
+/// The knots of backward Euler equal the states of a simulation with backward Euler.
 TEST(Planner, EulersPlanIsTheSimulationsMotion) {
   const auto arm = fluidic();
   PlanTask task = grab(kGoals[2]);
@@ -119,8 +119,8 @@ TEST(Planner, EulersPlanIsTheSimulationsMotion) {
   }
 }
 
-/// The gap between the program's motion and that of its torque falls fast with the knots' distance,
-/// without limits on the torques' rates too.
+/// The difference between the motion of the program and that of its torque decreases fast with the
+/// distance of knots, also without limits on the rates of torques.
 TEST(Planner, RadauConverges) {
   const auto arm = fluidic();
   std::vector<double> gaps;
@@ -158,7 +158,8 @@ TEST(Planner, AWarmStartNeedsFewerIterations) {
   EXPECT_THROW(Planner(arm, other).replan(before), Error);
 }
 
-/// A start out of balance sets off the arm's fast modes; the plan's first interval takes them up.
+/// An initial state out of equilibrium excites fast modes, which decay in the first interval of the
+/// plan.
 TEST(Planner, PlansFromDisturbedStarts) {
   const auto arm = fluidic();
   std::mt19937 random(3);
@@ -193,7 +194,7 @@ TEST(Planner, KeepsClearOfObstacles) {
   const auto arm = fluidic();
   PlanTask task = grab(kGoals[2]);
   const Plan before = Planner(arm, task).plan(1);
-  // In the way of the tip, where it is furthest from the goal.
+  // An obstacle in the path of the tip, at its largest distance from the goal.
   const Points tip = replay(arm, task, before).tip;
   Eigen::Index furthest = 0;
   (tip.rowwise() - task.goal.position.transpose()).rowwise().norm().maxCoeff(&furthest);
@@ -203,7 +204,7 @@ TEST(Planner, KeepsClearOfObstacles) {
   const Plan plan = Planner(arm, task).plan(1);
   ASSERT_TRUE(plan.found());
   const Replay run = replay(arm, task, plan);
-  // Between the knots and between the points that the program looks at as well.
+  // Also between knots, and between the points that the program checks.
   EXPECT_GT(run.clearance(), 0.01 - 1e-4);
   EXPECT_GE(plan.clearance, 0.01);
   EXPECT_LE(run.tip_error, 1.001 * task.goal.tolerance);
@@ -211,7 +212,7 @@ TEST(Planner, KeepsClearOfObstacles) {
 
 TEST(Planner, SaysWhereThereIsNoPlan) {
   PlanTask task = grab(kGoals[3]);
-  task.grid.duration = 0.3;  // no time for a swing
+  task.grid.duration = 0.3;  // too short for a swing
   task.grid.intervals = 10;
   const Plan plan = Planner(fluidic(), task).plan(1);
   EXPECT_EQ(plan.status, PlanStatus::infeasible);

@@ -1,4 +1,4 @@
-// Small programs with known solutions, from far and from near.
+// Small programs with known solutions, from distant and nearby starts.
 #include <gtest/gtest.h>
 
 #include "sinew/plan/interior_newton.hpp"
@@ -6,14 +6,14 @@
 namespace sinew::plan {
 namespace {
 
-/// Hock & Schittkowski (1981), problem 71: min x1 x4 (x1 + x2 + x3) + x3, x1 x2 x3 x4 >= 25,
-/// |x|^2 = 40, 1 <= x <= 5; with the first bound on the product to choose.
+/// Problem 71 of Hock & Schittkowski (1981): min x1 x4 (x1 + x2 + x3) + x3, x1 x2 x3 x4 >= 25,
+/// |x|^2 = 40, 1 <= x <= 5. The lower bound of the product can be chosen.
 class Problem71 final : public NonlinearProgram {
  public:
   explicit Problem71(double least_product = 25.0) {
     variable_bounds_ = {VectorX::Constant(4, 1.0), VectorX::Constant(4, 5.0)};
     constraint_bounds_ = {VectorX{{least_product, 40.0}}, VectorX{{kNoBound, 40.0}}};
-    // Any scales must do.
+    // The solution must not depend on the scales.
     variable_scale_ = VectorX{{1.0, 2.0, 3.0, 0.5}};
     constraint_scale_ = VectorX{{10.0, 3.0}};
     objective_scale_ = 5.0;
@@ -65,7 +65,7 @@ TEST(Program, IsSolvedFromFar) {
 
 TEST(Program, IsSolvedFromNear) {
   Problem71 program;
-  // A solution's multipliers by its conditions alone: rows -0.5522937, 0.1614686, bound 1.0878712.
+  // Multipliers from the optimality conditions: rows -0.5522937, 0.1614686, bound 1.0878712.
   ProgramPoint start{kSolution + VectorX{{0.0, -0.1, 0.1, 0.05}}, VectorX{{-0.5, 0.2}},
                      VectorX{{1.0, 0.0, 0.0, 0.0}}, VectorX::Zero(4)};
   const auto near = solve_nearby(program, start, {.tolerance = 1e-9});
@@ -91,7 +91,7 @@ TEST(Program, FromNearAndFarAgreeWhereABoundMoves) {
 }
 
 TEST(Program, ThatHasNoSolutionIsNotSolvedFromNear) {
-  // The product of four numbers of squares 40 is at most 100.
+  // The product of four numbers with a sum of squares of 40 is at most 100.
   Problem71 before, after(101.0);
   const ProgramResult first = solve(before, {VectorX{{1.0, 5.0, 5.0, 1.0}}, {}, {}, {}});
   EXPECT_FALSE(solve_nearby(after, first.point, {}).has_value());

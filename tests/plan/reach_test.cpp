@@ -1,4 +1,4 @@
-// Static reach: samples, nearest equilibria and proofs hold each other.
+// Static reach: samples, nearest equilibria and proofs are consistent.
 #include "sinew/plan/reach.hpp"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ TEST(Reach, GoalsOfGrabsAreProvenOutOfReach) {
   }
 }
 
-/// Soundness: nowhere where an equilibrium is does the search prove that there is none.
+/// Soundness: the search never proves a point out of reach at which there is an equilibrium.
 TEST(Reach, NeverProvesAnEquilibriumAway) {
   for (const bool turned : {false, true}) {
     pcc::ArmSettings settings =

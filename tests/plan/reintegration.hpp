@@ -1,6 +1,6 @@
-// The motion of planned torques by an integrator of the tests' own: linearly implicit Euler steps,
-// extrapolated, with error control (Deuflhard 1985; Hairer & Wanner, Solving Ordinary Differential
-// Equations II, 1996, IV.9) on q'' = H^-1 (B tau - ...).
+// Integrates the motion of planned torques with an independent integrator: extrapolated linearly
+// implicit Euler steps with error control (Deuflhard 1985; Hairer & Wanner, Solving Ordinary
+// Differential Equations II, 1996, IV.9) for q'' = H^-1 (B tau - ...).
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ class ExtrapolatedEuler {
   ExtrapolatedEuler(const std::shared_ptr<const pcc::Arm>& arm, const Plan& plan)
       : equations_(arm), plan_(plan), n_(arm->coordinates()) {}
 
-  /// The state (2n,) at a time, of that before. The torque has no kink between.
+  /// Advances the state (2n,) between two times. The torque must have no kink between them.
   VectorX advance(VectorX y, double from, double to) {
     double h = std::min(next_, to - from);
     while (from < to) {
@@ -76,7 +76,7 @@ struct TipEnd {
   Vector3 position, velocity;
 };
 
-/// Where the plan's torques bring the tip, and how fast it is there.
+/// Final position and velocity of the tip under the torques of a plan.
 inline TipEnd reintegrated(const std::shared_ptr<const pcc::Arm>& arm, const PlanTask& asked,
                            const Plan& plan) {
   const PlanTask task = completed(*arm, asked);

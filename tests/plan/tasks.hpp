@@ -1,4 +1,4 @@
-// Tasks that the tests share.
+// Tasks shared by tests.
 #pragma once
 
 #include <numbers>
@@ -14,7 +14,7 @@ using pcc::testing::make;
 inline const Vector3 kGoals[] = {
     {-0.25, 0.0, -0.45}, {0.15, 0.0, -0.35}, {0.20, 0.0, -0.40}, {-0.30, 0.0, -0.30}};
 
-/// A grab as published: torques limited, the first segment without.
+/// The published grab: torques are limited, and the first segment has none.
 inline PlanTask grab(const Vector3& goal = kGoals[0]) {
   PlanTask task;
   task.goal.position = goal;

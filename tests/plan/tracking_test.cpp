@@ -1,4 +1,4 @@
-// The regulator: its linearisation, Riccati's equation, and what it is good for.
+// The regulator: linearisation, Riccati equation, and effect of feedback.
 #include "sinew/plan/tracking.hpp"
 
 #include <gtest/gtest.h>
@@ -50,8 +50,8 @@ TEST(Tracking, LinearisesTheImplicitStep) {
   }
 }
 
-/// The recursion at rest ends in a solution of the algebraic Riccati equation
-/// P = Q + A'PA - A'PB (R + B'PB)^-1 B'PA, and x'Px is what the regulated motion costs.
+/// At rest, the recursion converges to a solution of the algebraic Riccati equation
+/// P = Q + A'PA - A'PB (R + B'PB)^-1 B'PA, and x'Px is the cost of the regulated motion.
 TEST(Tracking, SolvesRiccatisEquation) {
   const auto arm = make(pcc::testing::fluidic(pcc::MassCentre::distributed));
   pcc::ArmEquations equations(arm);
@@ -82,7 +82,7 @@ TEST(Tracking, FeedbackBringsDisturbedArmsNearer) {
   const Plan plan = Planner(arm, task).plan(1);
   ASSERT_TRUE(plan.found());
   const Tracker tracker(arm, task, plan);
-  // As planned, both follow the plan.
+  // Without deviations, both follow the plan.
   EXPECT_LT(track(arm, tracker).tip_error, 0.004);
   EXPECT_LT(track(arm, tracker, {.feedback = false}).tip_error, 0.004);
   pcc::ArmSettings heavier = pcc::testing::fluidic();

@@ -1,5 +1,5 @@
 /// @file
-/// Seeded random quadratic programs of several kinds, the same on every platform.
+/// Seeded random quadratic programs of several kinds, identical on every platform.
 #pragma once
 
 #include <cmath>
@@ -26,7 +26,7 @@ inline const char* problem_kind_name(ProblemKind kind) {
   return kNames[static_cast<int>(kind)];
 }
 
-/// SplitMix64: standard distributions differ between libraries, this does not.
+/// SplitMix64, which is portable, unlike the distributions of standard libraries.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -52,7 +52,8 @@ class Random {
   std::uint64_t state_;
 };
 
-/// Orthonormal columns by Gram-Schmidt, twice for rounding (Giraud et al., Numer. Math. 101, 2005).
+/// Orthonormalises columns by Gram-Schmidt, twice for accuracy (Giraud et al., Numer. Math. 101,
+/// 2005).
 inline MatrixX orthonormal(MatrixX a) {
   for (Eigen::Index j = 0; j < a.cols(); ++j) {
     for (int pass = 0; pass < 2; ++pass) {
@@ -63,7 +64,7 @@ inline MatrixX orthonormal(MatrixX a) {
   return a;
 }
 
-/// Symmetric positive definite with eigenvalues log-uniform in [1, condition].
+/// A symmetric positive definite matrix with eigenvalues log-uniform in [1, condition].
 inline MatrixX random_hessian(int n, double condition, Random& random) {
   const MatrixX q = orthonormal(random.matrix(n, n));
   VectorX values(n);
@@ -74,7 +75,7 @@ inline MatrixX random_hessian(int n, double condition, Random& random) {
   return 0.5 * (hessian + hessian.transpose());
 }
 
-/// Limits around a feasible value: some infinite, some tight (slack zero), some equal.
+/// Draws limits around a feasible value: some infinite, some tight (no slack), some equal.
 inline void random_limits(double value, double equal, double tight, Random& random, double* lower,
                           double* upper) {
   const bool is_equal = random.chance(equal);
@@ -86,7 +87,8 @@ inline void random_limits(double value, double equal, double tight, Random& rand
   *upper = value + slack();
 }
 
-/// Makes row i contradict rows 0 .. 2: its value is their combination, its limits lie outside.
+/// Makes a row that contradicts rows 0 .. 2: it is their combination, and its limits exclude that
+/// value.
 inline void contradict(QuadraticProgram& problem, const VectorX& feasible, Random& random) {
   const Eigen::Index i = problem.rows.rows() - 1;
   const Eigen::Index used = std::min<Eigen::Index>(3, i);
@@ -103,7 +105,7 @@ inline void contradict(QuadraticProgram& problem, const VectorX& feasible, Rando
   problem.row_upper[i] = std::numeric_limits<double>::infinity();
 }
 
-/// Repeats rows, copies bounds into rows, adds sums of rows: limits that depend on each other.
+/// Makes dependent limits: repeats rows, copies bounds into rows and adds sums of rows.
 inline void make_dependent(QuadraticProgram& problem, Random& random) {
   const int m = static_cast<int>(problem.rows.rows());
   const int n = static_cast<int>(problem.rows.cols());
@@ -122,7 +124,7 @@ inline void make_dependent(QuadraticProgram& problem, Random& random) {
   }
 }
 
-/// Of a rank below n: twins among the columns, and now and then a variable that it leaves out.
+/// A matrix of rank below n, with equal columns and sometimes a variable without curvature.
 inline MatrixX random_semidefinite_hessian(int n, Random& random) {
   const int rank = random.integer(0, n - 1);
   MatrixX root = random.matrix(rank, n);
@@ -133,7 +135,7 @@ inline MatrixX random_semidefinite_hessian(int n, Random& random) {
   return root.transpose() * root;
 }
 
-/// A multiplier that an optimal point whose value is `value` may have with these limits.
+/// A multiplier that is admissible at an optimum with this value and these limits.
 inline double random_multiplier(double value, double lower, double upper, Random& random) {
   if (!random.chance(0.5)) return 0.0;
   if (lower == upper) return random.uniform(-1.0, 1.0);
@@ -141,7 +143,7 @@ inline double random_multiplier(double value, double lower, double upper, Random
   return value == upper ? random.uniform(-1.0, 0.0) : 0.0;
 }
 
-/// Gives the problem a gradient with which `point` is optimal, and the objective bounded.
+/// Sets the gradient such that `point` is optimal and the objective is bounded.
 inline void make_optimal(QuadraticProgram& problem, const VectorX& point, Random& random) {
   problem.gradient = -problem.hessian * point;
   for (Eigen::Index i = 0; i < point.size(); ++i) {
@@ -155,7 +157,7 @@ inline void make_optimal(QuadraticProgram& problem, const VectorX& point, Random
   }
 }
 
-/// A problem of n variables and m >= 4 rows. All kinds but `infeasible` have a feasible point.
+/// A problem with n variables and m >= 4 rows. All kinds except `infeasible` have a feasible point.
 inline QuadraticProgram random_problem(ProblemKind kind, int n, int m, Random& random) {
   const bool bad = kind == ProblemKind::badly_scaled;
   const bool degenerate = kind == ProblemKind::degenerate;

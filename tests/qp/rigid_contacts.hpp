@@ -1,6 +1,6 @@
 /// @file
-/// Contacts of rigid bodies: towers, walls and heaps, whose W = J M^-1 J^T has fewer columns than
-/// rows, or islands. Independent of the solver that is tested with them.
+/// Contact problems of rigid bodies in towers, walls and heaps. Their W = J M^-1 J^T is
+/// rank-deficient or consists of islands. Independent of the solver that is tested.
 #pragma once
 
 #include <algorithm>
@@ -17,12 +17,12 @@
 
 namespace sinew::qp {
 
-/// Boxes on the ground and on each other, in one step of h from a given motion.
+/// Boxes on the ground and on each other, in one step of length h from a given motion.
 class RigidContacts {
  public:
   static constexpr double kStep = 1e-3, kGravity = 9.81, kDensity = 600.0;
 
-  /// @return its number. @param size edges, m. @param at centre, m.
+  /// Adds a box. @return its number. @param size edges, m. @param at centre, m.
   int add_box(const Vector3& size, const Vector3& at, double density = kDensity) {
     const double mass = density * size.prod();
     bodies_.push_back(
@@ -36,11 +36,11 @@ class RigidContacts {
   void push(int body, const Vector3& velocity) {
     velocity_[static_cast<std::size_t>(body)] = velocity;
   }
-  /// `normal` points from `below` (-1: the ground) to `above`.
+  /// Adds a contact point. `normal` points from `below` (-1: the ground) to `above`.
   void touch(int above, int below, const Vector3& at, const Vector3& normal) {
     contacts_.push_back({above, below, at, normal});
   }
-  /// Four corners of a rectangle in a horizontal plane.
+  /// Adds contacts at the four corners of a rectangle in a horizontal plane.
   void rest(int above, int below, const Vector3& middle, double length, double width) {
     for (const double x : {-0.5, 0.5}) {
       for (const double y : {-0.5, 0.5}) {
@@ -52,14 +52,14 @@ class RigidContacts {
   int contacts() const { return static_cast<int>(contacts_.size()); }
   int coordinates() const { return 6 * static_cast<int>(bodies_.size()); }
 
-  /// J M^-1 J^T, (3n, 3n).
+  /// W = J M^-1 J^T, (3n, 3n).
   Eigen::SparseMatrix<double> matrix() const {
     const Eigen::SparseMatrix<double> half = jacobian(true);
     Eigen::SparseMatrix<double> product = half * Eigen::SparseMatrix<double>(half.transpose());
     product.makeCompressed();
     return product;
   }
-  /// J (v + h g), (3n,).
+  /// Offset J (v + h g), (3n,).
   VectorX offset() const {
     VectorX free = VectorX::Zero(coordinates());
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -80,7 +80,7 @@ class RigidContacts {
     Vector3 at, normal;
   };
 
-  // J, or J M^-1/2.
+  // J, or if scaled J M^-1/2.
   Eigen::SparseMatrix<double> jacobian(bool scaled) const {
     std::vector<Eigen::Triplet<double>> entries;
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
@@ -117,7 +117,7 @@ class RigidContacts {
   std::vector<Contact> contacts_;
 };
 
-/// Planks (0.117 x 0.0234 x 0.0078 m), two a level, each level across the one below.
+/// A tower of planks (0.117 x 0.0234 x 0.0078 m), two per level, each level across the one below.
 inline RigidContacts tower(int levels) {
   RigidContacts scene;
   const Vector3 plank(0.117, 0.0234, 0.0078);
@@ -144,7 +144,7 @@ inline RigidContacts tower(int levels) {
   return scene;
 }
 
-/// Bricks in bond, each on halves of two below and beside its neighbours.
+/// A wall of bricks in bond: each rests on halves of two bricks and touches its neighbours.
 inline RigidContacts wall(int rows, int columns) {
   RigidContacts scene;
   const Vector3 brick(0.24, 0.115, 0.071);
@@ -171,7 +171,7 @@ inline RigidContacts wall(int rows, int columns) {
   return scene;
 }
 
-/// Boxes thrown together: random bodies, each touching some of those before it.
+/// A heap of random boxes, each touching some of those before it.
 inline RigidContacts heap(int bodies, int touches, double speed, Random& random) {
   RigidContacts scene;
   std::vector<Vector3> at;
@@ -195,8 +195,8 @@ inline std::span<double> span_of(VectorX& x) {
   return {x.data(), static_cast<std::size_t>(x.size())};
 }
 
-/// |r - P_K(r - v)|/|q| of all contacts, written out independently of the solver: P by the cases of
-/// the cone in its plane.
+/// The residual |r - P_K(r - v)|/|q| of all contacts, computed independently of the solver. The
+/// projection P_K follows from the cases of the cone in its plane.
 inline double natural_map(const Eigen::SparseMatrix<double>& w, const VectorX& q,
                           const std::vector<ConeBlock>& cones, const VectorX& r) {
   const VectorX u = w * r + q;
@@ -207,7 +207,7 @@ inline double natural_map(const Eigen::SparseMatrix<double>& w, const VectorX& q
     Vector3 z = own - u.segment<3>(cone.row);
     z[0] -= mu * std::hypot(u[cone.row + 1], u[cone.row + 2]);
     const double across = std::hypot(z[1], z[2]);
-    // Coordinates along and beside the cone's ray in the plane of z.
+    // Coordinates parallel and perpendicular to the ray of the cone in the plane of z.
     const double norm = std::hypot(1.0, mu);
     const double along = (z[0] + mu * across) / norm, beside = (across - mu * z[0]) / norm;
     Vector3 nearest = z;

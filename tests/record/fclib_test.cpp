@@ -39,7 +39,7 @@ class Fclib : public ::testing::Test {
     return result;
   }
 
-  // A file whose W is given as it is stored.
+  // Writes a file with a given storage of W.
   void write(int m, int nz, const std::vector<int>& p, const std::vector<int>& i,
              const std::vector<double>& x, std::size_t q = 3, int spacedim = 3) {
     Hdf5Writer file(path_);
@@ -85,7 +85,7 @@ TEST_F(Fclib, ComesBackAsItWasWritten) {
   }
 }
 
-// [1 0 4; 0 2 0; 0 0 3], with room for more entries than there are.
+// [1 0 4; 0 2 0; 0 0 3], with unused entries.
 TEST_F(Fclib, ReadsColumnsRowsAndTriplets) {
   MatrixX expected(3, 3);
   expected << 1, 0, 4, 0, 2, 0, 0, 0, 3;
@@ -110,17 +110,17 @@ TEST_F(Fclib, RefusesWhatIsNoProblem) {
   write(4, -1, {0, 1, 2, 3, 4}, {0, 1, 2, 3}, {1, 1, 1, 1});
   EXPECT_EQ(refused(), ErrorKind::malformed_file);  // not 3n rows
   write(3, -1, {0, 1, 2, 4}, {0, 1, 2}, {1, 1, 1});
-  EXPECT_EQ(refused(), ErrorKind::malformed_file);  // more entries than there are
+  EXPECT_EQ(refused(), ErrorKind::malformed_file);  // more entries than stored
   write(3, -1, {0, 2, 1, 3}, {0, 1, 2}, {1, 1, 1});
-  EXPECT_EQ(refused(), ErrorKind::malformed_file);  // columns that end before they begin
+  EXPECT_EQ(refused(), ErrorKind::malformed_file);  // columns that end before they start
   write(3, -1, {0, 1, 2, 3}, {0, 1, 3}, {1, 1, 1});
   EXPECT_EQ(refused(), ErrorKind::malformed_file);  // no such row
   write(3, 5, {0, 1, 2}, {0, 1, 2}, {1, 1, 1});
-  EXPECT_EQ(refused(), ErrorKind::malformed_file);  // fewer triplets than told
+  EXPECT_EQ(refused(), ErrorKind::malformed_file);  // fewer triplets than claimed
   write(3, -3, {0, 1, 2, 3}, {0, 1, 2}, {1, 1, 1});
-  EXPECT_EQ(refused(), ErrorKind::malformed_file);  // no such form
+  EXPECT_EQ(refused(), ErrorKind::malformed_file);  // no such storage
   write(1'500'000'000, 0, {}, {}, {});
-  EXPECT_EQ(refused(), ErrorKind::malformed_file);  // before it asks for the memory
+  EXPECT_EQ(refused(), ErrorKind::malformed_file);  // before memory is allocated
   FclibProblem problem = Fclib::problem(2);
   problem.friction.pop_back();
   EXPECT_EQ(sinew::testing::kind_of([&] { write_fclib(path_, problem); }), ErrorKind::wrong_shape);

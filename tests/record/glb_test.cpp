@@ -1,5 +1,5 @@
-// Motion as binary glTF: the file is taken apart again. The page's tests hand such files to
-// Khronos' own validator.
+// Motion as binary glTF: parses the written file. The tests of the page check such files with the
+// validator of Khronos.
 #include "sinew/record/glb.hpp"
 
 #include <cmath>
@@ -73,7 +73,7 @@ TEST(WriteGlb, FramesAreMorphTargetsOfTheFirst) {
       EXPECT_EQ(base[i] + moved[i], motion.surfaces[0].frames[k + 1][i]);
     }
   }
-  // The triangle has turned by a quarter about z, so its normal is z still.
+  // The triangle has rotated by a quarter turn about z, so its normal is still z.
   const auto normals = floats(parts, sheet["attributes"]["NORMAL"]);
   EXPECT_EQ(normals, (std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1}));
   for (const float change : floats(parts, sheet["targets"][1]["NORMAL"])) EXPECT_EQ(change, 0.0F);
@@ -94,7 +94,7 @@ TEST(WriteGlb, OurZPointsUp) {
   const Parts parts = take_apart(write_glb(falling_triangle()));
   const Json& root = parts.json["nodes"][parts.json["scenes"][0]["nodes"][0].get<std::size_t>()];
   const auto q = root["rotation"].get<std::array<double, 4>>();  // x, y, z, w
-  // The third column of the rotation that the quaternion stands for: where z goes.
+  // The third column of the quaternion's rotation, which is the image of z.
   EXPECT_NEAR(2 * (q[0] * q[2] + q[1] * q[3]), 0.0, 1e-12);
   EXPECT_NEAR(2 * (q[1] * q[2] - q[0] * q[3]), 1.0, 1e-12);
   EXPECT_NEAR(1 - 2 * (q[0] * q[0] + q[1] * q[1]), 0.0, 1e-12);

@@ -1,4 +1,4 @@
-// run.h5 as format 2 laid it out, before commands were recorded.
+// Writes run.h5 in format 2, in which commands were not recorded.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@
 
 namespace sinew::record::testing {
 
-/// Of robots of tetrahedra without probes and contacts, in quasi-static runs.
+/// A writer for quasi-static runs of tetrahedral robots without probes and contacts.
 class OlderRun {
  public:
   OlderRun(const std::filesystem::path& path, const sim::Simulation& simulation,
@@ -58,7 +58,7 @@ class OlderRun {
     }
   }
 
-  /// Appends the present state.
+  /// Appends the current state.
   void write() {
     const auto append = [this](int series, double value) { file_.append(series, {&value, 1}); };
     append(time_, simulation_.time());

@@ -48,7 +48,7 @@ namespace fs = std::filesystem;
 using sinew::testing::beam;
 using sinew::testing::pull;
 
-/// A folder of its own for every test, removed at its end.
+/// A temporary folder of each test, removed at its end.
 class RunRecorderTest : public ::testing::Test {
  protected:
   RunRecorderTest() {
@@ -99,7 +99,7 @@ ErrorKind kind_of(const Action& action) {
   return ErrorKind::internal;
 }
 
-// Records a pulled beam; returns positions of its nodes in every frame.
+// Records a pulled beam, and returns its node positions in every frame.
 std::vector<Points> record_pull(sim::Simulation& simulation, const RecordSettings& settings,
                                 int steps) {
   simulation.command(0, pull(0.004));
@@ -308,7 +308,7 @@ TEST_F(RunRecorderTest, EveryObservableReadsBackBitForBit) {
   simulation.command(0, pull(0.004));
   RunRecorder recorder(sim::Observables(simulation), settings());
   sim::Observables list(simulation);
-  std::vector<std::vector<std::vector<double>>> seen;  // of each frame, of each observable
+  std::vector<std::vector<std::vector<double>>> seen;  // values by frame and observable
   const auto look = [&] {
     list.refresh();
     seen.emplace_back();
@@ -462,7 +462,7 @@ TEST_F(RunRecorderTest, WhatCannotBeWrittenReplacesNothing) {
   const fs::path run = folder_ / "run";
   const std::string table = text(run / "run.csv");
   fs::remove(run / "scene.yaml");
-  fs::create_directory(run / "scene.yaml");  // in the way
+  fs::create_directory(run / "scene.yaml");  // blocks the file
   EXPECT_EQ(kind_of([&] { RunRecorder(sim::Observables(simulation), settings()); }),
             ErrorKind::file_unwritable);
   EXPECT_EQ(text(run / "run.csv"), table);

@@ -1,4 +1,4 @@
-// Scenes that are wrong in one way each: kind, line, column, what the message says, what to do.
+// Scenes with one mistake each: checks kind, line, column, message and remedy of the error.
 #include <ostream>
 
 #include <gmock/gmock.h>
@@ -820,7 +820,7 @@ INSTANTIATE_TEST_SUITE_P(
                "its own list"}),
     [](const auto& test) { return test.param.name; });
 
-// Files are looked at only when asked.
+// Files are opened only on request.
 struct BrokenFile {
   const char* name;
   Edits edits;

@@ -1,5 +1,4 @@
-// Closed loops of scenes: how errors fall, what delays and silent sensors do, and what is wrong
-// with a scene of them.
+// Closed loops in scenes: decay of errors, effect of delays and silent sensors, and invalid scenes.
 #include "sinew/inverse/closed_loop.hpp"
 
 #include <algorithm>
@@ -26,7 +25,7 @@ namespace {
 
 using inverse::InverseStatus;
 
-// A finger that four taut cables hold, at rest where it stands.
+// A finger held by four taut cables, initially in equilibrium.
 const std::string kFinger = R"(sinew: 1
 time_step: 10 ms
 integrator: quasi-static
@@ -75,7 +74,7 @@ struct Trial {
     loop = inverse::make_controller(*simulation, settings);
   }
   Vector3 tip() const { return simulation->effector_value(0); }
-  // m, in the plane that the weights leave.
+  // Error in the directions with non-zero weight, m.
   double error() const { return (tip() - target).head<2>().norm(); }
   std::vector<double> errors(int steps) {
     std::vector<double> all;
@@ -106,7 +105,8 @@ TEST(ClosedLoop, ErrorsFallAsThoseOfFirstOrder) {
   EXPECT_EQ(run.loop->measured_error(0), run.loop->error(0)) << "an exact sensor without delay";
 }
 
-// Without prediction a delay of three samples bears 0.445/T; with it, as without delay, 2/T.
+// Without prediction, a delay of three samples allows a gain up to 0.445/T; with it 2/T, as without
+// delay.
 TEST(ClosedLoop, ADelayIsMadeUpFor) {
   for (const char* late : {", delay: 30 ms", ", delay: 20 ms, rate: 50 Hz"}) {
     Trial run(with_sensor(late));
@@ -126,7 +126,7 @@ std::string push(const std::string& factor) {
          factor + "}\n";
 }
 
-// What pushes the finger shows in the samples alone: the step of the push is not foreseen.
+// A push is visible only in the samples, so its step is not predicted.
 TEST(ClosedLoop, APushIsFeltBeforeItIsAnswered) {
   const std::string scene = with_sensor() + push("{steps: [[0 s, 0], [45 ms, 1]]}");
   Trial run(scene);
@@ -139,9 +139,9 @@ TEST(ClosedLoop, APushIsFeltBeforeItIsAnswered) {
   }
 }
 
-// A disturbance of d m/s leaves the error d/gain, and with an integral only its change by the
-// second over the integral: the finger stiffens as it bends. The cables stay taut: where one
-// becomes slack d jumps.
+// A disturbance of d m/s leaves the error d/gain. With an integral, only its rate of change divided
+// by the integral gain remains, since the finger stiffens as it bends. The cables stay taut; d
+// jumps if one becomes slack.
 TEST(ClosedLoop, AnIntegralFollowsWhatGrows) {
   const std::string scene =
       with_limits("limits: {tension: {min: 1 N}}, ") + push("{ramp: {to: 1, duration: 4 s}}");
@@ -184,7 +184,7 @@ TEST(ClosedLoop, HoldsWhileASensorIsSilent) {
     run.simulation->step();
     statuses.push_back(run.loop->status());
   }
-  // The sample of 0 s is used at 0 .. 100 ms, and no later.
+  // The sample taken at 0 s is used from 0 to 100 ms, and no later.
   EXPECT_EQ(std::ranges::count(statuses, InverseStatus::moving), 11);
   EXPECT_EQ(statuses[11], InverseStatus::holding);
   EXPECT_THAT(run.loop->conflict(), testing::HasSubstr("'tip' is silent for 0.1"));
@@ -227,7 +227,7 @@ TEST(ClosedLoop, SaysThatLimitsHoldEffectorsBack) {
   for (int k = 0; k < 4; ++k) EXPECT_LT(run.simulation->actuator(k).effort, 4.02);
 }
 
-// Everything that decides how a run goes on is in its state.
+// The state contains everything that determines how a run continues.
 TEST(ClosedLoop, GoesOnBitForBit) {
   const std::string scene = with_sensor(", noise: 0.1 mm, delay: 25 ms, rate: 50 Hz, seed: 3");
   const auto attach = [](sim::Simulation& simulation) {
@@ -261,7 +261,7 @@ TEST(ClosedLoop, GoesOnBitForBit) {
   EXPECT_EQ(run.loop->status(), InverseStatus::not_started);
 }
 
-// A step that is ended half-way leaves the loop as it was.
+// An interrupted step does not change the loop.
 TEST(ClosedLoop, AFailedStepChangesNothing) {
   Trial run(with_sensor());
   run.attach(10.0, {1e-3, 5e-4, 0.0}, 5.0);

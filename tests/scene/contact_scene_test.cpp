@@ -1,4 +1,4 @@
-// Contacts of a scene: what is read, what is built of it, and what is wrong with it.
+// Contacts of scenes: reading, building, and invalid scenes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// What the grammar says a key means when it is left out is what the structs' defaults say: writing
-// every documented default into a scene changes nothing of its description.
+// Documented defaults of the grammar equal the defaults of the structs: writing every default into
+// a scene does not change its description.
 #include <sstream>
 #include <string>
 #include <variant>
@@ -70,7 +70,7 @@ controllers:
     effectors: {tip: {target: 0 0 1}}
 )";
 
-// The description as text, signals and targets by their values.
+// The description as text, with signals and targets by their values.
 class Dump {
  public:
   explicit Dump(const SceneDescription& scene) {
@@ -152,7 +152,7 @@ std::string dump(const Node& tree) {
   return Dump(parse_scene_tree(tree, {}, Files::ignore)).text();
 }
 
-// Visits every key that is left out and has a default; sets it, compares, takes it away again.
+// For every omitted key with a default: sets it, compares, and removes it again.
 class Visitor {
  public:
   explicit Visitor(Node& scene) : scene_(scene), before_(dump(scene)) {}
@@ -194,7 +194,7 @@ class Visitor {
 
 TEST(Defaults, DocumentedOnesAreThoseOfTheStructs) {
   Node tree = parse_yaml(kSparse, "scene.yaml");
-  // Two controllers share actuators here, which is no matter of defaults.
+  // Two controllers share actuators here, which does not concern defaults.
   tree.find("controllers")->find("follow")->set("actuators", parse_yaml("[ramp]", "x"));
   Visitor visitor(tree);
   visitor.visit(tree, grammar());
@@ -217,7 +217,7 @@ TEST(Defaults, OfTheTrunkAreThoseOfItsShape) {
   EXPECT_DOUBLE_EQ(trunk.groove_depth, 0.25) << "the page says: a quarter of base_radius";
 }
 
-// Each example of the grammar is what the grammar accepts.
+// The grammar accepts each of its examples.
 void check_examples(const KeyTable& table, int& count, int depth) {
   if (depth > 8) return;
   for (const Key& key : table.keys) {

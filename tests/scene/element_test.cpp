@@ -1,4 +1,4 @@
-// Which element a body gets without `element`, and what is said of linear tetrahedra that lock.
+// The default element of a body, and the notice about linear tetrahedra that lock.
 #include <gtest/gtest.h>
 
 #include "sinew/fem/element_count.hpp"

@@ -1,4 +1,4 @@
-// Estimators of scenes in states of a run; what they find is tested in Python.
+// Estimators of scenes in states of a run. Their results are tested in Python.
 #include "sinew/sim/estimator.hpp"
 
 #include <string>
@@ -61,8 +61,8 @@ TEST(Estimators, RefuseDamagedMemoryAndBeginAnewOtherwise) {
   }
 }
 
-// Of the same samples, by a linearisation and by differences; both stop where an iteration moves
-// the estimate by less than a thousandth of its deviation.
+// Estimates from the same samples, by linearisation and by finite differences. Both stop when an
+// iteration changes the estimate by less than a thousandth of its deviation.
 TEST(Estimators, OfBothKindsAgreeAtRest) {
   const auto still = estimating("quasi-static"), moving = estimating("backward-euler");
   still->solve_static();

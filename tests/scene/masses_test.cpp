@@ -1,4 +1,4 @@
-// Masses that hang on bodies, and velocities that bodies start with: read, built, and wrong ones.
+// Point masses and initial velocities of bodies: reading, building, and invalid scenes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -90,7 +90,7 @@ TEST(InitialVelocity, IsThatOfARigidBody) {
   for (Eigen::Index i = 0; i < rest.rows(); ++i) {
     const Vector3 arm = rest.row(i).transpose() - Vector3(0.02, 0.01, 0.01);
     Vector3 expected = Vector3(1e-3, 2e-3, 3e-3) + Vector3(0.0, 0.0, 2.0).cross(arm);
-    if (rest(i, 0) == 0.0) expected.setZero();  // it is held there
+    if (rest(i, 0) == 0.0) expected.setZero();  // the node is fixed
     EXPECT_LT((body.velocities().row(i).transpose() - expected).norm(), 1e-15);
   }
   const std::uint64_t start = simulation.state().hash();

@@ -1,4 +1,4 @@
-// Damaged scenes end in an Error, never otherwise. SINEW_MUTATIONS sets how many are tried.
+// Damaged scenes give an Error and nothing else. SINEW_MUTATIONS sets their number.
 #include <cstdlib>
 #include <random>
 #include <string>

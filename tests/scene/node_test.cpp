@@ -202,7 +202,7 @@ TEST(Node, WritesWhatReadsBackTheSame) {
   nested.append(deep);
   tree.set("nested", nested);
   const std::string written = to_yaml(tree);
-  // Control characters cannot stand in a YAML file at all; everything else must come back.
+  // YAML files cannot contain control characters; everything else must be preserved.
   EXPECT_TRUE(parse_yaml(written, "t.yaml") == tree) << written;
 }
 

@@ -90,7 +90,7 @@ TEST(Override, WrongValuesAreReportedByThePath) {
     EXPECT_EQ(error.place().text(), "--set: bodies.trunk.fixed[1].sett");
   }
   try {
-    with({"bodies.trunk.mass={a: 1, a: 2}"});  // where in the value is of use
+    with({"bodies.trunk.mass={a: 1, a: 2}"});  // the location in the value is useful
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.place().text(), "--set bodies.trunk.mass:1:8");

@@ -1,4 +1,4 @@
-// Probes of a scene: what is read, what is built of it, and what is wrong with it.
+// Probes of scenes: reading, building, and invalid scenes.
 #include <cmath>
 #include <numbers>
 

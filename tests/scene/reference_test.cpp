@@ -1,4 +1,4 @@
-// The pages written from the grammar: equal to what is in docs/, and true.
+// The pages generated from the grammar equal those in docs/ and are correct.
 #include "sinew/scene/reference.hpp"
 
 #include <cstdlib>
@@ -43,7 +43,7 @@ TEST(Reference, SchemaInDocsIsUpToDate) {
   expect_written(kDocs / "scene.schema.json", json_schema());
 }
 
-// The anchors of a page's headings, as GitHub makes them.
+// The anchors of a page's headings on GitHub.
 std::set<std::string> anchors(const std::string& page) {
   std::set<std::string> found;
   for (std::size_t at = page.find("\n## "); at != std::string::npos;
@@ -87,7 +87,7 @@ TEST(Reference, EveryLinkHasItsHeading) {
   EXPECT_GT(links, 100);
 }
 
-// What differs in unit alone, or is in many tables, is written once.
+// Tables that differ only in unit, and keys of many tables, are described once.
 TEST(Reference, SharedTypesAreDescribedOnce) {
   std::string all;
   for (const ReferencePage& page : reference_pages()) all += page.text;
@@ -101,7 +101,7 @@ TEST(Reference, SharedTypesAreDescribedOnce) {
   EXPECT_EQ(all.find("signal in"), std::string::npos);
 }
 
-// The schema against an independent implementation of JSON Schema.
+// Checks the schema with an independent implementation of JSON Schema.
 TEST(Reference, SchemaAcceptsAndRejectsAsTheParserDoes) {
   if (std::system("/usr/bin/python3 -c 'import jsonschema, yaml' 2>/dev/null") != 0) {
     GTEST_SKIP() << "python3-jsonschema and python3-yaml are not installed";

@@ -9,8 +9,8 @@
 namespace sinew::scene {
 namespace {
 
-// The same robot, in words of long ago and of today. A body and an actuator have old words as
-// names, and `pressure` is still what a sensor and a load are of.
+// The same robot with old and current words. A body and an actuator have old words as names, and
+// `pressure` is still a type of sensors and loads.
 std::string robot(const std::string& chamber, const std::string& tangent,
                   const std::string& centre) {
   return R"(sinew: 1

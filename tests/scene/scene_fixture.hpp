@@ -14,7 +14,7 @@
 
 namespace sinew::scene {
 
-/// The example of the documentation, as written.
+/// The example of the documentation, verbatim.
 inline const std::string kExample = R"(sinew: 1
 gravity: 0 0 0 m/s^2            # this slender trunk would buckle under its weight if it stood upright; hang robots along +z or -z
 time_step: 10 ms
@@ -49,7 +49,7 @@ record: {every: 1, states: true}
 
 using Edits = std::vector<std::pair<std::string, std::string>>;
 
-/// The example with the first occurrence of each first text replaced by the second.
+/// The example after edits: each replaces the first occurrence of its first text by its second.
 inline std::string edited(const Edits& edits) {
   std::string text = kExample;
   for (const auto& [from, to] : edits) {
@@ -66,7 +66,7 @@ inline SceneDescription parse(const std::string& text) {
 
 inline SceneDescription parse_edited(const Edits& edits) { return parse(edited(edits)); }
 
-/// A folder of its own, removed in the end.
+/// A temporary folder, removed at the end.
 class SceneFolder {
  public:
   SceneFolder() {

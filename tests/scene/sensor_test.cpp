@@ -1,4 +1,4 @@
-// Sensors of scenes: what each type measures in a run, and what is wrong with a scene of them.
+// Sensors of scenes: values of each type in a run, and invalid scenes.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A finger of silicone with a cable and a chamber, over a floor that it is pressed on.
+// A silicone finger with a cable and a chamber, which is pressed on a floor.
 const std::string kFinger = R"(sinew: 1
 gravity: 0 0 -9.81 m/s^2
 time_step: 10 ms
@@ -138,7 +138,7 @@ TEST(Sensors, SayWhatOthersObserve) {
   EXPECT_EQ(simulation->model().sensors()[0].observable, "marker.true");
 }
 
-// The patch at the end feels what the points there feel, by their own positions.
+// The patch at the end measures the forces of the points that are there.
 TEST(Sensors, APatchFeelsItsPoints) {
   const auto simulation = simulation_of(kFinger + kSensors);
   double most = 0.0;
@@ -194,7 +194,7 @@ TEST(Sensors, StatesOfRobotsWithoutThemAreThoseOfBefore) {
   const std::string plain = sim::format_state(*without), sensing = sim::format_state(*with);
   EXPECT_EQ(sim::read_state_header(plain, "plain").version, sim::kVersionWithoutSensors);
   EXPECT_EQ(sim::read_state_header(sensing, "sensing").version, sim::kVersionWithoutEstimators);
-  // Either robot takes up the other's; sensors then begin anew.
+  // Each robot accepts the other's state; its sensors then restart.
   sim::parse_state(*without, sensing, "sensing");
   sim::parse_state(*with, plain, "plain");
   EXPECT_EQ(channel(*with, "length").samples(), 1);
@@ -228,8 +228,8 @@ sensors:
   turn: {type: orientation, body: top, at: 0 0 1000 mm}
 )";
 
-// A body that falls and spins about its axis: no specific force at its centre, r omega^2 inwards
-// beside it.
+// A falling body that spins about its axis has no specific force at its centre, and r omega^2
+// inwards at a distance r.
 TEST(Sensors, InertialUnitsFeelASpinThatFalls) {
   const auto simulation = simulation_of(kSpinner);
   for (int k = 0; k < 100; ++k) simulation->step();
@@ -242,7 +242,8 @@ TEST(Sensors, InertialUnitsFeelASpinThatFalls) {
     EXPECT_NEAR(free[c], 0.0, 1e-6);
   }
   EXPECT_NEAR(spin[2], 20.0, 1e-6);
-  // The mean over a step lags by half of it: an angle of omega h/2, as the tangential part shows.
+  // The mean over a step lags by half a step, an angle of omega h/2, which appears in the
+  // tangential part.
   const double centripetal = 0.025 * 20.0 * 20.0;
   EXPECT_NEAR(rim[0], -centripetal, 1e-3 * centripetal);
   EXPECT_NEAR(rim[1], 0.0, 0.02 * centripetal);
@@ -353,7 +354,7 @@ TEST_F(RecordedSensor, IsReplayedAtItsTimes) {
     EXPECT_EQ(s.value()[0], value) << simulation->time();
   }
   EXPECT_EQ(s.time(), 0.026);
-  EXPECT_GE(truth(*simulation, "s")[0], 0.0);  // of the model
+  EXPECT_GE(truth(*simulation, "s")[0], 0.0);  // true value of the model
 }
 
 TEST_F(RecordedSensor, SaysNothingBeforeItsFirstSample) {

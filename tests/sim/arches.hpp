@@ -1,4 +1,4 @@
-// Shallow arches that snap through, which the tests of paths share.
+// Shallow arches that snap through, shared by tests of path following.
 #pragma once
 
 #include <cmath>
@@ -22,14 +22,14 @@ namespace sinew::testing {
 
 inline constexpr double kHalfSpan = 0.05;  // m
 
-/// A shallow arch, both ends clamped, pressed down at its crown.
+/// A shallow arch with clamped ends, pressed down at its crown.
 struct ArchOptions {
-  bool by_load = true;  ///< of 0.02 N; else by a force actuator of the same place
-  /// Into three bodies that are welded together again: welds alone hold the one in the middle.
+  bool by_load = true;  ///< by a load of 0.02 N, else by a force actuator at the same point
+  /// Whether it is cut into three bodies that are welded together; only welds hold the middle one.
   bool cut = false;
   std::optional<double> floor;            ///< m: z of a plane under the crown
-  double friction = 0.0;                  ///< of that
-  std::optional<collision::Shape> below;  ///< in place of the plane
+  double friction = 0.0;                  ///< of the plane
+  std::optional<collision::Shape> below;  ///< surface in place of the plane
 };
 
 // A part of the arch along x.
@@ -55,8 +55,7 @@ inline fem::FemBodySettings arch_part(const char* name, double from, double to) 
   for (NodeId node = 0; node < static_cast<NodeId>(mesh->nodes.rows()); ++node) {
     const double x = mesh->nodes(node, 0);
     if (std::abs(x) > kHalfSpan - 1e-9) body.elements.fixed_nodes.push_back(node);
-    // Its crown stays in the middle and one side in its plane: swaying would be branches of their
-    // own.
+    // The crown stays in the middle and one side in its plane, since sway would add branches.
     if (std::abs(x) < 1e-9) body.elements.held_axes.push_back({node, 0});
     if (mesh->nodes(node, 1) == 0.0) body.elements.held_axes.push_back({node, 1});
   }

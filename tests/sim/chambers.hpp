@@ -1,4 +1,4 @@
-// A block with a void inside, for tests of pressure.
+// A block with an internal void, for tests of pressure.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +19,8 @@
 
 namespace sinew::testing {
 
-/// A cube of 30 mm of 3 x 3 x 3 cells without the middle one: a void of 10 mm; with `bore`, without
-/// the one above it too, so that the void is open at the top.
+/// A cube of 30 mm with 3 x 3 x 3 cells, without the middle cell: a void of 10 mm. With `bore`, the
+/// cell above it is also missing, so that the void is open at the top.
 inline mesh::Mesh hollow_block(mesh::Cells cells, bool bore = false) {
   const auto is_void = [&](const mesh::Mesh& mesh, const auto& element) {
     Vector3 middle = Vector3::Zero();
@@ -51,8 +51,8 @@ struct ChamberOptions {
   fem::RayleighDamping damping;
 };
 
-/// The hollow block of neo-Hookean silicone, clamped at its bottom, with its void as `chamber` and
-/// the middle of its top as effector.
+/// The hollow block of neo-Hookean silicone, clamped at its bottom. The void is the actuator
+/// `chamber`, and the middle of the top is the effector.
 inline std::shared_ptr<const sim::Model> chamber(const ChamberOptions& options = {}) {
   sim::ModelBuilder builder(options.step);
   fem::FemBodySettings body;

@@ -1,4 +1,4 @@
-// Blocks that rest, slide and are pressed, which the tests of contact share.
+// Blocks that rest, slide and are pressed, shared by tests of contact.
 #pragma once
 
 #include <cmath>
@@ -18,25 +18,25 @@ namespace sinew::testing {
 
 inline constexpr double kGravity = 9.81;
 
-/// A block of rubber, 40 x 40 x 20 mm, its bottom on the plane z = 0 or above it. The plane is
-/// inclined by turning gravity, so that x runs downhill.
+/// A block of rubber, 40 x 40 x 20 mm, on or above the plane z = 0. The plane is inclined by
+/// rotating gravity, so that x points downhill.
 struct BlockOptions {
   sim::StepSettings step{.time_step = 1e-3, .integrator = mechanics::Integrator::backward_euler};
   double angle = 0.0;  ///< rad
   double friction = 0.5;
-  double height = 0.0;   ///< m, of its bottom at the start
+  double height = 0.0;   ///< m, initial height of its bottom
   double modulus = 1e6;  ///< Pa
   std::array<int, 3> cells{4, 4, 2};
   fem::RayleighDamping damping{.mass = 0.0, .stiffness = 0.002};
   bool floor = true;
-  double aggregate = 0.0;  ///< m, of zones
+  double aggregate = 0.0;  ///< m, size of contact zones
   bool top_fixed = false;
 };
 
 inline constexpr double kBlockDensity = 1000.0;
 inline constexpr double kBlockWeight = kBlockDensity * 0.04 * 0.04 * 0.02 * kGravity;
 
-/// The builder with the block as body 0 and the floor as contact 0.
+/// A builder with the block as body 0 and the floor as contact 0.
 inline sim::ModelBuilder block_on_plane(const BlockOptions& options) {
   sim::ModelBuilder builder(options.step);
   fem::FemBodySettings body;
@@ -64,7 +64,8 @@ inline sim::ModelBuilder block_on_plane(const BlockOptions& options) {
   return builder;
 }
 
-/// Mean velocity of the block's nodes (lumped: equal cells, so near the centre of mass's), m/s.
+/// Mean velocity of the block's nodes, m/s; with equal cells it is close to that of the centre of
+/// mass.
 inline Vector3 mean_velocity(const sim::Simulation& simulation) {
   return simulation.body(0).velocities().colwise().mean().transpose();
 }

@@ -1,4 +1,4 @@
-// A beam along x that is cut into two bodies and welded together again.
+// A beam along x that is cut into two bodies and welded together.
 #pragma once
 
 #include <cmath>
@@ -20,21 +20,21 @@
 
 namespace sinew::testing {
 
-inline constexpr double kBeamLength = 0.1;  // m, of the beam along x
+inline constexpr double kBeamLength = 0.1;  // m
 inline constexpr double kBeamGravity = 9.81;
 
 struct CutBeam {
   sim::StepSettings step;
-  bool cut = true;  ///< at the middle, into two bodies
-  int finer = 1;    ///< cells of the second part across, of those of the first
+  bool cut = true;  ///< in the middle, into two bodies
+  int finer = 1;    ///< ratio of the cells across the second part to those across the first
   Vector3 gravity{0.0, 0.0, -kBeamGravity};
-  bool rubber = false;  ///< neo-Hookean, else corotational
-  int cables = 0;       ///< up to 3, through both: top, left, bottom
+  bool rubber = false;  ///< whether neo-Hookean, else corotational
+  int cables = 0;       ///< up to 3, through both parts: top, left, bottom
   double cable_friction = 0.0;
-  bool push = false;  ///< a force on the tip
+  bool push = false;  ///< whether a force acts on the tip
   bool second_fixed = false;
   bool weld = true;
-  std::optional<double> wall;  ///< m, z of a plane below the second part
+  std::optional<double> wall;  ///< z of a plane below the second part, m
 };
 
 inline std::shared_ptr<const mesh::Mesh> beam_part(double from, double to, int cells, int across) {

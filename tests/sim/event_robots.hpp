@@ -1,4 +1,4 @@
-// Rigid bodies that strike, and what they should do.
+// Rigid bodies for tests of impacts.
 #pragma once
 
 #include <cmath>
@@ -27,7 +27,7 @@
 
 namespace sinew::testing {
 
-/// Event-driven, in steps of this length.
+/// Settings of event-driven steps.
 inline sim::StepSettings events(double time_step, double restitution) {
   return {.time_step = time_step,
           .integrator = mechanics::Integrator::event_driven,
@@ -49,7 +49,7 @@ inline int add_ball(sim::ModelBuilder& builder, const std::string& name, const V
   return builder.add_rigid_body(ball);
 }
 
-/// The plane through the origin.
+/// Adds contact with the plane through the origin.
 inline void add_floor(sim::ModelBuilder& builder, int body,
                       const Vector3& normal = Vector3::UnitZ(), double friction = 0.0) {
   sim::ContactSettings contact;
@@ -60,7 +60,7 @@ inline void add_floor(sim::ModelBuilder& builder, int body,
   builder.add_contact(contact);
 }
 
-/// A shape as its triangles. @param convex they touch as their hull.
+/// A solid made of the triangles of a shape. @param convex whether contacts use the convex hull.
 inline rigid::Solid triangles(const rigid::Shape& shape, bool convex = false) {
   rigid::Solid solid;
   solid.surface = std::make_shared<const mesh::Surface>(rigid::bounding_triangles(shape));
@@ -68,7 +68,7 @@ inline rigid::Solid triangles(const rigid::Shape& shape, bool convex = false) {
   return solid;
 }
 
-/// A fixed one of 1 x 1 x 0.1 m whose upper side is at z = 0, as a shape or as triangles.
+/// Adds a fixed slab of 1 x 1 x 0.1 m whose upper side is at z = 0, as a shape or as triangles.
 inline int add_slab(sim::ModelBuilder& builder, const std::string& name, bool as_mesh) {
   rigid::RigidSettings slab;
   slab.name = name;
@@ -79,7 +79,7 @@ inline int add_slab(sim::ModelBuilder& builder, const std::string& name, bool as
   return builder.add_rigid_body(slab);
 }
 
-/// m: so far apart triangles rest on those of the slab, 1e-7 of its diagonal.
+/// Distance at which triangles rest on those of the slab, m: 1e-7 of its diagonal.
 inline const double kApart = 1e-7 * std::sqrt(2.01);
 
 inline void add_pair(sim::ModelBuilder& builder, int first, int second, double friction = 0.0) {

@@ -1,4 +1,4 @@
-// Small robots that the tests of sim, constraint and inverse share.
+// Small robots shared by the tests of sim, constraint and inverse.
 #pragma once
 
 #include <cmath>
@@ -44,9 +44,9 @@ struct BeamOptions {
   material::Law law = material::Law::corotational;
   double young_modulus = 200e3;  // Pa
   linalg::FactorisationSettings factorisation;
-  std::optional<double> wall;  ///< m: z of a plane below it, solid underneath
+  std::optional<double> wall;  ///< z of a plane below the beam, m
   double wall_friction = 0.3;
-  bool probes = false;  ///< "end" where the tip is, "axis" of six points, "bend" of both ends
+  bool probes = false;  ///< "end" at the tip, "axis" of six points, "bend" of both ends
 };
 
 inline std::shared_ptr<const sim::Model> beam(const BeamOptions& options = {}) {

@@ -1,5 +1,5 @@
 /// @file
-/// A block that tests put into known shapes by hand.
+/// A block that tests deform to known shapes.
 #pragma once
 
 #include <cmath>
@@ -17,8 +17,8 @@
 
 namespace sinew::sim {
 
-/// Along x, with the axis in the middle, held at x = 0. Parts are added to builder_ before
-/// finish().
+/// A block along x, with its axis in the middle, fixed at x = 0. Tests add parts to builder_ before
+/// they call finish().
 struct ShapedBlock {
   static constexpr double kLength = 0.1, kWidth = 0.02;  // m
 
@@ -33,7 +33,7 @@ struct ShapedBlock {
     builder_.add_fem_body(std::move(body));
   }
   void finish() { simulation_ = std::make_unique<Simulation>(builder_.build()); }
-  /// x = move(X) at every node.
+  /// Sets the position of every node to x = move(X).
   template <typename Move>
   void deform(Move&& move) {
     auto& body = simulation_->body(0);
@@ -45,8 +45,7 @@ struct ShapedBlock {
     }
     body.load_state(state);
   }
-  /// The axis, along x, becomes an arc in the plane of x and z that turns by `angle` over the
-  /// length.
+  /// Bends the axis to an arc in the plane of x and z with the total angle `angle`.
   void bend(double angle) {
     const double radius = kLength / angle;
     deform([=](const Vector3& x) -> Vector3 {

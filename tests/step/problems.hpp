@@ -1,5 +1,5 @@
 /// @file
-/// Random problems of a step: a positive definite W and blocks of every kind.
+/// Random step problems with a positive definite W and blocks of every kind.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace sinew::step::testing {
 
 using qp::Random;
 
-/// effort = rest - stiffness motion^3 - slope motion: steeper the farther it goes.
+/// A drive with effort = rest - slope motion - cubic motion^3, which stiffens with the motion.
 class CubicDrive : public Drive {
  public:
   CubicDrive(double rest, double slope, double cubic) : rest_(rest), slope_(slope), cubic_(cubic) {}
@@ -46,10 +46,10 @@ struct RandomProblem {
   }
 };
 
-/// How many blocks of each kind; actuators are dealt out in this order.
+/// Number of blocks of each kind. Actuators are made in this order.
 struct BlockCounts {
   int owned = 0, commanded_efforts = 0, stopped_efforts = 0, motions = 0, held = 0, drives = 0;
-  int capstans = 0;  ///< on the first motion's cable, or the first owned one's
+  int capstans = 0;  ///< on the cable of the first motion, or of the first owned effort
   int contacts = 0, bilaterals = 0, effectors = 0;
 };
 

@@ -1,11 +1,11 @@
-// Counts the allocations of a test program: malloc and its relatives, aligned ones, operator new.
+// Counts the allocations of a test program by malloc and related functions, including operator new.
 #pragma once
 
 namespace sinew::testing {
 
-/// False in sanitizer builds, where the sanitizer has these functions.
+/// Whether allocations are counted; false in sanitizer builds, which replace these functions.
 bool counts_allocations();
-/// Allocations so far, of all threads.
+/// Number of allocations so far, on all threads.
 long allocations();
 
 }  // namespace sinew::testing

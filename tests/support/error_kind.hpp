@@ -1,4 +1,4 @@
-// What a call throws, for tests of bad input.
+// The kind of error that a call throws, for tests of invalid input.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 
 namespace sinew::testing {
 
-/// The kind of the Error that `action` throws, which must say something; ErrorKind::internal when
-/// it throws none.
+/// The kind of the Error that `action` throws, whose message must not be empty; ErrorKind::internal
+/// if it throws none.
 inline ErrorKind kind_of(const auto& action) {
   try {
     action();

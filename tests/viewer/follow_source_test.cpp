@@ -18,7 +18,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A script, its simulation and its view.
+/// A script with its simulation and view.
 struct Script {
   explicit Script(bool playing, double speed = 0.0)
       : shown(robot()),
@@ -31,7 +31,7 @@ struct Script {
   }
   ~Script() { source.stop(); }
 
-  /// One turn of the source; false when it has ended.
+  /// Runs one turn of the source; false if the source has ended.
   bool update() {
     source.hand_over();
     while (!source.wait_turn(10ms)) {
@@ -58,7 +58,7 @@ TEST(FollowSource, ShowsWhatTheScriptDid) {
     script.simulation->step();
     ASSERT_TRUE(script.update());
   }
-  // Frames are at most sixty a second; the last one comes once the script rests.
+  // There are at most 60 frames per second; the last one is sent when the script pauses.
   std::this_thread::sleep_for(30ms);
   script.simulation->step();
   ASSERT_TRUE(script.update());

@@ -77,7 +77,7 @@ Frame sample() {
   return frame;
 }
 
-/// (kind, index, bytes) of each section, and where its content begins.
+/// Kind, index and size of each section, and the offset of its content.
 struct Part {
   int kind, index;
   std::size_t at, bytes;

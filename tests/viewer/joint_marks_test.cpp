@@ -1,4 +1,4 @@
-// Joints are drawn where they are on both bodies, and along their axes.
+// Joints are drawn at their points on both bodies and along their axes.
 #include "viewer/joint_marks.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ joints:
   seam: {type: weld, bodies: [cart, tail]}
 )";
 
-// The bodies are at rest in their poses with the axes of the world.
+// The initial poses of the bodies have the axes of the world.
 Vector3 carried(const sim::Simulation& simulation, const char* body, const Vector3& from_origin) {
   const auto* pose =
       mechanics::as<const mechanics::HasPose>(simulation.body(simulation.model().body_index(body)));

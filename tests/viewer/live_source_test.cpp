@@ -1,4 +1,4 @@
-// Running robots as they are shown: steps, clocks, commands, and runs that end before their time.
+// Display of running robots: steps, clocks, commands, and runs that stop early.
 #include "viewer/live_source.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A source and what it shows.
+/// A source and the frames it shows.
 struct Live {
   explicit Live(const LiveSettings& settings) : source(robot(), settings) { source.start(watcher); }
   ~Live() { source.stop(); }
@@ -46,7 +46,7 @@ struct Live {
     }
     return answer.get();
   }
-  /// The frame of a step, once it is shown.
+  /// Waits for the frame of a step.
   std::shared_ptr<const Frame> at(std::uint64_t step) {
     return wait([step](const Frame& frame) { return frame.step == step; });
   }
@@ -267,7 +267,7 @@ TEST(LiveSource, ShowsSensorsBesideProbes) {
     return frame.signals.at(static_cast<std::size_t>(found - description.signals.begin()));
   };
   const auto start = state.frame({}, 1.0);
-  EXPECT_TRUE(std::isnan(number(*start, "sensor.eye.measured_x")));  // on its way
+  EXPECT_TRUE(std::isnan(number(*start, "sensor.eye.measured_x")));  // not yet arrived
   for (int k = 0; k < 4; ++k) state.step();
   const auto frame = state.frame({}, 1.0);
   const sim::Simulation& simulation = state.simulation();

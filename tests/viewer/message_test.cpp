@@ -204,7 +204,7 @@ TEST(Message, HasALengthThatIsLimited) {
   EXPECT_THROW(parse_message(std::string(4000, '[')), Error);
 }
 
-// Whatever the bytes, the parser returns or throws an Error.
+// For any bytes, the parser returns or throws an Error.
 TEST(Message, BearsAnyBytes) {
   std::mt19937 random(7);
   const std::string sound[] = {

@@ -1,5 +1,4 @@
-// What the page records: every step's numbers, positions now and then, and no more memory than is
-// allowed.
+// Recordings of the page: numbers of every step, positions at intervals, and bounded memory.
 #include "viewer/recording.hpp"
 
 #include <gtest/gtest.h>
@@ -66,7 +65,7 @@ TEST(Recording, AMotionOfAnyLengthHasBoundedFrames) {
   for (std::uint64_t k = 0; k < 50000; ++k) ASSERT_TRUE(recording.add(frame_at(k, 0.01, 0)));
   EXPECT_EQ(recording.rows(), 50000U);
   const std::string glb = recording.glb();
-  // 600 frames at most of three vertices and two points, and as many weights squared.
+  // At most 600 frames of three vertices and two points, and 600^2 weights.
   EXPECT_LT(glb.size(), 2'500'000U);
   EXPECT_NE(glb.find("\"wire\""), std::string::npos);
 }

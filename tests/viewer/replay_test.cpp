@@ -1,5 +1,4 @@
-// A moment of a recorded run is shown as it was: angles of arms, drives, integrators that keep
-// more.
+// Recorded states are shown as they were: angles of arms, drives, integrators with history.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -42,7 +41,7 @@ effectors:
   tip: {body: arm, point: 0 0 -280 mm}
 )";
 
-// All that run.h5 keeps of the present moment.
+// Everything that run.h5 stores of the current state.
 RecordedState moment(RobotState& state) {
   RecordedState recorded;
   sim::Observables& list = state.observables();
@@ -68,7 +67,7 @@ double signal(const RobotState& state, const Frame& frame, std::string_view key)
   return frame.signals.at(static_cast<std::size_t>(found - list.begin()));
 }
 
-// Of everything but the computation's times.
+// The comparison covers everything except timings.
 void expect_same_signals(const RobotState& state, const Frame& was, const Frame& seen) {
   const auto& list = state.description().signals;
   ASSERT_EQ(was.signals.size(), list.size());

@@ -1,5 +1,5 @@
 /// @file
-/// A small robot, and a watcher of whoever shows it.
+/// A small robot, and a publisher that watches sources.
 #pragma once
 
 #include <memory>
@@ -49,7 +49,7 @@ controllers:
 
 inline scene::Robot robot() { return scene::build(scene::parse_scene_text(kScene, "test", {})); }
 
-/// Keeps the last frame and status.
+/// A publisher that keeps the last frame and status.
 class Watcher final : public Publisher {
  public:
   void publish(std::shared_ptr<const Frame> next) override {

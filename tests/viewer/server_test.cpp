@@ -1,4 +1,4 @@
-// The server against browsers that are well-behaved, slow, broken or hostile.
+// The server with browsers that are well-behaved, slow, broken or hostile.
 #include "viewer/server.hpp"
 
 #include <array>
@@ -32,7 +32,7 @@ using Tcp = asio::ip::tcp;
 using Json = nlohmann::json;
 using namespace std::chrono_literals;
 
-/// A robot of one large surface that steps all the time.
+/// A source with one large surface that steps continuously.
 class FakeSource final : public Source {
  public:
   explicit FakeSource(std::size_t vertices = 30) {
@@ -103,7 +103,7 @@ class Shown {
   std::unique_ptr<Server> server;
 };
 
-/// A browser's connection; every wait ends after ten seconds.
+/// A connection of a browser. Every wait ends after ten seconds.
 class Client {
  public:
   explicit Client(std::uint16_t port) : socket_(io_) {
@@ -131,7 +131,7 @@ class Client {
     handshake();
     say(R"({"type": "hello", "protocol": 2})");
   }
-  /// The next message; binary ones as "#" and the bytes.
+  /// The next message. A binary message is "#" and its bytes.
   std::string next() {
     beast::flat_buffer buffer;
     socket_.read(buffer);
@@ -159,7 +159,7 @@ class Client {
     }
     return 0;
   }
-  /// Reads until the server closes; the reason.
+  /// Reads until the server closes the connection, and returns the reason.
   std::string closed() {
     try {
       while (true) next();
@@ -175,8 +175,8 @@ class Client {
   std::string host_;
 };
 
-/// Bytes of the first section of a kind of a frame, with "#" in front; empty: it has none. Frames
-/// of the fake have no signals.
+/// "#" and the bytes of the first section of a kind in a frame; empty if there is none. Frames of
+/// the fake have no signals.
 std::string section(const std::string& bytes, int wanted) {
   for (std::size_t at = 1 + 40; at + 8 <= bytes.size();) {
     std::uint16_t kind = 0;
@@ -189,7 +189,7 @@ std::string section(const std::string& bytes, int wanted) {
   return {};
 }
 
-/// Whether a client soon gets a frame whose section of a kind is as it should be.
+/// Whether a client soon receives a frame with a valid section of a kind.
 template <typename Holds>
 bool shows(Client& client, int kind, const Holds& holds) {
   for (int k = 0; k < 1000; ++k) {
@@ -199,7 +199,7 @@ bool shows(Client& client, int kind, const Holds& holds) {
   return false;
 }
 
-/// Whether a client soon gets frames with this picked node or element; -1: none.
+/// Whether a client soon receives frames with this picked node or element; -1: none.
 bool shows_pick(Client& client, int number, PickKind kind = PickKind::node) {
   return shows(client, 10, [&](const std::string& pick) {
     if (pick.empty()) return number < 0;
@@ -209,7 +209,7 @@ bool shows_pick(Client& client, int number, PickKind kind = PickKind::node) {
   });
 }
 
-/// The answer to raw bytes.
+/// The response to raw bytes.
 std::string whole_answer(std::uint16_t port, const std::string& text) {
   asio::io_context io;
   Tcp::socket socket(io);
@@ -222,7 +222,7 @@ std::string whole_answer(std::uint16_t port, const std::string& text) {
   return answer;
 }
 
-/// Its status line.
+/// The status line of the response to raw bytes.
 std::string raw_request(std::uint16_t port, const std::string& text) {
   const std::string answer = whole_answer(port, text);
   return answer.substr(0, answer.find("\r\n"));
@@ -321,7 +321,7 @@ TEST(Server, TellsWhatIsInsideToWhoeverAsks) {
   second.say(R"({"type": "inside", "on": true})");
   while (true) {
     const std::string bytes = second.next();
-    if (bytes.front() == '#' && bytes[5] == 3) break;  // how elements lie
+    if (bytes.front() == '#' && bytes[5] == 3) break;  // the interior
   }
   const auto has_inside = [](const std::string& inner) { return inner.size() == 1 + 24; };
   EXPECT_TRUE(shows(second, 12, has_inside));
@@ -424,7 +424,7 @@ TEST(Server, ClosesWithAReason) {
               for (int k = 0; k < 1000; ++k) c.say(R"({"type": "ping"})");
             }),
             "too many messages");
-  // Too long for the protocol itself, which closes with a code of its own.
+  // The message is too long for the WebSocket layer, which closes with its own code.
   Client client(shown.server->port());
   client.handshake();
   client.say(hello);
@@ -432,9 +432,10 @@ TEST(Server, ClosesWithAReason) {
   client.closed();
 }
 
-// A browser that does not read costs nobody else anything, and gets the latest when it reads again.
+// A browser that does not read does not affect others, and gets the latest frame when it reads
+// again.
 TEST(Server, GivesASlowBrowserTheLatestFrame) {
-  const Shown shown(200000);  // 2.4 MB a frame, more than sockets hold
+  const Shown shown(200000);  // 2.4 MB per frame, more than socket buffers
   Client slow(shown.server->port()), quick(shown.server->port());
   slow.greet();
   quick.greet();
@@ -444,7 +445,7 @@ TEST(Server, GivesASlowBrowserTheLatestFrame) {
   const int steps = shown.fake->steps;
   EXPECT_GT(quick.next_step(), before);
   slow.next_json("status");
-  slow.next_step();  // what was on its way when it stopped reading
+  slow.next_step();  // the frame that was being sent when it stopped reading
   slow.next_step();
   EXPECT_GE(static_cast<int>(slow.next_step()) + 5, steps) << "old frames were kept for it";
 }
@@ -459,7 +460,7 @@ TEST(Server, BearsTenThousandBrokenMessages) {
       R"({"type": "command", "actuator": "a", "quantity": "force", "value": 1})";
   int closed = 0;
   for (int k = 0; k < 10000; ++k) {
-    if (k % 500 == 0) witness.next_step();  // a view that is silent for long is disconnected
+    if (k % 500 == 0) witness.next_step();  // a view that is silent for too long is disconnected
     try {
       Client client(shown.server->port());
       if (k % 3 == 0) {  // not even a WebSocket
@@ -474,7 +475,7 @@ TEST(Server, BearsTenThousandBrokenMessages) {
         std::string frame(2 + random() % 20, ' ');
         for (char& c : frame) c = static_cast<char>(random());
         asio::write(client.raw().socket(), asio::buffer(frame));
-      } else {  // a broken message in a sound one's place
+      } else {  // a broken message in place of a valid one
         std::string text = sound;
         text[random() % text.size()] = static_cast<char>('!' + random() % 90);
         client.say(text);

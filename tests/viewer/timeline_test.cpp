@@ -1,4 +1,4 @@
-// Going back in a run, and going on from there: bit for bit, within a bound of memory.
+// Going back in a run and continuing from there, bit for bit and with bounded memory.
 #include "viewer/timeline.hpp"
 
 #include <future>
@@ -34,7 +34,7 @@ TEST(Timeline, ForgetsWhatIsTooOldOrTakesTooMuch) {
   EXPECT_EQ(shown.latest, 2000);
   EXPECT_EQ(shown.shown, 2000);
   EXPECT_NEAR(shown.latest_time - shown.oldest_time, limits::kTimelineSeconds, 0.051);
-  constexpr std::size_t kNumbers = std::size_t{1} << 20;  // 8 MiB a moment
+  constexpr std::size_t kNumbers = std::size_t{1} << 20;  // 8 MiB per moment
   timeline.clear();
   for (int step = 0; step < 40; ++step) timeline.keep(moment_at(step, kNumbers));
   EXPECT_LE(timeline.bytes(), limits::kTimelineBytes);
@@ -76,7 +76,7 @@ TEST(Timeline, ARunGoesOnBitForBitFromAMoment) {
   for (int k = 0; k < 20; ++k) state.step();
   const Moment steered = state.moment();
   const auto after = hashes(state, 15);
-  // Commands, the controller, its target and the hand have changed since.
+  // Commands, the controller, its target and the mouse spring have changed since.
   state.choose_controller(std::nullopt);
   state.command({"up", "tension", 3.0});
   const Moment by_hand = state.moment();
@@ -100,7 +100,7 @@ struct Live {
     source.submit(request, [&](const Outcome& outcome) { done.set_value(outcome); });
     return done.get_future().get();
   }
-  /// The frame of a step, with its timeline at a moment.
+  /// Waits for the frame of a step.
   std::shared_ptr<const Frame> at(std::uint64_t step) {
     for (int k = 0; k < 3000; ++k) {
       if (auto frame = watcher.frame(); frame && frame->step == step) return frame;
@@ -119,7 +119,7 @@ TEST(Timeline, APageGoesBackAndTakesAnotherWay) {
   ASSERT_TRUE(end->timeline.has_value());
   EXPECT_EQ(end->timeline->oldest, 0);
   EXPECT_EQ(end->timeline->shown, end->timeline->latest);
-  EXPECT_EQ(kind(live.ask(Seek{5})), "");  // steps of 10 ms: every fourth is a moment
+  EXPECT_EQ(kind(live.ask(Seek{5})), "");  // with steps of 10 ms, every fourth is a moment
   const auto back = live.at(20);
   EXPECT_EQ(back->timeline->shown, 5);
   EXPECT_GT(back->timeline->latest, 5);
@@ -166,7 +166,7 @@ TEST(RealTimeFactor, IsRightFromTheStart) {
   run(22, 200, 0.5);
   EXPECT_NEAR(factor.value(), 0.5, 1e-9);
   factor.restart();
-  // Steps that take longer than the window.
+  // Steps longer than the window.
   for (int k = 0; k < 4; ++k) factor.add(start + k * 2s, 0.01 * k);
   EXPECT_NEAR(factor.value(), 0.005, 1e-9);
 }

@@ -22,12 +22,12 @@ constexpr std::array<std::array<double, 5>, 5> kWeight{{
     {371.0 / 1360, -137.0 / 2720, 15.0 / 544, 1.0 / 4, 0.0},
     {25.0 / 24, -49.0 / 48, 125.0 / 16, -85.0 / 12, 1.0 / 4},
 }};
-// Result less the embedded formula's.
+// Weights of the result minus those of the embedded formula.
 constexpr std::array<double, 5> kError{-3.0 / 16, -27.0 / 32, 25.0 / 32, 0.0, 1.0 / 4};
-/// Newton's method leaves so much of the error that is allowed.
+/// Error of Newton's method relative to the allowed error.
 constexpr double kNewton = 0.01;
 constexpr int kMaxIterations = 10;
-/// Of the length proposed by the error; how much steps change at once.
+/// Safety factor of the step size, and limits of its relative change.
 constexpr double kSafety = 0.9, kMinChange = 0.2, kMaxChange = 5.0;
 
 }  // namespace
@@ -70,7 +70,7 @@ bool AdaptiveMotion::solve_stage(std::size_t stage, double h, const VectorX& dri
     acceleration += change_;
     const double now = size(own * own * change_, own * change_);
     if (!std::isfinite(now)) return false;
-    // Linear convergence: what is left is the geometric series of the changes to come.
+    // With linear convergence, the remaining error is the geometric series of the changes to come.
     const double ratio = k == 0 ? 0.5 : now / before;
     if (ratio >= 1.0 && now > kNewton) return false;
     before = now;
@@ -90,8 +90,9 @@ double AdaptiveMotion::error(double h) {
     estimate_q_ += h * kError[j] * stage_rate_[j];
     estimate_rate_ += h * kError[j] * stage_acceleration_[j];
   }
-  // (I - gamma h J)^-1 of it, which takes off what stiff motion makes of an embedded formula that
-  // is not L-stable (ibid., IV.8, eq. 8.19): with J that of (q', H^-1 (B tau - ...)).
+  // Multiplies the estimate by (I - gamma h J)^-1, which filters the error that stiff motion causes
+  // in an embedded formula that is not L-stable (ibid., IV.8, eq. 8.19). J is the Jacobian of (q',
+  // H^-1 (B tau - ...)).
   change_ = inertia_ * estimate_rate_ - own * (stiffness_ * estimate_q_);
   estimate_rate_ = matrix_.solve(change_);
   estimate_q_ += own * estimate_rate_;
@@ -112,7 +113,7 @@ void AdaptiveMotion::advance(double end, const Torque& torque) {
   bool moved = true;
   while (time_ < end) {
     const double left = end - time_;
-    // Two halves rather than a step and a hair.
+    // Takes two halves rather than one step and a tiny one.
     const bool last = next_ >= left;
     const double h = last ? left : std::min(next_, 0.5 * left);
     if (moved) {
@@ -128,7 +129,7 @@ void AdaptiveMotion::advance(double end, const Torque& torque) {
     const double change = !error ? kMinChange
                                  : std::clamp(kSafety * std::pow(std::max(*error, 1e-10), -0.25),
                                               kMinChange, moved ? kMaxChange : 1.0);
-    // A step cut short by the end says nothing against longer ones.
+    // A step shortened by the end does not limit later steps.
     next_ = moved && last ? std::max(next_, h * change) : h * change;
     if (moved) {
       time_ = last ? end : time_ + h;

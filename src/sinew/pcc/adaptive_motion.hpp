@@ -1,6 +1,6 @@
 /// @file
-/// An arm by itself in time to an accuracy that is asked for: what other integrators and
-/// transcriptions are measured by.
+/// Integrates the motion of a single arm to a given accuracy. It is the reference for other
+/// integrators and for transcriptions.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace sinew::pcc {
 
-/// What a step may leave of error in each coordinate: absolute + relative * size.
+/// The error that a step may have in each coordinate: absolute + relative * size.
 struct Accuracy {
   double relative = 1e-6;  ///< >= 0
   double angle = 1e-8;     ///< rad (extension: m), > 0
@@ -22,17 +22,17 @@ struct Accuracy {
   long max_steps = 100000;
 };
 
-/// Integrates r(q, q', q'') = B tau by the singly diagonally implicit Runge-Kutta method of five
-/// stages, order four, stiffly accurate and L-stable, with an embedded formula of order three that
-/// chooses the steps (Hairer & Wanner, Solving Ordinary Differential Equations II, 1996, IV.6,
-/// table 6.5). Unknowns are the stages' accelerations, so that the mass matrix, nearly singular for
-/// lumped masses, is never inverted.
+/// Integrates r(q, q', q'') = B tau by a singly diagonally implicit Runge-Kutta method of five
+/// stages and order four, which is stiffly accurate and L-stable. An embedded formula of order
+/// three controls the step size (Hairer & Wanner, Solving Ordinary Differential Equations II, 1996,
+/// IV.6, table 6.5). The unknowns are the accelerations of the stages, so that the mass matrix,
+/// which is nearly singular for lumped masses, is never inverted.
 class AdaptiveMotion {
  public:
-  /// (inputs,) N m at a time in s.
+  /// Torques (inputs,) N m as a function of time, s.
   using Torque = std::function<VectorX(double)>;
 
-  /// At rest and straight. @param arm that moves. @param accuracy of every step.
+  /// Starts at rest, with the arm straight. @param arm that moves. @param accuracy of every step.
   explicit AdaptiveMotion(std::shared_ptr<const Arm> arm, const Accuracy& accuracy = {});
 
   double time() const { return time_; }                          ///< s
@@ -40,24 +40,25 @@ class AdaptiveMotion {
   const VectorX& rate() const { return rate_; }                  ///< (coordinates,) rad/s
   const VectorX& acceleration() const { return acceleration_; }  ///< after a step, rad/s^2
   long steps() const { return steps_; }                          ///< taken since construction
-  /// A new start. @param q,rate (coordinates,). @param time s.
+  /// Sets the state. @param q,rate (coordinates,). @param time s.
   void set_state(const VectorX& q, const VectorX& rate, double time = 0.0);
 
-  /// Goes on to a time. @param end s, after time(). @param torque smooth after time() and up to
-  /// `end`: where it jumps or has a kink a new advance() begins. At a jump it is the value before.
-  /// Throws Error(not-converged): no step is short enough, or there are too many.
+  /// Integrates up to a time. Throws Error(not-converged) if no step is short enough, or if there
+  /// are too many steps.
+  /// @param end s, after time(). @param torque smooth after time() and up to `end`. Call advance()
+  /// anew at each jump or kink; at a jump, `torque` returns the value before it.
   void advance(double end, const Torque& torque);
 
  private:
   static constexpr std::size_t kStages = 5;
 
-  /// The estimated error of a step of h, 1: as large as allowed. Nothing where Newton's method
-  /// fails.
+  /// Tries a step of length h. Returns its estimated error relative to the allowed one, or nothing
+  /// if Newton's method fails.
   std::optional<double> attempt(double h, const Torque& torque);
-  /// Solves for the stage's acceleration. False where Newton's method fails.
+  /// Solves for the acceleration of a stage. Returns false if Newton's method fails.
   bool solve_stage(std::size_t stage, double h, const VectorX& drive);
   double error(double h);
-  /// Largest of changes of position and rate over what is allowed.
+  /// Largest change of a position or rate relative to its allowed error.
   double size(const VectorX& position, const VectorX& rate) const;
 
   ArmEquations equations_;

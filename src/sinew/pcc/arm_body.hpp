@@ -1,5 +1,5 @@
 /// @file
-/// A constant-curvature arm in one simulation.
+/// The body of a constant-curvature arm in a simulation.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ class ArmPose;
 struct ArmState;
 class ArmStep;
 
-/// Its state, and ArmStep for its steps.
+/// The state and kinematics of an arm, and ArmStep for its steps.
 class ArmBody : public mechanics::Body,
                 public mechanics::HasOrientations,
                 public mechanics::HasCoordinates {

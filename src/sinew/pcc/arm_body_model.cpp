@@ -63,7 +63,7 @@ int ArmBodyModel::attach(const Vector3& rest_position, mesh::Outside outside,
   return add({.point = locate(rest_position, outside, what)});
 }
 
-// Sections are rigid: the mean of a ball is its centre but for the bend within the ball.
+// Sections are rigid, so the mean of a ball is its centre, except for the bend within the ball.
 int ArmBodyModel::attach_ball(const Vector3& centre, double, mesh::Outside outside,
                               const std::string& what) {
   return attach(centre, outside, what);

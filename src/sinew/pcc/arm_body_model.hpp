@@ -1,6 +1,6 @@
 /// @file
-/// A constant-curvature arm as a BodyModel: cables, effectors and controllers work on it as on
-/// finite elements. Its coordinates are those of pcc::Arm, at rest straight.
+/// A constant-curvature arm as a BodyModel, so that cables, effectors and controllers act on it as
+/// on finite elements. Its generalised coordinates are those of pcc::Arm; at rest it is straight.
 #pragma once
 
 #include <memory>
@@ -16,15 +16,16 @@
 
 namespace sinew::pcc {
 
+/// The immutable part of an arm's body, with the sites attached to it.
 class ArmBodyModel final : public mechanics::BodyModel,
                            public mechanics::AttachesOrientations,
                            public HasArm {
  public:
-  /// A site.
+  /// A site: where rows act on the arm.
   struct Attachment {
     enum class Kind { point, orientation, coordinate };
     Kind kind = Kind::point;
-    ArmPoint point;                               ///< or any of the section whose orientation it is
+    ArmPoint point;                               ///< for an orientation, any point of the section
     int coordinate = -1;                          ///< of kind coordinate
     Matrix3 rest_rotation = Matrix3::Identity();  ///< of kind orientation
   };
@@ -32,13 +33,13 @@ class ArmBodyModel final : public mechanics::BodyModel,
   explicit ArmBodyModel(std::shared_ptr<const Arm> arm);
 
   const std::string& name() const override { return arm_->settings().name; }
-  /// The section of the straight arm that a point lies in carries it. Throws
-  /// Error(point-outside-mesh) before the base, behind the tip, or farther from the axis than the
-  /// arm's radius, unless `outside` says nearest: the first or last section then carries it.
+  /// Attaches a point to the section of the straight arm that contains it. If the point lies before
+  /// the base, beyond the tip, or farther from the axis than the radius, throws
+  /// Error(point-outside-mesh), or with `outside` nearest attaches it to the nearest section.
   int attach(const Vector3& rest_position, mesh::Outside outside, const std::string& what) override;
   int attach_ball(const Vector3& centre, double radius, mesh::Outside outside,
                   const std::string& what) override;
-  /// Throws Error(wrong-type): it has no nodes.
+  /// Throws Error(wrong-type), since an arm has no nodes.
   int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
   int attach_orientation(const Vector3& rest_position, mesh::Outside outside,
                          const std::string& what) override;
@@ -52,7 +53,7 @@ class ArmBodyModel final : public mechanics::BodyModel,
   std::uint64_t site_hash(int site) const override;
   std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_geometric_stiffness,
                                           int histories) const override;
-  /// A cylinder of hexahedra of the arm's radius, for records and the view.
+  /// The skin for records and the view: a cylinder of hexahedra with the arm's radius.
   const mesh::Mesh& mesh() const override { return skin_; }
 
   const Arm& arm() const override { return *arm_; }
@@ -62,7 +63,7 @@ class ArmBodyModel final : public mechanics::BodyModel,
     return attachments_[static_cast<std::size_t>(site)];
   }
   const mechanics::OwnRows& own_rows() const { return own_rows_; }
-  /// The points that the nodes of mesh() are.
+  /// The material points of the nodes of mesh().
   const std::vector<ArmPoint>& skin_points() const { return skin_points_; }
 
  private:

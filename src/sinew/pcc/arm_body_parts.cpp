@@ -1,4 +1,4 @@
-// What the motion of an arm depends on, by name.
+// Hashes of everything that the motion of an arm depends on.
 #include "sinew/pcc/arm_body_model.hpp"
 
 namespace sinew::pcc {

@@ -77,7 +77,7 @@ void ArmDynamics<T>::sweep() {
     }
 
     const Bend<T, kMoves> own(segment, &q_[first], &rate_[first]);
-    // Of a point in the moving frame: position, velocity, acceleration.
+    // Position, velocity and acceleration of a point in the moving frame.
     const auto carry = [&](Vec3<T>& x, Vec3<T>& v, Vec3<T>& a, std::array<Vec3<T>, 3>& gradient) {
       const Vec3<T> arm = frame.rotation * point.position;
       x = frame.origin + arm;
@@ -123,7 +123,7 @@ void ArmDynamics<T>::sweep() {
 template <typename T>
 void ArmDynamics<T>::inverse_dynamics(std::span<T> torque) {
   const auto& particles = arm_->particles();
-  Vec3<T> force, moment;  // of all particles beyond, about the end at hand
+  Vec3<T> force, moment;  // of all particles beyond, about the current end
   std::size_t particle = particles.size();
   for (int n = arm_->segments(); n-- > 0;) {
     const Frame& frame = frames_[at(n)];
@@ -254,7 +254,7 @@ void ArmDynamics<T>::jacobian(const ArmPoint& point, std::span<Vec3<T>> columns)
   }
 }
 
-// Angular velocities of segments in a chain add up (Featherstone, 2008, sec. 4.4).
+// The angular velocities of segments in a chain add up (Featherstone, 2008, sec. 4.4).
 template <typename T>
 void ArmDynamics<T>::angular_jacobian(const ArmPoint& point, std::span<Vec3<T>> columns) const {
   const Spot here = spot(point);

@@ -15,10 +15,10 @@ namespace sinew::pcc {
 
 namespace {
 
-/// First derivatives go by so many variables a pass: angles and rates of four planar segments.
+/// Number of variables in one pass of differentiation: angles and rates of four planar segments.
 constexpr std::size_t kDirections = 8;
 using First = Dual<kDirections>;
-/// In time.
+/// A number with its time derivative.
 using Timed = Dual<1>;
 using Second = Varied<First>;
 
@@ -34,7 +34,7 @@ std::span<const double> view(const VectorX& values) {
 }  // namespace
 
 struct ArmEquations::Work {
-  /// Of curvature(), to by_position, by_rate and by_acceleration.
+  /// Computes the gradient of S in curvature(): by_position, by_rate and by_acceleration.
   void gradient_of_work();
 
   explicit Work(std::shared_ptr<const Arm> arm_)
@@ -62,14 +62,14 @@ struct ArmEquations::Work {
   linalg::CholeskyFactor decomposed;
   Linearisation linear;
   ForwardDerivatives forward;
-  std::unique_ptr<PlanarEquations> planar;  // null: the arm leaves the plane
-  // Those with derivatives are made when first asked for.
+  std::unique_ptr<PlanarEquations> planar;  // null unless the arm is planar
+  // Workspaces with derivatives are made at first use.
   std::unique_ptr<ArmDynamics<Timed>> timed;
   std::unique_ptr<ArmDynamics<First>> first;
   std::vector<First> first_q, first_rate, first_acceleration, first_result;
   std::unique_ptr<ArmDynamics<Second>> second;
   std::vector<Second> second_q;
-  std::vector<First> by_position, by_rate, by_acceleration;  // of the varied scalar
+  std::vector<First> by_position, by_rate, by_acceleration;  // gradient of S
 };
 
 void ArmEquations::Work::gradient_of_work() {
@@ -225,8 +225,8 @@ const MatrixX& ArmEquations::curvature(const VectorX& weights, const VectorX& q,
   // and, since dx''/dq_k = J_k'', dx''/dq'_k = 2 J_k', dx''/dq''_k = J_k and d(dx)/dq_k = dJ_k,
   //   dS/dq_k = sum_p dJ_k . (m (x'' - g) - f) + m dx . J_k'',
   //   dS/dq'_k = 2 m dx . J_k',   dS/dq''_k = m dx . J_k.
-  // The kinematics with numbers of time and variation give all of these, and numbers that carry
-  // derivatives inside them the gradient's own.
+  // Kinematics on numbers with time derivatives and variation gives all of these. If their parts
+  // are dual numbers, it also gives the derivatives of the gradient.
   Work& w = *work_;
   const std::size_t n = w.n;
   const auto size = static_cast<Eigen::Index>(n);

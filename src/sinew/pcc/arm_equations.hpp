@@ -9,8 +9,9 @@
 
 namespace sinew::pcc {
 
-/// Workspace of one arm; nothing allocates after construction. With
-/// r(q, q', q'') = H q'' + C q' + G + b q' - loads, motion obeys r = B tau.
+/// The equations of motion r = B tau of one arm, with
+/// r(q, q', q'') = H q'' + C q' + K q + G + b q' - loads. Results returned by reference are valid
+/// until the next call. Workspaces of derivatives are allocated at first use.
 class ArmEquations {
  public:
   explicit ArmEquations(std::shared_ptr<const Arm> arm);
@@ -20,27 +21,27 @@ class ArmEquations {
 
   const Arm& arm() const;
 
-  /// q'' (coordinates,) rad/s^2. @param q,rate (coordinates,). @param torque (inputs,) N m.
-  /// Throws Error(singular-matrix) where H is not positive definite: a segment without mass beyond
-  /// it, or a pose in which a mass cannot be moved.
+  /// Forward dynamics: q'' (coordinates,) rad/s^2. Throws Error(singular-matrix) if H is not
+  /// positive definite, as in a pose in which a coordinate moves no mass.
+  /// @param q,rate (coordinates,). @param torque (inputs,) N m.
   const VectorX& acceleration(const VectorX& q, const VectorX& rate, const VectorX& torque);
-  /// r (coordinates,) N m.
+  /// The residual r, (coordinates,) N m.
   const VectorX& residual(const VectorX& q, const VectorX& rate, const VectorX& acceleration);
-  /// dr/d(masses), (coordinates, segments) N m/kg: r is linear in them.
+  /// dr/d(masses), (coordinates, segments) N m/kg; r is linear in the masses.
   const MatrixX& mass_regressor(const VectorX& q, const VectorX& rate, const VectorX& acceleration);
-  /// H (coordinates, coordinates), kg m^2.
+  /// The mass matrix H, (coordinates, coordinates) kg m^2.
   const MatrixX& mass_matrix(const VectorX& q);
-  /// C (coordinates, coordinates) of Christoffel's symbols, so that H' - 2C is skew.
+  /// The matrix C (coordinates, coordinates) from Christoffel's symbols, for which H' - 2C is skew.
   const MatrixX& coriolis_matrix(const VectorX& q, const VectorX& rate);
 
-  /// r and its derivatives.
+  /// The residual r and its derivatives.
   struct Linearisation {
     VectorX residual;                               ///< (n,)
     MatrixX by_position, by_rate, by_acceleration;  ///< (n, n) each; the last is H
   };
   const Linearisation& linearise(const VectorX& q, const VectorX& rate,
                                  const VectorX& acceleration);
-  /// Second derivative of weights . r by (q, q', q''), (3n, 3n). @param weights (n,).
+  /// Second derivative of weights . r with respect to (q, q', q''), (3n, 3n). @param weights (n,).
   /// @param q,rate,acceleration (n,) each.
   const MatrixX& curvature(const VectorX& weights, const VectorX& q, const VectorX& rate,
                            const VectorX& acceleration);
@@ -54,16 +55,16 @@ class ArmEquations {
   const ForwardDerivatives& forward_derivatives(const VectorX& q, const VectorX& rate,
                                                 const VectorX& torque);
 
-  /// Positions (segments, 3) m of the segments' ends.
+  /// Positions of the segments' ends, (segments, 3) m.
   Points endpoints(const VectorX& q);
-  /// Of these by q: (3 segments, coordinates), x y z of one end after the other.
+  /// Jacobian of endpoints(), (3 segments, coordinates); rows are x y z of each end in turn.
   const MatrixX& endpoint_jacobian(const VectorX& q);
   struct Energy {
     double kinetic = 0.0, strain = 0.0, gravity = 0.0;  ///< J
     double total() const { return kinetic + strain + gravity; }
   };
   Energy energy(const VectorX& q, const VectorX& rate);
-  /// A point's position (3,) m, Jacobian (3, n), and d/dt of the Jacobian along the rate.
+  /// Position (3,) m and Jacobian (3, n) of a point, and the time derivative of the Jacobian.
   struct PointMotion {
     Vector3 position;
     Matrix3 rotation;  ///< of the section

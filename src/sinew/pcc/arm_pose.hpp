@@ -1,5 +1,5 @@
 /// @file
-/// Where the material of an arm's body is, and how it moves.
+/// Positions and velocities of an arm's material.
 #pragma once
 
 #include <cstddef>
@@ -12,21 +12,21 @@
 
 namespace sinew::pcc {
 
-/// Evaluates the arm's kinematics at the state when somebody asks, once for each state.
+/// Evaluates the kinematics of an arm on demand, once per state.
 class ArmPose {
  public:
   /// @param model,state must outlive this.
   ArmPose(const ArmBodyModel& model, const ArmState& state);
 
-  /// The state is another from now on.
+  /// Invalidates the results, since the state has changed.
   void moved() { dynamics_current_ = skin_current_ = false; }
 
-  /// At the state; see ArmDynamics::set().
+  /// The dynamics, set to the positions and rates of the state.
   const ArmDynamics<double>& dynamics() const;
   Vector3 position(int point) const;        ///< (3,) m, of an attached point
-  Matrix3 rotation(int orientation) const;  ///< since rest, of an attached orientation
+  Matrix3 rotation(int orientation) const;  ///< from rest, of an attached orientation
   Vector3 velocity(int site) const;         ///< see mechanics::Body
-  /// (3,) columns for the coordinates: a site's motion; valid until the next call.
+  /// Jacobian of a site: a column for each coordinate. Valid until the next call.
   const std::vector<Vec3<double>>& jacobian(const ArmBodyModel::Attachment& site);
   const Points& skin() const;             ///< (n, 3) m, of the nodes of the model's mesh
   const Points& skin_velocities() const;  ///< (n, 3) m/s
@@ -40,9 +40,9 @@ class ArmPose {
   const ArmBodyModel& model_;
   const ArmState& state_;
   mutable ArmDynamics<double> dynamics_;
-  mutable bool dynamics_current_ = false;  // dynamics_ is at the state
+  mutable bool dynamics_current_ = false;  // dynamics_ matches the state
   mutable Points skin_, skin_velocities_;
-  mutable bool skin_current_ = false;  // so are these
+  mutable bool skin_current_ = false;  // skin_ and skin_velocities_ match the state
   std::vector<Vec3<double>> columns_;
 };
 

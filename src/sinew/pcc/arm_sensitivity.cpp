@@ -18,7 +18,7 @@ void ArmSensitivity::start(const MatrixX& position, const MatrixX& rate) {
 void ArmSensitivity::follow(const ArmSimulation& simulation, const MatrixX& by_parameter) {
   const ArmSimulation::LastStep& last = simulation.last_step();
   const mechanics::StepWeights& weights = last.weights;
-  // Without the motion's part, which the solution adds.
+  // The part without the motion, which is added after the solution.
   const auto known = [&](const mechanics::Combination& c, MatrixX& result) {
     result = c.velocity * rate_ + c.first * first_ + c.second * second_;
   };

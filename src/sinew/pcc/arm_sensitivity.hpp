@@ -1,6 +1,6 @@
 /// @file
-/// Derivatives of an arm's motion by parameters: every implicit step differentiated, exactly
-/// (Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, 1993, II.6).
+/// Derivatives of an arm's motion with respect to parameters, by exact differentiation of every
+/// implicit step (Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, 1993, II.6).
 #pragma once
 
 #include "sinew/linalg/dense_factor.hpp"
@@ -8,20 +8,22 @@
 
 namespace sinew::pcc {
 
-/// A step solves g(d) = r(q + d, q', q'') - B tau = 0 for the motion d, with velocity q' and
-/// acceleration q'' the integrator's combinations of d and of what the last step left. So
+/// Forward sensitivities of ArmSimulation. A step solves g(d) = r(q + d, q', q'') - B tau = 0 for
+/// the motion d, where the integrator makes velocity q' and acceleration q'' by linear combination
+/// of d, the rate and its history. Hence
 ///   dg/dd . dd/dp = -(dr/dp - B dtau/dp) - dr/dq . dq/dp - dr/dq' . (..) - H (..),
-/// the brackets the same combinations of derivatives. Nothing allocates after construction.
+/// where the brackets are the same combinations of derivatives. Nothing allocates after
+/// construction.
 class ArmSensitivity {
  public:
-  /// @param coordinates of the arm. @param parameters how many.
+  /// @param coordinates number of coordinates of the arm. @param parameters number of parameters.
   ArmSensitivity(Eigen::Index coordinates, Eigen::Index parameters);
 
-  /// Of the start. @param position,rate (coordinates, parameters).
+  /// Sets the sensitivities of the initial state. @param position,rate (coordinates, parameters).
   void start(const MatrixX& position, const MatrixX& rate);
-  /// Goes along with the step that the simulation has just made.
-  /// @param simulation whose equations were not used since, other than at points and for masses.
-  /// @param by_parameter dr/dp - B dtau/dp at the step's end, (coordinates, parameters), N m.
+  /// Advances the sensitivities over the last step of the simulation.
+  /// @param simulation since whose last step nothing was linearised with its equations.
+  /// @param by_parameter dr/dp - B dtau/dp at the end of the step, (coordinates, parameters), N m.
   void follow(const ArmSimulation& simulation, const MatrixX& by_parameter);
 
   const MatrixX& position() const { return position_; }  ///< dq/dp, (coordinates, parameters)

@@ -70,14 +70,14 @@ void ArmSimulation::step(const VectorX& torque) {
     residual_ = linear.residual - drive_;
     last_.matrix = linear.by_position + weights.velocity.motion * linear.by_rate +
                    weights.acceleration.motion * linear.by_acceleration;
-    // The largest torque at work: what rounding and the tolerance are measured against.
+    // The largest torque, to which the tolerance is relative.
     const double scale = drive_.cwiseAbs().maxCoeff() +
                          (arm().stiffness().cwiseProduct(q_)).cwiseAbs().maxCoeff() +
                          (linear.by_acceleration * new_acceleration_).cwiseAbs().maxCoeff() +
                          1e-6 * arm().stiffness().maxCoeff();
     const double left = residual_.cwiseAbs().maxCoeff();
     const bool first = iterations_ == 0;
-    // Positions are rounded, and the matrix, with H / h^2 in it, makes torques of that.
+    // Torques caused by the rounding of positions through the matrix, which contains H / h^2.
     const double rounding =
         kRounding *
         (last_.matrix.cwiseAbs() * (q_.cwiseAbs() + VectorX::Constant(q_.size(), 1e-3))).maxCoeff();
@@ -94,7 +94,7 @@ void ArmSimulation::step(const VectorX& torque) {
     motion_ -= correction_;
     ++iterations_;
   }
-  // What is kept follows from the values at the start.
+  // The new history follows from the values at the start of the step.
   combine(weights.first, acceleration_);
   combine(weights.second, residual_);
   first_.swap(acceleration_);
@@ -130,11 +130,12 @@ ArmEquilibrium find_equilibrium(ArmEquations& equations, const VectorX& torque,
     }
     const double shift = lowest > 1e-6 * unit ? 0.0 : 1e-3 * unit - lowest;
     VectorX move = -linalg::solve_symmetric(hessian + shift * MatrixX::Identity(n, n), gradient);
-    // A radian a coordinate is as far as a quadratic model may be trusted.
+    // A quadratic model is trusted up to one radian per coordinate.
     move *= std::min(1.0, 1.0 / move.cwiseAbs().maxCoeff());
     const double before = potential(q), slope = gradient.dot(move);
     double length = 1.0;
-    // Close to the solution the potential's rounding hides the descent: the full step stands.
+    // Near the solution, rounding of the potential hides the descent. The full step is then
+    // accepted.
     const double rounding = 1e-13 * (std::abs(before) + scale);
     while (length > 1e-6 &&
            potential(q + length * move) > before + 1e-4 * length * slope + rounding) {

@@ -1,5 +1,5 @@
 /// @file
-/// An arm by itself in time and at rest, without a world round it: implicit steps and equilibria.
+/// Simulates a single arm outside sim::Simulation: implicit time steps, and equilibria.
 #pragma once
 
 #include <memory>
@@ -15,16 +15,16 @@ struct ArmStepSettings {
   mechanics::Integrator integrator =
       mechanics::Integrator::generalized_alpha;  ///< not quasi-static
   double spectral_radius = 0.8;                  ///< of generalized-alpha, 0 to 1
-  double tolerance = 1e-9;  ///< of Newton's method: torque left over, of the largest at work
+  double tolerance = 1e-9;  ///< of Newton's method: residual relative to the largest torque
   int max_iterations = 20;
 };
 
-/// One run of an arm. Steps are implicit: lumped masses make H nearly singular, so that damping's
-/// own rates b / lambda_min(H) are 1e4 to 1e5 1/s, and explicit steps of a millisecond blow up.
+/// A simulation of one arm. Its steps are implicit, since lumped masses make H nearly singular: the
+/// rates of damping, b / lambda_min(H), are 1e4 to 1e5 1/s, and explicit steps of 1 ms diverge.
 class ArmSimulation {
  public:
-  /// At rest and straight. Throws Error(out-of-range): a time step or spectral radius that makes
-  /// no sense.
+  /// Starts at rest, with the arm straight. Throws Error: out-of-range (time step, spectral
+  /// radius), unknown-choice (a quasi-static integrator).
   ArmSimulation(std::shared_ptr<const Arm> arm, const ArmStepSettings& settings = {});
 
   const Arm& arm() const { return equations_.arm(); }
@@ -35,18 +35,18 @@ class ArmSimulation {
   int iterations() const { return iterations_; }  ///< of Newton's method in the last step
   const VectorX& acceleration() const { return new_acceleration_; }  ///< after a step, rad/s^2
 
-  /// What derivatives of the last step need, at its end.
+  /// Results at the end of the last step, for its derivatives.
   struct LastStep {
     mechanics::StepWeights weights;
-    MatrixX matrix;  ///< of the residual by the motion: dr/dq + dr/dq' dq'/dd + H dq''/dd
-    const ArmEquations::Linearisation* linear = nullptr;  ///< until the equations are used again
+    MatrixX matrix;  ///< Jacobian for the motion d: dr/dq + dr/dq' dq'/dd + H dq''/dd
+    const ArmEquations::Linearisation* linear = nullptr;  ///< valid until the next linearise()
   };
   const LastStep& last_step() const { return last_; }
-  /// A new start. @param q,rate (coordinates,). @param time s.
+  /// Sets the state. @param q,rate (coordinates,). @param time s.
   void set_state(const VectorX& q, const VectorX& rate, double time = 0.0);
 
-  /// Advances one time step. @param torque (inputs,) N m at its end.
-  /// Throws Error(diverged | not-converged); the state is then that before the step.
+  /// Advances one time step. Throws Error(diverged | not-converged), and then keeps the state
+  /// before the step. @param torque (inputs,) N m at the end of the step.
   void step(const VectorX& torque);
 
  private:
@@ -64,14 +64,13 @@ class ArmSimulation {
 /// An equilibrium K q + G(q) = B tau.
 struct ArmEquilibrium {
   VectorX position;     ///< (coordinates,)
-  bool stable = false;  ///< the potential's second derivative is positive definite
+  bool stable = false;  ///< whether the Hessian of the potential is positive definite
   int iterations = 0;
 };
 
-/// The equilibrium that a descent of the potential from `start` ends in: Newton's method, made
-/// positive definite by a shift, with line search.
+/// Finds an equilibrium by descent of the potential from `start`: Newton's method with line search,
+/// whose Hessian is shifted to be positive definite. Throws Error(not-converged).
 /// @param equations of the arm. @param torque (inputs,) N m. @param start (coordinates,).
-/// Throws Error(not-converged).
 ArmEquilibrium find_equilibrium(ArmEquations& equations, const VectorX& torque,
                                 const VectorX& start);
 

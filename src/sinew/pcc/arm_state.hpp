@@ -1,5 +1,5 @@
 /// @file
-/// What the body of an arm carries from step to step.
+/// The state of an arm's body between steps.
 #pragma once
 
 #include <cstddef>
@@ -12,25 +12,27 @@
 
 namespace sinew::pcc {
 
-/// One for a body, which its parts look at.
+/// The state vector of an arm's body, shared by the parts of the body.
 struct ArmState {
-  /// At rest. @param coordinates,own of the model. @param histories see
-  /// mechanics::history_count().
+  /// Starts at rest. @param coordinates number of coordinates. @param own rows of the body.
+  /// @param histories see mechanics::history_count().
   ArmState(Eigen::Index coordinates, const mechanics::OwnRows& own, int histories);
 
   void restart();
-  /// Of all but the start of the step in hand.
+  /// Length of a saved state, which has everything except `start`.
   std::size_t size() const;
   void save(std::span<double> to) const;    ///< (size(),)
   void load(std::span<const double> from);  ///< (size(),)
 
-  /// (coordinates,): a combination of the motion in the step and of what was before it.
+  /// Computes a linear combination of the motion in the step, the rate at its start and the
+  /// history.
+  /// @param weights of the combination. @param result (coordinates,).
   void combine(const mechanics::Combination& weights, VectorX& result) const;
 
   VectorX q, rate;               ///< (coordinates,) rad and rad/s; extensions: m and m/s
-  std::vector<VectorX> history;  ///< what the integrator keeps, (coordinates,) each
+  std::vector<VectorX> history;  ///< of the integrator, (coordinates,) each
   mechanics::RowMemory memory;
-  VectorX start;  ///< q at the start of the step; the rate stays that of its start until it ends
+  VectorX start;  ///< q at the start of the step; `rate` is kept until its end
 };
 
 }  // namespace sinew::pcc

@@ -8,11 +8,11 @@ namespace sinew::pcc {
 
 namespace {
 
-// An angle of so many turns has blown up.
+// An angle beyond this has diverged, rad.
 constexpr double kLargestAngle = 1e3;
-// Softest that a corotated tangent is let be, of the stiffest segment.
+// Lower bound of the stiffness of a corotated tangent, relative to the stiffest segment.
 constexpr double kSoftest = 1e-3;
-// Residuals are not judged by loads that bend a segment less than this.
+// Residuals are relative to at least the torque that bends a segment by this angle, rad.
 constexpr double kMinAngle = 1e-5;
 
 }  // namespace
@@ -27,11 +27,12 @@ ArmStep::ArmStep(const ArmBodyModel& model, ArmState& state, ArmPose& pose)
   const Eigen::Index n = model.arm().coordinates();
   for (VectorX* v : {&from_, &scratch_, &kept_, &new_rate_, &acceleration_}) v->setZero(n);
   min_force_ = kMinAngle * std::max(model.arm().stiffness().maxCoeff(), 1e-9);
-  equations_.linearise(state.q, state.rate, acceleration_);  // takes its workspace now
+  equations_.linearise(state.q, state.rate, acceleration_);  // allocates its workspace
 }
 
-// b = -r(q, v, a) at the step's end, A = dr/dq + (dv/dd) dr/dv + (da/dd) H: the derivative, exact
-// but for what rows pull (add_geometric_stiffness), and unsymmetric where the arm moves.
+// b = -r(q, v, a) at the end of the step, and its exact derivative A = dr/dq + (dv/dd) dr/dv +
+// (da/dd) H, without the geometric stiffness of rows (add_row_stiffness()). A is unsymmetric if the
+// arm moves.
 double ArmStep::form(const mechanics::LinearisationRequest& request, VectorX& right,
                      MatrixX& matrix) {
   const auto& weights = request.weights;
@@ -70,7 +71,7 @@ void ArmStep::site_jacobian(int site, MatrixX& result) const {
   }
 }
 
-// A turn of 1 is the least that angles are rounded by: their sines and cosines are.
+// Angles below 1 rad are rounded like 1 rad, since their sines and cosines are.
 double ArmStep::rounding_floor() const {
   const double angle = std::max(1.0, state_.q.cwiseAbs().maxCoeff());
   return std::numeric_limits<double>::epsilon() * angle *
@@ -100,7 +101,7 @@ mechanics::StepEnd ArmStep::end_step(const mechanics::StepWeights& weights) {
   return end;
 }
 
-// @return the jump by which the step's error is judged.
+// Updates rate and history. @return the jump from which the error of the step is estimated.
 double ArmStep::keep_motion(const mechanics::StepWeights& weights) {
   using Jump = mechanics::StepWeights::Jump;
   const VectorX& rate = state_.rate;

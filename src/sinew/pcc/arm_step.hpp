@@ -1,5 +1,5 @@
 /// @file
-/// The body of a constant-curvature arm in a step.
+/// The step system of a constant-curvature arm.
 #pragma once
 
 #include "sinew/mechanics/dense_step.hpp"
@@ -9,7 +9,8 @@
 
 namespace sinew::pcc {
 
-/// r(q, v, a) = H^T lambda over the arm's coordinates, r of ArmEquations.
+/// Solves r(q, v, a) = H^T lambda for the coordinates of an arm, with the residual r of
+/// ArmEquations.
 class ArmStep : public mechanics::DenseStep {
  public:
   /// @param model,state,pose must outlive this.
@@ -39,7 +40,7 @@ class ArmStep : public mechanics::DenseStep {
   ArmEquations equations_;
   RowStiffness row_stiffness_;
   VectorX scratch_, kept_, new_rate_, acceleration_;
-  VectorX from_;  // q that the motion starts from
+  VectorX from_;  // q at which the motion starts
   double min_force_ = 1e-12;
 };
 

@@ -1,7 +1,7 @@
 /// @file
-/// One bent segment in its own frame: the transform of a point of its arc and all derivatives that
-/// dynamics need, in Stumpff's functions of s = theta^2. With A = (1 - cos theta)/theta = theta c_2
-/// and B = sin(theta)/theta = c_1,
+/// Kinematics of one bent segment in its own frame: transforms of points of its arc and all
+/// derivatives that dynamics need, by Stumpff's functions of s = theta^2. With
+/// A = (1 - cos theta)/theta = theta c_2 and B = sin(theta)/theta = c_1,
 ///   A' = c_1 - c_2,        A'' = theta (2 c_3 - c_2 - 2 c_4),
 ///   B' = theta (c_3 - c_2),  B'' = 2 c_2 - 2 c_3 - c_1.
 #pragma once
@@ -12,7 +12,8 @@
 
 namespace sinew::pcc {
 
-/// Of a point of the arc, seen from the bend's start. Derivatives by the segment's coordinates.
+/// Position of a point of the arc relative to the start of the bend, with derivatives with respect
+/// to the segment's coordinates.
 template <typename T>
 struct BendPoint {
   Vec3<T> position;
@@ -20,7 +21,7 @@ struct BendPoint {
   Vec3<T> bias;  ///< second derivative of the position in time at constant coordinate rates
 };
 
-/// Of the section there.
+/// Rotation of the section at a point of the arc, with derivatives.
 template <typename T>
 struct BendSection {
   Rotation<T> rotation;
@@ -28,20 +29,19 @@ struct BendSection {
   Vec3<T> spin_bias;            ///< angular acceleration at constant coordinate rates
 };
 
-/// A segment's bend at some coordinates and, where it moves, rates. Of one that does not, biases
-/// are left alone.
+/// The bend of a segment at given coordinates and, if kMoves, rates. Otherwise biases are not set.
 template <typename T, bool kMoves>
 class Bend {
  public:
-  /// @param segment whose. @param q (coordinates,) of it. @param rate likewise; nullptr where it
-  /// does not move.
+  /// @param segment must outlive this. @param q its coordinates. @param rate its rates; nullptr
+  /// unless kMoves.
   Bend(const Segment& segment, const T* q, const T* rate) : segment_(segment), q_(q), rate_(rate) {
     squared_ = q[0] * q[0];
     if (segment.bending == Bending::spatial) squared_ += q[1] * q[1];
   }
 
-  /// @param fraction of the arc. @param scale of the position. @param point filled.
-  /// @param section filled when given.
+  /// Evaluates a point of the arc. @param fraction of the arc. @param scale of the position.
+  /// @param point result. @param section result, unless nullptr.
   void at(double fraction, double scale, BendPoint<T>& point, BendSection<T>* section) const {
     const T s = fraction * fraction * squared_;
     if (segment_.bending == Bending::planar) {
@@ -83,7 +83,7 @@ class Bend {
     T length = share * segment_.length;
     if (extensible) length += share * q_[2];
     const T u = fraction * q_[0], v = fraction * q_[1];
-    // dc_k/ds, and twice for the point's own.
+    // dc_k/ds.
     const auto slope = [&](std::size_t k) {
       return 0.5 * (static_cast<double>(k) * c[k + 2] - c[k + 1]);
     };
@@ -115,7 +115,7 @@ class Bend {
       section->spin[2] = {zero, zero, zero};
     }
     if constexpr (kMoves) {
-      // In time: s' = 2 (u u' + v v'), s'' = 2 (u'^2 + v'^2).
+      // Time derivatives: s' = 2 (u u' + v v'), s'' = 2 (u'^2 + v'^2).
       const T du = fraction * rate_[0], dv = fraction * rate_[1];
       const T ds = 2.0 * (u * du + v * dv);
       const T dds = 2.0 * (du * du + dv * dv);

@@ -23,7 +23,7 @@ double wall_second_moment(BendingParameters p) {
   return mass_sum(p).second;
 }
 
-// sin(x)/x and (1 - cos x)/x without division by a small x.
+// sin(x)/x and (1 - cos x)/x, without division by small x.
 double sinc(double x) { return std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : std::sin(x) / x; }
 double versinc(double x) { return std::sin(0.5 * x) * sinc(0.5 * x); }
 
@@ -90,7 +90,7 @@ double BendingActuator::equilibrium(double pressure, double start) const {
     const BendingTerms terms = energies_.at(theta);
     const double force = moment - shear * terms.strain.first - terms.gravity.first;
     const double stiffness = shear * terms.strain.second + terms.gravity.second;
-    // Where the pose is unstable Newton would climb: downhill, by the longest step.
+    // In an unstable pose, Newton's method would climb. The search takes the longest step downhill.
     const double wanted = stiffness > 0.0 ? force / stiffness : std::copysign(kLongestStep, force);
     const double next =
         std::clamp(theta + std::clamp(wanted, -kLongestStep, kLongestStep), lowest, highest);

@@ -38,8 +38,8 @@ BendingEnergies::BendingEnergies(const BendingParameters& p)
   if (p.order) expand(*p.order);
 }
 
-// int_disc f(h) dA = 2 R^2 int_-1^1 f(c + R x) sqrt(1 - x^2) dx by Gauss and Chebyshev's second
-// kind: points cos(i pi/(n + 1)), weights pi/(n + 1) sin^2(i pi/(n + 1)).
+// int_disc f(h) dA = 2 R^2 int_-1^1 f(c + R x) sqrt(1 - x^2) dx, by Gauss-Chebyshev quadrature of
+// the second kind: points cos(i pi/(n + 1)), weights pi/(n + 1) sin^2(i pi/(n + 1)).
 void BendingEnergies::prepare_across(const BendingParameters& p) {
   const auto disc = [&](std::size_t from, double radius, double centre, double sign) {
     for (std::size_t i = 0; i < kAcross; ++i) {
@@ -77,7 +77,7 @@ void BendingEnergies::prepare_along(const BendingParameters& p) {
   inertia_constant_ = mass.second * l / 3.0;
 }
 
-// d^n/dtheta^n of the waves at 0, over n!.
+// Taylor coefficient of the waves: d^n/dtheta^n at 0, divided by n!.
 double BendingEnergies::coefficient(const Waves& waves, int power) const {
   const auto& side = power % 2 == 0 ? waves.cosine : waves.sine;
   double sum = 0.0;
@@ -123,7 +123,8 @@ BendingTerms BendingEnergies::exact(double theta) const {
     add(terms.gravity, gravity_waves_);
   }
   terms.inertia.value += inertia_constant_;
-  // W = (lambda - 1/lambda)^2 / 2 and its derivatives by e, without cancellation at e = 0.
+  // W = (lambda - 1/lambda)^2 / 2 and its derivatives with respect to e, without cancellation at e
+  // = 0.
   for (std::size_t i = 0; i < height_.size(); ++i) {
     const double e = theta / length_ * height_[i], stretch = 1.0 + e, inverse = 1.0 / stretch;
     const double difference = e * (2.0 + e) * inverse;  // lambda - 1/lambda
@@ -136,7 +137,7 @@ BendingTerms BendingEnergies::exact(double theta) const {
   return terms;
 }
 
-// Each cos(t theta) and sin(t theta) misses at most its next term, whichever sign the rest has.
+// The remainder of each cos(t theta) and sin(t theta) is bounded by the next term of its series.
 std::pair<double, double> BendingEnergies::wave_bound(const Waves& waves, int order,
                                                       double angle) const {
   double value = 0.0, slope = 0.0;
@@ -152,8 +153,8 @@ std::pair<double, double> BendingEnergies::wave_bound(const Waves& waves, int or
   return {value, slope};
 }
 
-// Lagrange's remainder of (1 + e)^-2 after e^N: (N + 2) e^(N+1) (1 + xi)^-(N+3), xi between 0 and
-// e; largest at xi = 0 for e > 0 and at the far side's e for e < 0.
+// Lagrange's remainder of (1 + e)^-2 after e^N is (N + 2) e^(N+1) (1 + xi)^-(N+3), with xi between
+// 0 and e. It is largest at xi = 0 for e > 0, and at e of the far side for e < 0.
 std::pair<double, double> BendingEnergies::strain_bound(double angle) const {
   const int next = order_ + 1;
   const double most = std::min(0.0, angle / length_ * far_side_);

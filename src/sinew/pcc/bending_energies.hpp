@@ -1,25 +1,26 @@
 /// @file
-/// Energies of a bending actuator as functions of its angle: exact by quadrature, or their Taylor
-/// polynomials round the straight pose with bounds of what these leave out.
+/// Energies of a bending actuator as functions of its angle: exact by quadrature, or by Taylor
+/// polynomials about the straight pose with bounds of their remainders.
 ///
-/// With u = s/L along the layer and v behind it, the layer bends towards x: its point is
-/// p(u) = L int_0^u (sin v theta, cos v theta) dv in (x, axial), and the section at height h above
-/// it stands at p + h n, n = (-cos u theta, sin u theta).
+/// The layer bends towards x. Its point at u = s/L is
+/// p(u) = L int_0^u (sin v theta, cos v theta) dv in (x, axial), and a point of the section at
+/// height h above it is p + h n, n = (-cos u theta, sin u theta).
 ///
-/// Strain. Fibres keep lambda_2 = 1, the silicone is incompressible, lambda = 1 + theta h/L:
+/// Strain. Fibres keep lambda_2 = 1 and the silicone is incompressible, so with
+/// lambda = 1 + theta h/L
 ///   V_s = G Phi,  Phi = L int_wall (lambda - 1/lambda)^2 / 2 dA.
 /// Since (lambda - 1/lambda)^2 = 4 e^2 - 4 e^3 + 5 e^4 - 6 e^5 + ... in e = theta h/L, Phi is
-/// 2 theta^2/L int h^2 dA for small angles: E I of the beam is 4 G int h^2 dA.
+/// 2 theta^2/L int h^2 dA for small angles, and E I of the beam is 4 G int h^2 dA.
 ///
-/// Inertia. Interchanging integrals takes the division by theta out of
-/// int |dp/dtheta|^2 du = L^2 (1/(3 theta^2) + 2 (1 + cos theta)/theta^4 - 4 sin theta/theta^5):
-///   it is L^2 int_0^1 k(t) cos(t theta) dt,   k = 2 int_t^1 v (v - t) (1 - v) dv,
-/// and of a mass m with first and second moments S, J of height
+/// Inertia. Interchanging the order of integration removes the division by theta from
+/// int |dp/dtheta|^2 du = L^2 (1/(3 theta^2) + 2 (1 + cos theta)/theta^4 - 4 sin theta/theta^5)
+///   = L^2 int_0^1 k(t) cos(t theta) dt,   k = 2 int_t^1 v (v - t) (1 - v) dv.
+/// For a mass m with first and second moments S, J of height,
 ///   I = m L^2 int k cos(t theta) dt + 2 L S int k_1 sin(t theta) dt + J/3,
 ///   k_1 = int_t^1 u (u - t) du.
-/// Gravity. The centre of the layer is L int (1 - t) (sin t theta, cos t theta) dt, a section's
-/// height adds h int (-cos t theta, sin t theta) dt.
-/// No form divides by theta, so that nothing special happens in the straight pose.
+/// Gravity. The centre of the layer is L int (1 - t) (sin t theta, cos t theta) dt, and a height h
+/// above it adds h int (-cos t theta, sin t theta) dt.
+/// No formula divides by theta, so the straight pose needs no special case.
 #pragma once
 
 #include <array>
@@ -29,18 +30,19 @@
 
 namespace sinew::pcc {
 
-/// A function of the angle with two derivatives.
+/// Value of a function of the angle, with its first two derivatives.
 struct Derivatives {
   double value = 0.0, first = 0.0, second = 0.0;
 };
 
+/// The terms of the equation of motion at one angle.
 struct BendingTerms {
   Derivatives strain;   ///< V_s/G, m^3
-  Derivatives gravity;  ///< V_g, J: weight less buoyancy, 0 for a centre as high as the base
+  Derivatives gravity;  ///< V_g, J, of weight minus buoyancy, relative to the height of the base
   Derivatives inertia;  ///< I, kg m^2: the kinetic energy is I theta'^2 / 2
 };
 
-/// What a Taylor model leaves out at most, over a range of angles.
+/// Bounds of the remainders of a Taylor model over a range of angles.
 struct TaylorBound {
   double strain = 0.0;         ///< of V_s/G, m^3
   double gravity = 0.0;        ///< of V_g, J
@@ -49,22 +51,22 @@ struct TaylorBound {
   double gravity_slope = 0.0;  ///< of dV_g/dtheta, N m
 };
 
-/// Immutable; evaluating allocates nothing.
+/// Evaluates the energies of an actuator. Immutable; evaluation does not allocate.
 class BendingEnergies {
  public:
-  /// @param parameters checked ones; their `order` chooses between polynomials and quadrature.
+  /// @param parameters as accepted by check(); `order` selects polynomials or quadrature.
   explicit BendingEnergies(const BendingParameters& parameters);
 
-  /// @param theta rad, within lowest_angle() and highest_angle().
+  /// The terms at an angle. @param theta rad, within lowest_angle() and highest_angle().
   BendingTerms at(double theta) const { return reduced_ ? polynomials(theta) : exact(theta); }
-  /// By quadrature, whatever the order of the model.
-  /// @param theta rad.
+  /// The terms by quadrature, whatever the order of the model. @param theta rad.
   BendingTerms exact(double theta) const;
-  /// Of the polynomials; zeros for a model without.
-  /// @param lowest,highest rad, the first at most the second.
+  /// Remainder bounds of the polynomials; zeros for an exact model.
+  /// @param lowest,highest rad, lowest <= highest.
   TaylorBound bound(double lowest, double highest) const;
 
-  /// Bending backwards compresses the far side: nine tenths of the angle at which its stretch is 0.
+  /// Lower limit of the model, rad. Backward bending compresses the far side; the limit is 0.9
+  /// times the angle at which its stretch reaches 0.
   double lowest_angle() const { return lowest_; }
   double highest_angle() const { return highest_; }  ///< a full turn, rad
 

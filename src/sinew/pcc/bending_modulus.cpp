@@ -115,7 +115,7 @@ BendingModulus BendingModulus::published(OutsideRange outside) {
 
 double BendingModulus::polynomial(double pressure) const {
   const double inside = std::clamp(pressure, lowest_, highest_);
-  // Also true of NaN.
+  // Also true for NaN.
   if (!(inside == pressure) && outside_ == OutsideRange::refuse) {
     throw Error(ErrorKind::out_of_range, {.item = "pressure"},
                 fmt::format("{:g} Pa; the modulus was fitted at {:g} to {:g} Pa", pressure, lowest_,

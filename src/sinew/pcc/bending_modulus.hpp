@@ -8,18 +8,17 @@
 
 namespace sinew::pcc {
 
-/// Which modulus a number or a fit stands for, and what it makes of the shear modulus G of an
-/// incompressible material.
+/// Kind of a modulus, and its relation to the shear modulus G of an incompressible material.
 enum class ModulusKind {
   shear,    ///< G
   young,    ///< of uniaxial tension, E = 3 G
-  bending,  ///< E in theta = M L/(E I): fibres keep lambda_2 = 1, plane strain, E = 4 G
+  bending,  ///< E in theta = M L/(E I), in plane strain (fibres keep lambda_2 = 1), E = 4 G
 };
 
-/// What a polynomial does at pressures that it was not fitted to.
+/// Behaviour of a polynomial at pressures outside its fitted range.
 enum class OutsideRange {
-  refuse,  ///< Error(out-of-range)
-  hold,    ///< the value at the nearer end
+  refuse,  ///< throws Error(out-of-range)
+  hold,    ///< returns the value at the nearer end
 };
 
 /// "shear", "young", "bending". Throws Error(unknown-choice).
@@ -29,33 +28,34 @@ std::string_view modulus_kind_name(ModulusKind kind);
 OutsideRange to_outside_range(std::string_view name);
 std::string_view outside_range_name(OutsideRange outside);
 
-/// Immutable.
+/// The modulus as a function of pressure. Immutable.
 class BendingModulus {
  public:
-  /// @param value Pa, > 0, at every pressure. @param kind what it is.
-  /// Throws Error(not-finite | out-of-range).
+  /// Makes a constant modulus. Throws Error(not-finite | out-of-range).
+  /// @param value Pa, > 0. @param kind of the modulus.
   explicit BendingModulus(double value, ModulusKind kind = ModulusKind::shear);
-  /// sum_k coefficients[k] P^k, Pa for P in Pa.
+  /// Makes a polynomial sum_k coefficients[k] P^k, Pa for P in Pa. Throws Error(not-finite |
+  /// empty-list | contradictory-limits), and Error(out-of-range) if it is not positive within its
+  /// range.
   /// @param coefficients from the constant one on.
-  /// @param kind of which modulus.
-  /// @param lowest,highest pressures that it was fitted to, Pa.
-  /// @param outside what to do at others.
-  /// Throws Error(not-finite | empty-list | contradictory-limits), and Error(out-of-range) where
-  /// it is not positive within its range.
+  /// @param kind of the modulus.
+  /// @param lowest,highest range of pressures to which it was fitted, Pa.
+  /// @param outside behaviour at other pressures.
   BendingModulus(std::vector<double> coefficients, ModulusKind kind, double lowest, double highest,
                  OutsideRange outside = OutsideRange::refuse);
 
-  /// The published fit of a water-driven silicone actuator, E of theta = M L/(E I) at 10 to 110
+  /// The published fit for a water-driven silicone actuator, E in theta = M L/(E I) at 10 to 110
   /// kPa: 1.795e-19 P^5 - 6.36e-14 P^4 + 8.535e-9 P^3 - 5.566e-4 P^2 + 15.97 P + 6.562e5.
   /// Below -20.7 kPa the polynomial is negative (docs/errata.md).
-  /// @param outside what to do at other pressures.
+  /// @param outside behaviour at other pressures.
   static BendingModulus published(OutsideRange outside = OutsideRange::refuse);
 
-  /// Of its own kind, Pa. @param pressure Pa. Throws Error(out-of-range) as it was told to.
+  /// The modulus of its own kind, Pa. Throws Error(out-of-range) if it refuses the pressure.
+  /// @param pressure Pa.
   double value(double pressure) const {
     return constant_ ? coefficients_[0] : polynomial(pressure);
   }
-  /// G, Pa. @param pressure Pa. Throws as value().
+  /// The shear modulus G, Pa. Throws what value() throws. @param pressure Pa.
   double shear(double pressure) const { return per_unit_ * value(pressure); }
 
   ModulusKind kind() const { return kind_; }
@@ -73,7 +73,7 @@ class BendingModulus {
   OutsideRange outside_ = OutsideRange::refuse;
   bool constant_ = false;
   double lowest_, highest_;
-  double per_unit_ = 1.0;  // G of a modulus of one
+  double per_unit_ = 1.0;  // G / modulus
 };
 
 }  // namespace sinew::pcc

@@ -37,7 +37,7 @@ BendingMotion::BendingMotion(std::shared_ptr<const BendingActuator> actuator,
           "give 0 (damps most) to 1 (conserves)");
   state_.acceleration = actuator_->acceleration(start.angle, start.rate, start.pressure);
   if (settings.integrator == Integrator::generalized_alpha) {
-    // The true acceleration is known, so that no first step of another kind is needed.
+    // The initial acceleration is known, so no first step by another integrator is needed.
     first_ = second_ = state_.acceleration;
   }
 }
@@ -56,8 +56,9 @@ void BendingMotion::prepare(double time_step) {
 
 const BendingState& BendingMotion::step(double time_step, double pressure) {
   constexpr int kMaxIterations = 50;
-  constexpr double kLongestStep = 0.3;  // rad: what a Newton step may do
-  // Newton's method doubles the digits: a last change of this size leaves its square.
+  constexpr double kLongestStep = 0.3;  // rad, of a Newton step
+  // Newton's method converges quadratically, so after a change of this size the error is its
+  // square.
   constexpr double kTolerance = 1e-9;
   prepare(time_step);
   const BendingActuator& model = *actuator_;
@@ -136,7 +137,7 @@ std::vector<BendingState> simulate(std::shared_ptr<const BendingActuator> actuat
   states.reserve(times.size());
   for (std::size_t i = 1; i < times.size(); ++i) {
     const double span = times[i] - times[i - 1];
-    // A hair more than the longest step is rounding of the times, not a reason for two steps.
+    // An interval slightly longer than the longest step, due to rounding of times, is not divided.
     const auto steps = static_cast<long>(std::max(1.0, std::ceil(span / longest_step - 1e-9)));
     const auto count = static_cast<double>(steps);
     for (long k = 1; k <= steps; ++k) {

@@ -1,5 +1,5 @@
 /// @file
-/// A bending actuator over time.
+/// Simulates a bending actuator in time.
 #pragma once
 
 #include <memory>
@@ -12,12 +12,13 @@
 namespace sinew::pcc {
 
 struct BendingMotionSettings {
-  /// Backward Euler and the others are stable at every step; generalized-alpha is of second order
-  /// and damps what a step cannot resolve, without a start of its own.
+  /// All integrators are stable for every step size. Generalized-alpha is of second order, damps
+  /// motion that a step cannot resolve, and needs no special first step here.
   mechanics::Integrator integrator = mechanics::Integrator::generalized_alpha;
   double spectral_radius = 0.8;  ///< of generalized-alpha, 0 to 1
 };
 
+/// The state of an actuator at one time.
 struct BendingState {
   double time = 0.0;          ///< s
   double angle = 0.0;         ///< rad
@@ -26,22 +27,23 @@ struct BendingState {
   double pressure = 0.0;      ///< Pa
 };
 
-/// The data of one run. A step solves the equation of motion at its end, by Newton's method with
-/// exact derivatives, for the motion d of `mechanics::StepWeights`; it allocates nothing.
+/// A simulation of one actuator. A step solves the equation of motion at its end for the motion d
+/// of `mechanics::StepWeights`, by Newton's method with exact derivatives. It does not allocate.
 class BendingMotion {
  public:
-  /// @param actuator shared, not changed.
-  /// @param start angle (rad), rate (rad/s), time (s) and pressure (Pa); its acceleration follows.
-  /// @param settings how to integrate.
-  /// Throws Error(out-of-range | not-finite) for a start outside the model's angles, a spectral
-  /// radius outside 0 to 1, or a pressure that the modulus refuses.
+  /// @param actuator shared and not changed.
+  /// @param start angle, rate, time and pressure; the acceleration is computed from these.
+  /// @param settings of the integrator.
+  /// Throws Error(out-of-range | not-finite) for an initial angle outside the range of the model, a
+  /// spectral radius outside 0 to 1, or a pressure that the modulus refuses.
   BendingMotion(std::shared_ptr<const BendingActuator> actuator, const BendingState& start,
                 const BendingMotionSettings& settings = {});
 
-  /// @param time_step s, > 0; may change from step to step (BDF2 is stable while it grows less
-  /// than 2.4 times). @param pressure Pa at the step's end.
-  /// Throws Error(not-converged) and leaves the state as it was when no angle of the model meets
-  /// the equation; out-of-range for the step or a pressure that the modulus refuses.
+  /// Advances one time step. If no angle of the model satisfies the equation of motion, throws
+  /// Error(not-converged) and keeps the state. Throws Error(out-of-range) for the step size or a
+  /// pressure that the modulus refuses.
+  /// @param time_step s, > 0; may change from step to step (BDF2 is stable if it grows by less than
+  /// a factor of 2.4). @param pressure Pa, at the end of the step.
   const BendingState& step(double time_step, double pressure);
 
   const BendingState& state() const { return state_; }
@@ -56,18 +58,18 @@ class BendingMotion {
   mechanics::StepWeights weights_;
   double prepared_step_ = 0.0, prepared_before_ = -1.0;
   double step_before_ = 0.0;
-  double first_ = 0.0, second_ = 0.0;  // what the integrator keeps
+  double first_ = 0.0, second_ = 0.0;  // history of the integrator
 };
 
-/// The states at given times: a pressure history may be sampled unevenly and have gaps.
-/// @param actuator shared.
+/// Simulates the response to a pressure history, which may be sampled unevenly and have gaps.
+/// Returns the states at the given times. Throws Error(wrong-length | too-few-points |
+/// non-monotonic-time | not-finite | out-of-range), and what BendingMotion::step() throws.
+/// @param actuator shared and not changed.
 /// @param times (n,) s, increasing, n >= 2.
-/// @param pressures (n,) Pa, straight lines between.
-/// @param start of angle and rate at times[0]; its time and pressure are not read.
-/// @param longest_step s, > 0: intervals are divided evenly into steps no longer.
-/// @param settings how to integrate.
-/// Returns n states. Throws Error(wrong-length | too-few-points | non-monotonic-time | not-finite),
-/// and what a step does.
+/// @param pressures (n,) Pa, linearly interpolated.
+/// @param start angle and rate at times[0]; its time and pressure are ignored.
+/// @param longest_step s, > 0: each interval is divided evenly into steps of at most this length.
+/// @param settings of the integrator.
 std::vector<BendingState> simulate(std::shared_ptr<const BendingActuator> actuator,
                                    std::span<const double> times, std::span<const double> pressures,
                                    const BendingState& start, double longest_step,

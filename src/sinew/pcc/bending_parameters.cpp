@@ -27,7 +27,8 @@ void not_negative(const char* item, double value, const char* unit) {
   require(value >= 0.0, item, value, unit, "give 0 or more");
 }
 
-// Area pi R^2, centre at height c, second moment about the layer by Steiner: pi R^4/4 + pi R^2 c^2.
+// Adds a disc of area pi R^2 at height c. Its second moment about the layer is pi R^4/4 + pi R^2
+// c^2 (parallel axis theorem).
 void add_disc(SectionSum& sum, double radius, double height, double density) {
   const double area = std::numbers::pi * radius * radius;
   sum.total += density * area;
@@ -51,7 +52,7 @@ void check(const BendingParameters& p) {
   const double least = p.chamber_radius + p.wall_thickness;
   require(p.outer() >= least * (1.0 - 1e-12), "outer_radius", p.outer(), "m",
           "give at least chamber_radius + wall_thickness");
-  // The length is that of a slender body: its sections must be able to turn against each other.
+  // The model requires a slender body, whose sections can rotate relative to each other.
   require(2.0 * p.outer() < p.length, "outer_radius", p.outer(), "m",
           "give a section that is narrower than the actuator is long");
   positive("silicone_density", p.silicone_density, "kg/m^3");

@@ -16,8 +16,8 @@ void require(bool good, ErrorKind kind, const std::string& message, const char* 
   if (!good) throw Error(kind, {.item = "drive cylinder"}, message, remedy);
 }
 
-/// exp(-s h) cos(n h) and exp(-s h) sin(n h) / n of s = zeta w, n^2 = w^2 - s^2; their hyperbolic
-/// counterparts where n^2 < 0, written so that neither overflows nor cancels.
+/// exp(-s h) cos(n h) and exp(-s h) sin(n h) / n, with s = zeta w and n^2 = w^2 - s^2. For n^2 < 0
+/// they are the hyperbolic counterparts, in a form without overflow and cancellation.
 struct Decay {
   double even = 0.0, odd = 0.0;
 };
@@ -42,9 +42,9 @@ DriveCylinder DriveCylinder::second_order(double gain, double frequency, double 
           fmt::format("gain {:g}, {:g} rad/s, damping {:g}, sampled by {:g} s", gain, frequency,
                       damping, sample_time),
           "give frequency and sample time above zero, damping zero or more");
-  // x' = F x + G u, F = w [0 1; -1 -2 zeta], G = [0; w]. With s = zeta w, (F + s I)^2 = (s^2 - w^2)
-  // I, so A = exp(F h) = even I + odd (F + s I). B = F^-1 (A - I) G = (I - A) [1; 0]: a held
-  // command u has the rest [u; 0].
+  // The system is x' = F x + G u with F = w [0 1; -1 -2 zeta] and G = [0; w]. With s = zeta w,
+  // (F + s I)^2 = (s^2 - w^2) I, so A = exp(F h) = even I + odd (F + s I). The equilibrium for a
+  // constant command u is [u; 0], so B = F^-1 (A - I) G = (I - A) [1; 0].
   const auto [even, odd] = decay(frequency, damping, sample_time);
   const double rate = damping * frequency;
   DriveCylinder cylinder;
@@ -78,7 +78,7 @@ Eigen::Vector2d DriveCylinder::rest(double command) const {
 
 double DriveCylinder::spectral_radius() const {
   const double mean = 0.5 * a.trace(), half = 0.5 * (a(0, 0) - a(1, 1));
-  const double square = half * half + a(0, 1) * a(1, 0);  // of half the eigenvalues' distance
+  const double square = half * half + a(0, 1) * a(1, 0);  // of half their difference
   return square < 0.0 ? std::hypot(mean, std::sqrt(-square)) : std::abs(mean) + std::sqrt(square);
 }
 

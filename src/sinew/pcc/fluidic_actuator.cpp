@@ -28,12 +28,12 @@ double FluidicActuator::volume(double torque) const {
   if (cubic == 0.0 || torque == 0.0) return torque == 0.0 ? 0.0 : torque / linear;
   double root = std::cbrt(torque / cubic);
   if (linear == 0.0) return root;
-  // Where the linear term is next to nothing, the quotient a/c would vanish.
+  // If the linear term is negligible, the quotient a/c would underflow.
   if (linear > 1e-12 * cubic * root * root) {
     const double unit = 2.0 * std::sqrt(linear / (3.0 * cubic));
     root = unit * std::sinh(std::asinh(3.0 * torque / (linear * unit)) / 3.0);
   }
-  // One step of Newton's method takes off what is left of it, and what sinh and asinh round.
+  // One step of Newton's method removes the neglected term, and the rounding of sinh and asinh.
   return root - (this->torque(root) - torque) / slope(root);
 }
 

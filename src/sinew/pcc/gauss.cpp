@@ -7,8 +7,8 @@
 
 namespace sinew::pcc {
 
-// Points and weights are eigenvalues and first components of eigenvectors of the Jacobi matrix of
-// Legendre's polynomials (Golub & Welsch, Math. Comp. 23, 1969).
+// Points are the eigenvalues of the Jacobi matrix of Legendre's polynomials; weights follow from
+// the first components of its eigenvectors (Golub & Welsch, Math. Comp. 23, 1969).
 std::vector<GaussPoint> gauss_points(int count) {
   MatrixX jacobi = MatrixX::Zero(count, count);
   for (int k = 1; k < count; ++k) {

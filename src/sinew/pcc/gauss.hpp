@@ -12,7 +12,8 @@ struct GaussPoint {
 
 inline constexpr int kMaxGaussPoints = 8;
 
-/// @param count 1 to kMaxGaussPoints; exact for polynomials of degree 2 count - 1.
+/// Quadrature points, exact for polynomials of degree 2 count - 1. @param count 1 to
+/// kMaxGaussPoints.
 std::vector<GaussPoint> gauss_points(int count);
 
 }  // namespace sinew::pcc

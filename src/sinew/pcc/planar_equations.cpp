@@ -19,13 +19,13 @@ PlaneVector operator*(double s, const PlaneVector& a) { return {s * a.along, s *
 PlaneVector operator*(const PlaneVector& a, const PlaneVector& b) {
   return {a.along * b.along - a.aside * b.aside, a.along * b.aside + a.aside * b.along};
 }
-/// i a
+/// i a, the vector rotated by 90 degrees.
 PlaneVector turned(const PlaneVector& a) { return {-a.aside, a.along}; }
 double dot(const PlaneVector& a, const PlaneVector& b) {
   return a.along * b.along + a.aside * b.aside;
 }
 
-/// E = B + i A of bend.hpp and its derivatives by the angle.
+/// E = B + i A of bend.hpp, and its derivatives with respect to the angle.
 struct Arc {
   PlaneVector value, first, second, third;
   PlaneVector turn;  // e^(ia)
@@ -42,7 +42,7 @@ Arc arc(double a) {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// Of a vector of the world.
+/// The components in the plane of a vector in world axes.
 PlaneVector in_plane(const ArmSettings& settings, const Vector3& v) {
   return {settings.frame.col(2).dot(v), settings.frame.col(0).dot(v)};
 }
@@ -91,7 +91,7 @@ void PlanarEquations::bend(const VectorX& q, const VectorX& rate, const VectorX&
   }
 }
 
-/// x'' of a particle, m/s^2, and its columns. @param angle theta of its segment.
+/// Computes x'' of a particle, m/s^2, and its columns. @param angle theta of its segment.
 PlaneVector PlanarEquations::accelerate(const Particle& particle, double angle) {
   const double f = particle.fraction, mass = particle.mass;
   const Bent& last = bends_[at(particle.segment)];
@@ -99,7 +99,7 @@ PlaneVector PlanarEquations::accelerate(const Particle& particle, double angle) 
   const Arc own = arc(f * angle);
   const PlaneVector reach = (particle.scale * f * length) * last.turn;
   const PlaneVector position = last.start + reach * own.value;
-  PlaneVector beyond, speed;  // sums over angles beyond: of the acceleration and the velocity
+  PlaneVector beyond, speed;  // sums over later angles, of the acceleration and the velocity
   for (int m = particle.segment; m >= 0; --m) {
     const Bent& bent = bends_[at(m)];
     Column& column = columns_[at(m)];

@@ -16,7 +16,7 @@ RowStiffness::RowStiffness(const ArmBodyModel& model)
       columns_(static_cast<std::size_t>(model.arm().coordinates())),
       q_(columns_.size()) {}
 
-// A row on a coordinate pulls by the same share wherever the arm is.
+// Whether an entry has geometric stiffness. The Jacobian of a row on a coordinate is constant.
 bool RowStiffness::pulls(const mechanics::OwnRows::Entry& entry, const ArmState& state) const {
   return state.memory.effort[entry.row] != 0.0 &&
          model_.attachment(entry.site).kind != Kind::coordinate;

@@ -1,5 +1,5 @@
 /// @file
-/// What constraint rows make an arm stiffer by.
+/// The geometric stiffness of constraint rows on an arm.
 #pragma once
 
 #include <memory>
@@ -12,15 +12,15 @@
 
 namespace sinew::pcc {
 
-/// Points move on curves: what rows pull with changes as the arm bends even where its direction
-/// stays.
+/// Computes the geometric stiffness of rows. Points move on curves, so the generalised force of a
+/// row changes with the coordinates even if its direction is constant.
 class RowStiffness {
  public:
   /// @param model must outlive this.
   explicit RowStiffness(const ArmBodyModel& model);
 
-  /// A -= sum over entries of effort direction . d2x/dq2, at the efforts and directions known last.
-  /// @param state of the arm now. @param matrix A, (coordinates, coordinates).
+  /// Computes A -= sum over entries of effort direction . d2x/dq2, with the last efforts and
+  /// directions of the rows. @param state of the arm. @param matrix A, (coordinates, coordinates).
   void add(const ArmState& state, MatrixX& matrix);
 
  private:

@@ -1,6 +1,6 @@
 /// @file
-/// Vectors and rotations of space over any kind of number, plain so that numbers that carry
-/// derivatives cost what they must and no more.
+/// Spatial vectors and rotations for any number type. They are plain structs, so that number types
+/// with derivatives cause no overhead.
 #pragma once
 
 #include <array>
@@ -44,7 +44,7 @@ Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
 
 inline Vector3 plain(const Vec3<double>& v) { return {v.x, v.y, v.z}; }
 
-/// A rotation by its columns: the images of the axes.
+/// A rotation matrix, stored as its columns.
 template <typename T>
 struct Rotation {
   Vec3<T> x, y, z;

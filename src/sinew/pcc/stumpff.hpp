@@ -1,10 +1,10 @@
 /// @file
-/// The functions of a bent arc without a singularity at the straight one: Stumpff's
+/// Stumpff's functions, which describe a bent arc without a singularity at the straight pose,
 ///   c_k(s) = sum_i (-s)^i / (k + 2i)!,   s = theta^2,
 /// so that c_0 = cos theta, c_1 = sin theta / theta, c_2 = (1 - cos theta) / theta^2,
 /// c_3 = (theta - sin theta) / theta^3 (Stumpff 1959). They are entire, with
 ///   c_k + s c_(k+2) = 1/k!,   dc_k/ds = (k c_(k+2) - c_(k+1)) / 2,
-/// closed under differentiation, so that nothing needs a branch at theta = 0.
+/// so they are closed under differentiation, and no formula needs a branch at theta = 0.
 #pragma once
 
 #include <array>
@@ -29,8 +29,8 @@ constexpr std::array<double, 34> kInverseFactorial = [] {
   return result;
 }();
 
-/// Below it the series; its 11 terms leave less than 1e-15 of the sum, and going down from it
-/// c_k = 1/k! - s c_(k+2) loses nothing.
+/// Largest s for the series. Its remainder after 11 terms is below 1e-15 of the sum, and the
+/// downward recursion c_k = 1/k! - s c_(k+2) loses no accuracy.
 constexpr double kSeries = 10.0;
 constexpr std::size_t kTerms = 11;
 
@@ -43,7 +43,7 @@ T series(std::size_t k, const T& s) {
 
 }  // namespace stumpff_detail
 
-/// c_0 .. c_(K-1) of a real or complex number. K >= 2.
+/// c_0 .. c_(K-1) at a real or complex number, K >= 2.
 template <std::size_t K, typename T>
 requires(std::is_same_v<T, double> ||
          std::is_same_v<T, std::complex<double>>) std::array<T, K> stumpff(const T& s) {

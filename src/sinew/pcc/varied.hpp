@@ -1,7 +1,7 @@
 /// @file
-/// Numbers along a motion that is varied: of a quantity f(q(t) + e w) its value, its first and
-/// second derivative by t, and its variation, the derivative by e; all at t = 0, e = 0. Products by
-/// Leibniz.
+/// A number type for derivatives along a motion and a variation of it. For a quantity f(q(t) + e w)
+/// it has the value, the first and second derivatives with respect to t, and the variation, which
+/// is the derivative with respect to e; all at t = 0, e = 0. Products follow Leibniz's rule.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace sinew::pcc {
 
-/// T: what the parts are, a plain number or one with derivatives of its own.
+/// T is the type of the parts: a plain number, or one with derivatives of its own.
 template <typename T>
 struct Varied {
   T value{}, rate{}, acceleration{}, variation{};
@@ -20,7 +20,7 @@ struct Varied {
   Varied(const T& f, const T& f_t, const T& f_tt, const T& f_e)
       : value(f), rate(f_t), acceleration(f_tt), variation(f_e) {}
 
-  /// f of this number: value f0, derivatives f1 and f2.
+  /// A function f of this number (chain rule). @param f0,f1,f2 f and its first two derivatives.
   Varied chain(const T& f0, const T& f1, const T& f2) const {
     return {f0, f1 * rate, f1 * acceleration + f2 * (rate * rate), f1 * variation};
   }

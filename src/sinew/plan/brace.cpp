@@ -28,14 +28,14 @@ constexpr double kPlanFraction = 0.4;  // of the tip's tolerance
 constexpr int kMaxRounds = 4;          // of starts
 constexpr double kReplanFraction = 0.95, kReplanForce = 0.5;
 
-// Relative: a point is not held in a direction in which it moves less than this part of its most.
+// Relative singular value below which a point is not held in a direction.
 constexpr double kMinMotion = 1e-6;
 
 bool same_point(const pcc::ArmPoint& a, const pcc::ArmPoint& b) {
   return a.segment == b.segment && a.fraction == b.fraction && a.x == b.x && a.y == b.y;
 }
 
-/// Whether the first n segments could be long enough to touch.
+/// Whether the first segments are long enough to touch a surface.
 bool in_reach(const pcc::Arm& arm, const constraint::SmoothSurface& surface, int segments) {
   double length = arm.settings().radius;
   for (int n = 0; n < segments; ++n) {
@@ -46,7 +46,7 @@ bool in_reach(const pcc::Arm& arm, const constraint::SmoothSurface& surface, int
   return constraint::distance(surface, arm.settings().base).gap <= length;
 }
 
-/// The candidate's program.
+/// The program of a candidate.
 BraceProblem problem_of(const pcc::Arm& arm, const BraceTask& task, int object,
                         const pcc::ArmPoint& point, const SurfacePatch& patch) {
   const BraceObject& on = task.objects[static_cast<std::size_t>(object)];
@@ -75,8 +75,8 @@ struct Candidate {
   BraceProblem problem;
 };
 
-/// Angles, turn (0) and torques with which the free arm gets nearest to the goal; zeros without
-/// any.
+/// Angles, rotation of the base (0) and torques of the free arm's equilibrium nearest to the goal;
+/// zeros if there is none.
 VectorX nearest_to_goal(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& task) {
   VectorX result = VectorX::Zero(arm->coordinates() + 1 + arm->inputs());
   const NearestReach reach = nearest_reach(arm, task.limits, task.goal, 5, task.seed);
@@ -86,8 +86,8 @@ VectorX nearest_to_goal(const std::shared_ptr<const pcc::Arm>& arm, const BraceT
   return result;
 }
 
-/// The braced point stays where the measured angles put it, along every direction in which they can
-/// move it; of the others, those keep clear that did.
+/// Holds the braced point at its position for the measured angles, along every direction in which
+/// angles can move it. Of the other points, those that were clear must stay clear.
 void hold_as_measured(BraceProblem& problem, const pcc::Arm& arm, double turn,
                       const VectorX& measured) {
   PointDerivatives points(std::make_shared<const pcc::Arm>(arm));
@@ -145,6 +145,7 @@ Brace find_brace_in(int rounds, const std::shared_ptr<const pcc::Arm>& arm, cons
       for (int start = 0; start < task.starts; ++start) {
         VectorX guess = search.random_start(candidate.problem);
         if (round == 0 && start == 0) {
+          // Starts at the equilibrium of the free arm nearest to the goal.
           if (!nearest) nearest = nearest_to_goal(arm, task);
           const double turn = guess[arm->coordinates()];
           guess = *nearest;
@@ -187,10 +188,10 @@ Brace replan_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& 
                 fmt::format("give {}", arm->coordinates()));
   }
   task.turn_lower = task.turn_upper = before.turn;
-  // What lay in reserve for the way there may be used now.
+  // The reserves for the way to the brace may be used now.
   task.friction_fraction = std::max(task.friction_fraction, kReplanFraction);
   task.min_force *= kReplanForce;
-  // The normal at the braced point: of the piece that it is nearest to being on.
+  // The smooth piece of the surface that is nearest to the braced point.
   const auto& surface = task.objects[static_cast<std::size_t>(before.object)].surface;
   const auto patches = patches_of(surface);
   const auto patch = std::min_element(

@@ -1,5 +1,5 @@
 /// @file
-/// Bracing: where an arm leans against its surroundings so that its tip is held steadier.
+/// Bracing: finds where an arm can lean against its surroundings to hold its tip more steadily.
 #pragma once
 
 #include <array>
@@ -15,114 +15,119 @@
 
 namespace sinew::plan {
 
-/// What the arm may lean against.
+/// An object that the arm may lean against.
 struct BraceObject {
   constraint::SmoothSurface surface;
   FrictionRange friction = kSiliconeOnSteel;
   TouchStiffness stiffness = kRigid;
 };
 
+/// The goal of the tip, the objects, and the limits of a brace.
 struct BraceTask {
   Vector3 goal = Vector3::Zero();  ///< m, of the tip
-  double tolerance = 5e-3;         ///< m, > 0; a brace is found with 40 % of it
-  ArmLimits limits;                ///< on torque, all of them, and on angles
+  double tolerance = 5e-3;         ///< m, > 0; the search uses 40 % of it
+  ArmLimits limits;                ///< on every torque, and on angles
   std::vector<BraceObject> objects;
-  /// rad: the base turns about the arm's axis by an angle between these. Both 0: it does not.
+  /// Range of the base's rotation about the arm's axis, rad. Both 0: the base is fixed.
   double turn_lower = 0.0, turn_upper = 0.0;
-  /// Candidates for the braced point: skin points at these fractions, > 0, of every segment.
+  /// Candidates for the braced point: skin points at these fractions (> 0, <= 1) of every segment.
   std::vector<double> fractions{0.25, 0.5, 0.75, 1.0};
-  /// >= 1: number of equal steps along a segment at which the skin has points, besides fractions.
+  /// Number of equal steps along a segment, >= 1, at which the skin has points besides `fractions`.
   int along = 8;
-  /// Number of points around a section, from x on. 0: 2 for planar arms, 4 for spatial ones.
+  /// Number of points around a section, starting at x. 0: 2 for planar arms, 4 for spatial ones.
   int sides = 0;
-  double clearance = 1e-3;  ///< m, >= 0, of the points of the skin that are not braced
-  /// The braced point must stick under any sum of sinusoidal tip forces with frequencies up to
-  /// hold_frequency (Hz, >= 0) and amplitudes that add up to hold_force (N, >= 0): see
+  double clearance = 1e-3;  ///< m, >= 0, of the other skin points
+  /// The braced point must stick under every sum of sinusoidal tip forces with frequencies up to
+  /// hold_frequency (Hz, >= 0) and a sum of amplitudes up to hold_force (N, >= 0), see
   /// tip_response().
   double hold_force = 0.04, hold_frequency = 2.0;
-  /// 0 to 1: of the friction's least, that a brace may need for it.
+  /// Fraction of the minimum friction that a brace may use, 0 to 1.
   double friction_fraction = 0.9;
-  double min_force = 0.05;     ///< N, > 0, of the normal force
-  double max_force = 20.0;     ///< N
+  double min_force = 0.05;     ///< N, > 0, minimum of the normal force
+  double max_force = 20.0;     ///< N, maximum of the normal force
   double force_weight = 1e-3;  ///< 1/N^2, > 0, see BraceProgram
   TouchStiffness arm = kSoftArm;
-  double stiffness_ratio = 10.0;  ///< > 0, what k_O >> k_R means
-  /// >= 1, of each candidate. Without a brace after these, up to three times as many follow.
+  double stiffness_ratio = 10.0;  ///< > 0, least ratio for k_O >> k_R
+  /// Starts per candidate, >= 1. If these find no brace, up to three times as many follow.
   int starts = 2;
   std::uint64_t seed = 1;
 };
 
-/// With sizes filled in. Throws what completed_limits() throws, and Error(out-of-range |
-/// contradictory-limits | not-finite): what makes no sense, a goal that is farther from the base
-/// than the arm is long, a base that turns where gravity is not along its axis or loads are.
+/// Checks a task and fills in sizes. Throws what completed_limits() throws, and Error(out-of-range
+/// | contradictory-limits | not-finite) for an invalid value, for a goal farther from the base than
+/// the length of the arm, and for a rotating base if gravity is not along its axis or there are
+/// loads.
 BraceTask completed(const pcc::Arm& arm, BraceTask task);
 
-/// Points of the skin, by segment, then part of its length, then side. @param arm which.
-/// @param task completed().
+/// Points of the skin, ordered by segment, fraction and side.
+/// @param arm of the task. @param task completed().
 std::vector<pcc::ArmPoint> skin_points(const pcc::Arm& arm, const BraceTask& task);
-/// Those of them that may be braced.
+/// The points of the skin that may be braced. @param arm of the task. @param task completed().
 std::vector<pcc::ArmPoint> brace_points(const pcc::Arm& arm, const BraceTask& task);
 
 enum class BraceStatus {
-  braced,              ///< found: all three conditions hold
-  infeasible,          ///< nothing found from any start, or there is no object
-  no_object_in_reach,  ///< none that the arm could touch, whatever its shape
+  braced,              ///< all three conditions hold
+  infeasible,          ///< no brace was found from any start, or there is no object
+  no_object_in_reach,  ///< the arm cannot touch any object
 };
 /// "braced", "infeasible", "no-object-in-reach".
 std::string_view status_name(BraceStatus status);
 
-/// An equilibrium of the arm with one point of its skin on an object, which sticks there. Where
-/// none was found: the one that came nearest to meeting the conditions, if object >= 0.
+/// An equilibrium of the arm in which one point of its skin sticks to an object. If no brace was
+/// found and object >= 0, it is the equilibrium that came closest to satisfying the conditions.
 struct Brace {
   BraceStatus status = BraceStatus::infeasible;
   int segments = 0;                                 ///< n: the braced point is on segment n - 1
-  int object = -1;                                  ///< of BraceTask::objects
-  pcc::ArmPoint point;                              ///< that touches
+  int object = -1;                                  ///< index in BraceTask::objects
+  pcc::ArmPoint point;                              ///< the braced point
   VectorX position;                                 ///< (coordinates,)
   VectorX torque;                                   ///< (inputs,) N m
   double turn = 0.0;                                ///< rad, of the base
-  Vector3 place = Vector3::Zero();                  ///< m, of the braced point, on the object
-  Vector3 normal = Vector3::Zero();                 ///< out of the object
+  Vector3 place = Vector3::Zero();                  ///< m, position of the braced point
+  Vector3 normal = Vector3::Zero();                 ///< outward normal of the object
   Vector3 force = Vector3::Zero();                  ///< N, on the arm
   double normal_force = 0.0, friction_force = 0.0;  ///< N
   Vector3 tip = Vector3::Zero();                    ///< m
   double tip_error = 0.0;                           ///< m
   double gap = 0.0;                                 ///< m, of the braced point
-  double clearance = 0.0;                           ///< m, the least of the skin's other points
+  double clearance = 0.0;                           ///< m, minimum over the other skin points
   double balance = 0.0;  ///< N m, largest component of K q + G - B tau - J^T f
-  /// m/N, the largest while the braced point sticks: at rest, and of all up to the frequency.
+  /// Largest compliance of the tip while the braced point sticks, m/N: static, and over all
+  /// frequencies up to hold_frequency.
   double tip_compliance = 0.0, peak_compliance = 0.0;
-  double hold_force = 0.0;  ///< N, on the tip, up to which it sticks where friction is least
-  int mobility = 0;         ///< directions in which the tip still moves then
+  double hold_force = 0.0;  ///< N, tip force up to which it sticks at minimum friction
+  int mobility = 0;         ///< number of directions in which the tip can still move
   std::array<BraceCondition, 3> conditions;
-  int solved = 0, unstable = 0, tried = 0;  ///< programs: equilibria found, unstable ones of them
+  int solved = 0, unstable = 0, tried = 0;  ///< numbers of equilibria, unstable ones, and programs
 
   bool found() const { return status == BraceStatus::braced; }
 };
 
-/// Braces on segment n - 1: of every object, candidate point, smooth piece of the surface and start
-/// one program (see BraceProgram), solved anew until the reserve of friction that it keeps is its
-/// own equilibrium's; of the stable equilibria for which all conditions hold, friction's under the
-/// force to be held against, the one with the least peak compliance of the tip.
-/// @param arm which. @param task completed() is applied.
-/// @param segments n, 1 to the arm's. Throws what completed() throws, and Error(out-of-range).
+/// Finds the best brace on segment n - 1. It solves one BraceProgram for every object, candidate
+/// point, smooth piece of the surface and start, and solves it again until its friction reserve is
+/// the one that its equilibrium needs. Among the stable equilibria for which all conditions hold
+/// (that of friction under the task's tip force), it selects the one with the least peak compliance
+/// of the tip. Throws what completed() throws, and Error(out-of-range).
+/// @param arm to be braced. @param task to which completed() is applied.
+/// @param segments n, from 1 to the number of segments.
 Brace find_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& task, int segments);
-/// The first found with n = 1, 2, ... Without any: the last, and why. Without objects: infeasible.
+/// Finds the first brace for n = 1, 2, ... If there is none, returns the result for the last n.
+/// Without objects, this is `infeasible`.
 Brace find_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& task);
 
-/// The rest anew, with the braced point where the measured angles put it: torques, force, and what
-/// angles it leaves (those behind the brace, and where more are before it than hold the point, a
-/// bend there too). Half the least force will do, 95 % of the friction's least may be needed, and
-/// the whole tolerance: reserves are for the way there. Friction may have less in reserve than was
-/// asked for; then its condition says so.
-/// @param arm,task as of find_brace(). @param before what was found.
-/// @param measured (coordinates,) rad.
+/// Plans a brace again, with the braced point held where the measured angles put it. The unknowns
+/// are the torques, the force and the free angles: those beyond the brace, and before it those that
+/// holding the point leaves free. It may use half the minimum force, 95 % of the minimum friction
+/// and the full tolerance, since the reserves are meant for the way there. If friction has less
+/// reserve than the task asks for, its condition says so.
+/// @param arm,task as for find_brace(). @param before result of find_brace().
+/// @param measured (coordinates,) rad. Throws Error: out-of-range, wrong-length.
 Brace replan_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& task,
                    const Brace& before, const VectorX& measured);
 
-/// Largest compliance (m/N) of the tip about a pose at rest without a brace, of all up to a
-/// frequency; infinite where the pose is not stable. @param arm which. @param position of it,
-/// (coordinates,). @param frequency Hz, >= 0.
+/// Largest compliance (m/N) of the tip about an equilibrium without a brace, over all frequencies
+/// up to `frequency`; infinite if the equilibrium is not stable. @param arm without a brace.
+/// @param position (coordinates,) of the equilibrium. @param frequency Hz, >= 0.
 double free_tip_compliance(const std::shared_ptr<const pcc::Arm>& arm, const VectorX& position,
                            double frequency = 0.0);
 

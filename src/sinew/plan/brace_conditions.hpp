@@ -1,5 +1,5 @@
 /// @file
-/// When an arm may be braced against an object: three conditions, each a check with its numbers.
+/// The three conditions under which an arm may be braced against an object.
 #pragma once
 
 #include <array>
@@ -10,54 +10,56 @@
 
 namespace sinew::plan {
 
-/// Coulomb's coefficient of static friction of a pair of surfaces, as a range.
+/// Range of the coefficient of static friction of a pair of surfaces.
 struct FrictionRange {
   std::string_view name;
   double min = 0.0, max = 0.0;
 };
 inline constexpr FrictionRange kCoatedRigid{"coated-rigid", 0.05, 0.20};
 inline constexpr FrictionRange kSiliconeOnSteel{"silicone-on-steel", 0.6, 0.9};
-/// A range by its name. Throws Error(unknown-choice).
+/// The range of this name. Throws Error(unknown-choice).
 FrictionRange friction_range(std::string_view name);
 
-/// How a body yields where it is touched.
+/// Stiffness of a body at the point of contact.
 struct TouchStiffness {
   double radial = 0.0;     ///< N/m
   double torsional = 0.0;  ///< N m/rad
 };
-/// A soft arm's, as published: 1 N/mm and 0.2 N m/rad.
+/// Published stiffness of a soft arm: 1 N/mm and 0.2 N m/rad.
 inline constexpr TouchStiffness kSoftArm{1000.0, 0.2};
-/// An object that does not yield.
+/// Stiffness of a rigid object.
 inline constexpr TouchStiffness kRigid{std::numeric_limits<double>::infinity(),
                                        std::numeric_limits<double>::infinity()};
 
+/// The result of checking one condition.
 struct BraceCondition {
   enum class Verdict {
-    holds,      ///< for every value within what is known
-    uncertain,  ///< for some
-    violated,   ///< for none
+    holds,      ///< for all values in the known range
+    uncertain,  ///< for some values
+    violated,   ///< for no value
   };
   std::string_view name;  ///< "friction", "stiffness" or "kinematic"
   Verdict verdict = Verdict::violated;
-  double value = 0.0;  ///< what is compared
-  double limit = 0.0;  ///< with what
+  double value = 0.0;  ///< the value that is compared ...
+  double limit = 0.0;  ///< ... with this limit
 };
 /// "holds", "uncertain", "violated".
 std::string_view verdict_name(BraceCondition::Verdict verdict);
 
-/// F_t < mu_s F_n: it sticks. value F_t/F_n, limit the range's least. Uncertain within the range.
+/// Checks that the point sticks, F_t < mu_s F_n. The value is F_t/F_n, and the limit is the minimum
+/// of mu_s; the verdict is uncertain within the range of mu_s.
 /// @param normal_force,friction_force N. @param friction of the pair.
 BraceCondition check_friction(double normal_force, double friction_force,
                               const FrictionRange& friction);
-/// k_O >> k_R, radially and in torsion: the arm yields, not the object. value: the lesser ratio.
-/// @param object,arm their stiffnesses. @param ratio from which on the one is much more, > 0.
+/// Checks k_O >> k_R, radially and in torsion, so that the arm yields and not the object. The value
+/// is the smaller ratio. @param object,arm stiffnesses. @param ratio required at least, > 0.
 BraceCondition check_stiffness(const TouchStiffness& object, const TouchStiffness& arm,
                                double ratio);
-/// The braced point touches, no other point of the skin is inside an object, and the tip is where
-/// it is to be. value: the largest of the three errors, m.
-/// @param gap m, of the braced point. @param clearance m, the least of the other points.
-/// @param tip_excess m, by which the tip is farther from the goal than it may be.
-/// @param tolerance m, > 0.
+/// Checks that the braced point touches, that no other point of the skin is inside an object, and
+/// that the tip is at its goal. The value is the largest of the three errors, m.
+/// @param gap m, of the braced point. @param clearance m, minimum over the other points.
+/// @param tip_excess m, distance of the tip from the goal beyond its tolerance.
+/// @param tolerance m, > 0, of the errors.
 BraceCondition check_kinematics(double gap, double clearance, double tip_excess, double tolerance);
 
 }  // namespace sinew::plan

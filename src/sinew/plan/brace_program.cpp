@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kLengthScale = 0.01;  // m
 
-/// A point that the base's turn carries along: p_w = b + R (p - b), by (q, gamma).
+/// A point after the rotation of the base, p_w = b + R (p - b), as a function of (q, gamma).
 VectorDerivatives turned(const VectorDerivatives& local, const Vector3& base,
                          const Matrix3& rotation, const Matrix3& spin) {
   const Eigen::Index n = local.jacobian.cols();
@@ -261,8 +261,8 @@ void BraceProgram::add_hessian(const VectorDerivatives& of, const Vector3& weigh
   }
 }
 
-/// Of by_force F_n + by_cone (F_n^2 + s^2 - |f|^2), s = mu F_n - h r, F_n = N(p) . R f with
-/// dN = P dp/R.
+/// Adds the Hessian of by_force F_n + by_cone (F_n^2 + s^2 - |f|^2), where s = mu F_n - h r,
+/// F_n = N(p) . R f, and dN = P dp/R.
 void BraceProgram::add_force_hessian(double by_force, double by_cone, double left) {
   const double factor = by_force + 2.0 * by_cone * (normal_force_ + problem_.friction * left);
   const Matrix3 bend = problem_.patch.projection / problem_.patch.radius;
@@ -296,7 +296,7 @@ void BraceProgram::hessian(const VectorX& x, double factor, const VectorX& multi
       2.0 * factor / (torque_scale_ * torque_scale_);
   dense_.bottomRightCorner<3, 3>().diagonal().array() += 2.0 * factor * problem_.force_weight;
 
-  // lambda . J^T f is f . v with v the braced point's velocity at the rate lambda.
+  // lambda . J^T f is f . v, where v is the velocity of the braced point at the rate lambda.
   const Vector3 force = x.tail<3>();
   const VectorX balance = multipliers.head(n_);
   dense_.topLeftCorner(n_, n_) +=

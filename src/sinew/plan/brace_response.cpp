@@ -11,11 +11,11 @@ namespace sinew::plan {
 
 namespace {
 
-// Enough that the peak of a mode with a damping of 5 % of the critical is met within 2 %.
+// Finds the peak of a mode with a damping ratio of 5 % to within 2 %.
 constexpr int kFrequencies = 64;
 constexpr int kDirections = 64;
 
-/// Basis of the motions that a held point leaves.
+/// Basis of the motions in which the held point is fixed.
 MatrixX free_motions(const HeldEquilibrium& of) {
   const Eigen::Index n = of.stiffness.rows();
   if (of.held.cols() == 0) return MatrixX::Identity(n, n);
@@ -24,15 +24,15 @@ MatrixX free_motions(const HeldEquilibrium& of) {
   return svd.v.rightCols(n - rank);
 }
 
-/// [R -S; S R] of R + i S: as a linear map on [real; imaginary] parts the same. It has each of the
-/// complex matrix's singular values twice.
+/// The real form [R -S; S R] of R + i S, which acts on [real; imaginary] parts. It has each
+/// singular value of the complex matrix twice.
 MatrixX real_form(const MatrixX& real, const MatrixX& imaginary) {
   MatrixX result(2 * real.rows(), 2 * real.cols());
   result << real, -imaginary, imaginary, real;
   return result;
 }
 
-/// max over u of |(u - mu n)^T G|. @param real,imaginary parts of G, (3, 3).
+/// The maximum over u of |(u - mu n)^T G|. @param real,imaginary parts of G, (3, 3).
 double gain_of(const Matrix3& real, const Matrix3& imaginary, const Vector3& normal,
                double friction) {
   const Matrix3 frame = collision::tangent_frame(normal);

@@ -79,13 +79,13 @@ class Sines {
   std::array<std::vector<std::pair<double, double>>, 3> sines_;
 };
 
-/// From 0 to 1 without a jump of speed.
+/// A smooth step from 0 to 1, with zero slope at both ends.
 double smooth(double fraction) {
   fraction = std::clamp(fraction, 0.0, 1.0);
   return fraction * fraction * (3.0 - 2.0 * fraction);
 }
 
-/// The arm in its surroundings, driven and watched.
+/// A simulation of the arm with its objects, which drives and records it.
 class Bench {
  public:
   Bench(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& task,
@@ -144,7 +144,7 @@ class Bench {
   const VectorX& angles() const { return body().coordinates(); }
   const VectorX& torque() const { return efforts_.back(); }
 
-  /// Which point is watched.
+  /// Selects the point to be recorded.
   void watch(int object, const pcc::ArmPoint& point) {
     object_ = object;
     for (std::size_t p = 0; p < points_.size(); ++p) {
@@ -155,8 +155,8 @@ class Bench {
     }
   }
 
-  /// Advances by one step. @param torque (inputs,) N m. @param reference (coordinates,) of the PD;
-  /// empty: none. @param disturbed whether the tip is.
+  /// Advances one step. @param torque (inputs,) N m. @param reference (coordinates,) of the PD
+  /// feedback; empty: none. @param disturbed whether the disturbance acts on the tip.
   void step(const VectorX& torque, const VectorX& reference, bool disturbed) {
     VectorX drive = torque;
     if (reference.size() > 0) {
@@ -308,8 +308,8 @@ BraceRun run_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& 
     bench.finish(run, run.replan_time - settings.time_step);
     return run;
   }
-  // From the torque as it is; the PD fades out on the way, so that at the goal the plan's alone
-  // holds the arm.
+  // Starts at the current torque. The PD feedback fades out on the way, so that at the goal only
+  // the torque of the plan holds the arm.
   const VectorX pressing = bench.torque();
   const long move = steps_in(settings.move, settings);
   for (long k = 1; k <= move; ++k) {

@@ -11,13 +11,13 @@ namespace sinew::plan {
 
 namespace {
 
-constexpr double kGapTolerance = 1e-6;  // m, of what the solver leaves of its constraints
+constexpr double kGapTolerance = 1e-6;  // m, for the violation left by the solver
 constexpr double kViolation = 1e-9;
 constexpr SolverSettings kSolver{.tolerance = 1e-9, .max_iterations = 120, .max_time = 5.0};
 constexpr int kRounds = 5;
 constexpr double kReserveTolerance = 1e-3;  // relative
 
-/// Whether constraints are met; that the cost could still fall does no harm.
+/// Whether constraints are met. The cost need not be minimal.
 bool is_equilibrium(const ProgramResult& result) {
   return result.status == Status::solved || result.status == Status::acceptable ||
          (result.status == Status::iteration_limit && result.violation < kViolation);
@@ -45,7 +45,7 @@ void BraceSearch::attempt(BraceProblem problem, int object, const VectorX& start
       x.setZero(program.variables());
       x.head(start.size()) = start;
       x[program.hold_index()] = 0.5;
-      // The force's guess: the least, straight out of the object.
+      // Initial guess of the force: twice the minimum, along the outward normal.
       const Points ends = equations_.endpoints(start.head(arm_->coordinates()));
       const Vector3 near = ends.row(problem.point.segment);
       const auto& surface = task_.objects[static_cast<std::size_t>(object)].surface;
@@ -54,7 +54,7 @@ void BraceSearch::attempt(BraceProblem problem, int object, const VectorX& start
     const ProgramResult found = solve(program, {x, {}, {}, {}}, kSolver);
     if (!is_equilibrium(found)) {
       if (round == 0) return;
-      break;  // the last equilibrium's condition of friction says what it lacks
+      break;  // the friction condition of the last equilibrium shows what it lacks
     }
     x = found.point.x;
     judged = judge(program, object, x);
@@ -93,7 +93,7 @@ Brace BraceSearch::finish(BraceStatus without) const {
   return result;
 }
 
-/// An equilibrium with its figures; object is -1 where it is not stable.
+/// Evaluates an equilibrium. In the result, object is -1 if it is not stable.
 BraceSearch::Judged BraceSearch::judge(BraceProgram& program, int object, const VectorX& x) {
   const BraceProblem& problem = program.problem();
   const int n = arm_->coordinates();
@@ -144,7 +144,7 @@ BraceSearch::Judged BraceSearch::judge(BraceProgram& program, int object, const 
   const double spare = on.friction.min * brace.normal_force - brace.friction_force;
   brace.hold_force = std::max(0.0, spare) / response.friction_gain;
   result.reserve = response.friction_gain * task_.hold_force;
-  // A held point is where it was measured to be.
+  // A held point is at its measured position, so its gap does not count.
   const bool held = problem.held.cols() > 0;
   brace.conditions = {
       check_friction(brace.normal_force, brace.friction_force + result.reserve, on.friction),
@@ -160,13 +160,14 @@ BraceSearch::Judged BraceSearch::judge(BraceProgram& program, int object, const 
   return result;
 }
 
-/// Of two braces.
+/// Whether the first of two braces is better.
 bool BraceSearch::better(const Brace& one, const Brace& other) const {
   if (reserve_ == Reserve::demanded) return one.peak_compliance < other.peak_compliance;
   const auto holds = [](const Brace& brace) {
     return brace.conditions[0].verdict == BraceCondition::Verdict::holds;
   };
-  // The first with the reserve: the equilibrium that is nearest by, which the arm comes to.
+  // The first one with the reserve is best, since it is the nearest equilibrium, which the arm
+  // reaches.
   return !holds(other) && one.hold_force > other.hold_force;
 }
 

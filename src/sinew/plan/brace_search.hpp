@@ -1,5 +1,5 @@
 /// @file
-/// The search for braces among candidates: programs solved, their equilibria judged, the best kept.
+/// The search for braces among candidates: solves programs and keeps the best equilibrium.
 #pragma once
 
 #include <memory>
@@ -13,32 +13,36 @@
 
 namespace sinew::plan {
 
-/// Whether friction must have the reserve that the task asks for, and the best is what moves least;
-/// or as much of it as there can be, and the best is the first that has it.
+/// How the search treats the friction reserve of the task. `demanded`: it is required, and the best
+/// brace has the least peak compliance. `wished`: as much of it as possible is kept, and the best
+/// brace is the first that has all of it.
 enum class Reserve { demanded, wished };
 
-/// Tries candidates and keeps the best. Workspace of one search.
+/// Tries candidates and keeps the best one. It has the workspace of one search.
 class BraceSearch {
  public:
-  /// @param arm which. @param task completed(), outlives this. @param reserve of friction.
+  /// @param arm to be braced. @param task completed(), must outlive this. @param reserve of
+  /// friction.
   BraceSearch(std::shared_ptr<const pcc::Arm> arm, const BraceTask& task, Reserve reserve);
 
-  /// Solves a candidate's program, and again while the reserve of friction that it keeps is not
-  /// what its equilibrium needs. @param problem of the candidate; its reserve is set here. @param
-  /// object which. @param start (coordinates + 1 + inputs,): angles, turn, torques.
+  /// Solves the program of a candidate, and again until its friction reserve is the one that its
+  /// equilibrium needs. @param problem of the candidate, whose reserve is set here.
+  /// @param object index of the object. @param start (coordinates + 1 + inputs,): angles, rotation
+  /// of the base, torques.
   void attempt(BraceProblem problem, int object, const VectorX& start);
-  /// Within the problem's limits. @param problem of a candidate.
+  /// A random start within the limits of a problem. @param problem of a candidate.
   VectorX random_start(const BraceProblem& problem);
   /// Whether a brace has been found so far.
   bool found() const { return best_.found(); }
-  /// The best, or with this status the one that came nearest. @param without a brace.
+  /// The best brace, or if there is none the closest equilibrium. @param without its status if
+  /// there is no brace.
   Brace finish(BraceStatus without) const;
 
  private:
   struct Judged {
     Brace brace;
-    double reserve = 0.0;  // N, of friction, for the task's force
-    int held = 0;          // conditions
+    double reserve = 0.0;  // N, of friction, that the task's force needs
+    int held = 0;          // number of conditions that hold
   };
   Judged judge(BraceProgram& program, int object, const VectorX& x);
   bool better(const Brace& one, const Brace& other) const;

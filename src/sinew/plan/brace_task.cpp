@@ -17,7 +17,7 @@ namespace sinew::plan {
 BraceTask completed(const pcc::Arm& arm, BraceTask task) {
   PlanTask common;
   common.goal = {task.goal, task.tolerance, kNoBound};
-  static_cast<void>(completed(arm, common));  // the goal's checks
+  static_cast<void>(completed(arm, common));  // checks the goal
   task.limits = completed_limits(arm, task.limits);
   for (BraceObject& object : task.objects) {
     object.surface = collision::checked(object.surface);

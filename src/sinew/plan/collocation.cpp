@@ -72,7 +72,7 @@ void Collocation::set_bounds() {
   for (VectorX* bound : {&variable_bounds_.lower, &variable_bounds_.upper}) {
     bound->segment(0, n_) = task_.start.position;
     bound->segment(n_, n_) = task_.start.rate;
-    // The first acceleration takes no part.
+    // The acceleration of the first knot is not used.
     if (blocks_ == 3) bound->segment(2 * n_, n_).setZero();
     if (!drive_) bound->segment(torque_at(0), inputs_) = task_.start.torque;
   }
@@ -134,7 +134,7 @@ double Collocation::typical_torque() {
 }
 
 void Collocation::set_scales(double torque) {
-  // Time by the arm's own: inertia over stiffness, gravity's included.
+  // The time scale is that of the arm: inertia over stiffness, including that of gravity.
   const VectorX zero = VectorX::Zero(n_);
   const auto& linear = equations_.linearise(task_.start.position, zero, zero);
   const double stiffness = linear.by_position.cwiseAbs().diagonal().sum();
@@ -164,7 +164,7 @@ void Collocation::set_scales(double torque) {
     constraint_scale_.tail(drive_->rows()) = drive_->row_scale();
   }
   const Objective& cost = task_.objective;
-  // A tenth of what limits on torque allow is what plans come to.
+  // Typical plans cost a tenth of what the limits on torque allow.
   objective_scale_ =
       0.1 * std::max({cost.effort * torque * torque * grid_.duration,
                       cost.tip_speed * std::pow(0.1 * length / own, 2), cost.time * own, 1e-12});

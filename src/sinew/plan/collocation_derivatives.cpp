@@ -1,4 +1,5 @@
-// Jacobian and Hessian of the program: each entry is met once, to note its place or its value.
+// Jacobian and Hessian of the program. Each entry is visited once, to note its position or its
+// value.
 #include <array>
 
 #include "sinew/plan/collocation.hpp"
@@ -7,7 +8,7 @@ namespace sinew::plan {
 
 namespace {
 
-/// Chain rule to second order: J^T H J + sum g_i H_i.
+/// Second-order chain rule, J^T H J + sum g_i H_i.
 MatrixX composed(const Vector3& gradient, const Matrix3& hessian, const VectorDerivatives& inner) {
   MatrixX result = inner.jacobian.transpose() * hessian * inner.jacobian;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -16,7 +17,7 @@ MatrixX composed(const Vector3& gradient, const Matrix3& hessian, const VectorDe
   return result;
 }
 
-/// scale w w^T on the form's unknowns, lower triangle.
+/// Adds scale w w^T on the unknowns of a linear form, in the lower triangle.
 template <typename Emit>
 void emit_square(const LinearForm& form, double scale, const Emit& emit) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(form.count); ++i) {
@@ -175,7 +176,7 @@ void Collocation::torque_hessian(const VectorX& x, int k, const Transcription& r
 template <typename Emit>
 void Collocation::interval_hessian(const VectorX& x, int k, const VectorX& multipliers,
                                    const Emit& emit) {
-  // In the interval's own variables: 2 blocks of n, and h.
+  // The local variables of an interval are 2 blocks of n, and h.
   const Transcription& rules = this->rules(x)[static_cast<std::size_t>(k)];
   const int blocks = 2 * blocks_, size = blocks * n_;
   const MatrixX knots = pair(x, k);
@@ -201,7 +202,8 @@ void Collocation::interval_hessian(const VectorX& x, int k, const VectorX& multi
       }
     }
     if (!grid_.free()) continue;
-    // d/dh of the stage's motion is its slope: K slope, and the gradient by the weights' slopes.
+    // The derivative of a stage's motion with respect to h is its slope. It contributes K slope,
+    // and the gradient with the slopes of the weights.
     const MatrixX slope = knots * weights.slope.transpose();
     const MatrixX bend = knots * weights.bend.transpose();
     const VectorX slopes = slope.reshaped(), curved = curvature * slopes;
@@ -221,7 +223,7 @@ void Collocation::interval_hessian(const VectorX& x, int k, const VectorX& multi
     const int half = size / 2;
     return local < half ? knot(k) + local : knot(k + 1) + local - half;
   };
-  // Radau's stages do not see the acceleration of the first knot.
+  // The stages of Radau do not depend on the acceleration of the first knot.
   const auto takes_part = [&](int local) { return blocks_ < 3 || local / n_ != 2; };
   for (int i = 0; i < size; ++i) {
     for (int j = 0; j <= i && takes_part(i); ++j) {

@@ -1,6 +1,6 @@
 /// @file
-/// What drives an input of an arm: a cylinder that delivers a volume, and an actuator that makes a
-/// torque of it.
+/// The drive of one input of an arm: a cylinder that delivers a volume, and an actuator that turns
+/// it into a torque.
 #pragma once
 
 #include <vector>
@@ -16,16 +16,16 @@ struct DriveChannel {
   pcc::DriveCylinder cylinder;
 };
 
-/// Throws Error(wrong-length: not one a channel for each input | out-of-range: cylinders of several
-/// sample times, a lead below a delay) and what the channels' own checks throw.
-/// @param channels of the inputs. @param inputs of the arm. @param lead s, by which commands begin
-/// before torques. @param item what the error names.
+/// Checks the channels of an arm. Throws Error: wrong-length (not one channel per input),
+/// out-of-range (different sample times, a lead shorter than a delay), and what the checks of
+/// actuator and cylinder throw.
+/// @param channels of the inputs. @param inputs number of inputs of the arm. @param lead s, time by
+/// which commands precede torques. @param item named in errors.
 void check_channels(const std::vector<DriveChannel>& channels, Eigen::Index inputs, double lead,
                     const char* item);
 
-/// Samples of a run of so many seconds, in a cylinder's sample time: the last is at its end or the
-/// next after it.
-/// @param cylinder that is driven. @param seconds of the run, lead included.
+/// Number of samples of a run at the sample time of a cylinder; the last sample is at or after the
+/// end. @param cylinder that is driven. @param seconds duration of the run, including the lead.
 Eigen::Index sample_count(const pcc::DriveCylinder& cylinder, double seconds);
 
 }  // namespace sinew::plan

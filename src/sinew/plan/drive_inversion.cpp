@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kPlace = "drive inversion";
 
-/// y of no command.
+/// The volume y without commands.
 VectorX free_response(const pcc::DriveCylinder& cylinder, Eigen::Vector2d x, Eigen::Index count) {
   VectorX response(count);
   for (Eigen::Index k = 0; k < count; ++k) {
@@ -30,7 +30,7 @@ VectorX impulse_response(const pcc::DriveCylinder& cylinder, Eigen::Index count)
   return response;
 }
 
-/// T_kj = h_{k-j}, lower triangular.
+/// The lower triangular Toeplitz matrix T_kj = h_{k-j}.
 MatrixX toeplitz(const VectorX& response) {
   const Eigen::Index count = response.size();
   MatrixX matrix = MatrixX::Zero(count, count);
@@ -61,7 +61,7 @@ void check(const pcc::DriveCylinder& cylinder, const VectorX& volume,
   }
 }
 
-/// (samples,) V of one input; times before the plan take its first torque.
+/// Volumes V (samples,) required for one input. Before the plan, its first torque is used.
 VectorX wanted_volume(const Plan& plan, const pcc::FluidicActuator& actuator, Eigen::Index input,
                       const VectorX& times, double lead) {
   VectorX volume(times.size());
@@ -79,14 +79,14 @@ CylinderInversion invert_cylinder(const pcc::DriveCylinder& cylinder, const Vect
   const Eigen::Index count = volume.size();
   const double gain = cylinder.gain();
   const VectorX free = free_response(cylinder, settings.start, count);
-  // The unknowns are z = g u/scale and all volumes are over scale, so that sizes are about one.
+  // The unknowns are z = g u/scale, and volumes are divided by scale, so that values are about one.
   double scale = std::max(volume.cwiseAbs().maxCoeff(), free.cwiseAbs().maxCoeff());
   if (scale == 0.0) scale = 1.0;
   const MatrixX response = toeplitz(impulse_response(cylinder, count) / gain);
 
   const bool limited =
       std::isfinite(cylinder.lowest_volume) || std::isfinite(cylinder.highest_volume);
-  // Without feedthrough the first volume is the start's and no row can move it.
+  // Without feedthrough, the first volume is that of the initial state, which no command changes.
   const Eigen::Index first = cylinder.d == 0.0 ? 1 : 0;
   const Eigen::Index rows = limited ? count - first : 0;
   auto program = qp::QuadraticProgram::sized(static_cast<int>(count), static_cast<int>(rows));

@@ -1,6 +1,7 @@
 /// @file
-/// From planned torques back to what drives an arm: volumes by the actuators' inverse, then the
-/// commands of the cylinders that deliver them as nearly as their dynamics and limits allow.
+/// Inverts the drive of an arm: computes volumes from planned torques by the inverse of the
+/// actuators, and then the commands of the cylinders that approximate these volumes best within
+/// their dynamics and limits.
 #pragma once
 
 #include <vector>
@@ -11,48 +12,50 @@
 
 namespace sinew::plan {
 
+/// Initial state and weight of invert_cylinder().
 struct CylinderInversionSettings {
-  Eigen::Vector2d start = Eigen::Vector2d::Zero();  ///< the cylinder's state x_0
-  /// What changes of the command cost, relative to errors of volume, > 0. A sampled second-order
-  /// system has a zero near -1, so that the exact inverse of a jump rings from sample to sample.
+  Eigen::Vector2d start = Eigen::Vector2d::Zero();  ///< initial state x_0 of the cylinder
+  /// Weight of changes of the command relative to errors of volume, > 0. A sampled second-order
+  /// system has a zero near -1, so the exact inverse of a jump would oscillate from sample to
+  /// sample.
   double smoothing = 1e-6;
 };
 
-/// What a cylinder is to be told.
+/// The commands of one cylinder.
 struct CylinderInversion {
   qp::QpStatus status = qp::QpStatus::optimal;
   VectorX command;  ///< (samples,) u
-  VectorX volume;   ///< (samples,) y that they give
+  VectorX volume;   ///< (samples,) y, the resulting volume
 };
 
-/// Minimises
+/// Computes the commands of a cylinder for given volumes. It minimises
 ///   sum_k (V_k - C x_k - D u_k)^2 + smoothing g^2 sum_k (u_k - u_{k-1})^2
-/// over the commands u subject to x_{k+1} = A x_k + B u_k and the cylinder's limits of command and
-/// volume (Marchese, Tedrake & Rus, Int. J. Robotics Research 35, 2016, have the first term); g is
-/// the gain at rest. States are eliminated, y = y_free + T u with T Toeplitz of the impulse
-/// response, which leaves a dense quadratic program in u. Where no command keeps the volume within
-/// its limits the status is infeasible.
+/// over the commands u, subject to x_{k+1} = A x_k + B u_k and the limits of command and volume
+/// (Marchese, Tedrake & Rus, Int. J. Robotics Research 35, 2016, use the first term); g is the gain
+/// at rest. Eliminating the states by y = y_free + T u, where T is the Toeplitz matrix of the
+/// impulse response, gives a dense quadratic program in u. If no command keeps the volume within
+/// its limits, the status is infeasible.
 /// @param cylinder that is driven. @param volume (samples,) V at its sample times, >= 2.
-/// @param settings start and smoothing. Throws Error(out-of-range | not-finite |
+/// @param settings initial state and smoothing. Throws Error(out-of-range | not-finite |
 /// contradictory-limits | too-few-points).
 CylinderInversion invert_cylinder(const pcc::DriveCylinder& cylinder, const VectorX& volume,
                                   const CylinderInversionSettings& settings = {});
 
 /// Commands for all inputs of an arm; columns are inputs.
 struct DriveInversion {
-  bool found = false;                ///< all of `status` are optimal
+  bool found = false;                ///< whether all of `status` are optimal
   std::vector<qp::QpStatus> status;  ///< (inputs,)
   VectorX times;                     ///< (samples,) s
   MatrixX command;                   ///< (samples, inputs)
-  MatrixX wanted;                    ///< (samples, inputs) m^3, the actuators' inverse of the plan
-  MatrixX volume;                    ///< (samples, inputs) m^3, that the commands give
+  MatrixX wanted;                    ///< (samples, inputs) m^3, volumes required by the plan
+  MatrixX volume;                    ///< (samples, inputs) m^3, resulting volumes
 };
 
-/// The plan's torque is to act from `lead` on, the volume therefore the line's delay earlier:
-/// V(t) = actuator.volume(tau(t - lead + delay)), the torque before the plan its first one if that
-/// is not zero. Samples go from 0 to lead + duration in the cylinders' sample time, which is one
-/// for all; at the end the tip is at the goal.
-/// @param plan of as many inputs as there are channels. @param channels of the inputs.
+/// Computes the commands for a plan. The torque of the plan acts from `lead` on, so the volume is
+/// needed earlier by the delay of the line: V(t) = actuator.volume(tau(t - lead + delay)). Before
+/// the plan, tau is its first torque. Samples extend from 0 to lead + duration in the common sample
+/// time of the cylinders; at the end the tip is at the goal.
+/// @param plan with one input per channel. @param channels of the inputs.
 /// @param lead s, at least the longest delay. @param settings of each cylinder.
 /// Throws Error(out-of-range | wrong-length) and what invert_cylinder() throws.
 DriveInversion invert_drive(const Plan& plan, const std::vector<DriveChannel>& channels,

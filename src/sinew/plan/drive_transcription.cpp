@@ -47,12 +47,12 @@ DriveTranscription::Channel DriveTranscription::channel(const PlanTask& task, in
   Channel of{.drive = drive_.channels[static_cast<std::size_t>(input)]};
   const pcc::FluidicActuator& actuator = of.drive.actuator;
   const pcc::DriveCylinder& cylinder = of.drive.cylinder;
-  // The first sample is followed by one that acts at the plan's begin or before it.
+  // The second sample acts at or before the beginning of the plan.
   const double shift = drive_.lead - actuator.delay;
   of.offset = static_cast<int>(std::floor(shift / step_ + 1e-9)) - 1;
   of.begin = of.offset * step_ - shift;
   of.at_rest = of.begin + step_ > -1e-9 * step_ ? 1 : 2;
-  // One beyond the end, for the cubic between samples.
+  // There is one sample beyond the end, for cubic interpolation.
   of.count = static_cast<int>(std::ceil((task.grid.duration - of.begin) / step_ - 1e-9)) + 2;
   of.volume = first_ + variables_;
   of.command = of.volume + of.count;
@@ -126,7 +126,7 @@ void DriveTranscription::add_cost(const Channel& of, double weight) {
 
 LinearForm DriveTranscription::volume(int input, double time) const {
   const Channel& of = channels_[static_cast<std::size_t>(input)];
-  // On a sample, rounding must not reach for one that is not there.
+  // At a sample, rounding must not select a sample that does not exist.
   const double at = (time - of.begin) / step_, rounding = 1e-9;
   const int j = static_cast<int>(std::floor(at + rounding));
   const std::array<double, 4> weights = sample_weights(std::max(at - j, 0.0));

@@ -1,5 +1,6 @@
 /// @file
-/// Drives as a block of a plan's program: volumes and commands at the cylinders' own samples.
+/// The block of a plan's program for its drives: volumes and commands at the samples of the
+/// cylinders.
 #pragma once
 
 #include <array>
@@ -11,7 +12,7 @@
 
 namespace sinew::plan {
 
-/// A number that is linear in a few unknowns: sum of weight[i] x[at[i]], i below count.
+/// A linear combination of a few unknowns: sum over i < count of weight[i] x[at[i]].
 struct LinearForm {
   std::array<int, 4> at{};
   std::array<double, 4> weight{};
@@ -19,34 +20,36 @@ struct LinearForm {
   double of(const VectorX& x) const;
 };
 
-/// Unknowns of a channel: volumes y_0 ... y_M at its samples, then commands u_0 ... u_M. A sample
-/// is at the time at which its volume acts, begin + j T: the delay is a shift of time and no more.
-/// The states are eliminated by the theorem of Cayley and Hamilton, which leaves one row a sample
+/// Transcribes the channels of a drive. The unknowns of a channel are its volumes y_0 ... y_M at
+/// the samples, then its commands u_0 ... u_M. The time of a sample is the time at which its volume
+/// acts, begin + j T, so the delay is only a shift of time. Eliminating the states by the
+/// Cayley-Hamilton theorem leaves one row per sample,
 ///
 ///     y_j - tr A y_(j-1) + det A y_(j-2)
 ///         = D u_j + (C B - tr A D) u_(j-1) + (C A B - tr A C B + det A D) u_(j-2)
 ///
-/// and limits of volume and torque, which grows with it, as bounds on y. Before the plan all is at
-/// rest. An input whose limits leave one volume is not driven and has no rows. The cost of commands
-/// is weight sum_j (k (u_j - u_(j-1))/T)^2 T, with k the torque per command at their largest.
+/// Limits of volume and torque are bounds on y, since torque increases with volume. Before the plan
+/// everything is at rest. An input whose limits allow only one volume is not driven and has no
+/// rows. The cost of commands is weight sum_j (k (u_j - u_(j-1))/T)^2 T, where k is the torque per
+/// command at the largest volume within the limits.
 class DriveTranscription {
  public:
-  /// @param task completed(), with a drive. @param torque N m, a typical one.
+  /// @param task completed(), with a drive. @param torque typical torque, N m.
   /// @param variable,row first unknown and constraint of the block.
   DriveTranscription(const PlanTask& task, double torque, int variable, int row);
 
   int variables() const { return variables_; }
   int rows() const { return static_cast<int>(row_bounds_.lower.size()); }
-  /// Volume of an input that acts at a time within the plan. @param input which. @param time s.
+  /// Volume of an input that acts at a time in the plan. @param input index. @param time s.
   LinearForm volume(int input, double time) const;
 
-  /// Of the block's own variables or rows.
+  /// Bounds and scales of the variables and rows of this block.
   const Bounds& variable_bounds() const { return variable_bounds_; }
   const Bounds& row_bounds() const { return row_bounds_; }
   const VectorX& variable_scale() const { return variable_scale_; }
   const VectorX& row_scale() const { return row_scale_; }
 
-  /// Places are those of the whole program.
+  /// A matrix entry. Indices are those of the whole program.
   struct Entry {
     int row, column;
     double value;
@@ -54,10 +57,11 @@ class DriveTranscription {
   const std::vector<Entry>& jacobian() const { return entries_; }
   const std::vector<Entry>& cost_hessian() const { return cost_; }  ///< lower; cost = x'Hx/2
 
-  /// The block's unknowns of commands from the time 0 on, `lead` before the plan, and back.
+  /// Converts a run to the unknowns of this block. Commands start at time 0, `lead` before the
+  /// plan.
   /// @param run of the task's drive.
   VectorX pack(const DriveRun& run) const;
-  /// @param x of the whole program.
+  /// Converts unknowns to a run. @param x of the whole program.
   DriveRun unpack(const VectorX& x) const;
 
  private:
@@ -65,9 +69,9 @@ class DriveTranscription {
     DriveChannel drive;
     int volume = 0, command = 0;  ///< first unknowns
     int count = 0;                ///< of samples
-    int offset = 0;               ///< number of its first sample, from the first command
-    double begin = 0.0;           ///< s, when that acts
-    int at_rest = 0;              ///< its last sample of volume at rest
+    int offset = 0;               ///< index of its first sample, counted from the first command
+    double begin = 0.0;           ///< s, time at which that sample acts
+    int at_rest = 0;              ///< index of its last volume at rest
     double rest_volume = 0.0, rest_command = 0.0;
     double lower = 0.0, upper = 0.0, scale = 0.0;  ///< m^3
     bool driven() const { return lower < upper; }

@@ -1,6 +1,6 @@
-// In scaled unknowns, min f(x), c(x) = b for equations, c(x) - s = 0 with bounds on s for the rest;
-// z are the multipliers of bounds, S_x and S_s the diagonals z/(distance from the bound). With s
-// and z eliminated a step solves
+// The program in scaled unknowns is min f(x), with c(x) = b for equations and c(x) - s = 0 with
+// bounds on s for the other rows. z are the multipliers of bounds, and S_x and S_s the diagonals
+// z/(distance from the bound). After elimination of s and z, a step solves
 //   [ H + S_x + d I   J^T  ] [dx]      [ grad f + J^T y - mu/(x - l) + mu/(u - x) ]
 //   [ J              -1/S_s ] [dy] = - [ c - s + r_s/S_s, r_s = -y - mu/(s - l) + mu/(u - s) ]
 // (c - b, and no 1/S_s, for equations), with d >= 0 such that the matrix has as many negative
@@ -21,16 +21,17 @@ namespace sinew::plan {
 namespace {
 
 constexpr int kMaxSteps = 30;
-/// A point starts so far inside its bounds, of itself and of what is between them, and bounds'
-/// multipliers from this on.
+/// Initial distance from bounds, relative to the bound and to the distance between bounds, and
+/// minimum of the initial multipliers.
 constexpr double kInside = 1e-3;
 constexpr double kMinBarrier = 1e-11;
-/// Errors that rose so much have lost their way.
+/// Increase of the error at which the solver gives up.
 constexpr double kLost = 1e6;
 
-/// Values between bounds with the bounds' multipliers.
+/// Values between bounds, with the multipliers of the bounds.
 struct Bounded {
-  /// A bound is never reached for rounding (Waechter & Biegler 2006, sec. 3.5).
+  /// Minimum distance from a bound, so that rounding never reaches it (Waechter & Biegler 2006,
+  /// sec. 3.5).
   static double gap(double bound) {
     static const double small = std::pow(std::numeric_limits<double>::epsilon(), 0.75);
     return small * std::max(1.0, std::abs(bound));
@@ -59,7 +60,7 @@ struct Bounded {
       upper_multiplier[i] = has_upper(i) ? std::max(upper_multiplier[i], kInside) : 0.0;
     }
   }
-  /// What bounds add to the diagonal, and to the gradient: -mu/(x - l) + mu/(u - x).
+  /// Contributions of bounds to the diagonal, and to the gradient: -mu/(x - l) + mu/(u - x).
   double stiffness(Eigen::Index i) const {
     return (has_lower(i) ? lower_multiplier[i] / (value[i] - lower[i]) : 0.0) +
            (has_upper(i) ? upper_multiplier[i] / (upper[i] - value[i]) : 0.0);
@@ -68,7 +69,7 @@ struct Bounded {
     return (has_lower(i) ? -barrier / (value[i] - lower[i]) : 0.0) +
            (has_upper(i) ? barrier / (upper[i] - value[i]) : 0.0);
   }
-  /// Visits each bound: distance, multiplier, and their changes along a step, when one is given.
+  /// Calls visit(distance, multiplier, change of each along a step) for each bound.
   template <typename Visit>
   void each_bound(const VectorX& step, double barrier, const Visit& visit) const {
     for (Eigen::Index i = 0; i < size(); ++i) {
@@ -111,26 +112,27 @@ class Solver {
   double error() const;
   bool factor();
   void step(double barrier);
-  /// Mean of distance times multiplier after a part of the step.
+  /// Mean of distance times multiplier after a fraction of the step.
   double complementarity_after(double barrier, double along, double along_multipliers) const;
-  /// Longest steps that keep a fraction of the distance, of values and multipliers.
+  /// Largest steps of values and multipliers that use at most a fraction of the distance to their
+  /// bounds.
   std::pair<double, double> longest(double barrier, double fraction) const;
 
   NonlinearProgram& program_;
-  VectorX all_;                            // unscaled, with the fixed ones
-  std::vector<int> free_;                  // of a variable its unknown, -1: fixed
-  std::vector<int> variable_;              // of an unknown
-  std::vector<Eigen::Index> bounded_row_;  // rows that are no equations
+  VectorX all_;                            // unscaled, including fixed variables
+  std::vector<int> free_;                  // unknown of each variable; -1: fixed
+  std::vector<int> variable_;              // variable of each unknown
+  std::vector<Eigen::Index> bounded_row_;  // rows that are not equations
   VectorX row_scale_, variable_scale_;
   double objective_scale_;
 
   Bounded x_, s_;
-  VectorX y_, target_;    // multipliers of rows; what equations are to be
+  VectorX y_, target_;    // multipliers of rows; right-hand sides of equations
   VectorX c_, gradient_;  // scaled; grad f + J^T y
   VectorX row_error_;
   std::vector<double> jacobian_, hessian_, values_;
   std::vector<std::size_t> hessian_taken_,
-      jacobian_taken_;  // entries of the patterns between free ones
+      jacobian_taken_;  // entries of the patterns between free variables
   linalg::FrontalFactorisation factorisation_;
   VectorX right_, solution_, product_, dx_, ds_;
   double regularisation_ = 0.0;
@@ -214,7 +216,7 @@ void Solver::evaluate() {
   gradient_ = VectorX(slope(variable_)).cwiseProduct(variable_scale_) / objective_scale_;
   jacobian_.resize(program_.jacobian_pattern().size());
   program_.jacobian(all_, jacobian_.data());
-  // Into the order of places(), scaled; the Hessian and the diagonal are the step's.
+  // Scales entries in the order of places(). The Hessian and the diagonal are set in factor().
   values_.resize(hessian_taken_.size());
   const auto& pattern = program_.jacobian_pattern();
   for (const std::size_t e : jacobian_taken_) {
@@ -226,7 +228,7 @@ void Solver::evaluate() {
 }
 
 double Solver::error() const {
-  // Of the scaled conditions (Waechter & Biegler 2006, eq. 5 and 6).
+  // Error of the scaled optimality conditions (Waechter & Biegler 2006, eq. 5 and 6).
   double sum = y_.lpNorm<1>(), bounds = 0.0, count = 0.0, complementarity = 0.0;
   const auto visit = [&](double distance, double z, double, double) {
     bounds += z;
@@ -269,7 +271,8 @@ bool Solver::factor() {
   for (Eigen::Index i = 0; i < s_.size(); ++i) {
     set(unknowns + bounded_row_[static_cast<std::size_t>(i)], -1.0 / s_.stiffness(i));
   }
-  // As in Waechter & Biegler 2006, algorithm IC; equations that say the same are not foreseen.
+  // Inertia correction (Waechter & Biegler 2006, algorithm IC), but without handling of dependent
+  // equations.
   double trial = 0.0;
   for (int k = 0; k < 20; ++k) {
     for (Eigen::Index i = 0; i < unknowns; ++i) set(i, x_.stiffness(i) + trial);
@@ -297,7 +300,7 @@ void Solver::step(double barrier) {
   }
   solution_ = right_;
   factorisation_.solve(solution_);
-  // One refinement.
+  // One step of iterative refinement.
   factorisation_.multiply(values_, solution_, product_);
   product_ = right_ - product_;
   factorisation_.solve(product_);
@@ -343,7 +346,7 @@ bool Solver::run(const SolverSettings& settings) {
     if (now <= settings.tolerance) return true;
     least = std::min(least, now);
     if (steps_ == most || !factor()) return false;
-    // Where a step to the bounds themselves would come to decides the barrier.
+    // The barrier follows from the complementarity after a probing step to the bounds.
     step(0.0);
     const double mean = complementarity_after(0.0, 0.0, 0.0);
     double barrier = 0.0;

@@ -1,23 +1,23 @@
 /// @file
-/// Meshes of knots: where a transcription needs more of them.
+/// Refinement of the mesh of knots of a transcription.
 #pragma once
 
 #include "sinew/core/types.hpp"
 
 namespace sinew::plan {
 
-/// Cuts intervals into up to four equal parts where the transcription's error is. Defects of a
-/// method of order p fall with the power p + 1 of the interval; kinks of the torque and fast modes
-/// leave p = 3 to count on, so that an interval with defect d of N becomes ceil((N d/left)^(1/4))
-/// parts for all of them to leave `left` (Betts, Practical Methods for Optimal Control, 2010, sec.
-/// 4.7, cuts by the order so too). Where none would be cut all are halved.
-/// @param fractions (intervals,) of the duration. @param defects (intervals,) >= 0, of what
-/// matters.
-/// @param left > 0, what the defects may add up to.
-/// Returns the new intervals' fractions.
+/// Refines a mesh: divides intervals with large defects into up to four equal parts, and returns
+/// the fractions of the new intervals. The defect of a method of order p scales with the power p +
+/// 1 of the interval. Kinks of the torque and fast modes reduce the order to p = 3, so one of N
+/// intervals with defect d is divided into ceil((N d/left)^(1/4)) parts, for the defects to add up
+/// to `left` (Betts, Practical Methods for Optimal Control, 2010, sec. 4.7, also divides by the
+/// order). If no interval needs division, all are halved.
+/// @param fractions (intervals,) of the duration. @param defects (intervals,) >= 0, see
+/// interval_defects(). @param left > 0, admissible sum of the defects.
 VectorX refined(const VectorX& fractions, const VectorX& defects, double left = 0.1);
 
-/// d/dt of values at times, by the line through the neighbours on both sides. (times, columns).
+/// Time derivatives (times, columns) of sampled values, by differences of the neighbours on both
+/// sides.
 /// @param times (times,) s, increasing. @param values (times, columns).
 MatrixX slopes(const VectorX& times, const MatrixX& values);
 

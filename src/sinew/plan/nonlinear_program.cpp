@@ -17,7 +17,7 @@ namespace {
 using Ipopt::Index;
 using Ipopt::Number;
 
-/// A program as Ipopt wants to see one.
+/// Adapts a program to the interface of Ipopt.
 class Adapter final : public Ipopt::TNLP {
  public:
   Adapter(NonlinearProgram& program, const ProgramPoint& start, ProgramResult& result)
@@ -166,13 +166,13 @@ void set_options(Ipopt::OptionsList& options, const SolverSettings& settings, bo
   options.SetNumericValue("acceptable_tol", 100.0 * settings.tolerance);
   options.SetIntegerValue("max_iter", settings.max_iterations);
   options.SetNumericValue("max_cpu_time", settings.max_time);
-  // Mehrotra's probing steps need a third of the monotone strategy's iterations on plans from cold
-  // starts, and two thirds on plans from plans before; progress is measured by the error of the
-  // optimality conditions.
+  // With Mehrotra's probing steps, plans from cold starts need a third of the iterations of the
+  // monotone strategy, and replans two thirds. Progress is measured by the error of the optimality
+  // conditions.
   options.SetStringValue("mu_strategy", "adaptive");
   options.SetStringValue("mu_oracle", "probing");
   options.SetStringValue("adaptive_mu_globalization", "kkt-error");
-  // Lets plans stand on their bounds exactly.
+  // Allows plans to be exactly at their bounds.
   options.SetNumericValue("bound_relax_factor", 0.0);
   options.SetStringValue("honor_original_bounds", "no");
   if (warm) {

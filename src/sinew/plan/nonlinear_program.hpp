@@ -1,7 +1,7 @@
 /// @file
 /// Smooth sparse nonlinear programs, min f(x) with bounds on x and on c(x), and their solution by
-/// an interior-point method, from far by Ipopt with its filter line search (Waechter & Biegler,
-/// Mathematical Programming 106, 2006). Knows no physics.
+/// interior-point methods. From a distant start, this is Ipopt with its filter line search
+/// (Waechter & Biegler, Mathematical Programming 106, 2006). Independent of physics.
 #pragma once
 
 #include <string_view>
@@ -12,16 +12,17 @@
 
 namespace sinew::plan {
 
-/// Beyond this a bound is none.
+/// Bounds of at least this magnitude are inactive.
 inline constexpr double kNoBound = 1e20;
 
+/// Lower and upper bounds.
 struct Bounds {
   VectorX lower, upper;  ///< +-kNoBound: none; equal: an equality
 };
 
 using linalg::SparseEntry;
 
-/// What the solver asks of a problem. Derivatives are exact.
+/// The interface of a program to the solvers. Derivatives are exact.
 class NonlinearProgram {
  public:
   NonlinearProgram() = default;
@@ -31,7 +32,7 @@ class NonlinearProgram {
 
   const Bounds& variable_bounds() const { return variable_bounds_; }
   const Bounds& constraint_bounds() const { return constraint_bounds_; }
-  /// Typical magnitudes, > 0, by which the solver scales. (variables,), (constraints,).
+  /// Typical magnitudes by which the solver scales, > 0: (variables,), (constraints,).
   const VectorX& variable_scale() const { return variable_scale_; }
   const VectorX& constraint_scale() const { return constraint_scale_; }
   double objective_scale() const { return objective_scale_; }
@@ -41,9 +42,10 @@ class NonlinearProgram {
   virtual double objective(const VectorX& x) = 0;
   virtual void gradient(const VectorX& x, VectorX& result) = 0;
   virtual void constraints(const VectorX& x, VectorX& result) = 0;
-  /// @param x where. @param values (pattern's entries,).
+  /// Entries of the Jacobian of c. @param x (variables,). @param values in the order of the
+  /// pattern.
   virtual void jacobian(const VectorX& x, double* values) = 0;
-  /// Of factor f + multipliers . c.
+  /// Entries of the Hessian of factor f + multipliers . c, in the order of the pattern.
   virtual void hessian(const VectorX& x, double factor, const VectorX& multipliers,
                        double* values) = 0;
 
@@ -57,23 +59,23 @@ class NonlinearProgram {
 
 enum class Status {
   solved,           ///< to the tolerance
-  acceptable,       ///< to a hundred times the tolerance, no further
+  acceptable,       ///< only to a hundred times the tolerance
   infeasible,       ///< the violation has a local minimum above zero
-  iteration_limit,  ///< stopped short
-  time_limit,       ///< stopped short
-  failed,           ///< the solver lost its way: numbers out of range, no step found
+  iteration_limit,  ///< stopped at the limit
+  time_limit,       ///< stopped at the limit
+  failed,           ///< the solver failed: numbers out of range, or no step found
 };
 /// "solved", "acceptable", "infeasible", "iteration-limit", "time-limit", "failed".
 std::string_view status_name(Status status);
 
 struct SolverSettings {
-  double tolerance = 1e-6;   ///< of the scaled optimality and violation
+  double tolerance = 1e-6;   ///< of the scaled optimality error and violation
   int max_iterations = 300;  ///< >= 1
   double max_time = 30.0;    ///< s of processor time
-  bool verbose = false;      ///< the solver's own table on stdout
+  bool verbose = false;      ///< whether the solver prints its table to stdout
 };
 
-/// A point with its multipliers. Multipliers may be empty: a cold start.
+/// A point with its multipliers. Empty multipliers mean a cold start.
 struct ProgramPoint {
   VectorX x;                                     ///< (variables,)
   VectorX constraint_multipliers;                ///< (constraints,)
@@ -84,14 +86,14 @@ struct ProgramResult {
   Status status = Status::failed;
   ProgramPoint point;
   double objective = 0.0;
-  double violation = 0.0;  ///< largest of c's, unscaled
+  double violation = 0.0;  ///< largest constraint violation, unscaled
   int iterations = 0;
   double seconds = 0.0;
 };
 
-/// Solves a program: by solve_nearby() where the start has multipliers, and by Ipopt where it has
-/// none or that does not converge. Ipopt runs in one thread at a time, callers wait: its linear
-/// solver (MUMPS, sequential) keeps global state.
+/// Solves a program: by solve_nearby() if the start has multipliers, and by Ipopt if it has none or
+/// solve_nearby() does not converge. Only one thread runs Ipopt at a time while other callers wait,
+/// since its linear solver (MUMPS, sequential) has global state.
 ProgramResult solve(NonlinearProgram& program, const ProgramPoint& start,
                     const SolverSettings& settings = {});
 

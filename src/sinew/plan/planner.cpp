@@ -17,7 +17,7 @@ namespace sinew::plan {
 
 namespace {
 
-/// Random torques: two sines an input, that begin at the start's torque.
+/// Random torques: two sines per input, added to the initial torque.
 class Excitation {
  public:
   Excitation(const PlanTask& task, double torque, double frequency, std::uint64_t seed)
@@ -49,7 +49,7 @@ class Excitation {
   MatrixX sizes_, frequencies_;  // N m, rad/s
 };
 
-/// The task in torques alone, within what the drives' volumes allow.
+/// The task without its drive, with torques limited by the volumes of the drive.
 PlanTask without_drive(PlanTask task) {
   ArmLimits& limits = task.limits;
   for (std::size_t i = 0; i < task.drive->channels.size(); ++i) {
@@ -116,7 +116,7 @@ VectorX Plan::fractions() const {
 VectorX Plan::torque(double time) const {
   if (knots.drive) return knots.drive->torque(std::clamp(time, 0.0, duration()));
   const VectorX& times = knots.times;
-  // At a knot, and by rounding behind it, the interval is that before.
+  // At a knot, also if rounded up, the interval is the one before it.
   const double rounding = 1e-12 * duration();
   const auto after = std::lower_bound(times.begin() + 1, times.end() - 1, time - rounding);
   const Eigen::Index k = after - times.begin();
@@ -137,7 +137,7 @@ Planner::Planner(std::shared_ptr<const pcc::Arm> arm, const PlanTask& task,
 Knots Planner::guess(std::uint64_t seed) const {
   const Grid& grid = asked_.grid;
   const Eigen::Index count = grid.intervals + 1, n = arm_->coordinates();
-  // The slow motion of the whole arm, as a pendulum of its mass: what a swing works with.
+  // Frequency of the slow motion of the whole arm, like that of a pendulum, which a swing uses.
   pcc::ArmEquations equations(arm_);
   const auto& linear =
       equations.linearise(asked_.start.position, VectorX::Zero(n), VectorX::Zero(n));
@@ -217,7 +217,7 @@ ProgramPoint Planner::drive_start(std::uint64_t seed) {
     rest[i] = actuator.volume(task_.start.torque[i]) / cylinder.gain();
   }
   before.knots.drive.emplace(channels, invert_drive(before, channels, lead).command, lead, rest);
-  // All rows but the drive's are those of the plan of torques.
+  // All rows except those of the drive are rows of the plan of torques.
   const VectorX none = VectorX::Zero(program_->variables());
   ProgramPoint start{program_->pack(before.knots), VectorX::Zero(program_->constraints()), none,
                      none};

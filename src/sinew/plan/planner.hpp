@@ -1,6 +1,6 @@
 /// @file
-/// Plans: the optimal motion that brings an arm's tip to a goal, found from cold random starts or
-/// from a plan made before, and verified by the motion of its torques.
+/// Plans optimal motions that bring an arm's tip to a goal, from random cold starts or from a
+/// previous plan, and verifies them by simulating the motion of their torques.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@
 namespace sinew::plan {
 
 enum class PlanStatus {
-  solved,             ///< the program to its tolerance, and its torques do what is asked for
-  acceptable,         ///< the same, the program to a hundred times its tolerance
-  not_met_on_replay,  ///< the program was solved, and the motion of its torques misses
-  infeasible,         ///< of the program from here on, see Status
+  solved,             ///< the program was solved to its tolerance, and the torques meet the task
+  acceptable,         ///< likewise, but only to a hundred times the tolerance
+  not_met_on_replay,  ///< the program was solved, but the motion of the torques misses the task
+  infeasible,         ///< this and the following are those of the program, see Status
   iteration_limit,
   time_limit,
   failed,
@@ -25,8 +25,8 @@ enum class PlanStatus {
 /// "failed".
 std::string_view status_name(PlanStatus status);
 
-/// Torques that bring the tip to the goal. Errors are those of the motion that the torques cause,
-/// integrated anew by pcc::AdaptiveMotion without regard to the knots.
+/// Torques that bring the tip to the goal. The errors are those of the motion under these torques,
+/// which pcc::AdaptiveMotion integrates independently of the knots.
 struct Plan {
   PlanStatus status = PlanStatus::failed;
   CollocationMethod method = CollocationMethod::radau;
@@ -34,35 +34,37 @@ struct Plan {
   double objective = 0.0;
   double tip_error = 0.0;  ///< m, at the end
   double tip_speed = 0.0;  ///< m/s, at the end
-  /// m, the least between axis and obstacles, at the knots and in four places between; none: +inf
+  /// Minimum distance between axis and obstacles, m, at the knots and at four times between them;
+  /// without obstacles +inf.
   double clearance = 0.0;
-  double planned_tip_error = 0.0;  ///< m, of the program's own last knot
+  double planned_tip_error = 0.0;  ///< m, at the last knot of the program
   double planned_tip_speed = 0.0;  ///< m/s
-  int iterations = 0;              ///< of all programs
-  int corrections = 0;   ///< programs solved after the first, with another aim or more knots
-  double seconds = 0.0;  ///< of all programs and replays
-  ProgramPoint point;    ///< with multipliers: the start of the next
-  Aim aim;               ///< of its program, on its knots
+  int iterations = 0;              ///< total over all programs
+  int corrections = 0;             ///< programs solved after the first, with another aim or mesh
+  double seconds = 0.0;            ///< total for all programs and replays
+  ProgramPoint point;              ///< with multipliers, as the start of replan()
+  Aim aim;                         ///< of its program
 
   bool found() const { return status == PlanStatus::solved || status == PlanStatus::acceptable; }
   double duration() const { return knots.times[knots.times.size() - 1]; }
-  /// (intervals,) of the duration.
+  /// Lengths of the intervals (intervals,), as fractions of the duration.
   VectorX fractions() const;
-  /// (inputs,) N m, as the method means it: constant over an interval or linear; with a drive what
-  /// its commands cause.
-  /// @param time s; before the plan its first, after it its last.
+  /// Torques (inputs,) N m. They are constant or linear over an interval, as the method defines;
+  /// with a drive they follow from its commands.
+  /// @param time s; clamped to the duration of the plan.
   VectorX torque(double time) const;
 };
 
+/// Settings of a planner.
 struct PlannerSettings {
-  SolverSettings solver;  ///< of each program; processor time is that of all together
-  /// >= 0, most programs after the first while the motion of the torques does not do what is asked
-  /// for: with the aim moved by what it misses or, where the motion differs from the program's by
-  /// more than the tolerances, on a finer mesh.
+  SolverSettings solver;  ///< of each program; the processor time is shared by all of them
+  /// Maximum number of further programs, >= 0, while the motion of the torques does not meet the
+  /// task. They have a corrected aim or, if this motion differs from that of the program by more
+  /// than the tolerances, a finer mesh.
   int corrections = 6;
 };
 
-/// Finds plans for one arm and task. Not to be used from two threads at once.
+/// Finds plans for one arm and task. Not thread-safe.
 class Planner {
  public:
   /// Throws what completed() throws.
@@ -70,42 +72,44 @@ class Planner {
           const PlannerSettings& settings = {});
 
   const PlanTask& task() const { return asked_; }
-  /// From the motion that random torques within the limits cause; with a drive from the plan of
-  /// torques found so, inverted, with its multipliers. @param seed of the random torques.
+  /// Plans from the motion under random torques within the limits. With a drive, first plans
+  /// torques in this way, inverts the drive, and starts from the result with its multipliers.
+  /// @param seed of the random torques.
   Plan plan(std::uint64_t seed);
-  /// From a guess at the task's knots, with its drive where the task has one: Error(wrong-length).
+  /// Plans from a guess at the knots of the task, with commands if the task has a drive. Throws
+  /// Error(wrong-length).
   Plan plan(const Knots& guess);
-  /// From a plan for another start, goal or limits, on its knots' fractions of the duration.
-  /// Throws Error(wrong-length).
+  /// Plans from a plan for another start, goal or limits, on the mesh of that plan. Throws
+  /// Error(wrong-length).
   Plan replan(const Plan& before);
 
-  /// That of plan(seed), without a drive.
+  /// The guess from which plan(seed) starts, without a drive.
   Knots guess(std::uint64_t seed) const;
 
  private:
-  /// What the motion of a plan's torques comes to.
+  /// How well the motion of a plan's torques meets the task.
   struct Verdict;
 
   Eigen::Index obstacles() const { return static_cast<Eigen::Index>(asked_.obstacles.size()); }
   void set_mesh(const VectorX& fractions);
   ProgramPoint cold_start(std::uint64_t seed);
   ProgramPoint drive_start(std::uint64_t seed);
-  /// The program's plan, not yet replayed, within the processor time that is left.
+  /// Solves the program within the remaining processor time. The plan is not yet verified.
   Plan solve_program(const ProgramPoint& start);
   double time_left() const;  ///< s
-  /// Solves, replays, and corrects until the torques do what is asked for.
+  /// Solves, replays and corrects until the torques meet the task.
   Plan solve_verified(const ProgramPoint& start);
   Verdict verify(Plan& plan);
   Plan corrected(const Plan& plan, const Verdict& verdict);
   Plan refined_plan(const Plan& plan);
 
   std::shared_ptr<const pcc::Arm> arm_;
-  PlanTask asked_, task_;  // as given, and on the mesh at hand
+  PlanTask asked_, task_;  // as given, and on the current mesh
   PlannerSettings settings_;
   std::unique_ptr<Collocation> program_;
   pcc::ArmEquations equations_;
   std::clock_t begun_ = 0;
-  int before_iterations_ = 0;  // of what led to the start
+  int before_iterations_ = 0;  // of the programs that led to the start
   double before_seconds_ = 0.0;
 };
 

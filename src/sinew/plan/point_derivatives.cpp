@@ -1,6 +1,6 @@
-// Of a point x(q) moving with q', v = J q', dv/dq_k = J_k' and dv/dq'_k = J_k: its Jacobian's
-// columns along the motion hold all first derivatives, and numbers that carry derivatives the
-// second ones.
+// A point x(q) moving with q' has v = J q', dv/dq_k = J_k' and dv/dq'_k = J_k. So the columns of
+// its Jacobian along the motion contain all first derivatives, and with dual numbers the second
+// ones.
 #include "sinew/plan/point_derivatives.hpp"
 
 #include <span>

@@ -1,5 +1,5 @@
 /// @file
-/// Where points of an arm are and how they move, with exact first and second derivatives.
+/// Positions and velocities of points of an arm, with exact first and second derivatives.
 #pragma once
 
 #include <array>
@@ -10,29 +10,32 @@
 
 namespace sinew::plan {
 
-/// A vector of space as a function of variables.
+/// Value and derivatives of a spatial vector as a function of variables.
 struct VectorDerivatives {
   Vector3 value;
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian;  ///< (3, variables)
   std::array<MatrixX, 3> hessian;                     ///< of x, y, z: (variables, variables)
 };
 
-/// Workspace of one arm.
+/// Computes the derivatives for one arm. Results are references to its workspace, valid until the
+/// next call.
 class PointDerivatives {
  public:
   explicit PointDerivatives(std::shared_ptr<const pcc::Arm> arm);
 
-  /// Positions (m) of points, by q. @param q (coordinates,). @param points which.
+  /// Positions (m) of points, as functions of q. @param q (coordinates,). @param points of the arm.
   const std::vector<VectorDerivatives>& positions(const VectorX& q,
                                                   const std::vector<pcc::ArmPoint>& points);
-  /// Velocity (m/s) of a point, by (q, q'). @param q,rate (coordinates,). @param point which.
+  /// Velocity (m/s) of a point, as a function of (q, q'). @param q,rate (coordinates,).
+  /// @param point of the arm.
   const VectorDerivatives& velocity(const VectorX& q, const VectorX& rate,
                                     const pcc::ArmPoint& point);
 
  private:
   using First = Dual<8>;
   using Moving = pcc::Varied<First>;
-  /// In passes of some variables, q first, then q': `take` is called with the first of each.
+  /// Differentiates in passes over the variables, q first, then q'. Calls `take` with the first
+  /// variable of each pass.
   template <typename Take>
   void pass(const VectorX& q, const VectorX& rate, Eigen::Index variables, const Take& take);
 

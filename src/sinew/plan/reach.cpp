@@ -16,7 +16,7 @@ namespace sinew::plan {
 
 namespace {
 
-/// min |tip - goal|^2 over (q, tau) at rest.
+/// The program min |tip - goal|^2 over (q, tau) in equilibrium.
 class NearestProgram final : public NonlinearProgram {
  public:
   NearestProgram(const std::shared_ptr<const pcc::Arm>& arm, const ArmLimits& limits,
@@ -96,7 +96,7 @@ ArmLimits completed_limits(const pcc::Arm& arm, const ArmLimits& limits) {
   PlanTask task;
   task.goal.position = arm.settings().base;
   task.limits = limits;
-  // Only limits matter here: a start that they exclude is none of theirs.
+  // Only limits are checked here, so the initial state is chosen within them.
   const auto inside = [](const VectorX& lower, const VectorX& upper, Eigen::Index size) {
     VectorX result = VectorX::Zero(size);
     if (lower.size() == size) result = result.cwiseMax(lower);

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kRounding = 1e-9;
 
-/// integral of f_a f_b ... ds along the axis up to a point; f_i(s) is the fraction of segment i's
-/// bend before s. `times` counts how often each segment stands in the product.
+/// The integral of f_a f_b ... ds along the axis up to a point, where f_i(s) is the fraction of
+/// segment i's bend before s. `times` counts the factors of each segment.
 double bend_moment(const pcc::Arm& arm, const std::vector<int>& times, int segment, double fraction,
                    double scale) {
   int last = -1;
@@ -25,7 +25,7 @@ double bend_moment(const pcc::Arm& arm, const std::vector<int>& times, int segme
   if (last > segment) return 0.0;
   const auto& segments = arm.settings().segments;
   const auto power = times[static_cast<std::size_t>(last)];
-  // Within the last of them f is s/L, and 1 beyond it.
+  // Within the last of these segments f is s/L, and beyond it f is 1.
   const auto within = [&](int s) {
     const double length = segments[static_cast<std::size_t>(s)].length;
     const double to = s == segment ? fraction : 1.0, by = s == segment ? scale : 1.0;
@@ -56,7 +56,7 @@ class Search {
     const Eigen::Index rows = n_ + 3;
     lower_.resize(rows);
     upper_.resize(rows);
-    // B tau of the limits, coordinate by coordinate.
+    // Range of B tau within the limits, for each coordinate.
     const MatrixX more = arm->actuation().cwiseMax(0.0), less = arm->actuation().cwiseMin(0.0);
     lower_.head(n_) = more * limits.torque_lower + less * limits.torque_upper;
     upper_.head(n_) = more * limits.torque_upper + less * limits.torque_lower;
@@ -68,7 +68,7 @@ class Search {
   }
 
   enum class Answer { gone, found, open };
-  /// Shrinks the box, or says what became of it.
+  /// Shrinks the box, or classifies it.
   Answer look(VectorX& from, VectorX& to) {
     for (int round = 0; round < 3; ++round) {
       const VectorX centre = 0.5 * (from + to), half = 0.5 * (to - from);
@@ -100,7 +100,7 @@ class Search {
   }
 
  private:
-  /// Bounds of second derivatives, row by row: of the coordinates' torques, of the tip.
+  /// Bounds of second derivatives for each row: the torques of the coordinates, then the tip.
   void set_curvatures() {
     std::vector<int> times(static_cast<std::size_t>(arm_->segments()), 0);
     curvatures_.assign(static_cast<std::size_t>(n_) + 1, MatrixX::Zero(n_, n_));
@@ -126,7 +126,8 @@ class Search {
     }
   }
 
-  /// Every row is value + slope . d + remainder, d within +-half; solved for each d in turn.
+  /// Shrinks the box by each row, value + slope . d + remainder with |d| <= half, solved for each d
+  /// in turn.
   bool shrink(const VectorX& half, VectorX& from, VectorX& to, const VectorX& centre) {
     from -= centre;
     to -= centre;
@@ -134,7 +135,7 @@ class Search {
       const auto& curvature = curvatures_[static_cast<std::size_t>(std::min(row, n_))];
       const double rest = 0.5 * half.dot(curvature * half);
       Interval total{values_[row] - rest - upper_[row], values_[row] + rest - lower_[row]};
-      // 0 in total + slope . d.
+      // Requires 0 in total + slope . d.
       for (Eigen::Index j = 0; j < n_; ++j) {
         total.lower += std::min(slopes_(row, j) * from[j], slopes_(row, j) * to[j]);
         total.upper += std::max(slopes_(row, j) * from[j], slopes_(row, j) * to[j]);
@@ -145,7 +146,7 @@ class Search {
         if (std::abs(slope) < 1e-6) continue;
         const Interval own{std::min(slope * from[j], slope * to[j]),
                            std::max(slope * from[j], slope * to[j])};
-        // slope d_j in -(total - own).
+        // Requires slope d_j in -(total - own).
         const double low = -(total.upper - own.upper), high = -(total.lower - own.lower);
         const Interval allowed =
             slope > 0.0 ? Interval{low / slope, high / slope} : Interval{high / slope, low / slope};

@@ -1,5 +1,5 @@
 /// @file
-/// The error of a number that a plan cannot have.
+/// Throws the error for an invalid number in a task.
 #pragma once
 
 #include <string>

@@ -12,10 +12,10 @@ namespace sinew::plan {
 
 namespace {
 
-/// Least distances of the arm's axis from the obstacles, where they are less.
+/// Lowers clearances to the distances of the arm's axis from the obstacles, where these are less.
 void lower(VectorX& clearances, const pcc::ArmDynamics<double>& dynamics,
            const std::vector<Obstacle>& obstacles) {
-  constexpr int kPoints = 20;  // a segment
+  constexpr int kPoints = 20;  // per segment
   for (int s = 0; s < dynamics.arm().segments(); ++s) {
     for (int i = 0; i <= kPoints; ++i) {
       const pcc::Vec3<double> at = dynamics.position({s, static_cast<double>(i) / kPoints});
@@ -27,7 +27,7 @@ void lower(VectorX& clearances, const pcc::ArmDynamics<double>& dynamics,
   }
 }
 
-/// @param kinks s, increasing, at which the torque is not smooth.
+/// Simulates a torque. @param kinks times (s), increasing, at which the torque is not smooth.
 Replay replay_torque(const std::shared_ptr<const pcc::Arm>& arm, const PlanTask& task_given,
                      const pcc::AdaptiveMotion::Torque& torque_at, const VectorX& kinks,
                      const VectorX& times) {
@@ -47,7 +47,7 @@ Replay replay_torque(const std::shared_ptr<const pcc::Arm>& arm, const PlanTask&
   return recorder.finish();
 }
 
-/// Equal steps of about a length that make a duration.
+/// Times at equal steps of about `time_step` over a duration.
 VectorX equal_times(double duration, double time_step) {
   const double steps = std::max(1.0, std::round(duration / time_step));
   return VectorX::LinSpaced(static_cast<Eigen::Index>(steps) + 1, 0.0, duration);
@@ -96,7 +96,8 @@ Replay Recorder::finish() {
 
 Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const PlanTask& task, const Plan& plan,
               const VectorX& times) {
-  // A drive's torque is as smooth as the cubics through its samples, which steps find by the error.
+  // The torque of a drive is as smooth as cubics through its samples. The step-size control handles
+  // it.
   const VectorX kinks = plan.knots.drive ? VectorX() : plan.knots.times;
   return replay_torque(
       arm, task, [&](double time) { return plan.torque(time); }, kinks, times);

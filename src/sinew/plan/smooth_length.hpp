@@ -1,5 +1,5 @@
 /// @file
-/// A length that is smooth at zero.
+/// A norm that is smooth at zero.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace sinew::plan {
 
-/// sqrt(|e|^2 + d^2) of a vector e of space.
+/// sqrt(|e|^2 + d^2) of a spatial vector e, with its derivatives.
 struct SmoothLength {
   double value;
   Vector3 gradient;

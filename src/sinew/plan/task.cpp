@@ -27,7 +27,7 @@ void fill(VectorX& values, Eigen::Index size, double with, const char* item) {
       throw Error(ErrorKind::not_finite, {.item = item}, "one is not a number", "give numbers");
     }
   }
-  // What lies beyond the solver's infinity is none.
+  // Limits beyond the solver's infinity are inactive.
   values = values.cwiseMax(-kNoBound).cwiseMin(kNoBound);
 }
 
@@ -76,7 +76,7 @@ void check_goal(const pcc::Arm& arm, const Goal& goal) {
   check_positive(goal.tolerance, "goal.tolerance", "m");
   check_positive(goal.speed_tolerance, "goal.speed_tolerance", "m/s");
   for (const pcc::Segment& segment : arm.settings().segments) {
-    if (segment.extensible) return;  // no length that it could not have
+    if (segment.extensible) return;  // its length is not limited
   }
   const double distance = (goal.position - arm.settings().base).norm();
   if (distance > arm.length() + goal.tolerance) {

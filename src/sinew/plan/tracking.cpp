@@ -71,7 +71,8 @@ Tracker::Tracker(std::shared_ptr<const pcc::Arm> arm, const PlanTask& task, cons
   const auto count =
       static_cast<Eigen::Index>(std::max(1.0, std::round(plan.duration() / settings.time_step)));
   time_step_ = plan.duration() / static_cast<double>(count);
-  // The nominal motion is that of the torque as it is held, in five steps a period of control.
+  // The nominal motion is that under the torque held over each control period, in five steps per
+  // period.
   constexpr Eigen::Index kFine = 5;
   pcc::ArmSimulation simulation(arm, {.time_step = time_step_ / kFine});
   simulation.set_state(task_.start.position, task_.start.rate);
@@ -93,13 +94,13 @@ Tracker::Tracker(std::shared_ptr<const pcc::Arm> arm, const PlanTask& task, cons
     const double lower = task_.limits.torque_lower[u], upper = task_.limits.torque_upper[u];
     const bool limited = lower > -kNoBound && upper < kNoBound;
     const double range = limited ? 0.5 * (upper - lower) : arm->stiffness().maxCoeff();
-    // An input without range does not take part.
+    // An input without range is not used.
     driven[u] = range > 0.0 ? 1.0 : 0.0;
     input_cost[u] = range > 0.0 ? time_step_ / squared(settings.torque_fraction * range) : 1.0;
   }
   const VectorX q = states_.row(count).head(n), rate = states_.row(count).tail(n);
   const auto tip = equations.point({arm->segments() - 1}, q, rate);
-  // Errors of the tip's position, J dq, and of its velocity, J dq' + J' dq.
+  // The errors of the tip are J dq in position and J dq' + J' dq in velocity.
   MatrixX by_state = MatrixX::Zero(6, 2 * n);
   by_state.topLeftCorner(3, n) = tip.jacobian / settings.tip_position;
   by_state.bottomLeftCorner(3, n) = tip.jacobian_rate / settings.tip_speed;

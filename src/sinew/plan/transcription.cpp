@@ -8,8 +8,8 @@ namespace sinew::plan {
 
 namespace {
 
-/// Weights at h from those at 1: what makes the derivative r of what a knot holds as derivative b
-/// goes with h^(b - r). @param unit (rows, 2 blocks): position, rate, acceleration.
+/// Weights at h from those at h = 1. The weight from derivative b at a knot to derivative r scales
+/// with h^(b - r). @param unit (rows, 2 blocks), rows are position, rate, acceleration.
 Weights at_interval(const MatrixX& unit, double h) {
   const Eigen::Index rows = unit.rows(), blocks = unit.cols() / 2;
   Weights result{unit, MatrixX::Zero(rows, unit.cols()), MatrixX::Zero(rows, unit.cols())};
@@ -59,7 +59,7 @@ void Transcription::set_radau(double h) {
       (296.0 + 169.0 * s) / 1800.0, (88.0 + 7.0 * s) / 360.0, (-2.0 - 3.0 * s) / 225.0,   //
       (16.0 - s) / 36.0, (16.0 + s) / 36.0, 1.0 / 9.0;
   const Vector3 b = a.row(2);
-  // Columns: q0 v0 a0, q1 v1 a1, at h = 1.
+  // Columns are q0 v0 a0, q1 v1 a1, at h = 1.
   Eigen::Matrix2d ends;
   ends << b[0], b[1], b[0] * (1.0 - c[0]), b[1] * (1.0 - c[1]);
   Eigen::Matrix<double, 2, 6> known;
@@ -74,7 +74,7 @@ void Transcription::set_radau(double h) {
     unit(0, 0) += 1.0;
     unit(0, 1) += c[i];
     unit(1, 1) += 1.0;
-    if (i == 2) {  // the knot itself, but for rounding
+    if (i == 2) {  // the knot itself, without rounding
       unit.setZero();
       unit.rightCols(3).setIdentity();
     }

@@ -9,16 +9,16 @@
 
 namespace sinew::plan {
 
-/// Of a seed; the recorded plans and braces are those of this sequence.
+/// A generator with a seed. Recorded plans and braces depend on its sequence.
 class Uniform {
  public:
   explicit Uniform(std::uint64_t seed) : engine_(seed) {}
 
-  /// In [from, to).
+  /// A number in [from, to).
   double operator()(double from, double to) {
     return from + (to - from) * std::generate_canonical<double, 53>(engine_);
   }
-  /// (n,), each between its own bounds. @param from,to (n,).
+  /// A vector (n,), each component within its own bounds. @param from,to (n,).
   VectorX vector(const VectorX& from, const VectorX& to) {
     VectorX result(from.size());
     for (Eigen::Index i = 0; i < from.size(); ++i) result[i] = (*this)(from[i], to[i]);

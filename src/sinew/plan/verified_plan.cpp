@@ -1,6 +1,5 @@
-// Plans that hold: the motion of a plan's torques is integrated anew, and the program is solved
-// again with its aim moved by what it misses, or on a finer mesh, until the motion does what is
-// asked for.
+// Verification of plans. The motion under a plan's torques is simulated, and the program is solved
+// again with a corrected aim or on a finer mesh, until the motion meets the task.
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -15,7 +14,7 @@ namespace sinew::plan {
 
 namespace {
 
-/// The knots' times and so many evenly between two.
+/// The times of the knots, with `between` evenly spaced times between each two.
 VectorX sample_times(const VectorX& knots, Eigen::Index between) {
   const Eigen::Index per = between + 1, intervals = knots.size() - 1;
   VectorX times(per * intervals + 1);
@@ -36,7 +35,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 }  // namespace
 
 struct Planner::Verdict {
-  /// The tip at the end of the motion less the program's, m and m/s.
+  /// Final tip position and velocity of the motion minus those of the program, m and m/s.
   Vector3 position = Vector3::Zero(), velocity = Vector3::Zero();
   VectorX shortfall;        ///< (obstacles,) m, of clearance; <= 0: none
   double miss = kInfinity;  ///< largest of what is missed over what is allowed; <= 1: met; +inf:
@@ -75,7 +74,7 @@ Planner::Verdict Planner::verify(Plan& plan) {
     }
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::not_converged) throw;
-    // No motion to speak of: the torques of a program that was not solved.
+    // The motion diverged, which happens for torques of a program that was not solved.
   }
   plan.seconds += seconds_since(begin);
   return verdict;
@@ -85,7 +84,7 @@ Plan Planner::corrected(const Plan& plan, const Verdict& verdict) {
   Aim aim = program_->aim();
   aim.position = verdict.position;
   aim.velocity = verdict.velocity;
-  // A little more, as the closest points move.
+  // Adds a margin, since the closest points move.
   aim.clearance += 1.1 * verdict.shortfall.cwiseMax(0.0);
   program_->set_aim(aim);
   return solve_program(plan.point);
@@ -120,7 +119,7 @@ Plan Planner::solve_verified(const ProgramPoint& start) {
   Verdict verdict = verify(best);
   double least = verdict.miss;
   Plan plan = best;
-  int aimed = 0;  // in a row, on one mesh
+  int aimed = 0;  // consecutive corrections of the aim on one mesh
   const auto spent = [&](const Plan& by) {
     best.iterations = by.iterations;
     best.seconds = by.seconds;

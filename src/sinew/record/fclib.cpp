@@ -19,7 +19,7 @@ namespace {
 using Triplets = std::vector<Eigen::Triplet<double, int>>;
 using Counts = std::vector<std::int32_t>;
 
-// Values of `nz` that tell how W is stored; others count triplets.
+// Values of `nz` for compressed storage of W; other values are numbers of triplets.
 constexpr std::int32_t kByColumns = -1, kByRows = -2;
 
 const std::string kRoot = "/fclib_local";
@@ -34,7 +34,7 @@ std::int32_t count(const Hdf5Reader& file, const std::string& dataset) {
   return values[0];
 }
 
-// The number of contacts, three rows each.
+// The number of contacts, with three rows each.
 std::size_t contacts(const Hdf5Reader& file) {
   const auto refuse = [&](const char* what, const char* remedy) {
     throw Error(ErrorKind::not_in_this_version, {.file = file.path()}, what, remedy);
@@ -55,7 +55,7 @@ std::size_t contacts(const Hdf5Reader& file) {
   return static_cast<std::size_t>(rows / 3);
 }
 
-// Where each of `lists` begins in nzmax entries, and where the last one ends.
+// Start of each of `lists` lists in the nzmax entries, and end of the last one.
 Counts starts(const Hdf5Reader& file, std::size_t lists, std::size_t nzmax) {
   Counts p = file.integers(kMatrix + "p", {lists + 1});
   const bool good =
@@ -163,7 +163,7 @@ void write_fclib(const std::filesystem::path& path, const FclibProblem& problem)
   write_matrix(file, problem.w);
   file.dataset(kVectors + "q", {rows}, entries(problem.q));
   file.dataset(kVectors + "mu", {problem.friction.size()}, problem.friction);
-  // FCLIB's own reader takes texts as C strings.
+  // The reader of FCLIB expects null-terminated strings.
   file.text(kInfo + "title", problem.title + '\0');
   file.text(kInfo + "description", problem.description + '\0');
   if (problem.r.size() > 0) {

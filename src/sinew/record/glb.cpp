@@ -19,14 +19,14 @@ namespace {
 using Json = nlohmann::json;
 using Floats = std::vector<float>;
 
-// Numbers of the specification.
+// Constants of the specification.
 constexpr int kFloat = 5126, kUnsigned = 5125;
 constexpr int kArrayBuffer = 34962, kElementBuffer = 34963;
 constexpr int kLineStrip = 3, kTriangles = 4;
 constexpr std::uint32_t kMagic = 0x46546c67, kVersion = 2;
 constexpr std::uint32_t kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
 
-/// Unit normals of vertices (3 v,), of the sum of the triangles' area vectors.
+/// Unit normals of vertices (3 v,), from the sum of the area vectors of adjacent triangles.
 Floats normals_of(const Floats& positions, const std::vector<std::uint32_t>& triangles) {
   Floats normals(positions.size(), 0.0F);
   for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
@@ -63,7 +63,7 @@ Floats difference(const Floats& a, const Floats& b) {
   return result;
 }
 
-/// Builds the two chunks side by side.
+/// Builds the JSON and binary chunks together.
 class Builder {
  public:
   explicit Builder(const Motion& motion) : motion_(motion) {
@@ -153,7 +153,7 @@ class Builder {
                 "give as many positions in each frame, and one frame for each time");
   }
 
-  // Times, and the weights that all bodies share: row k is 1 at target k - 1.
+  // Adds times, and the weights shared by all bodies: row k is 1 at target k - 1.
   void add_clock() {
     const std::size_t frames = motion_.times.size();
     clock_ = floats(motion_.times, 1, "SCALAR", 0, true);

@@ -11,7 +11,7 @@ std::string hdf5_reason() {
     return 1;  // the first entry is the innermost: no need to go on
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take, &reason);
-  // The system's own words are the part worth telling: "..., error message = 'No space left', ...".
+  // The message of the system is the useful part: "..., error message = 'No space left', ...".
   constexpr std::string_view kMark = "error message = '";
   if (const auto at = reason.find(kMark); at != std::string::npos) {
     const auto begin = at + kMark.size();

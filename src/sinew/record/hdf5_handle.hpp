@@ -1,5 +1,5 @@
 /// @file
-/// Identifiers of the HDF5 library that close themselves, and its failures as errors of ours.
+/// RAII wrappers of HDF5 identifiers and of HDF5's error reporting.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@
 
 namespace sinew::record {
 
-/// Owns one HDF5 identifier.
+/// Owns one HDF5 identifier, and closes it.
 class Hdf5Handle {
  public:
   using Close = herr_t (*)(hid_t);
 
   Hdf5Handle() = default;
-  /// @param id as HDF5 gave it; negative for none. @param close what closes this kind.
+  /// @param id from HDF5; negative for none. @param close function that closes this kind.
   Hdf5Handle(hid_t id, Close close) : id_(id), close_(close) {}
   ~Hdf5Handle() { reset(); }
   Hdf5Handle(Hdf5Handle&& other) noexcept
@@ -45,7 +45,7 @@ class Hdf5Handle {
   Close close_ = nullptr;
 };
 
-/// Keeps HDF5 from printing its own error stack while it lives; what failed is thrown instead.
+/// While it exists, HDF5 does not print its error stack; callers throw an Error instead.
 class QuietHdf5 {
  public:
   QuietHdf5() {
@@ -61,7 +61,7 @@ class QuietHdf5 {
   void* data_ = nullptr;
 };
 
-/// The innermost message of the present HDF5 error stack, such as "No space left on device".
+/// The innermost message of the current HDF5 error stack, such as "No space left on device".
 std::string hdf5_reason();
 
 }  // namespace sinew::record

@@ -15,7 +15,8 @@ constexpr std::uint64_t kMaxNumbers = std::uint64_t{1} << 31;  // in one read
 constexpr std::size_t kMaxText = std::size_t{16} << 20;
 constexpr hsize_t kMaxNames = 1u << 20;
 
-// The dataset must be stored as it is read: a damaged type must not grow on conversion.
+// Whether the stored type is of this kind, with at most 8 bytes. A damaged type could grow on
+// conversion.
 bool is_stored_as(hid_t dataset, H5T_class_t kind) {
   const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
   return H5Tget_class(type.id()) == kind && H5Tget_size(type.id()) <= 8;
@@ -212,7 +213,7 @@ std::vector<double> Hdf5Reader::rows(const std::string& dataset, std::uint64_t b
   }
   part[0] = count;
   const std::uint64_t size = volume(dataset, part);
-  // What is claimed must be stored, or a few bytes could ask for gigabytes.
+  // The claimed size must be stored, or a few bytes could request gigabytes.
   if (size > H5Dget_storage_size(opened.id())) {
     fail(fmt::format("{} is shorter than it says", dataset));
   }

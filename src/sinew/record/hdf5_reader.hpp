@@ -1,5 +1,5 @@
 /// @file
-/// Reads arrays out of an HDF5 file that may be damaged: types and sizes are looked at first.
+/// Reads arrays from an HDF5 file that may be damaged. Types and sizes are checked first.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace sinew::record {
 
-/// What to do about a file that cannot be read, as errors say it.
+/// The remedies in errors about a file that cannot be read.
 struct Hdf5Remedies {
   std::string unknown = "give a run.h5 that 'sinew run' wrote, and that no run is writing now";
   std::string malformed = "record the run again; the file is damaged or not of a run";
 };
 
-/// An HDF5 file open for reading. Errors are malformed-file unless said otherwise.
+/// An HDF5 file open for reading. Functions throw Error(malformed-file) unless stated otherwise.
 class Hdf5Reader {
  public:
   using Shape = std::vector<std::uint64_t>;
@@ -28,30 +28,31 @@ class Hdf5Reader {
 
   const std::string& path() const { return path_; }
   bool has(const std::string& object) const;
-  /// Names in a group; none when there is no such group. @param group its path.
+  /// Names of the objects in a group; empty if there is no such group. @param group its path.
   std::vector<std::string> names(const std::string& group) const;
 
-  /// Paths of all datasets below a group that are no text, in the order of their names.
-  /// @param group its path; "/" is the file.
+  /// Paths of all numeric datasets below a group, in the order of their names.
+  /// @param group its path; "/" is the root.
   std::vector<std::string> datasets(const std::string& group) const;
 
-  /// Attributes of the file. @param name of the attribute. Text is empty when there is none.
+  /// Attributes of the file. If a text attribute is missing, the result is empty.
+  /// @param name of the attribute.
   std::string text_attribute(const std::string& name) const;
   std::int64_t integer_attribute(const std::string& name) const;
   double number_attribute(const std::string& name) const;
 
-  /// @param dataset its path. @return its extent.
+  /// The extent of a dataset. @param dataset its path.
   Shape shape(const std::string& dataset) const;
-  /// A dataset of one text. @param dataset its path.
+  /// The content of a text dataset. @param dataset its path.
   std::string text(const std::string& dataset) const;
-  /// The whole dataset, row by row. @param dataset its path. @param expected its extent.
+  /// The whole dataset, row-major. @param dataset its path. @param expected its extent.
   std::vector<double> numbers(const std::string& dataset, const Shape& expected) const;
   std::vector<std::int32_t> integers(const std::string& dataset, const Shape& expected) const;
-  /// Rows `begin` to `begin + count` of the first direction.
+  /// `count` rows (indices of the first dimension) of a dataset, from `begin` on.
   /// @param dataset its path. @param begin,count rows, within the extent.
   std::vector<double> rows(const std::string& dataset, std::uint64_t begin,
                            std::uint64_t count) const;
-  /// @param what is wrong with the file.
+  /// Throws Error(malformed-file). @param what is wrong with the file.
   [[noreturn]] void fail(const std::string& what) const;
 
  private:

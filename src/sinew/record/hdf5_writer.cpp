@@ -24,8 +24,8 @@ std::uint64_t volume(const std::vector<std::uint64_t>& shape) {
   return std::accumulate(shape.begin(), shape.end(), std::uint64_t{1}, std::multiplies<>());
 }
 
-// Metadata stay in memory until they are flushed, so that a crash in between leaves the file as the
-// last flush made it.
+// Metadata stay in memory until they are flushed, so that a crash leaves the file in the state of
+// the last flush.
 Hdf5Handle access_properties() {
   Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5AC_cache_config_t cache;
@@ -57,7 +57,7 @@ struct Hdf5Writer::File {
     std::uint64_t frames = 0;        // with those that wait
     std::uint64_t size = 0;          // numbers in a frame
     std::uint64_t chunk_frames = 1;  // frames in a chunk
-    std::vector<double> waiting;     // frames that HDF5 has not yet, less than a chunk
+    std::vector<double> waiting;     // frames not yet passed to HDF5, less than a chunk
     std::uint64_t chunk_bytes() const { return chunk_frames * size * sizeof(double); }
   };
 
@@ -65,7 +65,7 @@ struct Hdf5Writer::File {
   Hdf5Handle file;
   Hdf5Handle links;  // makes the groups above a path
   std::vector<Series> series;
-  haddr_t reserved = 0;       // bytes from the start that the disk has given
+  haddr_t reserved = 0;       // bytes reserved from the start of the file
   std::uint64_t pending = 0;  // bytes of chunks begun since the last flush
   bool abandoned = false;
   std::chrono::steady_clock::time_point flushed = std::chrono::steady_clock::now();
@@ -84,8 +84,8 @@ struct Hdf5Writer::File {
     const bool found = H5Fget_vfd_handle(file.id(), H5P_DEFAULT, &handle) >= 0 && handle != nullptr;
     return found ? *static_cast<int*>(handle) : -1;
   }
-  // From here on HDF5 writes into nothing: the file stays as the last flush left it, and closing
-  // succeeds (on a full disk it crashes otherwise, HDF5 1.10).
+  // Redirects all further writes of HDF5 to /dev/null. The file keeps the state of the last flush,
+  // and closing succeeds (HDF5 1.10 crashes on a full disk otherwise).
   void abandon() {
     const int kept = descriptor();
     const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
@@ -97,9 +97,9 @@ struct Hdf5Writer::File {
     haddr_t bytes = 0;
     return H5Fget_eoa(file.id(), &bytes) >= 0 ? bytes : 0;
   }
-  // Takes room from the disk before HDF5 needs it, so that none of its writes can fail half way:
-  // for chunks that it still holds, and for growth of the index of every series.
-  /// @return what went wrong, as in errno; 0 for nothing.
+  // Reserves disk space before HDF5 needs it, so that no write can fail half-way: for chunks in
+  // memory, and for growth of the index of every series.
+  /// @return error as in errno; 0 if there is none.
   int reserve() {
     const haddr_t wanted = end() + pending + kHeadroom * (series.size() + 16);
     if (wanted <= reserved) return 0;
@@ -108,13 +108,13 @@ struct Hdf5Writer::File {
     if (problem == 0) reserved = wanted;
     return problem;
   }
-  // HDF5 cuts the file to its own length when it flushes.
+  // Releases unused space, since HDF5 truncates the file when it flushes.
   void release() {
     pending = 0;
     reserved = end();
     if (::ftruncate(descriptor(), static_cast<off_t>(reserved)) != 0) reserved = 0;
   }
-  // Room for everything that was appended so far was taken when it was.
+  // Reserves space, or fails after writing all earlier frames, for which space was reserved before.
   void require_room() {
     const int problem = reserve();
     if (problem == 0) return;
@@ -185,7 +185,7 @@ Hdf5Writer::~Hdf5Writer() {
   try {
     flush();
   } catch (const Error&) {
-    // The file stays as it was at the last flush; finish() is where a run hears of it.
+    // The file keeps the state of the last flush. Errors are reported by flush().
   }
   file_.reset();
 }
@@ -194,7 +194,7 @@ Hdf5Writer& Hdf5Writer::operator=(Hdf5Writer&&) noexcept = default;
 
 void Hdf5Writer::attribute(const std::string& object, const std::string& name,
                            std::string_view value) {
-  // Of variable length, which h5py gives as str.
+  // Variable-length strings are str in h5py.
   const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.id(), H5T_VARIABLE);
   H5Tset_cset(type.id(), H5T_CSET_UTF8);
@@ -265,7 +265,7 @@ int Hdf5Writer::series(const std::string& path, const std::vector<std::uint64_t>
                                        file_->links.id(), creation.id(), H5P_DEFAULT),
                             H5Dclose);
   file_->expect(made.dataset.valid(), path);
-  // Most of what a small frame costs is HDF5's call: a chunk of them is handed over at once.
+  // For small frames, most of the cost is the call of HDF5, so a whole chunk is written at once.
   if (made.chunk_frames > 1 && made.size > 0) made.waiting.reserve(made.chunk_frames * made.size);
   file_->series.push_back(std::move(made));
   return static_cast<int>(file_->series.size()) - 1;

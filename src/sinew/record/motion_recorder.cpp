@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMotionInterval = 1.0 / 30.0;  // s
 constexpr std::size_t kMinMotionFrames = 8;
-/// Beyond a step's rounding.
+/// Tolerance of times, larger than the rounding of steps.
 constexpr double kMotionTimeTolerance = 1e-9;
 
 std::vector<float> single_precision(const Points& points) {

@@ -1,5 +1,5 @@
 /// @file
-/// Motions as write_glb() takes them, of a length that nobody knows beforehand.
+/// Records motions of unknown length for write_glb().
 #pragma once
 
 #include <cstddef>
@@ -11,25 +11,24 @@
 
 namespace sinew::record {
 
-inline constexpr std::size_t kMotionFrames = 600;                    ///< of a motion at most
-inline constexpr std::size_t kMotionBytes = std::size_t{128} << 20;  ///< of its positions at most
+inline constexpr std::size_t kMotionFrames = 600;                    ///< maximum per motion
+inline constexpr std::size_t kMotionBytes = std::size_t{128} << 20;  ///< maximum of positions
 
-/// Keeps thirty frames a simulated second. When there are as many as may be, every second one is
-/// dropped and half as many are kept from then on.
+/// Keeps 30 frames per second of simulated time. When the maximum number of frames is reached, it
+/// drops every second frame and halves the frame rate.
 class MotionRecorder {
  public:
-  /// @param parts names, triangles and colours; without frames.
-  /// @param frame_floats coordinates of a frame, surfaces and lines together.
+  /// @param parts with names, triangles and colours, but without frames.
+  /// @param frame_floats number of coordinates in a frame, for all surfaces and lines.
   MotionRecorder(Motion parts, std::size_t frame_floats);
 
-  /// Whether the next frame is to be kept at this time, s.
+  /// Whether a frame at this time (s) is to be kept.
   bool is_due(double time) const;
-  /// Keeps a frame. @param time s, later than that of the frame before. @param surfaces,lines
-  /// positions (3 v,) m of each.
+  /// Adds a frame. @param time s, increasing. @param surfaces,lines positions of each, (3 v,) m.
   void add(double time, std::vector<std::vector<float>> surfaces,
            std::vector<std::vector<float>> lines);
 
-  const Motion& motion() const { return motion_; }  ///< times from the first frame on
+  const Motion& motion() const { return motion_; }  ///< times count from the first frame
   std::size_t bytes() const { return motion_.times.size() * frame_bytes_; }
 
  private:
@@ -40,15 +39,15 @@ class MotionRecorder {
   double first_time_ = 0.0, interval_, next_time_ = 0.0;
 };
 
-/// Records the surfaces of a simulation's bodies and its cables.
+/// Records the surfaces of bodies and the cables of a simulation.
 class RunMotion {
  public:
-  /// Keeps the present state. @param simulation outlives this object. @param name of the motion.
+  /// Records the current state. @param simulation must outlive this. @param name of the motion.
   RunMotion(const sim::Simulation& simulation, const std::string& name);
 
-  /// To be called after every step.
+  /// Records a frame if one is due. Call it after every step.
   void after_step();
-  /// See write_glb().
+  /// The content of a GLB file, see write_glb().
   std::string glb() const { return write_glb(recorder_.motion()); }
 
  private:
@@ -56,8 +55,8 @@ class RunMotion {
   RunMotion(const sim::Simulation& simulation, Parts parts);
 
   const sim::Simulation& simulation_;
-  std::vector<std::vector<NodeId>> nodes_;  ///< of each surface's vertices
-  std::vector<int> cables_;                 ///< actuators
+  std::vector<std::vector<NodeId>> nodes_;  ///< of the vertices of each surface
+  std::vector<int> cables_;                 ///< numbers of actuators
   MotionRecorder recorder_;
 };
 

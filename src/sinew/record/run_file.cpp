@@ -55,7 +55,7 @@ struct RunFile::Content {
     times = file.rows("/time", 0, frames);
   }
 
-  // A run that was cut off may have ended between two series of a frame.
+  // An interrupted run may have ended between two series of a frame.
   std::uint64_t complete_frames() const {
     std::uint64_t least = kMaxFrames;
     const auto count = [&](const std::string& series) {

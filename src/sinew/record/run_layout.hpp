@@ -1,5 +1,5 @@
 /// @file
-/// Where an observable stands in what a run leaves behind. Writers and readers ask here.
+/// Maps observables to the datasets and columns of a recorded run. Writers and readers share it.
 #pragma once
 
 #include <string>
@@ -16,18 +16,18 @@ enum class TableKind {
   sensors,  ///< sensors.csv
 };
 
-/// The dataset of run.h5, as RunRecorder lists them: "/actuators/long_0/effort"; empty for what
-/// would differ from run to run. @param observable any.
+/// Path of the dataset in run.h5, as listed at RunRecorder: "/actuators/long_0/effort". Empty for
+/// timings, which would differ from run to run. @param observable any.
 std::string dataset_of(const sim::Observable& observable);
-/// Whether its dataset is part of a state, which `record: {states: false}` leaves out.
+/// Whether the dataset is part of the states, which `record: {states: false}` omits.
 /// @param observable any.
 bool is_state(const sim::Observable& observable);
-/// Whether a table has columns of it: one for each of its components. @param observable,table
-/// which.
+/// Whether a table has columns for an observable, one for each component.
+/// @param observable,table which.
 bool is_in_table(const sim::Observable& observable, TableKind table);
-/// Headings of its columns: "tip.x [m]". @param observable any.
+/// Headings of the columns: "tip.x [m]". @param observable any.
 std::vector<std::string> headings_of(const sim::Observable& observable);
-/// What its numbers mean, where they stand for words: "0 open, 1 stick, 2 slip"; else empty.
+/// Meaning of the numbers if they are codes of words: "0 open, 1 stick, 2 slip"; else empty.
 /// @param observable any.
 std::string meaning_of(const sim::Observable& observable);
 

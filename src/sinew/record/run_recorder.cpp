@@ -37,7 +37,7 @@ namespace fs = std::filesystem;
               "choose another folder with --out, or change its permissions");
 }
 
-// Looks before anything is replaced, so that a run that cannot be recorded harms no older one.
+// Checks permissions before anything is replaced, so that a failure does not damage an older run.
 void require_writable(const fs::path& folder) {
   std::error_code problem;
   fs::create_directories(folder, problem);
@@ -53,7 +53,7 @@ void require_writable(const fs::path& folder) {
   }
 }
 
-// A series of an older run would be taken for this one's.
+// Removes the series of an older run, which would be mistaken for that of this run.
 void remove_series(const fs::path& folder) {
   std::error_code ignored;
   std::vector<fs::path> stale;
@@ -77,7 +77,7 @@ void remove_series(const fs::path& folder) {
   }
 }
 
-// run.pvd, or run_BODY.pvd each where there are several bodies.
+// Writes run.pvd, or run_BODY.pvd for each of several bodies.
 class ParaviewSeries {
  public:
   ParaviewSeries(const fs::path& folder, const sim::Simulation& simulation)
@@ -97,7 +97,7 @@ class ParaviewSeries {
       mesh::VtuFields fields;
       fields.positions = &body.positions();
       fields.compressed = false;
-      // The points are deformed: warped by a displacement, they would move twice as far.
+      // Points are already deformed. With a displacement field, a warp would move them twice.
       fields.points.push_back(
           {"rest_position", 3, {mesh.nodes.data(), mesh.nodes.data() + mesh.nodes.size()}});
       const Points& speed = body.velocities();
@@ -108,7 +108,7 @@ class ParaviewSeries {
   }
 
  private:
-  // Of finite elements: stress, strain, what holds the body.
+  // Adds fields of finite elements: stress, strain and reactions.
   void add_fields(int index, mesh::VtuFields& fields) {
     const auto& body = *mechanics::as<const fem::HasMaterial>(simulation_.body(index));
     const fem::NodalMean& mean = *means_[static_cast<std::size_t>(index)];
@@ -180,7 +180,7 @@ struct RunRecorder::Files {
         table(settings.folder / "run.csv", observables, TableKind::run) {
     write_file(settings.folder / "scene.yaml", settings.scene);
     remove_series(settings.folder);
-    // An older run's would be taken for this one's.
+    // Files of an older run would be mistaken for those of this run.
     for (const char* name : {"probes.csv", "sensors.csv", "run.png"}) {
       fs::remove(settings.folder / name);
     }

@@ -1,5 +1,5 @@
 /// @file
-/// run.h5: the frames of a run for replay and for h5py.
+/// Writes run.h5, the frames of a run for replay and h5py.
 #pragma once
 
 #include <filesystem>
@@ -11,13 +11,13 @@
 
 namespace sinew::record {
 
-/// Writes run.h5, laid out as RunRecorder says.
+/// Writes run.h5 with the layout described at RunRecorder.
 class RunStates {
  public:
   /// @param path of the file. @param observables outlive this. @param settings as for RunRecorder.
   RunStates(const std::filesystem::path& path, sim::Observables& observables,
             const RecordSettings& settings);
-  /// Appends the observables' moment as a frame.
+  /// Appends the current values of the observables as a frame.
   void write();
   void flush() { file_.flush(); }
 

@@ -4,7 +4,7 @@ namespace sinew::record {
 
 namespace {
 
-// Words stand in the last columns.
+// The columns of a table with numbers, or those with words, which are the last ones.
 std::vector<std::size_t> columns(const sim::Observables& observables, TableKind table, bool words) {
   std::vector<std::size_t> chosen;
   for (std::size_t k = 0; k < observables.list().size(); ++k) {

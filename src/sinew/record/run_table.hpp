@@ -1,5 +1,5 @@
 /// @file
-/// run.csv, probes.csv and sensors.csv: headings and rows of a simulation.
+/// Writes run.csv, probes.csv and sensors.csv.
 #pragma once
 
 #include <filesystem>
@@ -12,13 +12,15 @@
 
 namespace sinew::record {
 
-/// Writes a table of the observables that it has columns of, in their order; statuses in words.
+/// Writes a table of the observables that is_in_table() selects, in their order; statuses come
+/// last, as words.
 class RunTable {
  public:
   /// Throws Error(file-unwritable).
-  /// @param path of the file. @param observables outlive the table. @param table which one.
+  /// @param path of the file. @param observables must outlive this. @param table which one.
   RunTable(const std::filesystem::path& path, sim::Observables& observables, TableKind table);
-  /// Appends the observables' moment as a row. Throws as CsvWriter::write_row().
+  /// Appends the current values of the observables as a row. Throws what CsvWriter::write_row()
+  /// throws.
   void write();
 
  private:

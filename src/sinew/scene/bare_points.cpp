@@ -1,4 +1,4 @@
-// What to say of cables whose points dent the material.
+// The notice about cables whose points dent the material.
 #include <cmath>
 #include <variant>
 
@@ -15,14 +15,14 @@ namespace sinew::scene {
 
 namespace {
 
-// A dent below this part of the body's size is left unsaid.
+// Fraction of the body's size below which a dent gives no notice.
 constexpr double kDent = 0.01;
 
 }  // namespace
 
-// A force F at a point of a medium of modulus E has a displacement without bound (Kelvin); on a
-// mesh of edge h it is about F/(E h). Where the tension has no limit, F is what strains the section
-// of the body by a tenth.
+// The displacement under a point force F in a medium of modulus E is unbounded (Kelvin); on a mesh
+// with edge h it is about F/(E h). If the tension has no limit, F is the force that strains the
+// section of the body by a tenth.
 std::optional<Notice> bare_points_notice(const ActuatorDescription& actuator,
                                          const mechanics::BodyModel& body) {
   const auto& cable = std::get<CableDescription>(actuator.own);

@@ -18,7 +18,7 @@ namespace sinew::scene {
 
 namespace {
 
-// m or rad: an effector of a closed loop that is measured this near is on target.
+// Error below which an effector of a closed loop counts as on target, m or rad.
 constexpr double kMeasuredTolerance = 5e-4;
 
 SceneController controller_of(const ControllerDescription& description, const sim::Model& model) {
@@ -63,8 +63,8 @@ sim::StepSettings step_settings(const SceneDescription& scene) {
   return step;
 }
 
-// Corotational elements alone have a corotated tangent. Rubber's would be its projected one, which
-// takes ten iterations for one of the exact tangent's; the robot takes that.
+// Only corotational elements have a corotated tangent. That of rubber would be the projected one,
+// which needs ten iterations for one with the exact tangent, so the robot uses the exact one.
 std::optional<Notice> replace_tangent(const SceneDescription& scene, sim::StepSettings& step) {
   const auto rubber = std::ranges::find_if(scene.bodies, [](const BodyDescription& body) {
     const auto is_rubber = [](const auto& of) {
@@ -129,7 +129,8 @@ Robot build(SceneDescription description) {
     const int number = static_cast<int>(found - description.bodies.begin());
     return {number, &builder.added_body(number)};
   };
-  // Welds come last, where rows of saved states have them; motors need the other joints first.
+  // Welds are added last, to match the order of rows in saved states. Motors need the other joints
+  // first.
   std::map<std::string, int> joints;
   const auto add_joints = [&](bool welds) {
     for (const JointDescription& joint : description.joints) {

@@ -1,5 +1,5 @@
 /// @file
-/// From what a scene says to what runs: meshes are read, regions chosen, models planned.
+/// Builds a simulation model from a scene description: reads meshes, selects regions, plans models.
 #pragma once
 
 #include <filesystem>
@@ -22,38 +22,39 @@ struct SceneController {
   inverse::InverseSettings settings;
 };
 
-/// A scene made ready. Any number of simulations may share `model`.
+/// A scene that is ready to run. Any number of simulations may share `model`.
 struct Robot {
   SceneDescription description;
   std::shared_ptr<const sim::Model> model;
   std::vector<SceneController> controllers;
-  std::vector<Notice> notices;  ///< what a user should know of it, in the order of the scene
+  std::vector<Notice> notices;  ///< remarks and warnings, in the order of the scene
   int threads() const { return description.solver.threads; }
 
-  /// The one that steers unless another is chosen: the scene's first; null when it has none.
+  /// The default controller: the first in the scene, or null if there is none.
   const SceneController* first_controller() const;
-  /// One of the scene's. Throws Error(unknown-name) at `asked`. @param name,asked which, and who
-  /// asks.
+  /// The controller of this name. Throws Error(unknown-name) at `asked`.
+  /// @param name,asked the name, and the location that error messages refer to.
   const SceneController& controller(const std::string& name,
                                     const Location& asked = {.item = "controller"}) const;
 };
 
-/// Builds everything a description names. Throws Error with the place in the scene of what is
-/// wrong: what mesh reading, FemModel and ModelBuilder throw.
+/// Builds the model and the controllers of a scene. Throws the errors of mesh reading, FemModel and
+/// ModelBuilder, each with its location in the scene.
 Robot build(SceneDescription description);
 
 /// Reads and builds a scene file.
-/// @param path the scene.
-/// @param overrides "path=value" each, applied before reading (see apply_override()).
+/// @param path of the scene file.
+/// @param overrides assignments "path=value", applied before the scene is read (see
+/// apply_override()).
 Robot load(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
 
-/// The mesh that a description names, file or shape; in m, checked.
-/// @param description,element the shape, and what it is to be made of. Throws what
-///   mesh::read_mesh() and the shapes do.
+/// Reads or generates the mesh of a description, in m, and checks it. Throws what mesh::read_mesh()
+/// and the shapes throw.
+/// @param description,element the file or shape, and the elements that a shape is meshed with.
 mesh::Mesh make_mesh(const MeshDescription& description, Element element = Element::any);
 
-/// The surface in a file that a description names, or that of its volume elements; in m. Throws
-/// what mesh::read_surface() and mesh::read_mesh() do. @param description of a file.
+/// Reads a surface from a file, in m. Of a volume mesh, this is the boundary surface. Throws what
+/// mesh::read_surface() and mesh::read_mesh() throw. @param description of a file.
 mesh::Surface make_surface(const MeshDescription& description);
 
 }  // namespace sinew::scene

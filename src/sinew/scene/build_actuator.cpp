@@ -12,7 +12,7 @@ namespace sinew::scene {
 
 namespace {
 
-// In the frame of the body's mesh file, whose scale, rotation and position it shares.
+// Reads a closed surface in the frame of the body's mesh file, with the same scale and pose.
 mesh::Surface read_closed(const SurfaceDescription& surface, const BodyDescription& body) {
   try {
     mesh::SurfaceOptions options;
@@ -27,7 +27,7 @@ mesh::Surface read_closed(const SurfaceDescription& surface, const BodyDescripti
   }
 }
 
-// Adds an actuator by what its type has of its own.
+// Adds an actuator according to the settings of its type.
 class Adder {
  public:
   Adder(sim::ModelBuilder& builder, const SceneDescription& scene,

@@ -19,7 +19,7 @@ namespace sinew::scene {
 
 namespace {
 
-// All of the body, of one material.
+// A region of one material for the whole body.
 fem::MaterialRegion whole(const BodyDescription& body, const MaterialDescription& material) {
   fem::MaterialRegion region;
   if (material.model == MaterialModel::hyperelastic) {
@@ -47,7 +47,7 @@ double density_of(const PartDescription& part, const BodyDescription& body) {
   return body.mass || !(part.material.density > 0.0) ? density_of(body) : part.material.density;
 }
 
-// Those with all of their nodes in the part's region.
+// The elements with all nodes in the region of the part.
 std::vector<NodeId> elements_of(const PartDescription& part, const mesh::Mesh& mesh) {
   std::vector<char> picked(static_cast<std::size_t>(mesh.node_count()), 0);
   const auto nodes = at_place(part.place, [&] {
@@ -67,7 +67,7 @@ std::vector<NodeId> elements_of(const PartDescription& part, const mesh::Mesh& m
               "widen it to the bounds of the elements, or refine the mesh");
 }
 
-// The body's own material for what is in no part, then the parts.
+// The regions: elements in no part, with the material of the body, then the parts.
 std::vector<fem::MaterialRegion> regions_of(const BodyDescription& body, const mesh::Mesh& mesh) {
   fem::MaterialRegion rest = whole(body, body.material);
   rest.density = density_of(body);

@@ -43,7 +43,7 @@ void refuse_points(const ContactDescription& contact) {
               "leave `nodes` and `points` out");
 }
 
-// Of a plane none.
+// Radius of a surface; infinite for a plane.
 double radius_of(const constraint::SmoothSurface& surface) {
   if (const auto* sphere = std::get_if<collision::Sphere>(&surface)) return sphere->radius;
   if (const auto* capsule = std::get_if<collision::Capsule>(&surface)) return capsule->radius;

@@ -1,4 +1,4 @@
-// Which finite element a body is made of, and what there is to say about it.
+// Selects the finite elements of a body, and makes notices about them.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -13,8 +13,8 @@ namespace sinew::scene {
 
 namespace {
 
-/// Linear tetrahedra are a default up to this Poisson's ratio. Beyond it lambda, which is what they
-/// lock by, is more than twice mu and grows without bound (fem/bending_stiffness.hpp).
+/// Largest Poisson's ratio at which linear tetrahedra are the default. Beyond it lambda, which
+/// makes them lock, is more than twice mu and grows without bound (fem/bending_stiffness.hpp).
 constexpr double kLargestLinearRatio = 0.4;
 
 double poisson_ratio(const MaterialDescription& material) {
@@ -28,7 +28,7 @@ void each_material(const BodyDescription& body, Visit visit) {
   for (const PartDescription& part : body.parts) visit(part.material);
 }
 
-// Of its materials, the largest.
+// The largest Poisson's ratio of a body's materials.
 double poisson_ratio(const BodyDescription& body) {
   double largest = -1.0;
   each_material(body, [&](const MaterialDescription& one) {
@@ -37,7 +37,7 @@ double poisson_ratio(const BodyDescription& body) {
   return largest;
 }
 
-/// A written 0.4 may come back from bulk and shear modulus with an error of rounding.
+/// The tolerance is for a ratio of 0.4 that is computed from bulk and shear modulus with rounding.
 bool locks(const BodyDescription& body) { return poisson_ratio(body) > kLargestLinearRatio + 1e-9; }
 
 bool is_hyperelastic(const MaterialDescription& material) {
@@ -89,7 +89,7 @@ std::string remedy(const BodyDescription& body, bool only_tetrahedra) {
          "same moduli; element: tet4 keeps it as it is";
 }
 
-// Where it is made, in the element that the body names.
+// The mesh in the frame of its file, with the element type that the body names.
 mesh::Mesh make_own_mesh(const BodyDescription& body) {
   const bool chosen = body.element != Element::any;
   if (chosen || !is_hyperelastic(body) || !locks(body)) {

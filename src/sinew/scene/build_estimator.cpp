@@ -1,4 +1,4 @@
-// Estimators: the robot as each knows it, and whether its sensors can tell what is unknown.
+// Builds the model of an estimator, and checks that its sensors respond to the unknowns.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,14 +25,14 @@ namespace {
 constexpr std::array kTypes = {"marker",   "orientation", "cable-length", "cable-tension",
                                "pressure", "volume",      "motor-current"};
 constexpr const char* kSwitch = "touch";
-// Of what the compliances of two rows allow: less is rounding.
+// Least coupling of two rows relative to the bound by their own compliances; less is rounding.
 constexpr double kResponds = 1e-12;
 
 bool reads_shape(const SensorDescription& sensor) {
   return sensor.type == "marker" || sensor.type == "orientation";
 }
 
-// An effector where a sensor is, by whose rows the robot's answer is read.
+// An effector at a sensor, whose rows give the response of the robot.
 EffectorDescription effector_of(const SensorDescription& sensor) {
   using Kind = EffectorDescription::Kind;
   EffectorDescription effector;
@@ -70,7 +70,7 @@ void add_forces(SceneDescription& known, const UnknownDescription& unknown) {
   }
 }
 
-// An effort that is given: without limits on commands, and without a valve.
+// Makes the effort of an actuator free: removes command, limits and supply.
 void free_effort(SceneDescription& known, const UnknownDescription& unknown) {
   ActuatorDescription& actuator =
       *std::ranges::find(known.actuators, unknown.actuator, &ActuatorDescription::name);
@@ -96,7 +96,8 @@ void take_inertia(SceneDescription& known) {
   for (ContactDescription& contact : known.contacts) contact.restitution.reset();
 }
 
-// With exact sensors, and with steps that are solved to the tolerance and never cut.
+// The scene of the estimator's model. It has exact sensors, and Newton steps that are never
+// subdivided.
 SceneDescription known_robot(const SceneDescription& scene, const EstimatorDescription& estimator) {
   SceneDescription known = scene;
   if (!has_inertia(scene, estimator)) take_inertia(known);
@@ -178,7 +179,7 @@ void check_type(const SceneDescription& scene, const EstimatorDescription& estim
               sensor.type == "volume" ? "measure its pressure" : "measure its tension");
 }
 
-// Of an effort: the actuator has it, and no other unknown.
+// Checks unknown efforts: their actuator has them, and no two unknowns have the same actuator.
 void check_efforts(const SceneDescription& scene, const EstimatorDescription& estimator) {
   std::set<std::string> taken;
   for (const UnknownDescription& unknown : estimator.unknowns) {
@@ -203,7 +204,7 @@ void check_efforts(const SceneDescription& scene, const EstimatorDescription& es
   }
 }
 
-/// How much rows of the robot at rest move by unknowns, whatever else acts on it.
+/// The linear response of rows to unknowns, for the robot at rest.
 class RestResponse {
  public:
   explicit RestResponse(const std::shared_ptr<const sim::Model>& robot) {
@@ -248,7 +249,9 @@ class RestResponse {
   sim::Linearisation at_rest_;
 };
 
-// Contacts pass on forces that they do not at rest, and motion forces that one step does not.
+// Checks that unknowns move the robot and that sensors respond to them. The latter is not checked
+// with contacts, which may transmit forces later, or with inertia, which may transmit them in later
+// steps.
 void check_response(const SceneDescription& scene, const EstimatorDescription& estimator,
                     const RestResponse& rest) {
   for (const UnknownDescription& unknown : estimator.unknowns) {
@@ -274,7 +277,7 @@ void check_response(const SceneDescription& scene, const EstimatorDescription& e
   }
 }
 
-// Forces follow the actuators of the scene, see add_forces().
+// The unknowns. Actuators of unknown forces follow those of the scene, see add_forces().
 std::vector<sim::Unknown> unknowns_of(const SceneDescription& scene,
                                       const EstimatorDescription& estimator) {
   std::vector<sim::Unknown> all;

@@ -16,7 +16,7 @@ namespace sinew::scene {
 
 namespace {
 
-// Nodes that lie on a rigid shape do so to this, of the mesh's size.
+// Tolerance for nodes on a rigid shape, relative to the size of the mesh.
 constexpr double kOnShape = 1e-5;
 
 std::vector<NodeId> nodes_on(const mesh::Mesh& first, const BuiltBody& second,
@@ -40,7 +40,7 @@ std::vector<NodeId> nodes_on(const mesh::Mesh& first, const BuiltBody& second,
               "name a region and `outside: nearest`, or put the bodies together");
 }
 
-// Parts that stay rigid.
+// Adds a joint between rigid bodies.
 int add_rigid_joint(sim::ModelBuilder& builder, const JointDescription& joint,
                     const BuiltBody& first, const BuiltBody& second) {
   sim::JointSettings settings;
@@ -97,7 +97,7 @@ int add_joint(sim::ModelBuilder& builder, const JointDescription& joint, const B
     return add_rigid_joint(builder, joint, first, second);
   }
   const bool chosen = joint.region || joint.points.points.rows() > 0;
-  // Nodes are the deformable body's, whichever is named first.
+  // The nodes are those of the deformable body, in any order of `bodies`.
   if (!chosen && is_rigid(first)) std::swap(first, second);
   if (first.model == nullptr || second.model == nullptr) {
     throw Error(ErrorKind::wrong_type, joint.bodies_place,

@@ -46,7 +46,7 @@ std::vector<mesh::Face> faces_of(const SurfaceDescription& surface, const mesh::
 
 namespace {
 
-// The connected surface on which the outermost node lies; voids inside have their own.
+// The connected surface with the outermost node. It excludes the surfaces of internal voids.
 std::vector<mesh::Face> outer_surface(const mesh::Mesh& mesh, const std::string& what) {
   const auto used = mesh::used_nodes(mesh);
   Eigen::Index outermost = 0;

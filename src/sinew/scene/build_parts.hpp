@@ -1,5 +1,5 @@
 /// @file
-/// Parts of build() that have files of their own.
+/// The steps of build(), each implemented in a file of its own. Internal to this folder.
 #pragma once
 
 #include <functional>
@@ -21,113 +21,119 @@ class ModelBuilder;
 
 namespace sinew::scene {
 
-/// A body of the model.
+/// A body that the model builder already has.
 struct BuiltBody {
   int number = 0;
   const mechanics::BodyModel* model = nullptr;  ///< null: the world
 };
-/// By its name; kWorldName gives the world.
+/// Finds a body by its name; kWorldName gives the world.
 using BodyOf = std::function<BuiltBody(const std::string&)>;
-/// The number of a joint, by its name.
+/// Finds the number of a joint by its name.
 using JointOf = std::function<int(const std::string&)>;
 
-/// Whether all points of a body move as one: of rigid bodies and of the world.
+/// Whether a body is rigid: true for rigid bodies and for the world.
 bool is_rigid(const BuiltBody& body);
 
-/// The mesh of a body of finite elements, in the element that it names. Without a name: what the
-/// file holds, tetrahedra for shapes; but quadratic tetrahedra in place of linear ones that would
-/// lock, where the material is hyperelastic with a Poisson's ratio above 0.4. A file's nodes keep
-/// their numbers; middle nodes follow them.
-/// Throws what make_mesh() does.
+/// Makes the mesh of a finite-element body, with the element type that the body names. By default,
+/// files keep their elements and shapes get linear tetrahedra. If the material is hyperelastic with
+/// a Poisson's ratio above 0.4, quadratic tetrahedra replace linear ones, which would lock. Nodes
+/// of a file keep their numbers; midside nodes follow them. Throws what make_mesh() throws.
 mesh::Mesh make_body_mesh(const BodyDescription& body);
 
-/// Moves points of the frame of a body's mesh file to the world's. @param body whose `rotation` and
-/// `position`. @param points (n, 3) m.
+/// Transforms points from the frame of the body's mesh file to the world frame.
+/// @param body whose `rotation` and `position` apply. @param points (n, 3) m.
 void place_in_world(const BodyDescription& body, Points& points);
 
-/// Throws Error(unsupported-element) where the mesh is not what the body asks for, or its elements
-/// do not take its material. @param body,mesh the body, and its make_body_mesh().
+/// Throws Error(unsupported-element) if the mesh has other elements than the body asks for, or
+/// elements that do not support its material. @param body,mesh the body, and its make_body_mesh().
 void check_element(const BodyDescription& body, const mesh::Mesh& mesh);
 
-/// What to say about linear tetrahedra at a Poisson's ratio above 0.4: a remark where the scene
+/// Notice about linear tetrahedra that lock, at a Poisson's ratio above 0.4: a remark if the scene
 /// asks for them, else a warning. @param body,mesh the body, and its make_body_mesh().
 std::optional<Notice> locking_notice(const BodyDescription& body, const mesh::Mesh& mesh);
 
-/// What to say of a cable that pulls at bare points of quadratic elements so that they dent by a
-/// hundredth of the body's size: a remark where the scene asks for it, else a warning.
+/// Notice about a cable whose point forces dent quadratic elements by a hundredth of the body's
+/// size or more: a remark if the scene gives a guide radius of 0, else a warning.
 /// @param actuator of type cable. @param body that it runs through.
 std::optional<Notice> bare_points_notice(const ActuatorDescription& actuator,
                                          const mechanics::BodyModel& body);
 
-/// The region as the mesh's selections know it.
+/// Converts a region to the type of mesh/selection.hpp.
 mesh::Region region_of(const FixedRegion& region);
 
-/// The faces of the mesh that a surface names, whatever but a file. Throws Error at its place.
+/// The faces of the mesh that a surface selects. The surface may be of any kind except `file`.
+/// Throws Error at the location of the surface.
 std::vector<mesh::Face> faces_of(const SurfaceDescription& surface, const mesh::Mesh& mesh);
 
-/// Replaces robots in URDF files by their bodies ROBOT.LINK and joints ROBOT.JOINT, and names that
-/// stand for a link within another body by that body's. Motors without limits get those of the
-/// file. Throws what parse_urdf() does, and Error: unknown-name, file-not-found, unknown-format (a
-/// mesh), missing-mass, contradictory-limits. @return what the files say and the robots do not do.
+/// Replaces each URDF robot by its bodies ROBOT.LINK and joints ROBOT.JOINT. Where a link is merged
+/// into another body, references to the link become references to that body. Motors without limits
+/// get those of the file. Throws what parse_urdf() throws, and Error: unknown-name, file-not-found,
+/// unknown-format (a mesh), missing-mass, contradictory-limits.
+/// @return notices about parts of the files that have no effect.
 std::vector<Notice> expand_urdf(SceneDescription& scene);
 
-/// @param surface of it. @param convex whether its hull touches. Throws Error(zero-volume) for a
-/// hull without volume.
+/// Makes the solid that a surface encloses. Throws Error(zero-volume) for a hull without volume.
+/// @param surface of the solid. @param convex whether contacts use the convex hull.
 rigid::Solid make_solid(mesh::Surface surface, bool convex);
 
-/// Adds a body that its scene describes. @return what a user should know of it.
+/// Adds a body of the scene to the model. @return a notice about it, if there is one.
 std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
                                const BodyDescription& body);
 
-/// @param builder that has the bodies. @param scene of the actuator. @param actuator to be added.
-/// @param body_of,joint_of find what it acts on.
+/// Adds an actuator. @param builder that has the bodies. @param scene of the actuator.
+/// @param actuator to be added. @param body_of,joint_of find what it acts on.
 void add_actuator(sim::ModelBuilder& builder, const SceneDescription& scene,
                   const ActuatorDescription& actuator, const BodyOf& body_of,
                   const JointOf& joint_of);
 
-/// @param builder that has the bodies. @param effector to be added. @param body_of finds bodies.
+/// Adds an effector. @param builder that has the bodies. @param effector to be added.
+/// @param body_of finds bodies.
 void add_effector(sim::ModelBuilder& builder, const EffectorDescription& effector,
                   const BodyOf& body_of);
 
-/// @param builder that has the bodies. @param load to be added. @param body_of finds bodies.
+/// Adds a load. @param builder that has the bodies. @param load to be added.
+/// @param body_of finds bodies.
 void add_load(sim::ModelBuilder& builder, const LoadDescription& load, const BodyOf& body_of);
 
 /// A contact to be added.
 struct SceneContact {
   ContactDescription contact;
-  std::string entry;  ///< under `contacts`; of `between: all` many have one
+  std::string entry;  ///< name under `contacts`; all pairs of a `between: all` share it
 };
-/// With `between: all` replaced by its pairs. Throws Error: conflicting-keys (a pair twice),
-/// not-in-this-version (pairs of deformable bodies, arms without points).
+/// The contacts of a scene, with `between: all` replaced by its pairs of bodies. Throws Error:
+/// conflicting-keys (a pair twice), not-in-this-version (a pair with an arm in `between: all`).
 std::vector<SceneContact> contact_pairs(const SceneDescription& scene);
-/// @param builder that has the bodies. @param contact to be added. @param body_of finds bodies.
-/// @return what nodes of a deformable body may miss.
+/// Adds a contact. @param builder that has the bodies. @param contact to be added.
+/// @param body_of finds bodies.
+/// @return a notice if the surface is so small that it may pass between the nodes that touch it.
 std::optional<Notice> add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
                                   const BodyOf& body_of);
 
-/// @param builder that has the bodies. @param joint to be added. @param body_of finds bodies.
-/// @return its number.
+/// Adds a joint. @param builder that has the bodies. @param joint to be added.
+/// @param body_of finds bodies. @return the number of the joint.
 int add_joint(sim::ModelBuilder& builder, const JointDescription& joint, const BodyOf& body_of);
 
-/// @param builder that has the bodies. @param probe to be added. @param body_of finds bodies.
+/// Adds a probe. @param builder that has the bodies. @param probe to be added.
+/// @param body_of finds bodies.
 void add_probe(sim::ModelBuilder& builder, const ProbeDescription& probe, const BodyOf& body_of);
 
-/// What sensors of a scene refer to.
+/// The parts of a scene that its sensors refer to.
 struct SensorSurroundings {
   const SceneDescription& scene;
   const std::vector<SceneContact>& contacts;  ///< see contact_pairs()
   const BodyOf& body_of;
 };
+/// Adds a sensor. Throws Error: unknown-name (a contact, or an entry without pairs).
 /// @param builder that has the bodies, actuators and contacts. @param surroundings of the sensor.
-/// @param sensor to be added. Throws Error: unknown-name (a contact, or an entry without pairs).
+/// @param sensor to be added.
 void add_sensor(sim::ModelBuilder& builder, const SensorSurroundings& surroundings,
                 const SensorDescription& sensor);
 
-/// Builds the robot as the estimator knows it, and adds the estimator.
-/// @param builder that has the sensors. @param scene of the estimator, without robots in files.
-/// @param estimator to be added. Throws what build() does of that robot, and Error: wrong-type and
-/// out-of-range (a sensor), everything-fixed (a point that cannot move), conflicting-keys (a sensor
-/// that answers to no unknown).
+/// Builds the estimator's own model of the robot, and adds the estimator. Throws what build() of
+/// that model throws, and Error: wrong-type and out-of-range (a sensor), everything-fixed (an
+/// unknown that moves nothing), conflicting-keys (a sensor that responds to no unknown).
+/// @param builder that has the sensors. @param scene of the estimator, after expand_urdf().
+/// @param estimator to be added.
 void add_estimator(sim::ModelBuilder& builder, const SceneDescription& scene,
                    const EstimatorDescription& estimator);
 

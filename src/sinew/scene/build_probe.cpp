@@ -14,7 +14,7 @@ namespace {
 
 using Part = ProbeDescription::Part;
 
-/// Parts of one probe, on the bodies of a scene.
+/// Builds the parts of a probe on the bodies of a scene.
 class Parts {
  public:
   Parts(const ProbeDescription& probe, const BodyOf& body_of) : probe_(probe), body_of_(body_of) {}

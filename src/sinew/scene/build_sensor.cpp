@@ -16,7 +16,7 @@ namespace {
 
 using What = decltype(sim::SensorSettings::what);
 
-/// What one sensor measures, on the bodies of a scene.
+/// Builds the measured quantity of a sensor on the bodies of a scene.
 class Measured {
  public:
   Measured(const SensorSurroundings& surroundings, const SensorDescription& sensor)
@@ -118,7 +118,7 @@ class Measured {
     return touch;
   }
 
-  // The contact of that name, or all pairs of the entry.
+  // The contact of that name, or all pairs of an entry.
   std::vector<std::string> contacts() const {
     std::vector<std::string> names;
     for (const auto& [contact, entry] : contacts_) {

@@ -17,7 +17,7 @@ class Checker {
  public:
   explicit Checker(const Node& scene) : scene_(scene) {}
 
-  // `extra` is the key that told a variants form; it is not in the table.
+  // Checks a map. @param extra telltale key of a variants form, which is not in the table.
   void check_map(const Node& map, const KeyTable& table, const std::string& extra) {
     for (const Node::Entry& entry : map.entries()) {
       if (entry.key == extra) continue;
@@ -79,7 +79,7 @@ class Checker {
   }
 
  private:
-  // Keys that exclude each other, and keys that make sense only beside another.
+  // Checks keys that exclude each other, and keys that require another key.
   void check_company(const Node& map, const KeyTable& table, const Key& key,
                      const Location& place) {
     if (!key.only_with.empty() && map.find(key.only_with) == nullptr) {
@@ -168,7 +168,7 @@ class Checker {
     throw_unknown_name(name, section, names_under(scene_, section), place);
   }
 
-  // ROBOT.LINK and ROBOT.JOINT, whose second part expand_urdf() knows.
+  // Whether a name may be ROBOT.LINK or ROBOT.JOINT. expand_urdf() checks the second part.
   bool is_part_of_robot(const std::string& name, const std::string& section) const {
     const std::size_t dot = name.find('.');
     if (dot == std::string::npos || (section != "bodies" && section != "joints")) return false;
@@ -178,7 +178,7 @@ class Checker {
     return type != nullptr && type->spelling() == "urdf";
   }
 
-  // ENTRY-FIRST-SECOND, of an entry between all; contact_pairs() knows which there are.
+  // Whether a name may be ENTRY-FIRST-SECOND of a `between: all`. contact_pairs() finds the pairs.
   bool is_pair_of_all(const std::string& name) const {
     const Node* contacts = scene_.find("contacts");
     if (contacts == nullptr) return false;

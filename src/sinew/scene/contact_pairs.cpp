@@ -18,7 +18,7 @@ Pair ordered(const std::string& one, const std::string& other) {
   return one < other ? Pair{one, other} : Pair{other, one};
 }
 
-// Pairs with an entry of their own.
+// The pairs that have an entry of their own.
 std::set<Pair> named_pairs(const SceneDescription& scene) {
   std::set<Pair> pairs;
   for (const ContactDescription& contact : scene.contacts) {
@@ -37,7 +37,7 @@ bool can_touch(const BodyDescription& one, const BodyDescription& other) {
 
 bool is_fixed(const BodyDescription& body) { return body.rigid && body.rigid->fixed; }
 
-// Of those pairs that `all` stands for, the ones that this version has no contact for.
+// Throws for pairs of a `between: all` whose contact is not in this version.
 void refuse_pairs(const std::vector<Pair>& pairs, const Location& place) {
   if (pairs.empty()) return;
   std::vector<std::string> texts;
@@ -49,8 +49,7 @@ void refuse_pairs(const std::vector<Pair>& pairs, const Location& place) {
                           fmt::join(texts, ", ")));
 }
 
-// The pairs that an entry between all stands for. @param settled pairs that are none of them, which
-// these join.
+// The pairs of a `between: all`. @param settled pairs to be left out; the new pairs are added.
 std::vector<SceneContact> pairs_of(const ContactDescription& contact, const SceneDescription& scene,
                                    std::set<Pair>& settled) {
   std::set<Pair> excepted;

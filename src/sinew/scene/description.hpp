@@ -1,8 +1,9 @@
 /// @file
-/// What a scene file says, as plain structs in SI units. The parser fills them, the builder makes a
-/// simulation of them. In-class defaults are the documented ones (a test holds them equal). Every
-/// part keeps its Location, so that what is found wrong later (a point outside the mesh, an unknown
-/// set) can still name file:line:column. Maps of the file are vectors here, in the file's order.
+/// The contents of a scene file as plain structs in SI units. The parser fills them, and the
+/// builder makes a simulation of them. In-class defaults are the documented ones (checked by a
+/// test). Every part keeps its Location, so that errors found later (a point outside the mesh, an
+/// unknown set) can still name file:line:column. Maps of the file are vectors here, in the file's
+/// order.
 #pragma once
 
 #include <array>
@@ -53,66 +54,66 @@ enum class MaterialModel { linear, corotational, hyperelastic };
 enum class Element { any, tet4, tet4_patch, tet10, hex8 };
 enum class MassDistribution { volume, even };
 
-/// How each step is solved.
+/// How a simulation solves its steps.
 struct SolverDescription {
   Location place;
   Method method = Method::newton;
   Tangent tangent = Tangent::exact;
   std::optional<sim::AdaptiveStep> adaptive;
-  std::optional<double> tolerance;  ///< Newton: residual relative to the loads
-  int max_iterations = 50;          ///< Newton
+  std::optional<double> tolerance;  ///< of Newton's method: residual relative to the loads
+  int max_iterations = 50;          ///< of Newton's method
   double contact_tolerance = 1e-10;
   int threads = 1;                ///< inside a step
   std::string backend = "block";  ///< a name of linalg::backends()
   linalg::Ordering ordering = linalg::Ordering::fastest;
 };
 
-/// A mesh file, or one of the project's own shapes.
+/// A mesh file, or a built-in shape.
 struct MeshDescription {
   Location place;
   std::filesystem::path file;  ///< resolved against the scene's folder; empty for a shape
   double unit = 1.0;           ///< m per unit of the file
-  bool unit_given = false;     ///< whether the scene says what the unit is
+  bool unit_given = false;     ///< whether the scene states the unit
   Location unit_place;
-  Vector3 scale = Vector3::Ones();  ///< of a file's coordinates along x, y, z; none is 0
+  Vector3 scale = Vector3::Ones();  ///< of a file's coordinates along x, y, z; non-zero
   std::string shape;                ///< "block", "cylinder", ...; empty for a file
   std::map<std::string, double>
-      parameters;  ///< of the shape, those given only: m, or plain numbers
+      parameters;  ///< of the shape, only those given: m, or dimensionless
 };
 
 struct MaterialDescription {
   Location place;
   MaterialModel model = MaterialModel::corotational;
-  material::Hyperelastic energy;  ///< when hyperelastic; the next two are then unused
+  material::Hyperelastic energy;  ///< used if hyperelastic, in place of the next two
   double young_modulus = 0.0;     ///< Pa
   double poisson_ratio = 0.0;
-  double density = 0.0;  ///< kg/m^3 of a material of the library; else 0
+  double density = 0.0;  ///< kg/m^3, of a material from the library; else 0
   Location young_modulus_place, poisson_ratio_place;
 };
 
-/// Nodes that do not move.
+/// A choice of nodes, such as those that are fixed.
 struct FixedRegion {
   enum class Kind { box, sphere, plane, set };
   Location place;
   Kind kind = Kind::box;
-  Vector3 lower = Vector3::Zero();             ///< box: m
-  Vector3 upper = Vector3::Zero();             ///< box: m
-  Vector3 point = Vector3::Zero();             ///< sphere: centre; plane: a point of it; m
-  Vector3 normal = Vector3::UnitZ();           ///< plane: unit length
-  double radius = 0.0;                         ///< sphere: m
-  double within = 1e-6;                        ///< plane: m, nodes no farther from it are fixed
-  std::string set;                             ///< set: its name in the mesh
-  std::array<bool, 3> axes{true, true, true};  ///< held along x, y, z
+  Vector3 lower = Vector3::Zero();    ///< box: m
+  Vector3 upper = Vector3::Zero();    ///< box: m
+  Vector3 point = Vector3::Zero();    ///< sphere: centre; plane: a point of it; m
+  Vector3 normal = Vector3::UnitZ();  ///< plane: unit length
+  double radius = 0.0;                ///< sphere: m
+  double within = 1e-6;               ///< plane: m, the distance up to which it selects nodes
+  std::string set;                    ///< set: its name in the mesh
+  std::array<bool, 3> axes{true, true, true};  ///< whether nodes are held along x, y, z
 };
 
-/// How the free nodes of a body move at the start.
+/// Initial velocity of the free nodes of a body.
 struct InitialVelocityDescription {
   Location place;
   Vector3 linear = Vector3::Zero();   ///< m/s, of the centre of mass
-  Vector3 angular = Vector3::Zero();  ///< rad/s, about it
+  Vector3 angular = Vector3::Zero();  ///< rad/s, about the centre of mass
 };
 
-/// A robot in a URDF file, which expand_urdf() replaces by its bodies and joints.
+/// A robot in a URDF file. expand_urdf() replaces it by its bodies and joints.
 struct UrdfDescription {
   struct Start {
     std::string joint;
@@ -125,56 +126,56 @@ struct UrdfDescription {
   std::map<std::string, std::filesystem::path> packages;
   Vector3 position = Vector3::Zero();      ///< m, of the root link
   Matrix3 rotation = Matrix3::Identity();  ///< of its axes
-  bool fixed = true;                       ///< the root link
+  bool fixed = true;                       ///< whether the root link is fixed
   std::optional<double> density;           ///< kg/m^3, of links without `<inertial>`
   std::vector<Start> starts;
 };
 
-/// Elements of a body that are of another material.
+/// A part of a body that has a material of its own.
 struct PartDescription {
   std::string name;
   Location place;
-  FixedRegion region;  ///< that has all their nodes
+  FixedRegion region;  ///< contains all nodes of the part's elements
   MaterialDescription material;
-  std::optional<double> density;  ///< kg/m^3; none: of the material, or of the body
+  std::optional<double> density;  ///< kg/m^3; none: that of the material or the body
 };
 
 struct BodyDescription {
   std::string name;
   Location place;
-  std::optional<UrdfDescription> urdf;        ///< of type urdf; nothing below is then used
-  std::optional<pcc::ArmSettings> arm;        ///< of type pcc; nothing below is then used
-  bool convex = false;                        ///< of type rigid, a mesh: its hull touches
-  std::optional<rigid::RigidSettings> rigid;  ///< of type rigid; likewise, but for a mesh file
+  std::optional<UrdfDescription> urdf;        ///< of type urdf: members below are unused
+  std::optional<pcc::ArmSettings> arm;        ///< of type pcc: members below are unused
+  bool convex = false;                        ///< rigid with a mesh: contacts use its hull
+  std::optional<rigid::RigidSettings> rigid;  ///< of type rigid: only mesh and base are used
   MeshDescription mesh;
-  Vector3 position = Vector3::Zero();  ///< m, of the mesh's origin
-  Vector3 rotation = Vector3::Zero();  ///< rad, a rotation vector about it
+  Vector3 position = Vector3::Zero();  ///< m, of the origin of the mesh
+  Vector3 rotation = Vector3::Zero();  ///< rad, rotation vector about that origin
   Element element = Element::any;
   Location element_place;
   MaterialDescription material;
   std::vector<PartDescription> parts;
   std::optional<double> mass;     ///< kg, total; not together with density
   std::optional<double> density;  ///< kg/m^3
-  Location mass_place;            ///< of whichever is given
+  Location mass_place;            ///< of mass or density
   MassDistribution mass_distribution = MassDistribution::volume;  ///< with `mass`
   MassMatrix mass_matrix = MassMatrix::lumped;
   double mass_damping = 0.0;       ///< 1/s, Rayleigh: damping matrix = mass_damping M + ...
   double stiffness_damping = 0.0;  ///< s, ... + stiffness_damping K
   std::vector<FixedRegion> fixed;
-  std::optional<sim::BaseMotion> base;  ///< of the fixed nodes; its body's number is not yet known
+  std::optional<sim::BaseMotion> base;  ///< of the fixed nodes; its body number is set later
   Location base_place;
   std::optional<InitialVelocityDescription> initial_velocity;
 };
 
-/// (n, 3) m, each row with the place where it was written (a scene line or a line of a CSV).
+/// Points, each with the location where it was written (a line of the scene or of a CSV file).
 struct PointList {
   Location place;
-  Points points = Points(0, 3);
+  Points points = Points(0, 3);  ///< (n, 3) m
   std::vector<Location> places;
-  std::vector<std::string> bodies;  ///< (n,) empty: that of the whole; or none at all
+  std::vector<std::string> bodies;  ///< (n,) or (0,); an empty name means the owner's body
 };
 
-/// Where a pressure acts.
+/// The faces on which a load, chamber, membrane or electrode acts.
 struct SurfaceDescription {
   enum class Kind { inside, patch, file, region };
   Location place;
@@ -186,21 +187,21 @@ struct SurfaceDescription {
   FixedRegion region;                  ///< region
 };
 
-/// A cable, whose points' bodies are not yet numbered.
+/// A cable. The bodies of its points are given by name and not yet by number.
 struct CableDescription {
   sim::CableSettings settings;
   Location points_place;
-  std::vector<std::string> point_bodies;  ///< (n,) empty: the actuator's; or none at all
+  std::vector<std::string> point_bodies;  ///< (n,) or (0,); an empty name means the actuator's body
   bool guide_radius_given = false;
 };
 
-/// A chamber, whose surface is not yet known.
+/// A chamber. Its surface is not yet resolved to faces.
 struct ChamberDescription {
   sim::ChamberSettings settings;
   SurfaceDescription surface;
 };
 
-/// A motor, whose joint is not yet numbered.
+/// A motor. Its joint is given by name and not yet by number.
 struct MotorDescription {
   sim::MotorSettings settings;
   std::string joint;
@@ -212,17 +213,17 @@ struct ActuatorDescription {
   std::string name;
   Location place;
   Type type = Type::cable;
-  std::string body;  ///< none: of a motor, which acts on a joint
+  std::string body;  ///< empty for a motor, which acts on a joint
   Location body_place;
-  sim::Command command;  ///< left out: zero effort (slack) until told
-  /// What is the type's own. The builder adds to its settings what all types have: name, place,
-  /// body and command.
+  sim::Command command;  ///< default: zero effort (slack)
+  /// Settings of the type. The builder adds to them what all types have: name, location, body and
+  /// command.
   std::variant<CableDescription, sim::ForceSettings, ChamberDescription, sim::SpringLineSettings,
                sim::TorqueSettings, MotorDescription>
       own;
 };
 
-/// What the surroundings do to a body.
+/// A load that the environment exerts on a body.
 struct LoadDescription {
   enum class Type { force, line, traction, acceleration, pressure, water };
   std::string name;
@@ -234,11 +235,11 @@ struct LoadDescription {
   Vector3 vector = Vector3::Zero();  ///< N, N/m, Pa or m/s^2, by type
   std::optional<SurfaceDescription> surface;
   mesh::Outside outside = mesh::Outside::error;
-  sim::WaterSettings water;                         ///< its faces are not yet known
-  sim::Signal factor = sim::Signal::constant(1.0);  ///< pressure: Pa
+  sim::WaterSettings water;                         ///< its faces are set later
+  sim::Signal factor = sim::Signal::constant(1.0);  ///< for pressure: Pa
 };
 
-/// A thin layer on faces of a body.
+/// A thin elastic layer on faces of a body.
 struct MembraneDescription {
   std::string name;
   Location place;
@@ -249,7 +250,7 @@ struct MembraneDescription {
   material::ElasticConstants constants{.young_modulus = 0.0, .poisson_ratio = 0.3};
 };
 
-/// A mass that hangs on a point of a body.
+/// A point mass attached to a body.
 struct MassDescription {
   std::string name;
   Location place;
@@ -260,7 +261,7 @@ struct MassDescription {
   mesh::Outside outside = mesh::Outside::error;
 };
 
-/// Something on the robot whose motion matters.
+/// A point or frame of the robot that controllers steer.
 struct EffectorDescription {
   enum class Kind { point, points, set, orientation };
   std::string name;
@@ -268,19 +269,19 @@ struct EffectorDescription {
   Kind kind = Kind::point;
   std::string body;
   Location body_place;
-  PointList points;  ///< point: 1; points: their mean is meant; orientation: 3, or 1 of an arm
-  std::string set;   ///< set: mean of the nodes of this set of the mesh
+  PointList points;  ///< point: 1; points: their mean counts; orientation: 3, or 1 of an arm
+  std::string set;   ///< set: the mean of the nodes of this mesh set counts
   Location set_place;
   mesh::Outside outside = mesh::Outside::error;
-  /// (k, 3) unit vectors along which the motion matters, k = 1 .. 3; for an orientation always
-  /// x, y, z, the components of the rotation vector.
+  /// (k, 3) unit vectors along which the motion counts, k = 1 .. 3. For an orientation they are
+  /// always x, y, z, the components of the rotation vector.
   Points directions = Points(Matrix3::Identity());
 };
 
-/// Something that is measured and recorded, and acts on nothing.
+/// A quantity that is computed and recorded exactly. It exerts no force.
 struct ProbeDescription {
   enum class Kind { point, line, bend, distance, extent };
-  /// Points, whose mean is meant, or a region's nodes.
+  /// Points, of which a point probe takes the mean, or the nodes of a region.
   struct Part {
     Location place;
     std::string body;
@@ -298,19 +299,19 @@ struct ProbeDescription {
   mesh::Outside outside = mesh::Outside::error;
 };
 
-/// Something that is measured as a sensor would, and acts on nothing.
+/// A sensor with noise, delay and sample rate. It exerts no force.
 struct SensorDescription {
   std::string name;
   Location place, rate_place;
-  std::string type;  ///< its word in scenes: "marker"
+  std::string type;  ///< word of the scene file: "marker"
   std::string body, actuator, contact;
-  PointList points;                   ///< marker, line; those that an orientation turns with
-  std::optional<FixedRegion> region;  ///< set of a marker, patch of a contact
-  std::string patch_body;             ///< empty: the first of the contact
+  PointList points;  ///< of a marker or line, or the points that define an orientation
+  std::optional<FixedRegion> region;  ///< set of a marker, or patch of a contact
+  std::string patch_body;             ///< empty: the first body of the contact
   mesh::Outside outside = mesh::Outside::error;
   int samples = 21;              ///< of a line
-  std::vector<double> places;    ///< curvature: m along the line
-  double gauge = 0.0;            ///< curvature: m; 0: a tenth of the line
+  std::vector<double> places;    ///< curvature: arc lengths along the line, m
+  double gauge = 0.0;            ///< curvature: gauge length, m; 0: a tenth of the line
   std::optional<Vector3> about;  ///< curvature: unit length
   double resistance = 0.0;       ///< Ohm
   double gauge_factor = 0.0;     ///< of a resistance
@@ -318,32 +319,32 @@ struct SensorDescription {
   double loss_per_turn = 0.0;    ///< attenuation: dB/rad
   double permittivity = 1.0;     ///< relative
   std::array<SurfaceDescription, 2> electrodes;
-  std::array<std::string, 2> electrode_bodies;  ///< empty: the sensor's
+  std::array<std::string, 2> electrode_bodies;  ///< empty: the body of the sensor
   double motor_constant = 0.0;                  ///< N m/A or N/A
-  bool turns = true;                            ///< the constant is of a torque
-  double radius = 0.0;                          ///< m, of a drum; 0: none
+  bool turns = true;                            ///< motor_constant is a torque constant
+  double radius = 0.0;                          ///< m, of the drum; 0: none
   double threshold = 0.0;                       ///< touch: N
   sim::ChannelSettings channel;
-  std::shared_ptr<const sim::SensorRecord> record;  ///< of a file
+  std::shared_ptr<const sim::SensorRecord> record;  ///< samples from a file
 };
 
-/// A force from outside, or the effort of an actuator, that is to be found.
+/// An unknown of an estimator: an external force, or the effort of an actuator.
 struct UnknownDescription {
   std::string name;
   Location place, where_place;
-  std::string body;                 ///< that the force acts on; empty: it is an effort
+  std::string body;                 ///< on which the force acts; empty for an effort
   Vector3 point = Vector3::Zero();  ///< m
   mesh::Outside outside = mesh::Outside::error;
-  std::string actuator;       ///< whose effort it is
+  std::string actuator;       ///< whose effort is unknown; empty for a force
   std::string quantity;       ///< of the effort: "pressure"
   bool command_known = true;  ///< see sim::Unknown
-  double prior = 0.0;         ///< N or Pa, > 0
-  double walk = 0.0;          ///< over sqrt(s), > 0; left out: as many as the prior
+  double prior = 0.0;         ///< standard deviation of the prior, N or Pa, > 0
+  double walk = 0.0;          ///< random walk, N or Pa per sqrt(s), > 0; default: value of `prior`
 
   bool is_force() const { return actuator.empty(); }
 };
 
-/// What concludes forces and efforts from sensors.
+/// An estimator of forces and efforts from sensor samples.
 struct EstimatorDescription {
   std::string name;
   Location place;
@@ -351,90 +352,90 @@ struct EstimatorDescription {
   std::vector<Location> sensor_places;
   std::vector<UnknownDescription> unknowns;
   std::vector<std::string> unknown_loads;
-  bool inertia = true;  ///< whether its robot has the integrator of the scene
+  bool inertia = true;  ///< whether its model has the scene's integrator; else it is quasi-static
   int rank = 12;        ///< see sim::EstimatorModel
 };
 
-/// A surface that points of a body may touch, or two bodies.
+/// Contact of a body with an analytic surface, or contact between bodies.
 struct ContactDescription {
   std::string name;
   Location place;
   std::string body;
-  std::string other;  ///< that has the surface; empty: the surface below
+  std::string other;  ///< second body; empty: contact with `surface`
   Location between_place;
-  bool all = false;  ///< between all pairs, but:
+  bool all = false;  ///< between all pairs of bodies, except those of `except`
   std::vector<std::pair<std::string, std::string>> except;
   constraint::SmoothSurface surface;
-  std::optional<FixedRegion> nodes;  ///< of the outside; none, and no points: all of it
+  std::optional<FixedRegion> nodes;  ///< outer nodes that may touch; none, and no points: all
   PointList points;
   mesh::Outside outside = mesh::Outside::error;
   double friction = 0.0;                   ///< Coulomb's coefficient, >= 0
-  std::optional<double> kinetic_friction;  ///< of points that slide; none: the same
-  std::optional<double> restitution;       ///< 0 to 1; none: the integrator's
-  double aggregate = 0.0;                  ///< m, of zones; 0: single points
+  std::optional<double> kinetic_friction;  ///< of sliding points; none: `friction`
+  std::optional<double> restitution;       ///< 0 to 1; none: that of the scene
+  double aggregate = 0.0;                  ///< m, size of contact zones; 0: single points
   std::optional<sim::BaseMotion> motion;   ///< of the surface
 };
 
-/// What holds two bodies together, or a body to the world.
+/// A joint between two bodies, or between a body and the world.
 struct JointDescription {
   std::string name;
   Location place;
   constraint::JointType type = constraint::JointType::weld;
   std::string first, second;  ///< bodies, or kWorldName
   Location bodies_place;
-  // all but a weld
+  // all types except weld
   Vector3 point = Vector3::Zero();         ///< m
   Vector3 axis = Vector3::UnitZ();         ///< unit length
   Vector3 second_axis = Vector3::UnitX();  ///< of a universal joint
   sim::Limits angle, displacement;         ///< rad, m
   double friction = 0.0;                   ///< N m, N
   // weld
-  std::optional<FixedRegion> region;  ///< of the first; none, and no points: where they touch
-  PointList points;                   ///< of the first
+  std::optional<FixedRegion> region;  ///< of the first body; none, and no points: where both touch
+  PointList points;                   ///< of the first body
   mesh::Outside outside = mesh::Outside::error;
 };
 
-/// In place of a body's name, where a joint may hold a body to the world.
+/// Stands for a body's name where a joint connects a body to the world.
 inline constexpr std::string_view kWorldName = "world";
 
-/// What a controller asks of one effector.
+/// The target of one effector of a controller.
 struct TaskDescription {
   std::string effector;
   Location place;
   inverse::Target target;               ///< m; for an orientation effector a rotation vector (rad)
-  std::vector<double> weights = {1.0};  ///< one for all, or one per direction of the effector; >= 0
+  std::vector<double> weights = {1.0};  ///< (1,) or one per direction of the effector; >= 0
   int priority = 1;
 };
 
-/// What a controller asks of the forces of one contact.
+/// The task of a controller for the forces of one contact.
 struct ContactTaskDescription {
   std::string contact;
   Location place;
-  inverse::ContactTask asked;  ///< its contact's number is not known yet
+  inverse::ContactTask asked;  ///< its contact number is set later
 };
 
 struct ControllerDescription {
   std::string name;
   Location place;
-  std::optional<inverse::Feedback> feedback;  ///< of a closed loop; its sensors have no numbers yet
-  std::vector<std::string> sensors;           ///< (tasks,) of a closed loop, what measures each
+  std::optional<inverse::Feedback> feedback;  ///< of a closed loop; sensor numbers are set later
+  std::vector<std::string> sensors;           ///< (tasks,) of a closed loop: sensor of each task
   std::vector<std::string> actuators;         ///< empty: all
   std::vector<Location> actuator_places;
   std::vector<TaskDescription> tasks;
   std::vector<ContactTaskDescription> contacts;
   Regularisation regularisation = Regularisation::change;
-  std::optional<double> epsilon;  ///< relative weight of the regularisation; none: the engine's
+  std::optional<double> epsilon;  ///< relative weight of the regularisation; none: the default
 };
 
 struct RecordDescription {
   Location place;
   int every = 1;       ///< steps per record
-  bool states = true;  ///< positions of all nodes, too
+  bool states = true;  ///< whether positions of all nodes are recorded
 };
 
 /// A whole scene.
 struct SceneDescription {
-  std::string name;  ///< file name without folder and extension, or what the caller said
+  std::string name;  ///< file name without folder and extension, or the name given by the caller
   Location place;
   int version = 1;
   Vector3 gravity = Vector3::Zero();  ///< m/s^2
@@ -458,9 +459,9 @@ struct SceneDescription {
   std::vector<JointDescription> joints;
   std::vector<ControllerDescription> controllers;
   RecordDescription record;
-  Node tree;  ///< what this was read from, for to_yaml() and overrides
+  Node tree;  ///< tree that this was read from, for to_yaml() and overrides
 
-  /// `duration`, or else the end of the longest signal and target; 0 when there is neither.
+  /// `duration`, or by default the end of the longest signal or target; 0 if there is none.
   double run_duration() const;
 };
 

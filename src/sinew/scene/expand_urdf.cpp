@@ -1,4 +1,4 @@
-// Robots in URDF files become bodies and joints of the scene.
+// Replaces robots in URDF files by bodies and joints of the scene.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -23,10 +23,10 @@ namespace {
 
 using Type = UrdfJoint::Type;
 
-// What scenes may call by ROBOT.NAME.
+// The parts that scenes may name as ROBOT.NAME.
 struct Names {
   std::map<std::string, std::string> bodies;  // the body that a link is part of
-  std::map<std::string, UrdfJoint> joints;    // those that move
+  std::map<std::string, UrdfJoint> joints;    // joints that move
 };
 
 JointDescription joint_of(const UrdfJoint& from, int number, const UrdfBodies& bodies,
@@ -48,7 +48,7 @@ JointDescription joint_of(const UrdfJoint& from, int number, const UrdfBodies& b
   return joint;
 }
 
-// @param scene gets the joints. @return its bodies.
+// Expands one robot. @param scene to which its joints are added. @return its bodies.
 std::vector<BodyDescription> expand(const BodyDescription& body, SceneDescription& scene,
                                     Names& names, std::vector<Notice>& notices) {
   const UrdfDescription& description = *body.urdf;
@@ -138,7 +138,7 @@ void resolve_bodies(SceneDescription& scene, const Names& names,
   });
 }
 
-// Motors without limits of their own get the file's.
+// Resolves the joints of motors. Motors without limits get those of the file.
 void resolve_joints(SceneDescription& scene, const Names& names) {
   for (ActuatorDescription& actuator : scene.actuators) {
     auto* motor = std::get_if<MotorDescription>(&actuator.own);

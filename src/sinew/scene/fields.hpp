@@ -1,7 +1,7 @@
 /// @file
-/// Reads the values of one map into members of a description. A key that is not in the grammar's
-/// table, or not of the asked type there, is a defect of ours and throws Error(internal): so no
-/// reader can know a key that the grammar does not.
+/// Reads the values of one map into members of a description. Reading a key that is not in the
+/// grammar's table, or has another type there, is a bug and throws Error(internal). So no reader
+/// can know a key that the grammar does not.
 #pragma once
 
 #include <initializer_list>
@@ -16,39 +16,40 @@
 
 namespace sinew::scene {
 
-/// A view of a checked map. Keys that are left out leave the members at their in-class defaults.
+/// A view of a checked map. If a key is omitted, its member keeps its in-class default.
 class Fields {
  public:
   /// @param map a map that check_scene() accepted; must outlive this.
-  /// @param table what it was checked against.
+  /// @param table that the map was checked against.
   Fields(const Node& map, const KeyTable& table) : map_(map), table_(table) {}
-  /// The same for a map of a table or variants form.
+  /// As above, for a map that is written in a table or variants form.
   Fields(const Node& map, const Form& form);
 
   const Node& map() const { return map_; }
   const KeyTable& table() const { return table_; }
 
-  /// The value of a key of the table, or nullptr.
+  /// The value of a key, or nullptr if it is omitted.
   const Node* find(std::string_view key) const;
-  /// Where the value stands; where the map stands when it is left out.
+  /// Location of the value; that of the map if the key is omitted.
   Location place(std::string_view key) const;
-  /// The form in which a value that stands is written.
+  /// The form in which the value is written. The key must not be omitted.
   const Form& form(std::string_view key) const;
-  /// The fields of the map under `key`; of an empty map when it is left out.
+  /// The fields of the map under `key`; those of an empty map if the key is omitted.
   Fields below(std::string_view key) const;
 
-  /// Each returns true when the key stands, and then sets `value` (SI).
+  /// Sets `value` (SI) and returns true if the map has the key; otherwise returns false.
   bool read(std::string_view key, double& value) const;
   bool read(std::string_view key, Vector3& value) const;
   bool read(std::string_view key, int& value) const;
   bool read(std::string_view key, bool& value) const;
   bool read(std::string_view key, std::string& value) const;
   bool read_numbers(std::string_view key, std::vector<double>& value) const;
-  /// A vector of any length but zero, made a unit vector. Throws Error(out-of-range) for zero.
+  /// Reads a non-zero vector and normalises it. Throws Error(out-of-range) for the zero vector.
   bool read_direction(std::string_view key, Vector3& value) const;
-  /// The word of a choice, or of the key that tells a variants form.
+  /// Reads the word of a choice, or of the key that selects a variant.
   bool read_word(std::string_view key, std::string& word) const;
 
+  /// Reads the word of a choice and sets `value` to its meaning.
   template <typename Enum>
   bool read_choice(std::string_view key, Enum& value,
                    std::initializer_list<std::pair<const char*, Enum>> meanings) const {
@@ -70,7 +71,7 @@ class Fields {
   const KeyTable& table_;
 };
 
-/// A unit vector of the same direction. Throws Error(out-of-range) for zero, at `place`.
+/// Normalises a vector. Throws Error(out-of-range) at `place` for the zero vector.
 Vector3 unit_vector(const std::vector<double>& numbers, const Location& place);
 
 }  // namespace sinew::scene

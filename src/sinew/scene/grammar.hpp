@@ -1,7 +1,7 @@
 /// @file
-/// The grammar of scenes, once: every key with its type, dimension, default and meaning. The
-/// checker and its messages (check.hpp), the reader (fields.hpp), overrides, the reference page and
-/// the JSON Schema (reference.hpp) all come from these tables, so that they cannot drift apart.
+/// The grammar of scenes: every key with its type, dimension, default and meaning. The checker and
+/// its messages (check.hpp), the reader (fields.hpp), overrides, the reference pages and the JSON
+/// Schema (reference.hpp) all use these tables, so that they cannot drift apart.
 #pragma once
 
 #include <limits>
@@ -17,10 +17,10 @@ namespace sinew::scene {
 
 struct KeyTable;
 
-/// What a value looks like.
+/// The syntactic shape of a value.
 enum class Shape {
   quantity,   ///< one or several numbers with a unit: "10 mm", "0 0 190 mm", [0, 0, 0.19]
-  unit,       ///< what a number without a unit means: "mm"
+  unit,       ///< the unit of numbers that are written without one: "mm"
   integer,    ///< a whole number
   boolean,    ///< true or false
   text,       ///< free text
@@ -34,7 +34,7 @@ enum class Shape {
   names,      ///< a map from names that the user chooses to items
 };
 
-/// Allowed numbers.
+/// An interval of allowed numbers.
 struct Range {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
@@ -51,22 +51,22 @@ struct Choice {
   std::shared_ptr<const KeyTable> table{};  ///< variants: the keys that go with the word
 };
 
-/// One way to write a value; a key may offer several that differ in YAML kind or in their keys.
+/// One way to write a value. A key may have several forms, which differ in YAML kind or in keys.
 struct Form {
   Shape shape = Shape::text;
   Dimension dimension{};        ///< quantity, samples
   std::string unit;             ///< a customary unit of the dimension, for examples
-  int min_count = 1;            ///< numbers of a quantity, items of a list
+  int min_count = 1;            ///< of the numbers of a quantity, or the items of a list
   int max_count = 1;            ///< see min_count
   Range range;                  ///< of each number
   std::vector<Choice> choices;  ///< choice, variants; reference: words in place of a name
-  std::string refers_to;        ///< reference, names: the top-level key whose names are meant
-  /// table, variants: the key that tells this form by; choice: the key of the map form that a lone
-  /// word is short for
+  std::string refers_to;        ///< reference, names: the top-level key that defines the names
+  /// table, variants: the key by which this form is recognised; choice: the key of the map form
+  /// that a single word abbreviates
   std::string telltale;
   std::shared_ptr<const KeyTable> table;  ///< table
   std::vector<Form> items;                ///< list, names: the forms of an item
-  bool loose = false;                     ///< choice: its letters and digits alone count
+  bool loose = false;                     ///< choice: only letters and digits are compared
   bool later = false;                     ///< belongs to a later version
 };
 
@@ -75,14 +75,14 @@ struct Key {
   std::string name;
   std::vector<Form> forms;
   std::string example{};       ///< as it would be written after "name: "
-  std::string default_text{};  ///< YAML that means the same as leaving the key out; may be empty
+  std::string default_text{};  ///< YAML equivalent to omitting the key; may be empty
   std::string description{};
   bool required = false;
   bool later = false;       ///< belongs to a later version
-  std::string only_with{};  ///< makes sense only beside this key
+  std::string only_with{};  ///< the key without which this one is refused
 };
 
-/// Keys of which at most one, or exactly one, may stand in a map.
+/// Keys of which a map may have at most one or, if `required`, must have exactly one.
 struct Alternatives {
   std::vector<std::string> keys;
   bool required = false;
@@ -94,28 +94,29 @@ struct KeyTable {
   std::string description;
   std::vector<Key> keys{};
   std::vector<Alternatives> alternatives{};
-  /// Reference: the table that is described in place of this one, which differs in dimension alone.
+  /// For the reference: the table described in place of this one, if they differ only in dimension.
   std::shared_ptr<const KeyTable> stand_in{};
-  /// Reference: the table under which the keys that both have are described.
+  /// For the reference: the table that describes the keys that both tables have.
   std::shared_ptr<const KeyTable> shared{};
 
   const Key* find(std::string_view key) const;
-  /// The names of all keys, for messages and suggestions; keys of later versions left out.
+  /// The names of all keys except those of later versions, for messages and suggestions.
   std::vector<std::string> key_names() const;
-  /// The alternatives that hold `key`, or nullptr.
+  /// The group of alternatives that contains `key`, or nullptr.
   const Alternatives* alternatives_of(std::string_view key) const;
 };
 
-/// The table of a whole scene; everything else hangs from it. Built at the first call.
+/// The table of a whole scene, which leads to all other tables. Built at the first call.
 const KeyTable& grammar();
 
-/// The only form of `key` with the given shape; throws Error(internal) when the table has none: a
-/// reader that asks for what the grammar does not offer is a defect of ours.
+/// The only form of `key` with the given shape. Throws Error(internal) if the table has none, since
+/// a reader that asks for a form outside the grammar has a bug.
 const Form& form_of(const KeyTable& table, std::string_view key, Shape shape);
 
-/// "an acceleration such as 9.81 m/s^2", "one of volume, even", ... for messages and the reference.
+/// Describes a form for messages and the reference: "an acceleration such as 9.81 m/s^2", "one of
+/// volume, even".
 std::string describe(const Form& form);
-/// The forms joined by "or".
+/// Describes several forms, joined by "or".
 std::string describe(const std::vector<Form>& forms);
 
 }  // namespace sinew::scene

@@ -109,7 +109,7 @@ Key outside_key() {
 
 namespace {
 
-// Words of an actuator that pulls or pushes along a line.
+// Words of an actuator that acts along a line.
 DriveWords line_words(sim::ActuatorType type, Range range, const char* min_default,
                       const char* motion_text, const char* undriven) {
   DriveWords words{.kind = sim::actuator_words(type).type, .type = type};

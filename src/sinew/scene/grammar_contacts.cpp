@@ -1,4 +1,4 @@
-// The tables of contacts: what surfaces a body may touch, and where.
+// The tables of contacts.
 #include "sinew/scene/grammar_forms.hpp"
 
 namespace sinew::scene::forms {

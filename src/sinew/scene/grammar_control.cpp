@@ -5,7 +5,7 @@ namespace sinew::scene::forms {
 
 namespace {
 
-// "ramp in m"; "ramp" of numbers without a unit.
+// Name of a table: "ramp in m", or "ramp" for dimensionless numbers.
 std::string with_unit(const char* name, const Measure& measure) {
   return std::string(name) + (*measure.unit == '\0' ? "" : " in ") + measure.unit;
 }

@@ -1,4 +1,4 @@
-// The tables of estimators: from which sensors, and what is unknown.
+// The tables of estimators.
 #include <string>
 
 #include "sinew/scene/grammar_forms.hpp"
@@ -46,7 +46,7 @@ std::shared_ptr<const KeyTable> effort_place_table() {
   return table;
 }
 
-// What an unknown of one kind is called and measured in.
+// Words and measures for one kind of unknown.
 struct UnknownWords {
   const char* key = "";
   const char* name = "";

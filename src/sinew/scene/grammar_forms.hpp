@@ -1,5 +1,5 @@
 /// @file
-/// Short constructors of forms, for writing the grammar's tables.
+/// Short constructors of forms, with which the grammar's tables are written.
 #pragma once
 
 #include <initializer_list>
@@ -59,7 +59,7 @@ Measure force_constant();
 Range any();
 Range positive();
 Range non_negative();
-/// Of a material's constants: an open interval.
+/// Open interval of a material constant; outside it the error is invalid-material.
 Range material_range(double min, double max = std::numeric_limits<double>::infinity());
 
 Form quantity(const Measure& measure, Range range = any());
@@ -71,27 +71,28 @@ Form integer(int min, int max);
 Form boolean();
 Form text();
 Form file();
-/// @param top_level_key of the list that has the name: "bodies". @param words that may stand in
+/// @param top_level_key under which the name is defined: "bodies". @param words allowed in
 /// place of a name.
 Form reference(const char* top_level_key, std::vector<Choice> words = {});
-/// `short_for`: the key of the map form of the same value that a lone word stands for.
+/// @param choices the words. @param short_for the key of the map form that a single word
+/// abbreviates.
 Form choice(std::vector<Choice> choices, const char* short_for = "");
 Form list(std::vector<Form> items, int min_count = 1, int max_count = kAnyNumber);
 Form samples(const Measure& measure);
 Form table(std::shared_ptr<const KeyTable> table, const char* telltale = "");
 Form variants(const char* telltale, std::vector<Choice> choices);
-/// At least `min_count` entries, whose names are free or, with `refers_to`, those of that top-level
-/// key.
+/// A map of at least `min_count` entries. Their names are free, or with `refers_to` those of that
+/// top-level key.
 Form names(Form item, int min_count = 0, const char* refers_to = "");
-/// The same form, refused as belonging to a later version.
+/// The same form, but refused as belonging to a later version.
 Form later(Form form);
 
 std::shared_ptr<const KeyTable> make_table(KeyTable table);
 
-/// What the limits and commands of one kind of actuator are called and look like.
+/// Words, measures and examples for the limits and commands of one type of actuator.
 struct DriveWords {
   const char* kind = "";
-  sim::ActuatorType type = sim::ActuatorType::cable;  ///< whose words effort and motion have
+  sim::ActuatorType type = sim::ActuatorType::cable;  ///< whose words name effort and motion
   Measure effort_measure{}, effort_rate{};
   Range effort_range;
   const char* min_default = "";
@@ -111,25 +112,25 @@ std::vector<Key> drive_keys(const DriveWords& words);
 Key body_key();
 /// A length of a shape, positive and required.
 Key shape_length(const char* name, const char* example, const char* description);
-/// point, points and set: where something is on a body.
+/// Keys point, points and set, which give a location on a body.
 std::vector<Key> spot_keys();
 Key outside_key();
-/// `file` of a mesh, required.
+/// Key `file` of a mesh, required.
 Key mesh_file_key(const char* example);
-/// `unit` of a file's coordinates. @param only_with the key of the file, where that is optional.
+/// Key `unit` of a file's coordinates. @param only_with the key of the file if that is optional.
 Key file_unit_key(const char* only_with = "");
-/// `scale` of a file's coordinates.
+/// Key `scale` of a file's coordinates.
 Key file_scale_key();
-/// x, y, z, which name the world's axes, or a vector.
+/// Forms of an axis: x, y or z for a world axis, or a vector.
 std::vector<Form> axis_forms();
-/// box, sphere, plane and set, of which one must stand.
+/// Keys box, sphere, plane and set, of which a region needs one.
 std::vector<Key> region_keys(const char* whose);
-/// A table of them.
+/// A table of the region keys.
 std::shared_ptr<const KeyTable> region_table(const char* name, const char* description);
-/// x, y, z, angle, axis and centre of a motion over time.
+/// Keys x, y, z, angle, axis and centre of a prescribed motion.
 std::vector<Key> motion_keys();
 
-// The tables of each part, in the file of that part.
+// Tables and forms of each part of a scene, defined in the file of that part.
 std::shared_ptr<const KeyTable> surface_table();
 std::shared_ptr<const KeyTable> chamber_table();
 std::shared_ptr<const KeyTable> spring_table();
@@ -142,7 +143,7 @@ std::shared_ptr<const KeyTable> linear_motor_table();
 std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char* value_example);
 std::shared_ptr<const KeyTable> point_file_table();
 std::shared_ptr<const KeyTable> body_point_table();
-/// What may stand under `material`: a law, a file, or a name of the library.
+/// Forms of `material`: a law, a file, or the name of a library material.
 std::vector<Form> material_forms();
 Form body_form();
 Form actuator_form();

@@ -1,4 +1,4 @@
-// The tables of joints: what holds bodies together.
+// The tables of joints.
 #include "sinew/constraint/joint_type.hpp"
 #include "sinew/scene/grammar_forms.hpp"
 

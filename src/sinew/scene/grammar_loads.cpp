@@ -1,4 +1,4 @@
-// The tables of loads, hung masses and layers on faces: what is done to a body, and put on it.
+// The tables of loads, point masses and membranes.
 #include "sinew/scene/grammar_forms.hpp"
 
 namespace sinew::scene::forms {

@@ -102,7 +102,7 @@ std::vector<Key> history_keys() {
            .description = "The Mullins effect. Default: unloading follows loading."}};
 }
 
-// The keys of all hyperelastic laws, for the reference alone.
+// A table of these keys, used only for the reference.
 std::shared_ptr<const KeyTable> history_table() {
   static const auto table = make_table({.name = "keys of all hyperelastic laws",
                                         .description = "Viscoelasticity and softening.",
@@ -110,7 +110,7 @@ std::shared_ptr<const KeyTable> history_table() {
   return table;
 }
 
-/// A hyperelastic law: its own keys, and one of the two that say how little it is compressible.
+/// A hyperelastic law, with its own keys and one of the two keys for its compressibility.
 Choice energy(const char* word, const char* description, std::vector<Key> keys,
               std::vector<Alternatives> alternatives = {}) {
   keys.push_back(poisson_ratio(
@@ -167,7 +167,7 @@ std::vector<Key> saint_venant_keys() {
   return keys;
 }
 
-/// Laws by name, told by `model`.
+/// All laws, selected by the key `model`.
 Form law_form() {
   const Key shear = modulus("shear_modulus", "24.4 kPa", "Initial shear modulus.", false);
   Key c20 = modulus("c20", "-0.2 kPa", "Coefficient of (I - 3)^2.", false, true);

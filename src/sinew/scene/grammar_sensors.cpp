@@ -1,11 +1,11 @@
-// The tables of sensors: what each measures, and the channel that all have.
+// The tables of sensors, with the channel that they share.
 #include "sinew/scene/grammar_forms.hpp"
 
 namespace sinew::scene::forms {
 
 namespace {
 
-// What a sensor says, for the keys of its channel.
+// Measures of a sensor's output, for the keys of its channel.
 struct Said {
   Measure measure;
   const char* error;    // a likely noise
@@ -116,7 +116,7 @@ std::vector<Key> channel_keys(const Said& said) {
   return keys;
 }
 
-// The keys of all sensors, for the reference alone.
+// A table of the keys of all sensors, used only for the reference.
 std::shared_ptr<const KeyTable> channel_table() {
   static const auto table = make_table(
       {.name = "keys of all sensors",

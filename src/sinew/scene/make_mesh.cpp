@@ -1,4 +1,5 @@
-// Meshes of scenes: files, and the project's own shapes with cells of about the asked size.
+// Makes meshes of scenes: reads files, and generates built-in shapes with cells of about a given
+// size.
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -20,7 +21,7 @@ namespace sinew::scene {
 
 namespace {
 
-// Reads parameters by name, each with what it is when not given.
+// Reads parameters by name, with defaults.
 class Parameters {
  public:
   explicit Parameters(const MeshDescription& description) : values_(description.parameters) {}
@@ -29,7 +30,7 @@ class Parameters {
     const auto found = values_.find(name);
     return found == values_.end() ? otherwise : found->second;
   }
-  /// Cells of about element_size along a length; `otherwise` where no size is given.
+  /// Number of cells of about element_size along a length; `otherwise` if no size is given.
   int cells(double length, int otherwise) const {
     const auto size = values_.find("element_size");
     if (size == values_.end()) return otherwise;
@@ -40,12 +41,12 @@ class Parameters {
   const std::map<std::string, double>& values_;
 };
 
-// Cells through a length so that they are about as wide as those across `width` in `across` cells.
+// Number of cells along a length such that they are about as large as `across` cells along `width`.
 int matching(double length, double width, int across) {
   return std::max(1, static_cast<int>(std::lround(length / width * across)));
 }
 
-// A disc of hexahedra has two rings at least.
+// Number of rings of a disc; at least two for hexahedra.
 int rings(int asked, mesh::Cells cells) {
   return std::max(asked, cells == mesh::Cells::hexahedra ? 2 : 1);
 }
@@ -140,8 +141,7 @@ mesh::Mesh make_capsule(const Parameters& p, mesh::Cells cells) {
   return mesh::capsule(shape, cells);
 }
 
-// Without a gap given, ribs are twice as long as gaps; without a spine, it is a third of the
-// height.
+// By default, ribs are twice as long as gaps, and the spine is a third of the height.
 mesh::Mesh make_finger(const Parameters& p, mesh::Cells cells) {
   mesh::RibbedFingerShape shape;
   shape.size = {p.get("length", shape.size.x()), p.get("width", shape.size.y()),

@@ -1,6 +1,6 @@
 /// @file
-/// The tree that a scene is read from, whoever wrote it: a YAML file or a Python dict. Knows
-/// nothing of robots. Every node keeps the place where it was written.
+/// The tree from which a scene is read, whether it comes from a YAML file or a Python dict. It is
+/// independent of robots. Every node keeps the location where it was written.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,14 @@
 
 namespace sinew::scene {
 
-/// A scalar (text, number, boolean, null), a list, or a map whose entries keep their order. Scalars
-/// keep the spelling of their source, so that writing a tree back changes no digit.
+/// A scalar (text, number, boolean, null), a list, or a map. Entries of a map keep their order, and
+/// scalars keep the spelling of their source, so that writing a tree back changes no digit.
 class Node {
  public:
   enum class Kind { null, boolean, number, text, list, map };
   struct Entry;
 
-  /// null
+  /// Makes a null node.
   Node();
   ~Node();
   Node(const Node&);
@@ -34,7 +34,7 @@ class Node {
   static Node text(std::string value);
   static Node list();
   static Node map();
-  /// What an unquoted YAML scalar means: "true" a boolean, "1e-3" a number, "~" null, else text.
+  /// An unquoted YAML scalar: "true" is a boolean, "1e-3" a number, "~" null, anything else text.
   static Node plain(std::string spelling);
 
   Kind kind() const { return kind_; }
@@ -57,22 +57,22 @@ class Node {
   const Node* find(std::string_view key) const;
   Node* find(std::string_view key);
 
-  /// Appends to a list. Returns the new item.
+  /// Appends an item to a list, and returns the new item.
   Node& append(Node item);
-  /// Adds to a map, or replaces the entry in place. Returns the value.
+  /// Adds an entry to a map or replaces its value in place, and returns the value.
   Node& set(std::string key, Node value);
-  /// Removes an entry; false when there is none.
+  /// Removes an entry. Returns false if there is none.
   bool erase(std::string_view key);
 
   const Location& place() const { return place_; }
   void set_place(Location place) { place_ = std::move(place); }
-  /// Gives this node the dotted path `path`, and everything under it the paths that follow
+  /// Gives this node the dotted path `path`, and all nodes below it the resulting paths
   /// ("bodies.trunk.fixed[0]"). Trees made by hand have no paths until this is called.
   void name_paths(const std::string& path = {});
-  /// Says where the whole tree comes from when that has no lines: an option of the command line.
+  /// Names the source of the whole tree if that has no lines, such as a command-line option.
   void name_file(const std::string& file);
 
-  /// Same kinds, spellings, keys and order; places do not count.
+  /// Compares kinds, spellings, keys and order, but not locations.
   bool operator==(const Node& other) const;
 
  private:
@@ -83,7 +83,7 @@ class Node {
   Location place_;
 };
 
-/// One line of a map.
+/// One entry of a map.
 struct Node::Entry {
   std::string key;
   Location key_place;
@@ -93,22 +93,22 @@ struct Node::Entry {
 /// "a number", "a list", ... for messages.
 std::string_view node_kind_name(Node::Kind kind);
 
-/// What a YAML document may cost at most, so that no file can exhaust time or memory.
+/// Bounds on the size of a YAML document, so that no file can exhaust time or memory.
 struct YamlLimits {
   std::size_t bytes = 4u << 20;
-  std::size_t nodes = 200'000;   ///< aliases expanded
+  std::size_t nodes = 200'000;   ///< with aliases expanded
   std::size_t key_length = 200;  ///< bytes
   int depth = 32;
 };
 
 /// Reads one YAML document.
 /// @param text UTF-8.
-/// @param name the file name for places.
-/// @param limits what the document may cost.
+/// @param name the file name, for locations.
+/// @param limits on the size of the document.
 /// Throws Error: syntax-error, duplicate-key, bad-encoding, size-limit, each with line and column.
 Node parse_yaml(std::string_view text, const std::string& name, const YamlLimits& limits = {});
 
-/// Reads a whole file (at most limits.bytes) and parses it. Throws as parse_yaml() does, and
+/// Reads a whole file (at most limits.bytes) and parses it. Throws what parse_yaml() throws, and
 /// Error(file-not-found), Error(file-unreadable).
 Node read_yaml(const std::filesystem::path& path, const YamlLimits& limits = {});
 

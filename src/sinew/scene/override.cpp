@@ -21,8 +21,8 @@ std::vector<std::string> split_path(const std::string& path) {
   }
 }
 
-// Walks down a path through grammar and tree together; where it stands, `node` may be written in
-// any of `forms`.
+// Follows a path through grammar and tree at the same time. The current node may have any of the
+// current forms.
 class Walker {
  public:
   Walker(Node& scene, Location place)
@@ -47,7 +47,7 @@ class Walker {
   static Form form_of_scene() {
     Form form;
     form.shape = Shape::table;
-    // The grammar lives as long as the program, so nobody owns it here.
+    // The grammar exists as long as the program, so this pointer does not own it.
     form.table = std::shared_ptr<const KeyTable>(std::shared_ptr<void>(), &grammar());
     return form;
   }
@@ -61,7 +61,7 @@ class Walker {
     return word != nullptr && table_of(node, form).find(step) != nullptr;
   }
 
-  // The form of a map here that has the key `step`; else the first map form, for its message.
+  // The map form that has the key `step`; otherwise the first map form, for its error message.
   Form map_form(const std::string& step) {
     const Form* first = nullptr;
     for (const Form& form : forms_) {
@@ -124,7 +124,7 @@ class Walker {
     descend(step, last);
   }
 
-  // Removes what `step` replaces, and what made sense only beside that.
+  // Removes the alternatives to `step`, and the keys that require them.
   void clear_alternatives(const std::string& step, const KeyTable& table) {
     const Alternatives* group = table.alternatives_of(step);
     if (group == nullptr) return;
@@ -136,7 +136,7 @@ class Walker {
     }
   }
 
-  // Into the value of a key; a map is made where a deeper path needs one.
+  // Descends into the value of a key. Makes a map if the path is longer.
   void descend(const std::string& step, bool last) {
     if (!node_->is_map()) *node_ = Node::map();
     Node* below = node_->find(step);
@@ -146,7 +146,7 @@ class Walker {
     note(step);
   }
 
-  // The map that stands for a scalar: the word of a short form keeps its meaning.
+  // The map equivalent to a scalar. The word of a short form keeps its meaning.
   Node expanded(const Node& scalar) const {
     Node map = Node::map();
     for (const Form& form : forms_) {

@@ -32,7 +32,7 @@ void read_outside(const Fields& fields, mesh::Outside& outside) {
                      {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
 }
 
-// An input belongs to what fills a chamber.
+// Checks that the chamber has the fluid to which an input refers.
 void check_input(const sim::ChamberSettings& chamber, std::string_view input,
                  const Location& place) {
   const bool has = (input != "gas" || chamber.gas) && (input != "liquid" || chamber.liquid);
@@ -79,7 +79,7 @@ PointList read_line_points(const Fields& fields, const ReadContext& context) {
   return line;
 }
 
-// What cables and springs have alike.
+// Reads the keys that cables and springs share.
 template <class Settings>
 void set_line(const Fields& fields, const PointList& points, Settings& line) {
   line.points = points.points;
@@ -273,7 +273,7 @@ ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& c
   actuator.place = entry.key_place;
   const Form& form = form_of(grammar(), "actuators", Shape::names).items.front();
   const Fields fields(entry.value, form);
-  // The grammar lets no other word through.
+  // The grammar allows no other word.
   actuator.type = sim::actuator_type(read_text(*entry.value.find(form.telltale))).value();
   actuator.own = read_own(fields, actuator.type, context);
   if (!std::holds_alternative<MotorDescription>(actuator.own)) {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kShapeKey = "shape";
 
-// One factor, or one along each axis.
+// Reads one factor, or one for each axis.
 void read_scale(const Fields& fields, Vector3& scale) {
   std::vector<double> factors;
   if (!fields.read_numbers("scale", factors)) return;
@@ -42,7 +42,7 @@ MeshDescription read_mesh_file(const Fields& fields, const ReadContext& context)
   return mesh;
 }
 
-// Measures of a shape, whichever are given.
+// Reads the given measures of a shape.
 void read_measures(const Fields& fields, MeshDescription& mesh) {
   for (const Node::Entry& entry : fields.map().entries()) {
     if (entry.key == kShapeKey) continue;
@@ -131,7 +131,7 @@ void read_softening(const Fields& fields, material::Hyperelastic& energy) {
   effect.read("beta", mullins.beta);
 }
 
-/// The Prony series; whether the law's moduli are those of a sudden strain.
+/// Reads the Prony series. Returns whether the moduli of the law are instantaneous.
 bool read_viscosity(const Fields& fields, material::Hyperelastic& energy) {
   const Node* series = fields.find("viscosity");
   if (series == nullptr) return false;
@@ -154,7 +154,7 @@ void use_library(const std::string& name, MaterialDescription& material) {
   material.density = named.density;
 }
 
-// By the factor under `scale`.
+// Multiplies the stiffness by the factor under `scale`.
 void stiffen(const Fields& fields, MaterialDescription& material) {
   double factor = 1.0;
   fields.read("scale", factor);
@@ -162,7 +162,7 @@ void stiffen(const Fields& fields, MaterialDescription& material) {
   material.energy = material::scaled(material.energy, factor);
 }
 
-// A file with what else would stand under `material`; such files do not name further ones.
+// Reads a file that has the content of `material`. Such a file cannot refer to another file.
 MaterialDescription read_material_file(const Fields& body, const ReadContext& context);
 
 MaterialDescription read_material(const Fields& body, const ReadContext& context) {
@@ -344,7 +344,7 @@ void read_fixed(const Fields& fields, BodyDescription& body) {
   }
 }
 
-// A rigid body with a motion of its own goes nowhere else.
+// Refuses a rigid body that has a prescribed motion but is also free or has a velocity.
 void refuse_free(const Fields& fields) {
   bool fixed = true;
   fields.read("fixed", fixed);

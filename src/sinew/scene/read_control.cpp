@@ -61,7 +61,7 @@ inverse::Target read_target(const Fields& task, const char* key, const ReadConte
   return {};
 }
 
-// A position is asked of points, a rotation of orientations.
+// The key of a target: a position for points, a rotation for orientations.
 const char* target_key(const Fields& task, const EffectorDescription& effector) {
   const bool turns = effector.kind == EffectorDescription::Kind::orientation;
   const char* key = turns ? "rotation" : "target";

@@ -10,7 +10,7 @@ namespace sinew::scene {
 
 namespace {
 
-// Smallest sine of the angle between directions, or in a triangle, that still defines a frame.
+// Least sine of the angle between directions, or in a triangle, that defines a frame.
 constexpr double kDegenerate = 1e-6;
 
 void read_orientation(const Fields& fields, EffectorDescription& effector) {

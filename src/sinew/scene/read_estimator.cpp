@@ -10,7 +10,7 @@ namespace sinew::scene {
 
 namespace {
 
-// In an estimator's observables.
+// Name of the status in an estimator's observables.
 constexpr const char* kTakenName = "status";
 
 void read_force_place(const Fields& force, UnknownDescription& unknown) {
@@ -50,7 +50,7 @@ UnknownDescription read_unknown(const Node::Entry& entry, const std::vector<Form
   return unknown;
 }
 
-// Each once.
+// Reads a list of names without duplicates.
 void read_names(const Fields& fields, const char* key, std::vector<std::string>& names,
                 std::vector<Location>& places) {
   const Node* list = fields.find(key);

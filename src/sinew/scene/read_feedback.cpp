@@ -1,4 +1,4 @@
-// What a closed loop goes by: which sensor measures which effector, and whether that can work.
+// Reads closed loops: assigns sensors to effectors, and checks whether the loop can work.
 #include <algorithm>
 #include <ranges>
 #include <set>
@@ -26,7 +26,7 @@ const char* type_for(const EffectorDescription& effector) {
   return effector.kind == Kind::orientation ? "orientation" : "marker";
 }
 
-// What would measure an effector, as it is written in a scene.
+// A sensor that would measure an effector, as written in a scene.
 std::string sensor_for(const EffectorDescription& effector) {
   const std::string spot = effector.kind == Kind::set ? "set: " + effector.set
                            : effector.points.points.rows() == 1
@@ -59,7 +59,7 @@ void check_type(const SensorDescription& sensor, const Location& place) {
               "name sensors of type marker or orientation");
 }
 
-// A sample that comes once in a period may be that old before the next one.
+// Checks the rate, since a sample may be as old as its period before the next one arrives.
 void check_rate(const SensorDescription& sensor, double timeout, const Location& timeout_place) {
   if (!(sensor.channel.rate > 0.0) || 1.0 / sensor.channel.rate <= timeout) return;
   throw Error(ErrorKind::out_of_range, timeout_place,
@@ -69,10 +69,10 @@ void check_rate(const SensorDescription& sensor, double timeout, const Location&
               "give a longer timeout, or the sensor a higher rate");
 }
 
-// A link of a robot from a file, ROBOT.LINK, is of the body ROBOT.
+// The body of a name; for a link ROBOT.LINK of a URDF robot it is ROBOT.
 std::string body_of(const std::string& name) { return name.substr(0, name.find('.')); }
 
-/// Bodies that actuators move, through joints and contacts, too.
+/// The bodies that actuators move, directly or through joints and contacts.
 class Reach {
  public:
   Reach(const SceneDescription& scene, const ControllerDescription& controller) : scene_(scene) {
@@ -101,7 +101,7 @@ class Reach {
     }
   }
 
-  // Whether a further body is reached.
+  // Adds bodies connected to those so far. Returns whether there was a new one.
   bool spread() {
     const std::size_t before = bodies_.size();
     for (const JointDescription& joint : scene_.joints) join(joint.first, joint.second);
@@ -117,7 +117,7 @@ class Reach {
     return bodies_.size() > before;
   }
 
-  // The world passes nothing on.
+  // Connects two bodies. The world transmits no motion.
   void join(const std::string& first, const std::string& second) {
     if (first == kWorldName || second == kWorldName) return;
     if (!has(first) && !has(second)) return;
@@ -140,7 +140,7 @@ void check_reach(const SceneDescription& scene, const ControllerDescription& con
   }
 }
 
-/// Gives each task its sensor.
+/// Assigns a sensor to each task.
 class Assignment {
  public:
   Assignment(const SceneDescription& scene, ControllerDescription& controller)

@@ -10,7 +10,7 @@ namespace {
 
 using constraint::JointType;
 
-// The grammar takes no other word.
+// The grammar allows no other word.
 JointType type_of(const std::string& word) {
   return *std::ranges::find_if(constraint::kJointTypes, [&](JointType type) {
     return word == constraint::joint_type_name(type);

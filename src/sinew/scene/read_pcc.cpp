@@ -1,4 +1,4 @@
-// Bodies of type pcc.
+// Reads bodies of type pcc.
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 

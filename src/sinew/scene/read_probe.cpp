@@ -24,7 +24,7 @@ bool has_region(const Fields& fields) {
   return false;
 }
 
-/// point, points or set.
+/// Reads point, points or set.
 void read_spot(const Fields& fields, const ReadContext& context, Part& part) {
   part.place = fields.map().place();
   Vector3 point;

@@ -1,4 +1,4 @@
-// Bodies of type rigid.
+// Reads bodies of type rigid.
 #include "sinew/core/rotation.hpp"
 #include "sinew/rigid/rigid_settings.hpp"
 #include "sinew/scene/readers.hpp"

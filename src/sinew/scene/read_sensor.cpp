@@ -82,7 +82,7 @@ void read_patch(const Fields& fields, SensorDescription& sensor) {
   patch.read("body", sensor.patch_body);
 }
 
-// What it measures. @return the names of its components.
+// Reads the measured quantity. @return the names of its components.
 std::vector<std::string> read_measured(const Fields& fields, SensorDescription& sensor,
                                        const ReadContext& context) {
   const std::string& type = sensor.type;
@@ -147,7 +147,7 @@ void read_channel(const Fields& fields, SensorDescription& sensor) {
       "give the least value first");
 }
 
-// A real sensor has its own errors.
+// Refuses simulated errors for recorded samples, since a real sensor has its own errors.
 void check_record(const Fields& fields, const sim::ChannelSettings& channel) {
   const std::pair<const char*, bool> simulated[] = {
       {"bias", channel.bias != 0.0},       {"drift", channel.drift != 0.0},

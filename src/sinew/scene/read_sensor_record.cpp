@@ -10,12 +10,12 @@ namespace sinew::scene {
 
 namespace {
 
-// Periods after which the next sample is missing.
+// Number of periods after which a sample counts as missing.
 constexpr double kGap = 1.5;
 
 std::string name_in(const std::string& heading) { return heading.substr(0, heading.find(" [")); }
 
-// By the heading, with or without its unit; -1: none.
+// Finds a column by its heading, with or without unit; -1 if there is none.
 Eigen::Index find_column(const Table& table, const std::string& name) {
   const auto found = std::ranges::find_if(table.names, [&](const std::string& heading) {
     return heading == name || name_in(heading) == name;
@@ -38,7 +38,7 @@ class RecordReader {
 
   sim::SensorRecord read() {
     const std::vector<Eigen::Index> columns = choose();
-    // When a sample was taken, and whether it is a new one, as sensors.csv says it.
+    // sensors.csv has the time of each sample, which also shows whether a row has a new sample.
     const Eigen::Index taken = find_column(table_, sensor_.name + ".sample_time");
     std::vector<Eigen::Index> rows;
     sim::SensorRecord record;

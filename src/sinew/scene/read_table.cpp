@@ -11,7 +11,7 @@ Location row_place(const Table& table, Eigen::Index row, const Location& written
   return {table.place.file, table.lines[static_cast<std::size_t>(row)], 0, written.item};
 }
 
-// The table under `file`, its values times the unit under `unit` from column `first` on.
+// Reads the table under `file`, and multiplies columns from `first` on by the unit under `unit`.
 Table read_scaled(const Fields& fields, int columns, Eigen::Index first,
                   const ReadContext& context) {
   const std::filesystem::path path = context.path(fields, "file");
@@ -24,7 +24,7 @@ Table read_scaled(const Fields& fields, int columns, Eigen::Index first,
   return table;
 }
 
-// The column that a heading "NAME" or "NAME [unit]" names.
+// The column with the heading "NAME" or "NAME [unit]".
 Eigen::Index column_of(const Table& table, const std::string& name, const Location& place) {
   for (std::size_t k = 1; k < table.names.size(); ++k) {
     const std::string& heading = table.names[k];
@@ -39,7 +39,7 @@ Eigen::Index column_of(const Table& table, const std::string& name, const Locati
                                 fmt::join(table.names.begin() + 1, table.names.end(), ", ")));
 }
 
-// What one of a column's heading is in SI; 1 where it says nothing.
+// The unit (SI) in the heading of a column; 1 if there is none.
 double heading_unit(const std::string& heading, const Fields& fields, const Location& place) {
   const std::size_t open = heading.find(" [");
   const Key* key = fields.table().find("unit");
@@ -48,7 +48,7 @@ double heading_unit(const std::string& heading, const Fields& fields, const Loca
                     key->forms.front().dimension, place);
 }
 
-// Time and one column of a table with headings.
+// Reads the time and one column of a table with headings.
 Table read_column(const Fields& fields, const ReadContext& context) {
   const std::filesystem::path path = context.path(fields, "file");
   Table table = at_place(fields.place("file"), [&] { return read_csv(path); });

@@ -1,4 +1,4 @@
-// Bodies of type urdf.
+// Reads bodies of type urdf.
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"

@@ -1,6 +1,6 @@
 /// @file
-/// Parts of the parser, one for each part of a scene; internal to this folder. Each takes a node
-/// that check_scene() accepted.
+/// The readers of the parts of a scene. Each takes a node that check_scene() accepted. Internal to
+/// this folder.
 #pragma once
 
 #include <filesystem>
@@ -15,80 +15,85 @@
 
 namespace sinew::scene {
 
-/// What relative paths are relative to, and whether files are opened.
+/// The folder of relative paths, and whether files are opened.
 struct ReadContext {
   std::filesystem::path base_dir;
   Files files = Files::check;
 
-  /// The path under `key` of the fields, made absolute or relative to the working folder. Throws
-  /// Error(file-not-found) at its place when it is no readable file and files are checked.
+  /// The path under `key`, prefixed by base_dir if it is relative. If files are checked, throws
+  /// Error(file-not-found) or, for anything but a regular file, Error(file-unreadable).
   std::filesystem::path path(const Fields& fields, std::string_view key) const;
 };
 
 BodyDescription read_body(const Node::Entry& entry, const ReadContext& context);
-/// What a body of type pcc is. @param fields of it. @param name of the body.
+/// Reads a body of type pcc. @param fields of the body. @param name of the body.
 pcc::ArmSettings read_arm(const Fields& fields, const std::string& name);
-/// What a body of type rigid is. @param fields of it. @param name of the body.
+/// Reads a body of type rigid. @param fields of the body. @param name of the body.
 rigid::RigidSettings read_rigid(const Fields& fields, const std::string& name);
-/// What a body of type urdf is. @param fields of it. @param context of the scene.
+/// Reads a body of type urdf. @param fields of the body. @param context of the scene.
 UrdfDescription read_urdf(const Fields& fields, const ReadContext& context);
-/// The rotation of a pose. @param pose its fields.
+/// Reads the rotation of a pose. @param pose fields of the pose.
 Matrix3 read_rotation(const Fields& pose);
-/// The region that one of the keys box, sphere, plane and set gives.
+/// Reads a region from one of the keys box, sphere, plane and set.
 FixedRegion read_region(const Fields& fields);
 ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& context);
 MassDescription read_hung_mass(const Node::Entry& entry);
 MembraneDescription read_membrane(const Node::Entry& entry, const ReadContext& context);
 LoadDescription read_load(const Node::Entry& entry, const ReadContext& context);
-/// The surface that the keys of the surface table give.
+/// Reads a surface from the keys of the surface table.
 void read_surface(const Fields& fields, SurfaceDescription& surface, const ReadContext& context);
 EffectorDescription read_effector(const Node::Entry& entry, const ReadContext& context);
 ContactDescription read_contact(const Node::Entry& entry, const ReadContext& context);
 JointDescription read_joint(const Node::Entry& entry, const ReadContext& context);
-/// A motion over time. @param fields of its map. @param context of the scene.
+/// Reads a prescribed motion. @param fields of its map. @param context of the scene.
 sim::BaseMotion read_motion(const Fields& fields, const ReadContext& context);
 ProbeDescription read_probe(const Node::Entry& entry, const ReadContext& context);
 SensorDescription read_sensor(const Node::Entry& entry, const ReadContext& context);
 EstimatorDescription read_estimator(const Node::Entry& entry);
-/// The samples under `file`; null without, and when files are not opened.
-/// @param fields of the sensor. @param sensor read so far: its name, rate and delay.
-/// @param numbers names of its components: "x", "y", "z"; empty for its only one.
-/// @param context of the scene. Throws Error: wrong-columns, non-monotonic-time, not-finite,
-/// malformed-table and bad-signal (a gap) with the line.
+/// Reads the samples of a sensor from its `file`; null if files are not opened. Throws Error:
+/// wrong-columns, wrong-length, non-monotonic-time, not-finite, malformed-table and bad-signal (a
+/// gap), the latter with the line.
+/// @param fields of the sensor, with the key `file`. @param sensor whose name, rate and delay have
+/// been read. @param numbers names of its components, such as "x", "y", "z"; empty for a scalar.
+/// @param context of the scene.
 std::shared_ptr<const sim::SensorRecord> read_sensor_record(const Fields& fields,
                                                             const SensorDescription& sensor,
                                                             const std::vector<std::string>& numbers,
                                                             const ReadContext& context);
-/// A unit vector, or the axis that x, y or z names. @param node,forms what is read, as one of
-/// these.
+/// Reads an axis: the world axis x, y or z, or a vector, which is normalised.
+/// @param node,forms the value, and the forms that it may have.
 Vector3 read_axis(const Node& node, const std::vector<Form>& forms);
-/// Knows the effectors, which say how many weights and what kind of target there may be.
+/// Reads a controller. @param entry of the controller. @param context of the scene. @param scene
+/// with the effectors, which determine the size of weights and targets.
 ControllerDescription read_controller(const Node::Entry& entry, const ReadContext& context,
                                       const SceneDescription& scene);
 
-/// The sensors and gains of a closed loop. @param fields of it. @param scene with bodies,
-/// actuators, effectors, sensors, contacts and joints. @param controller read so far: its tasks and
-/// actuators.
+/// Reads the sensors and gains of a closed loop. @param fields of the loop. @param scene with
+/// bodies, actuators, effectors, sensors, contacts and joints. @param controller whose tasks and
+/// actuators have been read.
 void read_feedback(const Fields& fields, const SceneDescription& scene,
                    ControllerDescription& controller);
 
-/// The signal under `key`: a value, or a map of the signal table.
+/// Reads the signal under `key`: a value, or a map of the signal table.
 sim::Signal read_signal(const Fields& fields, std::string_view key, const ReadContext& context);
 
-/// The points under `key`: a list of vectors, or a CSV table.
+/// Reads the points under `key`: a list of vectors, or a CSV table.
 PointList read_points(const Fields& fields, std::string_view key, const ReadContext& context);
 
-/// A CSV table of time and `columns` values, the values times `unit`.
+/// A CSV table of times and values in SI units.
 struct TimeTable {
   std::vector<double> times;                                                      ///< (n,) s
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> values;  ///< (n, columns)
 };
-/// Reads the CSV under `file` with the unit under `unit`; empty when files are not opened. With one
-/// value and a name under `column`, of which column: its unit is the heading's where `unit` is left
-/// out.
+/// Reads the CSV file under `file`, with the unit under `unit`. The result is empty if files are
+/// not opened. If there is one value and the key `column`, reads the column of that name; the
+/// default of its unit is then that of the heading. Throws Error: wrong-columns,
+/// non-monotonic-time.
+/// @param fields of the table. @param columns number of values in a row, besides the time.
+/// @param context of the scene.
 TimeTable read_time_table(const Fields& fields, int columns, const ReadContext& context);
 
-/// The value of `make()`; an Error without a place gets `place`.
+/// Returns `make()`. If that throws an Error without a location, the Error gets `place`.
 template <typename Make>
 auto at_place(const Location& place, Make&& make) {
   try {

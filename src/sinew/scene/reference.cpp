@@ -39,7 +39,7 @@ const char* const kOrigin = R"(
      SINEW_WRITE_REFERENCE=1 ctest --test-dir build/release -R scene -->
 )";
 
-// A page and the keys of a scene whose tables it has.
+// A page, and the top-level keys whose tables it has.
 struct Section {
   const char* path;
   const char* title;
@@ -69,7 +69,7 @@ std::string page_of_key(const std::string& key) {
   return kFirstPage;
 }
 
-// GitHub's anchor of a heading.
+// The anchor of a heading on GitHub.
 std::string anchor(const std::string& heading) {
   std::string result;
   for (const char c : heading) {
@@ -80,12 +80,12 @@ std::string anchor(const std::string& heading) {
   return result;
 }
 
-// The table that is described in place of one.
+// The table that is described in place of `table`.
 const KeyTable& described(const KeyTable& table) {
   return table.stand_in == nullptr ? table : *table.stand_in;
 }
 
-// All tables that can be reached, in the order in which they are met, with the page of each.
+// All reachable tables in the order of discovery, with their pages.
 class Tables {
  public:
   Tables() {
@@ -94,7 +94,7 @@ class Tables {
       const std::size_t first = order_.size();
       const std::string page = page_of_key(key.name);
       visit(key.forms, page);
-      // Breadth first, so that a table stands near those that lead to it.
+      // Breadth first, so that a table is near those that link to it.
       for (std::size_t i = first; i < order_.size(); ++i) visit_keys(*order_[i], page);
       for (std::size_t i = 0; i < again_.size(); ++i) visit_keys(*again_[i], page);
       again_.clear();
@@ -111,7 +111,7 @@ class Tables {
       order_.push_back(&table);
     } else if (found->second != page && found->second != kSharedPage) {
       found->second = kSharedPage;
-      again_.push_back(&table);  // what it leads to is shared, too
+      again_.push_back(&table);  // tables that it links to are shared, too
     }
   }
 
@@ -142,7 +142,7 @@ class Page {
  public:
   Page(const Tables& tables, std::string path) : tables_(tables), path_(std::move(path)) {}
 
-  // @param told where the words of a choice are explained already: their list to the table.
+  // Writes the page. @param told tables in which lists of words have already been explained.
   std::string write(std::map<std::string, const KeyTable*>& told) {
     for (const KeyTable* table : tables_.order()) {
       if (tables_.page(table->name) == path_) write_table(*table, told);
@@ -157,14 +157,14 @@ class Page {
                        anchor(target.name));
   }
 
-  // The way from this page to another.
+  // Relative path from this page to another.
   std::string relative(const std::string& page) const {
     if (path_ == kFirstPage) return page;
     return page == kFirstPage ? "../" + page : page.substr(page.find('/') + 1);
   }
 
  private:
-  // The form with links to the tables it leads to.
+  // Describes a form, with links to its tables.
   std::string linked(const Form& form) const {
     switch (form.shape) {
       case Shape::table:
@@ -228,7 +228,7 @@ class Page {
     write_alternatives(table);
   }
 
-  // "Also the keys of all sensors", or those of them that the table has.
+  // "Also the keys of all sensors", or the list of those that the table has.
   std::string shared_keys(const KeyTable& table) const {
     std::string some;
     std::size_t count = 0;
@@ -267,7 +267,7 @@ class Page {
                          escaped(meaning));
   }
 
-  // What the words of a key's choices mean.
+  // The meanings of the words of a key's choices.
   static std::string meanings(const Key& key) {
     std::string result;
     for (const Form& form : key.forms) {

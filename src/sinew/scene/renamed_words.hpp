@@ -1,6 +1,6 @@
 /// @file
-/// Words of scenes that have another name now: keys, and words of choices. A user who writes the
-/// old one is told the new one; a scene that a recording holds is read.
+/// Renamed words of scene files: keys, and words of choices. A scene with an old word is refused
+/// with an error that names the new one. A scene inside a recorded run is still read.
 #pragma once
 
 #include <optional>
@@ -12,14 +12,15 @@
 
 namespace sinew::scene {
 
-/// What a word that is no longer known is called now; nothing where it never meant one of `known`.
+/// The current name of a renamed word; none if the word is still in use or never meant one of
+/// `known`.
 /// @param word as written.
-/// @param known the keys or words that may stand in its place.
+/// @param known the keys or words that are allowed there.
 std::optional<std::string> current_word(std::string_view word,
                                         const std::vector<std::string>& known);
 
-/// Replaces the old words of a scene. Names that users chose, and words that are still in use where
-/// they stand, stay. @param scene as read; it need not be valid.
+/// Replaces the renamed words of a scene. Names chosen by users stay, and so do words that are
+/// still in use where they occur. @param scene as read; it need not be valid.
 void replace_renamed_words(Node& scene);
 
 }  // namespace sinew::scene

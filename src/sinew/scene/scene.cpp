@@ -86,7 +86,7 @@ void for_entries(const Fields& fields, const char* key, Read&& read) {
   for (const Node::Entry& entry : map->entries()) read(entry);
 }
 
-// What moves under gravity or by inertia must have a mass.
+// Checks that bodies have a mass if there is gravity or inertia.
 void check_mass(const SceneDescription& scene) {
   const bool needed =
       scene.gravity != Vector3::Zero() || scene.integrator != Integrator::quasi_static;
@@ -102,7 +102,7 @@ void check_mass(const SceneDescription& scene) {
   }
 }
 
-// Masses and membranes are of finite-element bodies.
+// Checks that point masses and membranes are on finite-element bodies.
 void check_carriers(const SceneDescription& scene) {
   const auto check = [&](const std::string& name, const Location& place, const char* what,
                          const char* of_arms, const char* of_rigid) {
@@ -137,7 +137,7 @@ void check_initial_velocities(const SceneDescription& scene) {
   }
 }
 
-// Every actuator has one owner.
+// Checks that no actuator is driven by two controllers.
 void check_owners(const SceneDescription& scene) {
   std::map<std::string, std::string> owners;
   for (const ControllerDescription& controller : scene.controllers) {

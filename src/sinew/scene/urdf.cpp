@@ -14,7 +14,7 @@ namespace sinew::scene {
 
 namespace {
 
-// Keeps what the parser says in place of printing it.
+// Collects the messages of the parser instead of printing them.
 class Messages : public console_bridge::OutputHandler {
  public:
   Messages() { console_bridge::useOutputHandler(this); }
@@ -43,7 +43,7 @@ urdf::ModelInterfaceSharedPtr parse_values(const UrdfTree& tree) {
   } catch (const std::exception& error) {
     reason = error.what();
   }
-  // It goes on after some errors, without the element.
+  // After some errors, the parser continues without the element.
   if (model != nullptr && messages.text().empty()) return model;
   if (!messages.text().empty()) reason = messages.text();
   throw Error(ErrorKind::malformed_file, tree.place_named_in(reason), reason,
@@ -111,7 +111,7 @@ UrdfGeometry geometry_of(const urdf::Geometry& form, const urdf::Pose& pose,
   return result;
 }
 
-// @param parts <visual> or <collision> elements as the parser has them. @param tag of these.
+// @param parts <visual> or <collision> elements from the parser. @param tag of the elements.
 template <class Parts>
 std::vector<UrdfGeometry> geometries_of(const Parts& parts, const char* tag,
                                         const pugi::xml_node& link, const UrdfTree& tree) {

@@ -1,6 +1,6 @@
 /// @file
-/// Robots from URDF files: links and joints as the file has them, in SI units. Internal to this
-/// folder, but for the fuzzer.
+/// Reads robots from URDF files: links and joints as written in the file, in SI units. Used only in
+/// this folder and by the fuzzer.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@
 namespace sinew::scene {
 
 struct UrdfMesh {
-  std::string file;  ///< as it is written, package:// and file:// included
+  std::string file;  ///< as written, including package:// and file://
   Vector3 scale = Vector3::Ones();
 };
 
@@ -31,7 +31,7 @@ struct UrdfGeometry {
 struct UrdfLink {
   std::string name;
   Location place;
-  /// In the link's frame; none where the file gives none, or a mass of 0.
+  /// In the link's frame; none if the file gives none, or a mass of 0.
   std::optional<rigid::MassProperties> inertial;
   std::vector<UrdfGeometry> visuals, collisions;
 };
@@ -51,14 +51,15 @@ struct UrdfJoint {
 
 struct UrdfRobot {
   std::vector<UrdfLink> links;    ///< each after its parent; the first is the root
-  std::vector<UrdfJoint> joints;  ///< joint k leads to link k + 1
-  std::vector<Notice> notices;    ///< what the file says and this version does not do
+  std::vector<UrdfJoint> joints;  ///< the child of joint k is link k + 1
+  std::vector<Notice> notices;    ///< about elements of the file that are not used
 };
 
-/// Reads a robot description (URDF 1.0, as ROS documents it: wiki.ros.org/urdf/XML). Throws Error
-/// with the file's line: syntax-error, malformed-file (what the format does not allow, loops, no
-/// single root), missing-key, duplicate-key, unknown-name (a link), bad-argument (a name that
-/// scenes cannot hold), out-of-range, not-in-this-version (planar joints, mimic).
+/// Reads a robot description (URDF 1.0, as documented by ROS: wiki.ros.org/urdf/XML). Throws Error
+/// with the line of the file: syntax-error, size-limit, malformed-file (violates the format, has a
+/// loop or several roots), missing-key, duplicate-key, unknown-name (a link), unknown-choice (a
+/// type of joint), bad-argument (a name that scenes do not allow, or '%'), out-of-range,
+/// contradictory-limits, not-in-this-version (planar joints, mimic).
 /// @param text of the file. @param name of the file, for messages.
 UrdfRobot parse_urdf(std::string_view text, const std::string& name);
 

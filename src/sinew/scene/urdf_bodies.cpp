@@ -20,7 +20,7 @@ namespace {
 
 using Type = UrdfJoint::Type;
 
-// The frame of a joint's child after a motion.
+// The frame of a joint's child after the joint has moved.
 Eigen::Isometry3d moved(const UrdfJoint& joint, double motion) {
   if (motion == 0.0) return joint.pose;
   if (joint.type == Type::prismatic) return joint.pose * Eigen::Translation3d(motion * joint.axis);
@@ -34,7 +34,7 @@ std::optional<rigid::Shape> primitive(const UrdfGeometry& geometry) {
   return std::nullopt;
 }
 
-// About the point that both frames have in common (the parallel axis theorem).
+// Inertia about the origin, by the parallel axis theorem.
 Matrix3 inertia_at_origin(const rigid::MassProperties& own) {
   const Vector3& c = own.centre;
   return own.inertia + own.mass * (c.squaredNorm() * Matrix3::Identity() - c * c.transpose());
@@ -108,7 +108,7 @@ void UrdfBodies::place_links() {
   }
 }
 
-// A root that moves and has no mass is part of a link that is fixed to it.
+// The carrier of the root. A free root without mass is merged into a link that is fixed to it.
 int UrdfBodies::carrier_of_root() const {
   const UrdfLink& root = robot_.links.front();
   if (description_.fixed) {
@@ -236,8 +236,8 @@ rigid::MassProperties UrdfBodies::mass_of(int link, const Parts& solids) const {
   return sum(parts);
 }
 
-// One shape in closed form stays one, and of one mesh the hull touches. What has no geometry is a
-// ball of its inertia.
+// A single primitive is kept, a single mesh touches with its hull, and several parts are united to
+// one surface. A body without geometry gets a sphere of the same inertia.
 void UrdfBodies::give_shape(const Parts& parts, rigid::RigidSettings& body) const {
   if (parts.empty()) {
     body.shape = rigid::Sphere{std::sqrt(2.5 / 3.0 * body.inertia->trace() / *body.mass)};

@@ -1,6 +1,6 @@
 /// @file
-/// The links of a URDF robot as rigid bodies: which links are one body, where they are, what they
-/// look like. Internal to this folder.
+/// Converts the links of a URDF robot to rigid bodies: merges links, and computes poses, masses and
+/// geometry. Internal to this folder.
 #pragma once
 
 #include <string>
@@ -15,29 +15,33 @@
 
 namespace sinew::scene {
 
-/// A link that has no `<inertial>` and hangs on a fixed joint is part of its parent, as a file's
-/// frames and decorations are; what hangs on a fixed root by fixed joints is fixed; any other link
-/// is a body of its own.
+/// The rigid bodies of a URDF robot. A link without `<inertial>` on a fixed joint, such as a frame
+/// or a decoration, is merged into its parent. Links that fixed joints connect to a fixed root are
+/// fixed; those without geometry are merged into their parent or the world. Any other link becomes
+/// a body of its own.
 class UrdfBodies {
  public:
-  static constexpr int kNone = -1;  ///< the world's
+  static constexpr int kNone = -1;  ///< stands for the world
 
-  /// Throws Error: unknown-name and contradictory-limits (of where joints start), missing-mass.
-  /// @param robot must outlive this. @param description,name what the scene says of it.
+  /// Throws Error: unknown-name and contradictory-limits (for the initial values of joints).
+  /// @param robot must outlive this. @param description must outlive this. @param name of the
+  /// robot.
   UrdfBodies(const UrdfRobot& robot, const UrdfDescription& description, std::string name);
 
-  /// The link whose body a link is part of, or kNone.
+  /// The link into whose body a link is merged (maybe itself), or kNone.
   int carrier(int link) const { return carriers_[static_cast<std::size_t>(link)]; }
-  /// ROBOT.LINK of the carrier, or `world`.
+  /// Name of that body: ROBOT.LINK of the carrier, or `world`.
   std::string body_of(int link) const;
   bool is_fixed(int link) const { return fixed_[static_cast<std::size_t>(link)]; }
-  /// Where a link is at the start, in the world.
+  /// Initial pose of a link in the world frame, m.
   const Eigen::Isometry3d& frame(int link) const { return frames_[static_cast<std::size_t>(link)]; }
-  /// rad or m: where joint k starts.
+  /// Initial angle (rad) or displacement (m) of a joint.
   double start(int joint) const { return starts_[static_cast<std::size_t>(joint)]; }
 
-  /// The bodies. Throws Error(file-not-found), and what make_surface() does.
-  /// @param notices get a line for what is drawn otherwise than the file says.
+  /// Makes the bodies. Throws Error: missing-mass, file-not-found, unknown-name (a package), and
+  /// what make_surface() throws.
+  /// @param notices gets a warning for each body that is drawn by its collision geometry because
+  /// the format of its visual is not supported.
   std::vector<BodyDescription> make(std::vector<Notice>& notices) const;
 
  private:

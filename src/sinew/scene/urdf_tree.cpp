@@ -14,13 +14,13 @@ namespace sinew::scene {
 namespace {
 
 constexpr std::size_t kMaxBytes = 16u << 20;
-constexpr int kMaxDepth = 64;  // the parser behind this one is recursive
+constexpr int kMaxDepth = 64;  // the second parser is recursive
 
 struct DepthLimit : pugi::xml_tree_walker {
   bool for_each(pugi::xml_node&) override { return depth() < kMaxDepth; }
 };
 
-// The parser behind this one prints what it does not understand, as the format of its message.
+// Finds attributes with '%', since the second parser uses invalid values as a format string.
 struct FormatSearch : pugi::xml_tree_walker {
   pugi::xml_node found;
 
@@ -250,7 +250,7 @@ void UrdfTree::check_tie(const pugi::xml_node& joint) {
   }
 }
 
-// Links follow their parents, in the order of the file's joints.
+// Sorts links after their parents, in the order of joints in the file.
 void UrdfTree::sort_from_root() {
   std::vector<pugi::xml_node> links, ties;
   for (const pugi::xml_node& link : links_) {

@@ -1,6 +1,6 @@
 /// @file
-/// A URDF file as XML: where everything stands, what is tied to what, and what is not used. The
-/// values are read in urdf.cpp. Internal to this folder.
+/// A URDF file as XML: locations of elements, connections of links, and elements that are not used.
+/// Values are read in urdf.cpp. Internal to this folder.
 #pragma once
 
 #include <string>
@@ -14,25 +14,27 @@
 
 namespace sinew::scene {
 
-/// The checked tree of a file: names are unique, every joint has a parent and a child, and all
-/// links hang on one root.
+/// The checked tree of a URDF file: names are unique, every joint has a parent and a child, and the
+/// links form a tree with one root.
 class UrdfTree {
  public:
-  /// Throws what parse_urdf() does but for values. @param text,name see there.
+  /// Throws what parse_urdf() throws, except for errors in values. @param text,name as for
+  /// parse_urdf().
   UrdfTree(std::string_view text, std::string name);
 
-  /// Elements `<link>` and `<joint>`, a link after its parent: joint k leads to link k + 1.
+  /// Elements `<link>` and `<joint>`, each link after its parent. Link k + 1 is the child of joint
+  /// k.
   const std::vector<pugi::xml_node>& links() const { return links_; }
   const std::vector<pugi::xml_node>& joints() const { return joints_; }
   /// Position of a link's name among links(), or -1.
   int link_number(std::string_view link) const;
 
   Location place(const pugi::xml_node& element) const;
-  /// Of the element whose name a message holds in brackets or quotes; else of the file.
+  /// Location of the element whose name a message has in brackets or quotes; by default the file.
   Location place_named_in(const std::string& message) const;
-  /// One for each kind of element or attribute that is not used.
+  /// One notice for each kind of element or attribute that is not used.
   const std::vector<Notice>& notices() const { return notices_; }
-  /// The tree as XML text: links and joints alone.
+  /// The tree as XML text, with links and joints only.
   std::string text() const;
 
  private:

@@ -34,7 +34,7 @@ bool fits(const Node& node, const Form& form) {
   }
 }
 
-// "Dragon Skin 30" as "dragonskin30".
+// Reduces "Dragon Skin 30" to "dragonskin30".
 std::string letters_and_digits(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -65,13 +65,13 @@ bool has_word(const Node& node, const Form& form) {
               fmt::format("write for example {}", example));
 }
 
-// A list of plain numbers is one vector where a list of vectors could stand, too.
+// Whether a list is a vector of numbers, where a list of vectors is also allowed.
 bool is_vector(const Node& node) {
   return node.is_list() && !node.items().empty() &&
          node.items().front().kind() == Node::Kind::number;
 }
 
-// A map that several map forms could take is told by the key that one of them must have.
+// Selects among several map forms by their telltale keys.
 const Form& select_map_form(const Node& node, const std::vector<const Form*>& fitting) {
   std::vector<std::string> telltales;
   for (const Form* form : fitting) {
@@ -114,7 +114,7 @@ double read_scalar(const Node& node, const Form& form) {
   if (node.kind() != Node::Kind::text && node.kind() != Node::Kind::number) {
     throw_wrong_type(node, {form}, fmt::format("1 {}", form.unit));
   }
-  // A number is read as YAML does (".inf", too), so that a bad one is reported as not finite.
+  // Numbers are read as in YAML, including ".inf", so that this is reported as not finite.
   if (node.kind() == Node::Kind::number) {
     const double value = node.as_number();
     if (std::isfinite(value)) return value;

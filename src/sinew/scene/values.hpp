@@ -1,6 +1,6 @@
 /// @file
-/// From a node to numbers and words, as a form of the grammar says. Shared by the checker and the
-/// reader, so that what was accepted is what is read.
+/// Converts a node to numbers and words, according to a form of the grammar. The checker and the
+/// reader share this file, so that values are read exactly as they were checked.
 #pragma once
 
 #include <string>
@@ -12,28 +12,28 @@
 
 namespace sinew::scene {
 
-/// The form that `node` is written in. Throws Error(wrong-type) when it is none of them (naming
-/// what is expected, with `example`), Error(missing-key) when no map form can be told by its key,
-/// Error(not-in-this-version) for a form of a later version.
+/// Selects the form in which `node` is written. Throws Error(wrong-type) if no form matches (the
+/// message says what is expected, with `example`), Error(missing-key) if a map has the telltale key
+/// of none, Error(not-in-this-version) for a form of a later version.
 const Form& select_form(const Node& node, const std::vector<Form>& forms,
                         const std::string& example);
 
-/// The numbers of a quantity (SI), from "10 mm", "0 0 190 mm", 0.19 or a list of such. Throws
+/// Reads the numbers of a quantity (SI) from "10 mm", "0 0 190 mm", 0.19 or a list of these. Throws
 /// Error: wrong-type, wrong-length, wrong-dimension, unknown-unit, not-a-number, not-finite, and
 /// the kind of the form's range.
 std::vector<double> read_numbers(const Node& node, const Form& form);
 
-/// What one unit is (SI): "mm" is 0.001. Throws as read_numbers().
+/// Reads the size of a unit (SI): "mm" is 0.001. Throws what read_numbers() throws.
 double read_unit(const Node& node, const Form& form);
 
-/// Throws Error(wrong-type), Error(out-of-range).
+/// Reads an integer. Throws Error: wrong-type, and the kind of the form's range.
 int read_integer(const Node& node, const Form& form);
 
-/// A word of a choice. Throws Error(wrong-type), Error(unknown-choice) with a suggestion,
+/// Reads a word of a choice. Throws Error(wrong-type), Error(unknown-choice) with a suggestion,
 /// Error(not-in-this-version).
 const Choice& read_choice(const Node& node, const Form& form);
 
-/// Free text, a path or a name. Throws Error(wrong-type) when it is empty or no scalar.
+/// Reads free text, a path or a name. Throws Error(wrong-type) if it is empty or not a scalar.
 const std::string& read_text(const Node& node);
 
 /// A pair of a samples form: time (s), value (SI).
@@ -41,16 +41,16 @@ struct Sample {
   double time = 0.0;
   double value = 0.0;
 };
-/// The pairs of a samples form. Throws as read_numbers(), and Error(empty-list).
+/// Reads the pairs of a samples form. Throws what read_numbers() throws, and Error(empty-list).
 std::vector<Sample> read_samples(const Node& node, const Form& form);
 
-/// "did you mean 'mass'? " or nothing.
+/// "did you mean 'mass'? ", or an empty string if no candidate is close.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
-/// "a, b, c", cut after a dozen.
+/// "a, b, c", cut after 14 words.
 std::string join(const std::vector<std::string>& words);
 
-/// A user's text as shown in a message: in quotes, cut when long.
+/// A user's text for a message: in quotes, cut if long.
 std::string show(std::string_view text);
 
 }  // namespace sinew::scene

@@ -1,5 +1,5 @@
-// YAML text to Node, through yaml-cpp's events: its own tree would expand aliases without limit and
-// keep neither duplicate keys nor the difference between 1 and "1".
+// Converts YAML text to Node by the events of yaml-cpp. The tree of yaml-cpp would expand aliases
+// without limit, and would lose duplicate keys and the difference between 1 and "1".
 #include <algorithm>
 #include <fstream>
 #include <map>
@@ -184,7 +184,7 @@ class TreeBuilder : public YAML::EventHandler {
       parent.node.append(std::move(node));
       return;
     }
-    // An empty value has no mark of its own: the parser gives that of what follows.
+    // The parser gives an empty value the mark of the next token.
     if (node.kind() == Node::Kind::null) node.set_place(parent.key_place);
     parent.node.entries().push_back(
         {std::move(parent.key), std::move(parent.key_place), std::move(node)});
@@ -199,8 +199,8 @@ class TreeBuilder : public YAML::EventHandler {
   Node root_;
 };
 
-// Position of the first byte that is no valid UTF-8 (or a control character that YAML forbids);
-// npos when all is well.
+// Position of the first byte that is not valid UTF-8, or is a control character that YAML forbids;
+// npos if there is none.
 std::size_t first_bad_byte(std::string_view text) {
   std::size_t i = 0;
   while (i < text.size()) {
@@ -247,7 +247,7 @@ void check_text(std::string_view text, const std::string& name, const YamlLimits
               "save the file as plain UTF-8 text");
 }
 
-// Tabs in the indentation are YAML's most frequent trap, and the parser's words for it are obscure.
+// Tabs in the indentation are a frequent mistake, for which the message of the parser is obscure.
 [[noreturn]] void throw_syntax(std::string_view text, const std::string& name,
                                const YAML::Exception& error) {
   Location place = place_of(name, error.mark);

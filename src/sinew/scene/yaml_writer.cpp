@@ -17,7 +17,7 @@ bool is_safe(char c) {
          c == '*' || byte >= 0x80;
 }
 
-// Characters that begin something else in YAML when they stand first.
+// Whether an unquoted text may start with a character, which has no other meaning in YAML there.
 bool may_begin(char c) { return c != ' ' && c != '-' && c != '%' && c != '*'; }
 
 bool starts_like_number(std::string_view text) {
@@ -25,7 +25,7 @@ bool starts_like_number(std::string_view text) {
          (text[1] == '.' || (text[1] >= '0' && text[1] <= '9'));
 }
 
-// True when the text, unquoted, reads back as the same text.
+// Whether unquoted text reads back as the same text.
 bool reads_plain(const std::string& text) {
   if (text.empty() || text.back() == ' ' || text.size() > 120) return false;
   if (text.starts_with("...") || text.starts_with("---")) return false;
@@ -79,7 +79,7 @@ bool is_leaf(const Node& node) {
   return node.is_scalar() || (node.items().empty() && node.entries().empty());
 }
 
-// A list of scalars, or of such lists, fits on one line.
+// Whether a list is written on one line: a list of scalars, or of such lists.
 bool is_flat(const Node& node, int levels) {
   if (is_leaf(node)) return true;
   return levels > 0 && node.is_list() &&
@@ -104,7 +104,7 @@ void write_flat(const Node& node, std::string& out) {
 
 void write(const Node& node, int indent, std::string& out);
 
-// What stands after "key:" or "-".
+// Writes the value after "key:" or "-".
 void write_value(const Node& node, int indent, std::string& out) {
   if (is_flat(node, 2)) {
     out += ' ';
