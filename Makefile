@@ -1,5 +1,5 @@
-# Short names for what is done often; `make` lists them. The work is in CMakePresets.json and scripts/.
-# `make JOBS=2 ...` limits how many compilers run at once, `make PYTHON=...` picks an interpreter.
+# Shortcuts for common tasks, which `make` lists. CMakePresets.json and scripts/ do the work.
+# `make JOBS=2 ...` limits the number of compilers at once, `make PYTHON=...` chooses an interpreter.
 PREFIX ?= /usr/local
 
 .DEFAULT_GOAL := help

@@ -1,5 +1,5 @@
-# Everything here is a Debian package; scripts/setup.sh installs them by need.
-# What the installed library still needs when others link it is found again by sinewConfig.cmake.in.
+# All dependencies are Debian packages, which scripts/setup.sh installs as needed.
+# sinewConfig.cmake.in finds those that projects which link the installed library need as well.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Threads REQUIRED)
 find_package(TBB REQUIRED)
@@ -21,7 +21,7 @@ if(SINEW_PLAN)
   sinew_system_library(ipopt LIBRARY ipopt HEADER IpTNLP.hpp SUFFIXES coin coin-or)
 endif()
 if(SINEW_VIEWER)
-  find_package(Boost 1.74 REQUIRED)  # headers alone: Beast and Asio
+  find_package(Boost 1.74 REQUIRED)  # only the headers of Beast and Asio
 endif()
 
 if(SINEW_TESTS)
@@ -39,11 +39,11 @@ if(SINEW_BENCHMARKS)
   endif()
 endif()
 if(SINEW_TESTS OR SINEW_BENCHMARKS)
-  # An independent oracle. It holds GPL modules, so the library itself never links it.
+  # An independent reference for tests and benchmarks. It contains GPL modules, so the library itself never links it.
   sinew_system_library(cholmod LIBRARY cholmod HEADER cholmod.h SUFFIXES suitesparse OPTIONAL)
 endif()
 if(SINEW_PYTHON)
-  # Debian's own interpreter is the one that has Debian's NumPy, whatever python3 stands first on PATH.
+  # Only Debian's interpreter has Debian's NumPy, so it is preferred to another python3 on PATH.
   if(NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
     set(Python3_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "Interpreter that the package is built for")
   endif()

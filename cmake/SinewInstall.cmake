@@ -1,6 +1,6 @@
 # cmake --install: headers, static libraries, the package for find_package(sinew), the program and
-# the Python package. The installed program and package stand alone; the libraries need Sinew's own
-# system libraries, which sinewConfig.cmake finds again.
+# the Python package. The installed program and Python package are self-contained. The static libraries
+# need Sinew's system libraries, which sinewConfig.cmake finds.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -30,7 +30,7 @@ if(SINEW_VIEWER)
 endif()
 
 if(SINEW_TESTS)
-  # A small project outside this tree, built against an installed copy.
+  # Builds a small project outside this tree against an installed copy.
   add_test(NAME install COMMAND ${CMAKE_COMMAND}
            -D SINEW_BINARY_DIR=${CMAKE_BINARY_DIR}
            -D SINEW_VERSION=${PROJECT_VERSION}

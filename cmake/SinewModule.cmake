@@ -1,6 +1,6 @@
 # sinew_module(<folder> [LEVEL 2|3] [DEPENDS folder...] [LIBRARIES target...] [PRIVATE_LIBRARIES target...])
-#   One static library sinew_<folder> from src/sinew/<folder>/*.cpp, alias sinew::<folder>.
-#   DEPENDS names the folders that it may include: the only links between folders. LEVEL is of optimisation, 3 unless told.
+#   Creates the static library sinew_<folder> from src/sinew/<folder>/*.cpp, with alias sinew::<folder>.
+#   DEPENDS names the folders whose headers it may include; it links no others. LEVEL is the optimisation level, default 3.
 function(sinew_module name)
   cmake_parse_arguments(arg "" "LEVEL" "DEPENDS;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
   if(NOT arg_LEVEL)
@@ -21,7 +21,7 @@ function(sinew_module name)
   target_include_directories(sinew_${name} ${scope}
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include>)
   target_compile_features(sinew_${name} ${scope} cxx_std_20)
-  # One alignment for Eigen objects on both sides of the library's boundary, whatever -march the user has.
+  # Gives Eigen objects the same alignment in the library and in code that uses it, which may have another -march.
   target_compile_definitions(sinew_${name} ${scope} EIGEN_MAX_ALIGN_BYTES=64)
   foreach(dependency ${arg_DEPENDS})
     target_link_libraries(sinew_${name} ${scope} sinew_${dependency})
@@ -33,7 +33,7 @@ function(sinew_module name)
   set_property(GLOBAL APPEND PROPERTY SINEW_MODULES ${name})
 endfunction()
 
-# sinew_tests(<folder> [LIBRARIES target...]): tests/<folder>/*.cpp as one program test_<folder>, run by ctest.
+# sinew_tests(<folder> [LIBRARIES target...]): creates the program test_<folder> from tests/<folder>/*.cpp, which ctest runs.
 function(sinew_tests name)
   cmake_parse_arguments(arg "" "" "LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)

@@ -1,5 +1,5 @@
-# System libraries that come without a CMake package, as imported targets SinewSystem::<name>.
-# Used by the build and, installed beside sinewConfig.cmake, by every project that links Sinew.
+# Finds system libraries without a CMake package, and makes them imported targets SinewSystem::<name>.
+# The build uses it, and so does every project that links Sinew: it is installed beside sinewConfig.cmake.
 include_guard(GLOBAL)
 
 # sinew_system_library(<name> LIBRARY lib HEADER header [SUFFIXES dir...] [OPTIONAL])
@@ -31,9 +31,9 @@ sinew_system_library(metis LIBRARY metis HEADER metis.h)
 sinew_system_library(amd LIBRARY amd HEADER amd.h SUFFIXES suitesparse)
 sinew_system_library(hdf5 LIBRARY hdf5 HEADER hdf5.h SUFFIXES hdf5/serial)
 
-# The shared libceres, and not the static one that its own CMake package names: that one holds weak copies of
-# Eigen's functions for 16-byte alignment, which the linker may choose for ours of 64 (memory is then freed as it
-# was not allocated).
+# Uses the shared libceres, not the static one of its CMake package. The static one has weak copies of Eigen's
+# functions for 16-byte alignment, which the linker may choose instead of ours for 64 bytes. Memory would then be
+# freed in another way than it was allocated.
 function(sinew_ceres)
   sinew_system_library(ceres LIBRARY ${CMAKE_SHARED_LIBRARY_PREFIX}ceres${CMAKE_SHARED_LIBRARY_SUFFIX}
                        HEADER ceres/ceres.h)

@@ -1,9 +1,9 @@
 #!/bin/sh
-# The benchmarks of the release build: the whole step of an inverse controller, stage by stage, beside
-# Eigen's factorisation of the same matrix; then the kernels, and contact from Python.
+# Runs the benchmarks of the release build: the step of an inverse controller, stage by stage, compared with
+# Eigen's factorisation of the same matrix; then the kernels, contact from Python, and the view.
 #   scripts/bench.sh [--steps-only]
-# Published meshes are used where they are: SINEW_DATA=FOLDER, else ../shared/data. Figures go to
-# build/bench/*.json, each run's own table to build/bench/*.txt. Run it on an idle machine: threads that
+# Published meshes are used if SINEW_DATA=FOLDER (default ../shared/data) has them. Results go to
+# build/bench/*.json, and the table of each run to build/bench/*.txt. Run it on an idle machine: threads that
 # wait for busy cores cost milliseconds.
 set -eu
 cd "$(dirname "$0")/.."
@@ -37,7 +37,7 @@ for scene in $scenes; do
     *trunk) whole_step "$scene" "$steps" "$warm_up" "$name-exact" --threads 1 --tangent exact ;;
   esac
 done
-# shellcheck disable=SC2086  # one word a file: no name has blanks in it
+# shellcheck disable=SC2086  # one word per file: no name contains blanks
 "${PYTHON:-/usr/bin/python3}" scripts/bench_report.py $reports
 [ "${1:-}" != --steps-only ] || exit 0
 
@@ -48,7 +48,7 @@ for kernel in build/release/bin/*_benchmark; do
 done
 
 failed=""
-contact() {  # SCRIPT NEEDED_FILE ARGUMENT...: skipped where the file, if one is needed, is absent
+contact() {  # SCRIPT NEEDED_FILE ARGUMENT...: skipped if a file is needed and absent
   script=$1; needed=$2
   shift 2
   if [ -n "$needed" ] && [ ! -e "$needed" ]; then

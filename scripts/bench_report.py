@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""One table of the figures that `sinew bench --json` wrote: scripts/bench_report.py FILE.json...
+"""Prints one table of the results of `sinew bench --json`: scripts/bench_report.py FILE.json...
 
-Times are medians in microseconds, the 95th percentile of the whole step beside them. The ratio is that
-of the whole step to the numeric factorisation of the same matrix by Eigen's SimplicialLDLT (AMD,
-analysis excluded, one thread) in the same run; runs with other options of the same scene are set
-against that time too.
+Times are medians in microseconds; for the whole step, the 95th percentile is given as well. The ratio
+divides the time of the whole step by that of Eigen's SimplicialLDLT (AMD, one thread, without symbolic
+analysis) for the numeric factorisation of the same matrix, from the same run or, for runs of the
+scene with other options, from the run that measured it.
 """
 
 import json
@@ -15,7 +15,7 @@ STAGES = ("assembly", "rows", "factorisation", "law", "correction")
 
 
 def row(figures, eigen):
-    """Cells of one run."""
+    """The cells of one run."""
     stages = figures["stages"]
     total = stages["total"]
     cells = [figures["scene"], f"{figures['threads']}", figures["tangent"]]
@@ -30,7 +30,7 @@ def row(figures, eigen):
 
 
 def table(runs):
-    """The runs under each other, those of one scene together."""
+    """Formats one row per run, in the given order."""
     eigen = {r["scene"]: r["eigen_simplicial_ldlt"]["median_us"] for r in runs if "eigen_simplicial_ldlt" in r}
     rows = [["scene", "threads", "tangent", "assembly", "rows", "factor+W", "law", "correction",
              "total", "p95", "Eigen", "ratio", "error mm", "residual", "MB"]]
@@ -45,7 +45,7 @@ def table(runs):
 
 
 def main(paths):
-    """Prints the table and where it was measured."""
+    """Prints the table, and the machines on which it was measured."""
     runs = [json.loads(pathlib.Path(path).read_text()) for path in paths]
     if not runs:
         sys.exit("bench_report: no figures; run scripts/bench.sh")

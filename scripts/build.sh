@@ -1,14 +1,14 @@
 #!/bin/sh
 # Configures and builds one preset of CMakePresets.json:
-#   scripts/build.sh [PRESET [-DOPTION=VALUE... TARGET...]]      release and everything, unless named
+#   scripts/build.sh [PRESET [-DOPTION=VALUE... TARGET...]]      default: release, all targets
 set -eu
 cd "$(dirname "$0")/.."
 preset=${1:-release}
 [ $# -eq 0 ] || shift
 jobs=${JOBS:-$(scripts/jobs.sh)}
 
-# Tests and benchmarks need packages of their own: a new tree has them when an option asks for them.
-# A tree that has them keeps them.
+# Tests and benchmarks need more packages, so a new build tree includes them only if an option enables them.
+# An existing tree keeps its setting.
 options=""
 [ -e "build/$preset/CMakeCache.txt" ] || options="-DSINEW_TESTS=OFF -DSINEW_BENCHMARKS=OFF"
 targets=""
@@ -21,7 +21,7 @@ done
 
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-# shellcheck disable=SC2086  # one word an option or a target
+# shellcheck disable=SC2086  # one word per option or target
 if ! cmake --preset "$preset" $options >"$log" 2>&1; then
   cat "$log" >&2
   exit 1

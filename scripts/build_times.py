@@ -4,8 +4,8 @@
     scripts/build_times.py [BUILD]               build/release unless named
     scripts/build_times.py --slowest 20 BUILD    also names the slowest commands
 
-Of every output the last build counts. A command's time is that on the clock: it is processor time
-where the machine had nothing else to do and as many cores as ninja ran commands at once.
+For every output, only its last build counts. Times are wall times. They equal processor times if the
+machine was otherwise idle and had as many cores as ninja ran commands at once.
 """
 
 import argparse
@@ -13,7 +13,7 @@ import pathlib
 import re
 import sys
 
-PARTS = [  # the first that matches an output
+PARTS = [  # the first pattern that matches an output counts
     (r"(^|/)cmake_pch\.hxx\.gch$|sinew_precompiled", "precompiled headers"),
     (r"^src/sinew/CMakeFiles/sinew_([a-z]+)\.dir/.*\.o$", r"src/\1"),
     (r"^tests/.*\.o$", "tests"),
@@ -27,12 +27,12 @@ PARTS = [  # the first that matches an output
 
 
 def commands(log):
-    """(seconds, outputs) of each command that made something: its last run."""
+    """(seconds, outputs) of the last run of each command."""
     last = {}
     for line in log.read_text().splitlines()[1:]:
         start, end, _, output, command = line.split("\t")
         last[output] = (int(start), int(end), command)
-    shared = {}  # a command with several outputs has a line for each
+    shared = {}  # a command with several outputs has a line for each of them
     for output, key in last.items():
         shared.setdefault(key, []).append(output)
     return [((end - start) / 1e3, outputs) for (start, end, _), outputs in shared.items()]

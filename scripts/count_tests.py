@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Sums up the results that scripts/test.sh left in a folder, as one line: "N passed, N failed".
 
-A C++ test program that ended without a report (a crash) counts as one failure, and so does a suite
-without any test. Skipped tests are counted apart, when there are some.
+A ctest entry without a GoogleTest report, such as a program that crashed, counts as one test. Skipped
+tests, if any, are counted separately. If nothing passed, the run fails.
 """
 
 import sys
@@ -11,7 +11,7 @@ from pathlib import Path
 
 
 def cases(path):
-    """The outcomes ("passed", "failed", "skipped") by test name in a JUnit or GoogleTest report."""
+    """The (name, outcome) of each test in a JUnit or GoogleTest report: "passed", "failed" or "skipped"."""
     outcomes = []
     for case in xml.parse(path).getroot().iter("testcase"):
         skipped = case.find("skipped") is not None or case.get("status") in ("notrun", "disabled")
@@ -26,13 +26,13 @@ def cases(path):
 
 
 def main(folder):
-    """Prints the sums; returns 1 if anything failed or nothing ran."""
+    """Prints the sums. Returns 1 if anything failed or nothing passed."""
     count = {"passed": 0, "failed": 0, "skipped": 0}
     reported = {path.stem: cases(path) for path in (folder / "gtest").glob("*.xml")}
     programs = cases(folder / "ctest.xml") if (folder / "ctest.xml").exists() else []
     for name, outcome in programs:
         inside = reported.get(f"test_{name}", [])
-        # A program can fail although each of its tests passed (a leak found at its end).
+        # A program can fail although all of its tests passed, for example by a leak that is found at its end.
         if not inside or (outcome == "failed" and all(o != "failed" for _, o in inside)):
             count[outcome] += 1
         for _, outcome in inside:

@@ -1,8 +1,8 @@
 #!/bin/sh
-# Makes the documentation; any warning of Doxygen or Sphinx and any broken link is an error.
+# Builds the documentation. Any warning of Doxygen or Sphinx and any broken link is an error.
 #   scripts/docs.sh                  the site, build/docs/html/index.html: guides, scene reference, Python
 #                                    and C++ reference; needs the built Python package
-#   scripts/docs.sh --cpp [FOLDER]   Doxygen's C++ reference alone, FOLDER/html/cpp: build/docs
+#   scripts/docs.sh --cpp [FOLDER]   only Doxygen's C++ reference, FOLDER/html/cpp (default build/docs)
 set -eu
 cd "$(dirname "$0")/.."
 cpp_alone=no
@@ -22,7 +22,7 @@ if [ "$cpp_alone" = yes ]; then
   exit 0
 fi
 
-# Sphinx sees the pages where links between them hold, and the pages made from the code beside them.
+# Sphinx reads the pages in a layout in which the links between them are valid, beside the pages generated from the code.
 rm -rf "$folder/source"
 find "$folder/html" -mindepth 1 -maxdepth 1 ! -name cpp -exec rm -rf {} +
 mkdir -p "$folder/source"

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Draws docs/images/architecture.svg from the #include lines of the sources.
 
-Every folder is a box; an arrow says that files of one folder include headers of another, as thick as there are many.
-Arrows that follow from others (a -> b -> c) are left out. Exits with 1, and draws nothing, where folders include each
-other in a circle.
+Every folder is a box. An arrow means that files of one folder include headers of another; its thickness grows with their
+number. Arrows that follow from others (a -> c from a -> b -> c) are omitted. If folders include each other in a circle,
+the script draws nothing and exits with 1. With --check, it only verifies that the picture is up to date.
 """
 import collections
 import pathlib
@@ -16,7 +16,7 @@ WIDTH, HEIGHT, GAP_X, GAP_Y = 118, 40, 26, 46
 
 
 def includes():
-    """{(from, to): number of include lines}; folders of src/sinew by their own name."""
+    """{(from, to): number of include lines}, with the names of the folders."""
     counts = collections.Counter()
     homes = {path: path.name for path in (ROOT / "src/sinew").iterdir() if path.is_dir()}
     homes |= {ROOT / path: name for path, name in OUTSIDE.items()}
@@ -29,7 +29,7 @@ def includes():
 
 
 def levels(counts):
-    """{folder: how many arrows lie between it and the ground}; a circle ends the program."""
+    """{folder: longest chain of includes below it}, {folder: folders that it includes}. Exits if there is a circle."""
     below = collections.defaultdict(set)
     for upper, lower in counts:
         below[upper].add(lower)
@@ -50,7 +50,7 @@ def levels(counts):
 
 
 def reduced(below):
-    """Arrows that do not follow from others."""
+    """The (from, to) arrows that do not follow from others."""
     reach = {}
 
     def reaches(name):
@@ -84,7 +84,7 @@ def draw():
         (x1, y1), (x2, y2) = place[upper], place[lower]
         thick = next(width for least, width in ((40, 4), (10, 2), (0, 1)) if counts[upper, lower] >= least)
         x1, y1, x2 = x1 + WIDTH / 2, y1 + HEIGHT, x2 + WIDTH / 2
-        # Arrows across several floors go round the boxes between, on the outside.
+        # Arrows across several levels are drawn around the boxes between them, on the outside.
         round_ = level[upper] - level[lower] > 1
         side = (1 if (x1 + x2) / 2 > width / 2 else -1) * (0.75 * WIDTH if round_ else 0)
         bend = (y2 - y1) / 3 if round_ else GAP_Y / 2

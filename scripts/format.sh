@@ -1,5 +1,5 @@
 #!/bin/sh
-# Formats the project's C++ sources by .clang-format; with --check only says which are not formatted.
+# Formats the project's C++ sources by .clang-format. With --check, it only reports unformatted ones.
 set -eu
 cd "$(dirname "$0")/.."
 scripts/setup.sh format

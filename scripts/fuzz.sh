@@ -1,7 +1,7 @@
 #!/bin/sh
-# Builds the fuzz targets with clang and runs each for a while: scripts/fuzz.sh [seconds each, 60]
-# A finding is left as build/fuzz/crash-*; smaller inputs come with -minimize_crash=1. What a finding
-# shrinks to joins tests/fuzz/corpus, which every test run replays.
+# Builds the fuzz targets with clang and runs each for some seconds: scripts/fuzz.sh [SECONDS, default 60]
+# An input that fails is saved as build/fuzz/crash-*; -minimize_crash=1 reduces it. Add the reduced input to
+# tests/fuzz/corpus, which every test run replays.
 set -eu
 cd "$(dirname "$0")/.."
 seconds=${1:-60}

@@ -1,6 +1,6 @@
 #!/bin/sh
-# clang-tidy (.clang-tidy) on the project's own sources, several at once:
-#   scripts/lint.sh [FILE...]      all sources when none is named
+# Runs clang-tidy (.clang-tidy) on the project's own sources, in parallel:
+#   scripts/lint.sh [FILE...]      default: all sources
 set -eu
 cd "$(dirname "$0")/.."
 scripts/setup.sh lint
@@ -11,14 +11,14 @@ if ! cmake --preset lint >"$log" 2>&1; then
   exit 1
 fi
 if [ $# -eq 0 ]; then
-  # shellcheck disable=SC2046  # one word a file: no source has blanks in its name
+  # shellcheck disable=SC2046  # one word per file: no name contains blanks
   set -- $("${PYTHON:-/usr/bin/python3}" -c '
 import json, os
 root = os.getcwd() + os.sep
 names = {entry["file"] for entry in json.load(open("build/lint/compile_commands.json"))}
 print(*sorted(n[len(root):] for n in names if n.startswith(root) and not n.startswith(root + "build")))')
 fi
-# Each says how many warnings in system headers it passed over, which nobody wants to know.
+# The lines with clang-tidy's number of warnings, most of them suppressed, are removed.
 # shellcheck disable=SC2016  # expanded by the inner shell
 printf '%s\0' "$@" | xargs -0 -P "${JOBS:-$(scripts/jobs.sh)}" -n 1 sh -c '
   status=0

@@ -9,14 +9,14 @@ set -eu
 
 needs_known="build demo render sweep wheel test validate bench docs format lint fuzz"
 
-# What a need adds to those that it rests on (packages_for).
+# The packages that each need adds to those of the needs that it includes (packages_for).
 build="build-essential cmake ninja-build
   libeigen3-dev libmetis-dev libsuitesparse-dev libtbb-dev libhdf5-dev libyaml-cpp-dev
   libpugixml-dev libassimp-dev libqhull-dev liburdfdom-dev libcli11-dev libfmt-dev nlohmann-json3-dev zlib1g-dev
   libceres-dev coinor-libipopt-dev libboost-dev
   python3 python3-dev python3-numpy pybind11-dev"
-# The view's page is bundled by Node.js. One that did not come from Debian (and brings its own npm,
-# with which Debian's npm cannot be installed) is as good.
+# Node.js bundles the page of the view. Any installed version is used: one that is not from Debian
+# brings its own npm, which conflicts with Debian's.
 command -v node >/dev/null || build="$build nodejs"
 command -v npm >/dev/null || build="$build npm"
 demo="python3-matplotlib"

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Builds one preset and runs its tests: scripts/test.sh [release|dev|asan|tsan|portable]
-# The last line sums up the C++ and the Python tests: "N passed, N failed".
+# The last line is the sum over the C++ and Python tests: "N passed, N failed".
 set -eu
 cd "$(dirname "$0")/.."
 preset=${1:-release}
@@ -19,7 +19,7 @@ export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
 export TSAN_OPTIONS=${TSAN_OPTIONS:-second_deadlock_stack=1 suppressions=$PWD/tests/tsan.supp}
 fixed_addresses=""
 if [ "$preset" = tsan ] && setarch "$(uname -m)" -R true 2>/dev/null; then
-  # The thread sanitizer of GCC 12 cannot start where the kernel scatters addresses widely.
+  # GCC 12's thread sanitizer cannot start if the kernel randomises addresses too widely.
   fixed_addresses="setarch $(uname -m) -R"
 fi
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env node
-// Draws the pictures of docs/view.md (docs/images/view*.png) and the examples' thumbnails, or those whose files have
-// one of the words in their names: node scripts/view_pictures.mjs [WORD ...], after `make build`.
+// Draws the pictures of docs/view.md (docs/images/view*.png) and the examples' thumbnails. With words, it draws only
+// those whose file names contain one of them: node scripts/view_pictures.mjs [WORD ...], after `make build`.
 import {execFileSync, spawn} from 'node:child_process';
 import {mkdtempSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
@@ -11,7 +11,7 @@ import {chromium} from '../web/node_modules/playwright-core/index.mjs';
 const root = join(dirname(fileURLToPath(import.meta.url)), '..');
 const program = process.env.SINEW_PROGRAM ?? join(root, 'build/release/bin/sinew');
 const circle = join(root, 'examples/trunk/circle.yaml');
-// Scene, the step at which it is drawn, and whether it is coloured by stress.
+// Scene, step at which it is drawn, and whether it is coloured by von Mises stress (default true).
 const EXAMPLES = [['trunk/circle', 320], ['trunk/trunk', 250], ['arm/square', 420], ['beam/swing', 60], ['arm/conical', 25],
                   ['finger/module', 190], ['ring/sma', 300], ['roll/roll', 60], ['arm/curl', 540], ['arm/underwater', 400],
                   ['contact/incline', 120], ['contact/lift', 300], ['contact/soft_lift', 300], ['contact/squeeze', 500],
@@ -23,7 +23,7 @@ const browser = await chromium.launch({executablePath: '/usr/bin/chromium', args
   '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
   '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run']});
 
-/** A page of `sinew view SCENE`; `act` does what is to be seen. */
+/** Saves a picture of the page of `sinew view SCENE`. @param act prepares the page. */
 async function draw(file, scene, {width = 1280, height = 800} = {}, act = async () => undefined) {
   if (words.length > 0 && !words.some((word) => file.includes(word))) return;
   const child = spawn(program, ['view', ...scene, '--no-open', '--port', '0', '--paused']);
@@ -32,7 +32,7 @@ async function draw(file, scene, {width = 1280, height = 800} = {}, act = async 
     if (found) resolve(found[0]);
   }));
   const page = await browser.newPage({viewport: {width, height}});
-  page.setDefaultTimeout(300e3);  // without a GPU, beside other work
+  page.setDefaultTimeout(300e3);  // ms; a busy machine without a GPU is slow
   await page.goto(url);
   await page.waitForFunction(() => window.sinewView?.state().connected && window.sinewView.scene());
   await act(page);
@@ -43,7 +43,7 @@ async function draw(file, scene, {width = 1280, height = 800} = {}, act = async 
   child.kill('SIGINT');
 }
 
-/** Until what has come is in the picture. */
+/** Waits until the last frame has been drawn. */
 const drawn = (page) => page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
 const ask = (page, message) => page.evaluate((m) => window.sinewView.request(m), message);
 

@@ -33,7 +33,7 @@ namespace {
 using Json = nlohmann::json;
 
 // Ends of sliders of actuators without limits.
-constexpr double kFarPull = 0.25;         // of the robot's size
+constexpr double kFarPull = 0.25;         // relative to the robot's size
 constexpr double kStrongPull = 10.0;      // N
 constexpr double kFarBend = 1.5;          // rad
 constexpr double kStrongTorque = 0.5;     // N m
@@ -383,7 +383,7 @@ Json controllers_json(const scene::Robot& robot) {
 
 }  // namespace
 
-// Vectors of contacts and targets are drawn instead. A replay does not know the work.
+// Vectors of contacts and targets are drawn instead. A replay has no record of the work.
 bool is_signal(const sim::Observable& observable) {
   switch (observable.kind) {
     case sim::ObservableKind::time:

@@ -166,7 +166,7 @@ class Server::Hub final : public Publisher,
   }
   void receive(ViewConnection& view, const Message& message) override;
 
-  // Door.
+  // Door, called on the server's thread.
   bool knows_host(std::string_view host) const override {
     if (any_host_) return !host.empty();
     for (const char* name : {"127.0.0.1", "localhost", "[::1]"}) {
@@ -230,7 +230,7 @@ class Server::Hub final : public Publisher,
   std::chrono::steady_clock::time_point last_status_;
   bool status_waits_ = false;
   std::array<std::atomic<int>, kMaxFields> wishes_;
-  std::atomic<int> inside_ = 0;  ///< connections that want what is inside
+  std::atomic<int> inside_ = 0;  ///< connections that request interiors of bodies
 
   mutable std::mutex mutex_;  // protects the members below
   std::shared_ptr<const Frame> latest_;

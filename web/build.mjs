@@ -1,5 +1,5 @@
-// Checks and bundles the page: node build.mjs FOLDER writes index.html, app.js and app.css, each also
-// compressed (.gz), into FOLDER.
+// Type-checks and bundles the page: node build.mjs FOLDER writes index.html, app.js and app.css into FOLDER, and
+// each of them compressed (.gz).
 import {execFileSync} from 'node:child_process';
 import {mkdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';
@@ -19,7 +19,7 @@ await build({
 writeFileSync(join(out, 'index.html'), readFileSync(join(here, 'src/index.html')));
 let total = 0;
 for (const name of ['index.html', 'app.js', 'app.css']) {
-  // mtime 0: the same page gives the same bytes.
+  // mtime 0 makes the output reproducible.
   const packed = gzipSync(readFileSync(join(out, name)), {level: 9});
   writeFileSync(join(out, `${name}.gz`), packed);
   total += packed.length;

@@ -1,4 +1,4 @@
-// Bodies in three dimensions: their surfaces, and what is inside of them where a section cuts them open.
+// Draws the bodies in three dimensions: their surfaces and, where a section cuts them open, their interiors.
 import {
   Box3, BufferAttribute, BufferGeometry, DoubleSide, Group, Mesh, MeshBasicMaterial, MeshStandardMaterial, Raycaster, Vector3,
 } from 'three';
@@ -8,18 +8,18 @@ import {NONE} from './protocol';
 import type {Frame, Interior, Surface} from './protocol';
 import {Section3d} from './section3d';
 
-const BODY_COLOURS = [0xd9a066, 0x7fa6c9, 0x9cb380];  // told apart by lightness too
-const OPACITY = 0.82;  // of a body without colours
+const BODY_COLOURS = [0xd9a066, 0x7fa6c9, 0x9cb380];  // also differ in lightness
+const OPACITY = 0.82;  // of a body that is not coloured by a field
 const colourOf = (body: number) => BODY_COLOURS[body % BODY_COLOURS.length];
 
 interface Body {
   mesh: Mesh<BufferGeometry, MeshStandardMaterial>; wire: Mesh<BufferGeometry, MeshBasicMaterial>; colours: Float32Array;
   surface: Surface;
-  /** What a section shows, once it has come: positions of all vertices, and their values if there is a field. */
+  /** The interior that a section shows, once received: positions of all vertices, and their field values if a field is chosen. */
   inside?: {interior: Interior; points: Float32Array; known: boolean; values: Float32Array; valued: boolean};
 }
 
-/** What a ray meets: a triangle of the surface, or a face of an element that a section cuts. */
+/** The hit of a ray: a triangle of the surface, or a face of an element that a section cuts. */
 export interface Hit {body: number; point: Vector3; vertices: number[]; element: number; cut: boolean}
 
 export class Bodies3d {
@@ -27,7 +27,7 @@ export class Bodies3d {
   private section = new Section3d();
   private bodies: Body[] = [];
   private table = linearTable('viridis');
-  private range: [number, number] = [0, 0];  // of the colours
+  private range: [number, number] = [0, 0];  // of the colour map
   private size = 0.2;
   wireframe = false;
   coloured = false;
@@ -36,7 +36,7 @@ export class Bodies3d {
 
   get count(): number { return this.bodies.length; }
 
-  /** Another robot: without bodies as yet. @param size m. */
+  /** Starts a new scene, without bodies. @param size of the robot, m. */
   scene(size: number): void {
     for (const {mesh, wire} of this.bodies) this.root.remove(mesh, wire);
     this.section.clear();
@@ -74,7 +74,7 @@ export class Bodies3d {
 
   map(name: string): void { this.table = linearTable(name); }
 
-  /** Takes a frame; field values are painted between low and high. */
+  /** Updates the bodies from a frame. The colour map extends from low to high. */
   update(frame: Frame, low: number, high: number): void {
     for (const [index, positions] of frame.positions) {
       const body = this.bodies[index];
@@ -96,7 +96,7 @@ export class Bodies3d {
       const {material} = body.mesh;
       if (material.vertexColors !== this.coloured) {
         material.vertexColors = this.coloured;
-        material.transparent = !this.coloured;  // or what lies behind would change the colours
+        material.transparent = !this.coloured;  // else objects behind would change the colours
         material.opacity = this.coloured ? 1 : OPACITY;
         material.needsUpdate = true;
         material.color.set(this.coloured ? 0xffffff : colourOf(body.surface.body));
@@ -108,7 +108,7 @@ export class Bodies3d {
     this.drawCuts();
   }
 
-  // Positions and values of the surface's vertices and of those inside, one after the other.
+  // Concatenates positions and values of the surface's vertices and of the inner ones.
   private fillInside(frame: Frame): void {
     this.bodies.forEach(({inside, mesh, surface}, index) => {
       if (!inside) return;
@@ -136,30 +136,30 @@ export class Bodies3d {
     });
   }
 
-  /** Cuts bodies open: see Section3d. Whether what is inside of them is then to be known, or no more. */
+  /** Cuts bodies open, see Section3d.set(). Returns true when a section begins or ends, so that interiors are needed or no longer. */
   cut(axis: number | null, at: number, before: boolean, middle: Vector3): boolean {
     const was = this.section.on;
     this.section.set(axis, at, before, middle);
     for (const {mesh, wire} of this.bodies) for (const {material} of [mesh, wire]) this.section.cut(material);
     if (was !== this.section.on) {
-      for (const body of this.bodies) body.inside = undefined;  // it comes anew
+      for (const body of this.bodies) body.inside = undefined;  // it is sent again
       this.section.close();
     }
     this.drawCuts();
     return was !== this.section.on;
   }
 
-  /** For tests: the faces of a body's cut; null: none. */
+  /** For tests: describes the faces of a body's cut; null if there is none. */
   cutTold(body: number) { return this.section.of(body)?.told() ?? null; }
 
   get isCut(): boolean { return this.section.on; }
 
-  /** Where a vertex of a surface is. */
+  /** The position of a vertex of a surface. */
   vertex(body: number, vertex: number): Vector3 {
     return new Vector3().fromBufferAttribute(this.bodies[body].mesh.geometry.getAttribute('position') as BufferAttribute, vertex);
   }
 
-  /** All that surfaces enclose. */
+  /** The bounding box of all surfaces. */
   box(): Box3 {
     const box = new Box3();
     for (const {mesh} of this.bodies) {
@@ -168,7 +168,7 @@ export class Bodies3d {
     return box;
   }
 
-  /** What of the bodies a ray meets first, of what is not cut off. */
+  /** The first hit of a ray on the visible part of the bodies. */
   hit(caster: Raycaster): Hit | null {
     const first = caster.intersectObjects(this.bodies.map((b) => b.mesh)).find(({face, point}) => face && this.section.shows(point));
     const cut = this.section.hit(caster);
@@ -183,7 +183,7 @@ export class Bodies3d {
             element: this.bodies[body].surface.elements[first.faceIndex!], cut: false};
   }
 
-  /** The nearest node, and the element, where a ray meets a body. */
+  /** The element at a hit, and the node of the face that is nearest to it. */
   spot(found: Hit): Spot {
     const {surface: {nodes}, inside} = this.bodies[found.body];
     const place = (vertex: number) => vertex < nodes.length ? this.vertex(found.body, vertex)

@@ -1,13 +1,13 @@
-// The camera: in perspective or parallel, turned by the mouse, put where the whole robot is seen beside the panels.
+// The camera: perspective or parallel projection, mouse orbit, and a fit that shows the whole robot beside the panels.
 import {Box3, MathUtils, OrthographicCamera, PerspectiveCamera, Vector3} from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 
-const FIELD = 40;      // degrees of height that a perspective picture spans
-const MARGIN = 1.12;   // room round the robot
-const LEAST = 0.2;     // of the picture's width and height that panels leave to the robot at least
+const FIELD = 40;      // degrees, vertical field of view in perspective
+const MARGIN = 1.12;   // space around the robot, as a factor
+const LEAST = 0.2;     // minimum fraction of the picture's width and height that is used for the robot beside panels
 const HALF = Math.tan(MathUtils.degToRad(FIELD / 2));
 
-/** Where the camera is, seen from the robot. From above, y points up in the picture. */
+/** Directions from the robot to the camera. In the view from above (z), y points up in the picture. */
 export const VIEWS = {
   x: new Vector3(1, 0, 0), y: new Vector3(0, -1, 0), z: new Vector3(0, -1e-4, 1), iso: new Vector3(0.9, -1.5, 0.5),
 };
@@ -20,8 +20,8 @@ export class Camera3d {
   orthographic = false;
   private width = 1;
   private height = 1;
-  private covered = [0, 0, 0, 0];  // px: left, right, top, bottom
-  private half = 1;                // m: half the height that a parallel picture spans at zoom 1
+  private covered = [0, 0, 0, 0];  // px, by panels: left, right, top, bottom
+  private half = 1;                // m, half the height of a parallel picture at zoom 1
 
   constructor(canvas: HTMLElement) {
     for (const camera of [this.perspective, this.parallel]) camera.up.set(0, 0, 1);
@@ -32,15 +32,15 @@ export class Camera3d {
 
   get now(): PerspectiveCamera | OrthographicCamera { return this.orthographic ? this.parallel : this.perspective; }
 
-  /** m: half the height that the picture spans where the robot is. */
+  /** Half the height of the picture at the distance of the robot, m. */
   get span(): number {
     return this.orthographic ? this.half / this.parallel.zoom : HALF * this.perspective.position.distanceTo(this.orbit.target);
   }
 
-  /** How large what has one size on the screen is to be drawn: 1 in perspective, which three.js looks after itself. */
+  /** Scale of sprites with a constant size on the screen. It is 1 in perspective, where three.js scales them itself. */
   get captionScale(): number { return this.orthographic ? this.span / HALF : 1; }
 
-  /** m: the size of what is shown. */
+  /** Sets the size of the robot, m. */
   setSize(size: number): void {
     this.perspective.near = 1e-3 * size;
     this.perspective.far = this.parallel.far = 50 * size;
@@ -54,7 +54,7 @@ export class Camera3d {
     this.project();
   }
 
-  /** What lies over the picture, px at each side: the middle of the rest is the picture's middle. */
+  /** Sets the widths covered by panels, px at each side. The picture is centred in the rest. Returns whether they changed. */
   cover(covered: number[]): boolean {
     if (covered.every((side, k) => side === this.covered[k])) return false;
     this.covered = covered;
@@ -70,7 +70,7 @@ export class Camera3d {
     for (const camera of [this.perspective, this.parallel]) camera.setViewOffset(w, h, (right - left) / 2, (bottom - top) / 2, w, h);
   }
 
-  /** Shows the whole box beside what covers the picture; `view`: from where, or else from where the camera is. */
+  /** Shows the whole box beside the panels. @param view direction; without it, the direction of the camera is kept. */
   fit(box: Box3, view?: View): void {
     const middle = box.getCenter(new Vector3());
     const back = view ? VIEWS[view].clone() : this.now.position.clone().sub(this.orbit.target);
@@ -79,7 +79,7 @@ export class Camera3d {
     const up = new Vector3().crossVectors(back, right);
     const [left, side, top, bottom] = this.covered;
     const free = [Math.max(this.width - left - side, LEAST * this.width), Math.max(this.height - top - bottom, LEAST * this.height)]
-      .map((pixels) => pixels / this.height);  // of the picture's height
+      .map((pixels) => pixels / this.height);  // in picture heights
     let distance = 0, half = 0;
     for (const x of [box.min.x, box.max.x]) {
       for (const y of [box.min.y, box.max.y]) {
@@ -103,7 +103,7 @@ export class Camera3d {
     this.orbit.update();
   }
 
-  /** Parallel or in perspective, with the robot as large as it was. */
+  /** Chooses parallel projection or perspective. The robot keeps its size in the picture. */
   setOrthographic(yes: boolean): void {
     if (yes === this.orthographic) return;
     const span = this.span;

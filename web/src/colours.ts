@@ -1,4 +1,4 @@
-// Colour maps that do not rely on telling red from green, and numbers with SI prefixes.
+// Colour maps that do not rely on a difference of red and green, and numbers with SI prefixes.
 
 type Rgb = [number, number, number];
 
@@ -13,7 +13,7 @@ const STEPS = 256;
 
 export const MAPS = Object.keys(SAMPLES);
 
-/** (3 STEPS,) colours in the linear space that shading works in. */
+/** A colour map of STEPS colours, (3 STEPS,) red, green, blue in linear colour space, which shading uses. */
 export function linearTable(map: string): Float32Array {
   const samples = SAMPLES[map];
   const table = new Float32Array(3 * STEPS);
@@ -28,7 +28,7 @@ export function linearTable(map: string): Float32Array {
   return table;
 }
 
-/** Writes the colours of values between low and high. */
+/** Writes the colours of values (n,) into `colours` (3 n,). The map extends from low to high. */
 export function paint(values: Float32Array, low: number, high: number, table: Float32Array,
                       colours: Float32Array): void {
   const scale = high > low ? (STEPS - 1) / (high - low) : 0;
@@ -48,7 +48,7 @@ export function gradient(map: string): string {
 const PREFIXES: [number, string][] = [[1e9, 'G'], [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, '\u00b5'],
                                       [1e-9, 'n'], [1e-12, 'p']];
 
-/** The number that told() wrote: "12.3 mm" is 0.0123; NaN when it is none. */
+/** Parses a number written by told(): "12.3 mm" is 0.0123. NaN if the text is no number. */
 export function read(text: string): number {
   const found = /^\s*([-+\d.eE]+)\s*([GMkm\u00b5unp]?)/.exec(text);
   if (!found) return NaN;
@@ -60,7 +60,7 @@ function prefix(size: number): [number, string] {
   return PREFIXES.find(([s]) => size >= 0.9995 * s) ?? PREFIXES[PREFIXES.length - 1];
 }
 
-/** Values from high to low, one below the other: of one prefix, with as many decimals as tell them apart. */
+/** Labels of equidistant values from high to low, with one prefix and enough decimals to distinguish them. */
 export function ticks(low: number, high: number, count: number, unit: string): string[] {
   if (!(high > low)) return [...Array(count - 1).fill(''), told(low, unit)];
   const [scale, name] = unit === '' ? [1, ''] : prefix(Math.max(Math.abs(low), Math.abs(high)));
@@ -69,10 +69,10 @@ export function ticks(low: number, high: number, count: number, unit: string): s
     `${((high - (high - low) * k / (count - 1)) / scale).toFixed(decimals)} ${name}${unit.replace('^3', '\u00b3')}`.trim());
 }
 
-/** A number of a unit as people write it: 0.0123 m is "12.3 mm". */
+/** Formats a number with its unit and an SI prefix: 0.0123 m is "12.3 mm". */
 export function told(value: number, unit: string, digits = 3): string {
   if (!Number.isFinite(value)) return '-';
-  if (unit.startsWith('m^3')) return told(1e3 * value, unit.replace('m^3', 'l'), digits);  // a prefix would be cubed, too
+  if (unit.startsWith('m^3')) return told(1e3 * value, unit.replace('m^3', 'l'), digits);  // a prefix of m^3 would be cubed
   if (unit.startsWith('rad')) return `${Number((value * 180 / Math.PI).toPrecision(digits))}\u00b0${unit.slice(3)}`;
   if (unit === '' || value === 0) return `${Number(value.toPrecision(digits))}${unit ? ' ' + unit : ''}`;
   const [scale, name] = prefix(Math.abs(value));

@@ -1,8 +1,8 @@
-// The WebSocket to the program: tries again when it is lost, and matches replies with requests.
+// The WebSocket to the program. It reconnects when the connection is lost, and matches replies with requests.
 import {decode, Frame, Interior, Scene, Status, Surface} from './protocol';
 
 const PROTOCOL = 2;
-const WAITS = [0.25, 0.5, 1, 2];  // s between tries, then the last one for ever
+const WAITS = [0.25, 0.5, 1, 2];  // s between attempts to connect; the last one repeats
 
 export interface Listener {
   scene(scene: Scene, mode: string): void;
@@ -27,12 +27,12 @@ export class Connection {
   private socket: WebSocket | null = null;
   private tries = 0;
   private lastId = 0;
-  generation = -1;  // of the robot that is shown
+  generation = -1;  // of the scene that is shown
   private waiting = new Map<number, {resolve: () => void; reject: (e: Error) => void}>();
 
   constructor(private listener: Listener) { this.connect(); }
 
-  /** Sends a request; resolves when it was carried out, rejects with what was wrong. */
+  /** Sends a request. Resolves when it has been carried out, and rejects with the error otherwise. */
   request(message: Record<string, unknown>): Promise<void> {
     if (!this.open || !this.socket) return Promise.reject(new Error('not connected'));
     const id = ++this.lastId;

@@ -1,4 +1,4 @@
-// Surfaces that a robot may touch, the points that do, and the forces on them.
+// Draws contacts: the surfaces, the contact points, and the forces on them.
 import {
   BufferGeometry, CapsuleGeometry, Color, ConeGeometry, DoubleSide, GridHelper, Group, InstancedMesh, Line,
   LineBasicMaterial, Matrix4, Mesh, MeshBasicMaterial, MeshStandardMaterial, Object3D, PlaneGeometry, Quaternion,
@@ -9,21 +9,21 @@ import {LineSegments2} from 'three/addons/lines/LineSegments2.js';
 import {LineSegmentsGeometry} from 'three/addons/lines/LineSegmentsGeometry.js';
 import type {Contact, ContactSurface, Scene} from './protocol';
 
-/** Of points by state: open, stick, slip (Okabe and Ito 2008), told apart by lightness too. */
+/** Colours of contact points by state (Okabe and Ito 2008); they also differ in lightness. */
 export const STATES: [string, number][] = [['open', 0x9aa0a8], ['stick', 0x0072b2], ['slip', 0xe69f00]];
 const SURFACE = 0x8796a5, FORCE = 0xcc3311;
-const POINT = 0.006;      // radius of a point that touches, of the robot's size; open ones are half as large
-const ARROW = 0.22;       // length of the largest force so far, of the robot's size
-const LEAST = 0.01;       // forces under this part of the largest are not drawn
-const HEAD = 0.02;        // of the robot's size
-const CELLS = 12;         // along a side of a plane's patch
+const POINT = 0.006;      // radius of a touching point, relative to the robot's size; half of it for open points
+const ARROW = 0.22;       // length of the largest force so far, relative to the robot's size
+const LEAST = 0.01;       // smallest force that is drawn, relative to the largest
+const HEAD = 0.02;        // relative to the robot's size
+const CELLS = 12;         // of the grid along a side of a plane's patch
 const Z = new Vector3(0, 0, 1), Y = new Vector3(0, 1, 0);
-const SAME = 1e-6;        // of the robot's size: nodes closer than this are one
-const STRIDE = 7;         // numbers of the surface, and of a point, in a frame
+const SAME = 1e-6;        // relative to the robot's size: nodes closer than this coincide
+const STRIDE = 7;         // numbers per surface, and per point, in a frame
 
 const vector = (p: number[]) => new Vector3(p[0], p[1], p[2]);
 
-/** One surface in the frame of the scene at rest, and how a plane's patch goes along with the points. */
+/** One contact: its surface, points and forces. The patch that is drawn of a plane follows the points. */
 class Drawn {
   readonly pose = new Group();
   private latest = new Float32Array(0);
@@ -68,7 +68,7 @@ class Drawn {
       return rod;
     }
     if (surface.kind === 'body') return new Group();
-    // A patch of the plane; follow() keeps it under the points.
+    // Draws a patch of the plane, which follow() keeps under the points.
     this.cell = 10 ** Math.floor(Math.log10(this.size)) / 5;
     while (this.cell * CELLS < 1.2 * this.size) this.cell *= 2;
     const side = CELLS * this.cell;
@@ -85,7 +85,7 @@ class Drawn {
     return whole;
   }
 
-  /** Takes a contact of a frame, arrows of so many m a N. */
+  /** Updates the contact from a frame. @param scale of the arrows, m/N. */
   update(values: Float32Array, scale: number): void {
     this.latest = values;
     this.pose.position.fromArray(values, 0);
@@ -127,7 +127,7 @@ class Drawn {
     if (this.patch) this.follow(middle);
   }
 
-  /** The force on the body at a point of it; null where it has none. */
+  /** The force on the body at a position; null if no contact point is there. */
   force(at: Vector3): Vector3 | null {
     const point = new Vector3();
     for (let from = STRIDE; from < this.latest.length; from += STRIDE) {
@@ -141,7 +141,7 @@ class Drawn {
             points: STATES.map((_, state) => this.states.filter((s) => s === state).length)};
   }
 
-  // By whole cells, so that the grid seems to stand still.
+  // Moves the patch by whole cells, so that the grid seems to stand still.
   private follow(middle: Vector3): void {
     const local = this.patch!.parent!.worldToLocal(middle);
     const whole = (x: number) => Math.round(x / this.cell) * this.cell;
@@ -154,7 +154,7 @@ export class Contacts3d {
   private drawn: Drawn[] = [];
   private bodies: string[] = [];
   private size = 1;
-  private largest = 0;  // N, so far: arrows keep their scale while the robot moves
+  private largest = 0;  // N, largest force so far, so that arrows keep their scale while the robot moves
 
   scene(scene: Scene, size: number): void {
     this.root.clear();
@@ -175,12 +175,12 @@ export class Contacts3d {
     for (const [index, values] of contacts) this.drawn[index]?.update(values, scale);
   }
 
-  /** The sum of the forces of all contacts on a node; null where no contact has it among its points. */
+  /** The sum of the contact forces on a node; null if it is a point of no contact. */
   force(body: number, at: Vector3): Vector3 | null {
     const forces = this.drawn.filter((one) => one.contact.body === this.bodies[body]).map((one) => one.force(at));
     return forces.reduce((sum, force) => sum && force ? sum.add(force) : sum ?? force, null);
   }
 
-  /** For tests: of each contact where its surface is, how many arrows, and how many points of each state. */
+  /** For tests: the position of the surface, the number of arrows, and the number of points per state, of each contact. */
   told() { return this.drawn.map((one) => one.told()); }
 }

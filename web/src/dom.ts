@@ -1,4 +1,4 @@
-// Short ways to make elements.
+// Shorthands that create DOM elements.
 
 type Props = Record<string, unknown>;
 

@@ -1,4 +1,4 @@
-// The panel's list of joints: names, and what each says. A click on one chooses it in the picture.
+// The list of joints in the panel: names and current values. A click on a joint selects it in the picture.
 import {make} from './dom';
 import type {Joints3d} from './joints3d';
 import type {Scene} from './protocol';

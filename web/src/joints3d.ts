@@ -1,4 +1,4 @@
-// Joints: markers with their axes, and what the chosen one says.
+// Draws joints: markers with their axes, and the values and force of the selected joint.
 import {
   BoxGeometry, BufferAttribute, BufferGeometry, ConeGeometry, CylinderGeometry, Group, Line, LineBasicMaterial, Mesh,
   MeshBasicMaterial, OctahedronGeometry, Quaternion, SphereGeometry, TorusGeometry, Vector3,
@@ -8,24 +8,24 @@ import {make} from './dom';
 import type {Joint, Scene} from './protocol';
 
 const JOINT = 0x7a5195, CHOSEN = 0xd55e00, FORCE = 0xcc3311;
-const RADIUS = 0.012;     // of a marker, of the robot's size
-const AXIS = 3.5;         // half the length of an axis, of a marker's radius
-const ARROW = 0.22;       // length of the largest force so far, of the robot's size
-const NEAR = 14;          // px: a click so near a marker chooses it
-const LEAST = 1e-9;       // N and N m: less is rounding, and told as none
-const STRIDE = 12;        // numbers of a joint in a frame
+const RADIUS = 0.012;     // of a marker, relative to the robot's size
+const AXIS = 3.5;         // half the length of an axis, relative to a marker's radius
+const ARROW = 0.22;       // length of the largest force so far, relative to the robot's size
+const NEAR = 14;          // px, within which a click selects a marker
+const LEAST = 1e-9;       // N and N m; smaller values are rounding errors and shown as zero
+const STRIDE = 12;        // numbers per joint in a frame
 const Y = new Vector3(0, 1, 0);
 
-const through = {depthTest: false, transparent: true, opacity: 0.9};  // drawn through bodies
+const through = {depthTest: false, transparent: true, opacity: 0.9};  // visible through bodies
 const norm = (v: number[]) => Math.hypot(...v);
 
-/** One marker; its axis is y at first. */
+/** One marker, modelled with its axis along y. */
 class Marker {
   readonly root = new Group();
-  readonly at = new Vector3();        // on the second body
+  readonly at = new Vector3();        // the point on the second body
   readonly axis = new Vector3();
-  private second = new Group();       // of a universal joint
-  private rail: Line | null = null;   // from the first body's point, of what slides
+  private second = new Group();       // the second axis, of a universal joint
+  private rail: Line | null = null;   // between the two bodies' points, of a joint that slides
   private solid = new MeshBasicMaterial({color: JOINT, ...through});
   private thin = new LineBasicMaterial({color: JOINT, ...through});
 
@@ -76,20 +76,20 @@ class Marker {
   }
 }
 
-/** Where a point is seen, CSS pixels. */
+/** Projects a point to the screen, CSS pixels. */
 type Screen = (point: Vector3) => [number, number];
 
 export class Joints3d {
   readonly root = new Group();
   readonly label = make('div', {className: 'told', hidden: true});
   private markers: Marker[] = [];
-  private columns: Map<string, number>[] = [];  // of each joint's signals, by what follows its name
+  private columns: Map<string, number>[] = [];  // of each joint's signals, by quantity (the key after the joint's name)
   private units: string[] = [];
   private signals = new Float64Array();
   private chosen = -1;
   private force = new Line(new BufferGeometry(), new LineBasicMaterial({color: FORCE, ...through}));
   private head: Mesh<ConeGeometry, MeshBasicMaterial>;
-  private largest = 0;  // N, so far: the arrow keeps its scale while the robot moves
+  private largest = 0;  // N, largest force so far, so that the arrow keeps its scale while the robot moves
   private size = 1;
 
   constructor() {
@@ -116,14 +116,14 @@ export class Joints3d {
   get visible(): boolean { return this.root.visible; }
   set visible(yes: boolean) { this.root.visible = yes; }
 
-  /** Chooses a joint; none by -1, or by the one that is chosen. */
+  /** Selects a joint. -1, or the joint that is selected already, clears the selection. */
   choose(index: number): void {
     this.chosen = index === this.chosen ? -1 : index;
     this.markers.forEach((marker, k) => marker.choose(k === this.chosen));
     this.point();
   }
 
-  /** Chooses the joint whose marker is seen at a click, CSS pixels. */
+  /** Selects the joint whose marker is at a click, CSS pixels. Returns whether there is one. */
   pick(x: number, y: number, screen: Screen): boolean {
     if (!this.visible) return false;
     let nearest = NEAR, found = -1;
@@ -154,7 +154,7 @@ export class Joints3d {
     return ['x', 'y', 'z'].map((axis) => this.number(index, `${quantity}_${axis}`) ?? NaN);
   }
 
-  /** What a joint says: its angle and displacement, where it has them, its force and its moment. */
+  /** Describes a joint: angle and displacement, if it has them, and the magnitudes of force and moment. */
   text(index: number): string {
     const moved = ['angle', 'displacement'].flatMap((quantity) => {
       const column = this.columns[index].get(quantity);
@@ -167,7 +167,7 @@ export class Joints3d {
     return [...moved, ...carried].join(', ');
   }
 
-  // The arrow of the chosen joint's force on its second body.
+  // Draws the force of the selected joint on its second body as an arrow.
   private point(): void {
     const marker = this.markers[this.chosen];
     const force = marker ? new Vector3(...this.vector(this.chosen, 'force')) : new Vector3();
@@ -181,7 +181,7 @@ export class Joints3d {
     this.head.quaternion.setFromUnitVectors(Y, along);
   }
 
-  /** Puts the label beside the chosen joint. */
+  /** Places the label beside the selected joint. */
   draw(screen: Screen): void {
     const marker = this.visible ? this.markers[this.chosen] : undefined;
     this.label.hidden = marker === undefined;
@@ -192,7 +192,7 @@ export class Joints3d {
     this.label.style.transform = `translate(${x + 14}px, ${y - 14}px)`;
   }
 
-  /** For tests: of each joint where it is and how its axis points, and what is shown of it. */
+  /** For tests: position, axis and displayed state of each joint. */
   told() {
     return this.markers.map(({at, axis}, k) => ({position: at.toArray(), axis: axis.toArray(), drawn: this.visible,
                                                  chosen: k === this.chosen, text: this.text(k), arrow: k === this.chosen && this.force.visible}));

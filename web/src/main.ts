@@ -1,4 +1,4 @@
-// The page: puts the connection, the robot, the controls and the plots together.
+// The page: connects the WebSocket, the robot, the controls and the plots.
 import {Vector3} from 'three';
 import 'uplot/dist/uPlot.min.css';
 import './style.css';
@@ -13,7 +13,7 @@ import type {Frame, Scene, Status} from './protocol';
 import {Robot3d} from './robot3d';
 import {Viewbar} from './viewbar';
 
-const SMALLEST: Record<string, number> = {m: 1e-9, Pa: 1e-3, N: 1e-9, 'J/m^3': 1e-6, '': 1e-6};  // told from zero
+const SMALLEST: Record<string, number> = {m: 1e-9, Pa: 1e-3, N: 1e-9, 'J/m^3': 1e-6, '': 1e-6};  // smallest range of a field that is shown, by unit
 const FROZEN = 2000;  // ms without a frame while playing
 const byId = (id: string) => document.getElementById(id)!;
 
@@ -24,15 +24,15 @@ let latest: Frame | null = null;
 let fresh = false;
 let frames = 0, framesPerSecond = 0, frameAt = 0, countedAt = performance.now();
 let field: string | null = null;
-let range: [number, number] | null = null;  // fixed, or what is seen
+let range: [number, number] | null = null;  // of the colour map if it is fixed; null: that of the values, `seen`
 let seen: [number, number] = [0, 0];
 let map = MAPS[0];
-const costs: number[] = [];  // ms of script a frame of the program
+const costs: number[] = [];  // ms of script time per received frame
 let cost = 0;
 let pulled: {at: number; message: Record<string, unknown>} | null = null;
 let aimed: Record<string, unknown> | null = null;
-let drawn = -1;  // generation of the robot whose first frame has been drawn
-let stepTimes: number[] = [];  // s, of steps since they were last told
+let drawn = -1;  // generation of the scene whose first frame has been drawn
+let stepTimes: number[] = [];  // s, of the steps since show() last reported them
 
 const notices = new Map<string, string>();
 
@@ -56,7 +56,7 @@ const robot = new Robot3d(byId('stage'), {
 const picked = new Picked(pick);
 const viewbar = new Viewbar(robot);
 
-// What was picked is marked with its first values.
+// Requests the values of the picked node or element. It is marked when the first ones arrive.
 function pick(): void {
   robot.mark(null);
   const {at} = picked;
@@ -104,7 +104,7 @@ function setTheme(dark: boolean): void {
 
 function chooseField(name: string | null): void {
   field = name;
-  seen = [NaN, NaN];  // until values come
+  seen = [NaN, NaN];  // until values arrive
   latest?.fields.clear();
   latest?.innerFields.clear();
   fields.value = name ?? '';
@@ -172,7 +172,7 @@ function measure(frame: Frame): void {
     }
   }
   if (!(a <= b)) return;
-  // Rounding is not shown as if it were a field: what is even has one colour.
+  // A field that is uniform to rounding gets a single colour.
   const unit = scene?.fields.find((f) => f.name === field)?.unit ?? '';
   const size = Math.max(Math.abs(a), Math.abs(b));
   if (b - a <= Math.max(1e-6 * size, SMALLEST[unit] ?? 0)) b = a = size <= (SMALLEST[unit] ?? 0) ? 0 : a;
@@ -290,7 +290,7 @@ const connection = new Connection({
     const begin = performance.now();
     ++frames;
     frameAt = begin;
-    // A frame that is skipped may be the one with the positions.
+    // A frame replaces one that was not drawn yet, which may have had parts that this one lacks.
     if (fresh && latest) {
       for (const [k, v] of latest.positions) if (!frame.positions.has(k)) frame.positions.set(k, v);
       for (const [k, v] of latest.inner) if (!frame.inner.has(k)) frame.inner.set(k, v);
@@ -300,7 +300,7 @@ const connection = new Connection({
       frame.joints ??= latest.joints;
       for (const [k, v] of latest.contacts) if (!frame.contacts.has(k)) frame.contacts.set(k, v);
     }
-    // One that was under way when another field was chosen.
+    // Drops values of another field, sent before this one was chosen.
     for (const [body, {field: shown}] of frame.fields) {
       if (scene?.fields[shown]?.name === field) continue;
       frame.fields.delete(body);
@@ -365,7 +365,7 @@ function signal(key: string, frame: Frame): number {
   return k >= 0 ? frame.signals[k] : NaN;
 }
 
-// Times are means over the last half second. A recorded run does not say how long its steps took.
+// Shows times, averaged over the last half second. A recorded run has no wall times of its steps, so their simulated length is shown.
 function show(): void {
   if (!latest || !scene) return;
   const factor = signal('real_time_factor', latest);
@@ -380,7 +380,7 @@ function show(): void {
 requestAnimationFrame(tick);
 setTheme(matchMedia('(prefers-color-scheme: dark)').matches);
 
-/** For tests and scripts; stable. */
+/** The interface for tests and scripts, which stays stable. */
 const view = {
   state: () => ({
     connected: connection.open, client: connection.client, instance: connection.instance, mode,

@@ -1,4 +1,4 @@
-// The controls: run, view, actuators, targets, and how things stand.
+// The panel: controls of the run, actuators, targets and the hand, and measured values.
 import {told} from './colours';
 import {STATES} from './contacts3d';
 import {button, make} from './dom';
@@ -7,7 +7,7 @@ import type {Actuator, Effector, Frame, Quantity, Scene, Status, Timeline} from 
 
 const SPEEDS: [number, string][] = [[0.1, '0.1 x'], [0.25, '0.25 x'], [0.5, '0.5 x'], [1, 'real time'],
                                     [2, '2 x'], [5, '5 x'], [0, 'as fast as it can']];
-// Shown units of sliders: mm for m, and so on; others as they are.
+// Display units of sliders, with their scale; other units are shown unchanged.
 const SHOWN: Record<string, [number, string]> = {m: [1e3, 'mm'], Pa: [1e-3, 'kPa'], 'm^3': [1e6, 'ml'], '': [1, '1']};
 
 export type Send = (message: Record<string, unknown>) => void;
@@ -30,7 +30,7 @@ export class Panel {
   private moments = make('input', {type: 'range', min: '0', step: '1', value: '0', className: 'time',
                                    'aria-label': 'Moment of the run', title: 'Go back; Play goes on from there'});
   private back = make('span', {className: 'recorded'});
-  private held = false;  // the pointer has the moments' slider
+  private held = false;  // while the pointer drags the slider of moments
   private signals: Record<string, number> = {};
   private latest: [Scene, Frame] | null = null;
   private recorder = button('Record', 'Record the run from now on', () => this.record());
@@ -38,7 +38,7 @@ export class Panel {
   private contacts: {value: HTMLElement; columns: number[]}[] = [];
   private recorded = make('span', {className: 'recorded'});
   private status: Status | null = null;
-  stiffness = 20;  // N/m, of the hand's spring
+  stiffness = 20;  // N/m, of the spring between the pointer and the robot
 
   constructor(private root: HTMLElement, private send: Send, private client: () => number, private joints: JointList) {
     this.speed.append(...SPEEDS.map(([value, text]) => new Option(text, String(value))));
@@ -68,8 +68,8 @@ export class Panel {
     this.controller.replaceChildren(new Option('none (manual)', ''),
                                     ...scene.controllers.map((c) => new Option(c.name, c.name)));
     const heading = (text: string) => make('h2', {textContent: text});
-    const told = scene.actuators.filter((a) => a.quantities.length > 0);  // springs are not told
-    const scripted = mode === 'follow';  // a script steps, resets and chooses the controller
+    const told = scene.actuators.filter((a) => a.quantities.length > 0);  // springs cannot be commanded
+    const scripted = mode === 'follow';  // the script resets and chooses the controller
     this.root.replaceChildren(
       heading('Run'),
       make('div', {className: 'line'}, this.play, button('Step', 'Advance by this number of steps (s)', () => this.step()),
@@ -117,7 +117,7 @@ export class Panel {
       ...this.measured(scene), ...this.touching(scene), ...this.joints.rows(scene));
   }
 
-  /** Names of probes and their numbers, which show() keeps up to date. */
+  /** Rows of the probes and sensors, with values that show() updates. */
   private measured(scene: Scene): HTMLElement[] {
     this.probes = scene.probes.map((probe) => {
       const columns = probe.signals.map((key) => scene.signals.findIndex((s) => s.key === key));
@@ -133,7 +133,7 @@ export class Panel {
     return [...list('Probes', false), ...list('Sensors', true)];
   }
 
-  /** Names of contacts, their forces and states, and what the points' colours mean. */
+  /** Rows of the contacts, with forces and states that show() updates, and the key of the points' colours. */
   private touching(scene: Scene): HTMLElement[] {
     this.contacts = scene.contacts.map((contact) => ({
       value: make('output', {'aria-label': `${contact.name}: contact`}),
@@ -182,7 +182,7 @@ export class Panel {
     this.recorded.replaceChildren(...(recording && !recording.on ? this.files() : []), ' ', text);
   }
 
-  // The unit is to be chosen where there are several ways to command an actuator.
+  // An actuator that can be commanded in several quantities has a choice of units.
   private actuator(actuator: Actuator, way = 0): HTMLElement {
     const quantity = actuator.quantities[way];
     const [scale, unit] = SHOWN[quantity.unit] ?? [1, quantity.unit];
@@ -225,7 +225,7 @@ export class Panel {
     const inputs = ['x', 'y', 'z'].map((axis) =>
       make('input', {type: 'number', step: 'any', 'aria-label': `${effector.name}: target ${axis} in mm`,
                      placeholder: axis}));
-    // A coordinate that was not typed is the effector's own.
+    // A coordinate left empty is filled with the effector's own.
     const send = () => {
       if (inputs.every((input) => input.value === '')) return;
       inputs.forEach((input, k) => {
@@ -286,7 +286,7 @@ export class Panel {
     }
   }
 
-  /** Shows what the actuators have reached, and what they are told or a controller makes them do. */
+  /** Shows the values that actuators have reached, and their commands, whether from the user or a controller. */
   follow(scene: Scene, frame: Frame): void {
     this.latest = [scene, frame];
     this.show(frame.signals);
@@ -296,7 +296,7 @@ export class Panel {
       const row = this.rows.get(actuator.name);
       const command = this.status?.source.commands?.[actuator.name];
       if (!row || !command) return;
-      const done = this.signals[`${actuator.name}.${row.quantity.name}`];  // no signal tells what a drive was fed
+      const done = this.signals[`${actuator.name}.${row.quantity.name}`];  // there is none for the input of a drive
       const reached = done === undefined ? '' : told(done, row.quantity.unit);
       if (row.reached.textContent !== reached) row.reached.textContent = reached;
       if (document.activeElement === row.slider || document.activeElement === row.number) return;
@@ -317,7 +317,7 @@ export class Panel {
     if (this.back.textContent !== text) this.back.textContent = text;
   }
 
-  /** A scene's number for people. */
+  /** Describes the size of a scene: nodes and elements of each body, and the time step. */
   static size(scene: Scene): string {
     return scene.bodies.map((b) => `${b.nodes} nodes, ${b.elements} elements`).join('; ')
       + `, ${told(scene.time_step, 's')} a step`;

@@ -1,14 +1,14 @@
-// What is known of the node or the element that was clicked.
+// The card with the values of the node or element that was clicked.
 import {Vector3} from 'three';
 import {told} from './colours';
 import {button, make} from './dom';
 import type {Frame, Pick, PickKind, Scene} from './protocol';
 
-/** What was clicked: the nearest node, and the element there; -1: the body has none. */
+/** A clicked place: the nearest node, and the element, -1 if the body has none there. */
 export interface Spot {body: number; node: number; element: number}
 export interface Place {position: Vector3; rest: Vector3; force: Vector3 | null}
 
-/** Three numbers of one prefix: "1.2, -30, 4 mm". */
+/** Formats three numbers with one prefix: "1.2, -30, 4 mm". */
 function vector(v: Vector3, unit: string): string {
   const size = Math.max(...v.toArray().map(Math.abs));
   const [number, ...name] = told(size, unit).split(' ');
@@ -30,10 +30,10 @@ export class Picked {
   private table = make('div', {});
   private kinds: Record<PickKind, HTMLButtonElement>;
   private spot: Spot | null = null;
-  /** Which of the two at the place that was clicked is shown. */
+  /** Whether the node or the element at the clicked place is shown. */
   kind: PickKind = 'node';
 
-  /** @param changed called when another one is to be shown. */
+  /** @param changed called when another node or element is to be shown, or none. */
   constructor(private changed: () => void) {
     const choice = (kind: PickKind, text: string) => button(text, `Values of the ${kind} (n)`, () => this.show(kind));
     this.kinds = {node: choice('node', 'Node'), element: choice('element', 'Element')};
@@ -51,7 +51,7 @@ export class Picked {
   choose(spot: Spot | null): void {
     if (!spot && !this.spot) return;
     this.spot = spot;
-    this.element.hidden = true;  // until its values come
+    this.element.hidden = true;  // until its values arrive
     this.rows.clear();
     this.table.replaceChildren();
     this.kinds.element.disabled = spot !== null && spot.element < 0;
@@ -59,14 +59,14 @@ export class Picked {
     this.changed();
   }
 
-  /** What is shown; a body without elements has nodes alone. */
+  /** The node or element that is shown. In a body without elements, it is always a node. */
   get at(): {body: number; kind: PickKind; number: number} | null {
     if (!this.spot) return null;
     const {body, node, element} = this.spot;
     return this.kind === 'element' && element >= 0 ? {body, kind: 'element', number: element} : {body, kind: 'node', number: node};
   }
 
-  /** Whether a frame's values are those that are shown. */
+  /** Whether the values in a frame belong to the node or element that is shown. */
   is(pick: Pick | undefined): pick is Pick {
     const {at} = this;
     return at !== null && pick !== undefined && pick.body === at.body && pick.kind === at.kind && pick.number === at.number;
@@ -82,7 +82,7 @@ export class Picked {
     if (value.textContent !== text) value.textContent = text;
   }
 
-  /** Shows a frame's values. @param force of contacts on the node; null: none has it among its points. */
+  /** Shows the values in a frame. @param force of contacts on the node; null if it is a point of no contact. */
   update(scene: Scene, frame: Frame, force: Vector3 | null): void {
     const {pick} = frame;
     if (!this.is(pick)) return;

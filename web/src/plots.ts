@@ -1,11 +1,11 @@
-// Live plots of the signals that were chosen, by group, over the last seconds.
+// Live plots of groups of signals over the last seconds.
 import uPlot from 'uplot';
 import {told} from './colours';
 import {button, make} from './dom';
 import type {Frame, Scene} from './protocol';
 
 const WINDOW = 10;      // s
-const SAMPLES = 1200;   // at most
+const SAMPLES = 1200;   // maximum
 const COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#7a5195', '#5c5c5c'];
 const TITLES: Record<string, string> = {
   effort: 'Effort', motion: 'Motion', torque: 'Torque', pressure: 'Pressure', volume: 'Volume', effector: 'Effector', error: 'Error', rotation: 'Rotation',
@@ -16,12 +16,12 @@ const TITLES: Record<string, string> = {
   'volume command': 'Commanded volume', estimate: 'Estimated forces', 'estimate Pa': 'Estimated pressures',
 };
 
-const SAME = 4e-3;  // of the plot's height: curves that are nowhere farther apart are drawn as one
-const DASH = 8;     // px
-const MOST = 3;  // plots at once
-const HEIGHT = 170, LOW = 120;  // px of a plot: alone, and among others
+const SAME = 4e-3;  // relative to the plot's height: curves that differ by less everywhere look equal
+const DASH = 8;     // px, of equal curves
+const MOST = 3;  // maximum number of plots
+const HEIGHT = 170, LOW = 120;  // px, of a single plot, and of several
 
-/** Groups of two or more columns that look equal, (m, n) numbers each. */
+/** Groups of two or more curves that look equal, as indices. @param columns (m, n): m curves of n values. */
 export function equalCurves(columns: number[][]): number[][] {
   const all = columns.flat().filter(Number.isFinite);
   const range = all.reduce((most, x) => Math.max(most, x), -Infinity) - all.reduce((least, x) => Math.min(least, x), Infinity);
@@ -36,11 +36,11 @@ export function equalCurves(columns: number[][]): number[][] {
   return groups;
 }
 
-/** All signals of the last seconds, whichever are plotted. */
+/** The history of all signals over the last seconds, plotted or not. */
 class History {
   times: number[] = [];         // s
-  rows: Float64Array[] = [];    // as many
-  marker = NaN;                 // s: the moment that was gone back to
+  rows: Float64Array[] = [];    // signals at these times
+  marker = NaN;                 // s, the moment to which the run was set back; NaN: none
 
   clear(): void {
     this.times = [];
@@ -48,7 +48,7 @@ class History {
     this.marker = NaN;
   }
 
-  // A run that went on from an earlier moment has no longer what came after it.
+  // When a run continues from an earlier moment, the samples after that moment are dropped.
   add(frame: Frame): void {
     const past = frame.timeline !== undefined && frame.timeline.shown < frame.timeline.latest;
     this.marker = past ? frame.time : NaN;
@@ -64,14 +64,14 @@ class History {
   }
 }
 
-/** The signals of one group; a click on a name in the legend hides or shows it. */
+/** A plot of one group of signals. A click on a name in the legend hides or shows its curve. */
 class Plot {
   readonly element = make('div', {});
   group = '';
   private plot: uPlot | null = null;
   private columns: number[] = [];
   private unit = '';
-  private scale = 1;  // angles are drawn in degrees, so that their ticks are round
+  private scale = 1;  // angles are drawn in degrees, so that their ticks are round numbers
   private select = make('select', {'aria-label': 'Signals to plot'});
   private box = make('div', {className: 'plot'});
   private scene: Scene | null = null;
@@ -82,7 +82,7 @@ class Plot {
     this.element.append(make('div', {className: 'line'}, this.select, ...buttons), this.box);
   }
 
-  /** Shows a group, or the one that it showed where there is none of this name. */
+  /** Shows the wanted group, or the first one if the scene has no such group. */
   setScene(scene: Scene, wanted: string): void {
     this.scene = scene;
     const groups = [...new Set(scene.signals.map((s) => s.group))];
@@ -138,7 +138,7 @@ class Plot {
     ctx.restore();
   }
 
-  /** Curves that are equal take turns: each is drawn in its own dashes. */
+  /** Draws the curves. Those that look equal alternate: the dashes of each lie in the gaps of the others. */
   draw(): void {
     if (!this.plot) return;
     const data = this.data();
@@ -152,7 +152,7 @@ class Plot {
     this.plot.setData(data);
   }
 
-  /** For tests: labels of curves drawn as one, the samples' first and last time, and the marker. */
+  /** For tests: labels of curves that look equal, first and last time of the samples, and the marker. */
   told() {
     const label = (k: number) => this.scene!.signals[this.columns[k]].label;
     const {times, marker} = this.history;
@@ -204,7 +204,7 @@ export class Plots {
   add(frame: Frame): void { this.history.add(frame); }
 
   draw(now: number): void {
-    if (now - this.drawn < 100) return;  // ten times a second is enough to read
+    if (now - this.drawn < 100) return;  // ten times a second suffice for the eye
     this.drawn = now;
     for (const plot of this.plots) plot.draw();
   }

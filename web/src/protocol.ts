@@ -1,4 +1,4 @@
-// What the program sends: docs/view_protocol.md in TypeScript. All numbers are SI.
+// The messages that the program sends, as docs/view_protocol.md defines them. All numbers are in SI units.
 
 export interface Quantity {
   name: string; unit: string; min: number | null; max: number | null; rate: number | null;
@@ -6,16 +6,16 @@ export interface Quantity {
 }
 export interface Actuator {name: string; type: string; body: string; quantities: Quantity[]; points: number}
 export interface Effector {name: string; kind: 'point' | 'orientation'; directions: number[][]}
-/** `marks`: its points in the frame's `probes`; `signals`: keys of its numbers. */
+/** `marks`: number of its points in a frame's `probes`; `signals`: keys of its signals. */
 export interface Probe {name: string; kind: string; sensor: boolean; marks: number; signals: string[]}
 export type ContactSurface = {kind: 'plane'; point: number[]; normal: number[]}
   | {kind: 'sphere'; centre: number[]; radius: number} | {kind: 'capsule'; ends: number[][]; radius: number}
-  | {kind: 'body'};  // drawn with the body that it is of
-/** Points of a body that may touch a surface; `signals`: keys of its numbers. */
+  | {kind: 'body'};  // drawn with its body
+/** A contact of a body's points with a surface; `signals`: keys of its signals. */
 export interface Contact {
   name: string; body: string; surface: ContactSurface; friction: number; points: number; signals: string[];
 }
-/** Signals: keys of its numbers, the joint's name in front. */
+/** `signals`: keys of its signals, which start with the joint's name. */
 export interface Joint {name: string; type: string; bodies: string[]; signals: string[]}
 export interface Controller {name: string; type: string; effectors: string[]}
 export interface Signal {key: string; label: string; unit: string; group: string}
@@ -42,17 +42,17 @@ export interface SourceStatus {
 }
 export interface Status {clients: number; driver: number | null; source: SourceStatus}
 
-/** `nodes`: of the mesh, of each vertex; `elements`: behind each triangle, NONE without. */
+/** `nodes`: the mesh node of each vertex; `elements`: the element behind each triangle, or NONE. */
 export interface Surface {body: number; rest: Float32Array; triangles: Uint32Array; nodes: Uint32Array; elements: Uint32Array}
-/** What elements consist of. Vertices of `tetrahedra` (4 s,) are those of the surface, then inner ones, whose `nodes` of the mesh
- *  are NONE where they are the middle of an element; `elements` (s,) those that the tetrahedra are of. */
+/** The interior of a body, split into tetrahedra (4 s,). Vertices are numbered from those of the surface on to the inner ones.
+ *  `nodes`: the mesh node of each inner vertex, NONE for the middle of an element; `elements` (s,): that of each tetrahedron. */
 export interface Interior {body: number; nodes: Uint32Array; tetrahedra: Uint32Array; elements: Uint32Array}
 export const NONE = 0xffffffff;
-/** Moments of a live run: their numbers and times, s. `shown` is the latest in the present. */
+/** The moments of a live run to which it can return: numbers, and times in s. `shown` equals `latest` unless the run was set back. */
 export interface Timeline {oldest: number; latest: number; shown: number; oldestTime: number; latestTime: number}
 export type PickKind = 'node' | 'element';
-/** A value of each of the scene's fields at a node or of an element, NaN where there is none; places of the node or the element's
- *  nodes (3 k,), m; of an element its volume at rest, m^3, and which of the body's materials it is of. */
+/** Values at a node or element: `fields` in the scene's order, NaN if undefined; `positions` and `rest` of the node or of the
+ *  element's nodes (3 k,), m; for an element, its `volume` at rest, m^3, and its `material`, an index into those of the body. */
 export interface Pick {
   body: number; kind: PickKind; number: number; material: number; volume: number;
   positions: Float32Array; rest: Float32Array; fields: Float32Array;
@@ -61,19 +61,19 @@ export interface Frame {
   sequence: number; step: number; time: number; hash: string; signals: Float64Array;
   positions: Map<number, Float32Array>; fields: Map<number, {field: number; values: Float32Array}>;
   cables?: Float32Array; effectors?: Float32Array; targets?: Float32Array; pull?: Float32Array;
-  /** Of the inner vertices, where they are asked for. */
+  /** Positions and field values of inner vertices, if they were requested. */
   inner: Map<number, Float32Array>; innerFields: Map<number, Float32Array>;
   probes?: Float32Array; pick?: Pick; timeline?: Timeline;
-  /** By contact: position (3) and quaternion (4) of the surface, then of each point position (3), force (3), state. */
+  /** By contact: position (3) and quaternion (4) of the surface, then position (3), force (3) and state of each point. */
   contacts: Map<number, Float32Array>;
-  /** Of each joint the points on its bodies (3), (3), its axis (3) and its second axis (3); 0: none. */
+  /** Per joint: the points on its bodies (3), (3), its axis (3) and its second axis (3), zero if there is none. */
   joints?: Float32Array;
 }
 
 const MAGIC = 0x31574e53;
 const SURFACE = 1, FRAME = 2, INTERIOR = 3;
 
-/** Reads a binary message; arrays are views of its bytes. */
+/** Decodes a binary message. The arrays are views of its bytes. Throws an Error if it is none of Sinew's. */
 export function decode(buffer: ArrayBuffer): {generation: number; surface?: Surface; frame?: Frame; interior?: Interior} {
   const view = new DataView(buffer);
   if (buffer.byteLength < 8 || view.getUint32(0, true) !== MAGIC) throw new Error('no message of Sinew');

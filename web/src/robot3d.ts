@@ -1,4 +1,4 @@
-// The robot in three dimensions: surfaces, cables, effectors, targets, ground, and what the mouse does.
+// Draws the robot in three dimensions (bodies, cables, effectors, targets, ground), and handles the mouse.
 import {
   AmbientLight, AxesHelper, Box3, BufferAttribute, BufferGeometry, CanvasTexture, Color, DirectionalLight,
   GridHelper, HemisphereLight, Line, LineBasicMaterial, Mesh, MeshBasicMaterial,
@@ -24,26 +24,26 @@ import type {Frame, Pick, Scene} from './protocol';
 const GIZMO = 0.6;  // size of the target's arrows
 const PROBE = 0x009e73;
 const PICKED = 0xcc79a7;
-// Pairs of an element's nodes that are joined by an edge, by the number of its nodes (VTK's order).
+// Edges of an element as pairs of nodes (VTK's order), by its number of nodes. Quadratic edges have two parts.
 const ELEMENT_EDGES: Record<number, number[]> = {
   4: [0, 1, 1, 2, 2, 0, 0, 3, 1, 3, 2, 3],
   8: [0, 1, 1, 2, 2, 3, 3, 0, 4, 5, 5, 6, 6, 7, 7, 4, 0, 4, 1, 5, 2, 6, 3, 7],
   10: [0, 4, 4, 1, 1, 5, 5, 2, 2, 6, 6, 0, 0, 7, 7, 3, 1, 8, 8, 3, 2, 9, 9, 3],
 };
-const CLICK = 4;  // px that a click may move
+const CLICK = 4;  // px, maximum motion of a click
 const SLACK = 0x8a8f98, TAUT = 0x0072b2, STRONG = 0xd55e00;  // Okabe and Ito 2008
 
 export interface Hand {
   pull(body: number, vertices: number[], weights: number[], anchor: number[]): void;
   release(): void;
   target(effector: number, position: number[]): void;
-  /** A click on a body, or beside: null. */
+  /** Called on a click on a body; null: beside the bodies. */
   pick(spot: Spot | null): void;
-  /** Whether frames are to have what is inside of bodies. */
+  /** Requests that frames contain the interiors of bodies, or ends it. */
   inside(on: boolean): void;
 }
 
-/** A text that always faces the camera and is never hidden, of the same size on the screen however far. */
+/** A text that faces the camera, has a constant size on the screen, and is never hidden by bodies. */
 function caption(text: string): Sprite {
   const canvas = make('canvas', {width: 256, height: 64});
   const context = canvas.getContext('2d')!;
@@ -52,7 +52,7 @@ function caption(text: string): Sprite {
   context.textBaseline = 'middle';
   context.lineWidth = 8;
   context.lineJoin = 'round';
-  context.strokeStyle = '#ffffffcc';  // to be read on light and dark
+  context.strokeStyle = '#ffffffcc';  // readable on light and dark backgrounds
   context.strokeText(text, 128, 34);
   context.fillStyle = '#1d232b';
   context.fillText(text, 128, 34);
@@ -83,16 +83,16 @@ export class Robot3d {
   private grabbed: {plane: Plane; body: number; vertices: number[]; weights: number[]} | null = null;
   private dragging = false;
   private steered = -1;
-  private chosen = -1;  // effector whose target was clicked
+  private chosen = -1;  // effector that was clicked, or whose target was
   private force = make('div', {id: 'force', hidden: true});
   private bounds = new Box3();
   private picked = new Mesh(new SphereGeometry(1, 20, 14), new MeshBasicMaterial({color: PICKED, depthTest: false, transparent: true}));
   private outline = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({color: PICKED, linewidth: 3, depthTest: false, transparent: true}));
   private stale = true;  // see touch()
-  private drawnFrom = new Vector3();  // where the camera was
-  private pressed: [number, number] | null = null;  // px, where a click may begin
+  private drawnFrom = new Vector3();  // position of the camera in the last picture
+  private pressed: [number, number] | null = null;  // px, where the button went down, if this may become a click
   follow = false;
-  hands = false;  // a plain drag on the robot pulls, as on a screen without keys
+  hands = false;  // dragging the robot pulls it without Shift, for touch screens
 
   constructor(private stage: HTMLElement, private hand: Hand) {
     this.renderer = new WebGLRenderer({antialias: true, preserveDrawingBuffer: true, stencil: true});
@@ -128,11 +128,11 @@ export class Robot3d {
     canvas.addEventListener('pointerdown', (event) => this.press(event), true);
     canvas.addEventListener('pointermove', (event) => this.move(event));
     addEventListener('pointerup', (event) => this.letGo(event));
-    // Whatever someone does may be seen, what lies under the pointer included.
+    // Any input may change the picture, even a move of the pointer.
     for (const what of ['pointerdown', 'pointermove', 'pointerup', 'wheel', 'keydown', 'keyup', 'input', 'change', 'click']) {
       addEventListener(what, () => {
         this.touch();
-        requestAnimationFrame(() => this.touch());  // what it brings about comes later
+        requestAnimationFrame(() => this.touch());  // its effects may follow the event
       }, {passive: true, capture: true});
     }
     canvas.addEventListener('webglcontextrestored', () => this.touch());
@@ -153,7 +153,7 @@ export class Robot3d {
     this.camera.resize(w, h);
   }
 
-  /** What lies over the picture, px at each side; the robot is shown beside it. */
+  /** Sets the widths covered by panels, px at each side; the robot is shown beside them. */
   cover(left: number, right: number, top: number, bottom: number): void {
     if (this.camera.cover([left, right, top, bottom])) this.fit();
   }
@@ -173,7 +173,7 @@ export class Robot3d {
     this.cableSignals = [];
     scene.actuators.forEach((actuator) => {
       if (actuator.points === 0) return;
-      // Drawn after the body and through it.
+      // Cables are drawn after the body and visible through it.
       const material = new LineMaterial({color: TAUT, linewidth: 3, depthTest: false, transparent: true, opacity: 0.85,
                                          dashSize: 0.012 * this.size, gapSize: 0.012 * this.size});
       const line = new Line2(new LineGeometry(), material);
@@ -239,7 +239,7 @@ export class Robot3d {
     this.stage.dataset.cell = told(cell, 'm');
   }
 
-  /** Takes a frame; field values are painted between low and high. */
+  /** Updates the robot from a frame. The colour map extends from low to high. */
   update(frame: Frame, low: number, high: number): void {
     this.touch();
     this.bodies.update(frame, low, high);
@@ -253,7 +253,7 @@ export class Robot3d {
     this.drawSpring(frame.pull);
   }
 
-  /** Marks the node or the element that was picked; null: none. */
+  /** Marks the picked node or element; null: none. */
   mark(pick: Pick | null): void {
     this.touch();
     this.picked.visible = pick?.kind === 'node';
@@ -264,25 +264,25 @@ export class Robot3d {
       return;
     }
     const ends = ELEMENT_EDGES[pick.positions.length / 3].flatMap((node) => [...pick.positions.subarray(3 * node, 3 * node + 3)]);
-    this.outline.geometry.dispose();  // or three.js keeps the number of lines, and the old buffer
+    this.outline.geometry.dispose();  // else three.js keeps the old buffer and its number of lines
     this.outline.geometry.setPositions(ends);
   }
 
-  /** The contact force on a node that was picked; null: no contact has it among its points. */
+  /** The contact force on a picked node; null if it is a point of no contact. */
   pressingOn(pick: Pick): Vector3 | null {
     return pick.kind === 'node' ? this.contacts.force(pick.body, middle(pick.positions)) : null;
   }
 
-  /** The contact force on a vertex of a body; null where no contact has it among its points. */
+  /** The contact force on a vertex of a body; null if it is a point of no contact. */
   pressing(body: number, vertex: number): Vector3 | null { return this.contacts.force(body, this.bodies.vertex(body, vertex)); }
 
-  /** Cuts bodies open: see Section3d. */
+  /** Cuts bodies open, see Section3d.set(). */
   cut(axis: number | null, at: number, before: boolean): void {
     this.touch();
     if (this.bodies.cut(axis, at, before, this.bounds.getCenter(new Vector3()))) this.hand.inside(this.bodies.isCut);
   }
 
-  /** For tests: which effectors' targets are drawn. */
+  /** For tests: whether the target of each effector is drawn. */
   targetsShown(): boolean[] { return this.targets.map((mark) => mark.visible); }
 
   setOrthographic(yes: boolean): void {
@@ -323,7 +323,7 @@ export class Robot3d {
     });
   }
 
-  /** Puts the gizmo at the first target, or at the first effector where nothing steers. */
+  /** Places the gizmo at the chosen target, else at the first one; without targets, at an effector. */
   private steer(): void {
     const marks = this.targets.some((t) => t.visible) ? this.targets : this.effectors;
     this.steered = marks[this.chosen]?.visible ? this.chosen : marks.findIndex((m) => m.visible);
@@ -347,13 +347,13 @@ export class Robot3d {
     this.force.style.transform = `translate(${x + 12}px, ${y - 12}px)`;
   }
 
-  /** Where a point is seen, CSS pixels of the stage. */
+  /** Projects a point to the stage, CSS pixels. */
   screen(point: Vector3): [number, number] {
     const seen = point.clone().project(this.camera.now);
     return [(1 + seen.x) / 2 * this.stage.clientWidth, (1 - seen.y) / 2 * this.stage.clientHeight];
   }
 
-  /** For pictures: the robot alone, without arrows and captions. */
+  /** For pictures: shows the robot without arrows and captions. */
   plain(): void {
     this.steerable(false);
     this.robot.traverse((part) => { if (part instanceof Sprite || part instanceof AxesHelper) part.visible = false; });
@@ -361,17 +361,17 @@ export class Robot3d {
     this.fit();
   }
 
-  /** For tests: where the arrows of the target are seen, on their middle. */
+  /** For tests: the middles of the target's arrows on the stage, CSS pixels. */
   arrows(): [number, number][] {
     const at = this.handle.position;
     const {now} = this.camera;
     const factor = 'fov' in now ? at.distanceTo(now.position) * Math.min(1.9 * Math.tan(Math.PI * now.fov / 360), 7)
-      : (now.top - now.bottom) / now.zoom;  // as TransformControls has it
+      : (now.top - now.bottom) / now.zoom;  // the formula of TransformControls
     const reach = 0.3 * factor * GIZMO / 4;
     return [0, 1, 2].map((k) => this.screen(at.clone().setComponent(k, at.getComponent(k) + reach)));
   }
 
-  /** What there is to see now: bodies, effectors and targets. */
+  /** The bounding box of bodies, visible effectors and targets. */
   box(): Box3 {
     if (this.bodies.count === 0) return this.bounds.clone();
     const box = this.bodies.box();
@@ -379,13 +379,13 @@ export class Robot3d {
     return box;
   }
 
-  /** Shows all of the robot, beside the panels. */
+  /** Shows the whole robot beside the panels. */
   fit(): void {
     this.touch();
     this.camera.fit(this.box());
   }
 
-  /** Shows all of the robot from one side. */
+  /** Shows the whole robot from one side. */
   look(view: View): void {
     this.touch();
     this.camera.fit(this.box(), view);
@@ -399,8 +399,8 @@ export class Robot3d {
     return caster;
   }
 
-  // Shift and drag, or the right button, on the surface: a spring from there to the pointer. A click on
-  // a target or an effector: its arrows; on a joint's marker: what it says; on a body: what is there.
+  // Shift and drag, or a drag with the right button, attaches a spring from the surface to the pointer. A click on a target
+  // or an effector moves the arrows there; on a joint's marker, it selects the joint; on a body, it picks a node or element.
   private press(event: PointerEvent): void {
     this.pressed = null;
     if (this.gizmo.axis !== null && event.button === 0 && !event.shiftKey) return;
@@ -456,15 +456,15 @@ export class Robot3d {
     this.hand.pick(found && this.bodies.spot(found));
   }
 
-  /** Something is to be seen that was not drawn yet. */
+  /** Marks the picture as outdated, so that draw() renders it again. */
   touch(): void { this.stale = true; }
 
-  /** Draws what is to be seen, unless it is in the picture already. */
+  /** Renders the picture if it is outdated or the camera has moved. */
   draw(): void {
     if (this.follow && this.effectors[0]?.visible) {
       this.camera.orbit.target.lerp(this.effectors[0].position, 0.1);
     }
-    // OrbitControls tells only of moves of more than a millimetre.
+    // OrbitControls reports only moves of more than a millimetre.
     const moved = this.camera.orbit.update() || this.camera.now.position.distanceTo(this.drawnFrom) > 1e-4 * this.camera.span;
     if (moved) this.stale = true;
     if (!this.stale) return;

@@ -1,4 +1,4 @@
-// A plane that cuts bodies open, and the faces of the cut.
+// The section: a plane that cuts bodies open, and the faces of the cut.
 import {
   AlwaysStencilFunc, BackSide, BufferAttribute, BufferGeometry, Color, DecrementWrapStencilOp, DoubleSide, FrontSide, Group,
   IncrementWrapStencilOp, LineBasicMaterial, LineSegments, Material, Mesh, MeshBasicMaterial, NotEqualStencilFunc, Plane, PlaneGeometry,
@@ -8,9 +8,9 @@ import {paint} from './colours';
 import {emptySlice, slice} from './slice';
 
 export const AXES = ['x', 'y', 'z'] as const;
-const SHADE = 0.7;  // of a body's colour on the faces of the cut
+const SHADE = 0.7;  // factor on a body's colour on the faces of the cut
 
-/** Counts, pixel by pixel, how often the line of sight enters a closed surface, or leaves it, beyond the plane. */
+/** Counts in the stencil buffer how often the line of sight of a pixel enters or leaves a closed surface on the visible side of the plane. */
 function counter(geometry: BufferGeometry, side: Side, count: StencilOp, plane: Plane, order: number): Mesh {
   const material = new MeshBasicMaterial({depthWrite: false, depthTest: false, colorWrite: false, side, clippingPlanes: [plane]});
   Object.assign(material, {stencilWrite: true, stencilFunc: AlwaysStencilFunc, stencilFail: count, stencilZFail: count, stencilZPass: count});
@@ -20,24 +20,24 @@ function counter(geometry: BufferGeometry, side: Side, count: StencilOp, plane: 
   return mesh;
 }
 
-/** Colours of a field. */
+/** Range and colour map of a field. */
 export interface Paint {low: number; high: number; table: Float32Array}
 
-/** The faces of a body's elements in the plane. */
+/** The faces in which the plane cuts the elements of a body. */
 export class Cut {
   readonly faces: Mesh<BufferGeometry, MeshBasicMaterial>;
   readonly outlines = new LineSegments(new BufferGeometry(), new LineBasicMaterial({color: 0x222222, transparent: true, opacity: 0.35}));
   private shape = emptySlice();
   private colours = new Float32Array(0);
 
-  /** @param tetrahedra (4 s,) vertices that the elements consist of. */
+  /** @param tetrahedra (4 s,) vertices, into which the elements are split. */
   constructor(private tetrahedra: Uint32Array, private color: number) {
     this.faces = new Mesh(new BufferGeometry(), new MeshBasicMaterial({side: DoubleSide}));
     this.faces.frustumCulled = this.outlines.frustumCulled = false;
-    this.faces.renderOrder = -1;  // before what is transparent
+    this.faces.renderOrder = -1;  // before transparent objects
   }
 
-  /** @param values of the vertices, painted as `colours` says; null: in the body's colour. */
+  /** @param values of the vertices, coloured by `colours`; null: the faces have the body's colour. */
   update(plane: Plane, points: Float32Array, values: Float32Array | null, colours: Paint | null, outlined: boolean): void {
     const {shape} = this, {geometry, material} = this.faces;
     slice(this.tetrahedra, points, values, plane.normal.toArray(), plane.constant, shape);
@@ -60,10 +60,10 @@ export class Cut {
     this.outlines.geometry.setDrawRange(0, 2 * shape.edges);
   }
 
-  /** Which of the tetrahedra a triangle of the faces is of. */
+  /** The tetrahedron to which a triangle of the faces belongs. */
   tetrahedron(triangle: number): number { return this.shape.tetrahedra[triangle]; }
 
-  /** For tests: m^2, and the least and largest value. */
+  /** For tests: area of the faces, m^2, range of their values, and number of triangles. */
   told(): {area: number; low: number; high: number; triangles: number} {
     const {positions, values, count} = this.shape;
     let area = 0, low = Infinity, high = -Infinity;
@@ -76,7 +76,7 @@ export class Cut {
   }
 }
 
-// An array that has grown is a new attribute; one that has not is sent up to where it is used.
+// Sets an attribute. A reallocated array needs a new one; otherwise only the used part of the array is uploaded.
 function replace(geometry: BufferGeometry, name: string, array: Float32Array, used: number): void {
   let attribute = geometry.getAttribute(name) as BufferAttribute | undefined;
   if (attribute?.array !== array) {
@@ -104,9 +104,9 @@ export class Section3d {
     this.cuts.clear();
   }
 
-  /** Fills the cut of a closed surface that has no elements inside; `size`: m, beyond which there is nothing. */
+  /** Caps a closed surface without elements where the plane cuts it. @param size of the robot, m. */
   fill(geometry: BufferGeometry, color: number, size: number): void {
-    const order = -10 + 0.01 * this.caps.length;  // one body after the other, before what is transparent
+    const order = -10 + 0.01 * this.caps.length;  // one body after the other, before transparent objects
     const material = new MeshBasicMaterial({color: new Color(color).multiplyScalar(SHADE), side: DoubleSide});
     Object.assign(material, {stencilWrite: true, stencilRef: 0, stencilFunc: NotEqualStencilFunc, stencilFail: ReplaceStencilOp,
                              stencilZFail: ReplaceStencilOp, stencilZPass: ReplaceStencilOp});
@@ -119,7 +119,7 @@ export class Section3d {
                   counter(geometry, FrontSide, DecrementWrapStencilOp, this.plane, order), face);
   }
 
-  /** Cuts the elements of a body. */
+  /** Adds the elements of a body to those that are cut, or replaces them. */
   open(body: number, tetrahedra: Uint32Array, color: number): void {
     const before = this.cuts.get(body);
     if (before) this.root.remove(before.faces, before.outlines);
@@ -128,7 +128,7 @@ export class Section3d {
     this.root.add(cut.faces, cut.outlines);
   }
 
-  /** Until they are opened again, bodies of elements have no faces. */
+  /** Removes the cuts of all bodies with elements, until open() adds them again. */
   close(): void {
     for (const {faces, outlines} of this.cuts.values()) {
       this.root.remove(faces, outlines);
@@ -140,7 +140,8 @@ export class Section3d {
 
   of(body: number): Cut | undefined { return this.cuts.get(body); }
 
-  /** Cuts off what lies beyond `at`, m, along an axis, or before it; null: nothing. */
+  /** Hides the part of the bodies beyond the coordinate `at`, m, of an axis, or the part before it. @param axis null: no section.
+   *  @param middle of the robot, near which caps are placed. */
   set(axis: number | null, at: number, before: boolean, middle: Vector3): void {
     this.on = this.root.visible = axis !== null;
     if (axis === null) return;
@@ -154,10 +155,10 @@ export class Section3d {
 
   cut(material: Material): void { material.clippingPlanes = this.on ? [this.plane] : null; }
 
-  /** Whether a point is shown. */
+  /** Whether a point is on the visible side of the section. */
   shows(point: Vector3): boolean { return !this.on || this.plane.distanceToPoint(point) >= 0; }
 
-  /** The first face of elements that a ray meets: of which body, and which of its tetrahedra. */
+  /** The first hit of a ray on a face of cut elements, with the body and its tetrahedron. */
   hit(caster: Raycaster): {body: number; tetrahedron: number; point: Vector3; distance: number} | null {
     if (!this.on) return null;
     let first = null;

@@ -1,11 +1,11 @@
-// Where a plane cuts tetrahedra: the faces of the cut, with what has a value at each vertex interpolated linearly.
+// Intersects tetrahedra with a plane. Values at the vertices are interpolated linearly to the faces of the cut.
 
-/** Triangles; arrays grow as they must, and their first `count` triangles and `edges` lines are meant. */
+/** The faces as triangles. Arrays grow as needed; their first `count` triangles and `edges` lines are valid. */
 export interface Slice {
   count: number; edges: number;
   positions: Float32Array;    // (9 count,)
-  values: Float32Array;       // (3 count,), 0 without values
-  tetrahedra: Uint32Array;    // (count,) each one is of
+  values: Float32Array;       // (3 count,), zero if there are none
+  tetrahedra: Uint32Array;    // (count,) to which each triangle belongs
   lines: Float32Array;        // (6 edges,) outlines of the faces of all tetrahedra
 }
 
@@ -21,8 +21,9 @@ function grown<T extends Float32Array | Uint32Array>(old: T, length: number): T 
   return larger;
 }
 
-// Corners of the face, as pairs of local vertices that each stand on an edge, for vertices 0 to 3 with bit k set where
-// vertex k is before the plane: around the face, so that a quadrilateral is two triangles 0 1 2 and 0 2 3.
+// Corners of the face in which the plane cuts a tetrahedron, by a mask whose bit k says that vertex k is before the plane.
+// Each corner lies on an edge and is given by its two local vertices. The corners go round the face, so that a
+// quadrilateral consists of the triangles 0 1 2 and 0 2 3.
 const EDGES: number[][] = Array.from({length: 16}, (_, mask) => {
   const before = [0, 1, 2, 3].filter((k) => mask >> k & 1), behind = [0, 1, 2, 3].filter((k) => !(mask >> k & 1));
   if (before.length === 1) return behind.flatMap((b) => [before[0], b]);
@@ -32,9 +33,9 @@ const EDGES: number[][] = Array.from({length: 16}, (_, mask) => {
   return [a, c, a, d, b, d, b, c];
 });
 
-/** Cuts tetrahedra (4 s,) of points (3 n,) by the plane normal . x + constant = 0.
- *  Points in the plane count as before it, so that a face of elements that lies in the plane is drawn once.
- *  @param values (n,) or null. */
+/** Intersects tetrahedra (4 s,) of points (3 n,) with the plane normal . x + constant = 0.
+ *  Points in the plane count as before it, so that an element face in the plane is drawn once.
+ *  @param values (n,) or null. @param into receives the faces. */
 export function slice(tetrahedra: Uint32Array, points: Float32Array, values: Float32Array | null,
                       normal: readonly [number, number, number], constant: number, into: Slice): void {
   const [nx, ny, nz] = normal;
@@ -42,7 +43,7 @@ export function slice(tetrahedra: Uint32Array, points: Float32Array, values: Flo
   for (let i = 0; i < height.length; ++i) {
     height[i] = nx * points[3 * i] + ny * points[3 * i + 1] + nz * points[3 * i + 2] + constant;
   }
-  const corner = new Float64Array(4 * 4);  // x, y, z, value of each
+  const corner = new Float64Array(4 * 4);  // x, y, z and value of each
   into.count = into.edges = 0;
   for (let t = 0; 4 * t < tetrahedra.length; ++t) {
     let mask = 0;

@@ -1,4 +1,4 @@
-// How the robot is looked at: from where, in what projection, and cut open where.
+// The controls of the view: direction, projection, and section.
 import {Box3} from 'three';
 import {told} from './colours';
 import {button, make} from './dom';
@@ -39,7 +39,7 @@ export class Viewbar {
             this.axis, this.slider, this.side, this.where];
   }
 
-  /** Another robot is shown: not cut. */
+  /** Removes the section when another scene is shown. */
   scene(): void {
     this.axis.value = '';
     this.cut();

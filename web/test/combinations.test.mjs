@@ -1,4 +1,4 @@
-// Scenes that combine features in the view: a sample of those that the combination tests step, save and load in C++.
+// Shows scenes that combine features: a sample of those that the combination tests step, save and load in C++.
 // SINEW_PROGRAM=... SINEW_COMBINATIONS=build/release/bin/combinations node --test web/test
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
@@ -9,10 +9,10 @@ import {test} from 'node:test';
 import {ask, drawn, open, ROOT, serve, state, stop, until} from '../testing/page.mjs';
 
 const COMBINATIONS = process.env.SINEW_COMBINATIONS ?? join(ROOT, 'build/release/bin/combinations');
-const SAMPLE = [2, 20, 38, 56]; // of the cover of all pairs
+const SAMPLE = [2, 20, 38, 56]; // from the set of scenes that covers all pairs of features
 const STEPS = 6;
 
-/** Plays some steps. Resolves with what the page shows then, or with what stopped the scene. */
+/** Advances by STEPS steps. Resolves with the state of the page after them, or when the run has stopped with an error. */
 async function play(page) {
   const {step} = await state(page);
   try {
@@ -46,7 +46,7 @@ for (const number of SAMPLE) {
     await until(page, (s) => s.status.recording?.on === false);
     const after = await drawn(page, () => window.sinewView.state());
     for (const [name, value] of Object.entries(after.signals)) {
-      // NaN: not commanded, not steered, not run long enough to tell how fast
+      // These are NaN without a command, a target, or enough run time to measure the speed.
       if (/_command$|\.error$|^real_time_factor$/.test(name)) continue;
       assert.ok(Number.isFinite(value), `${name}: ${value}`);
     }

@@ -1,4 +1,4 @@
-// How a robot is looked at: from where, cut open, node by node, and back in time. Run as view.test.mjs is.
+// Tests of the view's directions, sections, picked nodes and elements, and return to earlier moments. Run like view.test.mjs.
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
 import {mkdtempSync, rmSync} from 'node:fs';
@@ -19,7 +19,7 @@ function python(code) {
     env: {...process.env, PYTHONPATH: PACKAGE}, encoding: 'utf8'}));
 }
 
-/** A served scene and a page of it, closed after the test. */
+/** Serves a scene and opens a page of it. Both are closed after the test. */
 async function shown(t, scene, ...more) {
   const served = await serve(scene, 0, ...more);
   t.after(() => stop(served));
@@ -61,11 +61,11 @@ test('controls say what was reached, in what unit, and which cables are equal', 
   await until(page, () => true);
   assert.match(await drawn(page, () => document.querySelector('output[aria-label="long_0: tension reached"]').textContent), / m?N$/);
   assert.match(await reached('long_1', 'tension'), /^0 N$/);
-  // Cables that nobody pulls are slack, which is no news; their curves are one line in several colours.
+  // Cables without a command are slack, which is not reported. Their equal curves share one line in several colours.
   assert.equal(await page.getByText('slack:').count(), 0);
   const [plot] = await page.evaluate(() => window.sinewView.plots());
   assert.deepEqual(plot.equal, [['long_1', 'long_2', 'long_3', 'short_0', 'short_1', 'short_2', 'short_3']]);
-  // One coordinate alone: the others are the tip's.
+  // A target with one coordinate typed takes the others from the tip.
   const before = await state(page);
   await page.fill('[aria-label="tip: target x in mm"]', '-12.25');
   await page.keyboard.press('Enter');
@@ -82,7 +82,7 @@ test('sensors are listed as such', async (t) => {
   assert.ok(titles.some((text) => /^sensors$/i.test(text)) && !titles.some((text) => /^probes$/i.test(text)), String(titles));
 });
 
-/** px of the corners of what there is to see, and of what the panels leave of the picture. */
+/** The corners of the robot's bounding box, and the edges of the area between the panels, px. */
 const places = (page) => drawn(page, () => {
   const {min, max} = window.sinewView.box();
   const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => window.sinewView.screen(k & 1 ? max.x : min.x, k & 2 ? max.y : min.y, k & 4 ? max.z : min.z));
@@ -107,7 +107,7 @@ test('fitted views hide nothing behind panels, from every side, in both projecti
       }
     }
   }
-  // Parallel, each view along its axis, up and right as on paper.
+  // In parallel projection, each view is along its axis, with the other axes to the right and up.
   const at = (x, y, z) => page.evaluate((p) => window.sinewView.screen(...p), [x, y, z]);
   const [o, dx, dy, dz] = [[0, 0, 0.1], [0.02, 0, 0.1], [0, 0.02, 0.1], [0, 0, 0.12]];
   for (const [key, depth, right, up] of [['x', dx, dy, dz], ['y', dy, dx, dz], ['z', dz, dx, dy]]) {
@@ -172,7 +172,7 @@ print(json.dumps({"nodes": nodes.tolist(), "position": body.positions[nodes].mea
       if (own[name] !== undefined) assert.ok(near(part.fields[k], own[name], 1e-5 * Math.abs(own[name]) + 1e-9), name);
     });
     assert.match(await page.locator('#picked').innerText(), /Material\s+hyperelastic, E = [\d.]+ kPa[\s\S]*Volume at rest\s+[\d.]+ \S*l/);
-    await page.mouse.click((await places(page)).right - 12, y);  // beside it
+    await page.mouse.click((await places(page)).right - 12, y);  // beside the robot
     await page.locator('#picked').waitFor({state: 'hidden'});
   }
 });
@@ -196,7 +196,8 @@ print(json.dumps(sorted(forces[forces > 0].tolist())))`);
   forces.forEach((force, k) => assert.ok(near(force, there[k], 1e-5 * there[k]), `${force} ${there[k]}`));
 });
 
-/** Which of the colours of a map is that of a pixel, 0 to 1; the distance to it, of 255. */
+/** Finds the colour of a map nearest to a pixel: `at`, its position in the map, 0 to 1; `distance`, the largest difference of a
+ *  channel, of 255. */
 async function onMap(map, pixel) {
   const {outputFiles: [{text}]} = await build({entryPoints: [join(ROOT, 'web/src/colours.ts')], bundle: true, format: 'esm', write: false});
   const {linearTable} = await import(`data:text/javascript;base64,${Buffer.from(text).toString('base64')}`);
@@ -215,7 +216,7 @@ test('a section cuts the robot open, and its faces have elements and colours', a
     await page.selectOption('[aria-label="Section across"]', {label});
     await page.waitForFunction(() => window.sinewView.section(0)?.triangles > 0);
   };
-  // At rest: a circle with a circular hole; both are polygons of the circles' areas.
+  // At rest, the section is a circle with a circular hole, both meshed as polygons of the circles' areas.
   await choose('section at z');
   const {area} = await page.evaluate(() => window.sinewView.section(0));
   assert.ok(near(area, Math.PI * (0.0125 ** 2 - 0.0037 ** 2), 1e-9), String(area));
@@ -243,7 +244,7 @@ test('a section cuts the robot open, and its faces have elements and colours', a
   const {range} = await until(page, (s) => s.range[1] > 1);
   await page.locator('#picked').getByRole('button', {name: 'Values of the element (n)'}).click();
   const picked = await pick();
-  await page.getByRole('button', {name: 'Close the values'}).click();  // and the marks with them
+  await page.getByRole('button', {name: 'Close the values'}).click();  // which removes the marks as well
   await drawn(page, () => 0);
   const pixel = await page.evaluate(([px, py]) => {
     const canvas = document.querySelector('#stage canvas'), scale = canvas.width / canvas.clientWidth;

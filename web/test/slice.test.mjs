@@ -1,4 +1,4 @@
-// Where a plane cuts tetrahedra, without a browser.
+// Tests of the intersection of tetrahedra with a plane, without a browser.
 import assert from 'node:assert/strict';
 import {dirname, join} from 'node:path';
 import {test} from 'node:test';
@@ -10,9 +10,9 @@ const {outputFiles: [{text}]} = await build({entryPoints: [source], bundle: true
 const {slice, emptySlice} = await import(`data:text/javascript;base64,${Buffer.from(text).toString('base64')}`);
 
 const CELLS = 3;
-const SIDES = [[1, 2, 4], [2, 1, 4], [1, 4, 2], [4, 1, 2], [2, 4, 1], [4, 2, 1]];  // ways along the edges of a cube
+const SIDES = [[1, 2, 4], [2, 1, 4], [1, 4, 2], [4, 1, 2], [2, 4, 1], [4, 2, 1]];  // paths along the edges of a cube, as steps in bits
 
-/** The unit cube of Kuhn's tetrahedra, and a value at each point that is linear in its place. */
+/** The unit cube, with each cell split into Kuhn's six tetrahedra. */
 function cube() {
   const n = CELLS + 1, points = [], tetrahedra = [];
   for (let k = 0; k < n; ++k) for (let j = 0; j < n; ++j) for (let i = 0; i < n; ++i) points.push(i / CELLS, j / CELLS, k / CELLS);
@@ -51,7 +51,7 @@ function cut(normal, constant) {
 test('the faces of a cut have the area of the section', () => {
   assert.ok(Math.abs(cut([1, 0, 0], -0.4).area - 1) < 1e-6);
   assert.ok(Math.abs(cut([0, -1, 0], 0.9).area - 1) < 1e-6, 'the other side');
-  // The plane halfway along the diagonal of a cube cuts a regular hexagon of side sqrt(1/2).
+  // The plane perpendicular to the diagonal of the cube at its middle cuts a regular hexagon of side sqrt(1/2).
   const third = Math.sqrt(1 / 3);
   assert.ok(Math.abs(cut([third, third, third], -1.5 * third).area - 0.75 * Math.sqrt(3)) < 1e-6);
 });

@@ -1,4 +1,4 @@
-// The view in a real browser: SINEW_PROGRAM=... SINEW_PYTHON_PATH=... node --test web/test
+// Tests of the view in a real browser: SINEW_PROGRAM=... SINEW_PYTHON_PATH=... node --test web/test
 import assert from 'node:assert/strict';
 import {execFileSync, spawn} from 'node:child_process';
 import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
@@ -21,13 +21,13 @@ async function download(page, name) {
   }, name));
 }
 
-/** Khronos' own checker has nothing to say of a GLB file. */
+/** Asserts that the Khronos validator finds no errors or warnings in a GLB file. */
 async function valid(bytes) {
   const {issues} = await validator.validateBytes(new Uint8Array(bytes));
   assert.deepEqual(issues.messages.filter((m) => m.severity < 2), []);
 }
 
-/** The JSON of a GLB file, its times, and how far the first mesh moves at most. */
+/** The JSON of a GLB file, the times of its animation, and the largest displacement component of the first mesh at the end. */
 function animation(bytes) {
   const length = bytes.readUInt32LE(12);
   const json = JSON.parse(bytes.subarray(20, 20 + length).toString());
@@ -55,7 +55,7 @@ test('the page loads without an error and shows the robot', async () => {
   await until(page, (s) => s.field === 'von_mises_stress' && s.range[1] > 1000);
   assert.ok(await page.locator('#legend .bar').isVisible());
   assert.match(await page.locator('#legend').innerText(), /Von Mises stress[\s\S]*kPa/);
-  // Drawn at all: the canvas holds many colours, and the robot's in its middle.
+  // The robot is drawn: the canvas has many colours.
   const colours = await page.evaluate(() => {
     const canvas = document.querySelector('#stage canvas');
     const copy = Object.assign(document.createElement('canvas'), {width: 128, height: 80});
@@ -75,7 +75,7 @@ test('the page loads without an error and shows the robot', async () => {
   await page.keyboard.press('Escape');
   const [picture] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('p')]);
   assert.deepEqual([...readFileSync(await picture.path()).subarray(0, 4)], [0x89, 0x50, 0x4e, 0x47]);
-  // What a first visit costs.
+  // The download of a first visit is small.
   const sizes = await page.evaluate(() => Promise.all(['', 'app.js', 'app.css'].map(async (name) =>
     Number((await fetch(name)).headers.get('content-length')))));
   assert.ok(sizes.every((size) => size > 0) && sizes.reduce((a, b) => a + b) < 1e6, String(sizes));
@@ -131,7 +131,7 @@ test('pause and step count exactly, and reset restores the start bit for bit', a
   await stop(served);
 });
 
-/** What Python finds after so many steps of a scene: the range of every field on the surface, and the probes. */
+/** Steps a scene in Python. Returns the range of every field on the surface, and the values of the probes. */
 function measured(scene, steps) {
   return python(`
 import json, sys
@@ -150,7 +150,7 @@ print(json.dumps({"fields": {name: [v.min(), v.max()] for name, v in fields.item
                   "probes": {name: probe.value for name, probe in sim.probes.items()}}))`);
 }
 
-/** Chooses every field in turn and compares what the page shows with what Python finds. */
+/** Chooses every field in turn, and compares the range and legend on the page with Python's values. */
 async function compareFields(page, expected) {
   const close = (a, b, size) => Math.abs(a - b) <= 1e-5 * size;
   const choices = await page.evaluate(() => window.sinewView.scene().fields);
@@ -174,7 +174,7 @@ test('every field has the colours and the legend of what Python finds', async ()
   await ask(page, {type: 'step', count: 60});
   const expected = measured(MODULE, 60);
   await compareFields(page, expected.fields);
-  // A range that is typed stays while the robot moves.
+  // A typed range stays while the robot moves.
   await page.selectOption('[aria-label="Colour by"]', 'max_stretch');
   await page.locator('[aria-label="Keep the range"]').check();
   await page.locator('[aria-label="Lowest value of the range"]').fill('1');
@@ -245,7 +245,7 @@ print(json.dumps({"point": (sim.body("piston").position).tolist(), "angle": knee
     const text = await page.locator('output[aria-label="guide: joint"]').innerText();
     assert.ok(text.startsWith(`${Number((1e3 * expected.displacement).toPrecision(3))} mm, `), text);
     assert.ok(text.includes(`, ${Number((1e3 * expected.force).toPrecision(3))} mN, 0 N m`), text);
-    // A click on the marker, and its label.
+    // A click on the marker selects the joint and shows its label.
     const [x, y] = await page.evaluate((at) => window.sinewView.screen(...at), knee.position);
     await page.locator('#stage canvas').click({position: {x, y}});
     assert.deepEqual((await told()).map((joint) => joint.chosen), [false, true, false, false]);
@@ -323,11 +323,11 @@ test('the robot goes where its target is put', async () => {
     await page.fill(`[aria-label="tip: target ${axis} in mm"]`, String(value));
     await page.keyboard.press('Tab');
   }
-  // A coordinate at a time makes a target; the robot goes to the last of them.
+  // Each typed coordinate sets a target; the robot goes to the last one.
   const there = await until(page, (s) => Math.abs((s.status.targets.tip?.[1] ?? 0) + 0.01) < 1e-9
     && Math.abs(s.status.targets.tip[2] - 0.18) < 1e-9 && s.signals['tip.error'] < 1e-4 && Math.abs(s.signals['tip.y'] + 0.01) < 2e-4);
   assert.ok(Math.abs(there.signals['tip.x'] - 0.02) < 2e-4 && Math.abs(there.signals['tip.z'] - 0.18) < 2e-4);
-  // By the arrow along z, drawn down with the mouse.
+  // The mouse drags the target down by its z arrow.
   const [x, y] = await drawn(page, () => window.sinewView.arrows()[2]);
   await page.mouse.move(x, y, {steps: 4});
   await drawn(page, () => 0);
@@ -336,12 +336,12 @@ test('the robot goes where its target is put', async () => {
   await page.mouse.up();
   const down = await until(page, (s) => s.status.targets.tip[2] < 0.175);
   assert.ok(Math.abs(down.status.targets.tip[0] - 0.02) < 1e-6, 'along the arrow only');
-  // How far a picture's dots take it is the picture's; from there it goes where the robot can follow.
+  // The distance per pixel depends on the picture, so the target is then set to a position that the robot can reach.
   await page.fill('[aria-label="tip: target z in mm"]', '174');
   await page.keyboard.press('Tab');
   await until(page, (s) => Math.abs(s.status.targets.tip[2] - 0.174) < 1e-6 && s.signals['tip.error'] < 1e-4
     && Math.abs(s.signals['tip.z'] - 0.174) < 2e-4);
-  // Out of reach is said plainly.
+  // A target out of reach is reported as such.
   await page.fill('[aria-label="tip: target x in mm"]', '400');
   await page.keyboard.press('Tab');
   await until(page, (s) => s.status.troubles.some((t) => t.kind === 'out-of-reach'));
@@ -430,7 +430,7 @@ test('a recorded run is played again, and sought', async () => {
   assert.equal(csv.trim().split('\n').length, 102);
   const motion = await download(page, 'motion.glb');
   await valid(motion);
-  assert.equal(animation(motion).times.length, 26);  // thirty a second, of steps of 10 ms
+  assert.equal(animation(motion).times.length, 26);  // at most thirty per second, from steps of 10 ms
   await page.close();
   await stop(served);
   rmSync(folder, {recursive: true});

@@ -1,4 +1,4 @@
-// A served view and pages of it in a real browser, for the tests: import it and the browser runs.
+// Serves the view and opens its pages in a real browser, for tests. Importing this file starts and stops the browser.
 import assert from 'node:assert/strict';
 import {spawn} from 'node:child_process';
 import {dirname, join} from 'node:path';
@@ -24,7 +24,7 @@ after(async () => {
   await browser?.close();
 });
 
-/** A program that ends with the tests at the latest. */
+/** Registers a program, which is killed after the tests if it still runs. */
 export function watched(program) {
   programs.add(program);
   program.on('exit', () => programs.delete(program));
@@ -33,11 +33,11 @@ export function watched(program) {
 
 export async function newPage() {
   const page = await browser.newPage({viewport: {width: 1280, height: 800}});
-  page.setDefaultTimeout(120e3);  // without a GPU, beside other work
+  page.setDefaultTimeout(120e3);  // ms; a busy machine without a GPU is slow
   return page;
 }
 
-/** Starts the program; resolves with it and its URL. */
+/** Starts `sinew view`. Resolves with the process, its URL and its port. */
 export async function serve(scene, port = 0, ...more) {
   const program = watched(spawn(PROGRAM, ['view', scene, '--no-open', '--port', String(port), ...more]));
   const url = await new Promise((resolve, reject) => {
@@ -59,7 +59,7 @@ export async function stop({program}) {
   return ended;
 }
 
-/** A page of the view that has had a frame; what its console says is kept. */
+/** Opens a page of the view and waits for its first frame. @param errors receives the errors of the page and its console. */
 export async function open(url, errors = []) {
   const page = await newPage();
   page.on('console', (message) => { if (message.type() === 'error') errors.push(message.text()); });
@@ -72,13 +72,13 @@ export async function open(url, errors = []) {
 export const state = (page) => page.evaluate(() => window.sinewView.state());
 export const ask = (page, message) => page.evaluate((m) => window.sinewView.request(m), message);
 
-/** What a function says of the picture once the last frame is in it, which may take a while without a GPU. */
+/** Evaluates a function in the page after the last frame has been drawn, which may take a while without a GPU. */
 export async function drawn(page, what) {
   await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
   return page.evaluate(what);
 }
 
-/** Waits until a page's state is as it should be. */
+/** Waits until the state of a page satisfies a condition, and resolves with the state. */
 export async function until(page, holds, seconds = 20) {
   for (let tries = 0; tries < 20 * seconds; ++tries) {
     const now = await state(page).catch(() => null);

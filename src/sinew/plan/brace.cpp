@@ -141,6 +141,7 @@ Brace find_brace_in(int rounds, const std::shared_ptr<const pcc::Arm>& arm, cons
       for (int start = 0; start < task.starts; ++start) {
         VectorX guess = search.random_start(candidate.problem);
         if (round == 0 && start == 0) {
+          // Starts at the equilibrium of the free arm nearest to the goal.
           if (!nearest) nearest = nearest_to_goal(arm, task);
           const double turn = guess[arm->coordinates()];
           guess = *nearest;
