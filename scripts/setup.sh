@@ -1,10 +1,10 @@
 #!/bin/sh
-# Installs the Debian packages that Sinew needs and that are missing; does nothing when none is.
-#   scripts/setup.sh [NEED...]      packages for what is named; for everything when nothing is
-#   scripts/setup.sh --minimal      what the library, the program and the Python package need: build wheel
-#   scripts/setup.sh --list [...]   prints the packages of the same, one a line, and ends
+# Installs the Debian packages that Sinew needs, if any are missing.
+#   scripts/setup.sh [NEED...]      packages for the named needs, or for all of them
+#   scripts/setup.sh --minimal      packages for the library, the program and the Python package: build wheel
+#   scripts/setup.sh --list [...]   prints the packages, one a line, and installs nothing
 # NEED is one or more of: build demo render sweep wheel test validate bench docs format lint fuzz.
-# Runs as root or with sudo. SINEW_SKIP_SETUP=1 leaves the machine as it is.
+# Run it as root or with sudo. With SINEW_SKIP_SETUP=1 it changes nothing.
 set -eu
 
 needs_known="build demo render sweep wheel test validate bench docs format lint fuzz"
