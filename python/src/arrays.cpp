@@ -29,7 +29,7 @@ std::string type_name(const py::handle& value) {
   return py::str(py::type::handle_of(value).attr("__name__"));
 }
 
-// "[1, 2]" of the first entry that is no finite number.
+// Text "entry [1, 2] is nan" for the first entry that is not finite.
 std::string first_not_finite(const Array& array) {
   const auto bad = std::find_if_not(array.data(), array.data() + array.size(),
                                     [](double value) { return std::isfinite(value); });

@@ -108,7 +108,7 @@ std::vector<std::optional<Error>> Batch::step(std::int64_t count, std::span<cons
   std::atomic<bool> stopped{false};
   const auto work = [&](int begin, int end, int thread) {
     auto due = Clock::now() + kSignalInterval;
-    const std::function<bool()> ended = [&] {  // the caller's thread looks for Ctrl-C
+    const std::function<bool()> ended = [&] {  // only the caller's thread checks for Ctrl-C
       if (thread == 0 && Clock::now() > due) {
         const pybind11::gil_scoped_acquire lock;
         if (PyErr_CheckSignals() != 0) stopped = true;

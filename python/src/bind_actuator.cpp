@@ -85,7 +85,7 @@ double motion(const Actuator& self, const char* what) {
   return read(self, [](const sim::ActuatorState& state) { return state.motion; });
 }
 
-/// Number `index` of the drive whose input is called `input`.
+/// Entry `index` of the state of a drive whose input is named `input`.
 double drive_number(const Actuator& self, const char* input, const char* what, std::size_t index) {
   const auto& drive = model(self).drive;
   if (drive == nullptr || std::string_view(drive->input().name) != input) fail_type(self, what);
@@ -100,7 +100,7 @@ double added_gas(const Actuator& self) {
   return now - rest;
 }
 
-/// Power or phase of a shape-memory wire.
+/// State of a shape-memory wire: temperature (index 0) or austenite fraction (index 1).
 double wire_number(const Actuator& self, const char* what, std::size_t index) {
   const auto& drive = model(self).drive;
   if (drive == nullptr || drive->state_size() != 2) fail_type(self, what);
@@ -108,7 +108,7 @@ double wire_number(const Actuator& self, const char* what, std::size_t index) {
   return self.session->simulation().drive_state(self.index)[index];
 }
 
-/// What the actuator is told of its input, 0 while it is told something else.
+/// Commanded value of the actuator's input, 0 while another quantity is commanded.
 double told(const Actuator& self, const char* what) {
   if (std::string_view(model(self).input_name().name) != what) fail_type(self, what);
   const Session::Use use(*self.session);

@@ -1,4 +1,4 @@
-// Simulations that are stepped with one call.
+// Batches: many simulations that are stepped by one call.
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,7 +14,7 @@ namespace sinew::python {
 
 namespace {
 
-// Of bools, as it stands.
+// Mask of simulations; `which` points into `array`, or is empty for all simulations.
 struct Choice {
   py::array_t<bool, py::array::c_style> array;
   std::span<const bool> which;

@@ -1,4 +1,4 @@
-// Bending actuators of one angle, without a scene.
+// Bending actuators with a single angle, without a scene.
 #include <memory>
 #include <optional>
 

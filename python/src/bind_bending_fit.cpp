@@ -1,4 +1,4 @@
-// Calibration of bending actuators. python/sinew/pcc.py puts records and results into shape.
+// Calibration of bending actuators. python/sinew/bending_fit.py wraps its records and results.
 #include <memory>
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// The modulus of bending actuators.
+// Pressure-dependent modulus of bending actuators.
 #include <fmt/format.h>
 
 #include "arrays.hpp"

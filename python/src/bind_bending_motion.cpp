@@ -1,4 +1,4 @@
-// Bending actuators over time.
+// Simulation of bending actuators over time.
 #include <memory>
 #include <optional>
 #include <vector>

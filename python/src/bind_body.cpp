@@ -58,7 +58,7 @@ const mechanics::HasShape* shape(const Body& self) {
 }
 
 py::array points_view(const Body& self, const Points& points, bool writable = false) {
-  // Bodies of few coordinates work their points out when asked; there is nothing to look at live.
+  // Bodies with few coordinates compute their points on request, so no live view is possible.
   const bool few = mechanics::as<const mechanics::HasCoordinates>(body(self)) != nullptr ||
                    mechanics::as<const mechanics::HasPose>(body(self)) != nullptr;
   if (few) return copy(points);
@@ -79,7 +79,7 @@ Points positions_from(const Body& self, const py::object& positions, const char*
                    now.rows());
 }
 
-// Internal forces on free nodes as a row for every node.
+// Internal forces (n, 3) N; zero at nodes that are not free.
 Array internal_forces(const Body& self, const py::object& positions) {
   const Session::Use use(*self.session);
   const Points at = positions_from(self, positions, "internal_forces");
@@ -96,7 +96,7 @@ Array internal_forces(const Body& self, const py::object& positions) {
   return copy(forces);
 }
 
-// The stored lower blocks as a whole matrix in block compressed rows of scipy.
+// Full matrix from the stored lower blocks, in SciPy's block compressed row format.
 py::object stiffness(const Body& self, const py::object& positions, const std::string& tangent) {
   const fem::Tangent chosen = fem::element_tangent(to_tangent(tangent, "stiffness(tangent)"));
   const Session::Use use(*self.session);
@@ -134,7 +134,7 @@ py::object stiffness(const Body& self, const py::object& positions, const std::s
   return make(triples, py::arg("shape") = py::make_tuple(size, size));
 }
 
-// H: row k's work on node i is H[k, i] . dx_i.
+// Jacobian H: a displacement dx_i of node i moves row k by H[k, i] . dx_i.
 Array jacobian(const Body& self) {
   const Session::Use use(*self.session);
   const auto& directions = self.session->simulation().world().rows().direction;
@@ -236,7 +236,7 @@ while another thread steps. Copy it to keep a moment: `body.positions.copy()`.)"
       .def_property_readonly(
           "arm",
           [](const Body& self) {
-            arm(self);  // or an error
+            arm(self);  // throws if the body is not an arm
             const auto& own = *mechanics::as<const pcc::HasArm>(body(self).model());
             return std::make_unique<PccArm>(own.shared_arm());
           },
@@ -282,7 +282,7 @@ such as the dent around a point load.
           "(n, 3) ndarray: forces of the scene's loads on all nodes (N) in the last step.");
 }
 
-// (m, k) of k nodes each.
+// View (m, k) of the node numbers of m entries with k nodes each.
 template <std::size_t k>
 auto numbers_view(const Body& self, const std::vector<std::array<NodeId, k>>& list) {
   return view<NodeId>(list.empty() ? nullptr : list.front().data(),
@@ -348,7 +348,7 @@ void bind_mesh_of(py::class_<Body>& type) {
 auto energy(double mechanics::Energies::*part) {
   return [part](const Body& self) {
     const Session::Use use(*self.session);
-    model(self);  // or an error
+    model(self);  // throws for bodies without elements
     return body(self).energies().*part;
   };
 }
@@ -412,7 +412,7 @@ Returns
 )");
 }
 
-// What a rigid body alone has.
+// Properties that only rigid bodies have.
 void bind_pose(py::class_<Body>& type) {
   type.def_property_readonly(
           "position",

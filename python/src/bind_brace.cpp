@@ -1,4 +1,4 @@
-// Bracing: objects, what is found, and how it is carried out.
+// Bracing: objects, planned braces, and their simulation.
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,14 +16,14 @@ namespace sinew::python {
 
 namespace {
 
-/// What Python knows as sinew.plan.Brace.
+/// sinew.plan.Brace in Python.
 struct BraceOf {
   std::shared_ptr<const pcc::Arm> arm;
   plan::BraceTask task;
   plan::Brace brace;
 };
 
-/// A name of a pair of surfaces, a coefficient, or (least, most).
+/// Friction range from the name of a surface pair, a coefficient, or (lowest, highest).
 plan::FrictionRange friction_of(const py::object& value) {
   if (py::isinstance<py::str>(value)) return plan::friction_range(value.cast<std::string>());
   const Array array = to_array(value, "friction", "a number or (2,)");

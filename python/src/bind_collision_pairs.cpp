@@ -1,4 +1,5 @@
-// Two triangle surfaces, or one with itself: near pairs, crossings, insides, overlap, impacts.
+// Queries on two triangle surfaces, or one and itself: proximity, crossing, penetration, overlap,
+// impacts.
 #include <array>
 #include <string>
 #include <vector>
@@ -50,7 +51,7 @@ double to_length(const py::object& value, const char* place) {
               "give zero or more");
 }
 
-// Calls find(pool, copy) without the interpreter's lock.
+// Calls find(pool, copy) without the interpreter lock; returns the list passed to `copy`.
 template <typename Entry, typename Find>
 std::vector<Entry> list_of(int threads, Find find) {
   const py::gil_scoped_release others;
@@ -69,7 +70,7 @@ py::array_t<int> crossing(const CollisionSurface& first, const SharedSurface& se
   return rows<int, 2>(pairs, [](const Pair& pair) { return std::array{pair.first, pair.second}; });
 }
 
-/// One side of all pairs.
+/// The points of all pairs on one of the two surfaces.
 struct ProximityPoints {
   std::vector<std::string> kinds;
   py::array_t<int> nodes;

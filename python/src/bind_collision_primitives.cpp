@@ -1,4 +1,4 @@
-// Many small queries at once: nearest points, rigid shapes, exact intersection, impacts.
+// Batches of small queries: nearest points, rigid shapes, exact intersection, impacts.
 #include <array>
 #include <optional>
 #include <string>
@@ -19,10 +19,10 @@ namespace sinew::python {
 
 namespace {
 
-/// (n, count, 3) as it stands in the caller's memory.
+/// Array (n, count, 3) of points, `count` per query; not copied if its layout permits.
 class PointGroups {
  public:
-  /// @param value from Python. @param place names the argument. @param count of points in a query.
+  /// @param value array from Python. @param place argument name. @param count points per query.
   PointGroups(const py::object& value, const std::string& place, py::ssize_t count)
       : count_(count) {
     const std::string wanted = fmt::format("(n, {}, 3) m", count);
@@ -49,7 +49,7 @@ void check_same_length(std::size_t first, std::size_t second, const char* item) 
               "give as many of each");
 }
 
-// Calls of each query without the interpreter's lock.
+// Calls each query without the interpreter lock.
 template <typename Result, typename Query>
 std::vector<Result> answers(std::size_t count, Query query) {
   const py::gil_scoped_release others;
@@ -122,7 +122,7 @@ py::tuple impact_times(const py::object& queries, const py::object& separation,
                         numbers<double>(times, [](double time) { return time; }));
 }
 
-/// pybind11 takes a bare variant for a choice of types.
+/// Wrapper: pybind11 would convert a bare variant to one of its alternatives.
 struct RigidShape {
   collision::Shape shape;
 };

@@ -28,7 +28,7 @@ sim::ContactResultant resultant(const Contact& self) {
   return self.session->simulation().contacts().resultant(self.index);
 }
 
-/// (n, 3) of one vector of every point.
+/// One vector of every point as (n, 3).
 Array vectors(const Contact& self, Vector3 sim::ContactPoint::*member) {
   const auto all = points(self);
   Points result(static_cast<Eigen::Index>(all.size()), 3);
@@ -38,7 +38,7 @@ Array vectors(const Contact& self, Vector3 sim::ContactPoint::*member) {
   return copy(result);
 }
 
-/// (n,) of one number of every point.
+/// One number of every point as (n,).
 Array numbers(const Contact& self, double sim::ContactPoint::*member) {
   const auto all = points(self);
   VectorX result(static_cast<Eigen::Index>(all.size()));

@@ -1,4 +1,4 @@
-// Contacts of a step by themselves, and files of such problems.
+// Contact problems of a step, and their FCLIB files.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -16,7 +16,7 @@ namespace sinew::python {
 
 namespace {
 
-/// u = W r + q: W dense, or sparse as scipy has it; r None where there is no solution.
+/// Problem u = W r + q. W is an ndarray or a SciPy sparse matrix; r is None without a solution.
 struct ContactProblem {
   py::object w;
   Array q, friction;
@@ -37,7 +37,8 @@ py::object by_columns(const Eigen::SparseMatrix<double>& matrix) {
       .attr("csc_matrix")(parts, py::arg("shape") = py::make_tuple(columns, columns));
 }
 
-// Problems of fewer points are small as they stand; above, up to this part of W stands as sparse.
+// By default W is sparse if there are more points than this, and if at most this fraction of its
+// entries is nonzero.
 constexpr Eigen::Index kFewPoints = 32;
 constexpr double kSparse = 0.25;
 

@@ -17,7 +17,7 @@ using inverse::EffectorTask;
 using inverse::InverseSettings;
 using inverse::TargetController;
 
-// What `controller.targets` returns: a live mapping from effectors to targets.
+// Result of `controller.targets`: a live mapping from effectors to targets.
 struct Targets {
   Controller controller;
 };

@@ -1,4 +1,4 @@
-// What drives an arm: fluidic actuators, drive cylinders, excitation.
+// Drives of an arm: fluidic actuators, drive cylinders, excitation signals.
 #include <fmt/format.h>
 
 #include "sinew/core/types.hpp"

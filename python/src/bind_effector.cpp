@@ -38,7 +38,8 @@ Array value_of(const Effector& self, bool orientation) {
   return value(self);
 }
 
-// For positions the point's velocity; for orientations its rows, which are the angular velocity.
+// Velocity of a position effector's point, or angular velocity of an orientation effector, which is
+// the velocity of its rows.
 Array velocity(const Effector& self) {
   const Session::Use use(*self.session);
   const sim::Simulation& simulation = self.session->simulation();

@@ -1,4 +1,4 @@
-// What elements and nodes of a body carry: tensors, fields, reactions.
+// Element and nodal results of a body: tensors, fields, reactions.
 #include <fmt/format.h>
 
 #include "sinew/fem/element_fields.hpp"
@@ -24,7 +24,7 @@ const fem::HasMaterial& body(const Body& self) {
 }
 const fem::FemModel& elements(const Body& self) { return body(self).material().elements(); }
 
-// (m, 3, 3) of tensors.
+// Tensors as (m, 3, 3).
 Array tensors(const std::vector<Matrix3>& list) {
   Array result({static_cast<Eigen::Index>(list.size()), Eigen::Index{3}, Eigen::Index{3}});
   double* to = result.mutable_data();
@@ -60,7 +60,7 @@ Array nodal_field(const Body& self, const std::string& field) {
   return numbers(mean(fem::element_field(body(self), fem::element_field_of(field))));
 }
 
-// (m, ...) of elements to (n, ...) of nodes.
+// Element values (m, ...) averaged at the nodes, (n, ...).
 py::array nodal_means(const Body& self, const py::array_t<double, py::array::c_style>& values) {
   const auto count = fem::ElementList(elements(self).mesh()).count();
   if (values.ndim() == 0 || values.shape(0) != count) {
@@ -79,7 +79,7 @@ py::array nodal_means(const Body& self, const py::array_t<double, py::array::c_s
 Array support_forces(const Body& self) {
   const Session::Use use(*self.session);
   sim::Simulation& simulation = self.session->simulation();
-  simulation.world().measure_delta();  // rows at the present state
+  simulation.world().measure_delta();  // updates the row directions
   return copy(fem::reactions(body(self), fem::element_states(body(self)), simulation.efforts(),
                              simulation.world().rows().direction, simulation.model().rows(),
                              self.index));

@@ -1,4 +1,4 @@
-// The numbers of a high-rate loop; python/sinew/high_rate.py gives them names.
+// High-rate loop with rows by index; python/sinew/high_rate.py adds the names.
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,7 +17,7 @@ namespace {
 
 using namespace control;
 
-// Turned by hand: a period takes no time, and ends when the next one is due.
+// Simulated clock: computing takes no time, and sleeping ends exactly when the next period is due.
 class IdealClock : public Clock {
  public:
   double now() override { return time_; }
@@ -28,12 +28,12 @@ class IdealClock : public Clock {
 };
 
 struct NativeLoop {
-  std::shared_ptr<UdpDevice> device;  // null: none
+  std::shared_ptr<UdpDevice> device;  // null without a socket
   std::unique_ptr<HighRateLoop> loop;
   IdealClock clock;
 };
 
-// Rows of a table, which may hold infinities: Python has checked it.
+// Rows of a table, already checked in Python; entries may be infinite.
 template <typename Row, typename Make>
 std::vector<Row> to_rows(const Array& table, Make&& make) {
   std::vector<Row> rows;

@@ -1,4 +1,4 @@
-// Identification: parameters of any simulation, drive cylinders and actuators.
+// Identification of simulation parameters, drive cylinders and actuators.
 #include <fmt/format.h>
 
 #include "sinew/identify/actuator_fit.hpp"
@@ -70,7 +70,7 @@ ParameterFit fit(const py::function& predict, const py::object& measured, const 
     try {
       return flat(to_gappy_matrix(predict(values), "fit(predict)", "that of measured"));
     } catch (py::error_already_set& error) {
-      // A run that failed is sinew.RunError in Python: these parameters are rejected.
+      // A sinew.RunError means that the run failed: these parameters are rejected.
       const py::object run_error = py::module_::import("sinew.errors").attr("RunError");
       if (!error.matches(run_error)) throw;
       throw Error(ErrorKind::diverged, {.item = "fit(predict)"}, "the run failed");

@@ -36,7 +36,7 @@ MotionRecord make_record(const py::object& time, const py::object& positions,
   return record;
 }
 
-/// (samples, segments, 3).
+/// Segment ends as (samples, segments, 3).
 py::array by_segment(const MatrixX& ends) {
   return copy(ends).reshape({ends.rows(), ends.cols() / 3, Eigen::Index{3}});
 }

@@ -1,6 +1,6 @@
 #include <limits>
 #include <optional>
-// Identification: coefficients of rubber's laws from tests.
+// Identification of hyperelastic constants from material tests.
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ DeformationMode to_mode(const std::string& mode) {
               "use 'uniaxial', 'equibiaxial' or 'planar'");
 }
 
-/// A path, or (mode, stretch, stress).
+/// Material test from a path or a tuple (mode, stretch, stress).
 RubberTest to_test(const py::handle& value, std::size_t index) {
   const auto is_path = py::module_::import("os").attr("PathLike");
   if (py::isinstance<py::str>(value) || py::isinstance(value, is_path)) {

@@ -1,4 +1,4 @@
-// Materials by themselves: what a scene's law or a name of the library means.
+// Materials without a simulation, from a scene's law or a name of the library.
 #include <fmt/format.h>
 
 #include "sinew/material/library.hpp"
@@ -19,7 +19,7 @@ struct Material {
   double density = 0.0;
 };
 
-// By the scene's own reader: a scene of nothing but a block of this material.
+// Reads the material through the scene reader, as part of a scene with a single block.
 Material read_material(const py::object& spec) {
   py::dict mesh, body, bodies, tree;
   mesh["shape"] = "block";

@@ -1,4 +1,4 @@
-// Constant-curvature arms by themselves, without a scene.
+// Constant-curvature arms without a scene.
 #include <array>
 #include <string>
 #include <utility>
@@ -16,7 +16,7 @@ namespace sinew::python {
 
 namespace {
 
-/// (n,) from an array of that length or one number for all.
+/// Vector (n,) from an array of that length, or from one number for all entries.
 VectorX spread(const py::handle& value, const std::string& place, Eigen::Index n,
                const std::string& unit) {
   const Array array = to_array(value, place, fmt::format("({},) {}", n, unit));

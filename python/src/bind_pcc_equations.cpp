@@ -1,4 +1,4 @@
-// What an arm of constant curvature is, where its points are, and its equations of motion.
+// Properties, kinematics and equations of motion of constant-curvature arms.
 #include <utility>
 
 #include <fmt/format.h>

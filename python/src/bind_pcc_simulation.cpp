@@ -1,4 +1,4 @@
-// Equilibria and motions of an arm of constant curvature.
+// Equilibria and simulation of constant-curvature arms.
 #include <algorithm>
 #include <exception>
 #include <memory>
@@ -37,7 +37,7 @@ pcc::ArmStepSettings step_settings(double time_step, const std::string& integrat
   return settings;
 }
 
-// (arms, n): one start for each, or the same for all.
+// Initial values (arms, n), from one row per arm or one row for all.
 Rows starts(const py::object& value, const std::string& place, Eigen::Index arms, Eigen::Index n,
             const char* unit) {
   const Array array = to_array(value, place, "numbers");
@@ -47,8 +47,8 @@ Rows starts(const py::object& value, const std::string& place, Eigen::Index arms
   return to_vector(value, place, n, unit).transpose().replicate(arms, 1);
 }
 
-// Of some arms; each has `steps` rows of torque, and steps + 1 of positions and rates, of which the
-// first is given.
+// Motions of several arms. Each arm has `steps` rows of torque and steps + 1 rows of positions and
+// rates; its first row is the initial state.
 struct Motions {
   Eigen::Index steps = 0;
   Eigen::Map<const Rows> torque;
@@ -68,8 +68,8 @@ struct Motions {
   }
 };
 
-// Each thread has a contiguous block of the arms; of several failures, that of the first arm is
-// thrown.
+// Simulates all arms; each thread has a contiguous block. If several arms fail, throws the
+// exception of the first one.
 void run_all(const std::shared_ptr<const pcc::Arm>& arm, const pcc::ArmStepSettings& settings,
              Motions& motions, int arms, int threads) {
   ThreadPool pool(std::min(threads, std::max(arms, 1)));

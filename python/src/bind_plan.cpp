@@ -18,7 +18,7 @@ namespace sinew::python {
 
 namespace {
 
-/// What Python knows as sinew.plan.Task.
+/// sinew.plan.Task in Python.
 struct PlanTask {
   std::shared_ptr<const pcc::Arm> arm;
   plan::PlanTask task;

@@ -1,4 +1,4 @@
-// Static reach of constant-curvature arms: samples, the nearest equilibrium, the proof.
+// Static reach of constant-curvature arms: sampling, nearest equilibrium, proof of reach.
 #include <string>
 
 #include "sinew/plan/reach.hpp"

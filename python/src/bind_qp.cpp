@@ -1,4 +1,4 @@
-// Contacts with friction solved by themselves.
+// Solver for contact problems with Coulomb friction.
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// Convex quadratic programs by themselves.
+// Solver for convex quadratic programs.
 #include <limits>
 #include <string>
 
@@ -14,7 +14,7 @@ namespace {
 
 using qp::QpResult;
 
-// (n,) where infinity is a limit, too; none: `missing` everywhere.
+// Limits (n,), which may be infinite; None gives `missing` everywhere.
 VectorX to_limits(const py::object& value, const std::string& place, Eigen::Index size,
                   double missing) {
   if (value.is_none()) return VectorX::Constant(size, missing);

@@ -1,4 +1,4 @@
-// Quantities as text, read as scenes read them.
+// Quantities as text, parsed as in scenes.
 #include <array>
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ constexpr std::array kDimensions = {
     dimension::kPressureRate, dimension::kConductance, dimension::kTemperature,
     dimension::kHeatCapacity, dimension::kHeatLoss};
 
-// Of any dimension that scenes use.
+// SI value and dimension of a quantity of any dimension that scenes use.
 py::tuple quantity(const std::string& text) {
   for (const Dimension& one : kDimensions) {
     try {

@@ -25,14 +25,14 @@ const sim::SensorModel& model(const Sensor& self) {
   return self.session->model().sensors()[static_cast<std::size_t>(self.index)];
 }
 
-// A number of one component, an array of several.
+// A float for a single component, an ndarray for several.
 py::object to_python(std::span<const double> values) {
   if (values.size() == 1) return py::float_(values.front());
   const auto count = static_cast<Eigen::Index>(values.size());
   return copy(VectorX(Eigen::Map<const VectorX>(values.data(), count)));
 }
 
-// A number or (size,), NaN included.
+// Components from a number or an array (size,); NaN is allowed.
 std::vector<double> to_value(const py::object& value, const std::string& place) {
   const auto array = Array::ensure(value);
   if (!array || array.ndim() > 1) {

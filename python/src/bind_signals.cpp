@@ -15,7 +15,7 @@ namespace {
 
 using sim::Signal;
 
-// Python's classes of signals; each is a Signal.
+// Types of the Python classes, which pybind11 needs to be distinct; all are Signals.
 struct Ramp : Signal {};
 struct Sine : Signal {};
 struct Steps : Signal {};

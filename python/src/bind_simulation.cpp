@@ -1,4 +1,4 @@
-// sinew.Simulation, and how a scene becomes one.
+// sinew.Simulation and its creation from scenes.
 #include <fmt/format.h>
 
 #include "sinew/scene/renamed_words.hpp"

@@ -1,4 +1,4 @@
-// How motions of a simulation follow from efforts.
+// Linearisation of a simulation: motions of the rows as functions of efforts.
 #include <string>
 
 #include "sinew/sim/model.hpp"

@@ -1,4 +1,4 @@
-// The parts of a simulation by their names.
+// Parts of a simulation (actuators, effectors, bodies, ...) by name.
 #include <functional>
 #include <string>
 #include <string_view>
@@ -13,7 +13,7 @@ namespace sinew::python {
 
 namespace {
 
-// The part of a name, whose number the model knows.
+// Getter for a part by name; the model maps the name to an index.
 template <class One>
 auto named(int (sim::Model::*index)(std::string_view) const) {
   return [index](const std::shared_ptr<Session>& self, const std::string& name) {
@@ -21,7 +21,7 @@ auto named(int (sim::Model::*index)(std::string_view) const) {
   };
 }
 
-// All parts of a kind by name, in the order of the model's list.
+// Getter for a dict of all parts of a kind by name, in the order of the model's list.
 template <class One, class List>
 auto all(List list) {
   return [list](const std::shared_ptr<Session>& self) {

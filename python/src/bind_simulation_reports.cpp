@@ -1,4 +1,4 @@
-// What a simulation tells of itself.
+// Reports of a simulation: time, status, energies, memory, notices.
 #include <string>
 
 #include "sinew/scene/scene.hpp"

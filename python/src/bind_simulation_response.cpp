@@ -1,4 +1,4 @@
-// How effectors follow from the efforts of controlled actuators.
+// Response of effectors to the efforts of actuators.
 #include <set>
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// Copies, states and files of states of a simulation.
+// Clones, states and state files of a simulation.
 #include "simulation_type.hpp"
 
 namespace sinew::python {

@@ -1,4 +1,4 @@
-// What moves a simulation: steps, static equilibria, paths of equilibria, runs.
+// Steps, static equilibria, equilibrium paths and runs of a simulation.
 #include <string>
 #include <vector>
 
@@ -35,7 +35,7 @@ sim::StaticReport solve_static(Session& self, double tolerance, int max_iteratio
                             stability_choice(stability)});
 }
 
-// What follow_path() returns. @param values of every effector at every point.
+// Result of follow_path(). @param values value of each effector at each point, values[i][k].
 py::dict path_table(const std::vector<sim::PathPoint>& path,
                     const std::vector<sim::EffectorModel>& effectors,
                     const std::vector<std::vector<Vector3>>& values) {

@@ -38,7 +38,7 @@ void bind_state(py::module_& module) {
           py::pickle([](const SavedState& self) { return py::make_tuple(py::bytes(self.bytes())); },
                      [](const py::tuple& parts) {
                        SavedState state(parts[0].cast<std::string>());
-                       state.steps();  // refuses what is no state
+                       state.steps();  // throws if the bytes are not a state
                        return state;
                      }));
 }

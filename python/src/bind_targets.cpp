@@ -14,7 +14,7 @@ namespace {
 
 using inverse::Target;
 
-// Python's classes of targets; each is a Target.
+// Types of the Python classes, which pybind11 needs to be distinct; all are Targets.
 struct Circle : Target {};
 struct Polyline : Target {};
 struct Trajectory : Target {};

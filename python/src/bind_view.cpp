@@ -1,4 +1,4 @@
-// sinew.view(): a simulation in the browser.
+// sinew.view(): live view of a simulation in the browser.
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -32,9 +32,9 @@ struct ViewOptions {
 
 using namespace std::chrono_literals;
 
-/// A controller that was made in Python has no name there.
+/// Name shown for a controller created in Python, which has no name.
 constexpr const char* kUnnamed = "python";
-/// Between looks for Ctrl-C.
+/// Interval between checks for Ctrl-C.
 constexpr auto kPause = 50ms;
 
 std::shared_ptr<sim::Simulation> simulation_of(const std::shared_ptr<Session>& session) {
@@ -68,14 +68,14 @@ void announce(const viewer::Server& server, const ViewOptions& options, const ch
   if (options.open_browser) viewer::open_browser(server.url());
 }
 
-/// The controller's present name and settings, for RobotState.
+/// Name of the attached controller; empty without one.
 std::string controller_name(const Session& session) {
   const auto& controller = session.controller();
   if (!controller) return {};
   return controller->name.empty() ? kUnnamed : controller->name;
 }
 
-/// A script's robot in the browser; see the docstrings.
+/// View of a simulation that a script steps; see the docstrings.
 class View {
  public:
   View(std::shared_ptr<Session> session, const ViewOptions& options)
@@ -106,7 +106,7 @@ class View {
         if (source_->wait_turn(kPause)) break;
       }
       if (PyErr_CheckSignals() == 0) continue;
-      server_->stop();  // else the source would go on with its turn
+      server_->stop();  // otherwise the source would continue its turn
       closed_ = true;
       throw py::error_already_set();
     }
@@ -133,7 +133,8 @@ class View {
   bool closed_ = false;
 };
 
-// The page's thread steps until Ctrl-C; what its controller has become is Python's afterwards.
+// Lets the view's thread step the simulation until Ctrl-C; afterwards the session takes back the
+// controller as the page left it.
 void drive(const std::shared_ptr<Session>& session, const ViewOptions& options) {
   const Session::Use use(*session);
   const viewer::LiveSettings settings = live_settings(options, 1.0);

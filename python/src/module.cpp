@@ -1,5 +1,5 @@
 /// @file
-/// The extension module sinew._core; python/sinew/*.py puts the package around it.
+/// Extension module sinew._core, which the package in python/sinew wraps.
 #include <string>
 
 #include "sinew/core/build_info.hpp"
@@ -9,7 +9,7 @@
 
 PYBIND11_MODULE(_core, module) {
   namespace python = sinew::python;
-  // Signatures come from the first line of the docstrings, in Python's own spelling.
+  // The first line of each docstring gives the signature in Python syntax.
   pybind11::options options;
   options.disable_function_signatures();
 

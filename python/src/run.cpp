@@ -1,4 +1,4 @@
-// Simulation.run: steps, and writes what was asked for into arrays.
+// Simulation.run(): steps the simulation and records observables in arrays.
 
 #include <algorithm>
 #include <chrono>
@@ -23,11 +23,11 @@ namespace {
 
 // A column of the result.
 struct Column {
-  std::size_t observable;  // of the list
+  std::size_t observable;  // index in the list
   std::vector<double> values;
 };
 
-// What is recorded, and what of it was.
+// Observables of a run, and the columns recorded so far.
 struct Recording {
   sim::Observables observables;
   std::vector<Column> columns;
@@ -43,8 +43,8 @@ sim::Observables list_observables(Session& session) {
   return list;
 }
 
-// Large arrays, what evaluates all elements, and what differs from run to run are recorded on
-// request only.
+// Whether an observable is recorded without being requested: not large arrays, quantities that need
+// an evaluation of all elements, and quantities that differ from run to run.
 bool is_default(const sim::Observable& observable) {
   switch (observable.kind) {
     case sim::ObservableKind::body:

@@ -25,7 +25,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr auto kSignalInterval = std::chrono::milliseconds(50);
 
-// While the result lives, steps and searches look for Ctrl-C now and then, and end by it.
+// While the result exists, steps and equilibrium searches check for Ctrl-C and stop when it is
+// pressed.
 sim::Watched look_for_signals(sim::Simulation& simulation) {
   return {simulation, [due = Clock::now() + kSignalInterval](const sim::StepProgress&) mutable {
             if (Clock::now() < due) return;
@@ -35,7 +36,7 @@ sim::Watched look_for_signals(sim::Simulation& simulation) {
           }};
 }
 
-// Python's simulations are many, as environments are: one that is not in a step needs no factor.
+// Releases the factors after a step: Python programs may hold many idle simulations (environments).
 void lend_factors(sim::Simulation& simulation) { simulation.world().bodies().release(); }
 
 }  // namespace
@@ -71,7 +72,7 @@ Session::Session(std::shared_ptr<const LoadedRobot> robot, int threads)
     : robot_(std::move(robot)),
       simulation_(robot_->robot.model, threads),
       observables_(simulation_) {
-  observables_.number(observables_.find("numerical_loss"));  // counts from the first reading on
+  observables_.number(observables_.find("numerical_loss"));  // the first reading starts its sum
   if (const auto* first = robot_->robot.first_controller()) attach(first->settings, first->name);
 }
 

@@ -54,7 +54,7 @@ Node convert(const py::handle& value, const std::string& path, int depth) {
   if (py::isinstance<py::dict>(value) || py::hasattr(value, "items")) {
     return to_map(value, path, depth);
   }
-  // NumPy's scalars and arrays turn into Python's own.
+  // NumPy scalars and arrays become Python numbers and lists.
   if (py::hasattr(value, "tolist")) return convert(value.attr("tolist")(), path, depth + 1);
   if (PyLong_Check(value.ptr())) {
     int overflow = 0;
