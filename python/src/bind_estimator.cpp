@@ -115,10 +115,10 @@ void bind_estimator(py::module_& module) {
                              }),
                              "str: 'not-started', 'estimating', 'unobservable', 'sensors-lost' or "
                              "'no-equilibrium'.")
-      .def_property_readonly("message",
-                             of_estimator([](const sim::Estimator& one) { return one.message(); }),
-                             "str: which sensors are silent, which directions they do not observe, or why "
-                             "there is no equilibrium; else empty.");
+      .def_property_readonly(
+          "message", of_estimator([](const sim::Estimator& one) { return one.message(); }),
+          "str: which sensors are silent, which directions they do not observe, or why "
+          "there is no equilibrium; else empty.");
 }
 
 }  // namespace sinew::python
