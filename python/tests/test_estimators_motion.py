@@ -67,7 +67,7 @@ class FullKalman:
 
 
 def test_a_beam_is_as_kalmans_filter_of_its_full_state():
-    """147 states; the covariance of the estimator has a factor of 12 columns. Without delays, because the reference processes samples as they arrive."""
+    """147 states; the estimator's covariance factor has 12 columns. No delays, because the reference takes samples as they arrive."""
     tree = beam()
     tree["sensors"]["middle"].pop("delay")
     sim = sinew.load(tree)
