@@ -79,7 +79,7 @@ py::array nodal_means(const Body& self, const py::array_t<double, py::array::c_s
 Array support_forces(const Body& self) {
   const Session::Use use(*self.session);
   sim::Simulation& simulation = self.session->simulation();
-  simulation.world().measure_delta();  // updates the row directions
+  simulation.world().measure_delta();  // rows at the present state
   return copy(fem::reactions(body(self), fem::element_states(body(self)), simulation.efforts(),
                              simulation.world().rows().direction, simulation.model().rows(),
                              self.index));

@@ -1,4 +1,4 @@
-// Static reach of constant-curvature arms: sampling, nearest equilibrium, proof of reach.
+// Static reach of constant-curvature arms: sampling, nearest equilibrium, out-of-reach proofs.
 #include <string>
 
 #include "sinew/plan/reach.hpp"

@@ -43,8 +43,8 @@ sim::Observables list_observables(Session& session) {
   return list;
 }
 
-// Whether an observable is recorded without being requested: not large arrays, quantities that need
-// an evaluation of all elements, and quantities that differ from run to run.
+// Whether an observable is recorded without a request. Exceptions are large arrays, quantities that
+// need an evaluation of all elements, and quantities that differ from run to run.
 bool is_default(const sim::Observable& observable) {
   switch (observable.kind) {
     case sim::ObservableKind::body:
