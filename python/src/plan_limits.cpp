@@ -9,7 +9,7 @@ namespace sinew::python {
 
 namespace {
 
-/// Sets limits from a number or (n,), which hold in both directions, or from (2, n), lower and upper.
+/// Sets limits from a number or (n,), for both directions, or from (2, n), lower and upper ones.
 void set_limits(const py::object& value, const std::string& place, Eigen::Index n,
                 const std::string& unit, VectorX& lower, VectorX& upper) {
   if (value.is_none()) return;

@@ -42,7 +42,7 @@ class _Input:
     name: str
     unknown: Unknown
     component: int
-    measured: Optional[Measured] = None  # sensor of a measured command, which is its prior
+    measured: Optional[Measured] = None  # sensor of a measured command, whose reading is the prior mean
 
 
 def _tree(scene: Any, folder: str, overrides: Any) -> dict:
