@@ -1,13 +1,13 @@
-"""Time of a step and of loading against the number of bodies and of contact points.
+"""Time of a step and of loading as a function of the number of bodies and contact points.
 
     PYTHONPATH=build/release/python /usr/bin/python3 benchmarks/bodies.py [--points 1000] [--bodies 40] [--threads 1 2]
 
-- boxes: rigid ones of 30 x 30 x 20 mm apart from each other on a table, a contact for each with the table;
-- boxes, all: the same with `between: all`, so that every pair is a contact although no two of them come near;
-- balls, all: rigid ones of 20 mm that settle in layers between four walls, `between: all`;
-- soft blocks: 40 x 40 x 20 mm, 100 points each on a plane, dragged by a slanting gravity.
+- boxes: separate rigid boxes of 30 x 30 x 20 mm on a table, with one contact between each box and the table;
+- boxes, all: the same with `between: all`, which makes every pair a contact, although no two boxes come close;
+- balls, all: rigid balls of 20 mm that settle in layers between four walls, `between: all`;
+- soft blocks: 40 x 40 x 20 mm, each with 100 points on a plane, dragged by an inclined gravity.
 Backward Euler, 2 ms, mu = 0.5. Times are medians over the second half of the steps: processor time with one thread, wall time with
-more. Points are those of the last step's law. `--points 5000 --bodies 100` is the whole table (gigabytes, minutes).
+more. Points are those in the contact problem of the last step. `--points 5000 --bodies 100` is the whole table (gigabytes, minutes).
 """
 
 import argparse
@@ -73,7 +73,7 @@ def measure(name, parts, gravity, threads):
         start = clock()
         sim.step()
         taken.append(1e3 * (clock() - start))
-    points = len(sim.contact_problem().q) // 3  # copies all of W: not between steps
+    points = len(sim.contact_problem().q) // 3  # after the timed steps, because it copies W
     moving = sum(body.get("fixed") is not True for body in bodies.values())
     print(f"| {name} | {moving} | {len(sim.contacts)} | {points} | {threads} | {load:.2f} | {taken[0]:.0f} | "
           f"{np.median(taken[len(taken) // 2 :]):.1f} | {sim.memory / 1e6:.0f} |", flush=True)  # fmt: skip

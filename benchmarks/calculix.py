@@ -3,12 +3,13 @@
 
     /usr/bin/python3 benchmarks/calculix.py [--small] [--threads N]
 
-A cantilever of neo-Hookean rubber under its weight: equilibrium, and the first steps after it is let go, in hexahedra
-and quadratic tetrahedra of several sizes. Times are of the whole, a process from deck to results there, loading
-included here, and per Newton iteration or step; processor time on one thread (the wall time of an idle machine), wall
-time on several. Statics of both codes take one load increment, dynamics even steps. What is solved differs where
-elements do (mean dilatation here); the deflections stand beside. CalculiX is Debian's ccx with SPOOLES. The load
-average tells what else the machine did.
+A cantilever of neo-Hookean rubber under its own weight: equilibrium, and the first steps after it is released, with
+hexahedra and quadratic tetrahedra of several sizes. Total times are those of the whole process for CalculiX, from deck
+to results, and of loading and solving for Sinew; there are also times per Newton iteration or step. They are processor
+times on one thread (the wall time of an idle machine) and wall times on several. In both codes, statics take one load
+increment and dynamics equal steps. The discretisations differ where the elements do (mean dilatation in Sinew), so the
+tables contain the deflections. CalculiX is Debian's ccx with SPOOLES. The load average shows the other load of the
+machine.
 """
 
 import argparse
@@ -46,7 +47,7 @@ def scene(element, size, threads):
 
 
 def clock(threads):
-    """Seconds of this process and of those that it has waited for, or of the wall."""
+    """Processor time of this process and of its finished children, s; wall time for several threads."""
     if threads > 1:
         return time.perf_counter()
     used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
@@ -66,7 +67,7 @@ def iterations_of(folder):
 
 
 def theirs(folder, body, cells, lines, threads):
-    """Last printed displacements, seconds of the process and iterations."""
+    """CalculiX: mean last displacement of the end, seconds of the process, and Newton iterations."""
     folder.mkdir()
     deck = [*calculix.body_cards(np.array(body.rest_positions), cells, np.array(body.fixed), LAW, DENSITY),
             "*NSET, NSET=END", *[str(n + 1) for n in body.node_sets["x_max"]],

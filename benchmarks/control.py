@@ -1,12 +1,13 @@
-"""Closed loops on the trunk with eight cables: processor time of a step, and where it goes.
+"""Closed loops on the trunk with eight cables: processor time of a step and of its parts.
 
     PYTHONPATH=build/release/python /usr/bin/python3 benchmarks/control.py [--steps 200] [--repeat 3]
 
 Plant and model are the trunk of examples/trunk (703 nodes, 2592 tetrahedra), hanging under gravity; the tip follows a
-circle of 30 mm radius in 3 s. A step of the loop is what a robot's computer would do in each sample: the response W at
+circle of 30 mm radius in 3 s. A step of the loop contains the work of a robot's computer in each sample: the response W at
 the model's state, the quadratic program (8 efforts; over a horizon of 10 steps 80, with limits of tension, length and
-rate in each), the condition of convergence, and the model's own step. Processor time of one thread over the steps after
-the first twenty; of several runs the lowest median. The plant's own steps are not counted. Rate: one over the median.
+rate in each), the condition of convergence, and the model's own step. Times are processor times of one thread over the
+steps after the first twenty; of several runs, the one with the lowest median counts. The steps of the plant are not
+included. Rate: one over the median.
 """
 
 import argparse
@@ -39,7 +40,7 @@ def run(make, steps):
     for _ in range(steps):
         commands, seconds = timed(loop.step, {"tip": plant.effector("tip").position}, plant.time)
         loop.send(plant, commands)
-        _, own = timed(plant.step)  # what the model's step costs, too
+        _, own = timed(plant.step)  # costs the same as the model's step
         times.append((seconds, timed(model.response)[1], own))
     return np.array(times[20:]), loop.error
 

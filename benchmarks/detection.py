@@ -1,12 +1,12 @@
-"""What detection takes of a step: two crossed soft tubes of 4200 triangles each are pressed together, in one thread.
+"""Share of collision detection in a step: two crossed soft tubes of 4200 triangles each are pressed together, in one thread.
 
     PYTHONPATH=build/release/python /usr/bin/python3 benchmarks/detection.py
 
-Tubes of 3075 nodes, fixed at their ends, one moved by 8 mm into the other in 0.3 s; backward Euler, 10 ms. A step refits both trees
-and searches once when it begins and once for each motion that the law proposes; no stage of its clock has these searches alone.
-They are measured by themselves, by sinew.collision on the surfaces after each step, and counted once and once an iteration.
-Processor time, medians over the steps that touch. `perf record` over the same steps sees what the step really spends
-(the symbols of sinew::collision and sim::TouchingSurfaces).
+The tubes have 3075 nodes and are fixed at their ends; one moves by 8 mm into the other in 0.3 s; backward Euler, 10 ms. A step refits
+both trees and searches once at its beginning and once for each motion that the contact law proposes. The step report has no stage
+for these searches alone. They are therefore measured separately, with sinew.collision on the surfaces after each step, and counted
+1 + iterations times. Times are processor times, medians over the steps with contact. `perf record` over the same steps shows the
+actual time of a step in detection (symbols of sinew::collision and sim::TouchingSurfaces).
 """
 
 import time
@@ -16,7 +16,7 @@ import numpy as np
 import sinew
 
 EDGE, STEPS, SLACK = "3 mm", 40, 0.5
-REACH = 0.01  # of the size
+REACH = 0.01  # relative to the size of the scene
 
 
 def tube(position, rotation, held):
@@ -39,7 +39,7 @@ def scene(method, itself):
 
 
 def boundary(tetrahedra):
-    """Triangles of one tetrahedron only, their normals outwards."""
+    """Triangles that belong to a single tetrahedron, with outward normals."""
     faces = np.vstack([tetrahedra[:, list(corners)] for corners in ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))])
     _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
     return faces[first[count == 1]]

@@ -1,9 +1,10 @@
-"""Contacts with friction of other simulators (FCLIB) by sinew.qp.solve_cones and, where it is installed, Siconos.
+"""Solves frictional contact problems of other simulators (FCLIB) with sinew.qp.solve_cones and, if installed, Siconos.
 
     PYTHONPATH=build/release/python /usr/bin/python3 benchmarks/fclib.py ../shared/data/fclib [name ...]
 
-Processor time of one thread, median of several calls from a cold start, of the symmetric part of W, to 1e-8 in the natural
-map; Siconos' best solver of seven. Its package (python3-siconos, Apache-2.0) is for this comparison alone.
+Times are processor times of one thread: the median of several calls from a cold start, for the symmetric part of W, to 1e-8 in
+the natural map. For Siconos, the best of seven solvers counts. Its package (python3-siconos, Apache-2.0) is needed for this
+comparison only.
 """
 
 import pathlib
@@ -25,7 +26,7 @@ SOLVERS = ["NSGS", "NSN_AC", "PROX", "ADMM", "VI_EG", "ACLMFP", "VI_FPP"]
 
 
 def read(path):
-    """W (3n, 3n) sparse, q (3n,), friction (n,): of FCLIB's HDF5, or of a text file, dense by columns or 3x3 blocks by rows."""
+    """Sparse W (3n, 3n), q (3n,) and friction (n,) from FCLIB's HDF5 or a text file (dense by columns, or 3x3 blocks by rows)."""
     if path.suffix == ".hdf5":
         problem = sinew.qp.read_fclib(path)
         return csc_matrix(0.5 * (problem.W + problem.W.T)), problem.q, problem.friction
@@ -47,7 +48,7 @@ def read(path):
 
 
 def natural_map(w, q, friction, r):
-    """|r - P_K(r - v)|/|q|."""
+    """Error |r - P_K(r - v)|/|q|, v = (u_n + mu |u_t|, u_t)."""
     r, u = r.reshape(-1, 3), (w @ r + q).reshape(-1, 3)
     z = r - u
     z[:, 0] -= friction * np.hypot(u[:, 1], u[:, 2])
@@ -59,7 +60,7 @@ def natural_map(w, q, friction, r):
 
 
 def median_time(call):
-    """Milliseconds, and what the last call returned."""
+    """Median time of a call, ms, and the result of the last one."""
     times = []
     while len(times) < 3 or (sum(times) < 300.0 and len(times) < 31):
         begin = time.thread_time()
@@ -81,7 +82,7 @@ def by_siconos(w, q, friction, name):
 
 
 def best_of_siconos(w, q, friction):
-    """Its best time and solver among those that solve the problem."""
+    """Shortest time, ms, and name of the solver, among those that solve the problem."""
     found = [(float("inf"), "none")]
     for name in SOLVERS:
         once = time.thread_time()

@@ -1,4 +1,4 @@
-"""Two blocks that lie flush on each other, on meshes that do not match, pressed together: processor time of a step, in one thread.
+"""Two flush blocks with non-matching meshes are pressed together: processor time of a step, in one thread.
 
     PYTHONPATH=build/release/python /usr/bin/python3 benchmarks/flush_blocks.py
 """

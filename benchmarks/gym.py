@@ -1,18 +1,19 @@
-"""Learning environments: steps per second and core, residuals, what Python adds, reset time, memory.
+"""Learning environments: steps per second and core, residuals, overhead of Python, reset time, memory.
 
     PYTHONPATH=build/release/python /usr/bin/python3 benchmarks/gym.py [--envs 64] [--steps 200] [--threads 1 2] [--task trunk-reach]
                                                                        [--mesh own published published-light] [--data ../shared/data]
 
-An environment step of trunk-reach is one simulated step of 10 ms of the trunk with eight cables: actions, the step, observation,
-reward and the resets at the ends of episodes. Actions are uniform in [-1, 1]: every cable's tension goes up or down by up to 1 N a
-step, within 0 to 8 N. `--mesh` chooses the trunk: `own` is the task's (shape: trunk, 703 nodes, 2592 tetrahedra); `published` is the
-mesh of SofaDefrost (709 nodes, 1972 tetrahedra) in exactly the same task; `published-light` is that with a quarter of the tensions
-(2 N, 0.25 N a step), as it is four times as soft and 8 N buckle it. Without the file in DATA/trunk they are left out.
-`--task grasp` and `--task crawl` have contacts and take one step of 20 ms and 40 ms; 8 environments and 60 steps are enough for them. `--task arm-swing-up` is measured with ten steps to an action, as the task has, and with one.
-Rates are environment steps over processor time of all threads (a core's rate whatever else the machine does), and over wall time;
-the best of `--repeat` runs, which take turns. Residuals are relative to the forces. The error of the tip is its distance from where
-Newton's method to 1e-9 brings it under the same actions, over 200 steps: four environments, one episode each.
-Python's share is the processor time that is not spent in sim.step().
+An environment step of trunk-reach is one simulated step of 10 ms of the trunk with eight cables. It includes the action, the step,
+observation, reward and the resets at the ends of episodes. Actions are uniform in [-1, 1]: each tension changes by up to 1 N per
+step, within 0 to 8 N. `--mesh` selects the trunk: `own` is the task's (shape: trunk, 703 nodes, 2592 tetrahedra); `published` is the
+mesh of SofaDefrost (709 nodes, 1972 tetrahedra) in the same task; `published-light` has a quarter of the tensions (2 N, 0.25 N per
+step), because that mesh is four times as soft and buckles at 8 N. Without the file in DATA/trunk, these two are skipped.
+`--task grasp` and `--task crawl` have contacts and steps of 20 ms and 40 ms; 8 environments and 60 steps suffice for them.
+`--task arm-swing-up` is measured with ten steps per action, as in the task, and with one.
+Rates are environment steps per processor time of all threads (the rate of a core, independent of other load) and per wall time;
+the best of `--repeat` interleaved runs counts. Residuals are relative to the forces. The error of the tip is its distance from the
+position that Newton's method with a tolerance of 1e-9 gives under the same actions, over 200 steps: four environments, one episode
+each. The share of Python is the fraction of processor time outside of sim.step().
 """
 
 import argparse
@@ -29,7 +30,7 @@ from sinew.gym.tasks import ArmSwingUp, TrunkReach
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
-NEWTON = {"solver": {"tolerance": 1e-9}}  # what the tip's error is measured against
+NEWTON = {"solver": {"tolerance": 1e-9}}  # reference for the error of the tip
 SETTINGS = [
     ("as shipped", {}),
     ("tolerance 1e-1", {"solver": {"tolerance": 1e-1}}),
@@ -61,7 +62,7 @@ def published(mesh, light):
         }  # fmt: skip
 
         def measure_rest(self, robot):
-            body = robot.body  # a mesh file has no set of the nodes at the tip
+            body = robot.body  # a mesh file has no node set at the tip
             return {"tip": robot.tip.position, "positions": body.positions.copy(), "top": np.flatnonzero(body.rest_positions[:, 2] > 0.19),
                     "energy": body.strain_energy + body.gravity_energy}
 
@@ -69,7 +70,7 @@ def published(mesh, light):
 
 
 def tasks_of(given):
-    """(what is printed, function of the settings of the scene that gives a task) for every trunk that is asked for."""
+    """(label, function from scene settings to a task) for each requested variant."""
     if given.task == "arm-swing-up":
         return [("ten steps of 2 ms to an action", lambda settings: ArmSwingUp(set=settings)),
                 ("one step of 1 ms to an action", lambda settings: OneStep(set={"time_step": 1e-3, **settings}, time_limit=0.5))]
@@ -124,7 +125,7 @@ def watched(task, envs=4, steps=50):
 
 
 def table(given, name, task):
-    """A row for every setting and number of threads."""
+    """Prints a row for every setting and number of threads."""
     chosen = SETTINGS if given.task == "trunk-reach" else SETTINGS[:1]
     if given.settings:
         chosen = [one for one in chosen if one[0] in given.settings]
@@ -205,7 +206,7 @@ def main():
     parser.add_argument("--settings", nargs="+", help=", ".join(label for label, _ in SETTINGS))
     parser.add_argument("--data", type=pathlib.Path, default=ROOT.parent / "shared" / "data")
     given = parser.parse_args()
-    warnings.simplefilter("ignore", sinew.SinewWarning)  # one linearisation leaves residuals, which are printed
+    warnings.simplefilter("ignore", sinew.SinewWarning)  # about residuals of one linearisation, which are printed
     print(f"sinew {sinew.__version__}, {_core.compiler}, {_core.instruction_set}; {given.task}")
     for name, task in tasks_of(given):
         table(given, name, task)

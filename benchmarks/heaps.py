@@ -1,9 +1,9 @@
-"""Heaps of random rigid bodies that fall on a table: time of a step, deepest overlap, flags.
+"""Heaps of random rigid bodies that fall on a table: time of a step, deepest penetration, flagged steps.
 
     PYTHONPATH=build/release/python /usr/bin/python3 benchmarks/heaps.py [--bodies 5] [--heaps 8] [--step 2e-3]
 
-Boxes, balls, capsules and cylinders of 10 g to 1 kg, mu = 0.5, a contact for every pair. The time is that of a whole step
-from Python, gaps read.
+Boxes, balls, capsules and cylinders of 10 g to 1 kg, mu = 0.5, a contact for every pair. The time is that of a step called
+from Python, including reading the gaps.
 """
 
 import argparse
@@ -37,7 +37,7 @@ def heap(seed, count, step):
 
 
 def measure(seed, count, step):
-    """Milliseconds a step, deepest overlap (m), flagged steps, energy gained (J)."""
+    """Time per step (ms), deepest penetration (m), number of flagged steps, energy gained (J)."""
     sim = heap(seed, count, step)
     steps = round(DURATION / step)
     deepest, flagged = 0.0, 0

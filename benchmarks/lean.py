@@ -1,14 +1,15 @@
-"""The published trunk lies on a plane and is dragged over it by a cable: a step, everything included, in one thread.
+"""The published trunk lies on a plane and is dragged over it by a cable: complete time of a step in one thread.
 
     PYTHONPATH=build/release/python /usr/bin/python3 benchmarks/lean.py ../shared/data [--runs 3]
 
-The trunk (709 nodes, 1972 tetrahedra, eight cables) leans with one flank on a plane that this flank touches at rest; gravity,
-9.81 m/s^2, is normal to the plane. One long cable beside the flank is pulled by 0 to 5 mm once a second, so that the trunk slides
-to and fro (mu = 0.3), and seven cables are slack. Direct simulation, 10 ms, two seconds. Medians of processor time over the steps
-after the first half second; of several runs the lowest median. `no plane` is the same motion without contact and gravity.
+The trunk (709 nodes, 1972 tetrahedra, eight cables) leans with one flank on a plane that touches this flank at rest; gravity,
+9.81 m/s^2, is normal to the plane. One long cable beside the flank is pulled by 0 to 5 mm once per second, which makes the trunk
+slide to and fro (mu = 0.3); the other seven cables are slack. Direct simulation, 10 ms, two seconds. Times are medians of processor
+time over the steps after the first half second; of several runs, the lowest median counts. `no plane` is the same motion without
+contact and gravity.
 
-Below, the same trunk is steered: an inverse controller moves its tip by 15 mm to either side along the plane, once in two seconds,
-with all eight cables, quasi-static. `error` is the median distance of the tip from its target.
+The second table is for inverse control: a controller moves the tip by 15 mm to either side along the plane, with a period of two
+seconds, with all eight cables, quasi-static. `error` is the median distance of the tip from its target.
 """
 
 import argparse
@@ -22,10 +23,10 @@ import numpy as np
 import sinew
 
 STEPS, FIRST = 200, 50
-HELD = 20e-3  # m of the trunk's length
-SLOPE = 8.0 / 195.0  # of its flank
+HELD = 20e-3  # m, clamped length of the trunk
+SLOPE = 8.0 / 195.0  # slope of its flanks
 STAGES = ("assembly", "rows", "factorisation", "law", "correction")
-# Flanks by the long cable that lies in them: points of different number touch.
+# Flanks, with the index of the long cable in them. The number of touching points differs.
 FLANKS = {"+y": 0, "+x": 3}
 SETTINGS = {
     "one linearisation, corotated": ("backward-euler", {"method": "one-linearisation", "tangent": "corotated"}),
@@ -36,7 +37,7 @@ SETTINGS = {
 
 
 def cable_points():
-    """The published ways of the four long and four short cables (m): a pull point on the body, then guides."""
+    """Published routes of the four long and four short cables (m): a pull point on the body, then guides."""
     across, along = np.array([-8.0, 195.0]) / np.hypot(8.0, 195.0)
     pulls = [(0, 10, 0), (-10, 0, 0), (0, -10, 0), (10, 0, 0)]
     guides = [(0.0, 10.0 + 17.5 * j * across, z + 17.5 * j * along) for j in range(10) for z in (21.0, 27.0)]
@@ -49,7 +50,7 @@ def cable_points():
 
 
 def outward(flank):
-    """Normal of a plane under the flank, out of the plane's solid."""
+    """Unit normal of a plane below the flank, pointing out of the solid half space."""
     angle = 0.5 * np.pi * (FLANKS[flank] + 1)
     return -np.array([np.cos(angle), np.sin(angle), SLOPE]) / np.hypot(1.0, SLOPE)
 
@@ -74,7 +75,7 @@ def scene(mesh, file, flank, integrator, solver, plane):
 
 
 def run(mesh, flank, integrator, solver, plane):
-    """A row a step: ms, points in the law, points with a force, iterations, relative residual, ms of the stages."""
+    """One row per step: ms, points in the contact problem, points with a force, iterations, relative residual, ms of the stages."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "trunk.vtu"
         meshio.write(file, meshio.Mesh(1e-3 * mesh.points, [("tetra", mesh.cells_dict["tetra"])]))
@@ -102,7 +103,7 @@ def measure(mesh, flank, name, runs, plane=True):
 
 
 def steer(mesh, flank, friction, method):
-    """A row a step: ms, points in the law, points with a force, iterations, distance of the tip from its target (m)."""
+    """One row per step: ms, points in the contact problem, points with a force, iterations, distance of the tip from its target (m)."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "trunk.vtu"
         meshio.write(file, meshio.Mesh(1e-3 * mesh.points, [("tetra", mesh.cells_dict["tetra"])]))
@@ -141,7 +142,7 @@ def main():
     parser.add_argument("data", type=pathlib.Path)
     parser.add_argument("--runs", type=int, default=3)
     given = parser.parse_args()
-    warnings.simplefilter("ignore", sinew.SinewWarning)  # one linearisation leaves residuals, which are printed
+    warnings.simplefilter("ignore", sinew.SinewWarning)  # about residuals of one linearisation, which are printed
     mesh = meshio.read(given.data / "trunk" / "trunk.vtk")
     print("| flank | method | rows of the law | points with a force | iterations | residual | " + " | ".join(STAGES)
           + " | a step, ms | 95th percentile |\n" + "|---" * 13 + "|")  # fmt: skip

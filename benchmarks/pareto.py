@@ -1,14 +1,14 @@
 #!/usr/bin/python3
-"""Error of a robot's stiffness against the time of a step, over elements and refinement: writes
+"""Error of a robot's stiffness versus the time of a step, for several elements and refinements: writes
 docs/images/pareto.png and prints the tables of docs/performance.md.
 
     /usr/bin/python3 benchmarks/pareto.py [--data FOLDER]
 
-Three robots: the conical arm (tip pushed aside), a pneumatic module (chamber under pressure), and with a
-folder of published meshes the trunk (tip pushed aside). Loads are small, so that one number tells the
-stiffness; the reference is extrapolated from the two finest meshes of the best elements. Steps are timed at
-that load on one thread, one linearisation each, backward Euler; the fastest of up to 40 counts, since others may
-work on the machine.
+Three robots: the conical arm (tip pushed aside), a pneumatic module (chamber under pressure) and, with a
+folder of published meshes, the trunk (tip pushed aside). Loads are small, so one number gives the stiffness;
+its reference is extrapolated from the two finest meshes of the best elements. Steps are timed at that load on
+one thread, with one linearisation each and backward Euler; the fastest of up to 40 counts, because the machine
+may have other load.
 """
 
 import argparse
@@ -42,7 +42,7 @@ def scene(mesh, element, material, fixed, actuator, tip):
 
 
 def measure(tree, command, value):
-    """Motion of the tip (mm), least time of a step (ms) and the number of nodes."""
+    """Displacement of the tip (mm), shortest time of a step (ms) and number of nodes."""
     sim = sinew.load(tree)
     start = sim.effector("tip").position.copy()
     setattr(sim.actuator("load"), command, value)
@@ -77,7 +77,7 @@ def trunk(path, element, material):
 
 
 def refined(path, times, folder):
-    """The trunk's tetrahedra cut in eight so often."""
+    """Mesh file of the trunk after `times` refinements of each tetrahedron into eight."""
     sys.path.insert(0, str(ROOT / "validation"))
     import meshio
     mesh = meshio.read(path)
@@ -90,7 +90,7 @@ def refined(path, times, folder):
 
 
 def split(points, cells):
-    """Each tetrahedron in eight, at the middles of its edges."""
+    """Splits each tetrahedron into eight at the midpoints of its edges."""
     import numpy as np
     edges = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]
     pairs = np.sort(np.concatenate([cells[:, e] for e in edges]), axis=1)
@@ -134,7 +134,7 @@ def sweep(measure_one, sizes):
 
 
 def extrapolated(rows):
-    """From two meshes of which the finer has half the cells' size, order 2."""
+    """Richardson extrapolation of order 2 from two meshes; the finer one has half the cell size."""
     return rows[-1][1] + (rows[-1][1] - rows[-2][1]) / 3
 
 

@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""Whether contact points between quadratic faces that do not match can pass on a uniform pressure: a linear program.
+"""Checks by a linear program whether contact points between non-matching quadratic faces can transmit a uniform pressure.
 
     /usr/bin/python3 benchmarks/quadratic_faces.py
 
-Two unit squares of n x n and m x m cells, each of two six-node triangles, lie on each other. Every contact point k has a normal
-force f_k >= 0, which the shape functions N of the face that it lies on spread on the face's nodes. A uniform pressure needs
-sum over k of f_k N_i(x_k) = integral of N_i, for the nodes i of both sides. Printed is the least largest miss, over the largest
-integral, of linear functions on the four triangles of a face and of quadratic functions, for several choices of points.
+Two unit squares of n x n and m x m cells, each of two six-node triangles, lie on each other. Each contact point k has a normal
+force f_k >= 0, which the shape functions N of its face distribute to the face's nodes. A uniform pressure requires
+sum over k of f_k N_i(x_k) = integral of N_i for the nodes i of both sides. The program prints the minimum over f of the largest
+error, relative to the largest integral, for linear shape functions on the four triangles of a face and for quadratic ones, and for
+several choices of points.
 """
 
 import itertools
@@ -37,7 +38,7 @@ class Side:
         self.nodes = np.array(list(numbers))
         self.load, edges = np.zeros(len(numbers)), set()
         for face in self.faces:
-            self.load[face[3:]] += 0.5 / cells**2 / 3.0  # nothing on corners
+            self.load[face[3:]] += 0.5 / cells**2 / 3.0  # the integral is zero for corners
             for quarter in QUARTERS:
                 edges |= {tuple(sorted((face[quarter[k]], face[quarter[(k + 1) % 3]]))) for k in range(3)}
         self.edges = [self.nodes[list(edge)] for edge in sorted(edges)]
@@ -46,7 +47,7 @@ class Side:
         return [self.nodes[[face[k] for k in quarter]].mean(axis=0) for face in self.faces for quarter in QUARTERS]
 
     def shape(self, point):
-        """(nodes,): the functions at a point."""
+        """Values of the shape functions at a point, (nodes,)."""
 
         def barycentric(x):
             return np.linalg.solve(np.vstack([np.array(x).T, np.ones(3)]), [*point, 1.0])
@@ -81,7 +82,7 @@ def crossings(one, other):
 
 
 def least_miss(cells, quadratic, *more):
-    """The number of points, and the miss."""
+    """Number of points, and relative error of the pressure."""
     one, other = (Side(n, quadratic) for n in cells)
     points = [*one.nodes, *other.nodes]
     points += crossings(one, other) if "crossings" in more else []

@@ -1,14 +1,14 @@
 #!/usr/bin/python3
-"""Time and memory of a step against mesh size: writes docs/images/scaling.png and prints the table and the fitted
+"""Time and memory of a step as functions of mesh size: writes docs/images/scaling.png and prints the table and the fitted
 exponents of docs/performance.md.
 
     /usr/bin/python3 benchmarks/scaling.py [--nodes N] [--threads N]
 
 A block of 4 : 1 : 1, clamped at one end and swinging under its weight, of neo-Hookean rubber in linear tetrahedra,
-quadratic tetrahedra and hexahedra; backward Euler, one linearisation a step, nested dissection. Every size runs in a
-process of its own, whose peak memory is that of the system (resource.getrusage) less what Python and the library take
-before the scene is loaded. On one thread times are processor time, the wall time of an idle machine; stages share it as
-they share the wall time. Exponents are slopes of log-log fits over the meshes of more than 2000 nodes.
+quadratic tetrahedra and hexahedra; backward Euler, one linearisation a step, nested dissection. Each size runs in a
+separate process; its memory is the peak reported by the system (resource.getrusage) minus that of Python and the library
+before the scene is loaded. On one thread, times are processor times (the wall time of an idle machine), which are split
+among the stages in proportion to their wall times. Exponents are slopes of log-log fits over the meshes of more than 2000 nodes.
 """
 
 import argparse
@@ -35,17 +35,17 @@ SIDE, ENOUGH = 0.02, 2000
 
 
 def peak():
-    """MB of this process at most so far."""
+    """Peak memory of this process so far, MB."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 
 def cells_across(element, nodes):
-    """Cells along the short side for about so many nodes: 4 n^3 of them, each with one node, quadratic ones with eight."""
+    """Cells n along the short side for about `nodes` nodes: there are 4 n^3 cells, with one node per cell, or eight if quadratic."""
     return max(1, round((nodes / (32 if element == "tet10" else 4)) ** (1 / 3)))
 
 
 def measure(element, nodes, threads):
-    """One mesh in this process."""
+    """Measures one mesh in this process."""
     before = peak()
     sim = sinew.load({
         "sinew": 1, "gravity": [0, 0, -9.81], "time_step": 0.002, "integrator": "backward-euler",

@@ -3,10 +3,10 @@
 
     /usr/bin/python3 benchmarks/scenes.py OUT [--data FOLDER]
 
-Our own trunk always; with a folder of published meshes (trunk/trunk.vtk, grasp/cup.vtk,
-multigait/multigait.vtk) those too: the trunk as its authors drive it, the others as tests of size,
-held in the lowest 5 % along their longest axis, with eight straight cables along it and an effector
-at the far end.
+The built-in trunk is always written. With a folder of published meshes (trunk/trunk.vtk, grasp/cup.vtk,
+multigait/multigait.vtk), these are written, too: the trunk with the actuation of its authors, the others
+as tests of size, clamped in the lowest 5 % along their longest axis, with eight straight cables along
+it and an effector at the far end.
 """
 
 import argparse
@@ -54,7 +54,7 @@ def triple(point):
 
 
 def published_trunk(mesh):
-    """Eight cables as in the published examples: four long, four short, 1.57 rad apart."""
+    """The trunk with the eight cables of the published examples: four long, four short, 1.57 rad apart."""
     text = HEAD.format(name="trunk", mesh=mesh, young=450, poisson=0.45, mass=42, duration=8,
                        box="-20 -20 0 20 20 20")
     slope = np.array([0.0, -8.0, 195.0]) / np.hypot(8.0, 195.0)

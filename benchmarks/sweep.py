@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Efficiency of sweeps: the sum of the samples' times in a plain loop in one process, over processes x wall time.
+"""Efficiency of sweeps: time of all samples in a plain loop in one process, divided by processes x wall time.
 
     /usr/bin/python3 benchmarks/sweep.py [--workers N] [--seconds S]
 
 Samples of 1 ms and 50 ms of processor time without a scene (sleeping would hide contention), then runs of the trunk.
-The start of the cluster is measured apart. Prints a table. Its last columns are a control: the plain loop in so many
-processes at once, each with an equal share of the samples. No scheduler is in it: what it lacks of 100 %, the machine lacks.
+The start of the cluster is measured separately. Prints a table. Its last columns are a control: the plain loop in as many
+processes at once, each with an equal share of the samples, without a scheduler. Its loss relative to 100 % is due to the machine.
 """
 
 import argparse
@@ -25,14 +25,14 @@ from sinew.sweep import samples, worker  # noqa: E402
 
 
 def busy(seconds):
-    """Computes for about so long on an idle core: always the same work."""
+    """Computes for about this time on an idle core; the work depends on the argument only."""
     value = 0
     for k in range(int(seconds * 2e7)):
         value += k & 3
     return float(value)
 
 
-busy.rate = 2e7  # iterations a second, measured in main()
+busy.rate = 2e7  # iterations per second, measured in main()
 
 
 def work(sample):
@@ -40,7 +40,7 @@ def work(sample):
 
 
 def plain(vary, sample, scene, options, share=(0, 1), ready=None):
-    """Seconds of the same samples, or of each n-th of them, in a loop here."""
+    """Seconds that the samples take in a loop in this process; with share=(k, n), samples k, k + n, ... only."""
     design = samples.design(vary, sample)
     if scene is None:
         job = worker.Job(scene="", axes=tuple(design.axes), function=work)
@@ -62,7 +62,7 @@ def _plain_apart(taken, *words):
 
 
 def at_once(workers, *words):
-    """Seconds until the last of several processes has its share of the samples in a plain loop; all begin together."""
+    """Seconds until the last of several processes has run its share of the samples in a plain loop; all start together."""
     context = multiprocessing.get_context("spawn")
     ready, taken = context.Barrier(workers), context.Queue()
     processes = [context.Process(target=_plain_apart, args=(taken, *words, (k, workers), ready)) for k in range(workers)]
@@ -109,7 +109,7 @@ def main():
                   f"{'control (s)':>14}{'ceiling %':>12}{'of ceiling %':>14}")
             for cost in (0.001, 0.050):
                 count = max(8, int(options.seconds / cost))
-                # Iterations, not seconds: the rate of this process goes with the function's values.
+                # The cost is converted to iterations with the rate of this process, which workers do not know.
                 measure(f"{1e3 * cost:g} ms", client, options.workers, {"cost": (cost * busy.rate / 2e7, cost * busy.rate / 2e7 * 1.0001)},
                         f"random:{count}")
             vary = {"bodies.trunk.material.young_modulus": f"400kPa:500kPa:{int(options.seconds * 4)}"}

@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""Cures of tetrahedra that lock, compared in small strain before one is built: prints two tables of
-docs/materials.md. Needs NumPy and SciPy, not Sinew.
+"""Compares remedies for locking tetrahedra at small strain: prints two tables of docs/materials.md.
+Needs NumPy and SciPy, not Sinew.
 
     /usr/bin/python3 benchmarks/tetrahedra_pressures.py
 
-A beam, 100 x 20 x 20 mm, mu = 24 kPa, hanging under its weight, in cubes of six tetrahedra with nodes moved: how
-far its end sinks by where the pressure is that of an element, of a node (Bonet and Burton 1998) or of a patch, and
-what the matrix then costs. And the smallest inf-sup values sqrt(eigenvalue) of B K^-1 B^T p = beta^2 M p, K the
-H1 form of motions that are zero on one face, of cubes of n^3 cells (Chapelle and Bathe, Comput. Struct. 47, 1993).
+First table: a cantilever of 100 x 20 x 20 mm, mu = 24 kPa, under its own weight, meshed with cubes of six tetrahedra
+and displaced nodes. It lists the deflection of the end and the cost of the matrix if the pressure is constant per
+element, per node (Bonet and Burton 1998) or per patch. Second table: the smallest inf-sup values sqrt(eigenvalue) of
+B K^-1 B^T p = beta^2 M p for cubes of n^3 cells, where K is the H1 form of displacements that vanish on one face
+(Chapelle and Bathe, Comput. Struct. 47, 1993).
 """
 
 import numpy as np
@@ -21,7 +22,7 @@ POINTS = np.full((4, 4), FAR) + (NEAR - FAR) * np.eye(4)
 
 
 def box(cells, edge, jitter=0.15):
-    """Nodes (n, 3) and tetrahedra (m, 4) of a block from the origin; nodes inside moved at random."""
+    """Nodes (n, 3) and tetrahedra (m, 4) of a block with a corner at the origin; interior nodes are displaced at random."""
     axes = [np.arange(k + 1) * edge for k in cells]
     z, y, x = np.meshgrid(axes[2], axes[1], axes[0], indexing="ij")
     nodes = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
@@ -41,7 +42,7 @@ def box(cells, edge, jitter=0.15):
 
 
 def gradients(nodes, tetrahedra):
-    """Of barycentric coordinates (m, 4, 3), and volumes (m,)."""
+    """Gradients of barycentric coordinates (m, 4, 3), and volumes (m,)."""
     x = nodes[tetrahedra]
     jacobian = np.transpose(x[:, 1:] - x[:, :1], (0, 2, 1))
     inner = np.linalg.inv(jacobian)
@@ -72,7 +73,7 @@ def sobolev(elements, g, weight, size):
 
 
 def divergence(elements, g, weight, size):
-    """(elements, 3 n): its integral over each element."""
+    """Integral of the divergence over each element, (elements, 3 n)."""
     dof = coordinates(elements)
     rows = np.repeat(np.arange(len(elements)), dof.shape[1])
     return sp.csr_matrix(((g * weight[:, None, None]).ravel(), (rows, dof.ravel())), shape=(len(elements), size))
@@ -84,7 +85,7 @@ def at_nodes(tetrahedra, count):
 
 
 def in_patches(nodes, tetrahedra, size):
-    """As src/sinew/fem/element_patches.cpp."""
+    """Patches of elements, as in src/sinew/fem/element_patches.cpp."""
     uses, near = {}, [[] for _ in tetrahedra]
     for e, t in enumerate(tetrahedra):
         for k in range(4):

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""A fibre-reinforced bending actuator under slow waves of pressure, in water and in air.
+"""A fibre-reinforced bending actuator under slow pressure waves, in water and in air.
 
     PYTHONPATH=build/release/python /usr/bin/python3 examples/bending_actuator/simulate.py --out FOLDER
 
-draws where the tip goes, how far Taylor's models are from the exact one, and a calibration. Lengths,
-radii and densities are plausible ones of ours; the modulus is a published fit.
+draws the path of the tip, the errors of the Taylor models relative to the exact one, and a calibration.
+Lengths, radii and densities are assumed; the modulus is a published fit.
 """
 
 import argparse
@@ -21,7 +21,7 @@ SIZES = {"length": 0.1, "chamber_radius": 6e-3, "wall_thickness": 2e-3}
 
 
 def actuator(around, **changes):
-    """Level, full of what is around it. The fit begins at 10 kPa: below, its value there is held."""
+    """A level actuator, filled with the fluid around it. Below 10 kPa, the modulus is held at the lower end of its fit."""
     return pcc.BendingActuator(**{
         **SIZES, "modulus": pcc.published_modulus(outside="hold"), "filling_density": around,
         "surroundings_density": around, "inclination": np.pi / 2, "stiffness_damping": 5e-3, **changes,
@@ -34,7 +34,7 @@ def wave(amplitude, period, step=0.01):
 
 
 def tip_trajectories(folder):
-    """Backbones where the pressure is highest, with the tip's path, and its height over a period."""
+    """Draws the backbones at the highest pressure, the paths of the tip, and its height over a period."""
     figure, (shape, height) = plt.subplots(1, 2, figsize=(9, 4), layout="constrained")
     along = np.linspace(0, 1, 60)
     for name, around, style in (("air", AIR, "-"), ("water", WATER, "--")):
@@ -74,7 +74,7 @@ def taylor_against_exact(folder):
 
 
 def calibration(folder):
-    """Tips of an actuator whose mass sits in its section, seen with noise of 0.3 mm."""
+    """Calibrates an actuator from the tip of another one, whose mass is distributed, with noise of 0.3 mm."""
     noise = np.random.default_rng(1)
     truth = actuator(WATER, order=None, mass_line="section")
     records = []

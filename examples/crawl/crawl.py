@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""A strip of silicone with three air chambers crawls over a floor; how far, over the coefficient of friction.
+"""A strip of silicone with three air chambers crawls over a floor: distance versus the coefficient of friction.
 
     PYTHONPATH=build/release/python /usr/bin/python3 examples/crawl/crawl.py [--out FOLDER] [--friction MU ...]
 
-The chambers are rows of bellows on a sole that fabric keeps from lengthening: pressure bends the strip upwards in the
-middle, so that it stands on its two ends. The chambers fill one after the other, front, centre, rear, and empty in the
-same order. The strip then moves towards its front, by 15 mm of its 115 mm in a cycle; the opposite order moves it as far
-the other way (docs/locomotion.md says why). FOLDER gets crawl.png, and crawl.yaml, which `sinew run` and `sinew view` take.
+The chambers are rows of bellows on a sole that fabric keeps from stretching, so pressure bends the middle of the strip
+upwards, and it stands on its two ends. The chambers fill one after the other, front, centre, rear, and empty in the same
+order. The strip then moves towards its front, by 15 mm per cycle at a length of 115 mm; the opposite order moves it as far
+in the other direction (docs/locomotion.md explains why). Writes crawl.png to FOLDER, and crawl.yaml for `sinew run` and
+`sinew view`.
 """
 
 import argparse
@@ -18,27 +19,27 @@ import numpy as np
 import sinew
 from sinew.gym.scenes import hexahedra
 
-CELL = np.array([2.5, 5.0, 3.0]) * 1e-3  # m: a hexahedron
-BELLOWS, PITCH = 3, 5  # of a chamber; cells from one bellow to the next
-SILICONE = {"model": "neo-hookean", "young_modulus": "264 kPa", "poisson_ratio": 0.49,  # Dragon Skin 10, and viscous
-            "viscosity": [{"relative_modulus": 0.2, "relaxation_time": "50 ms"}]}  # assumed
-FABRIC = {"thickness": "0.1 mm", "young_modulus": "100 MPa", "poisson_ratio": 0.3}  # of the sole's lower side
+CELL = np.array([2.5, 5.0, 3.0]) * 1e-3  # m, edges of a hexahedron
+BELLOWS, PITCH = 3, 5  # bellows per chamber; cells from one bellow to the next
+SILICONE = {"model": "neo-hookean", "young_modulus": "264 kPa", "poisson_ratio": 0.49,  # Dragon Skin 10; its viscosity
+            "viscosity": [{"relative_modulus": 0.2, "relaxation_time": "50 ms"}]}  # is assumed
+FABRIC = {"thickness": "0.1 mm", "young_modulus": "100 MPa", "poisson_ratio": 0.3}  # on the lower side of the sole
 CHAMBERS = ("front", "centre", "rear")  # in the order of the gait
 PRESSURE, PERIOD, STEP = 25e3, 4.0, 0.02  # Pa, s, s
-RISE, HOLD, LAG = 0.2, 0.4, 0.1  # of the period: filling or emptying, full, between two chambers
-SHOWN = 0.5  # coefficient of friction of the picture's cycle
+RISE, HOLD, LAG = 0.2, 0.4, 0.1  # fractions of the period: filling or emptying, full, lag between chambers
+SHOWN = 0.5  # coefficient of friction of the cycle in the picture
 FRICTION = (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0)
 
 
 def cells():
-    """(nx, 6, 6) bool: which cells are of silicone."""
+    """(nx, 6, 6) bool: whether a cell is silicone."""
     solid = np.zeros((len(CHAMBERS) * BELLOWS * PITCH + 1, 6, 6), bool)
     solid[:, :, :3] = True  # the sole
     for first in range(1, len(solid), PITCH):
         solid[first : first + 4, :, 3:] = True  # a bellow: wall, two cells of air, wall
         solid[first + 1 : first + 3, 1:5, 1:5] = False
     for chamber in range(1, len(solid), BELLOWS * PITCH):
-        solid[chamber + 1 : chamber + BELLOWS * PITCH - 2, 2:4, 1] = False  # the channel along its bellows
+        solid[chamber + 1 : chamber + BELLOWS * PITCH - 2, 2:4, 1] = False  # the channel that connects the bellows
     return solid
 
 
@@ -54,7 +55,7 @@ def inside(chamber):
 
 
 def scene(mesh, friction):
-    """The scene as a dict, its commands still missing."""
+    """The scene as a dict, without commands."""
     sole = [[2 * i * CELL[0], 2 * j * CELL[1], 0.0] for i in range(len(cells()) // 2 + 1) for j in range(4)]
     chambers = {name: {"type": "chamber", "body": "strip", "surface": {"inside": inside(2 - k)}}
                 for k, name in enumerate(CHAMBERS)}  # fmt: skip
@@ -68,15 +69,15 @@ def scene(mesh, friction):
 
 
 def pressure(chamber, cycles, lag=LAG, period=PERIOD, full=PRESSURE):
-    """(n, 2): times (s) and pressures (Pa) of the chamber that comes as number `chamber`."""
+    """(n, 2): times (s) and pressures (Pa) of the chamber with index `chamber` in the gait."""
     starts = (np.arange(cycles) + lag * chamber) * period
     phases = np.array([[0.0, 0.0], [RISE, 1.0], [RISE + HOLD, 1.0], [2 * RISE + HOLD, 0.0]])
     table = np.vstack([phases * [period, full] + [start, 0.0] for start in starts])
-    return table if chamber == 0 else np.vstack([[[0.0, 0.0]], table])  # a table begins at 0 s
+    return table if chamber == 0 else np.vstack([[[0.0, 0.0]], table])  # a table starts at 0 s
 
 
 def make(friction, cycles=3, order=CHAMBERS, **changes):
-    """The simulation with the commands of its chambers."""
+    """The simulation, with commands for its chambers."""
     with tempfile.TemporaryDirectory() as folder:
         write_mesh(Path(folder) / "crawl.vtu")
         sim = sinew.load(scene(Path(folder) / "crawl.vtu", friction), **changes)

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""The published multigait robot crawls: a quadruped with five air chambers in silicone on a stiffer bottom layer.
+"""The published multigait robot crawls: a silicone quadruped with five air chambers and a stiffer bottom layer.
 
     PYTHONPATH=build/release/python /usr/bin/python3 examples/crawl/multigait.py MESHES [--out FOLDER] [--friction MU ...] [--zones MM]
 
-The folder MESHES has multigait.vtk and cavity_*.stl (mm), which are not part of Sinew; docs/locomotion.md says where they
-come from. The chambers of the rear legs, the centre and the front legs fill one after the other and empty in the same
-order. FOLDER gets multigait.png and, per coefficient of friction, a CSV of the motion. A cycle takes some minutes of one core.
-75 points of the sole can touch the floor. With --zones all of its 2592 nodes can, in zones of that size (mm), which takes longer.
+The folder MESHES contains multigait.vtk and cavity_*.stl (mm), which are not part of Sinew; docs/locomotion.md gives their
+source. The chambers of the rear legs, the centre and the front legs fill one after the other and empty in the same order.
+Writes multigait.png to FOLDER and, for each coefficient of friction, a CSV of the motion. A cycle takes some minutes on one
+core. 75 points of the sole can touch the floor; with --zones, all of its 2592 nodes can, aggregated in zones of this size (mm),
+which takes longer.
 """
 
 import argparse
@@ -18,14 +19,14 @@ import numpy as np
 import sinew
 from crawl import pressure
 
-CHAMBERS = {"rear_left": 0, "rear_right": 0, "center": 1, "front_left": 2, "front_right": 2}  # place in the gait
+CHAMBERS = {"rear_left": 0, "rear_right": 0, "center": 1, "front_left": 2, "front_right": 2}  # index in the gait
 PRESSURE, PERIOD, STEP = 26e3, 3.0, 0.02  # Pa, s, s
-SPACING = 10.0  # mm: between points of the sole that can touch the floor
+SPACING = 10.0  # mm, between the points of the sole that can touch the floor
 FRICTION = (0.2, 0.5, 0.7, 1.0)
 
 
 def sole_points(nodes):
-    """(n, 3) mm: a node of the flat bottom for every square of SPACING, the outermost ones included."""
+    """(n, 3) mm: for each grid point of SPACING, the nearest node of the flat bottom, including the outermost ones."""
     bottom = nodes[np.abs(nodes[:, 2]) < 0.1]
     squares = {}
     for node in bottom:
@@ -37,7 +38,7 @@ def sole_points(nodes):
 
 
 def floor(nodes, friction, zones=None):
-    """The contact of the sole: of chosen points (nodes in mm), or of all nodes in zones of so many mm."""
+    """Contact of the sole with the floor: of selected points (nodes in mm), or of all nodes, in zones of this size (mm)."""
     contact = {"body": "robot", "surface": {"plane": {}}, "friction": friction}
     if zones is None:
         return {**contact, "points": (1e-3 * sole_points(nodes)).tolist()}
@@ -73,7 +74,7 @@ def scene(data, folder, friction, zones=None):
 
 
 def crawl(data, friction, cycles=1, log=None, zones=None):
-    """(steps, 3): time (s), mean x (m) towards the front, greatest height (m)."""
+    """(steps, 3): time (s), mean displacement towards the front (m), largest height (m)."""
     with tempfile.TemporaryDirectory() as folder:
         sim = sinew.load(scene(data, Path(folder), friction, zones))
     for name, place in CHAMBERS.items():
@@ -85,7 +86,7 @@ def crawl(data, friction, cycles=1, log=None, zones=None):
         sim.step()
         if sim.report.flagged:
             raise RuntimeError(f"the step to {sim.time:.3f} s is {sim.report.status}")
-        # The front legs are at the lower x of the files.
+        # The front is in the direction of -x in the files.
         rows.append((sim.time, start - robot.positions[:, 0].mean(), robot.positions[:, 2].max()))
         if log:
             print(*rows[-1], sim.report.iterations, sim.report.substeps, file=log, flush=True)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A soft fluidic arm leans on a bar to hold its tip steadier: the sequence of poses and the tip's error, braced and not,
-as a figure beside this script or in the folder given."""
+"""A soft fluidic arm leans on a bar to hold its tip steadier: the sequence of poses, and the error of the tip with and
+without the brace, as a figure beside this script or in the given folder."""
 
 import sys
 from pathlib import Path
@@ -13,12 +13,12 @@ import numpy as np
 from sinew import pcc, plan
 
 GOAL = np.array([0.05, 0.0, -0.53])
-CENTRE, RADIUS = np.array([-0.077, -0.445]), 0.05  # brace.yaml is the same scene
-STEPS = 8  # points of a drawn segment
+CENTRE, RADIUS = np.array([-0.077, -0.445]), 0.05  # as in brace.yaml
+STEPS = 8  # points per drawn segment
 
 
 def backbone(length, theta):
-    """(n, 2) cm in the arm's plane: points along its axis."""
+    """(n, 2) cm: points along the axis, in the plane of the arm."""
     line, heading = [np.zeros(2)], 0.0
     for bend in theta:
         start = line[-1]

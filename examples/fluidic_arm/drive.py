@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Swings of a soft fluidic arm planned in the commands of its drive cylinders, and for comparison as torques that are
-inverted after: both through cylinders, lines, actuators and arm. A table, and a figure beside this script or in the
-folder given."""
+"""Plans swings of a soft fluidic arm in the commands of its drive cylinders, and for comparison in torques that are
+inverted afterwards. Both are simulated through cylinders, lines, actuators and arm. Prints a table, and draws a figure
+beside this script or in the given folder."""
 
 import sys
 from pathlib import Path
@@ -14,11 +14,11 @@ import matplotlib.pyplot as plt
 from sinew import plan
 
 LEAD = ilc_plant.MODEL["lead"]
-SLOWER = 0.5  # than the model's cylinders, so that the difference is seen
+SLOWER = 0.5  # relative frequency of these cylinders, which makes the difference visible
 
 
 def ways(goal, cylinders):
-    """{name: (drive, its run)}: in one problem, and in two stages."""
+    """{name: (drive, its replay)}, planned in two stages and as one problem."""
     arm, actuators, _ = ilc_plant.model()
     at, limits = ilc_plant.GOALS[goal], ilc_plant.MODEL["torque_limits"]
     task = plan.Task(arm, at, limits, actuators=actuators, cylinders=cylinders, lead=LEAD)

@@ -1,8 +1,8 @@
 """Identifies a fluidic arm from motion capture: masses, stiffness, damping, actuators and their delay.
 
-The records are made here, from an arm whose mass is distributed, so that there is something to find; yours come from
-`identify.read_motion("take_1.csv", segments=4)`, whose header reads "time [s],x_0 [mm],y_0 [mm],z_0 [mm],...,
-volume_0 [ml],...". Draws what was seen beside what is predicted, and the residuals.
+The records are simulated here with a different arm, whose mass is distributed. Read yours with
+`identify.read_motion("take_1.csv", segments=4)`; the header is "time [s],x_0 [mm],y_0 [mm],z_0 [mm],...,
+volume_0 [ml],...". Draws measured and predicted motion, and the residuals.
 
     python identify.py [--out identify.png]
 """
@@ -22,11 +22,11 @@ def arm(masses, stiffness, damping, centre="arc"):
 
 
 def capture(robot, actuators, seed, duration=8.0, rate=50):
-    """What cameras would see: noise of 0.3 mm, 2 % of the markers hidden, frames at uneven times."""
+    """Simulated motion capture: noise of 0.3 mm, 2 % of the markers hidden, unevenly spaced frames."""
     generator = np.random.default_rng(seed)
     time = np.arange(round(duration * rate) + 1) / rate
     time[1:-1] += 0.3 / rate * (generator.random(len(time) - 2) - 0.5)
-    fade = np.sin(np.pi * np.clip(time, 0, 0.5)) ** 2  # from rest
+    fade = np.sin(np.pi * np.clip(time, 0, 0.5)) ** 2  # starts from rest
     volumes = np.stack([fade * pcc.Excitation(3e-5, seed=10 * seed + k).at(time) for k in range(3)], axis=1)
     ends = identify.predict_motion(robot, time, np.zeros(4), inputs=volumes, actuators=actuators, time_step=1e-3)
     ends += 3e-4 * generator.standard_normal(ends.shape)

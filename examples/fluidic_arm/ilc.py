@@ -1,8 +1,8 @@
-"""A fluidic arm learns to grab what it cannot hold: identify, plan, invert, run, repeat, on arms that are not quite
-their model (ilc_plants.json).
+"""A fluidic arm learns to reach balls that it cannot reach at rest: identify, plan, invert, run, repeat, on arms that
+differ from their model (ilc_plants.json).
 
-    python ilc.py [--out learning.png]                  # four experiments as published, with a figure
-    python ilc.py --further further.csv --processes 2   # 200 further arms, a line each as they come
+    python ilc.py [--out learning.png]                  # the four published experiments, with a figure
+    python ilc.py --further further.csv --processes 2   # 200 further arms, one line each
     python ilc.py --further further.csv --identified excited
 """
 
@@ -24,9 +24,11 @@ IDENTIFIED = {
 
 
 def experiment(seed, goal, attempts, identified="rehearsed", centre="arc"):
-    """True distance (m) of the tip from the goal at the end of each attempt, and its paths. Before the first attempt
-    the arm is `identified` as IDENTIFIED says; a rehearsal is the planned motion at a fraction of its volumes. `centre`:
-    where the model has its masses."""
+    """True distances (m) of the tip from the goal at the end of the attempts, and paths of the tip.
+
+    `identified` selects the identification before the first attempt, see IDENTIFIED; a rehearsal is the planned motion at
+    a fraction of its volumes. `centre` is the location of the masses in the model, see pcc.Arm.
+    """
     at, model = np.array(ilc_plant.GOALS[goal]), ilc_plant.MODEL
     learner = learn.Learner(*ilc_plant.model(centre), at, model["torque_limits"], duration=model["duration"],
                             lead=model["lead"], torque_rate_limits=model["torque_rate_limit"])
@@ -42,13 +44,13 @@ def experiment(seed, goal, attempts, identified="rehearsed", centre="arc"):
         record = plant(learner.propose().command)
         distances.append(float(np.linalg.norm(plant.true_tip[-1] - at)))
         paths.append(plant.true_tip)
-        if k + 1 < attempts:  # nothing is planned after the last
+        if k + 1 < attempts:  # nothing is planned after the last attempt
             learner.observe(record)
     return distances, paths
 
 
 def interval(successes, trials, z=1.959964):
-    """Wilson's 95 % interval of a share (Wilson, J. American Statistical Association 22, 1927)."""
+    """Wilson's 95 % confidence interval of a proportion (Wilson, J. American Statistical Association 22, 1927)."""
     share, n = successes / trials, trials
     centre = (share + z * z / (2 * n)) / (1 + z * z / n)
     half = z * math.sqrt(share * (1 - share) / n + z * z / (4 * n * n)) / (1 + z * z / n)
@@ -56,15 +58,18 @@ def interval(successes, trials, z=1.959964):
 
 
 def by_plants(hits, draws=10000, seed=1):
-    """95 % interval of the share of all attempts (plants, attempts) with attempts on one plant kept together: bootstrap
-    over plants, percentiles (Davison and Hinkley, Bootstrap Methods and their Application, 1997, sec. 3.8 and 5.3)."""
+    """95 % confidence interval of the success rate of all attempts, (plants, attempts).
+
+    Percentile bootstrap over plants, because attempts on one plant are correlated (Davison and Hinkley, Bootstrap Methods
+    and their Application, 1997, sec. 3.8 and 5.3).
+    """
     share = hits.mean(axis=1)
     chosen = np.random.default_rng(seed).integers(len(share), size=(draws, len(share)))
     return np.quantile(share[chosen].mean(axis=1), [0.025, 0.975])
 
 
 def published(identified="rehearsed"):
-    """The four experiments: [(goal, distances, paths)]."""
+    """The four published experiments: [(goal, distances, paths)]."""
     return [(e["goal"], *experiment(e["seed"], e["goal"], e["attempts"], identified))
             for e in ilc_plant.SETUP["experiments"]]
 
@@ -72,12 +77,12 @@ def published(identified="rehearsed"):
 def _one(job):
     try:
         return job, experiment(*job)[0]
-    except Exception as error:  # a learner that gives up has failed, and says so
+    except Exception as error:  # counts as failed; the table contains the message
         return job, [math.inf] * job[2] + [str(error)]
 
 
 def further(path, processes, kind, identified, centre):
-    """Distances of the further seeds, written line by line."""
+    """Runs the further seeds and writes their distances line by line."""
     given = ilc_plant.SETUP[kind]
     goals = given["goals"]
     jobs = [(given["first"] + k, goals[k % len(goals)], given["attempts"], identified, centre)

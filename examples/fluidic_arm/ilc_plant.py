@@ -1,5 +1,4 @@
-"""A fluidic arm that is not quite its model, and the model: what the learning examples learn on. Numbers are those of
-ilc_plants.json."""
+"""A fluidic arm and its inexact model, for the learning examples. The numbers are in ilc_plants.json."""
 
 import json
 from pathlib import Path
@@ -17,7 +16,7 @@ def arm(masses, stiffness, damping, centre="arc"):
 
 
 def cylinder(gain=1.0, frequency=1.0):
-    """With limits; factors on the model's numbers."""
+    """Drive cylinder with limits; `gain` and `frequency` are factors on the numbers of the model."""
     given = MODEL["cylinder"]
     free = pcc.second_order_cylinder(gain * given["gain"], frequency * given["frequency"], given["damping"],
                                      given["sample_time"])
@@ -26,13 +25,13 @@ def cylinder(gain=1.0, frequency=1.0):
 
 
 def model(centre="arc"):
-    """(arm, actuators, cylinders) that the learner starts from: lumped, or as the plant, "distributed"."""
+    """Initial model of the learner, (arm, actuators, cylinders), with lumped masses, or "distributed" as in the plant."""
     return (arm(MODEL["masses"], MODEL["stiffness"], MODEL["damping"], centre),
             [pcc.FluidicActuator(MODEL["cubic"], delay=MODEL["delay"])] * 3, [cylinder()] * 3)
 
 
 def excitation():
-    """Commands (samples, 3) that move the arm all over its range from rest, with volumes as large as those of grabs."""
+    """Commands (samples, 3) that move the arm from rest through its whole range, with volumes as large as in the attempts."""
     given, step = SETUP["excitation"], MODEL["cylinder"]["sample_time"]
     time = step * np.arange(round(given["seconds"] / step) + 1)
     fade = np.sin(np.pi * np.clip(time, 0, 0.5))[:, None] ** 2
@@ -41,7 +40,7 @@ def excitation():
 
 
 class Plant:
-    """Runs commands (samples, 3) and gives what is measured; `true_tip` is where the tip was, without noise."""
+    """Runs commands (samples, 3) and returns the measured record; `true_tip` has the path of the tip without noise."""
 
     def __init__(self, seed):
         random = np.random.default_rng([20, seed])

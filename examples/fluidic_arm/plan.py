@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A soft fluidic arm swings to places that it cannot hold at rest: reach map, planned torques and
-the tip's phase plots, as figures beside this script or in the folder given."""
+"""A soft fluidic arm swings to points that it cannot hold at rest: reach map, planned torques and
+phase plots of the tip, as figures beside this script or in the given folder."""
 
 import sys
 from pathlib import Path

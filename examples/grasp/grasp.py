@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""A gripper of three soft trunks lifts a soft cup: the forces of its grip, over the pull and over the friction.
+"""A gripper of three soft trunks lifts a soft cup: its grip forces as functions of cable pull and friction.
 
     PYTHONPATH=build/release/python /usr/bin/python3 examples/grasp/grasp.py [--out FOLDER]
 
-Every finger hangs from its foot and has a cable on its inner side. The cables close the fingers on the standing cup
-within a second, then the feet rise by 60 mm and rest. A cup of straight walls, which friction alone can hold, is lifted
-for comparison (docs/grasping.md). `--friction MU ...` and `--pull MM ...` choose what is compared.
-FOLDER gets grasp.png, and grasp.yaml with cup.vtu, which `sinew run` and `sinew view` take.
+Each finger hangs from its foot and has a cable on its inner side. The cables close the fingers on the standing cup within
+a second; then the feet rise by 60 mm and stop. A cup with straight walls, which only friction can hold, is lifted for
+comparison (docs/grasping.md). `--friction MU ...` and `--pull MM ...` select the values to compare.
+Writes grasp.png to FOLDER, and grasp.yaml with cup.vtu for `sinew run` and `sinew view`.
 """
 
 import argparse
@@ -20,12 +20,12 @@ import sinew
 from sinew.gym.scenes import hexahedra
 from sinew.render.geometry import boundary_of
 
-QUARTER, LAYERS = 5, 9  # of the cup: cells along a quarter of its circle, layers from the floor to the rim
+QUARTER, LAYERS = 5, 9  # cells along a quarter of the cup's circle, layers from its floor to its rim
 TAPERED, STRAIGHT = (18e-3, 35e-3), (26e-3, 26e-3)  # m: outer radii at the floor and at the rim
 HEIGHT, WALL, FLOOR = 78.6e-3, 4e-3, 5e-3  # m
 FINGERS = 3
-APART, ABOVE, HELD = 50e-3, 220e-3, 20e-3  # m: feet from the middle and above the table; how much of a finger is held
-PULL, LIFT = 8e-3, 60e-3  # m: of a cable within the finger, of the feet
+APART, ABOVE, HELD = 50e-3, 220e-3, 20e-3  # m: distance of the feet from the axis, their height above the table, clamped length of a finger
+PULL, LIFT = 8e-3, 60e-3  # m: pull of the cables, rise of the feet
 CLOSED, LIFTS, LIFTED, END = 1.0, 1.5, 2.5, 4.0  # s
 STEP, SHOWN = 0.01, 0.6  # s; coefficient of friction of the picture
 FRICTION = (0.0, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.55, 0.6)
@@ -34,7 +34,7 @@ GRAVITY = 9.81
 
 
 def write_cup(path, radii=TAPERED):
-    """The cup as hexahedra, one through the floor and one through the wall."""
+    """Writes the cup as hexahedra, with one through the floor and one through the wall."""
     nodes, cells = hexahedra.cup(QUARTER, LAYERS, radii, HEIGHT, WALL, FLOOR)
     meshio.write(path, meshio.Mesh(nodes, [("hexahedron", cells)]))
 
@@ -49,8 +49,8 @@ def scene(cup, friction=SHOWN, pull=PULL):
     }  # fmt: skip
     contacts = {"table": {"body": "cup", "surface": {"plane": {}}, "friction": friction}}
     cables = {}
-    depth = np.append(0.0, np.linspace(21e-3, 190e-3, 20))  # of a cable's points below the foot
-    inwards = np.interp(depth, depth[[1, -1]], [10e-3, 3.5e-3])  # from the finger's axis to the cable
+    depth = np.append(0.0, np.linspace(21e-3, 190e-3, 20))  # m, cable points below the foot
+    inwards = np.interp(depth, depth[[1, -1]], [10e-3, 3.5e-3])  # m, distance of the cable from the finger's axis
     for k in range(FINGERS):
         turn = 2.0 * np.pi * k / FINGERS
         outwards = np.array([np.cos(turn), np.sin(turn), 0.0])
@@ -82,7 +82,7 @@ def make(radii=TAPERED, **changes):
 
 
 def axis(cup):
-    """From the middle of the cup's bottom to the middle of its rim (m)."""
+    """Vector from the centre of the cup's bottom to the centre of its rim (m)."""
     height = cup.rest_positions[:, 2]
     return cup.positions[height > HEIGHT - 1e-6].mean(axis=0) - cup.positions[height < 1e-6].mean(axis=0)
 
@@ -92,17 +92,17 @@ def grips(sim):
 
 
 def along(grip):
-    """The resultant of the friction forces (N): `friction_force` adds up their magnitudes."""
+    """Magnitude of the resultant of the friction forces (N); `friction_force` is the sum of their magnitudes."""
     return np.linalg.norm(grip.friction_forces.sum(axis=0))
 
 
 def near(contact):
-    """How many places of the contact have something within the distance in which the step looks (the largest gap)."""
+    """Number of contact points with a gap below the search distance, which is the largest gap."""
     return int(np.count_nonzero(contact.gaps < contact.gaps.max()))
 
 
 def sideways(sim):
-    """How far the tips have moved around the cup (m), the mean of the fingers."""
+    """Mean distance that the fingertips have moved around the cup (m)."""
     moved = 0.0
     for k in range(FINGERS):
         finger, turn = sim.body(f"finger_{k}"), 2.0 * np.pi * k / FINGERS
@@ -112,7 +112,7 @@ def sideways(sim):
 
 
 def run(sim, until=END, moments=()):
-    """Steps until a time (s): per step the smallest gap (m) and the time taken (s); all nodes at some moments."""
+    """Steps until a time (s). Returns smallest gap (m) and computation time (s) of each step, and nodal positions at `moments`."""
     gaps, taken, frames = [], [], {}
     while sim.time < until - 0.5 * STEP:
         start = time.perf_counter()
@@ -128,21 +128,21 @@ def run(sim, until=END, moments=()):
 
 
 def risen(sim):
-    """How far the cup has risen (m)."""
+    """Rise of the cup's centre of mass (m)."""
     cup = sim.body("cup")
     return (cup.node_masses @ (cup.positions - cup.rest_positions)[:, 2]) / cup.mass
 
 
 def mm(length):
-    """In mm, to be printed without the sign of -0.0."""
+    """Length in mm; avoids printing -0.0."""
     return round(1e3 * length, 1) + 0.0
 
 
 def held(sim):
-    """What can be read off the gripper that holds the cup."""
+    """Forces and geometry of the gripper that holds the cup."""
     cup = sim.body("cup")
     contacts = list(sim.contacts.values())
-    upwards = sim.contact("table").force[2] - sum(grip.force[2] for grip in grips(sim))  # `force` is that on the finger
+    upwards = sim.contact("table").force[2] - sum(grip.force[2] for grip in grips(sim))  # `force` acts on the finger
     direction = axis(cup)
     return {
         "risen": risen(sim),
@@ -158,7 +158,7 @@ def held(sim):
 
 
 def show():
-    """The run of the picture: prints its figures, returns its last state and frames."""
+    """Runs the case of the picture and prints its results. Returns the simulation at the end, and frames."""
     sim = make()
     cup = sim.body("cup")
     frames = {0.0: {name: body.positions.copy() for name, body in sim.bodies.items()}}
@@ -185,14 +185,14 @@ def show():
 
 
 def lift(**changes):
-    """Where the run of a variant ends: (how far the cup has risen (m), what held() tells)."""
+    """Result of held() at the end of the run of a variant."""
     sim = make(**changes)
     run(sim)
     return held(sim)
 
 
 def paint(axes, bodies, positions, arrows=(), elevation=20.0, azimuth=60.0):
-    """The surfaces of the bodies as seen from one side, lit from above, with their shadow; arrows in mm."""
+    """Draws the surfaces of the bodies, lit from above, with their shadow; arrows in mm."""
     from matplotlib.colors import to_rgb
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
@@ -205,7 +205,7 @@ def paint(axes, bodies, positions, arrows=(), elevation=20.0, azimuth=60.0):
         (triangles, _), points = boundary_of(body), 1e3 * positions[name]
         at = points[triangles]
         normal = np.cross(at[:, 1] - at[:, 0], at[:, 2] - at[:, 0])
-        seen = normal @ direction(azimuth, elevation) > 0.0  # matplotlib sorts triangles, and hides none of them
+        seen = normal @ direction(azimuth, elevation) > 0.0  # matplotlib sorts triangles but does not cull back faces
         bright = np.clip((normal / np.linalg.norm(normal, axis=1)[:, None]) @ light, 0.0, 1.0)
         colour = np.array(to_rgb("#ffb43c" if name == "cup" else "#7fb0e6"))
         corners.append(at[seen])
@@ -230,11 +230,11 @@ def paint(axes, bodies, positions, arrows=(), elevation=20.0, azimuth=60.0):
 
 
 def pushes(sim):
-    """Arrows (mm) that end where the fingers push the cup, 80 mm for a newton."""
+    """Arrows (mm) of the forces on the cup, which end at the fingers' contact, 80 mm per newton."""
     arrows = []
     for grip in grips(sim):
         where = 1e3 * grip.normal_forces @ grip.positions / grip.normal_force
-        arrows.append((where + 80.0 * grip.force, -80.0 * grip.force))  # `force` is that on the finger
+        arrows.append((where + 80.0 * grip.force, -80.0 * grip.force))  # `force` acts on the finger
     return arrows
 
 
@@ -244,7 +244,7 @@ def draw(path, sim, frames, friction, heights, pulls, gripped):
     figure = plt.figure(figsize=(14, 5.2))
     for k, (moment, title) in enumerate(((0.0, "open"), (LIFTS, "closed"), (END, "lifted"))):
         axes = figure.add_axes((0.183 * k - 0.123, -0.05, 0.43, 1.1577), projection="3d")
-        paint(axes, sim.bodies, frames[moment], pushes(sim)[:2] if moment == END else ())  # the third finger is behind
+        paint(axes, sim.bodies, frames[moment], pushes(sim)[:2] if moment == END else ())  # the third finger is hidden
         figure.text(0.183 * k + 0.092, 0.02, f"{title}, {moment:.1f} s", ha="center", fontsize=11)
     over = figure.add_axes((0.605, 0.13, 0.145, 0.77))
     for name, marker, rise in zip(("tapered", "straight"), ("o-", "s--"), heights):

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""What an expert reaches: returns and successes over many episodes of a task.
+"""Evaluates an expert: returns and successes over many episodes of a task.
 
     PYTHONPATH=build/release/python /usr/bin/python3 examples/gym/judge.py TASK [--episodes 50] [--seed 0] [--passive]
                                                                               [--set NAME=VALUE ...]
 
-TASK is any of sinew.gym.tasks(). `--set friction=0.2` and the like go to the task. Episode k has the seed --seed + k. The table has
-a row for each episode that does not succeed, and the sums. The last step of an episode says whether it was a success. trunk-damp
-does not: there it is a success to lose at most half of what the passive trunk loses in the same episode. `--passive` leaves all
-actuators as near to zero as they go, in place of the expert.
+TASK is any of sinew.gym.tasks(). `--set friction=0.2` and the like are options of the task. Episode k has the seed --seed + k.
+Prints a line for each episode without success, and a summary. The info of the last step tells whether an episode was a success.
+For trunk-damp, which does not report success, the return must be at least half of the (negative) return of the passive trunk in
+the same episode. `--passive` uses no expert and keeps all actuators as close to zero as possible.
 """
 
 import argparse
@@ -17,13 +17,13 @@ import sinew.gym
 
 
 def passive(task):
-    """The action that leaves the actuators at zero, or as near as their limits allow."""
+    """Action that keeps the actuators at zero, or as close as their limits allow."""
     zero = np.clip(0.0, task.low, task.high)
     return np.zeros(len(zero)) if task.is_increment else 2.0 * (zero - task.low) / (task.high - task.low) - 1.0
 
 
 def episode_of(env, policy, seed):
-    """Sum of rewards, and the last info."""
+    """Sum of rewards of an episode, and its last info."""
     observation, info = env.reset(seed=seed)
     total, over = 0.0, False
     while not over:
@@ -34,7 +34,7 @@ def episode_of(env, policy, seed):
 
 
 def judge(task, episodes, seed=0, without_expert=False, **options):
-    """Sum of rewards of each episode, and whether it was a success."""
+    """Sum of rewards and success of each episode."""
     env = sinew.gym.make(task, **options)
     nothing = passive(env.task)
     at_rest = lambda _: nothing  # noqa: E731

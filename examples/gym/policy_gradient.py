@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Proximal policy optimisation (Schulman et al., arXiv:1707.06347, 2017) learns to reach with a trunk: PyTorch.
+"""Proximal policy optimisation (Schulman et al., arXiv:1707.06347, 2017) for reaching with a trunk, with PyTorch.
 
     PYTHONPATH=build/release/python /usr/bin/python3 examples/gym/policy_gradient.py [--iterations 60] [--seed 0] [--threads 2] [--out FOLDER]
 
-A network of two layers sees what `trunk-reach` senses and gives the mean of a normal distribution of actions; another one gives the
-value of a state. An iteration runs an episode in 64 environments, and improves both by the clipped objective with generalised
-advantages. The result is judged, without noise, in 100 episodes that no training has seen. FOLDER gets policy_gradient.png, the
-learning curve. Needs PyTorch (python3-torch).
+A network of two layers maps the observation of `trunk-reach` to the mean of a normal distribution of actions; another one estimates
+the value of a state. An iteration runs an episode in 64 environments and improves both networks by the clipped objective with
+generalised advantages. The result is evaluated without noise in 100 held-out episodes. Writes policy_gradient.png, the learning
+curve, to FOLDER. Needs PyTorch (python3-torch).
 """
 
 import argparse
@@ -20,7 +20,7 @@ import torch
 from matplotlib.figure import Figure
 
 ENVIRONMENTS, TESTS = 64, 100
-DISCOUNT, TRACE = 0.95, 0.9  # of rewards, and of advantages (Schulman et al., arXiv:1506.02438, equation 16)
+DISCOUNT, TRACE = 0.95, 0.9  # gamma of rewards, lambda of advantages (Schulman et al., arXiv:1506.02438, equation 16)
 CLIP, EPOCHS, BATCHES, RATE = 0.2, 8, 4, 2e-3
 
 
@@ -42,7 +42,7 @@ class Policy(torch.nn.Module):
 
 
 def episode(envs, act, seeds):
-    """What is seen (steps + 1, environments, inputs), done and earned in an episode, and the last info."""
+    """Observations (steps + 1, environments, inputs), actions and rewards of an episode, and the last infos."""
     seen, _ = envs.reset(seed=seeds)
     seens, actions, rewards, ended = [seen.copy()], [], [], False
     while not ended:
@@ -55,7 +55,7 @@ def episode(envs, act, seeds):
 
 
 def advantages(rewards, values):
-    """(steps, environments); values (steps + 1, environments): an episode that is cut off goes on."""
+    """Generalised advantages (steps, environments); the last value bootstraps truncated episodes, values (steps + 1, environments)."""
     result, ahead = torch.zeros_like(rewards), torch.zeros_like(rewards[0])
     for k in reversed(range(len(rewards))):
         ahead = rewards[k] + DISCOUNT * values[k + 1] - values[k] + DISCOUNT * TRACE * ahead
@@ -90,7 +90,7 @@ def main():
     parser.add_argument("--out", type=Path, default=Path("out"))
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
-    warnings.simplefilter("ignore", sinew.SinewWarning)  # poor policies shake the trunk: some steps are flagged
+    warnings.simplefilter("ignore", sinew.SinewWarning)  # about flagged steps, because poor policies shake the trunk
     torch.manual_seed(given.seed)
     torch.set_num_threads(given.threads)
     random = np.random.default_rng(given.seed)
@@ -117,7 +117,7 @@ def main():
               f"{time.perf_counter() - start:.0f} s", flush=True)  # fmt: skip
     envs.close()
     tests = sinew.gym.make_vec("trunk-reach", TESTS, threads=given.threads)
-    success = episode(tests, best, [2**31 + i for i in range(TESTS)])[3]["success"].mean()  # training draws smaller seeds
+    success = episode(tests, best, [2**31 + i for i in range(TESTS)])[3]["success"].mean()  # held-out seeds
     print(f"of {TESTS} goals never seen, within 5 mm: {success:.2f}")
     axes = Figure(figsize=(6.0, 3.6), layout="constrained").subplots()
     axes.plot(np.arange(len(curve)) + 1, curve, label=f"within 5 mm: {success:.2f}")

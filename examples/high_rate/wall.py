@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""A hand on a virtual wall of 1 N/mm at 1 kHz: the energy that the wall creates with passivity control and without, and
-the force that the hand feels as a number and an arrow, in a figure beside this script or in the folder given.
+"""A hand on a virtual wall of 1 N/mm at 1 kHz: the energy that the wall creates with and without passivity control, and
+the force on the hand as a number and an arrow, in a figure beside this script or in the given folder.
 
     wall.py [FOLDER]      on an ideal clock
-    wall.py --live        ten seconds in a thread of its own: the arrow in the terminal, then how late periods began
+    wall.py --live        ten seconds in a thread of its own: the arrow in the terminal, then the lateness of periods
 """
 
 import sys
@@ -22,7 +22,7 @@ WALL = sinew.Snapshot(np.array([[1.0 / STIFFNESS]]), np.zeros(1))
 
 
 def hand(times):
-    """m: eight sines of up to 6 Hz with seeded phases, at most 10 mm, in the wall where positive."""
+    """Positions of the hand, m: eight sines of up to 6 Hz with seeded phases, at most 10 mm; positive inside the wall."""
     random = np.random.default_rng(SEED)
     frequencies, phases = np.r_[6.0, random.uniform(0.2, 6.0, 7)], random.uniform(0.0, 2.0 * np.pi, 8)
     place = np.sin(2.0 * np.pi * np.multiply.outer(times, frequencies) + phases).sum(axis=1)
@@ -30,12 +30,12 @@ def hand(times):
 
 
 def feel(places, passivity):
-    """Forces of the hand (N), the energy created (J) and the mean damping in the wall (N s/m)."""
+    """Forces of the hand (N), energy created (J), and mean damping in the wall (N s/m)."""
     loop = sinew.HighRateLoop(None, hands=["hand"], rate=RATE, passivity=passivity)
     forces, energies, damping = np.zeros((3, len(places)))
     for k, place in enumerate(places):
         if k % 10 == 0:
-            loop.publish(WALL)  # a model of 100 Hz
+            loop.publish(WALL)  # the model runs at 100 Hz
         loop.set_input(hands={"hand": place})
         loop.advance()
         output = loop.output

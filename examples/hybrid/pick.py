@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""A hand with three soft fingers on a rigid arm picks up a box: what the hand feels, and a picture of it.
+"""A hand with three soft fingers on a rigid arm picks up a box: contact forces, motor torques, and a picture.
 
     PYTHONPATH=build/release/python /usr/bin/python3 examples/hybrid/pick.py [--out FOLDER] [--write-motion]
 
-Runs pick.yaml, prints its figures (docs/grasping.md explains them), and draws FOLDER/pick.png. The scene's motors and
-cables follow pick.csv, which --write-motion writes anew: straight lines of the wrist, from which the angles of shoulder
-and elbow follow; the wrist keeps the palm level.
+Runs pick.yaml, prints its results (docs/grasping.md explains them), and draws FOLDER/pick.png. The motors and cables of
+the scene follow pick.csv, which --write-motion rewrites: straight paths of the wrist, which determine the angles of
+shoulder and elbow; the wrist keeps the palm level.
 """
 
 import argparse
@@ -18,19 +18,19 @@ from scipy.spatial.transform import Rotation
 
 HERE = Path(__file__).resolve().parent
 UPPER, FOREARM, SHOULDER = 0.2, 0.18, 0.18  # m: lengths of the links, height of the shoulder
-REACH, HIGH, LOW = 0.26, 0.183, 0.113  # m: of the wrist from the axis of yaw, its height with the hand up and down
-LIFTED = 1.5e-3  # m: closing lifts the box by 1.4 mm, so the hand puts it down by this much deeper than it took it
-TAKE, PUT = np.radians([25.0, -45.0])  # yaw at the box, and where it is to stand
-PULL = 5e-3  # m of cable
+REACH, HIGH, LOW = 0.26, 0.183, 0.113  # m: distance of the wrist from the yaw axis, its height with the hand up and down
+LIFTED = 1.5e-3  # m: closing lifts the box by 1.4 mm, so the hand moves this much lower to put it down
+TAKE, PUT = np.radians([25.0, -45.0])  # rad, yaw at the initial and at the final position of the box
+PULL = 5e-3  # m, of the cables
 LIFT_ENDS, HOLD_ENDS, END = 1.45, 3.25, 5.25  # s
-SHOWN = {0.5: "around the box", 1.25: "lifted", 1.95: "swung round", 4.5: "put down"}  # s: the moments of the picture
+SHOWN = {0.5: "around the box", 1.25: "lifted", 1.95: "swung round", 4.5: "put down"}  # s: times shown in the picture
 FINGERS = ("left", "right", "thumb")
-LINKS = {"upper": (0.4, 0.1), "forearm": (0.25, 0.09)}  # kg, m from the joint; of arm.urdf
+LINKS = {"upper": (0.4, 0.1), "forearm": (0.25, 0.09)}  # mass (kg) and distance of its centre from the joint (m), as in arm.urdf
 G = 9.81
 
 
 def ramp(time, start, end):
-    """From 0 to 1 with the least jerk."""
+    """Minimum-jerk transition from 0 to 1."""
     share = np.clip((time - start) / (end - start), 0.0, 1.0)
     return share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
 
@@ -44,7 +44,7 @@ def angles(height):
 
 
 def motion():
-    """Lines of pick.csv: time (s), yaw, and what shoulder, elbow and wrist turn from the start (deg), cable (mm)."""
+    """Rows of pick.csv: time (s), yaw, rotation of shoulder, elbow and wrist from the start (deg), pull of the cables (mm)."""
     time = np.arange(0.0, 5.25 + 1e-9, 0.01)
     down, up = ramp(time, 0.1, 0.48), ramp(time, 0.85, 1.45)
     lowered, raised = ramp(time, 3.25, 3.85), ramp(time, 4.25, 4.75)
@@ -66,7 +66,7 @@ def is_at(sim, moment):
 
 
 def in_palm(sim):
-    """Where the box is in the frame of the palm (m), and by how much it is turned there (rad)."""
+    """Position (m) and angle of rotation (rad) of the box in the frame of the palm."""
     palm, box = sim.body("arm.palm"), sim.body("box")
     back = Rotation.from_quat(np.roll(palm.rotation, -1)).inv()
     turn = back * Rotation.from_quat(np.roll(box.rotation, -1))
@@ -74,19 +74,19 @@ def in_palm(sim):
 
 
 def torques(box):
-    """Torques (N m) of shoulder, elbow and wrist at rest with the hand up, by hand; with the box or without."""
+    """Expected torques (N m) of shoulder, elbow and wrist at rest with the hand up, with or without the box."""
     shoulder, elbow, _ = angles(HIGH)
-    hand = 0.08 + 1080.0 * 0.012 * 0.064 * 0.056 + (0.04 if box else 0.0)  # palm, fingers, box: kg, below the wrist
+    hand = 0.08 + 1080.0 * 0.012 * 0.064 * 0.056 + (0.04 if box else 0.0)  # kg: palm, fingers, box, all below the wrist
     at_elbow = UPPER * np.sin(shoulder)
     (upper, near), (forearm, far) = LINKS.values()
     lever = at_elbow + far * np.sin(shoulder + elbow)
     about_elbow = forearm * (lever - at_elbow) + hand * (REACH - at_elbow)
     about_shoulder = upper * near * np.sin(shoulder) + forearm * lever + hand * REACH
-    return -G * np.array([about_shoulder, about_elbow, 0.0])  # gravity turns them forwards
+    return -G * np.array([about_shoulder, about_elbow, 0.0])  # gravity turns the links forwards
 
 
 def pick(moments=(), **changes):
-    """Runs the scene: (figures in SI units, what it looks like at the moments). Raises where a step is not solved."""
+    """Runs the scene. Returns results in SI units, and triangles at `moments`. Raises if a step is not solved."""
     sim = sinew.load(HERE / "pick.yaml", **changes)
     contacts = [sim.contact(name) for name in (*(f"{name}_grip" for name in FINGERS), "stand")]
     motors = [sim.actuator(name) for name in ("shoulder", "elbow", "wrist")]
@@ -103,7 +103,7 @@ def pick(moments=(), **changes):
         if is_at(sim, HOLD_ENDS):
             found["held"] = in_palm(sim)
             found["normal"] = np.array([contact.normal_force for contact in contacts[:-1]])
-            found["borne"] = -np.array([contact.force[2] for contact in contacts[:-1]])  # of the box's weight
+            found["borne"] = -np.array([contact.force[2] for contact in contacts[:-1]])  # vertical forces on the box
             found["tension"] = np.array([sim.actuator(f"{name}_cable").tension for name in FINGERS])
             found["loaded"] = np.array([motor.torque for motor in motors])
         if any(is_at(sim, moment) for moment in moments):
@@ -111,12 +111,12 @@ def pick(moments=(), **changes):
     box = sim.body("box")
     found["empty"] = np.array([motor.torque for motor in motors])
     found["weight"] = G * box.mass
-    found["off"] = Rotation.from_euler("z", -PUT).apply(box.position) - [REACH, 0.0, 0.0225]  # outwards, sideways, up
+    found["off"] = Rotation.from_euler("z", -PUT).apply(box.position) - [REACH, 0.0, 0.0225]  # error: radial, tangential, vertical
     return found, shapes
 
 
 def box_faces(edges):
-    """(n, 3, 3) triangles of a box, small enough to be sorted by their depth."""
+    """(n, 3, 3) triangles of a box, small enough for sorting by depth."""
     edges, faces = np.array(edges), []
     for axis in range(3):
         first, second = (axis + 1) % 3, (axis + 2) % 3
@@ -138,7 +138,7 @@ def cylinder_faces(radius, length):
 
 
 def grid_triangles(grid):
-    """Two triangles for each mesh of an (n, m, 3) grid."""
+    """Two triangles for each cell of an (n, m, 3) grid."""
     a, b, c, d = grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]
     return np.stack([np.stack([a, b, c], 2), np.stack([a, c, d], 2)], 2).reshape(-1, 3, 3)
 
@@ -162,7 +162,7 @@ def link_faces():
 
 
 def triangles(sim):
-    """What is to be drawn: names of bodies and their triangles in the world (m)."""
+    """Names of the bodies to draw, and their triangles in world axes (m)."""
     shown = {}
     for name, faces in {**link_faces(), "box": box_faces([0.036, 0.044, 0.045])}.items():
         body = sim.body(name)

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""The trunk's tip goes where it is told although its model is wrong: open and closed loop beside each other.
+"""The tip of the trunk reaches its target although the model is wrong: comparison of open and closed loops.
 
     PYTHONPATH=build/release/python /usr/bin/python3 examples/python/closed_loop.py [closed_loop.png]
 
 The robot is a second simulation with another mesh, 30 % softer, with friction in its cables and a load of 20 g at its
-tip. A camera sees the tip 20 ms late and with 0.1 mm of noise.
+tip. A camera measures the tip with a delay of 20 ms and a noise of 0.1 mm.
 """
 
 import sys
@@ -22,7 +22,7 @@ DIFFERENT = {"mesh": "{shape: trunk, element_size: 6 mm}", "stiffness": 0.7, "fr
 
 
 def trunk(*, mesh="{shape: trunk}", stiffness=1.0, friction=0.0, load="", more=()):
-    """The trunk, hanging, at rest with slack cables; stiffness relative to the example's."""
+    """The hanging trunk at rest with slack cables; `stiffness` is relative to the example."""
     settings = ["gravity=0 0 9.81 m/s^2", f"bodies.trunk.mesh={mesh}",
                 f"bodies.trunk.material.young_modulus={450 * stiffness} kPa", *more]
     settings += [f"actuators.{name}.command={{tension: 0 N}}" for name in CABLES]
@@ -35,7 +35,7 @@ def trunk(*, mesh="{shape: trunk}", stiffness=1.0, friction=0.0, load="", more=(
 
 
 def drive(loop, plant, duration):
-    """Runs a loop with a plant. (steps,) true distances of the tip from its target, m."""
+    """Runs a loop with a plant. Returns the true distances of the tip from its target, (steps,) m."""
     errors = []
     for _ in range(round(duration / plant.time_step)):
         loop.send(plant, loop.step(time=plant.time))
@@ -47,7 +47,7 @@ def drive(loop, plant, duration):
 
 
 def make(kind, command, plant, **more):
-    """A loop on a model of its own and with the plant's camera: 'open' (without it), 'resolved rate' or 'predictive'."""
+    """A loop with its own model and the camera of the plant: 'open' (no camera), 'resolved rate' or 'predictive'."""
     model, sensors = trunk(), None if kind == "open" else {"tip": plant.sensor("camera")}
     if kind == "predictive":
         return control.PredictiveController(model, {"tip": GOAL}, CABLES, command=command, sensors=sensors, **more)
@@ -61,7 +61,7 @@ def main():
         plant = trunk(**DIFFERENT, more=[CAMERA])
         loop = make(kind, "effort", plant)
         shown[kind] = errors = drive(loop, plant, 1.6)
-        least = f"{loop.least_eigenvalue:.2f} +- {loop.least_eigenvalue_std:.2f}"  # nan where nothing is measured
+        least = f"{loop.least_eigenvalue:.2f} +- {loop.least_eigenvalue_std:.2f}"  # nan without measurements
         print(f"  {kind:14} {1e3 * errors[-100:].mean():6.3f}  {loop.status}, least eigenvalue {least}")
     if len(sys.argv) > 1:
         import matplotlib.pyplot as plt

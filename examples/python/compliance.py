@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How the tip of the bent trunk gives way: the compliance it feels, and the robot's Jacobian."""
+"""Compliance of the tip of the bent trunk for forces on the tip and for cable tensions."""
 
 from pathlib import Path
 

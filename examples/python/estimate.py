@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What pushes at the trunk, and where? From cable lengths and tensions and three markers, with error bars."""
+"""Locates and estimates a push on the trunk from cable lengths, tensions and three markers, with error bars."""
 
 from pathlib import Path
 
@@ -20,7 +20,7 @@ def model(unknowns):
 
 
 def robot(force, area):
-    """Readings of a second model, which stands for the robot: two cables pulled, a push spread over an area."""
+    """Readings of a second model in place of the robot: two cables are pulled, and a push is distributed over an area."""
     plant = model([estimate.NodalForce("push", "trunk", area.nodes, area.weights)])
     pull = dict(zip(CABLES, [8e-3, 0, 0, 0, 0, 4e-3, 0, 0]))
     answer = plant.predict([*force, *pull.values()])

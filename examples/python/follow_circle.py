@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The trunk's tip follows a circle; prints how well, and how fast a step is."""
+"""The tip of the trunk follows a circle; prints the tracking error and the time of a step."""
 
 from pathlib import Path
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Three bending fingers close on a can: gaps, the moment of contact, what overlaps behind it. Geometry alone.
+"""Three bending fingers close on a can: gaps, first contact, and overlap beyond it. Geometry only.
 
     PYTHONPATH=build/release/python /usr/bin/python3 examples/python/grasp.py [grasp.png]
 """
@@ -10,19 +10,19 @@ import numpy as np
 import sinew
 from sinew import collision
 
-NEAR = 0.05  # m: gaps up to this are looked for
-APART = 0.06  # m, of the fingers' feet from the middle
+NEAR = 0.05  # m, search distance
+APART = 0.06  # m, distance of the fingers' feet from the axis
 
 
 def boundary(tetrahedra):
-    """(m, 3): the faces that one tetrahedron alone has, counter-clockwise seen from outside."""
+    """(m, 3): faces that belong to a single tetrahedron, counter-clockwise seen from outside."""
     faces = tetrahedra[:, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]].reshape(-1, 3)
     _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
     return faces[first[count == 1]]
 
 
 def closed(nodes, angle, finger):
-    """Nodes of a trunk along z as one of three fingers, its tip bent inwards by an angle (rad)."""
+    """Nodes of a trunk along z, placed as one of three fingers with the tip bent inwards by an angle (rad)."""
     length, third = nodes[:, 2].max(), 2.0 * np.pi * finger / 3.0
     turn, radius = angle * nodes[:, 2] / length, length / angle
     inwards = radius - (radius - nodes[:, 0]) * np.cos(turn) - APART
@@ -32,7 +32,7 @@ def closed(nodes, angle, finger):
 
 
 def first_contact(finger, can, nodes, angles):
-    """The angle at which a finger first touches the can: none is missed between two of them."""
+    """Angle at which a finger first touches the can. Continuous detection misses no contact between two angles."""
     for angle, following in zip(angles, angles[1:]):
         motion = finger.moved(closed(nodes, angle, 0)).swept(closed(nodes, following, 0))
         times = collision.impacts(motion, can).times
@@ -71,7 +71,7 @@ def main():
     contact = first_contact(finger, can, trunk.nodes, angles)
     print(f"{finger} meets the can at {np.degrees(contact):.2f} deg")
 
-    # Gaps before, overlap behind.
+    # Gaps before the first contact, overlap after it.
     gaps, volumes = np.full(len(angles), np.nan), np.zeros(len(angles))
     for k, angle in enumerate(angles):
         now = finger.moved(closed(trunk.nodes, angle, 0))

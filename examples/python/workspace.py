@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Where the trunk's tip can go: random tensions, many simulations side by side in threads."""
+"""Workspace of the trunk's tip: random tensions, with simulations in parallel threads."""
 
 import os
 from concurrent.futures import ThreadPoolExecutor

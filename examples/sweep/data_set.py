@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A data set for learning: what eight random tensions do to the trunk, as arrays for NumPy or PyTorch.
+"""A data set for learning: the response of the trunk to eight random tensions, as arrays for NumPy or PyTorch.
 
     examples/sweep/data_set.py [--samples N] [--workers N] [--out DIR]
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""How much the modulus, the density and the placement of a cable move the tip of a hanging trunk: Sobol indices.
+"""Sobol indices of the tip of a hanging trunk for the modulus, the density and the placement of a cable.
 
     examples/sweep/sensitivity.py [--base N] [--workers N] [--out DIR]
 
-A base of N takes 5 N samples. The trunk hangs (gravity along its axis) and one cable pulls with 1 N. Placement is the
+A base of N requires 5 N samples. The trunk hangs (gravity along its axis) and one cable pulls with 1 N. Placement is the
 distance of the cable from the axis, as a factor of that in the scene.
 """
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Where the trunk's tip can rest: Sobol samples of the eight tensions, equilibria, the cloud and its hull.
+"""Static workspace of the trunk's tip: equilibria at Sobol samples of the eight tensions, point cloud and hull.
 
     examples/sweep/workspace.py [--samples N] [--workers N] [--out DIR]
 """

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A soft trunk with eight cables follows a circle with its tip: a table of what happened, a picture.
+"""A soft trunk with eight cables follows a circle with its tip: prints a table, and draws a picture.
 
 Run by `make demo`; or, after `make build`:
     PYTHONPATH=build/release/python /usr/bin/python3 examples/trunk/demo.py [--picture FILE]
@@ -15,11 +15,11 @@ import numpy as np
 import sinew
 
 SCENE = pathlib.Path(__file__).with_name("circle.yaml")
-PERIOD = 5.0  # s a turn, as in the scene
+PERIOD = 5.0  # s per turn, as in the scene
 
 
 def simulate():
-    """Two turns of the circle. Returns the simulation and what was seen in each step."""
+    """Simulates two turns of the circle. Returns the simulation and the results of each step."""
     sim = sinew.load(SCENE)
     cables = list(sim.actuators.values())
     steps = round(2 * PERIOD / sim.time_step)
@@ -47,7 +47,7 @@ def simulate():
 
 
 def surface(tetrahedra):
-    """Triangles that belong to one tetrahedron only: (m, 3)."""
+    """(m, 3): triangles that belong to a single tetrahedron."""
     faces = np.concatenate([tetrahedra[:, f] for f in ([0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3])])
     _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
     return faces[first[count == 1]]

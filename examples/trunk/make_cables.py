@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Writes the routes of the trunk's eight cables as CSV files (x, y, z in mm) beside this script.
 
-Four long cables run from the base to the tip, a quarter turn apart, and come nearer to the axis as
-the trunk tapers; four short ones take the same way up to half the height. The first point of each
+Four long cables run from the base to the tip, a quarter turn apart, and approach the axis as the
+trunk tapers; four short ones follow the same route up to half the height. The first point of each
 is its pull point, below the base.
 """
 

@@ -17,7 +17,7 @@ STL_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("att
 
 
 def finger_cells(hollow):
-    """Planes of a rectilinear grid along x, y, z (mm), and which of its cells are filled, (nx, ny, nz)."""
+    """Planes of a rectilinear grid along x, y, z (mm), and whether its cells are filled, (nx, ny, nz)."""
     inner_ribs = RIBS + np.tile([WALL, -WALL], len(RIBS) // 2)
     planes = (
         np.array([-10, -6, -2, 2, 8, 10]),

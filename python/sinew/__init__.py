@@ -13,7 +13,7 @@ import importlib as _importlib
 import sys as _sys
 
 try:
-    import numpy as _numpy  # noqa: F401 - before all that needs it, for the message
+    import numpy as _numpy  # noqa: F401 - first, so that a missing NumPy is reported clearly
     from . import _core  # noqa: F401
 except ImportError as _problem:
     raise ImportError(
@@ -123,7 +123,7 @@ __all__ = [
 ]
 
 
-# Imported when they are first used: most programs need few of them, and some need more packages.
+# Imported on first use: most programs need few of them, and some depend on further packages.
 _ON_USE = ("control", "convergence", "estimate", "gym", "identify", "learn", "plan", "plot", "render", "sweep")
 
 
@@ -132,7 +132,7 @@ def __getattr__(name):
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     try:
         return _importlib.import_module(f".{name}", __name__)
-    except ImportError as problem:  # hasattr() and help() take an AttributeError
+    except ImportError as problem:  # hasattr() and help() expect an AttributeError
         raise AttributeError(f"sinew.{name}: {problem}") from problem
 
 
@@ -146,10 +146,10 @@ def _repr_png_(sim):
     return _repr_png_(sim)
 
 
-Simulation._repr_png_ = _repr_png_  # a notebook shows a picture
-View._repr_html_ = _frame_of  # and the page
+Simulation._repr_png_ = _repr_png_  # shown by a notebook for a Simulation
+View._repr_html_ = _frame_of  # and for a View
 
-# Names by which users know them, whatever module compiled them.
+# Classes of the compiled module carry the public module name.
 for _name in __all__:
     if isinstance(globals().get(_name), type) and globals()[_name].__module__ == "sinew._core":
         globals()[_name].__module__ = "sinew"

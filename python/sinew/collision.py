@@ -47,7 +47,7 @@ __all__ = [
     "vertex_face_impacts",
 ]
 
-# The name by which users know them.
+# Classes of the compiled module carry the public module name.
 for _name in __all__:
     if isinstance(globals()[_name], type):
         globals()[_name].__module__ = "sinew.collision"

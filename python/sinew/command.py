@@ -1,4 +1,4 @@
-"""Shared by the commands that run in Python: parser, quantities and exit codes."""
+"""Common code of the commands that run in Python: parser, quantities and exit codes."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from .errors import Error, RunError
 
 __all__ = ["FAILED", "exit_code", "parser", "quantity", "seconds"]
 
-#: Exit codes, as of the program: 0 success, 1 failed or unreliable run, 2 invalid input, 128 + its number after a signal.
+#: Exit codes, as of the program: 0 success, 1 failed or unreliable run, 2 invalid input, 128 + n after signal n.
 FAILED, INVALID_INPUT, SIGNALLED = 1, 2, 128
 
 _TIME = (0, 0, 1, 0)
 
 
 def parser(command: str) -> argparse.ArgumentParser:
-    """Parser of a command's options. The program describes them and has checked their names.
+    """Parser of a command's options. The program has already checked their names and prints their help.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def parser(command: str) -> argparse.ArgumentParser:
     Returns
     -------
     argparse.ArgumentParser
-        With SCENE.
+        With the argument SCENE.
     """
     found = argparse.ArgumentParser(prog=f"sinew {command}", usage=f"sinew {command} [OPTIONS] SCENE", allow_abbrev=False,
                                     description=f"`sinew {command} --help` describes the options.")
@@ -51,7 +51,7 @@ def quantity(option: str, text: str, dimension: Optional[tuple[int, ...]] = None
     dimension : tuple of int, optional
         Exponents of length, mass, time and temperature; any by default.
     kind, example : str
-        What the option takes, "a time", and a value to copy, for errors.
+        Kind of value that the option takes, such as "a time", and a valid example, for errors.
 
     Raises
     ------
@@ -78,14 +78,14 @@ def exit_code(command: Callable[[], int], interrupted: str = "") -> int:
     Parameters
     ----------
     command : callable
-        Returns the exit code of its end.
+        Returns the exit code.
     interrupted : str
         Printed after SIGINT and SIGTERM, both of which raise KeyboardInterrupt in the command.
 
     Returns
     -------
     int
-        What `command` returns; 1 for RunError, 2 for any other Error, 130 after SIGINT and 143 after SIGTERM.
+        The value returned by `command`; 1 for RunError, 2 for any other Error, 130 after SIGINT and 143 after SIGTERM.
     """
     before = {number: signal.signal(number, _interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
     show = warnings.showwarning
@@ -99,7 +99,7 @@ def exit_code(command: Callable[[], int], interrupted: str = "") -> int:
         if interrupted:
             print(f"sinew: {interrupted}", file=sys.stderr)
         return SIGNALLED + (stop.args[0] if stop.args else signal.SIGINT)
-    finally:  # a caller within Python keeps its own handlers
+    finally:  # restores the handlers of a caller in Python
         warnings.showwarning = show
         for number, handler in before.items():
             signal.signal(number, signal.SIG_DFL if handler is None else handler)

@@ -30,11 +30,11 @@ from .sweep.worker import measure as measure_now
 
 __all__ = ["Estimate", "Level", "Study", "study"]
 
-#: Orders of convergence that count as such. Displacements and energies reach 1 even around a crack (Strang and Fix, An Analysis of
-#: the Finite Element Method, 1973, section 8.1); less is seen on meshes that are too coarse for any order to show.
+#: Range of orders accepted as convergence. Displacements and energies reach order 1 even around a crack (Strang and Fix, An Analysis
+#: of the Finite Element Method, 1973, section 8.1); a lower observed order means that the meshes are too coarse.
 LEAST_ORDER, LARGEST_ORDER = 1.0, 6.0
-#: Displacements relative to the largest coordinate, rotations in rad, and values of a robot that does not move, in SI units, are
-#: rounding below this: the errors of sums over some thousand nodes.
+#: Rounding error of sums over some thousand nodes: smaller values count as zero. It applies to displacements relative to the
+#: largest coordinate, to rotations in rad, and to values of a robot that does not move, in SI units.
 _ROUNDING = 1e3 * float(np.finfo(float).eps)
 
 
@@ -164,7 +164,7 @@ def study(
     with tempfile.TemporaryDirectory() as folder:
         refinement = _Refinement(scene, set, pathlib.Path(folder))
         found: list[Level] = []
-        idle: list[frozenset[str]] = []  # of each mesh, the measures that are rounding
+        idle: list[frozenset[str]] = []  # for each mesh, the measures that are zero to rounding
         for k in range(levels):
             begin = time.perf_counter()
             sim = refinement.load(k, found[-1] if found else None)
@@ -181,7 +181,7 @@ def study(
 
 
 class _Refinement:
-    """A scene on finer and finer meshes."""
+    """A scene on successively finer meshes."""
 
     def __init__(self, given: Any, overrides: scene.Overrides, folder: pathlib.Path) -> None:
         import yaml
@@ -189,7 +189,7 @@ class _Refinement:
         self._folder = folder
         self._first = _load(given, overrides)
         self._tree = yaml.safe_load(self._first.to_yaml())
-        self._files: dict[str, tuple[int, mesh.Mesh]] = {}  # of which level
+        self._files: dict[str, tuple[int, mesh.Mesh]] = {}  # level and mesh of each body with a mesh file
         self._bodies = [name for name, body in self._tree["bodies"].items() if body.get("type") == "fem"]
         if not self._bodies:
             raise Error("bad-argument", "convergence", "the scene has no body of finite elements", "use a scene with a mesh to refine")
@@ -199,14 +199,14 @@ class _Refinement:
         """The scene on its k-th mesh."""
         if k == 0:
             return self._first
-        shrink = 1.0 + 0.5 * k  # two cells become three, then four
+        shrink = 1.0 + 0.5 * k  # two cells become three, then four ...
         for _ in range(8):
             for name in self._bodies:
                 self._refine(name, k, shrink)
             sim = _load(self._tree, None)
             if before is None or _count(sim)[0] > 1.2 * before.elements:
                 break
-            shrink *= 1.2  # whole numbers of cells were the same again
+            shrink *= 1.2  # rounding gave the same whole numbers of cells
         return sim
 
     def _refine(self, name: str, k: int, shrink: float) -> None:
@@ -224,7 +224,7 @@ class _Refinement:
 
 def _load(given: Any, overrides: scene.Overrides) -> Any:
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of elements that lock: that is what the study shows
+        warnings.simplefilter("ignore")  # about locking elements, whose effect the study quantifies
         return scene.load(given, set=overrides)
 
 

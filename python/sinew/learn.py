@@ -19,7 +19,7 @@ from . import errors, identify, pcc, plan
 
 __all__ = ["Attempt", "Learner", "Proposal"]
 
-_HAT = 0.1  # s, half the width of what commands are changed by
+_HAT = 0.1  # s, half the width of the hat functions that change commands
 
 
 class Proposal(NamedTuple):
@@ -152,7 +152,7 @@ class Learner:
         self._seed, self._time_step = seed, time_step
         self._last: Optional[Proposal] = None
         self._proposal: Optional[Proposal] = None
-        self._missed = np.zeros(3)  # of the fitted model at the last attempt's end
+        self._missed = np.zeros(3)  # measured minus modelled final position, fitted model, last attempt
         plan.Task(arm, self.goal, torque_limits, **self._task)
 
     def learn_from(self, command: np.ndarray, record: identify.MotionRecord) -> Optional[identify.ArmFit]:
@@ -265,7 +265,7 @@ class Learner:
         found = task.solve(warm=self._last.plan, max_iterations=100) if self._last else None
         if found is None or not found.found:
             found = task.solve(self._seed, max_iterations=100)
-        # One that breaks a limit or ends beside the goal is still where the correction may start.
+        # The correction can start even from a plan that violates a limit or misses the goal.
         drive = plan.invert_drive(found, self.actuators, self.cylinders, lead=self._lead)
         return self._corrected(found, drive["command"]) if drive["found"] else None
 
@@ -289,9 +289,10 @@ class Learner:
         return best
 
     def _least_change(self, proposal: Proposal) -> np.ndarray:
-        """Smallest change of the commands, (samples, inputs): x are the heights of hat functions in time, the columns of B, for each
-        input, with min |B x|^2 subject to J x = remaining distance to the goal, J by differences. Hat functions that would exceed
-        a volume limit are omitted.
+        """Smallest change B x of the commands, (samples, inputs), that brings the model's tip to the goal.
+
+        The columns of B are hat functions in time, x are their heights for each input. Minimises |B x|^2 subject to
+        J x = goal - tip, with J by differences. Hat functions that would exceed a volume limit are omitted.
         """
         samples, inputs = proposal.command.shape
         hats = self._hats(samples)
@@ -299,14 +300,14 @@ class Learner:
         size = 0.01 * max(self._volume_limits)
         end = self._end(proposal.volume)
         by_height = np.zeros((3, inputs, count))
-        raised = np.zeros((samples, inputs, count))  # volumes by heights
+        raised = np.zeros((samples, inputs, count))  # d volume / d height
         for k in range(inputs):
             for i in range(count):
                 volume = proposal.volume.copy()
                 volume[:, k] = self.cylinders[k].simulate(proposal.command[:, k] + size * hats[:, i])
                 by_height[:, k, i] = (self._end(volume) - end) / size
                 raised[:, k, i] = (volume[:, k] - proposal.volume[:, k]) / size
-        # In y = R x with B^T B = R^T R the change has the length of y.
+        # With y = R x and B^T B = R^T R, the norm of the change |B x| equals |y|.
         shape = np.linalg.inv(np.linalg.cholesky(hats.T @ hats)).T
         used = np.ones((inputs, count), dtype=bool)
         limits = np.maximum(self._volume_limits, np.abs(proposal.volume))
@@ -327,7 +328,7 @@ class Learner:
         step = self.cylinders[0].sample_time
         time = step * np.arange(samples)
         width = min(_HAT, 0.25 * time[-1])
-        centres = np.arange(width, time[-1] - 0.5 * width, width)  # none for the last moments, which move nothing
+        centres = np.arange(width, time[-1] - 0.5 * width, width)  # none near the end, where commands no longer move the tip
         return np.maximum(0.0, 1.0 - np.abs(time[:, None] - centres) / width)
 
     def _simulated(self, found: plan.Plan, command: np.ndarray) -> Optional[Proposal]:

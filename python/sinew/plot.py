@@ -12,8 +12,8 @@ import warnings
 
 OURS, DATA, SECOND, QUIET = "#1f5fa8", "#222222", "#c8501e", "#999999"
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5195", "#5c5c5c")
-LEGEND_ROWS = 11  # as many as a panel is high
-DASHES = ("-", "-.", ":")  # of the first lines, of the next as many, and so on
+LEGEND_ROWS = 11  # rows that fit the height of a panel
+DASHES = ("-", "-.", ":")  # for the first len(COLOURS) lines, the next ones, and so on
 
 
 def _pyplot():
@@ -28,7 +28,7 @@ def _pyplot():
     return plt
 
 
-# Shown units: what one SI unit is in them.
+# Displayed unit of each SI unit, and the conversion factor.
 SHOWN = {"m": ("mm", 1e3), "Pa": ("kPa", 1e-3), "m^3": ("ml", 1e6), "J": ("mJ", 1e3), "rad": ("degrees", 180 / math.pi),
          "m^3/s": ("ml/s", 1e6), "F": ("pF", 1e12)}
 
@@ -52,8 +52,8 @@ def read_run(folder, table="run.csv") -> dict[str, list[float]]:
         try:
             columns[name] = [float(row[k]) for row in rows[1:]]
         except ValueError:
-            continue  # words, such as the step's status
-    # Every run.csv that has commands has the number of substeps; a passive robot has no commands.
+            continue  # text, such as the status of a step
+    # Versions that record commands also record the number of substeps; the check works for passive robots, too.
     if table == "run.csv" and "substeps" not in columns:
         warnings.warn(f"{pathlib.Path(folder) / table}: this run was recorded without commands", stacklevel=2)
     return columns
@@ -106,7 +106,7 @@ def _owner(name: str) -> str:
 
 
 def _style(line: int) -> tuple[int, str]:
-    """How often the colours have been used up before this line, and its colour."""
+    """Index of the dash pattern and colour of a line: after the last colour, the colours repeat."""
     return line // len(COLOURS), COLOURS[line % len(COLOURS)]
 
 
@@ -222,7 +222,7 @@ def reach(data, out) -> pathlib.Path:
     content = json.loads(pathlib.Path(data).read_text(encoding="utf-8"))
     goals = content["goals"]
     points = content["tip_m"] + [goal["goal_m"] for goal in goals]
-    # Seen from the side on which the points spread more.
+    # Plot x or y against z, whichever has the larger spread.
     spread = [max((p[k] for p in points), default=0) - min((p[k] for p in points), default=0) for k in (0, 1)]
     aside = int(spread[1] > spread[0])
     figure, axis = plt.subplots(figsize=(6.4, 5))
@@ -357,7 +357,7 @@ def identify(data, out) -> pathlib.Path:
             colour = COLOURS[segment % len(COLOURS)]
             upper.plot(record["time"], [100 * x for x in measured[3 * segment]], ".", ms=3, color=colour)
             upper.plot(record["time"], [100 * x for x in predicted[3 * segment]], color=colour, lw=1)
-            # Over the axes that were measured.
+            # Distance along the measured axes only.
             seen = [k for k in range(3 * segment, 3 * segment + 3) if not all(map(math.isnan, measured[k]))]
             off = [1e3 * math.dist([measured[k][i] for k in seen], [predicted[k][i] for k in seen])
                    for i in range(len(record["time"]))]
@@ -379,7 +379,7 @@ def sweep(folder, out=None, kind=None) -> list[pathlib.Path]:
 
 
 def _main_sweep(words: list[str]) -> int:
-    """`DIR [OUT [KIND]]`; an empty word is none."""
+    """Runs `sweep DIR [OUT [KIND]]`; an empty argument counts as missing."""
     from sinew.errors import Error
 
     try:
@@ -392,7 +392,7 @@ def _main_sweep(words: list[str]) -> int:
 
 
 def main(words: list[str]) -> int:
-    """`run DIR OUT.png`, `sweep DIR [OUT [KIND]]`, or `brace|fit|identify|plan|reach DATA.json OUT.png`."""
+    """Runs `run DIR OUT.png`, `sweep DIR [OUT [KIND]]`, or `brace|fit|identify|plan|reach DATA.json OUT.png`."""
     if words[:1] == ["sweep"] and 2 <= len(words) <= 4:
         return _main_sweep(words[1:])
     kinds = {"run": run, "brace": brace, "fit": fit, "identify": identify, "plan": plan, "reach": reach}

@@ -100,7 +100,7 @@ double added_gas(const Actuator& self) {
   return now - rest;
 }
 
-/// Power or phase of a shape-memory wire.
+/// State of a shape-memory wire: temperature (index 0) or austenite fraction (index 1).
 double wire_number(const Actuator& self, const char* what, std::size_t index) {
   const auto& drive = model(self).drive;
   if (drive == nullptr || drive->state_size() != 2) fail_type(self, what);

@@ -1,4 +1,4 @@
-// Simulations that are stepped with one call.
+// Batches: many simulations that are stepped by one call.
 #include <string>
 #include <utility>
 #include <vector>

@@ -135,7 +135,7 @@ py::object stiffness(const Body& self, const py::object& positions, const std::s
   return make(triples, py::arg("shape") = py::make_tuple(size, size));
 }
 
-// H: row k's work on node i is H[k, i] . dx_i.
+// Jacobian H: a displacement dx_i of node i moves row k by H[k, i] . dx_i.
 Array jacobian(const Body& self) {
   const Session::Use use(*self.session);
   const auto& directions = self.session->simulation().world().rows().direction;
@@ -237,7 +237,7 @@ while another thread steps. Copy it to keep a moment: `body.positions.copy()`.)"
       .def_property_readonly(
           "arm",
           [](const Body& self) {
-            arm(self);  // or an error
+            arm(self);  // throws if the body is not an arm
             const auto& own = *mechanics::as<const pcc::HasArm>(body(self).model());
             return std::make_unique<PccArm>(own.shared_arm());
           },
@@ -349,7 +349,7 @@ void bind_mesh_of(py::class_<Body>& type) {
 auto energy(double mechanics::Energies::*part) {
   return [part](const Body& self) {
     const Session::Use use(*self.session);
-    model(self);  // or an error
+    model(self);  // throws for bodies without elements
     return body(self).energies().*part;
   };
 }

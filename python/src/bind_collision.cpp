@@ -39,7 +39,7 @@ std::vector<collision::Triangle> to_triangles(const py::object& value) {
     for (NodeId& node : triangle) {
       const std::int64_t number = *from++;
       const bool fits = number == static_cast<NodeId>(number);
-      node = fits ? static_cast<NodeId>(number) : -1;  // which is no node either
+      node = fits ? static_cast<NodeId>(number) : -1;  // invalid, hence rejected later
     }
   }
   return triangles;

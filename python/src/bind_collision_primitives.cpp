@@ -22,7 +22,7 @@ namespace {
 /// An array (n, count, 3) in the memory of the caller.
 class PointGroups {
  public:
-  /// @param value from Python. @param place names the argument. @param count of points in a query.
+  /// @param value array from Python. @param place argument name. @param count points per query.
   PointGroups(const py::object& value, const std::string& place, py::ssize_t count)
       : count_(count) {
     const std::string wanted = fmt::format("(n, {}, 3) m", count);

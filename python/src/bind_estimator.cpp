@@ -63,7 +63,7 @@ py::list list_of(const std::vector<std::string>& texts) {
 void bind_estimator(py::module_& module) {
   module.attr("silent_periods") = sim::kSilentPeriods;
   py::class_<Estimator>(module, "Estimator",
-                        "An estimator of the scene, which acts on nothing. From "
+                        "An estimator of the scene; it does not affect the robot. From "
                         "Simulation.estimator() or Simulation.estimators.")
       .def_property_readonly(
           "name", [](const Estimator& self) { return model(self).name; }, "str: as in the scene.")
@@ -93,11 +93,11 @@ void bind_estimator(py::module_& module) {
       .def_property_readonly("singular_values", of_estimator([](const sim::Estimator& one) {
                                return copy(one.observability().singular_values);
                              }),
-                             "(n,) ndarray, falling: what one sample of each sensor tells along n "
-                             "directions, relative to the prior; where the estimator's robot has "
-                             "inertia, what all samples so far tell. Along a direction of value s, "
-                             "the samples lower the deviation to 1/sqrt(1 + s^2) of the prior's. "
-                             "Zeros before the first step.")
+                             "(n,) ndarray, descending: information of one sample of each sensor "
+                             "along n directions, relative to the prior; for a robot with inertia, "
+                             "of all samples so far. Along a direction with singular value s, the "
+                             "samples reduce the standard deviation to 1/sqrt(1 + s^2) of the "
+                             "prior's. Zeros before the first step.")
       .def_property_readonly("unobservable", of_estimator([](const sim::Estimator& one) {
                                return list_of(one.unobservable());
                              }),
@@ -115,9 +115,10 @@ void bind_estimator(py::module_& module) {
                              }),
                              "str: 'not-started', 'estimating', 'unobservable', 'sensors-lost' or "
                              "'no-equilibrium'.")
-      .def_property_readonly("message",
-                             of_estimator([](const sim::Estimator& one) { return one.message(); }),
-                             "str: what the status is about; empty if there is nothing to say.");
+      .def_property_readonly(
+          "message", of_estimator([](const sim::Estimator& one) { return one.message(); }),
+          "str: which sensors are silent, which directions they do not observe, or why "
+          "there is no equilibrium; else empty.");
 }
 
 }  // namespace sinew::python

@@ -28,7 +28,7 @@ class IdealClock : public Clock {
 };
 
 struct NativeLoop {
-  std::shared_ptr<UdpDevice> device;  // null: none
+  std::shared_ptr<UdpDevice> device;  // null without a socket
   std::unique_ptr<HighRateLoop> loop;
   IdealClock clock;
 };

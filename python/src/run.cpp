@@ -23,7 +23,7 @@ namespace {
 
 // One array of the result.
 struct Column {
-  std::size_t observable;  // of the list
+  std::size_t observable;  // index in the list
   std::vector<double> values;
 };
 

@@ -1,4 +1,4 @@
-"""Scenes for the tests, given afresh to each."""
+"""Scenes for the tests; each test gets new ones."""
 
 from pathlib import Path
 
@@ -22,5 +22,5 @@ def sim(scene):
 
 @pytest.fixture
 def follow():
-    """Path of the finger whose scene brings a controller."""
+    """Path of the scene of the finger with a controller."""
     return SCENES / "follow.yaml"

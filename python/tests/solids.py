@@ -1,4 +1,4 @@
-"""Closed surfaces as files: what tests of bodies from meshes need."""
+"""Closed surfaces as mesh files, for the tests of rigid bodies from meshes."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ def box(edges, centre=(0, 0, 0)):
 
 
 def cup(edges, wall):
-    """An open box: bottom and four walls, centred; (16, 3) nodes and (28, 3) triangles, outwards."""
+    """An open box: bottom and four walls, centred; (16, 3) nodes and (28, 3) triangles, outward."""
     half, inner = np.array(edges) / 2, np.array(edges) / 2 - wall
     corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
 
@@ -19,7 +19,7 @@ def cup(edges, wall):
         return np.column_stack([corners * size[:2], np.full(4, z)])
 
     nodes = np.vstack([ring(half, -half[2]), ring(half, half[2]), ring(inner, -inner[2]), ring(inner, half[2])])
-    quads = [(3, 2, 1, 0), (8, 9, 10, 11)]  # below, and the bottom's inside
+    quads = [(3, 2, 1, 0), (8, 9, 10, 11)]  # lower side, and inside of the bottom
     for k in range(4):
         n = (k + 1) % 4
         quads += [(k, n, 4 + n, 4 + k), (8 + n, 8 + k, 12 + k, 12 + n), (4 + k, 4 + n, 12 + n, 12 + k)]
@@ -31,7 +31,7 @@ def tetrahedron():
 
 
 def icosphere(divisions):
-    """A ball of radius 1: an icosahedron whose triangles are split in four, its nodes pushed out."""
+    """A ball of radius 1: an icosahedron whose triangles are split into four, with nodes projected onto the sphere."""
     g = (1 + 5**0.5) / 2
     nodes = [(-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g), (0, -1, -g), (0, 1, -g), (g, 0, -1),
              (g, 0, 1), (-g, 0, -1), (-g, 0, 1)]

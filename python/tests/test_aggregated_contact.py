@@ -16,7 +16,7 @@ def pad(edge, element="tet4-patch"):
 
 
 def pressed(zone=None, shape={"sphere": {"radius": "20 mm"}}, height=40.1, friction=0.5, edge="2.5 mm", **changes):
-    """A rigid body that goes 2 mm deep into a pad."""
+    """A rigid body that is pressed 2 mm into a pad."""
     contact = {"between": ["pad", "ball"], "friction": friction}
     if zone is not None:
         contact["aggregate"] = zone
@@ -31,7 +31,7 @@ def pressed(zone=None, shape={"sphere": {"radius": "20 mm"}}, height=40.1, frict
 
 
 def rows_of(sim):
-    """Of contact forces in the last step."""
+    """Number of contact force components in the last step."""
     return sim.contact_problem().W.shape[0]
 
 
@@ -60,7 +60,7 @@ def test_without_friction_the_forces_become_those_of_all_points():
 
 @pytest.mark.parametrize("shape, height", [({"box": "20 20 10 mm"}, 25.1), ({"cylinder": {"radius": "8 mm", "height": "10 mm"}}, 25.1)])
 def test_edges_that_carry_most_do_so_in_zones(shape, height):
-    """A flat punch, whose pressure rises without bound towards its rim, touches with triangles."""
+    """A flat punch touches with triangles; its pressure is singular at the rim."""
     whole, sim = (sinew.load(pressed(zone, shape, height, friction=0.3, edge="4 mm")) for zone in (None, "10 mm"))
     for each in (whole, sim):
         each.step(22)
@@ -91,7 +91,7 @@ def test_deformable_bodies_touch_in_zones():
 @pytest.mark.parametrize("friction, least, most", [(0.0, 0.8, 8.0), (0.5, 0.1, 2.0)])
 @pytest.mark.parametrize("zone", ["10 mm", "20 mm"])
 def test_every_step_tells_about_how_far_it_is_from_single_points(friction, least, most, zone):
-    """The report against the same scene with single points; what friction lacks is seen in part."""
+    """Compares the report with the error relative to the same scene with single points. Of the error of friction, it covers a part."""
     whole, sim = (sinew.load(pressed(given, friction=friction, edge="4 mm")) for given in (None, zone))
     for step in range(22):
         whole.step()
@@ -108,7 +108,7 @@ def test_every_step_tells_about_how_far_it_is_from_single_points(friction, least
 
 
 def test_a_grip_lifts_what_friction_can_hold():
-    """Two pads press on a box and lift it: forces are its weight, as with single points."""
+    """Two pads press on a box and lift it: the forces equal its weight, as with single points."""
     grip = {"friction": 0.6, "aggregate": "8 mm"}
 
     def side(at, normal, base):

@@ -1,4 +1,4 @@
-"""Generalized-alpha beside contacts: no energy from impacts, second order while the same points touch."""
+"""Generalized-alpha with contacts: impacts create no energy; second order while the set of touching points is constant."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Bases that move."""
+"""Moving bases."""
 
 import numpy as np
 import pytest
@@ -30,7 +30,7 @@ def test_a_body_follows_its_base_without_strain():
 
 
 def test_an_accelerated_base_is_a_gravity():
-    """Pulled along at a constant acceleration, the beam bends as it would hang under its opposite."""
+    """A constant acceleration of the base bends the beam as gravity in the opposite direction does."""
     a, step = 4.0, 1e-3
     sim = beam(integrator="backward-euler", time_step=step)
     for k in range(1, 1501):
@@ -40,7 +40,7 @@ def test_an_accelerated_base_is_a_gravity():
     lag = sim.effector("tip").position[2] - base - 0.005
     still = beam(gravity=[0, 0, -a])
     still.solve_static()
-    # A pendulum of a beam still rings a little, and backward Euler meets a parabola to first order.
+    # The beam still vibrates slightly, and backward Euler follows the parabola of the base to first order only.
     assert lag == pytest.approx(still.effector("tip").position[2] - 0.005, rel=0.02)
 
 
@@ -85,7 +85,7 @@ def test_states_and_clones_go_on_bit_for_bit(integrator, tmp_path):
     for k in range(1, 6):
         move(sim, k)
         sim.step()
-    move(sim, 7)  # asked for, not yet done
+    move(sim, 7)  # requested, not yet applied
     sim.save_state(tmp_path / "beam.state")
     fresh.load_state(tmp_path / "beam.state")
     move(fresh, 7)

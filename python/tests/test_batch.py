@@ -1,4 +1,4 @@
-"""Simulations that are stepped with one call: the bits of each alone, failures, and what is refused."""
+"""Batches: results are bit-identical to separate simulations; failures and invalid arguments."""
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ NAMES = ["tip.position", "arm.coordinates", "arm.rates", "second.torque"]
 
 
 def alone(torques, steps):
-    """What one simulation comes to under torques (2,) that hold."""
+    """Hash and observables of a single simulation after steps under constant torques (2,)."""
     sim = sinew.loads(ARM)
     for actuator, torque in zip(sim.actuators.values(), torques):
         actuator.torque = torque

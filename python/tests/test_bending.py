@@ -71,7 +71,7 @@ def test_simulate_and_step_by_step_agree():
     assert motion.tip == pytest.approx(run["tip"][-1])
     assert motion.time == pytest.approx(time[-1])
     assert run["tip"].shape == (len(time), 2)
-    # So slow that the actuator follows its equilibrium.
+    # The pressure changes so slowly that the actuator stays in equilibrium.
     assert run["angle"] == pytest.approx(model.equilibrium(pressure), abs=0.02)
 
 
@@ -209,7 +209,7 @@ def test_what_the_errata_say():
     level = {"modulus": modulus, "gravity": 0.0}
     assert actuator(**level).linear_angle(90e3) == pytest.approx(1.50, abs=0.005)
     assert actuator(**level, order=None).equilibrium(90e3) == pytest.approx(2.03, abs=0.005)
-    # Where odd orders give way and exact energies do not.
+    # Pressures at which models of odd order have no equilibrium and exact energies have one.
     for order, pressure in ((3, 90e3), (5, 100e3)):
         with pytest.raises(sinew.RunError):
             actuator(**level, order=order).equilibrium(pressure)

@@ -1,4 +1,4 @@
-"""Contact of bodies with the shape of a rigid body that moves."""
+"""Contact of bodies with moving rigid bodies of primitive shape."""
 
 import numpy as np
 import pytest
@@ -66,7 +66,7 @@ def test_a_cube_on_a_tilted_table_obeys_coulomb(friction):
 
 @pytest.mark.parametrize("friction", [0.0, 0.4])
 def test_bodies_that_collide_exchange_momentum(friction):
-    """Off the centre, so that both turn; a backward Euler step loses spin at its order, a millisecond."""
+    """The impact is off-centre, so both bodies rotate. Backward Euler loses angular momentum to first order in the step."""
     kept = []
     for step in (1.0, 0.25):
         sim = make({"still": cube(pose={"position": "0 0 0 mm"}),
@@ -76,7 +76,7 @@ def test_bodies_that_collide_exchange_momentum(friction):
         before = momenta(sim, "still", "moving")
         sim.run(duration=0.05)
         linear, angular, energy = momenta(sim, "still", "moving")
-        assert sim.contact("touch").gap > -1e-5  # surfaces turn within a step
+        assert sim.contact("touch").gap > -1e-5  # surfaces rotate within a step
         assert linear == pytest.approx(before[0], abs=1e-12)
         assert sim.body("still").velocity[0] > 0.05
         assert np.abs(sim.body("still").velocity[3:]).max() > 0.05
@@ -113,13 +113,13 @@ def grasp(friction, mass, lift="20 mm"):
 
 
 def test_a_squeeze_lifts_what_its_friction_can_carry():
-    """Two pads with normal force N carry m g <= 2 mu N; the pull shears them, and N falls by a tenth."""
+    """Two pads with normal force N carry m g <= 2 mu N; the pull shears them, which reduces N by a tenth."""
     friction = 0.3
     _, squeeze = grasp(friction, "10 g", "0 mm")
     assert squeeze > 1.0
     limit = 2 * friction * squeeze / GRAVITY
     lifted, _ = grasp(friction, f"{0.75 * limit} kg")
-    assert lifted.body("cube").position[2] > 0.03  # it slips while the pads get up to speed
+    assert lifted.body("cube").position[2] > 0.03  # it slips while the pads accelerate
     assert lifted.contact("floor").normal_force == 0.0
     carried = sum(lifted.contact(name).force[2] for name in ("left_pad", "right_pad"))
     assert carried == pytest.approx(-0.75 * limit * GRAVITY, rel=1e-3)
@@ -128,14 +128,14 @@ def test_a_squeeze_lifts_what_its_friction_can_carry():
 
 
 LYING = {"axis": "y", "angle": "90 deg"}
-ROUND = {  # shape, height of its centre when it lies, rotation, I / (m r^2) about its axis
+ROUND = {  # shape, height of its centre when lying, rotation, I / (m r^2) about its axis
     "ball": ({"sphere": {"radius": "20 mm"}}, 20, None, 0.4),
     "roller": ({"cylinder": {"radius": "20 mm", "height": "60 mm"}}, 20, LYING, 0.5),
 }
 
 
 def rolling(name, angle, friction, step="1 ms", table=False):
-    """A round body on a slope that falls along +y, a plane of the world or a fixed box; speed after 0.2 s."""
+    """Speed after 0.2 s of a round body on a slope that descends along +y: a plane of the world or a fixed box."""
     shape, height, rotation, inertia = ROUND[name]
     gravity = f"0 {GRAVITY * np.sin(angle)} {-GRAVITY * np.cos(angle)} m/s^2"
     bodies = {name: {"type": "rigid", "shape": shape, "mass": "100 g",
@@ -152,7 +152,7 @@ def rolling(name, angle, friction, step="1 ms", table=False):
 @pytest.mark.parametrize("table", [False, True])
 @pytest.mark.parametrize("name", list(ROUND))
 def test_a_round_body_rolls_down_a_slope(name, table):
-    """Without slip a = g sin(angle) / (1 + I / (m r^2)), at angular velocity v / r."""
+    """Without slip a = g sin(angle) / (1 + I / (m r^2)), with angular velocity v / r."""
     sim, inertia = rolling(name, 0.3, 0.5, table=table)
     body = sim.body(name)
     speed = GRAVITY * np.sin(0.3) / (1 + inertia) * 0.2
@@ -203,7 +203,7 @@ def test_three_boxes_are_stacked():
 
 
 def test_edges_that_cross_hold_each_other():
-    """A beam across the edge of another that lies on its edge: no corner is near."""
+    """A beam lies across the edge of another one: only edges touch, no vertices."""
     edge = {"axis": "x", "angle": "45 deg"}
     across = {"rotation": {"axis": "y", "angle": "45 deg"}}
     half = 5 * np.sqrt(2)
@@ -219,7 +219,7 @@ def test_edges_that_cross_hold_each_other():
 
 
 def test_balls_that_meet_share_their_momentum():
-    """Impacts without rebound: both go on at the mean speed."""
+    """Inelastic impact: both bodies continue at the mean velocity."""
     ball = lambda x, **more: {"type": "rigid", "shape": {"sphere": {"radius": "10 mm"}}, "mass": "50 g",
                               "pose": {"position": f"{x} 0 0 mm"}, **more}
     sim = make({"a": ball(0, velocity={"linear": "1 0 0 m/s", "angular": "0 0 30 rad/s"}), "b": ball(30)},
@@ -227,7 +227,7 @@ def test_balls_that_meet_share_their_momentum():
     sim.run(duration=0.05)
     assert sim.body("a").velocity[:3] == pytest.approx([0.5, 0, 0], abs=1e-9)
     assert sim.body("b").velocity[:3] == pytest.approx([0.5, 0, 0], abs=1e-9)
-    assert sim.body("a").velocity[5] == pytest.approx(30.0, rel=1e-9)  # no friction: it keeps its spin
+    assert sim.body("a").velocity[5] == pytest.approx(30.0, rel=1e-9)  # without friction, it keeps its spin
 
 
 def test_bodies_that_overlap_at_the_start_are_refused():
@@ -265,14 +265,14 @@ def heap(**more):
 
 
 def test_all_pairs_touch():
-    """But those of fixed bodies, those that joints connect, those with an entry of their own and those excepted."""
+    """`between: all` omits pairs of fixed bodies, pairs connected by joints, pairs with their own entry, and exceptions."""
     assert set(heap().contacts) == {"all-low-high", "all-low-table", "all-high-table", "all-low-wall", "all-high-wall"}
     sim = heap(entry={"except": [["wall", "low"], ["high", "wall"]]}, contacts={"own": {"between": ["high", "low"], "friction": 0.1}})
     assert set(sim.contacts) == {"own", "all-low-table", "all-high-table"}
     assert sim.contact("own").friction == 0.1
     sim.run(duration=0.3)
     assert sum(sim.contact(f"all-{name}-table").normal_force for name in ("low", "high")) > 0.0
-    # What one entry leaves out, the next may take.
+    # A pair excepted by one entry may belong to the next one.
     sim = heap(entry={"except": [["low", "high"]]}, contacts={"rest": {"between": "all", "friction": 0.7}})
     assert "all-low-high" not in sim.contacts and sim.contact("rest-low-high").friction == 0.7
     assert len(sim.contacts) == 5

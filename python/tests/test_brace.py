@@ -1,4 +1,4 @@
-"""sinew.plan.brace: what is found, its conditions, and wrong input."""
+"""sinew.plan.brace: braces, their conditions, and invalid input."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def test_a_brace_is_an_equilibrium_that_sticks():
     assert brace.friction_force < 0.6 * brace.normal_force
     assert brace.hold_force > 0.03 and brace.peak_compliance >= brace.tip_compliance > 0
     assert [c["verdict"] for c in brace.conditions] == ["holds"] * 3
-    # The friction condition is that under the force to be held against.
+    # The friction condition includes the force to be held, which requires more friction.
     assert brace.conditions[0]["value"] > brace.friction_force / brace.normal_force
     np.testing.assert_allclose(np.linalg.norm(brace.tip - GOAL), brace.tip_error)
     run = brace.run(hold=0.2, force=0.0)

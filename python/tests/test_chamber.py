@@ -28,7 +28,7 @@ def test_pressure_and_volume_are_two_sides_of_one_row():
     sim = robot()
     air = sim.actuator("air")
     rest = air.volume
-    assert rest == pytest.approx(np.pi * 0.01**2 * 0.03, rel=1e-12)  # a polygon of the circle's area
+    assert rest == pytest.approx(np.pi * 0.01**2 * 0.03, rel=1e-12)  # a polygon with the area of the circle
     air.pressure = 1500.0
     sim.solve_static()
     assert air.pressure == 1500.0 and air.volume_growth > 0.02 * rest

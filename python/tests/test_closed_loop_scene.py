@@ -35,7 +35,7 @@ def test_the_example_holds_the_tip_while_something_pushes(held):
     rest = free.effector("tip").position.copy()
     free.step(105)
     assert np.linalg.norm(free.effector("tip").position - rest) > 1e-3
-    # On the way cables are slack, which cannot push.
+    # On the way to the target, cables become slack, which is a limit.
     assert set(record["controller"]) == {"holding", "moving", "at-limits", "on-target"}
     assert np.isfinite(record["east.displacement_command"][10:]).all()
     assert controller.measured_errors["tip"] == pytest.approx(
@@ -85,7 +85,7 @@ def test_a_real_camera_may_stop(held):
 
 
 def test_dynamics_take_the_compliance_of_equilibrium():
-    """With damping the robot follows; its inertia has no part in what is commanded."""
+    """A damped dynamic robot follows the target; the commands use the static compliance, without inertia."""
     sim = sinew.load(HOLD, set=["integrator=bdf2", "bodies.finger.damping={stiffness: 0.02 s}", "sensors.tip.noise=0 mm",
                                 "controllers.hold.gain=3 1/s"])
     sim.step(95)
@@ -120,7 +120,7 @@ controllers:
 
 
 def test_friction_of_joints_is_held_where_the_response_is_taken(tmp_path):
-    """The response of a clone once took friction from a place of another step, that of the run from the last."""
+    """Regression: the response used the friction of another state in a clone than in the run."""
     path = tmp_path / "scene.yaml"
     path.write_text(JOINT_THAT_RUBS)
     sim = sinew.load(path)

@@ -1,7 +1,7 @@
-"""Geometry of surfaces against solutions by NumPy and SciPy.
+"""Geometry of surfaces, compared with NumPy and SciPy.
 
-Continuous queries with exact answers (Wang et al., ACM TOG 40(5), 2021) are looked for in $SINEW_SHARED_DATA/ccd, else in
-../shared/data/ccd beside the repository; their test is skipped where there are none.
+Continuous queries with exact answers (Wang et al., ACM TOG 40(5), 2021) are read from $SINEW_SHARED_DATA/ccd, else from
+../shared/data/ccd beside the repository; without them, their test is skipped.
 """
 
 import os
@@ -34,7 +34,7 @@ def hull(seed, count=30, centre=(0.0, 0.0, 0.0), stretch=(1.0, 1.0, 1.0)):
 
 
 def convex_distance(first, second):
-    """Of the hulls of two sets of points: non-negative least squares over their weights."""
+    """Distance of the convex hulls of two sets of points, by non-negative least squares for the weights."""
     heavy, n, m = 1e3, len(first), len(second)
     A = np.zeros((5, n + m))
     A[:3, :n], A[:3, n:] = first.T, -second.T
@@ -45,7 +45,7 @@ def convex_distance(first, second):
 
 
 def nearest_of_triangle(point, corners):
-    """The best of the projections on all of its faces, edges and corners that lie inside."""
+    """Nearest of the projections onto the face, edges and corners that lie inside of these. Returns distance and point."""
     best = (np.inf, None)
     for count in (1, 2, 3):
         for chosen in combinations(range(3), count):
@@ -95,7 +95,7 @@ def test_triangles_meet():
 
 
 def signed(excess):
-    """Of a solid whose sides stand at right angles: excess (n, sides) beyond each."""
+    """Signed distance of a solid with perpendicular sides, from the excess (n, sides) beyond each side."""
     outside = np.linalg.norm(np.maximum(excess, 0.0), axis=1)
     return np.where(outside > 0.0, outside, excess.max(axis=1))
 
@@ -164,7 +164,7 @@ def test_crossing():
         first[0][first[1][i.ravel()]], second[0][second[1][j.ravel()]]
     ).reshape(i.shape)
     assert len(pairs) > 10 and len(pairs) == meet.sum() and meet[tuple(pairs.T)].all()
-    assert len(col.crossing(col.Surface(*first[:2]))) == 0  # within itself
+    assert len(col.crossing(col.Surface(*first[:2]))) == 0  # no self-intersection
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -196,7 +196,7 @@ def sheet(heights, up):
 
 
 def test_proximity_finds_all_minima():
-    """A rough ceiling over a wide flat floor: every node below all its neighbours, once."""
+    """A rough ceiling over a wide flat floor: each node that is lower than all its neighbours is found once."""
     n = 9
     ceiling, triangles = sheet(np.random.default_rng(8).uniform(0.5, 1.0, size=(n, n)), up=False)
     floor = sheet(np.zeros((2, 2)), up=True)
@@ -222,7 +222,7 @@ def test_penetration():
 
 
 def common_volume(first, second):
-    """Of two convex polyhedra, by the half spaces of both and a linear programme for a start."""
+    """Volume of the intersection of two convex polyhedra from their half spaces; a linear program gives an interior point."""
     spaces = np.vstack([spatial.ConvexHull(first).equations, spatial.ConvexHull(second).equations])
     inner = optimize.linprog(
         [0, 0, 0, -1], A_ub=np.hstack([spaces[:, :3], np.ones((len(spaces), 1))]),
@@ -287,7 +287,7 @@ def test_impact_queries(query, expected):
     hit, time = query(queries)
     truth = np.array([expected(q[:4], q[4:]) for q in queries])
     assert 20 < np.isfinite(truth).sum() < 500
-    assert hit[np.isfinite(truth)].all()  # none is missed
+    assert hit[np.isfinite(truth)].all()  # no impact is missed
     assert (hit & ~np.isfinite(truth)).mean() < 0.01
     both = hit & np.isfinite(truth)
     assert np.all(time[both] <= truth[both] + 1e-9) and np.all(time[both] > truth[both] - 1e-6)
@@ -302,7 +302,7 @@ def test_impact_queries_with_exact_answers(query, name):
     path = COLLECTION / f"{name}.csv.gz"
     if not path.exists():
         pytest.skip(f"there are no queries with exact answers in {COLLECTION}")
-    # Numerator and denominator of x, y and z, and the answer; numbers that are doubles without rounding.
+    # Columns: numerator and denominator of x, y and z, and the answer. The quotients are exact in double precision.
     rows = np.loadtxt(path, delimiter=",").reshape(-1, 8, 7)
     queries, meet = rows[:, :, 0:6:2] / rows[:, :, 1:6:2], rows[:, 0, 6] == 1
     assert 100 < meet.sum() < len(meet) / 2
@@ -328,14 +328,14 @@ def test_impacts_of_surfaces():
     ball = col.Surface(*first[:2])
     thrown = col.Surface(*second[:2]).swept(second[0] - [2.0, 0.0, 0.0])
     found = col.impacts(thrown, ball)
-    low, high = 0.0, 1.0  # of the distance of convex bodies
+    low, high = 0.0, 1.0  # bisection for the first contact of the convex bodies
     for _ in range(40):
         middle = 0.5 * (low + high)
         apart = convex_distance(second[0] - [2.0 * middle, 0.0, 0.0], first[0]) > 1e-7
         low, high = (middle, high) if apart else (low, middle)
     assert 0.1 < low < 0.9
     assert found.times.min() == pytest.approx(low, abs=1e-5)
-    # All pairs of vertices and faces, and of edges, one by one.
+    # Reference: all vertex-face and edge-edge pairs, tested one by one.
     at = lambda points, own, other: np.concatenate([points[own], other], axis=-2)
     pairs = set()
     for v in range(len(second[0])):
@@ -368,7 +368,7 @@ def test_threads_change_nothing():
     ):
         alone = call(1)
         assert len(alone) > 0 and np.array_equal(alone, call(3))
-    with ThreadPoolExecutor(4) as pool:  # one surface for all
+    with ThreadPoolExecutor(4) as pool:  # the threads share one surface
         volumes = list(pool.map(lambda _: col.overlap(a, b).volume, range(8)))
     assert len(set(volumes)) == 1
 
@@ -384,7 +384,7 @@ def test_surfaces_never_change():
     assert not surface.points.flags.writeable and surface.triangles.base is surface
     view = surface.points
     del surface
-    assert np.isfinite(view).all()  # keeps it alive
+    assert np.isfinite(view).all()  # the view keeps the surface alive
 
 
 def test_what_is_wrong():

@@ -43,7 +43,7 @@ def test_who_calls_a_command_keeps_its_handlers():
                 raise error
             return 0
 
-        with contextlib.suppress(ValueError):  # not an error of ours: the traceback is the caller's
+        with contextlib.suppress(ValueError):  # other exceptions pass to the caller
             command.exit_code(work)
         assert state() == before
     assert all(one[:2] != before[:2] for one in seen)

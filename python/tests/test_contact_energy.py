@@ -1,4 +1,4 @@
-"""What steps do to the energy of rigid bodies that pivot."""
+"""Effect of steps on the energy of pivoting rigid bodies."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def make(bodies, contacts, step, integrator):
 
 
 def changes(sim, duration):
-    """(steps - 1,) of kinetic and gravity energy from step to step, over weight times the longest edge of a box."""
+    """(steps - 1,) changes of kinetic and gravity energy per step, relative to weight times the longest edge of a box."""
     energy = []
     for _ in range(round(duration / sim.time_step)):
         sim.step()
@@ -29,7 +29,7 @@ def changes(sim, duration):
 
 
 def test_a_pivoting_box_gains_in_proportion_to_the_step():
-    """The gap holds at the end position: f does the work f r (w h)^2/2 in a step, which sums to first order in h."""
+    """The gap is enforced at the end of a step, so f does the work f r (w h)^2/2 per step; the sum is of first order in h."""
     most, sums = [], []
     for step in (2e-3, 1e-3, 5e-4):
         spinning = box([0.0, 0.0, 0.05], [0.0, 0.5, 0.0], {"linear": [0.0, 0.0, 0.0], "angular": [0.0, 20.0, 0.0]})

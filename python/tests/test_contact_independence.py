@@ -10,11 +10,11 @@ import sinew
 GRAVITY = 9.81
 STEPS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)  # s
 CORNERS = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
-TURNS = ((0, 1, 2, 3), (1, 2, 0, 3), (2, 0, 1, 3), (1, 0, 3, 2), (3, 2, 1, 0))  # of a tetrahedron's nodes
+TURNS = ((0, 1, 2, 3), (1, 2, 0, 3), (2, 0, 1, 3), (1, 0, 3, 2), (3, 2, 1, 0))  # even permutations of a tetrahedron's nodes
 
 
 def grid(size, origin, cells, kind):
-    """A block (m) of hexahedra, or of six tetrahedra each: nodes and elements."""
+    """Nodes and elements of a block (m) of hexahedra, or of six tetrahedra per cell."""
     lines = [np.linspace(0.0, length, count + 1) for length, count in zip(size, cells)]
     points = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3) + origin
     number = np.arange(len(points)).reshape(np.add(cells, 1))
@@ -32,7 +32,7 @@ def grid(size, origin, cells, kind):
 
 
 def write(path, size, origin, cells, kind="tetra", seed=None):
-    """Writes such a block, its nodes and elements shuffled. Returns the nodes' old numbers in the file's order."""
+    """Writes a grid() with shuffled nodes and elements. Returns the original node numbers in the order of the file."""
     points, elements = grid(size, origin, cells, kind)
     order = np.arange(len(points))
     if seed is not None:
@@ -56,7 +56,7 @@ def held(height):
 
 
 def at_rest(folder, step, on, friction, slope, **more):
-    """A cube of 5 mm that came to rest: its critical damping takes less than 1 ms. `more` is for the cube."""
+    """A cube of 5 mm at rest; critical damping takes less than 1 ms. `more` are settings of the cube."""
     write(folder / "top.vtu", (5e-3, 5e-3, 5e-3), (1.3e-3, 1.7e-3, 0.0), (2, 2, 2))
     damping = {"damping": {"stiffness": 3e-4}}
     bodies = {"top": body(folder / "top.vtu", 1e6, **damping, **more)}
@@ -74,7 +74,7 @@ def at_rest(folder, step, on, friction, slope, **more):
 
 @pytest.mark.parametrize("on, tolerance", [("plane", 1e-7), ("block", 1e-6)])
 def test_friction_at_rest_is_the_same_for_any_time_step(tmp_path, on, tolerance):
-    """A block sticks on a slope of 0.3. What is left of its motion is the tolerance, in parts of the weight."""
+    """A block sticks on a slope of 0.3. The tolerance, relative to the weight, is for its remaining motion."""
     angle = np.arctan(0.3)
     for step in STEPS:
         sim = at_rest(tmp_path, step, on, 0.5, 0.3)
@@ -87,7 +87,7 @@ def test_friction_at_rest_is_the_same_for_any_time_step(tmp_path, on, tolerance)
 
 @pytest.mark.parametrize("on", ["plane", "block"])
 def test_normal_forces_and_shape_at_rest_are_the_same_for_any_time_step(tmp_path, on):
-    """Without friction the shape at rest is unique where the block cannot slide: its top is guided along z."""
+    """Without friction, the shape at rest is unique if the block cannot slide: its top is guided along z."""
     reference, guided = None, {"fixed": [{"plane": {"point": [0, 0, 5e-3], "normal": [0, 0, 1], "within": 1e-9}, "axes": ["x", "y"]}]}
     for step in STEPS[::-1]:
         sim = at_rest(tmp_path, step, on, 0.0, 0.0, **guided)
@@ -99,12 +99,12 @@ def test_normal_forces_and_shape_at_rest_are_the_same_for_any_time_step(tmp_path
             reference = loads, top.positions[:, 2]
         assert loads == pytest.approx(reference[0], abs=1e-6)
         assert top.positions[:, 2] == pytest.approx(reference[1], abs=1e-6 * 8e-8)  # the block sinks by 80 nm
-    # A block as a whole that weighs on its nodes alike would pass too; these forces differ from node to node.
+    # The forces differ from node to node; equal nodal forces would pass trivially.
     assert np.ptp(reference[0]) > 0.05
 
 
 class Dragged:
-    """A block pressed on a wider one, or on a plane, and dragged over it: meshes shuffled by a seed."""
+    """A block that is pressed on a wider one, or on a plane, and dragged over it; a seed shuffles the meshes."""
 
     def __init__(self, folder, kind, friction, on, seed=None):
         self.orders = {"top": write(folder / "top.vtu", (0.02, 0.02, 0.02), (0.0073, 0.0091, 0.0201), (4, 4, 4), kind, seed)}
@@ -119,7 +119,7 @@ class Dragged:
                                "contacts": {"press": contact}}, threads=1)
 
     def results(self):
-        """Pressed, and dragged until it slides: the contact's force; positions and forces of nodes in the old order."""
+        """Contact force, and nodal positions and forces in the original order, when pressed and after sliding has begun."""
         found = []
         for steps in (10, 10):
             self.sim.step(steps)
@@ -133,7 +133,7 @@ class Dragged:
 
 
 def differences(one, other):
-    """Largest of force, positions and forces of nodes: over the force, and the way of 1.5 mm."""
+    """Largest differences of contact force, nodal positions and nodal forces, relative to the force and to 1.5 mm."""
     size = np.linalg.norm(one[0])
     return np.abs(one[0] - other[0]).max() / size, np.abs(one[1] - other[1]).max() / 1.5e-3, np.abs(one[2] - other[2]).max() / size
 
@@ -142,7 +142,7 @@ def differences(one, other):
 @pytest.mark.parametrize("friction", [0.0, 0.5])
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_the_order_of_nodes_and_elements_changes_nothing(tmp_path, on, friction, seed):
-    """The law is solved to 1e-10, and friction remembers the way."""
+    """The contact law is solved to 1e-10, and friction accumulates the differences."""
     given, shuffled = (Dragged(tmp_path, "tetra", friction, on, number) for number in (None, seed))
     assert not np.array_equal(shuffled.orders["top"], given.orders["top"])
     for one, other in zip(given.results(), shuffled.results()):
@@ -152,7 +152,7 @@ def test_the_order_of_nodes_and_elements_changes_nothing(tmp_path, on, friction,
 
 @pytest.mark.parametrize("on, tolerance", [("plane", 1e-8), ("block", 1e-8)])
 def test_the_order_of_hexahedra_changes_nothing(tmp_path, on, tolerance):
-    """A quadrilateral is cut along its shorter diagonal, or by where its corners are; ten laws solved to 1e-10 are left."""
+    """Quadrilaterals are split by geometry (the shorter diagonal), not by node order. Differences: ten laws, each solved to 1e-10."""
     given, shuffled = (Dragged(tmp_path, "hexahedron", 0.5, on, number) for number in (None, 2))
     for one, other in zip(given.results(), shuffled.results()):
         force, position, _ = differences(one, other)

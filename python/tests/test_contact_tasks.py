@@ -1,4 +1,4 @@
-"""What controllers ask of contact forces, and the order of their targets."""
+"""Contact force tasks and priorities of controllers."""
 
 import copy
 
@@ -12,7 +12,7 @@ WALL = {"body": "finger", "friction": 0.4, "surface": {"plane": {"point": "12 0 
 
 @pytest.fixture
 def beside_a_wall(scene):
-    """The finger as a dict, a wall 2 mm beside it."""
+    """Scene of the finger with a wall 2 mm beside it, as a dict."""
     tree = yaml.safe_load(scene.read_text())
     tree["contacts"] = {"wall": dict(WALL)}
     return tree
@@ -32,13 +32,13 @@ def steer(tree, steps=60, **asked):
 )
 def test_a_normal_force_is_as_asked(beside_a_wall, friction, asked, least, most):
     beside_a_wall["contacts"]["wall"]["friction"] = friction
-    # The target alone would press with a force of its own.
+    # The target alone would lead to another contact force.
     target = {"tip": [0.0 if asked == {"min": 0.4} else 0.0035, 0.0, 0.079]}
     sim, ik = steer(beside_a_wall, targets=target, contacts={"wall": {"normal_force": asked}})
     found = sim.contact("wall").normal_force
     assert least - 1e-5 <= found <= most + 1e-5
     assert ik.force_errors["wall"] == pytest.approx(0.0, abs=1e-5)
-    # The same tensions without a controller: the law gives the same force.
+    # The same tensions without a controller give the same force.
     efforts = dict(zip(ik.actuators, ik.efforts))
     ik.detach()
     for name, effort in efforts.items():
@@ -63,7 +63,7 @@ def test_a_force_is_asked_without_targets(beside_a_wall):
 
 
 def worst_share(tree, reserve):
-    """The largest |F_t| / (mu F_n) while the target moves along the wall under a grip of 0.3 N."""
+    """Largest |F_t| / (mu F_n) while the target moves along the wall with a normal force of 0.3 N."""
     sim = sinew.load(tree)
     contacts = {"wall": {"normal_force": {"min": 0.3}}}
     if reserve is not None:
@@ -82,7 +82,7 @@ def worst_share(tree, reserve):
 def test_a_reserve_keeps_the_resultant_inside_its_cone(beside_a_wall):
     assert worst_share(beside_a_wall, None) > 0.95
     for reserve in (0.1, 0.3, 0.6):
-        # The octagon's corners lie on the cone that is asked for, its sides 8 % inside.
+        # The corners of the octagon lie on the requested cone, its sides 8 % inside.
         assert 0.5 * (1 - reserve) < worst_share(beside_a_wall, reserve) < (1 - reserve) * (1 + 1e-3)
 
 
@@ -128,7 +128,7 @@ def test_a_later_priority_gives_way(beside_a_wall):
         _, ik = steer(tree, steps=600, targets=targets, priorities=order)
         errors[name] = ik.errors
     assert errors["none"]["tip"] > 1e-4 and errors["none"]["middle"] > 1e-3
-    # Least squares with weights 1 and 1e-4: the errors' ratio falls by that, times that of the errors that give way.
+    # Least squares with weights 1 and 1e-4: the ratio of the errors falls by 1e-4, times the growth of the error that yields.
     assert errors["tip"]["tip"] < 1e-2 * errors["none"]["tip"]
     assert errors["middle"]["middle"] < 0.1 * errors["none"]["middle"]
 
@@ -188,7 +188,7 @@ def test_every_choice_has_a_certificate(beside_a_wall, friction):
 
 
 def between_pads(motor):
-    """A block of 100 g slides between a wall and a pad that a motor presses on it with 0.5 N; 1.09 N would hold it."""
+    """A block of 100 g slides between a wall and a pad. A motor presses the pad with 0.5 N; 1.09 N would hold the block."""
     motor = {"type": "linear-motor", "joint": "press", "command": {"force": 0.5}, "limits": {"force": {"min": 0.0, **motor}}}
     sim = sinew.load(
         {
@@ -219,14 +219,14 @@ def test_a_grip_that_slides_is_pressed_until_it_sticks(motor, steps):
     assert {"slip"} == set(sim.contact("pad").states) - {"open"}
     before = sim.effector("block").position[2]
     sim.step()
-    assert sim.effector("block").position[2] - before < -1e-3  # m: as fast as it was
+    assert sim.effector("block").position[2] - before < -1e-3  # m, not slower than before
     assert ik.efforts[0] > 0.5 and max(ik.force_errors.values()) > 0.1
     assert ik.status in ("moving", "rate-limited")
     sim.step(steps)
     caught = sim.effector("block").position.copy()
     sim.step(50)
     assert np.linalg.norm(sim.effector("block").position - caught) < 2e-4
-    assert sim.contact("pad").normal_force > 0.981 / (2 * 0.5)  # N: less would slide
+    assert sim.contact("pad").normal_force > 0.981 / (2 * 0.5)  # N, the minimum without sliding
     assert max(ik.force_errors.values()) < 0.1
 
 
@@ -237,5 +237,5 @@ def test_a_grip_too_weak_to_stop_the_slide_is_pressed_and_not_let_go():
         sim.step()
         assert sim.contact("pad").normal_force == pytest.approx(0.8, abs=1e-6)
         assert ik.status == "out-of-reach"
-        # 0.981 N of weight less 0.8 N of friction stay for both contacts.
+        # Of the weight of 0.981 N, 0.8 N are carried by friction; the two contacts share the remainder.
         assert min(ik.force_errors.values()) > 0.09

@@ -1,4 +1,4 @@
-"""Contacts, as Python sees them."""
+"""Contacts in Python."""
 
 import numpy as np
 import pytest
@@ -59,7 +59,7 @@ def test_errors():
 
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_path_onto_a_floor(friction):
-    """A block hangs on its top; a growing body force draws it onto the floor."""
+    """A block hangs from its top; a growing body force pulls it onto the floor."""
     sim = block(friction=friction, floor=-2e-5, held={"fixed": {"set": "z_max"}}, loads={
         "draw": {"type": "acceleration", "body": "block", "acceleration": [0.0, 0.0, -2000.0]}})
     path = sim.follow_path(first_step=1e-4, largest_step=1e-3)
@@ -76,7 +76,7 @@ def test_path_onto_a_floor(friction):
 
 
 def whole_block(**contact):
-    """All nodes of the surface may touch the floor; those of the lower face do."""
+    """A block on the floor whose surface nodes may all touch it. Returns the simulation and the nodes of the lower face."""
     sim = block(contacts={"floor": {"body": "block", "friction": 0.5, "surface": {"plane": {}}, **contact}})
     sim.step(100)
     return sim, [k for k, z in enumerate(sim.contact("floor").positions[:, 2]) if z < 1e-3]
@@ -111,7 +111,7 @@ def test_queries_leave_the_last_linearisation_as_it_was():
         ask(statics=False)
         assert same(sim.last_linearisation(), last)
     with pytest.raises(sinew.RunError, match="singular"):
-        sim.linearise()  # of statics: nothing holds the block
+        sim.linearise()  # singular in statics, because nothing holds the block
     assert same(sim.last_linearisation(), last)
     sim.step()
     after = sim.last_linearisation()
@@ -131,7 +131,7 @@ def test_states_have_no_last_linearisation(tmp_path):
         with pytest.raises(sinew.Error, match="no step led to this state.*linearise") as error:
             sim.last_linearisation()
         assert error.value.kind == "bad-argument"
-        sim.linearise(statics=False)  # a query is no step
+        sim.linearise(statics=False)  # a query does not count as a step
         with pytest.raises(sinew.Error, match="no step led"):
             sim.last_linearisation()
 

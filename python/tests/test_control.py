@@ -75,7 +75,7 @@ def test_the_response_of_free_efforts_is_the_compliance(scene):
 
 
 def differences(sim, effectors, commands, quantities, step):
-    """The Jacobian by central differences of equilibria."""
+    """Jacobian by central differences of equilibria."""
     columns = []
     for name, value in commands.items():
         ends = []
@@ -99,7 +99,7 @@ def test_the_jacobian_is_that_of_equilibria(scene, command):
     kinds = {name: command if isinstance(command, str) else command[name] for name in CABLES}
     quantities = {name: {"motion": "displacement", "effort": "tension"}[kind] for name, kind in kinds.items()}
     commands = {name: getattr(sim.actuator(name), quantity) for name, quantity in quantities.items()}
-    # Steps of 1e-6 m and 1e-4 N: central differences are exact to their square.
+    # The error of central differences is quadratic in the steps of 1e-6 m and 1e-4 N.
     for k, (name, quantity) in enumerate(quantities.items()):
         step = 1e-6 if quantity == "displacement" else 1e-4
         reference = differences(sim, ["tip"], commands, quantities, step)[:, k]
@@ -121,7 +121,7 @@ def test_slack_cables_move_nothing(scene):
 
 
 def test_two_cables_on_one_line_have_one_motion():
-    # Of two columns that are the same, each gets half: W_MM is singular.
+    # W_MM is singular: two equal columns get half each.
     w_aa = np.array([[2.0, 2.0], [2.0, 2.0]])
     w_ea = np.array([[1.0, 1.0]])
     both = condensed(w_ea, w_aa, np.array([True, True]), np.array([False, False]))
@@ -130,8 +130,10 @@ def test_two_cables_on_one_line_have_one_motion():
 
 @pytest.mark.parametrize("friction", [0.0, 20.0])
 def test_the_response_keeps_contacts(friction):
-    """A beam that rests on a floor: what touches slides freely, or sticks, by differences of equilibria. (At a limit of
-    friction there are two answers, one for each sense of motion.)"""
+    """A beam rests on a floor, and its contact points slide without friction or stick; compared with differences of equilibria.
+
+    At the friction limit, the response would differ for the two directions of motion.
+    """
     beam = {
         "sinew": 1, "time_step": "10 ms", "integrator": "quasi-static", "gravity": "0 0 -9.81 m/s^2",
         "solver": {"tolerance": 1e-10},
@@ -155,7 +157,7 @@ def test_the_response_keeps_contacts(friction):
     before = watched.state()
     found = watched.response()
     assert watched.state() == before
-    for each in (sim, watched):  # it goes on as if nobody had asked
+    for each in (sim, watched):  # the query does not change the continuation
         each.actuator("lift").force = 0.01
         each.step(5)
     assert watched.state() == sim.state()
@@ -173,7 +175,7 @@ def test_the_response_keeps_contacts(friction):
         columns.append((ends[0] - ends[1]) / 2e-6)
     reference = np.array(columns).T
     assert found.W_ea["tip"] == pytest.approx(reference, abs=1e-4 * np.abs(reference).max())
-    # It is another one without the floor.
+    # Without the floor, the response differs.
     del beam["contacts"]
     free = sinew.load(beam)
     free.step(30)
@@ -213,7 +215,7 @@ def test_the_limit_of_a_delay_is_where_a_root_leaves_the_circle(delay):
 
 
 def test_long_delays_have_the_limit_of_continuous_time():
-    # rate < pi/(2 tau), tau = (d + 1/2) T: a command is held for a sample, half a sample late on average.
+    # rate < pi/(2 tau) with tau = (d + 1/2) T: the hold of a command adds half a sample of delay on average.
     assert 200.5 * control.delay_limit(200) == pytest.approx(np.pi / 2.0, rel=1e-5)
     with pytest.raises(sinew.Error):
         control.delay_limit(-1)
@@ -251,7 +253,7 @@ def test_rotations_are_those_of_scipy():
 
 
 def test_the_estimator_finds_the_error_of_a_jacobian():
-    """Of 200 random robots it is as far off as it says: chi squared of left^T (E - found) right has the mean 1."""
+    """The error is consistent with the reported deviation for 200 random robots: the squared ratio for left^T E right has mean 1."""
     rng = np.random.default_rng(11)
     noise, squares = np.array([1e-4, 3e-4]), []
     for _ in range(200):
@@ -263,7 +265,7 @@ def test_the_estimator_finds_the_error_of_a_jacobian():
             estimator.update(modelled, modelled + error @ modelled + varied + np.sqrt(2.0) * noise * rng.normal(size=2))
         left, right = rng.normal(size=(2, 2))
         squares.append((left @ (estimator.error() - error) @ right / estimator.std(left, right)) ** 2)
-    # Its variance is 2: the mean of 200 has a standard deviation of 0.1.
+    # Chi squared of one degree of freedom has variance 2, so the mean of 200 has a standard deviation of 0.1.
     assert np.mean(squares) == pytest.approx(1.0, abs=0.4)
 
 
@@ -271,7 +273,7 @@ def test_the_estimator_forgets_towards_its_prior():
     estimator = control.JacobianEstimator([1e-6], spread=0.3, forgetting=0.9)
     for _ in range(100):
         estimator.update(np.array([1e-3]), np.array([1.2e-3]))
-    # Ten motions in memory, each as good as the prior: 10/11 of the way, and 1/sqrt(11) of its spread.
+    # Ten motions in memory, each with the weight of the prior: 10/11 of the true error, and 1/sqrt(11) of the spread.
     assert estimator.error() == pytest.approx(0.2 * 10.0 / 11.0, rel=1e-4)
     assert estimator.std(np.ones(1), np.ones(1)) == pytest.approx(0.3 / np.sqrt(11.0), rel=1e-4)
     for _ in range(500):

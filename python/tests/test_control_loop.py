@@ -1,4 +1,4 @@
-"""Closed loops: a plant and a model that are two simulations."""
+"""Closed loops with two simulations: a plant and a model."""
 
 import re
 from pathlib import Path
@@ -17,12 +17,12 @@ GRAVITY = "gravity=0 0 9.81 m/s^2"
 
 
 def camera(channel="", body="finger", point="0 0 80 mm"):
-    """A setting: a marker at the finger's tip, with a noise, a rate, a delay ..."""
+    """Setting for a marker at the tip of the finger; `channel` is its noise, rate, delay ..."""
     return f"sensors={{camera: {{type: marker, body: {body}, point: {point}, {channel}}}}}"
 
 
 def drive(loop, plant, steps, *, lost=lambda k: False, start=0, wires=None):
-    """Steps loop and plant; a loop without sensors sees the effectors as they are. (steps,) true errors m, and the statuses."""
+    """Steps loop and plant; a loop without sensors gets exact measurements. Returns true errors, (steps,) m, and the statuses."""
     names = list(loop.targets)
     errors, statuses = [], []
     for k in range(start, start + steps):
@@ -56,14 +56,14 @@ LOOPS = {
 @pytest.mark.parametrize("kind", LOOPS)
 @pytest.mark.parametrize("command", ["motion", "effort"])
 def test_feedback_makes_up_for_what_the_model_does_not_know(scene, kind, command):
-    """Another mesh, 30 % stiffer, cable friction, payload, 0.1 mm of noise and 20 ms of delay at once."""
+    """The plant has another mesh, 30 % more stiffness, cable friction, a payload, noise of 0.1 mm and a delay of 20 ms."""
     plant, model = twins(scene, [*STIFFER, camera("noise: 0.1 mm, delay: 20 ms")])
     loop = LOOPS[kind](model, command=command, sensors={"tip": plant.sensor("camera")})
     errors, statuses = drive(loop, plant, 300)
     assert errors[-100:].mean() < 2e-4
     assert statuses[-1] in ("on-target", "at-limits")
     assert loop.least_eigenvalue > 0.0 and loop.least_eigenvalue_std > 0.0
-    if command == "effort":  # tensions miss by stiffness and friction
+    if command == "effort":  # tensions alone miss because of stiffness and friction
         plant, model = twins(scene, STIFFER)
         alone, statuses = drive(LOOPS[kind](model, command=command, hold=0.0), plant, 250, lost=lambda k: True)
         assert set(statuses) == {"open-loop"}
@@ -111,7 +111,7 @@ def test_the_largest_gain_is_that_of_an_integrator_with_a_delay(scene, delay):
     limit = control.delay_limit(delay)
     assert growth(0.97 * limit) < 1.0 < growth(1.03 * limit)
     if delay:
-        # A model that makes up for the delay has the limit of none, 2.
+        # With compensation by the model, the limit is that without delay, 2.
         assert growth(1.5, compensate=True) < 1.0
 
 
@@ -141,13 +141,13 @@ def test_vibrations_limit_the_rate():
             errors.append(loop.error)
         return max(errors[800:]) / max(errors[400:800])
 
-    # The samples of 10 ms and the hold of commands take some of the damping: w T/2 = 3 % of a radian.
+    # Sampling at 10 ms with held commands reduces the damping: a phase lag of w T/2 = 0.03 rad.
     assert growth(0.85 * limit) < 1.0 < growth(1.1 * limit)
 
 
 def test_a_plant_that_is_wired_wrongly_violates_the_condition(scene):
-    """East and west swapped: the tip runs away along x, and the loop says so from the exact Jacobian and from an
-    estimate alike."""
+    """East and west are swapped: the tip diverges along x, and the loop reports it with the exact Jacobian and with an
+    estimate."""
     wires = {"east": "west", "west": "east"}
     order = [CABLES.index(wires.get(name, name)) for name in CABLES]
     for real in ("exact", "estimate"):
@@ -168,7 +168,7 @@ def test_a_plant_that_is_wired_wrongly_violates_the_condition(scene):
 
 
 def test_the_least_eigenvalue_in_a_twin(scene):
-    """Tensions move a finger that is stiffer by 1.3 less by as much; the estimate agrees within what it says."""
+    """Tensions move a finger of 1.3 times the stiffness by 1/1.3; the estimate agrees within its reported deviation."""
     harder = [setting for setting in STIFFER if "friction" not in setting and "mesh" not in setting]
     found = {}
     for real in ("exact", "estimate"):
@@ -186,20 +186,20 @@ def test_the_least_eigenvalue_in_a_twin(scene):
 
 
 def test_an_integral_follows_ramps_and_does_not_wind_up(scene):
-    """A disturbance that grows steadily leaves d/rate without an integral and nothing with one."""
+    """A disturbance that grows by d m/s leaves an error d/rate without an integral, and none with one."""
     left = {}
     for gains in ((5.0, 0.0), (5.0, 6.25)):
         plant, model = twins(scene)
         loop = control.ClosedLoop(model, {"tip": GOAL}, CABLES, gains=gains, relaxation=0.0)
         for k in range(400):
-            drift = np.array([2e-3, 0.0, 0.0]) * k * plant.time_step  # of the measured frame, m
+            drift = np.array([2e-3, 0.0, 0.0]) * k * plant.time_step  # drift of the measurement frame, m
             commands = loop.step({"tip": np.array(plant.effector("tip").position) + drift}, k * plant.time_step)
             loop.send(plant, commands)
             plant.step()
         left[gains] = loop.error
     assert left[5.0, 0.0] == pytest.approx(2e-3 / 5.0, rel=0.1)
     assert left[5.0, 6.25] < 0.05 * left[5.0, 0.0]
-    # Out of reach by 0.2 m for two seconds. An integral that went on would still be 33 mm off three seconds later.
+    # The target is 0.2 m out of reach for two seconds. With wind-up, the error would still be 33 mm three seconds later.
     plant, model = twins(scene)
     loop = control.ClosedLoop(model, {"tip": [0.2, 0.0, 0.06]}, CABLES, gains=(5.0, 6.25))
     _, statuses = drive(loop, plant, 200)
@@ -217,14 +217,14 @@ def test_lost_measurements_hold_and_then_open_the_loop(scene):
     _, statuses = drive(loop, plant, 10, start=150, lost=lambda k: True)
     assert statuses == ["holding"] * 10 and loop.commands == held
     assert np.isnan(loop.least_eigenvalue)
-    # Open loop: towards a new target as the model, corrected by the last difference, foresees it.
+    # Open loop: the loop follows a new target with the model, corrected by the last measured difference.
     loop.set_target("tip", GOAL + [-0.002, 0.0, 0.0])
     errors, statuses = drive(loop, plant, 100, start=160, lost=lambda k: True)
     assert set(statuses) == {"open-loop"}
     assert errors[-1] < 7e-4 < errors[0]
     errors, statuses = drive(loop, plant, 100, start=260)
     assert errors[-1] < 1e-4 and statuses[-1] == "on-target"
-    # NaN and None are lost measurements.
+    # NaN and None count as lost measurements.
     for lost in ({"tip": None}, {"tip": [np.nan, 0.0, 0.0]}, None):
         loop.step(lost, loop.time + 0.01)
         assert loop.status == "holding"
@@ -233,7 +233,7 @@ def test_lost_measurements_hold_and_then_open_the_loop(scene):
 
 
 def test_samples_that_do_not_come_are_lost_measurements(scene):
-    """A camera of 50 Hz that sees 20 ms late: a sample may be 40 ms old, and no older."""
+    """With a camera of 50 Hz and a delay of 20 ms, a sample may be at most 40 ms old."""
     plant, model = twins(scene, [camera("rate: 50 Hz, delay: 20 ms")])
     tip = plant.sensor("camera")
     loop = control.ClosedLoop(model, {"tip": GOAL}, CABLES, sensors={"tip": tip})
@@ -246,7 +246,7 @@ def test_samples_that_do_not_come_are_lost_measurements(scene):
     assert drive(loop, plant, 1)[1] == ["holding"]
     tip.feed(plant.effector("tip").position, time=plant.time)
     assert drive(loop, plant, 1)[1] == ["moving"]
-    # A sensor may say itself for how long its samples hold.
+    # A sensor may specify a timeout for its samples.
     plant, model = twins(scene, [camera("delay: 20 ms, rate: 25 Hz, timeout: 25 ms")])
     loop = control.ClosedLoop(model, {"tip": GOAL}, CABLES, sensors={"tip": plant.sensor("camera")}, hold=1.0)
     assert drive(loop, plant, 10)[1][2:] == ["moving", "holding", "holding", "holding"] * 2
@@ -305,7 +305,7 @@ def test_a_moving_target_is_seen_coming(scene):
             loop.send(plant, loop.step({"tip": plant.effector("tip").position}, k * 0.01))
             plant.step()
             worst[name] = max(worst[name], loop.error)
-    # It moves by 25 mm/s: a rate of 5/s without the target's velocity would lag by 5 mm.
+    # The target moves at 25 mm/s: at a rate of 5/s without feedforward of its velocity, the lag would be 5 mm.
     assert worst["rate"] < 1e-3
     assert worst["predictive"] < 1e-3
 
@@ -323,11 +323,11 @@ def test_gains_by_schedule(scene):
     errors, _ = drive(loop, plant, 200)
     assert errors[-1] < 2e-5 and len(seen) == 200
     assert seen[-1] == pytest.approx(0.005, abs=1e-4)
-    # Where gains are 2/s the error falls by 2 % in a step, where they are 8/s by 8 %.
+    # Per step, the error falls by 2 % at a gain of 2/s, and by 8 % at 8/s.
     assert errors[120] / errors[119] == pytest.approx(0.92, abs=0.01)
 
 
-# Other robots.
+# Other robots
 
 
 def test_arms_of_constant_curvature(tmp_path):
@@ -350,7 +350,7 @@ def test_arms_of_constant_curvature(tmp_path):
     target = {name: np.array(goal.effector(name).value) for name in ("tip", "hand")}
     for make in (control.ClosedLoop, control.PredictiveController):
         plant, model = arm("0.14 N m", "130 g"), arm("0.108 N m", "100 g")
-        # A turn of 1 rad counts as 0.1 m.
+        # With this weight, 1 rad counts as 0.1 m.
         loop = make(model, target, command="effort", weights={"hand": 0.01}, sensors=[plant.sensor(name) for name in target])
         errors, _ = drive(loop, plant, 400)
         assert loop.quantities["side_0"] == "torque"
@@ -359,7 +359,7 @@ def test_arms_of_constant_curvature(tmp_path):
 
 
 def test_two_bodies_with_joints_and_pressed_against_a_wall():
-    """Two segments that a weld holds together, three cables through both; a wall with friction stops their tip."""
+    """Two welded segments with three cables through both; a wall with friction stops their tip."""
     def robot(stiffness, wall=True):
         scene = sinew.load(EXAMPLES / "joints" / "two_segments.yaml", set=[
             f"bodies.upper.material.young_modulus={stiffness}", "time_step=10 ms",
@@ -375,7 +375,7 @@ def test_two_bodies_with_joints_and_pressed_against_a_wall():
         drive(loop, plant, 150)
         assert loop.error < 2e-4, name
         if wall:
-            # The tip can go farther than the wall lets the flank: the segment bends over the contact, and slides on it.
+            # The tip can reach beyond the wall's limit for the flank: the segment bends over the contact and slides on it.
             loop.set_target("tip", [0.009, 0.004, 0.1395])
             errors, statuses = drive(loop, plant, 150, start=150)
             assert statuses[-1] == "on-target" and loop.error < 1e-4
@@ -400,7 +400,7 @@ def test_chambers_are_commanded_their_pressure():
     assert plant.actuator("chamber").pressure > 1.15 * 6e3
 
 
-# Trouble.
+# Errors and failures
 
 
 def test_bad_input_has_names(scene, sim):
@@ -482,7 +482,7 @@ def test_wrong_sensors_have_names(scene):
 
 
 def test_the_guide(monkeypatch):
-    """The code of docs/closed_loop.md."""
+    """The code of docs/closed_loop.md runs."""
     root = EXAMPLES.parent
     monkeypatch.chdir(root)
     text = (root / "docs" / "closed_loop.md").read_text(encoding="utf-8")

@@ -64,7 +64,7 @@ def test_owns_its_actuators_until_detached(sim):
             assert caught.value.kind == "actuator-owned"
         assert sim.controller.attached
     assert not ik.attached and sim.controller is None
-    # The drives hold where they stand.
+    # The actuators hold their present displacements.
     before = sim.effector("tip").position
     sim.step(30)
     assert sim.effector("tip").position == pytest.approx(before, abs=1e-4)
@@ -241,7 +241,7 @@ controllers:
 
 
 def test_a_choice_that_goes_back_and_forth_comes_to_rest(tmp_path):
-    """An arm is asked to reach beyond its length, with more actuators than the target has directions."""
+    """The target is beyond the length of the arm, which has more actuators than the target has directions."""
     path = tmp_path / "scene.yaml"
     path.write_text(PULLED_STRAIGHT)
     sim = sinew.load(path)
@@ -249,7 +249,7 @@ def test_a_choice_that_goes_back_and_forth_comes_to_rest(tmp_path):
     held = 0
     for _ in range(8):
         sim.step()
-        # Said, where it does not settle within the eight iterations in which a controller chooses.
+        # Reported if the choice does not settle within eight iterations, the limit of a controller.
         assert sim.report.choice_held == (sim.report.iterations > 8)
         held += sim.report.choice_held
         errors.append(sim.controller.error)
@@ -270,14 +270,14 @@ def test_a_rotation_goes_as_far_in_a_step_whatever_the_robots_size(size):
         "effectors": {"turn": {"body": "lever", "orientation": frame}},
     })  # fmt: skip
     sinew.InverseController(sim, targets={"turn": [0.0, 0.0, 1.0]}, largest_step=0.03).step()
-    # Less the thousandth by which the regularisation holds it back.
+    # The regularisation reduces the motion by about 1e-3.
     assert sim.effector("turn").value[2] == pytest.approx(0.03, rel=2e-3)
 
 
 @pytest.mark.parametrize("solver", ["newton", "one-linearisation"])
 @pytest.mark.parametrize("asked", [0.045, 0.1])
 def test_one_cable_settles_at_the_fold_of_what_it_reaches(scene, solver, asked):
-    """Pulled farther, the tip goes back: x over the pull has its largest value in the middle of the cable's range."""
+    """The x coordinate of the tip has a maximum within the range of the cable: with more pull, the tip moves back."""
     tree = yaml.safe_load(scene.read_text())
     limits = {"tension": {"max": "80 N"}, "displacement": {"min": 0.0, "max": "60 mm", "rate": "100 mm/s"}}
     tree["actuators"] = {"east": {**tree["actuators"]["east"], "limits": limits}}

@@ -1,4 +1,4 @@
-"""Controllers of redundant actuators, and beside rows that others decide: twins, springs, gas, friction."""
+"""Controllers with redundant actuators, and with rows that they do not control: twin cables, springs, gas, friction."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ def cable(x, y, **more):
 
 
 def block(**actuators):
-    """A block of 20 x 20 x 100 mm with a cable at each side, and more actuators."""
+    """A block of 20 x 20 x 100 mm with a cable at each side, and further actuators."""
     sides = {"east": cable(0.017, 0.01), "north": cable(0.01, 0.017), "west": cable(0.003, 0.01),
              "south": cable(0.01, 0.003)}
     return {
@@ -55,7 +55,7 @@ def test_twin_cables_share_the_pull(offset, regularisation):
     ik.step(150)
     assert ik.status == "on-target"
     efforts = dict(zip(ik.actuators, ik.efforts))
-    if offset == 0.0:  # apart, however little, they are not the same cable
+    if offset == 0.0:  # with an offset, however small, the cables differ
         assert efforts["twin"] == pytest.approx(efforts["east"], abs=1e-3)
     _, single = comes_to_rest(block())
     pull = dict(zip(single.actuators, single.efforts))["east"]
@@ -78,10 +78,10 @@ def test_a_twin_that_others_command():
     sim = sinew.load(scene)
     ik = sinew.InverseController(sim, targets={"tip": TARGET}, actuators=["east", "north", "west", "south"])
     ik.step(100)
-    # East, on the same line, may take the twin's place: that then hangs slack, wound in by 0.5 mm.
+    # East, on the same line, can replace the twin, which is then slack with a command of 0.5 mm.
     assert ik.status == "on-target"
     assert sim.actuator("twin").slack and sim.actuator("twin").displacement > 0.0005
-    # What lies behind the twin alone can be reached: it holds.
+    # The target needs the twin, whose command remains in effect.
     sim = sinew.load(block(twin=cable(0.017, 0.01, command={"displacement": 0.003})))
     ik = sinew.InverseController(sim, targets={"tip": TARGET}, actuators=["north", "west", "south"])
     ik.step(100)
@@ -140,7 +140,7 @@ def test_nothing_asked_lets_go():
     ik = sinew.InverseController(sim, targets={"tip": TARGET}, weights={"tip": [1.0, 0.0, 0.0]})
     ik.step(100)
     assert sim.effector("tip").position[0] == pytest.approx(TARGET[0], abs=5e-5)
-    assert ik.status == "on-target" and ik.error < 5e-5  # what is not asked for is no error
+    assert ik.status == "on-target" and ik.error < 5e-5  # directions without weight do not count as error
 
 
 def test_conflicts_name_actuators_and_limits():
@@ -186,7 +186,7 @@ def test_what_rests_is_named_so():
     ik = sinew.InverseController(sim, targets={"tip": [0.08, 0.03, 0.09]})
     seen = {ik.step() for _ in range(400)}
     assert "moving" in seen and ik.status == "out-of-reach"
-    # One force alone, without limits, against a target to its side: nothing but its direction keeps it.
+    # A single force without limits and a target beside its line: only the direction of the force prevents the motion.
     scene = block()
     scene["actuators"] = {"push": {"type": "force", "body": "b", "point": [0.01, 0.01, 0.1],
                                    "direction": [1, 0, 0]}}

@@ -1,4 +1,4 @@
-"""What meshes cost: extrapolation against what is known, and refined scenes."""
+"""Convergence studies: extrapolation of known sequences, and refined scenes."""
 
 import json
 import pathlib
@@ -11,7 +11,7 @@ from sinew import convergence
 
 
 def powers(p, sizes=(1.0, 0.7, 0.4), at=np.array([2.0, -1.0, 0.5])):
-    """Values that converge to `at` by h^p."""
+    """Values that converge to `at` as h^p."""
     return sizes, [at + 0.3 * np.array([1.0, 2.0, -1.0]) * h**p for h in sizes]
 
 
@@ -19,7 +19,7 @@ def powers(p, sizes=(1.0, 0.7, 0.4), at=np.array([2.0, -1.0, 0.5])):
 def test_richardson_finds_order_and_limit(p):
     sizes, values = powers(p)
     found = convergence._estimate(sizes, values)
-    assert found.order == pytest.approx(p, abs=1e-8)  # whatever the sizes
+    assert found.order == pytest.approx(p, abs=1e-8)  # for uneven size ratios, too
     assert found.extrapolated == pytest.approx([2.0, -1.0, 0.5], abs=1e-8)
     assert found.error == pytest.approx(0.3 * np.sqrt(6.0), rel=1e-7)
     assert found.relative_error == pytest.approx(found.error / np.sqrt(5.25), rel=1e-9)
@@ -32,7 +32,7 @@ def test_what_does_not_converge_is_told():
         found = convergence._estimate(sizes, wrong)
         assert found.order is None
         assert found.uncertainty == pytest.approx(3.0 * np.linalg.norm(found.extrapolated - wrong[-1]))
-    assert convergence._estimate(sizes[1:], values[1:]).order is None  # two meshes show none
+    assert convergence._estimate(sizes[1:], values[1:]).order is None  # two meshes give no order
 
 
 def beam(mesh, element, **more):
@@ -47,7 +47,7 @@ def shape(size):
     return {"shape": "block", "length": 0.04, "width": 0.01, "height": 0.01, "element_size": size}
 
 
-#: How far the tip of the beam moves on 12 288 quadratic tetrahedra of 1.25 mm, m; that takes too long for here.
+#: Displacement of the tip of the beam on 12 288 quadratic tetrahedra of 1.25 mm, m; precomputed, because it takes long.
 TRUTH = np.array([-3.88156e-06, 0.0, 5.27308e-04])
 
 
@@ -61,7 +61,7 @@ def test_a_beam_shows_the_order_of_its_elements_and_what_its_mesh_costs():
 
 
 def test_a_beam_that_locks_shows_no_order():
-    # Two linear tetrahedra through the height: half of the deflection is missing.
+    # With two linear tetrahedra through the height, about half of the deflection is missing.
     study = convergence.study(beam(shape(0.005), "tet4"), static=True)
     found, own = study["tip.position"], np.linalg.norm(study.levels[0].values["tip.position"] - TRUTH)
     assert own > 0.4 * np.linalg.norm(TRUTH)
@@ -114,7 +114,7 @@ def test_a_robot_without_load_has_no_error_to_estimate(run):
     for name, word in (("tip.position", "displacement"), ("beam.strain_energy", "value")):
         with pytest.raises(sinew.Error, match=f"{name}: its {word} is zero to rounding on every mesh.*gravity.*bad-argument"):
             convergence.study(still, levels=2, measure=[name], **run)
-    study = convergence.study(still, levels=2, measure=["beam.volume"], **run)  # is known without load
+    study = convergence.study(still, levels=2, measure=["beam.volume"], **run)  # is nonzero without load
     assert study["beam.volume"].extrapolated == pytest.approx(4e-6)
 
 

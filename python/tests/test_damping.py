@@ -1,4 +1,4 @@
-"""Stiffness damping resists strain and not rotation."""
+"""Stiffness damping resists strain, but not rotation."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import sinew
 
 
 def spin_after(time, element, material, stiffness, tension):
-    """Spin (rad/s) of a free block that starts at 5, with a tendon across it that pulls at the block alone."""
+    """Spin (rad/s) of a free block that starts at 5 rad/s, with a tendon between two points of the block."""
     sim = sinew.load({
         "sinew": 1, "time_step": "1 ms", "integrator": "bdf2",
         "bodies": {"block": {
@@ -39,7 +39,7 @@ def test_a_strained_corotational_body_keeps_its_spin(tension):
 
 
 def test_it_damps_as_rayleigh_says():
-    # A beam let go swings in its first mode, which decays at the rate beta omega^2 / 2.
+    # A released beam vibrates in its first mode, which decays at the rate beta omega^2 / 2.
     def peaks(stiffness):
         sim = sinew.load({
             "sinew": 1, "time_step": "1 ms", "integrator": "bdf2",

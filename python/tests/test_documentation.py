@@ -1,4 +1,4 @@
-"""The guide's code and the examples run as they stand."""
+"""The code of the guide and the examples run unchanged."""
 
 import os
 import re
@@ -21,7 +21,7 @@ SCENES = sorted((ROOT / "examples").rglob("*.yaml"))
 
 
 def test_the_guide(tmp_path, monkeypatch, capsys):
-    # From a folder that looks like the repository's root, since the guide writes files.
+    # The guide writes files, so it runs in a folder that looks like the root of the repository.
     (tmp_path / "examples").symlink_to(ROOT / "examples")
     monkeypatch.chdir(tmp_path)
     text = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
@@ -59,7 +59,7 @@ def test_example_scenes(scene):
     sim.step(round(1.0 / sim.time_step))
     described = yaml.safe_load(scene.read_text())["bodies"]
     for name, body in sim.bodies.items():
-        robot = name.split(".")[0]  # of a link of a URDF file, whose root stays
+        robot = name.split(".")[0]  # name of the URDF robot of a link; its root link is fixed
         if described[robot].get("fixed") is True or name == "arm.base":
             continue
         moved = np.abs(body.positions - start[name]).max()

@@ -1,4 +1,4 @@
-"""The element that a body gets without `element`, and the warning where it locks."""
+"""The default element of a body, and the warning if it locks."""
 
 import warnings
 
@@ -71,7 +71,7 @@ def test_a_cable_at_bare_points_of_quadratic_elements_is_told_apart():
     with pytest.warns(sinew.SinewWarning, match=r"cable 'pull' pulls at single points.*guide_radius: \d mm \[bare-points\]"):
         bare = pulled("tet10")
     assert [(n.level, n.kind) for n in bare.notices] == [("warning", "bare-points")]
-    # What the warning is about: a third of the bend goes into the dents.
+    # The effect that the warning describes: a third of the bend is lost in the dents.
     guided = pulled("tet10", guide_radius=0.003)
     assert not guided.notices
     for sim in (bare, guided):

@@ -1,4 +1,4 @@
-"""Broken calls: each its own kind, its place and a remedy, and nothing changed."""
+"""Invalid calls: each has its own kind, place and remedy, and changes nothing."""
 
 import copy
 import pickle
@@ -37,14 +37,14 @@ def changed(path, value):
 
 
 def itself():
-    """A dict that holds itself."""
+    """A dict that contains itself."""
     scene = dict(SCENE)
     scene["bodies"] = scene
     return scene
 
 
 def controller(sim, **settings):
-    """A controller of the tip, with something wrong."""
+    """A controller of the tip with invalid settings."""
     return sinew.InverseController(sim, **{"targets": {"tip": [0, 0, 0.079]}, **settings})
 
 

@@ -1,4 +1,4 @@
-"""Estimates of robots at rest: derivatives, the optimum, covariance, what cannot be observed, places, wrong input."""
+"""Estimates of robots at rest: derivatives, optimum, covariance, observability, localisation, invalid input."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,7 @@ def by_differences(twin, values, step):
 def agrees(twin, values, step):
     twin.predict(values)
     ours, reference = twin.sensitivity(values), by_differences(twin, values, step)
-    # A slack cable's column is zero, and its differences are the equilibrium's tolerance.
+    # The column of a slack cable is zero; its differences only show the tolerance of the equilibrium.
     size = np.maximum(np.abs(reference).max(axis=0), 1e-6 * np.abs(reference).max())
     assert np.abs((ours - reference) / size).max() < 1e-5
     return ours
@@ -52,7 +52,7 @@ def test_sensitivity_with_held_cables_is_that_of_differences(scene):
     twin = made(scene)
     slope = agrees(twin, np.concatenate([[0.3, -0.2, 0.1], PULL]), np.concatenate([np.full(3, 1e-3), np.full(4, 1e-6)]))
     slack = [c for c in CABLES if twin.sim.actuator(c).slack]
-    assert 0 < len(slack) < 4  # both kinds took part
+    assert 0 < len(slack) < 4  # both taut and slack cables occur
     assert all((slope[:, twin.inputs.index(f"{c}.motion")] == 0.0).all() for c in slack)
 
 
@@ -105,7 +105,7 @@ def test_large_push_is_found_with_its_shape(scene):
     assert np.linalg.norm(twin.read()[:3] - still[:3]) > 5e-3
     found = estimate.solve(twin, readings)
     assert found.status == "converged"
-    # The prior of 2 N pulls by its share of the information alone.
+    # The prior of 2 N has little weight compared with the readings.
     np.testing.assert_allclose(found.unknowns[:3], truth[:3], atol=3e-3)
     assert np.abs(found.positions["finger"] - shape).max() < 2e-5
     np.testing.assert_array_equal(found.positions["finger"], twin.sim.body("finger").positions)
@@ -122,11 +122,11 @@ def test_optimum_is_that_of_scipy(scene):
     def residual(v):
         return np.concatenate([(numbers - twin.predict(mean + std * v)) / twin.noise, v])
     reference = scipy.optimize.least_squares(residual, (truth - mean) / std, diff_step=1e-6, xtol=1e-14, ftol=1e-14)
-    # Within 1e-3 deviations of the optimum the cost differs by 1e-6 at most.
+    # Within 1e-3 standard deviations of the optimum, the cost differs by at most 1e-6.
     np.testing.assert_allclose(2 * reference.cost, found.chi_squared, atol=1e-6)
     deviations = np.sqrt(np.diag(found.covariance))
     assert np.abs((mean + std * reference.x - found.unknowns) / deviations).max() < 1e-3
-    # SciPy's steps are relative: those of unknowns near zero drown in rounding.
+    # SciPy's steps are relative: for unknowns near zero, the differences are lost in rounding.
     way = 1e-2 * np.eye(len(mean))
     jacobian = np.column_stack([(residual(reference.x + one) - residual(reference.x - one)) / 2e-2 for one in way])
     information = np.linalg.inv(jacobian.T @ jacobian)
@@ -151,12 +151,12 @@ def test_errors_are_as_the_covariance_says(scene):
 
 
 def test_shape_deviation_is_that_of_sigma_points(scene):
-    small = estimate.Force("hand", "finger", (0, 0, 0.08), prior=0.005)  # so that the answer is linear
-    twin = made(scene, (small,), [estimate.Measured("tip.z", 1.0)], commanded="tension")  # cables at rest are about to be taut
+    small = estimate.Force("hand", "finger", (0, 0, 0.08), prior=0.005)  # small, so the response is linear
+    twin = made(scene, (small,), [estimate.Measured("tip.z", 1.0)], commanded="tension")  # at rest, cables are about to become taut
     found = estimate.solve(twin, {"tip.z": 0.08})
     ours = estimate.shape_std(twin, found, "finger")
     shapes = []
-    for axis in np.sqrt(3.0) * 0.005 * np.concatenate([np.eye(3), -np.eye(3)]):  # points that have the prior's covariance
+    for axis in np.sqrt(3.0) * 0.005 * np.concatenate([np.eye(3), -np.eye(3)]):  # sigma points with the covariance of the prior
         twin.predict(axis)
         shapes.append(np.array(twin.sim.body("finger").positions))
     sampled = np.std(shapes, axis=0)
@@ -198,12 +198,12 @@ def test_modulus_from_readings(scene):
         model.sim.actuator("push").force = 0.5
     found = estimate.solve(twin, dict(zip(plant.outputs, plant.predict(np.zeros(3)))))
     assert found.values[modulus.path] == pytest.approx(400e3, rel=1e-3)
-    assert twin.sim.actuator("push").force == 0.5  # commands stay with the model that is built anew
+    assert twin.sim.actuator("push").force == 0.5  # a rebuilt model keeps the commands
 
 
 def test_two_forces_and_a_tension_at_once(scene):
     second = estimate.Force("knock", "finger", (0.01, 0.0, 0.04), prior=2.0, directions=[[-1, 0, 0]])
-    measured = [m for m in sensors(1e-6, 1e-4) if m.name != "west.tension"]  # so sharp that the prior does not matter
+    measured = [m for m in sensors(1e-6, 1e-4) if m.name != "west.tension"]  # so accurate that the prior does not matter
     twin = made(scene, (HAND, second, estimate.Effort("west", 3.0)), measured, commanded="tension")
     truth = np.array([0.2, -0.3, 0.1, 0.9, 1.4, 0.5, 0.5, 0.5])
     readings = dict(zip(twin.outputs, twin.predict(truth)))
@@ -259,7 +259,7 @@ def test_arm_of_constant_curvature_with_a_torque_that_is_not_known():
     truth = np.array([0.08, 0.05, 0.0, 0.02])
     agrees(twin, truth, np.full(4, 1e-3))
     found = estimate.solve(twin, dict(zip(twin.outputs, twin.predict(truth))))
-    assert any("1.00 hand.y" in text for text in found.observability.unobservable)  # out of the plane that the arm bends in
+    assert any("1.00 hand.y" in text for text in found.observability.unobservable)  # normal to the bending plane of the arm
     assert max(abs(r) for r in found.residuals.values()) < 0.5
 
 
@@ -287,7 +287,7 @@ def test_same_bits_with_other_threads(scene):
     np.testing.assert_array_equal(found[0].covariance, found[1].covariance)
 
 
-# Places
+# Localisation
 
 def test_patches_cover_the_free_surface_once(scene):
     sim = sinew.load(scene)
@@ -341,7 +341,7 @@ def test_no_force_is_said(scene):
 
 
 def test_places_that_sensors_do_not_tell_are_refused(scene):
-    twin = made(scene, (), [estimate.Measured("tip.position", 1.0)])  # a marker that is good to 1 m
+    twin = made(scene, (), [estimate.Measured("tip.position", 1.0)])  # a marker with a standard deviation of 1 m
     areas = estimate.patches(twin.sim, "finger", 12)
     found = estimate.locate(twin, dict(zip(("tip.x", "tip.y", "tip.z"), twin.predict(np.zeros(0)) + [0.5, 0.0, 0.0])), areas)
     assert found.status == "unobservable"
@@ -357,7 +357,7 @@ def test_readings_that_no_place_explains_are_refused(scene):
     assert estimate.locate(twin, readings, areas).status == "unexplained"
 
 
-# Wrong input
+# Invalid input
 
 @pytest.mark.parametrize("sensor", ["nose.position", "tip.rotation", "tip.heat"])
 def test_sensors_that_do_not_exist(scene, sensor):

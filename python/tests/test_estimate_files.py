@@ -82,7 +82,7 @@ def command(*words):
 
 @pytest.fixture
 def recorded(scene, tmp_path):
-    """Readings of the finger with a force that grows on its tip, a camera that loses it for a while."""
+    """Readings of the finger under a growing force on its tip, with a camera that loses the tip for a while."""
     sim, generator = sinew.load(scene), np.random.default_rng(0)
     lines = ["time [s],tip.x [mm],tip.y [mm],tip.z [mm],east.displacement [mm],east.tension [N]"]
     sim.actuator("east").displacement = 0.003

@@ -1,4 +1,4 @@
-"""Filters: against batch least squares, delays, lost sensors, arms in full, finite elements by few unknowns."""
+"""Filters: comparison with batch least squares, delays, lost sensors, full arm dynamics, finite elements with few unknowns."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ STEP = 0.02
 
 
 class Cart:
-    """A linear robot: place and speed, pushed by white noise; two sensors of other rates."""
+    """A linear robot with position and speed, driven by white noise; two sensors with different rates."""
 
     names = ["place", "speed"]
 
@@ -62,7 +62,7 @@ def cart_readings(count=30, seed=0):
 
 
 def batch(readings, count=30):
-    """All states at once, by weighted least squares: the last one and its covariance."""
+    """Last state and its covariance by weighted least squares over all states at once."""
     model = Cart()
     mean, covariance = model.start()
     rows, right = [], []
@@ -154,7 +154,7 @@ def arm_of():
 
 
 def arm_run(kind, push=np.array([0.08, 0.0, 0.03]), seconds=1.6):
-    """The filter at the end, the truth there, and errors over time in deviations."""
+    """Final filter, true angles, and errors over time in standard deviations."""
     arm, generator = arm_of(), np.random.default_rng(3)
 
     def torque(time):
@@ -168,7 +168,7 @@ def arm_run(kind, push=np.array([0.08, 0.0, 0.03]), seconds=1.6):
     pending, errors = [], []
     for k in range(1, round(seconds / 0.01) + 1):
         time = 0.01 * k
-        for part in range(4):  # four times finer than the filter
+        for part in range(4):  # four times finer steps than the filter
             load = torque(time - 0.01 + 0.0025 * (part + 1)) + arm.jacobian(theta, 1).T @ push
             thetas, rates = arm.simulate(theta, rate, load[None], time_step=0.0025)
             theta, rate = thetas[-1], rates[-1]
@@ -187,10 +187,10 @@ def arm_run(kind, push=np.array([0.08, 0.0, 0.03]), seconds=1.6):
 def test_arm_in_full_with_a_push_on_its_tip(kind):
     run, theta, errors = arm_run(kind)
     np.testing.assert_allclose(run.mean[:2], theta, atol=0.02)
-    assert 0.2 < np.mean(errors**2) < 4.0  # about 1 where the model is right
+    assert 0.2 < np.mean(errors**2) < 4.0  # about 1 if the model is correct
     seen = run.mean[4:]
     assert abs(seen[0] - 0.08) < 4.0 * run.std[4] and run.std[4] < 0.05
-    assert run.std[5] == pytest.approx(0.2, rel=0.05)  # out of the arm's plane: not observable
+    assert run.std[5] == pytest.approx(0.2, rel=0.05)  # normal to the plane of the arm: not observable
 
 
 def test_arm_with_an_unknown_number(scene):
@@ -231,7 +231,7 @@ def test_measured_commands_have_white_errors(scene):
     for k in range(1, 5):
         run.update(0.05 * k, [estimate.Reading(0.05 * k, s, answer[rows]) for s, rows in enumerate(model.rows)])
         spread.append(run.std[3:].copy())
-    assert (spread[-1] > 0.5e-4).all()  # the error of an instant is not that of the one before
+    assert (spread[-1] > 0.5e-4).all()  # the errors of different instants are independent
     np.testing.assert_allclose(run.mean[:2], [0.2, 0.1], atol=0.01)
 
 
@@ -271,7 +271,7 @@ def test_rows_that_stay_give_what_differences_give(scene):
 
 
 def seen_finger(scene):
-    """A plant that something pushes, seen by sensors of other rates and delays, and the twin that does not know the push."""
+    """A plant under a push, its sensors with different rates and delays, and a twin with the push as an unknown."""
     sensing = ("sensors={tip: {type: marker, body: finger, point: 0 0 80 mm, noise: 0.05 mm, rate: 50 Hz, delay: 30 ms}, "
                "side: {type: marker, body: finger, point: 10 0 50 mm, outside: nearest, noise: 0.05 mm, dropout: 20 %}, "
                + ", ".join(f"{c}: {{type: cable-tension, actuator: {c}, noise: 5 mN}}, "
@@ -308,7 +308,7 @@ def test_a_filter_takes_samples_as_they_are_delivered(scene):
         assert all(reading.time <= plant.time for reading in new)
         taken += sum(reading.sensor == 0 for reading in new)
         run.update(plant.time, new)
-    assert taken == 5  # of 0 to 80 ms, 30 ms late
+    assert taken == 5  # samples of 0 to 80 ms, with a delay of 30 ms
     hand = twin.inputs.index("hand.x")
     assert run.mean[hand] == pytest.approx(force, abs=4.0 * run.std[hand])
     assert run.std[hand] < 0.1

@@ -1,4 +1,4 @@
-"""Estimators of scenes: forces from sensors, beside everything else."""
+"""Estimators in scenes: forces from sensors, in combination with all other features."""
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +15,7 @@ def scene(**changes):
 
 
 def errors_over_run(sim, steps, true):
-    """(steps, 3) of the estimate's errors and of its deviations, N."""
+    """Errors and standard deviations of the estimate, (steps, 3) N."""
     push = sim.estimator("push")
     errors, deviations = [], []
     for _ in range(steps):
@@ -34,14 +34,14 @@ def test_a_push_is_found():
     assert sim.estimator("push").status == "not-started"
     errors, deviations = errors_over_run(sim, 300, hand)
     assert sim.estimator("push").status == "estimating"
-    assert np.abs(errors[150:199].mean(axis=0)[:2]).max() < 0.01  # N, while it pushes
-    late = np.linalg.norm(errors[99:103], axis=1)  # from 1 s on: load cells see it at once, the markers 20 ms later
+    assert np.abs(errors[150:199].mean(axis=0)[:2]).max() < 0.01  # N, during the push
+    late = np.linalg.norm(errors[99:103], axis=1)  # from 1 s on: load cells respond at once, the markers 20 ms later
     assert late[0] > 0.1 and late[3] < 0.1
     assert (np.abs(errors[20:99]) < 4.0 * deviations[20:99]).all()
 
 
 def test_ellipsoids_hold_what_they_say():
-    """Forces drawn from the prior: the squared error by the covariance is chi squared with three degrees of freedom."""
+    """For forces drawn from the prior, the error weighted by the inverse covariance is chi squared, three degrees of freedom."""
     rng = np.random.default_rng(7)
     squares = []
     for draw in range(60):
@@ -57,7 +57,7 @@ def test_ellipsoids_hold_what_they_say():
         push = sim.estimator("push")
         error = push.mean - force
         squares.append(error @ np.linalg.solve(push.covariance, error))
-    assert np.mean(squares) == pytest.approx(3.0, rel=0.35)  # 3 +- 0.32 by theory
+    assert np.mean(squares) == pytest.approx(3.0, rel=0.35)  # theory: 3 +- 0.32
     assert 0.8 <= np.mean(np.array(squares) < 6.251) <= 0.97  # the 90 % ellipsoid
 
 
@@ -98,7 +98,7 @@ def test_threads_give_the_same_bits():
 
 
 def test_what_no_sensor_sees_is_named():
-    """One load cell on a cable tells of one direction."""
+    """One load cell on a cable observes one direction."""
     tree = scene()
     tree["estimators"]["push"]["sensors"] = ["pull_east"]
     sim = sinew.load(tree)
@@ -137,7 +137,7 @@ def test_estimates_are_recorded():
 
 
 def chambered(**unknown):
-    """A finger with a chamber that is inflated and leaks, seen by two markers."""
+    """A finger with an inflated, leaking chamber and two markers."""
     return {
         "sinew": 1, "time_step": "10 ms", "integrator": "quasi-static", "gravity": [0, 0, 0],
         "bodies": {"finger": {"type": "fem", "mesh": {"shape": "chambered-cylinder", "radius": "12 mm", "height": "60 mm",
@@ -156,7 +156,7 @@ def chambered(**unknown):
 
 
 def test_a_leak_is_found():
-    """Beside a commanded pressure: what is missing; with an unknown command: all of it."""
+    """With a commanded pressure, the estimate is the loss; with an unknown command, the whole pressure."""
     for unknown, true in (({}, -2e3), ({"command": "unknown"}, 8e3)):
         sim = sinew.load(chambered(**unknown))
         rows = sim.run(0.4)
@@ -168,7 +168,7 @@ def test_a_leak_is_found():
 
 
 def test_a_pressure_behind_a_commanded_volume_is_found():
-    """The estimator does not trust the volume, and looks for the pressure that it makes."""
+    """The estimator does not rely on the commanded volume and estimates the resulting pressure."""
     tree = chambered()
     tree["loads"] = {}
     tree["actuators"]["air"]["command"] = {"volume_growth": {"ramp": {"to": "0.2 ml", "duration": "0.2 s"}}}
@@ -182,7 +182,7 @@ def test_a_pressure_behind_a_commanded_volume_is_found():
 
 
 def test_a_tension_is_found_beside_a_force():
-    """The estimator does not know that the cable is pulled; a load cell would tell at once, markers do in time."""
+    """The tension of the cable is unknown; a load cell would show it at once, markers do so gradually."""
     tree = scene()
     tree["actuators"]["east"]["command"] = {"tension": {"steps": [["0 s", 0], ["0.3 s", "1 N"]]}}
     tree["estimators"]["push"]["sensors"] = ["tip", "middle", "low", "pull_north"]

@@ -1,4 +1,4 @@
-"""Estimators of scenes whose robot has inertia: against Kalman's filter on the full state, on bodies that swing and fly."""
+"""Estimators in scenes with inertia: compared with a Kalman filter of the full state, and on swinging and flying bodies."""
 import copy
 
 import numpy as np
@@ -10,7 +10,7 @@ STEP = 0.005  # s
 
 
 def beam(**changes):
-    """A beam of few elements, 60 x 10 x 10 mm, that moves so little that it is linear."""
+    """A beam of few elements, 60 x 10 x 10 mm, whose motion is small enough to be linear."""
     return {
         "sinew": 1, "time_step": f"{STEP} s", "integrator": "backward-euler", "gravity": [0, 0, 0], "solver": {"tolerance": 1e-10},
         "bodies": {"beam": {"type": "fem", "mesh": {"shape": "block", "length": "60 mm", "width": "10 mm", "height": "10 mm",
@@ -27,7 +27,7 @@ def beam(**changes):
 
 
 class FullKalman:
-    """Simon 2006, sec. 5.1, of the force and all free nodes' positions and velocities, each step of backward Euler:
+    """Kalman filter (Simon 2006, sec. 5.1) of the force and the positions and velocities of all free nodes, with backward Euler:
     (M/h^2 + C/h + K) q' = M (q/h^2 + v/h) + C q/h + f,  v' = (q' - q)/h."""
 
     def __init__(self, sim, prior, walk):
@@ -49,7 +49,7 @@ class FullKalman:
         self.noise = walk**2 * STEP
 
     def rows(self, point, count):
-        """(3, count) of one node's displacement."""
+        """Rows (3, count) that select the displacement of one node."""
         node = self.free.index(np.linalg.norm(self.rest - point, axis=1).argmin())
         return np.eye(count)[3 * node:3 * node + 3]
 
@@ -67,7 +67,7 @@ class FullKalman:
 
 
 def test_a_beam_is_as_kalmans_filter_of_its_full_state():
-    """147 numbers, of which the covariance has 12 columns. Without delays, since the reference takes samples as they come."""
+    """147 states; the estimator's covariance factor has 12 columns. No delays, because the reference takes samples as they arrive."""
     tree = beam()
     tree["sensors"]["middle"].pop("delay")
     sim = sinew.load(tree)
@@ -85,7 +85,7 @@ def test_a_beam_is_as_kalmans_filter_of_its_full_state():
 
 
 def test_late_samples_count_for_their_time():
-    """Delays change the last estimate only by what has not come yet."""
+    """Delays change the final estimate only by the samples that have not arrived yet."""
     late, prompt = beam(), beam()
     prompt["sensors"]["middle"].pop("delay")
     runs = [sinew.load(tree) for tree in (late, prompt)]
@@ -97,7 +97,7 @@ def test_late_samples_count_for_their_time():
 
 
 def pendulum(force):
-    """A soft finger that hangs, is let go from the side, and is pushed while it swings."""
+    """A hanging soft finger that is released from the side and pushed while it swings."""
     tree = beam(gravity="0 0 -9.81 m/s^2", solver={})
     tree["bodies"]["beam"] |= {"initial_velocity": {"linear": "0 0.3 0 m/s"}}
     tree["loads"]["hand"] |= {"force": force, "factor": {"steps": [["0 s", 0], ["0.1 s", 1]]}}
@@ -118,18 +118,18 @@ def test_a_push_on_a_swinging_finger_is_found():
         error = push.forces["hand"] - true
         errors.append(error)
         squares.append(error @ np.linalg.solve(push.covariance, error))
-    assert push.status in ("estimating", "unobservable")  # along the finger the markers see little
+    assert push.status in ("estimating", "unobservable")  # along the finger, the markers observe little
     assert np.abs(np.array(errors[45:])[:, 1:]).max() < 0.01
     assert np.median(squares[:19] + squares[35:]) < 7.8  # chi squared of three, 95 %
     quasi = pendulum([0.0, 0.02, -0.01])
     quasi["estimators"]["push"]["inertia"] = False
     sim = sinew.load(quasi)
-    sim.step(15)  # nothing pushes yet
+    sim.step(15)  # before the push
     assert np.abs(sim.estimator("push").forces["hand"]).max() > 3.0 * np.abs(errors[14]).max()
 
 
 def flight(force, seed):
-    """A soft cube that is thrown, turns, and is pushed off its centre, with a marker and a gyroscope."""
+    """A soft cube that flies, rotates, and is pushed off its centre, with a marker and a gyroscope."""
     return {
         "sinew": 1, "time_step": "10 ms", "integrator": "backward-euler", "gravity": "0 0 -9.81 m/s^2",
         "bodies": {"cube": {"type": "fem", "mesh": {"shape": "block", "length": "20 mm", "width": "20 mm", "height": "20 mm",
@@ -146,7 +146,7 @@ def flight(force, seed):
 
 
 def test_ellipsoids_of_a_flying_body_hold_what_they_say():
-    """Forces drawn from the prior: chi squared with three degrees of freedom."""
+    """For forces drawn from the prior, the weighted error is chi squared with three degrees of freedom."""
     rng = np.random.default_rng(5)
     squares = []
     for draw in range(40):
@@ -157,7 +157,7 @@ def test_ellipsoids_of_a_flying_body_hold_what_they_say():
         assert air.status == "estimating" and (air.std < 0.008).all()
         error = air.mean - force
         squares.append(error @ np.linalg.solve(air.covariance, error))
-    assert np.mean(squares) == pytest.approx(3.0, rel=0.4)  # 3 +- 0.39 by theory
+    assert np.mean(squares) == pytest.approx(3.0, rel=0.4)  # theory: 3 +- 0.39
     assert np.mean(np.array(squares) < 6.251) >= 0.8  # the 90 % ellipsoid
 
 

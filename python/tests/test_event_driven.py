@@ -1,4 +1,4 @@
-"""Impacts of rigid bodies at their moments, with restitution."""
+"""Event-driven impacts of rigid bodies, with restitution."""
 
 import numpy as np
 import pytest
@@ -122,7 +122,7 @@ def test_the_example_comes_to_rest():
 
 
 def test_a_robot_with_a_limited_cable_goes_on_from_a_state_bit_for_bit():
-    """Whether a part of a step is smooth was judged by rows that a state does not have."""
+    """Regression: whether a part of a step is smooth depended on rows that a state does not contain."""
     sim = sinew.load({
         "sinew": 1, "time_step": "5 ms", "integrator": "event-driven", "gravity": "-3 0 -5 m/s^2",
         "bodies": {"link": {"type": "rigid", "shape": {"box": "60 20 10 mm"}, "density": "1000 kg/m^3",

@@ -1,4 +1,4 @@
-"""Fast bodies against a thin plate: none passes through it. A step that does not see how they land fails."""
+"""Fast bodies hit a thin plate: none passes through it. A step that cannot resolve the landing fails."""
 
 import itertools
 
@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import sinew
 
-THICKNESS = 2e-3  # m, of the plate, whose upper face is at z = 0
-HALF = 0.15  # m
+THICKNESS = 2e-3  # m, thickness of the plate, whose upper face is at z = 0
+HALF = 0.15  # m, half width of the plate
 
 SHAPES = {
     "ball": {"shape": {"sphere": {"radius": 0.01}}},
@@ -42,7 +42,7 @@ def plate(kind):
 
 
 def thrown(name, speed, random):
-    """A body in any orientation up to 50 mm above the plate, some of them spinning."""
+    """A body with random orientation and height, up to 50 mm above the plate, and in some cases random spin."""
     axis = random.normal(size=3)
     return {"type": "rigid", "density": 2000.0, **SHAPES[name],
             "pose": {"position": [0, 0, 0.04 + random.uniform(0.001, 0.05)],
@@ -66,7 +66,7 @@ def places(sim, name):
 
 
 def never_passes(scene, folder, speed):
-    """Whether the steps went well; a body below the plate fails the test."""
+    """Whether all steps were solved; fails the test if the body is below the plate."""
     sim = sinew.load(scene, folder=folder)
     for _ in range(int(0.15 / (speed * scene["time_step"])) + 3):
         try:
@@ -76,7 +76,7 @@ def never_passes(scene, folder, speed):
             return False
         middle = places(sim, "body").mean(axis=0)
         if np.abs(middle[:2]).max() > HALF - 0.05:
-            break  # it flew off
+            break  # it left the plate
         assert middle[2] > -THICKNESS, f"passed at {middle}"
     return True
 
@@ -103,7 +103,7 @@ def test_no_soft_block_passes_through_a_plate(folder, kind, speed, step):
 
 
 def test_a_sheet_that_turns_into_a_plate_is_seen(folder):
-    """Its corners see no wall: they are joined to those on the other side by edges of 1 mm."""
+    """The corners of the sheet are connected to those on its other side by edges of 1 mm, so they detect no wall."""
     axis = np.array([0.61042263, -0.1740855, -0.77270851])
     body = {"type": "rigid", "density": 2000.0, **SHAPES["sheet"],
             "pose": {"position": [0, 0, 0.08892], "rotation": {"axis": list(axis / np.linalg.norm(axis)), "angle": 1.62833}},

@@ -1,7 +1,7 @@
-"""Contacts of a step as a problem by themselves, and FCLIB files of them.
+"""Contact problems of steps, and FCLIB files.
 
-Problems of other simulators are looked for in $SINEW_SHARED_DATA/fclib, else in ../shared/data/fclib beside the repository;
-their tests are skipped where there are none.
+Problems of other simulators are read from $SINEW_SHARED_DATA/fclib, else from ../shared/data/fclib beside the repository;
+without them, their tests are skipped.
 """
 
 import importlib.util
@@ -23,7 +23,7 @@ SQUEEZE = "examples/contact/squeeze.yaml"
 
 
 def solved_by_itself(problem):
-    """Forces and motions of the contacts from solve_cones(), from a cold start."""
+    """Forces and motions of the contacts by solve_cones(), from a cold start."""
     solution = sinew.qp.solve_cones(problem.W, problem.q, problem.friction, 1e-10)
     assert solution.status == "solved"
     return solution.x.reshape(-1, 3), (problem.W @ solution.x + problem.q).reshape(-1, 3)
@@ -47,7 +47,7 @@ def test_the_step_solves_it(scene, steps):
     across = np.linalg.norm(friction, axis=1)
     assert np.sort(np.hypot(r[:, 1], r[:, 2]))[-5:] == pytest.approx(np.sort(across)[-5:], rel=1e-9)
 
-    # Friction may let several forces solve it; where the contacts go is one and the same.
+    # With friction, the forces may not be unique; the motions of the contacts are.
     x, u = solved_by_itself(problem)
     own = (problem.W @ problem.r + problem.q).reshape(-1, 3)
     scale = np.abs(problem.q).max()
@@ -70,7 +70,7 @@ def test_empty_before_the_first_step():
 
 
 def heap(pairs):
-    """Boxes on a table, two on each other: each pile has nothing in common with the others."""
+    """Piles of two boxes each on a table; the piles are independent of each other."""
     box = {"type": "rigid", "shape": {"box": [0.03, 0.03, 0.02]}, "density": 1000.0}
     bodies = {"table": {"type": "rigid", "shape": {"box": [3.0, 3.0, 0.02]}, "density": 1000.0, "fixed": True,
                         "pose": {"position": [0, 0, -0.01]}}}  # fmt: skip
@@ -124,7 +124,7 @@ def test_round_trip(tmp_path):
 
 
 def test_the_layout_is_that_of_fclib(tmp_path):
-    """As INRIA RT-0444 and the library's own writer have it, read by h5py alone."""
+    """The layout of INRIA RT-0444 and of the library's own writer, read with h5py only."""
     W = np.array([[2.0, 0.5, 0.0], [0.5, 1.0, 0.0], [0.0, 0.0, 3.0]])
     path = tmp_path / "one.hdf5"
     sinew.qp.write_fclib(path, W, [-1.0, 0.1, 0.0], [0.5], [0.4, 0.0, 0.0], "one", "a contact")
@@ -204,9 +204,9 @@ def test_problems_of_others(benchmark, path, form):
     W, q, friction = benchmark.read(path)
     solution = sinew.qp.solve_cones(W if form == "sparse" else W.toarray(), q, friction, 1e-8)
     assert solution.status == "solved"
-    # The sum W r is rounded in another order here.
+    # Here, the sum W r is rounded in another order.
     assert benchmark.natural_map(W, q, friction, solution.x) <= 1e-8 * (1.0 + 1e-4)
-    # The laws themselves, by contact: no force pulls, friction stays within the cone.
+    # The laws of each contact: no adhesion, and friction within the cone.
     r = solution.x.reshape(-1, 3)
     assert r[:, 0].min() >= 0.0
     assert np.all(np.hypot(r[:, 1], r[:, 2]) <= friction * r[:, 0] * (1.0 + 1e-12))

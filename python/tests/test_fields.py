@@ -29,7 +29,7 @@ def test_uniaxial_tension(element, material):
     body = sim.body("cube")
     rest = np.array(body.rest_positions)
     top = np.flatnonzero(rest[:, 2] > SIDE - 1e-9)
-    # Even traction: shares of the top face by the shapes of its elements, from a body without mass.
+    # Uniform traction on the top face, with consistent nodal forces; the body has no mass.
     pull = np.zeros_like(rest)
     for face, weights in faces(body, element):
         pull[face, 2] += weights
@@ -57,7 +57,7 @@ def test_uniaxial_tension(element, material):
 
 
 def faces(body, element):
-    """Nodes of each face of the top and their shares of an even traction."""
+    """Nodes of each face on top, with their fractions of a uniform traction."""
     rest = np.array(body.rest_positions)
     up = rest[:, 2] > SIDE - 1e-9
     if element == "hex8":
@@ -103,10 +103,10 @@ def test_scalar_fields_are_those_of_the_tensors(element, material):
     assert set(fields.FIELDS) >= {"von_mises_stress", "max_stretch", "pressure", "energy_density"}
     volumes = np.array(body.element_volumes)
     assert (body.element_field("energy_density") * volumes).sum() == pytest.approx(body.strain_energy, rel=1e-10)
-    # Linear in the stress, so that the mean of the pressure is the pressure of the mean.
+    # The pressure is linear in the stress, so its mean is the pressure of the mean stress.
     pressure = -np.trace(body.cauchy_stresses, axis1=1, axis2=2) / 3
     assert body.element_field("pressure") == pytest.approx(pressure, rel=1e-9)
-    if element == "tet4":  # one point an element
+    if element == "tet4":  # one integration point per element
         assert body.element_field("von_mises_stress") == pytest.approx(fields.von_mises(body.cauchy_stresses), rel=1e-9)
         stretches = fields.principal_stretches(body.deformation_gradients)
         assert body.element_field("max_stretch") == pytest.approx(stretches[:, 0], rel=1e-12)

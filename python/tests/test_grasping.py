@@ -1,4 +1,4 @@
-"""The example of a soft gripper that lifts a soft cup."""
+"""The example in which a soft gripper lifts a soft cup."""
 
 import importlib.util
 from pathlib import Path
@@ -14,13 +14,13 @@ def grasp():
     described = importlib.util.spec_from_file_location("grasp", GRASP)
     example = importlib.util.module_from_spec(described)
     described.loader.exec_module(example)
-    example.LIFTS, example.LIFTED, example.LIFT = 1.1, 1.3, 12e-3  # s, m: sooner, less far, as fast as in the example
+    example.LIFTS, example.LIFTED, example.LIFT = 1.1, 1.3, 12e-3  # s, m: an earlier and shorter lift at the speed of the example
     return example
 
 
 def test_a_soft_gripper_lifts_a_soft_cup(grasp):
     sim = grasp.make()
-    gaps, _, _ = grasp.run(sim, 1.5)  # raises where a step is flagged
+    gaps, _, _ = grasp.run(sim, 1.5)  # raises if a step is flagged
     cup = sim.body("cup")
     before = cup.positions.copy()
     later, _, _ = grasp.run(sim, 1.7)
@@ -33,7 +33,7 @@ def test_a_soft_gripper_lifts_a_soft_cup(grasp):
     assert np.degrees(held["tilt"]) < 0.3
     assert held["sideways"] < 1e-3
     assert held["carrying"] <= 12 < held["near"]
-    assert np.abs(cup.positions - before).max() < 50e-6  # after two tenths of a second of rest
+    assert np.abs(cup.positions - before).max() < 50e-6  # after 0.2 s at rest
     assert min(gaps.min(), later.min()) > -1e-9
 
 
@@ -51,4 +51,4 @@ def test_fingers_that_pull_too_hard_slide_around_the_cup(grasp):
     grasp.STEP = 0.02  # s
     sim = grasp.make(pull=10e-3)
     grasp.run(sim, 1.1)
-    assert grasp.sideways(sim) > 10e-3  # 0.3 mm at 8 mm of pull
+    assert grasp.sideways(sim) > 10e-3  # 0.3 mm at a pull of 8 mm

@@ -1,4 +1,4 @@
-"""Learning environments: Gymnasium's rules restated, the same bits however many run, and tasks that can be solved."""
+"""Learning environments: Gymnasium's rules, bit-identical results for any number of environments and threads, solvable tasks."""
 
 import functools
 import importlib.util
@@ -18,18 +18,18 @@ from sinew.gym.task import Task
 from sinew.gym.tasks.trunk_damp import TrunkDamp
 
 NAMES = list(sinew.gym.tasks())
-SHORT = 0.05  # s: five steps of a trunk
+SHORT = 0.05  # s, five steps of a trunk task
 
 
 def actions_of(envs, steps, seed=0):
-    """Random actions (steps, num_envs, size), every environment's from a stream of its own."""
+    """Random actions (steps, num_envs, size), with a separate random stream for each environment."""
     size = envs.single_action_space.shape[0]
     streams = [np.random.default_rng([seed, i]).uniform(-1.0, 1.0, (steps, size)) for i in range(envs.num_envs)]
     return np.stack(streams, axis=1)
 
 
 def same(first, second):
-    """Whether two results are the same: arrays bit for bit, in dicts and tuples."""
+    """Whether two results, with nested dicts and tuples, are equal; arrays bit for bit."""
     if isinstance(first, dict):
         return first.keys() == second.keys() and all(same(first[k], second[k]) for k in first)
     if isinstance(first, (tuple, list)):
@@ -136,7 +136,7 @@ def test_spaces_of_our_own():
 
 
 def trajectory(envs, seed, steps=8):
-    """Everything that comes out of a reset and some steps, over the end of an episode."""
+    """All results of a reset and some steps, past the end of an episode."""
     return [envs.reset(seed=seed)] + [envs.step(a) for a in actions_of(envs, steps)]
 
 
@@ -184,7 +184,7 @@ def test_seeds():
     assert not np.any(sinew.gym.make_vec("trunk-reach", 1).reset()[0][:, 19:] == sinew.gym.make_vec("trunk-reach", 1).reset()[0][:, 19:])
 
 
-# What happens at the end of an episode; limit of 2 steps
+# End of an episode, with a limit of 2 steps
 
 
 def short(mode, count=2):
@@ -193,7 +193,7 @@ def short(mode, count=2):
 
 
 def by_hand(seed, resets, actions):
-    """Observations of single environments: the lists after each reset (None) or action."""
+    """Results of single environments: a list with one entry per reset (None) or action."""
     env = sinew.gym.make("trunk-reach", time_limit=0.02)
     out = []
     for k, a in enumerate(actions):
@@ -209,7 +209,7 @@ def test_next_step_resets_a_step_later():
     for result, (observation, reward, _, truncated, info) in zip(results[:2], hand[1:3]):
         assert same(result[0][0], observation) and result[1][0] == reward and result[3][0] == truncated
     assert results[1][3].all() and "final_obs" not in results[1][4]
-    observations, rewards, terminations, truncations, infos = results[2]  # acts in nothing: a[2] does not matter
+    observations, rewards, terminations, truncations, infos = results[2]  # the step resets, so a[2] does not matter
     assert same(observations[0], hand[3])
     assert not rewards.any() and not terminations.any() and not truncations.any() and infos == {}
     assert same(results[3][0][0], hand[4][0]) and results[3][1][0] == hand[4][1]
@@ -284,10 +284,10 @@ def test_environments_hold_no_factor_between_steps():
             envs.memory
         envs.reset(seed=0)
         envs.step(np.zeros((3, 8)))
-        assert envs.memory < 2.0e6  # bytes, what the trunk's factor has alone
+        assert envs.memory < 2.0e6  # bytes, the size of the trunk's factor alone
 
 
-# Simulations that are stepped with one call
+# Simulations that are stepped by one call
 
 
 @pytest.mark.parametrize("mode", ["NEXT_STEP", "SAME_STEP", "DISABLED"])
@@ -298,7 +298,7 @@ def test_one_call_for_all_is_one_call_each(mode):
     each._together = None
     assert same(together.reset(seed=3), each.reset(seed=3))
     for k, a in enumerate(actions_of(together, 9)):
-        if mode == "DISABLED" and k == 2:  # the others go on
+        if mode == "DISABLED" and k == 2:  # the other environments continue
             mask = {"reset_mask": np.array([False, True, False, True])}
             assert same(together.reset(options=mask), each.reset(options=mask))
         if mode == "DISABLED" and each._ended.any():
@@ -346,17 +346,17 @@ def test_actions_go_to_the_limits():
     increments.reset(seed=0)
     for k in range(3):
         seen = increments.step(np.full(8, 0.5))[0]
-        assert seen[8:16] == pytest.approx((k + 1) * 0.5 / 8.0, abs=1e-6)  # half of 100 N/s in 10 ms
+        assert seen[8:16] == pytest.approx((k + 1) * 0.5 / 8.0, abs=1e-6)  # N relative to 8 N: half of 100 N/s for 10 ms
     lengths = sinew.gym.make("trunk-reach", action="displacement-increment")
     start = lengths.reset(seed=0)[0]
     pulled = lengths.step(np.array([0.2, 0, 0, 0, 0, 0, 0, 0]))[0]
-    assert pulled[0] - start[0] == pytest.approx(0.06, abs=1e-4)  # a fifth of 300 mm/s in 10 ms, over 10 mm
+    assert pulled[0] - start[0] == pytest.approx(0.06, abs=1e-4)  # a fifth of 300 mm/s for 10 ms, relative to 10 mm
 
 
 def test_the_delay_of_actions():
     late, prompt = (sinew.gym.make("trunk-reach", action_delay=delay) for delay in (2, 0))
     assert same(late.reset(seed=0)[0], prompt.reset(seed=0)[0])
-    little = np.full(8, 0.1)  # 0.1 N more in a step
+    little = np.full(8, 0.1)  # an increment of 0.1 N per step
     acting = prompt.step(little)[0]
     assert acting[8:16] == pytest.approx(0.0125, abs=1e-6)
     for _ in range(2):
@@ -369,7 +369,7 @@ def test_models_of_domain_randomisation():
     models = Models(task)
     scales, payloads = np.array([(m.material_scale, m.payload) for m in models.all]).T
     assert np.all(np.diff(np.log(scales)) == pytest.approx(np.log(4.0) / 4)) and 0.5 < scales[0] < scales[-1] < 2.0
-    assert np.unique(np.floor(payloads / 0.005)).size >= 3  # of four quarters
+    assert np.unique(np.floor(payloads / 0.005)).size >= 3  # the payloads cover at least three quarters of their range
     assert all(m.first.sim.masses["payload"].mass == m.payload for m in models.all)
     stiff, soft = models[3].first, models[0].first
     for robot in (stiff, soft):
@@ -381,7 +381,7 @@ def test_models_of_domain_randomisation():
     first = {id(episode.robot.sim) for episode in envs.episodes}
     for _ in range(12):
         envs.step(np.zeros((6, 8)))
-    # How many clones a model has depends on how the threads' resets interleave: as many as environments at most.
+    # The number of clones of a model depends on how the resets of the threads interleave; the limit is the number of environments.
     own = [len(model._free) + sum(episode.model is model for episode in envs.episodes) for model in envs.episodes[0]._models.all]
     assert len(first) == 6 and all(count <= 6 for count in own)
 
@@ -439,7 +439,7 @@ def test_the_expert_follows_and_holds(name, close):
 
 
 class SeenView:
-    """In place of the live view: what is asked of it."""
+    """Replaces the live view and records its calls."""
 
     def __init__(self, opened):
         self.opened = opened
@@ -475,7 +475,7 @@ def test_the_view_shows_environment_0_after_every_step(monkeypatch, many):
         env.step(actions)
     assert env.render() is None
     env.reset()
-    assert opened == [[first, "enter", "update", "update", "update", "update"]]  # one view, kept from episode to episode
+    assert opened == [[first, "enter", "update", "update", "update", "update"]]  # one view for all episodes
     env.close()
     env.close()
     assert opened[0][-1] == "exit" and opened[0].count("exit") == 1 and len(opened) == 1
@@ -523,7 +523,7 @@ def test_pictures():
     frames = sinew.gym.make_vec("trunk-reach", 2, render_mode="rgb_array")
     frames.reset(options={"goal": [[0.03, 0.0, 0.19], [-0.03, 0.0, 0.19]]})
     first, second = (frame.astype(int) for frame in frames.render())
-    goal = [(frame[..., 0] > frame[..., 2] + 100) & (frame[..., 1] < 110) for frame in (first, second)]  # the orange of a goal
+    goal = [(frame[..., 0] > frame[..., 2] + 100) & (frame[..., 1] < 110) for frame in (first, second)]  # the orange pixels of a goal
     assert goal[0].sum() > 10 and goal[1].sum() > 10 and not (goal[0] & goal[1]).any()
 
 
@@ -531,7 +531,7 @@ def test_pictures():
 
 
 class WithoutScript(TrunkDamp):
-    """A task that nobody has written an expert of."""
+    """A task without an expert."""
 
     scripted = Task.scripted
 
@@ -632,7 +632,7 @@ FAKE = {
 
 
 def test_gymnasium_is_used_where_it_is(tmp_path):
-    """With a stand-in, as the real one may not be installed: classes, registration and what the entries make."""
+    """Classes, registration and the registered environments, with a stand-in because Gymnasium may not be installed."""
     (tmp_path / "gymnasium").mkdir()
     for name, text in FAKE.items():
         (tmp_path / "gymnasium" / name).write_text(textwrap.dedent(text))
@@ -662,11 +662,11 @@ def test_gymnasiums_own_checker(name):
 
 
 MODES = ["NEXT_STEP", "SAME_STEP", "DISABLED"]
-OF_TASK = {"arm-swing-up": 0.1, "grasp": 0.06, "crawl": 0.08}  # s of an episode: two to five steps, as SHORT for trunks
+OF_TASK = {"arm-swing-up": 0.1, "grasp": 0.06, "crawl": 0.08}  # s, duration of an episode: two to five steps
 
 
 def course(envs, seed, steps, mode):
-    """What comes out of steps over the ends of episodes; with DISABLED, of a reset of one environment in the midst, and of the ended."""
+    """Results of steps past the ends of episodes; with DISABLED, environment 0 is reset early, and ended ones are reset."""
     out = [envs.reset(seed=seed)]
     for k, actions in enumerate(actions_of(envs, steps)):
         out.append(envs.step(actions))
@@ -679,7 +679,7 @@ def course(envs, seed, steps, mode):
 
 
 class OneByOne:
-    """Single environments stepped in a loop, by Gymnasium's rules of the modes (docs: API, Vector, Autoreset Mode)."""
+    """Single environments stepped in a loop, by Gymnasium's rules for the autoreset modes (docs: API, Vector, Autoreset Mode)."""
 
     def __init__(self, envs, mode):
         self.envs, self.mode, self.num_envs, self.single_action_space = envs, mode, len(envs), envs[0].action_space
@@ -712,14 +712,14 @@ class OneByOne:
 
 
 def info_of(infos, i):
-    """What infos of many environments, with their masks, say of one."""
+    """Info of one environment from the infos of many, with their masks."""
     return {key: info_of(value, i) if isinstance(value, dict) else value[i]
             for key, value in infos.items() if not key.startswith("_") and infos[f"_{key}"][i]}  # fmt: skip
 
 
 @functools.lru_cache(maxsize=None)
 def pair_of(name, limit):
-    """Two single environments: a reset with a seed makes them as new, so that modes share them."""
+    """Two single environments; a reset with a seed makes them like new, so all modes share them."""
     return [sinew.gym.make(name, time_limit=limit) for _ in range(2)]
 
 
@@ -777,7 +777,7 @@ def test_the_expert_damps(judge):
     returns, succeeded = judge("trunk-damp", 2, seed=20, time_limit=0.4)
     passive, neither = judge("trunk-damp", 2, seed=20, without_expert=True, time_limit=0.4)
     assert succeeded.all() and not neither.any()
-    assert (returns > 0.35 * passive).all() and (passive < -100.0).all()  # mJ in 10 ms steps: a struck trunk has 10 mJ and more
+    assert (returns > 0.35 * passive).all() and (passive < -100.0).all()  # mJ summed over steps of 10 ms: a struck trunk has 10 mJ or more
 
 
 def test_the_expert_swings_up_beyond_what_torques_hold(judge):

@@ -1,4 +1,4 @@
-"""The tasks with contact: what the grasp and the crawler do, and what their experts earn."""
+"""Tasks with contact: behaviour of grasp and crawler, and returns of their experts."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from sinew.gym.tasks.crawl import PERIOD, gait
 
 
 def play(env, policy, steps, seed=0, **reset):
-    """Resets, and takes steps by a policy: sum of rewards, all observations, the last info."""
+    """Resets and steps with a policy. Returns the sum of rewards, all observations and the last info."""
     seen, total = [env.reset(seed=seed, **reset)[0]], 0.0
     for _ in range(steps):
         observation, reward, terminated, _, info = env.step(policy(seen[-1]))
@@ -25,7 +25,7 @@ def play(env, policy, steps, seed=0, **reset):
 
 @pytest.fixture(scope="module")
 def lifted():
-    """The expert's lift by 30 mm, and a second of rest."""
+    """The expert lifts the cup by 30 mm and holds it for a second."""
     env = sinew.gym.make("grasp")
     return env, *play(env, sinew.gym.expert(env), env.task.episode_steps, options={"height": 0.030})
 
@@ -35,9 +35,9 @@ def test_the_script_lifts_the_cup(lifted):
     assert len(seen) == 151 and info["success"] and total > 90.0
     assert info["height"] == pytest.approx(0.030, abs=0.2e-3) and info["tilt"] < np.radians(1.0)
     weight = 9.81 * env.episode.robot.sim.body("cup").mass
-    assert 0.2 * seen[-1, 18:21].sum() == pytest.approx(weight, rel=1e-3)  # the fingers carry it
+    assert 0.2 * seen[-1, 18:21].sum() == pytest.approx(weight, rel=1e-3)  # the fingers carry the cup
     assert env.episode.robot.sim.contact("table").normal_force == 0.0
-    assert np.abs(seen[-1, 10:13]).max() < 1e-3  # at rest, within 0.1 mm/s
+    assert np.abs(seen[-1, 10:13]).max() < 1e-3  # at rest to within 0.1 mm/s
 
 
 def test_the_grip_is_that_of_the_finer_example(lifted):
@@ -66,8 +66,8 @@ def test_a_cup_that_is_let_go_ends_the_episode(lifted):
 def test_the_height_of_the_feet_keeps_its_rate():
     env = sinew.gym.make("grasp", action="displacement")
     _, seen, _ = play(env, lambda seen: np.ones(4), 2)
-    assert 50.0 * seen[:, 6] == pytest.approx([0.0, 1.2, 2.4])  # mm: 60 mm/s
-    assert 10.0 * seen[:, 0] == pytest.approx([0.0, 0.4, 0.8], abs=1e-3)  # mm: 20 mm/s, by the cable's limit
+    assert 50.0 * seen[:, 6] == pytest.approx([0.0, 1.2, 2.4])  # mm, at 60 mm/s
+    assert 10.0 * seen[:, 0] == pytest.approx([0.0, 0.4, 0.8], abs=1e-3)  # mm, at 20 mm/s, the limit of the cable
 
 
 def test_heights_by_options():
@@ -104,7 +104,7 @@ def crawled():
 
 
 def from_rest(env, policy, steps):
-    """As play, from the start whose chambers are empty."""
+    """Like play(), from the initial state with empty chambers."""
     env.episode._models[0].starts[1:] = []
     return play(env, policy, steps)
 
@@ -117,7 +117,7 @@ def test_the_gait_moves_the_crawler_forward(crawled):
     effort = np.diff(seen[:, :5] * env.task.high, axis=0) / env.task.increment
     drift = 50.0 * abs(seen[-1, 11]) / 2.0
     assert total == pytest.approx(forward[-1] - drift - 0.01 * np.mean(effort**2, axis=1).sum(), abs=0.01)
-    assert seen[:, 17:21].sum(axis=1).max() < 1.3 and seen[0, 17:21].min() > 0.05  # all feet bear some of the weight
+    assert seen[:, 17:21].sum(axis=1).max() < 1.3 and seen[0, 17:21].min() > 0.05  # all feet carry some of the weight
 
 
 def test_the_expert_of_the_crawler_succeeds():
@@ -158,7 +158,7 @@ def test_the_mesh_of_the_crawler_is_symmetric():
 
 @pytest.mark.parametrize("name", ["grasp", "crawl"])
 def test_states_go_on_bit_for_bit(name):
-    """Also the height of the feet, which is no actuator."""
+    """Including the height of the feet, which is not an actuator."""
     env = sinew.gym.make(name)
     script = sinew.gym.expert(env)
     play(env, lambda seen: script(), 12)

@@ -1,4 +1,4 @@
-"""The learner of examples/gym: a few small generations improve, and a seed gives the same numbers again."""
+"""The learner of examples/gym: a few small generations improve the policy, and a seed reproduces the numbers."""
 
 import importlib.util
 from pathlib import Path
@@ -13,7 +13,7 @@ TESTS = 3
 
 @pytest.fixture
 def learn(monkeypatch):
-    """The example with eight policies a generation, one episode of ten steps each."""
+    """The example with eight policies per generation and one episode of ten steps each."""
     spec = importlib.util.spec_from_file_location("learn", EXAMPLE)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -30,7 +30,7 @@ def test_three_generations_improve(learn, task, share):
     curve, weights = learn.learn(task, 0, 3, 1)
     assert curve.shape == (3, 3) and np.all(curve[:, 1] >= curve[:, 0]) and np.all(curve[:, 1] >= curve[:, 2])
     envs = sinew.gym.make_vec(task, TESTS, time_limit=0.1)
-    seeds = [2**31 + i for i in range(TESTS)]  # training draws smaller ones
+    seeds = [2**31 + i for i in range(TESTS)]  # held out: training draws smaller seeds
     passive, learned = (learn.returns(task, envs, seeds, np.broadcast_to(w, (TESTS, *w.shape)))[0].sum() for w in (0.0 * weights, weights))
     assert share * passive < learned < 0.0
     judged = learn.judge(task, weights, 1)

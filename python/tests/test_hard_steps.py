@@ -1,11 +1,11 @@
-"""Quasi-static steps that Newton's method does not solve at once: what acts on them is that of their own time."""
+"""Quasi-static steps that Newton's method does not solve at once: the loads are those of the end of the step."""
 
 import numpy as np
 import sinew
 
 
 def plate(young_modulus):
-    """A thin plate, held at its rim, under the pressure of a gas from below."""
+    """A thin plate, clamped at its rim, under pressure from below."""
     return {
         "sinew": 1, "gravity": "0 0 0 m/s^2", "time_step": "50 ms", "duration": "1 s", "solver": {"tolerance": 1e-8},
         "bodies": {"plate": {
@@ -18,14 +18,14 @@ def plate(young_modulus):
 
 
 def test_a_load_that_asks_for_parts_of_the_step_acts_in_full():
-    # The first steps are far from linear: the plate has no stiffness across before it is stretched.
+    # The first steps are strongly nonlinear: before it stretches, the plate has hardly any transverse stiffness.
     sim = sinew.load(plate("10 kPa"))
     iterations = []
     for _ in range(2):
         sim.step()
         assert not sim.report.flagged
         iterations.append(sim.report.iterations)
-    assert max(iterations) > 50  # a step was made in parts, or downhill
+    assert max(iterations) > 50  # a step was split, or needed descent steps
     reached = sim.body("plate").positions.copy()
     sim.solve_static()
     assert np.abs(reached - sim.body("plate").positions).max() < 1e-6
@@ -57,7 +57,7 @@ def test_a_motor_at_its_limit_gives_way_to_the_load_of_the_step():
     for _ in range(20):
         sim.step()
         assert not sim.report.flagged
-        # Moments about the hinge: the force, with the arm of its point, against the motor.
+        # The motor balances the moment of the force about the hinge.
         torques.append(sim.actuator("motor").torque)
     end = sim.clone()
     end.solve_static()
@@ -67,7 +67,7 @@ def test_a_motor_at_its_limit_gives_way_to_the_load_of_the_step():
 
 
 def test_a_slack_cable_cannot_keep_the_limit_of_its_displacement():
-    # A force shortens the cable's way beyond the limit: its tension is at the least, and nothing else can be done about it.
+    # A force shortens the path of the cable beyond its limit: the tension is at its minimum, so the limit must be violated.
     sim = sinew.load({
         "sinew": 1, "gravity": "0 0 0 m/s^2", "time_step": "5 ms", "integrator": "bdf2",
         "bodies": {"beam": {

@@ -1,4 +1,4 @@
-"""The high-rate loop: what it finds on a simulation's snapshots, hands, news that stop coming, and its socket."""
+"""The high-rate loop: solutions for snapshots of simulations, hands, stale data, and its socket."""
 
 import re
 import socket
@@ -42,7 +42,7 @@ def test_an_outside_force_is_found_from_sensors(sim):
 
 
 def steer(sim, goal):
-    """A second of the loop at 1 kHz beside the model at 100 Hz; where the tip then is."""
+    """Position of the tip after one second of the loop at 1 kHz with the model at 100 Hz."""
     loop = sinew.HighRateLoop(sim, driven=CABLES, effectors=["tip"], tasks={"tip": 1.0})
     loop.set_input(targets={"tip": goal})
     for _ in range(100):
@@ -101,7 +101,7 @@ def test_a_snapshot_leaves_the_simulation_as_it_is(sim):
     assert snapshot.compliance.shape == (4, 4)
     linear = sim.linearise()
     own = linear.W[linear.rows.index("north"), linear.rows.index("north")]
-    assert snapshot.compliance[0, 0] < own  # `east` holds its length
+    assert snapshot.compliance[0, 0] < own  # because `east` holds its length
 
 
 @pytest.mark.parametrize("passivity", [True, False])
@@ -180,7 +180,7 @@ def test_a_device_talks_to_it():
         assert (magic, version, kind, sequence) == (MAGIC, 1, 2, 1)
         assert (driven, hands, unknown) == (0, 1, 0)
         assert state == 1  # running
-        with loop:  # the loop's own thread: the latest place comes to be felt
+        with loop:  # in the loop's own thread, the latest position takes effect
             for sequence in range(2, 200):
                 device.send(measurement(sequence, [], [3e-3]))
                 (force,) = struct.unpack("<d", device.recv(2000)[32:])

@@ -1,4 +1,4 @@
-"""The hand with soft fingers on a rigid arm: what it grips with, where it puts the box, what its motors bear."""
+"""The hand with soft fingers on a rigid arm: grip forces, final position of the box, motor torques."""
 
 import importlib.util
 from pathlib import Path
@@ -19,7 +19,7 @@ def pick():
 
 @pytest.fixture(scope="module")
 def found(pick):
-    return pick.pick(set={"time_step": "10 ms"})[0]  # raises where a step is not solved
+    return pick.pick(set={"time_step": "10 ms"})[0]  # raises if a step is not solved
 
 
 def test_the_motion_is_the_script_s(pick, tmp_path):

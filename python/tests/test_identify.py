@@ -54,7 +54,7 @@ def test_scale_is_reported():
 
 
 def test_youngs_modulus_of_finite_elements():
-    # A cantilever of elements sags; its tip is measured under three accelerations.
+    # The tip of a sagging finite-element cantilever is measured under three accelerations.
     def scene(modulus, gravity):
         return sinew.load({
             "sinew": 1, "integrator": "quasi-static", "gravity": [0, 0, -gravity],

@@ -1,4 +1,4 @@
-"""What the package says where it cannot be imported, and what it lists."""
+"""Error message if the package cannot be imported, and the list of its names."""
 
 import os
 import pathlib

@@ -1,4 +1,4 @@
-"""Joints, limits and given motions that contradict each other are named; what repeats itself is not."""
+"""Errors name joints, limits and prescribed motions that contradict each other; redundant ones are accepted."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def hinge(first, second, point=(0, 0, 0), axis="y", **keys):
 
 
 def moved(x_end):
-    """To x_end (m) at the end of the first step."""
+    """Setting for a prescribed motion to x_end (m) at the end of the first step."""
     return {"motion": {"x": {"ramp": {"to": x_end, "duration": STEP}}}}
 
 
@@ -45,7 +45,7 @@ def test_a_joint_between_given_motions_is_named(integrator):
     text = fails(sim)
     assert "'pin' is open by" in text
     assert "'free'" not in text
-    if integrator == "quasi-static":  # others try smaller steps first
+    if integrator == "quasi-static":  # other integrators try smaller steps first
         assert "'pin' is open by 0.1 mm" in text
 
 
@@ -73,7 +73,7 @@ def test_a_motor_against_a_second_axis_is_named(integrator):
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_motors_of_one_loop_that_disagree_are_named_with_it(integrator):
-    """A parallelogram whose two cranks are driven in opposite directions."""
+    """A parallelogram linkage whose two cranks are driven in opposite directions."""
     pins = {"a": hinge("world", "left", (0, 0, 0)), "b": hinge("world", "right", (0.1, 0, 0)),
             "c": hinge("left", "top", (0, 0, 0.1)), "d": hinge("top", "right", (0.1, 0, 0.1))}
     motors = {name: {"type": "motor", "joint": joint, "command": {"velocity": rate}}
@@ -109,7 +109,7 @@ def test_a_static_solution_names_them():
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_joints_that_repeat_each_other_hold(integrator):
-    """Hinges about two axes, a weld, and a bar on two hinges about one line: nothing moves."""
+    """Redundant joints: hinges about two axes, a weld, and a bar on two collinear hinges; nothing moves."""
     joints = {"first": hinge("world", "box", axis="y"), "second": hinge("world", "box", axis="x"),
               "glue": {"type": "weld", "bodies": ["world", "box"]},
               "left": hinge("world", "bar", (0.2, -0.01, 0)),

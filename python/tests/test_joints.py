@@ -1,4 +1,4 @@
-"""Welded bodies, placed bodies, and cables that run through two."""
+"""Welded bodies, positioned bodies, and cables through two bodies."""
 
 import pathlib
 
@@ -122,7 +122,7 @@ def test_points_of_a_weld_may_lie_beside_both_bodies():
 
 
 def test_a_light_bracket_under_great_forces_takes_few_iterations():
-    # A stone of 20 g hits a link that a bracket of 0.6 g holds on a finger of rubber, at 1 m/s in steps of 5 ms.
+    # A stone of 20 g at 1 m/s hits a link, which a bracket of 0.6 g connects to a rubber finger; steps of 5 ms.
     sim = sinew.load({
         "sinew": 1, "time_step": "5 ms", "integrator": "bdf2", "gravity": "-3 0 -5 m/s^2", "solver": {"method": "newton"},
         "bodies": {

@@ -1,4 +1,4 @@
-"""A coefficient of friction for points at rest, and a lower one for points that slide."""
+"""Static friction, and a lower coefficient of kinetic friction."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import sinew
 
 GRAVITY = 9.81
 STATIC, KINETIC = 0.5, 0.3
-HALF = 0.01  # m, of the box's height
+HALF = 0.01  # m, half of the box's height
 
 
 def box(**more):
@@ -41,7 +41,7 @@ def test_a_box_on_a_slope_stays_until_it_is_moved(slope, integrator):
     resting.run(duration=0.2)
     assert abs(resting.body("box").position[0]) < 1e-9
     assert set(resting.contact("floor").states) <= {"stick", "open"}
-    # Once it slides it goes on by the lower coefficient, between the two faster and faster.
+    # Once it slides, the kinetic coefficient applies: on a slope between the two coefficients it accelerates.
     start = 0.3
     moved = make(box(velocity={"linear": [start, 0, 0]}), integrator=integrator, gravity=gravity)
     slows = GRAVITY * (np.sin(angle) - KINETIC * np.cos(angle))
@@ -55,10 +55,10 @@ def test_a_box_on_a_slope_stays_until_it_is_moved(slope, integrator):
 def test_a_box_that_has_stopped_holds_with_the_higher_coefficient():
     pull = {"type": "force", "body": "box", "point": [0, 0, HALF], "direction": [1, 0, 0], "command": {"force": "4 N"}}
     sim = make(box(velocity={"linear": [-0.2, 0, 0]}), actuators={"pull": pull})
-    sim.run(duration=0.3)  # both slow it down at first
+    sim.run(duration=0.3)  # friction and force both decelerate it
     stays = float(sim.body("box").position[0])
     assert stays == pytest.approx(-0.2**2 / (2.0 * (KINETIC * GRAVITY + 4.0)), rel=0.02)
-    sim.run(duration=0.2)  # 4 N is between 2.9 and 4.9 N
+    sim.run(duration=0.2)  # 4 N is between kinetic friction, 2.9 N, and static friction, 4.9 N
     assert sim.body("box").position[0] == pytest.approx(stays, abs=1e-9)
     sim.actuator("pull").force = 5.0
     sim.run(duration=0.1)
@@ -66,7 +66,7 @@ def test_a_box_that_has_stopped_holds_with_the_higher_coefficient():
 
 
 def stick_slip(step, integrator):
-    """Positions of a box on a belt, held by a spring, over 3 s."""
+    """Positions over 3 s of a box on a belt that is held by a spring."""
     sim = make(box(), step=step, integrator=integrator, floor={"motion": {"x": {"ramp": {"to": 4.0 * BELT, "duration": 4.0}}}},
                actuators={"spring": {"type": "spring", "body": "box", "pull": "world",
                                      "points": [[-1.0, 0, HALF], [0, 0, HALF]], "stiffness": 100.0, "free_length": 1.0}})
@@ -82,8 +82,8 @@ BELT = 0.1  # m/s
 
 @pytest.mark.parametrize("integrator", ["backward-euler", "bdf2"])
 def test_stick_slip_has_its_closed_form(integrator):
-    """The box rides on the belt up to x_1 = mu_s m g/k, and then swings about x_0 = mu_k m g/k with the velocity v at its
-    start: x = x_0 + (x_1 - x_0) cos wt + v/w sin wt, until its velocity is v again, at x_0 - (x_1 - x_0)."""
+    """The box sticks to the belt up to x_1 = mu_s m g/k. It then slides and oscillates about x_0 = mu_k m g/k with initial
+    velocity v, x = x_0 + (x_1 - x_0) cos wt + v/w sin wt, until its velocity is v again, at x_0 - (x_1 - x_0)."""
     step, natural = 2.5e-4 if integrator == "backward-euler" else 1e-3, 10.0
     seen = stick_slip(step, integrator)
     upper, lower = STATIC * GRAVITY / 100.0, KINETIC * GRAVITY / 100.0
@@ -109,7 +109,7 @@ def test_a_state_goes_on_sliding_bit_for_bit():
 
 @pytest.mark.parametrize("more", [{}, {"aggregate": "20 mm"}])
 def test_a_soft_block_slides_by_the_lower_coefficient(more):
-    # Pulled by gravity that begins with a jerk, it comes loose below the static coefficient.
+    # Suddenly applied gravity makes the block slip below the static coefficient, so 0.2 g is well below it.
     sim = make(soft_box(), gravity=[0.2 * GRAVITY, 0.0, -GRAVITY], floor=more, integrator="backward-euler")
     sim.run(duration=0.3)
     assert np.linalg.norm(sim.body("box").velocities, axis=1).max() < 1e-6

@@ -1,4 +1,4 @@
-"""sinew.learn, and the inversion of drives that it rests on."""
+"""sinew.learn, and the inversion of drives that it uses."""
 
 import numpy as np
 import pytest
@@ -33,7 +33,7 @@ def rehearsed(plant, **more):
 
 
 class Plant:
-    """Heavier, softer, later and slower than the model, its mass distributed."""
+    """A plant that is heavier and softer than the model, with more delay, slower cylinders and distributed mass."""
 
     def __init__(self):
         self.random = np.random.default_rng(3)
@@ -58,7 +58,7 @@ def test_attempts_come_nearer():
     assert third.tip_error < 0.01
     assert first.proposal.times[-1] == pytest.approx(LEAD + 0.8)
     assert first.proposal.command.shape == first.proposal.volume.shape == (96, 2)
-    # What it took for the truth, and what it knows now.
+    # The assumed delay, and the identified one.
     assert first.proposal.actuators[0].delay == 0.05
     assert student.actuators[0].delay == pytest.approx(0.08, abs=0.01)
     assert [a.tip_error for a in student.attempts] == [first.tip_error, second.tip_error, third.tip_error]
@@ -87,7 +87,7 @@ def test_the_next_commands_are_the_last_with_a_small_change():
 
 
 def test_changed_commands_keep_the_limits_of_volume():
-    # Torques that the goal takes nearly all of: without the limits the volumes would go 15 % beyond.
+    # The goal needs nearly the full torques: without the limits, the volumes would exceed them by 15 %.
     plant, limits = Plant(), (0.075, 0.105)
     most = [pcc.FluidicActuator(4e12).volume(torque) for torque in limits]
     for attempt in rehearsed(plant, torque_limits=limits).run(plant, 3):
@@ -98,7 +98,7 @@ def test_changed_commands_keep_the_limits_of_volume():
 
 
 def test_changed_commands_keep_the_limits_of_cylinders():
-    # A little more than volumes at rest take, so that what drives the cylinders fast is cut off.
+    # The command limits are slightly above the static volumes, so commands that accelerate the cylinders are clipped.
     plant = Plant()
     plant.cylinder = cylinder(52.0, 3.6e-5)
     student = learn.Learner(arm(), [pcc.FluidicActuator(4e12, delay=0.05)] * 2, [cylinder(60.0, 3.6e-5)] * 2, GOAL,

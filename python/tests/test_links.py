@@ -21,7 +21,7 @@ def prose(page):
 
 
 def anchors(page):
-    """Names that a link to the page may give behind #: GitHub's of its headings, and those of <a id>."""
+    """Valid anchors of the page: GitHub's names of its headings, and those of <a id>."""
     found = {}
     for line in prose(page):
         heading = re.match(r"#+ +(.*)", line)
@@ -47,7 +47,7 @@ def test_links_lead_somewhere(page):
 
 
 def test_every_page_is_in_the_site():
-    # The settings of the site name all pages, as paths below docs/ without the suffix (docs/site/conf.py).
+    # docs/site/conf.py lists all pages as paths below docs/, without suffix.
     named = re.findall(r'"([^"\n]+)"', (ROOT / "docs" / "site" / "conf.py").read_text(encoding="utf-8"))
     listed = {path for name in named if re.fullmatch(r"[\w/]+(/\*)?", name) for path in (ROOT / "docs").glob(f"{name}.md")}
     assert not [str(page) for page in (ROOT / "docs").rglob("*.md") if page not in listed and page.name != "index.md"]

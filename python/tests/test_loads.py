@@ -1,4 +1,4 @@
-"""Loads of a scene, and the ledger of energies that they enter."""
+"""Loads of a scene, and their work in the energy ledger."""
 
 import numpy as np
 import pytest
@@ -40,10 +40,10 @@ def test_dead_loads_sum_to_what_the_scene_says():
 def test_pressure_follows_its_faces():
     sim = scene({"wind": {"type": "pressure", "body": "beam", "surface": {"set": "z_max"}, "pressure": "100 Pa"}})
     sim.step()
-    assert total(sim)[2] == pytest.approx(-100 * 0.1 * 0.02, rel=1e-2)  # it has bent a little
+    assert total(sim)[2] == pytest.approx(-100 * 0.1 * 0.02, rel=1e-2)  # the beam has bent slightly
     sim.load("wind").factor = 300.0
     sim.solve_static()
-    # The beam bends down, and its top faces forward: what presses on it points back by p width (drop of the end).
+    # The beam bends down and its top turns forwards, so the pressure pushes backwards with p width (drop of the end).
     positions = np.array(sim.body("beam").positions)
     rest = np.array(sim.body("beam").rest_positions)
     drop = (positions - rest)[np.argmax(rest[:, 0] + rest[:, 2]), 2]
@@ -59,14 +59,14 @@ def test_water_carries_and_brakes():
         sim.step(200)
     down = [np.array(sim.body("beam").positions)[:, 2].min() for sim in (wet, dry)]
     assert down[1] < -1e-3
-    # As heavy as water: what is left is the bend of a compressible body under a pressure that grows with depth.
+    # The beam has the density of water: only the bend of a compressible body under hydrostatic pressure remains.
     assert abs(down[0]) < 0.03 * abs(down[1])
     pushed = scene({"sea": {**water, "velocity": "0 0 1 m/s"}}, time_step="2 ms", integrator="backward-euler")
     pushed.step(100)
     assert np.array(pushed.body("beam").positions)[:, 2].max() > 0.0205
     half = scene({"sea": {**water, "level": "10 mm"}}, gravity=[0, 0, -9.81])
     half.step()
-    # Half under water: carried by half of what it would displace, faces are cut at their points.
+    # Half submerged: the buoyancy is half of the full one; the tolerance is for faces that the water level cuts.
     assert total(half)[2] == pytest.approx(0.5 * 9.81 * 1000 * 0.1 * 0.02 * 0.02, rel=0.2)
 
 
@@ -96,7 +96,7 @@ def test_weight_of_liquid_in_a_chamber_bends_its_body():
 
 
 def test_the_ledger_balances_but_for_the_integrator():
-    # Work of a force and of gravity goes into strain, motion, damping and what the integrator loses.
+    # The work of the force and of gravity equals strain and kinetic energy, dissipation, and the loss of the integrator.
     losses = []
     for step in (4e-3, 2e-3, 1e-3):
         sim = scene({"push": {"type": "force", "body": "beam", "point": "100 10 10 mm", "force": "0 0 0.05 N"}},

@@ -1,4 +1,4 @@
-"""The examples that move by touching: a strip that crawls, a wheel that rolls, an arm that curls onto itself."""
+"""Examples of locomotion and self-contact: a crawling strip, a rolling wheel, an arm that curls onto itself."""
 
 import importlib.util
 from pathlib import Path
@@ -14,11 +14,11 @@ def test_a_strip_with_three_chambers_crawls():
     described = importlib.util.spec_from_file_location("crawl", EXAMPLES / "crawl" / "crawl.py")
     crawl = importlib.util.module_from_spec(described)
     described.loader.exec_module(crawl)
-    distance, times, ends, _ = crawl.crawl(friction=0.5)  # raises where a step is flagged
+    distance, times, ends, _ = crawl.crawl(friction=0.5)  # raises if a step is flagged
     assert distance == pytest.approx(14.9e-3, rel=0.1)
     full = np.argmin(np.abs(times - 2.0))
     rear, front = ends[full] - ends[0]
-    assert rear > 14e-3 and -4e-3 < front < 0.0  # filling pulls the rear forward, and the front hardly back
+    assert rear > 14e-3 and -4e-3 < front < 0.0  # filling pulls the rear forward, and the front back only slightly
     rear, front = ends[-1] - ends[full]
     assert front > 14e-3 and -4e-3 < rear < 0.0  # emptying pushes the front forward
 
@@ -38,13 +38,13 @@ def test_a_wheel_rolls_without_slip():
             drift = max(drift, np.linalg.norm(where[k] - landed[k]))
         landed = {k: landed.get(k, where[k].copy()) for k in touching}
     distance = wheel.positions.mean(axis=0) - start
-    assert 0.95 * np.pi * 27.5e-3 < distance[0] < np.pi * 30e-3  # half of the wall's middle line, of its outer line
+    assert 0.95 * np.pi * 27.5e-3 < distance[0] < np.pi * 30e-3  # half of the circumference of the wall's midline and of its outside
     assert abs(distance[1]) < 1e-3
     assert drift < 0.2e-3
 
 
 def crossings(body):
-    """How many pairs of triangles of the body's surface cross each other."""
+    """Number of intersecting pairs of surface triangles of a body."""
     quadrilaterals = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
     faces = body.hexahedra[:, quadrilaterals].reshape(-1, 4)
     _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
@@ -54,7 +54,7 @@ def crossings(body):
 
 
 def curl(*changes):
-    """The arm, coarse and in longer steps, until just after its tip has met its base: (simulation, first touch or None)."""
+    """The arm with a coarse mesh and longer steps, until its tip has met its base: (simulation, time of first contact or None)."""
     coarse = ["time_step=10ms", "bodies.arm.mesh.element_size=8.5mm", *changes]
     sim = sinew.load(EXAMPLES / "arm" / "curl.yaml", set=coarse)
     first = None

@@ -1,4 +1,4 @@
-"""Masses that hang on bodies, and bodies that start with a velocity."""
+"""Point masses on bodies, and bodies with an initial velocity."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ def test_a_mass_sags_as_its_weight():
     assert np.allclose(sim.body("beam").positions, pulled.body("beam").positions, rtol=0, atol=1e-9)
     assert mass.position[2] < 0.01 - 1e-3
     assert np.array(sim.body("beam").reactions).sum(axis=0)[2] == pytest.approx((0.02 + 0.04) * 9.81, rel=1e-6)
-    # An acceleration acts on it, too.
+    # An acceleration load acts on the mass, too.
     shaken = hung(weight, gravity=[0, 0, 0], loads={"a": {"type": "acceleration", "body": "beam", "acceleration": [0, 0, -9.81]}})
     shaken.solve_static()
     assert np.allclose(shaken.body("beam").positions, sim.body("beam").positions, rtol=0, atol=1e-9)
@@ -38,7 +38,7 @@ def test_a_throw():
                integrator="bdf2", body={"initial_velocity": {"linear": "1 0 2 m/s", "angular": "0 3 0 rad/s"}})
     start = sim.state_hash
     nose = sim.mass("nose")
-    # The beam's 40 g at 50 mm and the nose's at 100 mm: the centre is at 75 mm.
+    # Centre of mass: 40 g of the beam at 50 mm and 40 g of the nose at 100 mm give 75 mm.
     assert nose.velocity == pytest.approx([1, 0, 2 - 3 * 0.025])
     clone = sim.clone()
     sim.step(50)

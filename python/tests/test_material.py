@@ -1,4 +1,4 @@
-"""Materials by themselves."""
+"""Materials without a simulation."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Contact of rigid bodies by the triangles of their surfaces, with each other and with deformable bodies."""
+"""Contact of rigid triangle meshes with each other and with deformable bodies."""
 
 import numpy as np
 import pytest
@@ -62,7 +62,7 @@ def test_a_part_comes_to_rest_in_a_cup_and_its_hull_does_not(tmp_path):
         assert below.normal_force == pytest.approx(weight(sim, "part") + weight(sim, "cup"), rel=1e-6)
         heights.append(sim.body("part").position[2] - sim.body("cup").position[2])
     assert heights[0] == pytest.approx(-0.015 + 0.006, abs=1e-6)  # on the bottom
-    assert heights[1] == pytest.approx(0.02 + 0.006, abs=1e-6)  # on the rim's plane
+    assert heights[1] == pytest.approx(0.02 + 0.006, abs=1e-6)  # on the plane of the rim
 
 
 def test_a_soft_block_falls_into_a_cup(tmp_path):
@@ -104,7 +104,7 @@ def test_a_corner_dents_as_the_same_body_of_a_shape(tmp_path):
 
 
 def test_collisions_keep_momentum(tmp_path):
-    # Linear to rounding, angular to the order of the step: frames keep their directions within it.
+    # Linear momentum to rounding, angular momentum to first order in the step, because contact frames are fixed within it.
     errors = [momentum_lost(tmp_path, step) for step in ("0.2 ms", "0.05 ms")]
     assert max(linear for linear, _ in errors) < 1e-12
     assert errors[0][1] < 5e-3 and errors[1][1] < 0.4 * errors[0][1]
@@ -179,7 +179,7 @@ def test_an_overlap_is_named(tmp_path):
 
 @pytest.mark.parametrize("first", ["beam", "pillow"])
 def test_a_law_with_more_points_than_coordinates_is_solved(first):
-    # 50 points between 31 nodes, at 1 m/s: laws whose forces are not unique. Proximal iterations go in circles here.
+    # With 50 points between 31 nodes, at 1 m/s, the forces are not unique. Proximal iterations cycle in this case.
     rubber = {"model": "yeoh", "c10": "20 kPa", "c20": "1 kPa", "c30": "0.1 kPa", "poisson_ratio": 0.45,
               "viscosity": [{"relative_modulus": 0.2, "relaxation_time": "20 ms"}]}  # fmt: skip
     bodies = {

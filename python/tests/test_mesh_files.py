@@ -1,4 +1,4 @@
-"""Meshes written by Sinew as other programs read them."""
+"""Meshes written by Sinew, as read by other programs."""
 
 import numpy as np
 import pytest

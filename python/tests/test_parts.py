@@ -1,4 +1,4 @@
-"""Bodies of several materials, and layers on their faces, from scenes."""
+"""Bodies with several materials, and layers on their faces, in scenes."""
 
 import numpy as np
 import pytest
@@ -54,7 +54,7 @@ def test_a_bar_of_two_materials_in_series_is_exact():
 
 
 def test_a_bar_of_two_materials_in_parallel_is_exact():
-    # Each half bears its modulus times the common strain of 1 %.
+    # Each half carries its modulus times the common strain of 1 %.
     halves = {"soft": ([-1.0, -1.0, -1.0, 0.005, 1.0, 1.0], 100), "stiff": ([0.005, -1.0, -1.0, 1.0, 1.0, 1.0], 400)}
     scene = column({"stiff": {"region": {"box": halves["stiff"][0]}, "material": linear(400)}}, "tet4")
     scene["bodies"]["column"]["material"] = linear(100)
@@ -76,7 +76,7 @@ def test_a_part_has_its_own_density():
 
 
 def test_the_softer_law_decides_the_element():
-    # nu = 0 alone stays linear; rubber above it asks for quadratic tetrahedra.
+    # With nu = 0 alone, elements stay linear; the rubber above requires quadratic tetrahedra.
     scene = column({"upper": {"region": UPPER, "material": "ecoflex-00-30"}})
     del scene["bodies"]["column"]["element"]
     scene["bodies"]["column"]["density"] = 1000.0
@@ -84,7 +84,7 @@ def test_the_softer_law_decides_the_element():
     del scene["bodies"]["column"]["parts"]
     linear = sinew.load(scene).body("column")
     assert len(quadratic.tetrahedra) == len(linear.tetrahedra) > 0
-    assert len(quadratic.positions) > 3 * len(linear.positions)  # nodes on the edges
+    assert len(quadratic.positions) > 3 * len(linear.positions)  # mid-edge nodes
 
 
 @pytest.mark.parametrize(
@@ -120,7 +120,7 @@ def test_a_membrane_bends_what_is_pulled():
     body = sim.body("column")
     top = body.rest_positions[:, 2] > 0.04 - 1e-9
     aside, _, up = (body.positions - body.rest_positions)[top].mean(axis=0)
-    # A section of two materials: core 10 N in the middle, skin 20 N at 5 mm from there, pulled in the middle by 0.02 N.
+    # Composite section: core of 10 N (EA) in the middle, skin of 20 N at 5 mm from it, pulled in the middle with 0.02 N.
     core, skin, pull, length = 10.0, 20.0, 0.02, 0.04
     neutral = skin * 0.005 / (core + skin)
     bending = core * 0.01**2 / 12.0 + core * neutral**2 + skin * (0.005 - neutral) ** 2

@@ -24,7 +24,7 @@ def test_the_examples_of_the_guide():
 
 
 def test_one_hanging_segment_by_hand():
-    # Mass at the arc's middle: x = L (1 - cos(theta/2))/theta, z = -L sin(theta/2)/theta.
+    # Mass at the midpoint of the arc: x = L (1 - cos(theta/2))/theta, z = -L sin(theta/2)/theta.
     length, mass, stiffness, damping, gravity = 0.3, 0.2, 0.05, 0.01, 9.81
     robot = sinew.pcc.Arm([length], [mass], [stiffness], [damping])
     theta, rate = 0.7, 1.1
@@ -231,7 +231,7 @@ controllers:
 """)
     for _ in range(400):
         sim.step()
-    # What is left to turn is about z alone, whose error has no weight.
+    # The remaining rotation is about z, whose error has no weight.
     to_go = Rotation.from_rotvec([0.3, 0.25, 0]) * Rotation.from_rotvec(sim.effectors["section"].rotation).inv()
     np.testing.assert_allclose(to_go.as_rotvec()[:2], 0, atol=1e-4)
 

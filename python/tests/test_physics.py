@@ -1,4 +1,4 @@
-"""Forces, equilibrium and compliance against formulas coded anew in NumPy, and differences."""
+"""Forces, equilibrium and compliance, compared with independent NumPy formulas and with differences."""
 
 import numpy as np
 import pytest
@@ -48,7 +48,7 @@ def test_internal_forces_are_those_of_numpy(sim):
     free = ~body.fixed
     assert body.internal_forces(bent)[free] == pytest.approx(expected[free], abs=1e-9)
     assert not body.internal_forces(bent)[~free].any()
-    # The simulation was only asked, not changed.
+    # The query does not change the simulation.
     assert np.array_equal(body.positions, body.rest_positions)
 
 
@@ -105,7 +105,7 @@ def test_the_projected_stiffness_is_never_below_the_exact_one(loaded):
 
 
 def test_compliance_against_differences_of_statics(loaded):
-    # All rows by effort: W is d(delta)/d(effort).
+    # With all rows commanded in effort, W is d(delta)/d(effort).
     loaded.actuator("north").tension = loaded.actuator("north").tension
     loaded.solve_static()
     linear = loaded.linearise()
@@ -126,7 +126,7 @@ def test_compliance_against_differences_of_statics(loaded):
         loaded.solve_static()
         column = (deltas[0] - deltas[1]) / (2 * step)
         assert linear.W[:, row] == pytest.approx(column, rel=1e-4, abs=1e-9)
-    # With rotations held fixed it is near, and is not the same.
+    # With rotations held fixed, the compliance is similar but not equal.
     corotated = loaded.compliance(tangent="corotated", geometric_stiffness=False)
     off = np.abs(corotated - linear.W).max() / np.abs(linear.W).max()
     assert 1e-3 < off < 0.5
@@ -157,7 +157,7 @@ def test_dynamics_of_a_free_fall_of_the_tip(scene):
     sim = sinew.load(scene, set=["integrator=backward-euler", "gravity=1 0 0", "time_step=1ms"])
     body = sim.body("finger")
     sim.step()
-    # One step of backward Euler from rest: the velocity follows the motion.
+    # One step of backward Euler from rest: velocity = displacement / step.
     assert np.allclose(body.velocities, (body.positions - body.rest_positions) / 1e-3, atol=1e-12)
     assert sim.effector("tip").velocity[0] == pytest.approx(1e-3, rel=0.05)
     momentum = 0.5 * np.sum(body.node_masses[:, None] * body.velocities**2)
@@ -188,6 +188,6 @@ def test_a_column_buckles_without_a_mass_as_with_one(mass_matrix):
         report = sim.solve_static()
         assert report.stable and report.relaxation_steps > 0
         tops.append(sim.effector("top").position)
-    # Which way it falls is open.
+    # The direction of buckling is arbitrary.
     aside = [np.linalg.norm(top[:2] - 0.005) for top in tops]
     assert aside[0] > 0.05 and aside[0] == pytest.approx(aside[1], rel=1e-6)

@@ -1,4 +1,4 @@
-"""sinew.plan: plans, replays, regulators and static reach from Python."""
+"""sinew.plan: plans, replays, regulators and static reach."""
 
 import numpy as np
 import pytest
@@ -84,13 +84,13 @@ def test_a_plan_in_commands_of_cylinders(grab):
     np.testing.assert_allclose(np.diff(drive["times"]), 0.01)
     np.testing.assert_allclose(drive["volume"][:, 3], cylinders[3].simulate(drive["command"][:, 3]), atol=1e-20)
     assert (np.abs(drive["command"]) <= 8e-5 * (1 + 1e-6)).all()
-    # Volumes act after the delay: those at 1.0 s do 0.83 s into the plan.
+    # Volumes act after the delay: the volume at 1.0 s acts 0.83 s into the plan.
     np.testing.assert_allclose(found.torque_at(0.83), [actuators[0].torque(v) for v in drive["volume"][100]],
                                atol=1e-14)
     run = task.replay_commands(drive["command"], lead=0.25)
     assert run.times[-1] == pytest.approx(1.85)
     assert run.tip_error < 0.003 and run.tip_speed < 0.01
-    # Torques planned first do not become the cylinders' so well.
+    # The cylinders reproduce torques planned without them less accurately.
     before, torques = grab
     inverted = plan.invert_drive(torques, actuators, cylinders, lead=0.25)
     after = before.replay_commands(inverted["command"], actuators, cylinders, lead=0.25)

@@ -1,4 +1,4 @@
-"""Pictures of runs: which column is drawn where, under which name."""
+"""Plots of runs: panel and label of each column."""
 
 import warnings
 
@@ -54,7 +54,7 @@ def test_no_two_lines_of_a_panel_look_alike(tmp_path, monkeypatch):
     drawn = []
     monkeypatch.setattr(plt, "close", drawn.append)
     with warnings.catch_warnings():
-        warnings.simplefilter("error")  # of legends that leave no room for their panel
+        warnings.simplefilter("error")  # such as legends that leave no room for the panel
         sinew.plot.run(tmp_path, tmp_path / "run.png")
     monkeypatch.undo()
     lines = drawn[0].axes[0].get_lines()

@@ -1,4 +1,4 @@
-"""Probes: what is measured on a robot, and that nothing changes by it."""
+"""Probes: their values, and that they do not affect the robot."""
 
 import numpy as np
 import pytest
@@ -43,11 +43,11 @@ def test_probes_measure_the_present_shape():
     assert axis.shape == (7, 3)
     assert axis[-1] == pytest.approx(sim.effector("tip").position, abs=1e-15)
     assert sim.probe("axis").value == pytest.approx(np.linalg.norm(np.diff(axis, axis=0), axis=1).sum(), abs=1e-15)
-    # Best-fit plane of the end, by NumPy: the same normal but for what the end's own warping adds.
+    # Best-fit plane of the end by NumPy: the same normal, except for the warping of the end.
     spread = x[ends[1]] - x[ends[1]].mean(axis=0)
     normal = np.linalg.svd(spread)[2][2]
     bend = sim.probe("bend").value
-    assert abs(bend) > 0.05 and bend < 0  # up is against the right hand about y
+    assert abs(bend) > 0.05 and bend < 0  # bending upwards is negative about y by the right-hand rule
     assert abs(bend) == pytest.approx(np.arccos(abs(normal[0])), rel=0.02)
     assert (sim.probe("bend").kind, sim.probe("bend").unit, sim.probe("reach").unit) == ("bend", "rad", "m")
 

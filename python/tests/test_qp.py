@@ -1,4 +1,4 @@
-"""Contacts by themselves, from Python."""
+"""Contact problems in Python."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import sinew
 
 
 def natural_map(W, q, friction, r):
-    """|r - P_K(r - v)|/|q|, P by its definition as the nearest point: on the cone's ray or inside."""
+    """|r - P_K(r - v)|/|q|, with the projection P_K as the nearest point of the cone."""
     u = W @ r + q
     missed = 0.0
     for k, mu in enumerate(friction):

@@ -1,4 +1,4 @@
-"""The README's Python runs as it stands, from the repository's root."""
+"""The Python code of the README runs unchanged, from the root of the repository."""
 
 import re
 from pathlib import Path
@@ -9,7 +9,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def blocks(language):
-    """The fenced code of one language in the README."""
+    """Fenced code blocks of one language in the README."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
 
@@ -19,5 +19,5 @@ def test_python_runs_and_reaches_its_target(code, monkeypatch):
     monkeypatch.chdir(ROOT)
     names = {}
     exec(compile(code, "README.md", "exec"), names)
-    # The example asks for a point within reach: it must be met, not just attempted.
+    # The target of the example is within reach, so the tip must reach it.
     assert names["ik"].error < 1e-4

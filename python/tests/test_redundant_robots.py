@@ -1,9 +1,9 @@
-"""A thousand random redundant robots: what a controller chooses is what an independent solver chooses.
+"""A thousand random redundant robots: the efforts of the controller agree with an independent solver.
 
-Each robot is a small block with more actuators than its effectors need: twins on one line, antagonists, chambers that
-share a wall, cables that move nothing, springs and commanded cables beside them, effectors that cannot all be met,
-weights of zero. Its program (see Program) is put together here from the linearisation and solved
-as least squares with bounds, by the active sets of SciPy's BVLS. Half of the robots are cold; the others have moved.
+Each robot is a small block with more actuators than its effectors need: twin cables on one line, antagonists, chambers with
+a common wall, cables that move nothing, additional springs and commanded cables, effectors that cannot all be reached, zero
+weights. The test assembles the quadratic program (see Program) from the linearisation and solves it as bounded least squares
+by the active-set method of SciPy's BVLS. Half of the robots start cold; the others have moved before.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ def write_box(path, low, high):
 
 @pytest.fixture(scope="module")
 def walls(tmp_path_factory):
-    """Two boxes inside the block with a wall in common."""
+    """Two boxes inside the block with a common wall."""
     folder = tmp_path_factory.mktemp("walls")
     return [write_box(folder / "left.stl", (0.004, 0.004, 0.01), (0.010, 0.016, 0.05)),
             write_box(folder / "right.stl", (0.010, 0.004, 0.01), (0.016, 0.016, 0.05))]
@@ -43,7 +43,7 @@ def line(x, y, top=SIZE[2]):
 
 
 def random_robot(rng, walls):
-    """The scene, the actuators that the controller owns, and what it is asked."""
+    """The scene, the actuators of the controller, and its targets and weights."""
     sides = {"east": (0.017, 0.01), "north": (0.01, 0.017), "west": (0.003, 0.01), "south": (0.01, 0.003)}
     owned, beside = {}, {}
 
@@ -55,7 +55,7 @@ def random_robot(rng, walls):
         owned[str(name)] = cable(line(*sides[str(name)]))
     for k in range(rng.integers(0, 3)):
         owned[f"twin{k}"] = cable(line(*sides[str(rng.choice(list(sides)))]))
-    if rng.random() < 0.3:  # both ends in the fixed face
+    if rng.random() < 0.3:  # both ends lie in the fixed face
         owned["idle"] = cable([[0.003, 0.003, 0.0], [0.017, 0.017, 0.0]], pull="body")
     if rng.random() < 0.3:
         owned["force"] = {"type": "force", "body": "b", "point": [0.01, 0.01, 0.06],
@@ -91,7 +91,7 @@ def random_robot(rng, walls):
 
 
 class Program:
-    """The published program (Coevoet, Escande and Duriez 2017, sec. III), with what springs answer taken in."""
+    """The published program (Coevoet, Escande and Duriez 2017, sec. III), with the springs eliminated."""
 
     def __init__(self, sim, scene, owned, targets, weights):
         linear = sim.linearise(tangent="exact")
@@ -128,7 +128,7 @@ class Program:
         return np.array(scene["effectors"][name].get("directions", np.eye(3)), dtype=float)
 
     def least_squares(self):
-        """A, b of |A x + b|^2 / 2: the task, and eps/2 x'Wx, eps relative to both parts' size in scaled efforts."""
+        """A, b of |A x + b|^2 / 2: the task, and eps/2 x'Wx, with eps relative to the sizes of both parts in scaled efforts."""
         scale = np.maximum(np.abs(self.low), np.abs(self.high))
         scaled = self.W * np.outer(scale, scale)
         root = np.sqrt(self.weight)[:, None] * self.J
@@ -148,11 +148,11 @@ class Program:
 
 
 def compare(seed, walls):
-    """Differences, each in its own size: of objectives, of efforts, and by how much limits are left."""
+    """Relative differences of objectives and efforts, and relative violation of limits."""
     rng = np.random.default_rng(seed)
     scene, owned, targets, weights = random_robot(rng, walls)
     sim = sinew.load(scene)
-    sim.step()  # what is told acts from here on
+    sim.step()  # commands take effect in this step
     settings = {"targets": targets, "weights": weights, "actuators": owned, "epsilon": EPSILON,
                 "regularisation": "effort"}
     if seed % 2:
@@ -170,18 +170,18 @@ def compare(seed, walls):
             np.maximum(program.low - ours, ours - program.high).max() / range_.max())
 
 
-@pytest.mark.filterwarnings("ignore:the step to")  # of one linearisation
+@pytest.mark.filterwarnings("ignore:the step to")  # about residuals of one linearisation
 def test_efforts_are_those_of_an_independent_solver(walls):
     objective, effort, outside = np.array([compare(seed, walls) for seed in range(1000)]).T
     assert np.abs(objective).max() < 1e-12
     assert outside.max() < 1e-12
-    # Twins are told apart by 1e-9 of the objective alone: BVLS takes a gradient of 3e-19 for none, once.
+    # Twins differ by 1e-9 of the objective only: in one case, BVLS takes a gradient of 3e-19 for zero.
     assert np.sort(effort)[-3] < 1e-5
     assert effort.max() < 2e-3
 
 
 def comes_to_rest(seed, walls):
-    """How far the effectors still go in ten steps, of the tolerance, and what the controller says."""
+    """Remaining motion of the effectors in ten steps, relative to the tolerance, and the status of the controller."""
     scene, owned, targets, weights = random_robot(np.random.default_rng(seed), walls)
     del scene["solver"]
     sim = sinew.load(scene)
@@ -203,7 +203,7 @@ def test_redundant_robots_come_to_rest(walls):
 
 @pytest.mark.parametrize("first", ["chamber", "cable_0"])
 def test_cables_that_move_nothing_do_not_disturb_others_in_any_order(first):
-    # A cable within a rigid body: its compliance is rounding. It once sent a chamber that is named before it to its limit.
+    # Regression: a cable within a rigid body has a compliance of rounding errors, which drove a chamber listed before it to its limit.
     points = [[0.003, 0.014, -0.049], [0.03, 0.014, -0.0489], [0.057, 0.0128, -0.049]]
     idle = {"type": "cable", "body": "link", "pull": "body", "points": points, "outside": "nearest",
             "limits": {"tension": {"max": "5 N"}, "displacement": {"min": "-10 mm", "max": "8 mm"}}}
@@ -232,7 +232,7 @@ def test_cables_that_move_nothing_do_not_disturb_others_in_any_order(first):
 
 
 def resting_link(command):
-    """A finger of rubber on a pad, with a link on a hinge at its end, along which a cable runs that moves nothing."""
+    """A rubber finger on a pad, with a hinged link at its end. A cable along the link moves nothing."""
     points = [[0.051, 0.016, 0.008], [0.078, 0.016, 0.0081], [0.105, 0.0148, 0.008]]
     return {
         "sinew": 1, "time_step": "10 ms", "solver": {"method": "newton"},
@@ -265,7 +265,7 @@ def resting_link(command):
     ],
 )
 def test_cables_that_move_nothing_do_not_disturb_contacts(command, tension):
-    # Rounding once gave the cable a compliance of 1e-34 m/N, and Newton needed hundreds of iterations, each to other forces.
+    # Regression: by rounding, the cable had a compliance of 1e-34 m/N, and Newton's method needed hundreds of iterations.
     sim = sinew.load(resting_link(command))
     for _ in range(4):
         sim.step()
@@ -282,7 +282,7 @@ def test_a_motion_that_nothing_can_bring_about_is_named():
 
 
 def arm_at_its_stop(integrator, of):
-    """An arm on a hinge with two motors, which a controller asks to turn beyond the hinge's stop."""
+    """An arm on a hinge with two motors; the target of its controller is beyond the stop of the hinge."""
     limits = {"torque": {"min": "-100 mN m", "max": "100 mN m"}}
     return {
         "sinew": 1, "time_step": "5 ms", "integrator": integrator, "gravity": "0 0 0 m/s^2",
@@ -300,7 +300,7 @@ def arm_at_its_stop(integrator, of):
 @pytest.mark.parametrize("of", ["effort", "change"])
 @pytest.mark.parametrize("integrator", ["backward-euler", "bdf2", "generalized-alpha"])
 def test_motors_of_a_joint_at_its_stop_do_not_push_against_it(integrator, of):
-    # Beside the stop's force theirs move nothing. Rounding once chose them: their limits, now and then called out of reach.
+    # At the stop, the motors move nothing. Regression: rounding drove them to their limits, at times with the status out-of-reach.
     sim = sinew.load(arm_at_its_stop(integrator, of))
     one, two = sim.actuator("one"), sim.actuator("two")
     torques = []
@@ -311,7 +311,7 @@ def test_motors_of_a_joint_at_its_stop_do_not_push_against_it(integrator, of):
             assert np.degrees(sim.joint("elbow").angle) == pytest.approx(10.0, abs=1e-4)
             assert sim.controller.status in ("local-optimum", "moving")
             torques.append(abs(one.torque))
-    # What stopped the arm fades: in fifty steps where effort counts, by a hundredth a step where its change does.
+    # The torques decay: within fifty steps if efforts are penalised, by 1 % per step if their change is.
     assert max(torques) < 0.05
     assert max(torques[-10:]) < max(1e-5, 0.8 * max(torques))
     if of == "effort":

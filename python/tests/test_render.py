@@ -1,4 +1,4 @@
-"""Pictures and videos: what is drawn where, in which colour, and how often."""
+"""Pictures and videos: positions, colours and number of drawn objects and frames."""
 
 import math
 import os
@@ -32,7 +32,7 @@ ALONG_Y = Camera((0.0, -0.4, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0.5)
 
 
 def rigid(shape, **more):
-    """A body that stays."""
+    """A fixed body."""
     return {"type": "rigid", "shape": shape, "fixed": True, **more}
 
 
@@ -42,13 +42,13 @@ def scene(bodies, **more):
 
 
 def block(**more):
-    """A deformable block on its end."""
+    """A deformable block that stands on its end."""
     return {"type": "fem", "mesh": {"shape": "block", "length": "20 mm", "width": "20 mm", "height": "60 mm", "element_size": "10 mm"},
             "material": {"young_modulus": "100 kPa", "poisson_ratio": 0.4}, "density": "1000 kg/m^3", "fixed": {"set": "z_min"}, **more}
 
 
 def projected(camera, point, size=SIZE):
-    """Column and row (floats) of a point, worked out without the renderer: similar triangles in front of a pinhole."""
+    """Column and row (floats) of a point by the pinhole model, independent of the renderer."""
     eye, target = np.array(camera.position), np.array(camera.target)
     forward = (target - eye) / np.linalg.norm(target - eye)
     right = np.cross(forward, camera.up)
@@ -60,17 +60,17 @@ def projected(camera, point, size=SIZE):
 
 
 def pixel(picture, camera, point):
-    """The colour where a point is seen."""
+    """Colour of the pixel in which a point is seen."""
     column, row = projected(camera, point, picture.shape[1::-1])
     return picture[int(row), int(column)].astype(int)
 
 
 def covered(picture, background=BACKGROUND):
-    """Where something is drawn."""
+    """Pixels in which something is drawn."""
     return np.any(picture != background, axis=2)
 
 
-# Where
+# Positions
 
 
 def test_a_picture_is_an_array_of_the_size_that_was_asked_for():
@@ -79,7 +79,7 @@ def test_a_picture_is_an_array_of_the_size_that_was_asked_for():
 
 
 def test_a_body_covers_where_it_is_and_the_rest_is_background():
-    # The face that is nearest is a rectangle on the picture; what is behind it is within, as it is farther away.
+    # The nearest face is a rectangle in the picture; all other parts lie within it, because they are farther away.
     sim = scene({"box": rigid({"box": "60 40 20 mm"}, pose={"position": "10 0 -5 mm"})})
     picture = sinew.render(sim, SIZE, ALONG_Y, **PLAIN)
     left, top = projected(ALONG_Y, [-0.02, -0.02, 0.005])
@@ -104,7 +104,7 @@ def test_edges_are_smooth():
     sim = scene({"box": rigid({"box": "40 40 40 mm"}, pose={"rotation": {"axis": "y", "angle": "20 deg"}})})
     picture = sinew.render(sim, SIZE, ALONG_Y, **PLAIN)
     colours_seen = np.unique(picture.reshape(-1, 3), axis=0)
-    assert len(colours_seen) > 3  # body, background, and mixtures of both
+    assert len(colours_seen) > 3  # body, background, and blends of both
 
 
 def test_a_body_that_moves_moves_on_the_picture():
@@ -115,7 +115,7 @@ def test_a_body_that_moves_moves_on_the_picture():
     sim.step(10)
     after = covered(renderer.frame())
     shift = np.nonzero(after)[1].mean() - np.nonzero(before)[1].mean()
-    # Between the shift of the near face and of the far one.
+    # The shift lies between that of the near face and that of the far one.
     near, far = (projected(ALONG_Y, [0.03, y, 0])[0] - projected(ALONG_Y, [0, y, 0])[0] for y in (-0.01, 0.01))
     assert far - 0.7 < shift < near + 0.7
 
@@ -150,7 +150,7 @@ def test_the_surface_of_every_element_encloses_the_body(element):
     body = sim.body("block")
     triangles, edges = boundary_of(body)
     a, b, c = (np.asarray(body.rest_positions)[triangles[:, k]] for k in range(3))
-    assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 == pytest.approx(body.volume, rel=1e-9)  # outward, closed
+    assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 == pytest.approx(body.volume, rel=1e-9)  # closed and oriented outwards
     assert len(np.unique(np.sort(triangles, axis=1), axis=0)) == len(triangles)
     sides = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     assert {tuple(edge) for edge in edges} <= {tuple(side) for side in sides}
@@ -201,7 +201,7 @@ def test_every_example(path):
     sim.step(3)
     picture = sinew.render(sim, SIZE, background="#ffffff", floor=False, contacts=False)
     assert 0.01 < covered(picture).mean() < 0.8
-    # All of it is in the picture.
+    # The whole body is in the picture.
     assert not covered(picture)[[0, -1]].any() and not covered(picture)[:, [0, -1]].any()
 
 
@@ -209,7 +209,7 @@ def test_every_example(path):
 
 
 def lifted(field_range=(0.0, 0.02), **more):
-    """A box that has moved by 10 mm as a whole, coloured by its displacement."""
+    """A box that is displaced by 10 mm, coloured by its displacement."""
     motion = {"z": {"ramp": {"to": "10 mm", "duration": "0.1 s"}}}
     sim = scene({"box": {"type": "rigid", "shape": {"box": "40 40 40 mm"}, "motion": motion}})
     sim.step(10)
@@ -277,7 +277,7 @@ def test_edges_of_the_mesh():
 
 
 def tied(**more):
-    """The block with a cable along a line, at its front."""
+    """The block with a straight cable at its front."""
     cable = {"type": "cable", "body": "block", "points": ["10 3 5 mm", "10 3 30 mm", "10 3 55 mm"], **more}
     tip = {"body": "block", "point": "10 10 60 mm"}
     return scene({"block": block()}, actuators={"string": cable}, effectors={"tip": tip}, integrator="quasi-static")
@@ -295,7 +295,7 @@ def test_a_cable_is_seen_through_the_body_and_tells_whether_it_pulls():
     bare = sinew.render(sim, LARGE, camera, cables=False, **PLAIN)
     beside = points[1] + [0.006, 0.0, 0.0]
     for point in (0.5 * (points[0] + points[1]), points[1]):
-        assert pixel(picture[0.5], camera, point)[0] < pixel(bare, camera, point)[0] - 25  # blue, faintly: less red
+        assert pixel(picture[0.5], camera, point)[0] < pixel(bare, camera, point)[0] - 25  # faintly blue, so less red
         assert pixel(picture[0.5], camera, point)[0] < pixel(picture[0.0], camera, point)[0] - 15
     assert (pixel(picture[0.5], camera, beside) == pixel(bare, camera, beside)).all()
 
@@ -309,7 +309,7 @@ def test_effectors_and_goals():
     for goal in ([0.03, -0.01, 0.06], more[0]):
         red, _, blue = pixel(picture, camera, goal)
         assert red > blue + 80
-    tip = sim.effector("tip").position - [0, 0, 0.0003]  # inside the body, and seen through it
+    tip = sim.effector("tip").position - [0, 0, 0.0003]  # inside the body, but visible through it
     bare = sinew.render(sim, LARGE, camera, effectors=False, **PLAIN)
     assert pixel(picture, camera, tip).sum() < pixel(bare, camera, tip).sum() - 70
     assert (pixel(bare, camera, more[0]) == BACKGROUND).all()
@@ -334,7 +334,7 @@ def test_forces_are_arrows_from_where_they_act_along_them():
     assert len(acting) == 4 and contact.normal_force == pytest.approx(0.981, rel=1e-3)
     red = picture[..., 0].astype(int) - picture[..., 2] > bare[..., 0].astype(int) - bare[..., 2] + 10
     forces = (contact.normal_forces[:, None] * contact.normals + contact.friction_forces)[contact.normal_forces > 0.1]
-    # The largest is 0.22 of the size of the robot.
+    # The largest arrow has 0.22 of the size of the robot.
     lengths = 0.22 * 0.04 * math.sqrt(3.0) / np.linalg.norm(forces, axis=1).max()
     for point, force in zip(acting, forces):
         for share, arrow in ((0.3, True), (0.7, True), (1.5, False), (-0.3, False)):
@@ -350,7 +350,7 @@ def test_a_plane_is_a_floor_with_the_shadow_of_what_stands_on_it():
     camera = Renderer(sim, SIZE)
     camera.frame()
     assert (pixel(without, camera.camera, [0.03, 0.03, 0.0]) == BACKGROUND).all()
-    # The sun is on the left and in front: the shadow lies on the right behind.
+    # The light comes from the left front, so the shadow lies at the right rear.
     dark, light = (pixel(picture, camera.camera, point).sum() for point in ([0.027, 0.005, 0.0], [-0.04, -0.02, 0.0]))
     assert dark < light - 60 and light < 3 * 255
 
@@ -423,7 +423,7 @@ def test_gravity_points_down(gravity):
         assert lower > row + 1.0 and abs(below - column) < 0.05 * (lower - row)
 
 
-# Again and again
+# Repeated rendering
 
 
 def test_the_same_state_gives_the_same_bits():
@@ -478,7 +478,7 @@ def test_the_picture_does_not_keep_the_simulation_alive(sim):
 
 
 def record(sim, folder, duration):
-    """Records a run as `sinew run` does, the parts that are drawn."""
+    """Records those parts of a run that are drawn, in the format of `sinew run`."""
     names = [f"{name}.positions" for name in sim.bodies] + [f"{name}.tension" for name in sim.actuators]
     parts = ("position", "normal", "normal_force", "friction_force")
     names += [f"{name}.points.{part}" for name in sim.contacts for part in parts] + [f"{name}.pose" for name in sim.contacts]
@@ -504,12 +504,12 @@ def record(sim, folder, duration):
 
 @pytest.fixture
 def pulled():
-    """The block whose cable is pulled in 0.2 s."""
+    """The block, with its cable pulled in 0.2 s."""
     return tied(command={"displacement": {"ramp": {"to": "4 mm", "duration": "0.2 s"}}})
 
 
 def frames_of(path):
-    """All frames of an animated file, and how long each lasts (ms)."""
+    """All frames of an animated file, and their durations (ms)."""
     with Image.open(path) as file:
         found = []
         for k in range(file.n_frames):
@@ -533,7 +533,7 @@ def test_speed_and_even_times(pulled, tmp_path):
     assert len(list((tmp_path / "a").glob("frame_*.png"))) == 11 and pulled.time == pytest.approx(0.2)
     assert sinew.render.video(tmp_path / "b" / "x_%03d.png", twice, 25, duration=0.2, speed=2, size=(40, 30)) == tmp_path / "b"
     assert sorted(path.name for path in (tmp_path / "b").iterdir()) == ["x_000.png", "x_001.png", "x_002.png"]
-    # Frame 1 of one is frame 4 of the other: both at 80 ms.
+    # Frame 1 of one series and frame 4 of the other are both at 80 ms.
     first, second = (np.asarray(Image.open(path)) for path in (tmp_path / "b" / "x_001.png", tmp_path / "a" / "frame_0004.png"))
     assert (first == second).all()
 
@@ -555,7 +555,7 @@ def test_a_recorded_run_looks_as_it_did(pulled, tmp_path):
         live = sinew.render(pulled, SIZE, camera, field="displacement")
         replayed = Renderer(run.sim, SIZE, camera, field="displacement").frame(run.at(0.2, "displacement"))
         assert (np.abs(live.astype(int) - replayed) > 8).any(axis=2).mean() < 0.002
-        # The cable goes with the body, though its points are not recorded; its pull point stays.
+        # The cable moves with the body, although its points are not recorded; its pull point stays.
         points = run.at(0.2).cables["string"]
         assert np.abs(points - pulled.actuator("string").points).max() < 1e-4
         assert np.abs(points - run.moment(0).cables["string"]).max() > 3e-4
@@ -594,7 +594,7 @@ def test_a_recorded_run_with_contacts(tmp_path):
 
 
 def program(*words, cwd):
-    """python3 -m sinew.render."""
+    """Runs python3 -m sinew.render."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     command = [sys.executable, "-m", "sinew.render", *map(str, words)]
     return subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True, check=False)
@@ -634,7 +634,7 @@ def test_mp4_needs_ffmpeg_and_says_so(monkeypatch, tmp_path):
 
 
 def stand_in(folder, text, monkeypatch):
-    """A program called ffmpeg."""
+    """Installs a program named ffmpeg in the path."""
     file = folder / "ffmpeg"
     file.write_text(f"#!/bin/sh\n{text}\n")
     file.chmod(file.stat().st_mode | stat.S_IXUSR)
@@ -740,7 +740,7 @@ def test_what_is_missing_is_named(sim, monkeypatch, missing):
             found.append(error)
 
     colours.bar.cache_clear()
-    thread = threading.Thread(target=work)  # a thread has a context of its own
+    thread = threading.Thread(target=work)  # each thread has its own context
     thread.start()
     thread.join()
     assert found[0].kind == "tool-missing" and "install python3-" in found[0].remedy

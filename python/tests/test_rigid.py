@@ -1,4 +1,4 @@
-"""Rigid bodies and joints against equations of motion that are integrated independently."""
+"""Rigid bodies and joints, compared with independently integrated equations of motion."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ def turned(body):
 
 
 def tumbling(step, integrator, duration=0.5):
-    """Spins about the middle axis, which turns over (Dzhanibekov); the end's rotation and momentum."""
+    """Spins a box about its unstable middle axis (Dzhanibekov effect). Returns final rotation, angular momentum and energy."""
     spin = [0.1, 20.0, 0.1]
     sim = make({"box": box(velocity={"angular": f"{spin[0]} {spin[1]} {spin[2]} rad/s"})}, step=f"{step} s",
                integrator=integrator, gravity="0 0 0 m/s^2")
@@ -41,7 +41,7 @@ def tumbling(step, integrator, duration=0.5):
 
 def reference_tumbling(duration=0.5):
     def rate(_, state):
-        quaternion, omega = state[:4], state[4:]  # omega in the body
+        quaternion, omega = state[:4], state[4:]  # omega in body axes
         turn = Rotation.from_quat(quaternion)
         spin = turn.apply(omega)
         x, y, z, w = quaternion
@@ -78,11 +78,11 @@ def test_a_thrown_box_falls_as_a_point():
                integrator="generalized-alpha")
     sim.run(duration=0.2)
     np.testing.assert_allclose(sim.body("box").centre_of_mass, [0.2, 0, 1 + 0.4 - 0.5 * 9.81 * 0.04],
-                               atol=9.81 * 1e-3**2)  # of the first step, which knows no acceleration
+                               atol=9.81 * 1e-3**2)  # error of the first step, which starts without acceleration
 
 
 def pendulum(theta, length, duration):
-    """A box that hangs by a hinge along y, at `length` from its centre."""
+    """Reference for a box on a hinge along y, at `length` from its centre: final angle and rate."""
     inertia = INERTIA[1] + MASS * length**2
 
     def rate(_, state):
@@ -92,7 +92,7 @@ def pendulum(theta, length, duration):
 
 
 def swinging(step, integrator, duration=0.5):
-    # The box hangs along -z; it starts turned by 60 degrees about y.
+    # The box hangs along -z and starts rotated by 60 degrees about y.
     length, start = 0.1, np.radians(60)
     centre = length * np.array([-np.sin(start), 0, -np.cos(start)])
     sim = make({"box": box(pose={"position": f"{centre[0]} {centre[1]} {centre[2]} m",
@@ -114,7 +114,7 @@ def test_pendulum_on_a_hinge(integrator, order):
     print(integrator, errors)
     assert np.log2(errors[-2] / errors[-1]) > order - 0.25
     if order == 2:
-        # What the hinge carries: the weight, and what turns the centre of mass.
+        # The hinge force carries the weight and accelerates the centre of mass.
         turn = np.array([-np.sin(angle), 0, -np.cos(angle)])
         along = np.array([-np.cos(angle), 0, np.sin(angle)])
         inertia = INERTIA[1] + MASS * 0.01
@@ -153,8 +153,8 @@ def test_double_pendulum():
 
 
 def test_heavy_top_precesses():
-    # A disc on a rod, its foot on a ball joint, spinning fast: the precession m g l / (I3 spin) of a
-    # steady top (Goldstein, Classical Mechanics, sec. 5.7), exact where the tilt is a right angle.
+    # A fast-spinning disc on a rod with a ball joint: the precession m g l / (I3 spin) of a steady top
+    # (Goldstein, Classical Mechanics, sec. 5.7) is exact for a tilt of 90 degrees.
     radius, height, mass, arm, spin = 0.05, 0.02, 0.2, 0.1, 200.0
     i3 = 0.5 * mass * radius**2
     precession = mass * 9.81 * arm / (i3 * spin)
@@ -188,7 +188,7 @@ def test_slider_crank_runs_as_its_geometry_says():
         angle = sim.joint("shaft").angle
         expected = 0.05 * np.cos(angle) + np.sqrt(0.15**2 - (0.05 * np.sin(angle))**2)
         assert 0.2 + sim.joint("guide").displacement == pytest.approx(expected, abs=1e-9)
-    assert sim.joint("shaft").angle == pytest.approx(7.0, abs=1e-9)  # beyond a whole turn
+    assert sim.joint("shaft").angle == pytest.approx(7.0, abs=1e-9)  # more than one turn
     motor = sim.actuator("motor")
     assert motor.velocity == 10.0
     motor.velocity = -20.0
@@ -196,12 +196,12 @@ def test_slider_crank_runs_as_its_geometry_says():
     sim.run(duration=0.1)
     assert sim.joint("shaft").angle == pytest.approx(5.0, abs=1e-9)
     motor.torque = 0.0
-    assert motor.velocity == 0.0  # told something else
+    assert motor.velocity == 0.0  # another quantity is commanded
 
 
 @pytest.mark.parametrize("most", [3, 50])
 def test_a_commanded_velocity_is_that_of_the_whole_step(most):
-    """Also where the step is made in parts, as here with too few iterations for a jump of 50 rad/s."""
+    """Holds for steps that are split, too, as here with too few iterations for a jump of 50 rad/s."""
     bar = {"type": "rigid", "density": "1000 kg/m^3"}
     sim = make({"upper": {**bar, "shape": {"box": "100 10 5 mm"}, "pose": {"position": "50 0 0 mm"}},
                 "lower": {**bar, "shape": {"box": "60 10 5 mm"}, "pose": {"position": "130 0 0 mm"}}},
@@ -219,7 +219,7 @@ def test_a_commanded_velocity_is_that_of_the_whole_step(most):
 
 
 def test_a_hinge_with_friction_comes_to_rest_when_it_must():
-    # The spin w of a body with inertia I is taken by a moment M in I w / M.
+    # A moment M stops the spin w of a body with inertia I within I w / M.
     spin, moment = 10.0, 1e-3
     sim = make({"box": box(velocity={"angular": f"0 0 {spin} rad/s"})},
                {"pin": {"type": "hinge", "bodies": ["world", "box"], "point": "0 0 0 m", "axis": "z",
@@ -265,7 +265,7 @@ def test_what_nothing_holds_is_refused_in_statics():
 
 @pytest.mark.parametrize("limits", [{}, {"limits": {"torque": {"min": "-1 N m", "max": "1 N m"}}}])
 def test_motors_hold_an_arm_in_statics(limits):
-    # Two links that motors turn, quasi-statically and in statics: torques are those of the weights.
+    # Two links driven by motors, quasi-static and static: the torques balance the weights.
     sim = make({"upper": box(pose={"position": "50 0 0 mm"}), "lower": box(pose={"position": "150 0 0 mm"})},
                {"shoulder": {"type": "hinge", "bodies": ["world", "upper"], "point": "0 0 0 mm", "axis": "0 -1 0"},
                 "elbow": {"type": "hinge", "bodies": ["upper", "lower"], "point": "100 0 0 mm", "axis": "0 -1 0"}},
@@ -290,7 +290,7 @@ def test_a_motor_that_is_too_weak_gives_way_in_statics():
     sim.step(2)
     weight = MASS * 9.81 * 0.05
     assert weight > 0.1
-    # It hangs where its weight's moment is what the motor can.
+    # The arm hangs where the moment of its weight equals the limit of the motor.
     assert sim.actuator("motor").torque == pytest.approx(0.1)
     assert weight * np.cos(sim.joint("pin").angle) == pytest.approx(0.1, rel=1e-6)
 
@@ -303,7 +303,7 @@ def beam(**more):
 
 
 def test_a_rigid_weight_welded_to_a_beam_bends_it_as_a_force_and_moment_do():
-    # The weight's centre is 15 mm beyond the face: its weight acts there.
+    # The centre of the weight is 15 mm beyond the face.
     held = make({"beam": beam(), "weight": {"type": "rigid", "shape": {"box": "30 10 10 mm"}, "mass": "2 g",
                                             "pose": {"position": "115 5 5 mm"}}},
                 {"bond": {"type": "weld", "bodies": ["beam", "weight"]}}, integrator="quasi-static")
@@ -312,7 +312,7 @@ def test_a_rigid_weight_welded_to_a_beam_bends_it_as_a_force_and_moment_do():
     np.testing.assert_allclose(joint.force, [0, 0, 2e-3 * 9.81], atol=1e-9)
     np.testing.assert_allclose(joint.moment + np.cross(joint.centre - held.body("weight").centre_of_mass, joint.force),
                                0, atol=1e-10)
-    # The tip is rigid: its nodes keep their distances.
+    # The welded face is rigid: its nodes keep their distances.
     end = held.body("beam").rest_positions[:, 0] > 0.0999
     now, rest = held.body("beam").positions[end], held.body("beam").rest_positions[end]
     spread = np.linalg.norm(now[:, None] - now[None], axis=-1) - np.linalg.norm(rest[:, None] - rest[None], axis=-1)

@@ -1,4 +1,4 @@
-"""Rigid bodies whose shape is a mesh file, against closed forms and the same bodies of shapes."""
+"""Rigid bodies from mesh files, compared with closed forms and with primitive shapes."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,7 @@ def test_a_box_has_the_mass_of_a_box(tmp_path, write, ending):
 
 
 def test_a_tetrahedron_has_the_mass_of_a_tetrahedron(tmp_path):
-    # With its right corner at the origin: moments of products m / 10 and m / 20 at that corner.
+    # The right-angled corner is at the origin: second moments m / 10 and products m / 20 about that corner.
     made = make({"part": {**body(solids.write_stl(tmp_path / "t.stl", *solids.tetrahedron())), "mesh": {
         "file": str(tmp_path / "t.stl")}}}).body("part")
     mass, centre = DENSITY / 6, np.full(3, 0.25)
@@ -71,11 +71,11 @@ def test_inertia_does_not_depend_on_where_the_file_puts_the_part(tmp_path):
     far = make({"part": body(solids.write_obj(tmp_path / "b.obj", stretched @ turn.T + [50, -80, 20], triangles))}).body("part")
     assert far.mass == pytest.approx(own.mass, rel=1e-6)
     np.testing.assert_allclose(far.inertia, turn @ own.inertia @ turn.T, atol=1e-5 * own.inertia.max())
-    # About the file's origin: the parallel axis theorem.
+    # About the origin of the file, by the parallel axis theorem.
     shift = 1e-3 * np.array([50, -80, 20])
     assert np.trace(far.inertia) + 2 * far.mass * shift @ shift == pytest.approx(
         np.trace(own.inertia) + 2 * far.mass * shift @ shift, rel=1e-5)
-    # A pose of the scene moves the body and leaves what is its own.
+    # A pose in the scene moves the body without changing its inertia.
     placed = make({"part": body(str(tmp_path / "a.obj"), pose={"position": "50 -80 20 mm", "rotation": "0.3 -0.8 0.5 rad"})})
     part = placed.body("part")
     np.testing.assert_allclose(part.inertia, own.inertia, rtol=1e-12, atol=1e-12 * own.inertia.max())
@@ -96,7 +96,7 @@ def test_a_box_of_triangles_spins_as_a_box(tmp_path):
     np.testing.assert_allclose(ours.rotation, theirs.rotation, atol=1e-9)
     np.testing.assert_allclose(ours.position, theirs.position, atol=1e-9)
     np.testing.assert_allclose(ours.velocity, theirs.velocity, atol=1e-9 * 20)
-    # The file's origin elsewhere: its frame moves along, the centre of mass as before.
+    # With another origin of the file, the frame shifts and the motion of the centre of mass is the same.
     off = spinning(body(box_file(tmp_path, (10, 20, 30))), 300)
     turn = Rotation.from_quat(np.roll(off.rotation, -1))
     np.testing.assert_allclose(off.rotation, theirs.rotation, atol=1e-9)
@@ -232,7 +232,7 @@ def hull(file, **more):
     (0.4, {"position": "0 0 10 mm"}, {"linear": "0.5 0 0 m/s"}),  # slides
 ])
 def test_a_convex_body_on_the_floor_is_as_a_box(tmp_path, friction, pose, velocity):
-    # Four points with friction share a twist in many ways, so that the first one has none.
+    # With friction, four points can share a twisting moment in many ways, so the case with rotation is frictionless.
     ends = []
     for part in (hull(box_file(tmp_path)), {"type": "rigid", "shape": {"box": "60 40 20 mm"},
                                             "density": f"{DENSITY} kg/m^3"}):
@@ -240,7 +240,7 @@ def test_a_convex_body_on_the_floor_is_as_a_box(tmp_path, friction, pose, veloci
                    integrator="backward-euler",
                    contacts={"floor": {"body": "part", "surface": {"plane": {}}, "friction": friction}})
         sim.run(duration=0.3)
-        # A step's contacts hold to 1e-10 m, which is 1e-7 m/s.
+        # The contacts of a step are solved to 1e-10 m, which is 1e-7 m/s.
         ends.append(np.concatenate([sim.body("part").position, sim.body("part").rotation, 1e-2 * sim.body("part").velocity]))
     assert ends[0][2] == pytest.approx(0.01, abs=1e-6)
     if friction:
@@ -267,7 +267,7 @@ def test_a_soft_block_falls_on_a_convex_body_as_on_a_box(tmp_path):
 
 
 def test_a_hull_spans_what_the_surface_leaves_out(tmp_path):
-    # Two boxes with a gap between, over which the hull goes: a soft block on it does not fall through.
+    # The convex hull spans the gap between two boxes, so a soft block on it does not fall through.
     nodes, triangles = solids.box(np.array([20, 40, 20]), (-40, 0, 0))
     other, _ = solids.box(np.array([20, 40, 20]), (40, 0, 0))
     two = solids.write_stl(tmp_path / "two.stl", np.vstack([nodes, other]), np.vstack([triangles, triangles + 8]))

@@ -1,4 +1,4 @@
-"""Rigid bodies that go where the scene says."""
+"""Rigid bodies with prescribed motion."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import sinew
 
 
 def carried(**changes):
-    """A tray that moves sideways with a box on it."""
+    """A tray with a box on it, which moves sideways."""
     return {
         "sinew": 1, "time_step": "5 ms", "integrator": "bdf2", "gravity": "0 0 -9.81 m/s^2",
         "bodies": {
@@ -26,7 +26,7 @@ def test_a_body_goes_where_its_motion_says():
     })  # fmt: skip
     arm = sim.body("arm")
     sim.step(10)
-    # A turn by 45 degrees about the world's origin, then 10 mm along x.
+    # A rotation by 45 degrees about the origin of the world, then 10 mm along x.
     np.testing.assert_allclose(arm.position, [10e-3 + 10e-3 * np.cos(np.pi / 4), 10e-3 * np.sin(np.pi / 4), 0.0], atol=1e-12)
     spin = 0.5 * np.pi / 0.1
     np.testing.assert_allclose(arm.velocity[3:], [0.0, 0.0, spin], rtol=1e-3, atol=1e-9)
@@ -36,7 +36,7 @@ def test_a_body_goes_where_its_motion_says():
 
 
 def test_friction_carries_a_box_on_a_tray():
-    # The tray starts at 63 mm/s: the box slips by v^2/(2 mu g) = 0.40 mm, and then goes with it: 0.39 m/s^2 at most.
+    # The tray starts at 63 mm/s: the box slips by v^2/(2 mu g) = 0.40 mm and then sticks, at no more than 0.39 m/s^2.
     sim = sinew.load(carried(time_step="1 ms"))
     behind = []
     for _ in range(250):
@@ -49,7 +49,7 @@ def test_friction_carries_a_box_on_a_tray():
 
 
 def test_a_box_slips_on_a_fast_tray():
-    # 40 mm (2 pi 3)^2 = 14.2 m/s^2 at most: friction of 0.5 g moves the box by itself.
+    # With up to 40 mm (2 pi 3)^2 = 14.2 m/s^2, the box slides, accelerated by the friction of 0.5 g.
     fast = carried()
     fast["bodies"]["tray"]["motion"] = {"x": {"sine": {"amplitude": "40 mm", "period": "0.3333333333 s"}}}
     fast["bodies"]["tray"]["shape"] = {"box": "300 60 10 mm"}

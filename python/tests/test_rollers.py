@@ -1,4 +1,4 @@
-"""Bodies whose nodes are held along some axes only, and rubber in homogeneous strain."""
+"""Bodies with nodes that are fixed along some axes only, and rubber under homogeneous strain."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ SHEAR, BULK = 2e4, 2e5  # Pa
 
 
 def cube(element, material, **scene):
-    """On three rollers: every face through the origin keeps its plane."""
+    """A cube on three rollers: the faces through the origin stay in their planes."""
     return {
         "sinew": 1, "gravity": [0, 0, 0], **scene,
         "bodies": {"cube": {
@@ -23,7 +23,7 @@ def cube(element, material, **scene):
 
 
 def pull(sim, force):
-    """An even stress on the face x = SIDE, as bilinear shape functions share it out."""
+    """Applies a uniform stress to the face x = SIDE, with consistent nodal forces of bilinear shape functions."""
     body = sim.body("cube")
     rest = np.array(body.rest_positions)
     end = np.flatnonzero(rest[:, 0] > SIDE - 1e-9)
@@ -71,7 +71,7 @@ def test_cables_see_what_is_held():
     scene["actuators"] = {"pull": {"type": "force", "body": "cube", "direction": [1, 0, 0],
                                    "point": [0.0, SIDE / 2, SIDE / 2]}}
     sim = sinew.load(scene)
-    sim.actuator("pull").force = 5.0  # on a face that cannot move that way
+    sim.actuator("pull").force = 5.0  # on a face that cannot move in this direction
     sim.solve_static()
     body = sim.body("cube")
     assert np.abs(np.array(body.positions) - body.rest_positions).max() < 1e-12
@@ -84,4 +84,4 @@ def test_what_leaves_a_body_free_to_move_holds_it_not():
     with pytest.raises(sinew.Error, match="what is fixed leaves it free to move") as caught:
         sinew.load(scene)
     assert caught.value.kind == "nothing-fixed" and caught.value.place.item.startswith("bodies.cube")
-    sinew.load({**scene, "integrator": "backward-euler"}).step()  # inertia holds it
+    sinew.load({**scene, "integrator": "backward-euler"}).step()  # with inertia, no support is needed

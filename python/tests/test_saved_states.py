@@ -1,6 +1,6 @@
-"""States that earlier versions saved: each file of states/ is of the version in its name, on whatever machine.
+"""States saved by earlier versions: the name of each file in states/ contains its version; any machine may have written it.
 
-A new version adds files and keeps the others: `python test_saved_states.py` writes those of the present version.
+A new version adds files and keeps the old ones: `python test_saved_states.py` writes those of the present version.
 """
 
 import json
@@ -29,7 +29,7 @@ def step(sim, count):
 
 
 def measure(sim):
-    """Where every effector and the middle of every body is, m."""
+    """Positions of all effectors and mean positions of all bodies, m."""
     found = {f"effector {name}": list(e.position) for name, e in sim.effectors.items()}
     found |= {f"body {name}": list(np.mean(body.positions, axis=0)) for name, body in sim.bodies.items()}
     found |= {f"sensor {name}": list(np.atleast_1d(sensor.value)) for name, sensor in sim.sensors.items()}
@@ -37,7 +37,7 @@ def measure(sim):
 
 
 def test_there_is_a_file_of_each_scene_for_the_present_version(tmp_path):
-    for scene in SCENES:  # robots without sensors are saved as by version 8
+    for scene in SCENES:  # robots without sensors are saved in the format of version 8
         load(scene).save_state(tmp_path / "now.state")
         version = int.from_bytes((tmp_path / "now.state").read_bytes()[8:12], "little")
         assert (FOLDER / f"{scene}-{version}.state").exists()
@@ -56,7 +56,7 @@ def test_an_older_state_is_read_and_goes_on(path):
         found = measure(sim)
         assert found.keys() == expected[moment].keys()
         for name, place in found.items():
-            # Other processors round otherwise, and friction and contact pass that on.
+            # Other processors round differently, and friction and contact amplify the differences.
             assert place == pytest.approx(expected[moment][name], abs=1e-8), (moment, name)
 
 

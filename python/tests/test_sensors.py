@@ -1,4 +1,4 @@
-"""Sensors: what they say of a run, from Python, from files and from real robots."""
+"""Sensors: samples in runs, in Python, in files, and from real robots."""
 
 import copy
 import csv
@@ -47,7 +47,7 @@ def test_a_sensor_says_what_it_is_and_what_is_true():
     assert length.true_value == sim.actuator("pull").displacement
     assert length.value == pytest.approx(length.true_value, abs=5e-4) and length.value != length.true_value
     assert round(length.value / 1e-5) * 1e-5 == pytest.approx(length.value, abs=1e-15)
-    assert eye.valid and eye.time == pytest.approx(0.16) and not eye.fresh  # of 0.16 s, delivered at 0.19 s
+    assert eye.valid and eye.time == pytest.approx(0.16) and not eye.fresh  # taken at 0.16 s, delivered at 0.19 s
     assert sim.sensor("fibre").value.shape == (2,)
     with pytest.raises(sinew.Error, match="did you mean 'eye'"):
         sim.sensor("aye")
@@ -64,7 +64,7 @@ def test_a_run_returns_samples_at_their_rate_and_delay():
     error = measured[3:] - true[np.rint(taken[3:] / 0.01).astype(int)]
     _, first = np.unique(taken[3:], return_index=True)
     assert np.abs(error).max() < 5e-4
-    # 24 samples of three numbers: five standard deviations of their own spread.
+    # 24 samples of three numbers; the tolerance is five standard deviations of the sample deviation.
     assert error[first].std() == pytest.approx(1e-4, abs=5 * 1e-4 / np.sqrt(2 * 3 * len(first)))
     bare = beam({}).run(0.5)
     assert bare["tip.position"].tobytes() == out["tip.position"].tobytes()
@@ -76,7 +76,7 @@ def test_noise_is_that_of_philox():
     for k in range(5):
         assert channel.offer(0.1 * k, [1.0, 2.0])
         for c in range(2):
-            counter = (k + (c << 64) - 1) % (1 << 256)  # numpy counts before it draws
+            counter = (k + (c << 64) - 1) % (1 << 256)  # numpy increments the counter before it draws
             words = np.random.Philox(key=7, counter=counter).random_raw(4)
             u, v = (int(w) >> 11 for w in words[:2])
             normal = np.sqrt(-2 * np.log1p(-u * 2.0**-53)) * np.cos(2 * np.pi * v * 2.0**-53)
@@ -236,12 +236,12 @@ def test_the_finger_with_sensors_runs():
     assert pressure[-1] > 15e3
     error = out["gauge.measured"] - pressure - 100
     assert error[1:].std() == pytest.approx(finger.sensor("gauge").std, rel=0.5)
-    # What flows in is what the gas law says is there: p V = p_0 v, isothermal.
+    # The inflow agrees with the isothermal gas law p V = p_0 v.
     growth, filled = out["air.volume_growth"][-1], out["supply.true"].sum() * finger.time_step
     volume = (101325.0 * filled - (101325.0 + pressure[-1]) * growth) / pressure[-1]  # at rest
     bore = np.pi * 0.0037**2 * 0.060
-    assert volume == pytest.approx(bore, rel=0.12)  # a polygon of few sides
-    # Along the axis a circle through three points turns as much as the orientation at the tip.
+    assert volume == pytest.approx(bore, rel=0.12)  # the bore is a polygon with few sides
+    # The rotation along a circle through three points of the axis equals that of the tip.
     turn = np.linalg.norm(out["imu.true"][-1])
     assert np.mean(out["fibre.true"][-1]) * 0.065 == pytest.approx(turn, rel=0.3)
     stretched = out["skin.true"][-1] / 1000 - 1

@@ -1,4 +1,4 @@
-"""Shapes, scaled meshes and scaled materials in scenes; meshes of Python."""
+"""Shapes, scaled meshes and scaled materials in scenes; meshes created in Python."""
 
 import pathlib
 
@@ -114,7 +114,7 @@ def test_a_chamber_in_a_file_goes_with_its_body(tmp_path):
     assert np.abs(moved).max() > 1e-4
     x, y, z = moved.T
     assert there.positions - there.rest_positions == pytest.approx(np.c_[z, y, -x], abs=1e-10)
-    # Lengths scale, strains do not.
+    # Lengths scale; strains do not.
     large = inflated("m", scale=3)
     assert large.positions - large.rest_positions == pytest.approx(3.0 * moved, abs=1e-9)
 
@@ -140,7 +140,7 @@ def test_a_material_is_scaled_and_loosely_spelled(tmp_path):
     law = tmp_path / "law.yaml"
     law.write_text("model: ogden\nmu: 144776.9 Pa\nalpha: 2.71607\nconvention: mu-over-alpha\npoisson_ratio: 0.49\n")
     assert stretch({"file": str(law), "scale": 1.5}, 1.5) == pytest.approx(plain, abs=1e-9)
-    # The short form takes the factor, too.
+    # The short form of a material accepts the factor, too.
     sim = sinew.load(pulled("dragon-skin-30"), set=["bodies.b.material.scale=1.5"])
     sim.solve_static()
     assert sim.body("b").positions == pytest.approx(stretch(scaled), abs=1e-12)
@@ -170,4 +170,4 @@ def test_paper_keeps_the_back_of_the_ribbed_finger_from_stretching():
 
     (stretched, height), (soft, _) = back(), back(**{"membranes.paper.young_modulus": "1 kPa"})
     assert 0.0 < stretched < 5e-4 < 0.02 < soft
-    assert height > 0.03  # it bends to the side of its cable
+    assert height > 0.03  # it bends towards its cable

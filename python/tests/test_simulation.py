@@ -244,7 +244,7 @@ def test_clones_share_the_model():
     crowd = [sim.clone() for _ in range(100)]
     for one in crowd:
         one.step()
-    # What they cost is what they say, a little bookkeeping aside.
+    # The actual memory agrees with the reported one, apart from some overhead.
     assert (resident_bytes() - before) / len(crowd) < 1.1 * sim.memory + 1e5
 
 
@@ -447,7 +447,7 @@ def test_ctrl_c_ends_a_long_step(scene):
         assert process.wait(timeout=20) == 0
 
 
-# 1681 points on a floor, more than Newton's method for contacts takes: one law takes far longer than the test.
+# 1681 points on a floor, too many for Newton's method for contacts: solving one contact law takes far longer than the test.
 CROWD = {
     "sinew": 1, "integrator": "backward-euler", "gravity": [0, 0, -9.81],
     "bodies": {"block": {
@@ -525,11 +525,11 @@ def test_memory_does_not_grow(scene):
             work()
         gc.collect()
         growth.append(resident_bytes() - before)
-    # What leaks grows in every round; what the allocator keeps for later does not.
+    # A leak grows in every round; memory that the allocator keeps does not.
     assert min(growth) < 3e5
 
 
 def resident_bytes():
-    """Memory of this process now."""
+    """Present resident memory of this process."""
     with open("/proc/self/statm", encoding="ascii") as file:
         return int(file.read().split()[1]) * resource.getpagesize()

@@ -1,4 +1,4 @@
-"""Friction a little below and a little above what holds a body."""
+"""Friction slightly below and slightly above the slip threshold."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ def test_a_slope_of_one_half(integrator, on_box):
     rests = block_on_a_slope(0.505, integrator, on_box)
     rests.step(200)
     assert abs(rests.body("block").position[0]) < 1e-9 * 0.04
-    # What is left of the weight is 1 % of its part along the slope.
+    # The net force is 1 % of the weight's component along the slope.
     slides = block_on_a_slope(0.495, integrator, on_box)
     slides.step(200)
     assert slides.body("block").velocity[0] == pytest.approx(G * 0.005 / np.sqrt(1.25), rel=1e-4)
@@ -49,7 +49,7 @@ def test_a_box_on_a_turntable_slips_beyond_its_friction(ratio):
     if ratio < 1.0:
         assert abs(out) < 1e-7 * radius
     else:
-        # (ratio - 1) mu g t^2/2 = 2.2 mm, more as it comes to larger radii: cosh(w t) for a slip along the radius is a bound.
+        # (ratio - 1) mu g t^2/2 = 2.2 mm, and more at larger radii; purely radial slip, cosh(w t), is an upper bound.
         start = 0.5 * 0.01 * friction * G * 0.3**2
         bound = 0.01 * friction * G / rate**2 * (np.cosh(0.3 * rate) - 1.0)
         assert 0.95 * start < out < bound

@@ -1,4 +1,4 @@
-"""Contact between the surfaces of deformable bodies, and of one with itself."""
+"""Contact between deformable bodies, and self-contact."""
 
 import itertools
 
@@ -28,7 +28,7 @@ def base(**more):
 
 
 def pile(order=("low", "top"), friction=0.5, **more):
-    """A block on a wider one; their meshes do not match."""
+    """A block on a wider one, with non-matching meshes."""
     bodies = {"low": base(), "top": block((20, 20, 20), (7, 9, 20.2), 4)}
     return make({name: bodies[name] for name in order}, {"floor": {"between": list(order), "friction": friction}}, **more)
 
@@ -43,7 +43,7 @@ def test_a_block_rests_on_a_softer_one(order):
         deepest = min(deepest, sim.contact("floor").gap)
     floor = sim.contact("floor")
     assert floor.bodies == list(order)
-    assert deepest > -4e-9  # edges of flat parts use up the separation, 1e-7 of the size, before they get a force
+    assert deepest > -4e-9  # edges of flat faces carry forces only after using up the separation, 1e-7 of the size
     assert floor.normal_force == pytest.approx(sim.body("top").mass * GRAVITY, rel=1e-3)
     sign = 1.0 if order[0] == "top" else -1.0
     assert sign * floor.force[2] == pytest.approx(sim.body("top").mass * GRAVITY, rel=1e-3)
@@ -59,7 +59,7 @@ def test_a_look_at_the_linearisation_moves_nothing():
     assert watched.state() == before
     normal = [k for k, row in enumerate(linear.rows) if row.endswith("normal")]
     assert len(normal) > 3
-    # Points that are found anew take the forces on, along normals of their own.
+    # Newly detected points inherit the forces, along their own normals.
     assert linear.effort[normal].sum() == pytest.approx(sim.contact("floor").normal_force, rel=1e-6)
     for each in (sim, watched):
         each.step(5)
@@ -93,7 +93,7 @@ def test_a_block_on_a_slope_obeys_coulomb(friction, slides):
 
 
 def test_edges_that_cross_hold_each_other():
-    """Two bars on their edges, across each other: no vertex is near."""
+    """Two bars on their edges, across each other: only edges touch, no vertices."""
     ends = [{"box": "-100 -100 -100 5 100 100 mm"}, {"box": "55 -100 -100 100 100 100 mm"}]
     low = block((60, 10, 10), (0, 0, 0), 5, fixed=ends, rotation="45 0 0 deg")
     top = block((10, 60, 10), (23, -30, 24), 5, rotation="0 45 0 deg", damping={"stiffness": "10 ms"})
@@ -104,7 +104,7 @@ def test_edges_that_cross_hold_each_other():
         sim.step()
         lowest = min(lowest, sim.body("top").positions[:, 2].min())
         forces.append(sim.contact("cross").normal_force)
-    assert lowest > 0.012  # the lower bar's ridge is at 14 mm, and bends by 2 mm
+    assert lowest > 0.012  # the ridge of the lower bar is at 14 mm and bends by 2 mm
     assert np.mean(forces[-20:]) == pytest.approx(sim.body("top").mass * GRAVITY, rel=0.05)
 
 
@@ -123,7 +123,7 @@ def test_a_collision_keeps_momentum_and_gains_no_energy(integrator):
         assert sim.report.energy_gained < 1e-5 * 0.5 * sim.body("one").mass * 0.5**2
     assert pushed > 0.1
     assert np.mean(sim.body("other").velocities, axis=0)[0] > 0.2
-    # Nodes' masses differ: their mean velocity is that of the centre of mass but for vibrations.
+    # Nodal masses differ, so the mean velocity equals that of the centre of mass only up to vibrations.
     assert momentum() == pytest.approx([before, 0.0, 0.0], abs=0.02 * before)
 
 
@@ -192,9 +192,9 @@ def test_a_body_closes_on_itself(tmp_path):
         assert not sim.report.flagged
         contact = sim.contact("self")
         assert contact.gaps[contact.normal_forces > 0.0].min(initial=0.0) > -1e-9
-        assert contact.gap > -6e-9  # crossing edges wait until they have used up the separation, 1e-7 of the size
+        assert contact.gap > -6e-9  # crossing edges carry forces only after using up the separation, 1e-7 of the size
     assert sim.contact("self").bodies == ["shoe", "shoe"]
-    # The legs, bent by the cable, push back by a little.
+    # The bent legs carry a small part of the tension.
     assert 0.75 < sim.contact("self").normal_force < 0.8
 
 
@@ -219,7 +219,7 @@ def test_a_part_of_a_surface_is_refused():
 
 
 def halves(edges, poisson_ratio):
-    """One block in two halves that lie on each other, the upper one moved down by 1 mm in 0.3 s."""
+    """A block cut into two halves that lie on each other; the upper one moves down by 1 mm in 0.3 s."""
     def half(edge, height, face):
         return {"type": "fem", "element": "hex8", "density": "1000 kg/m^3", "position": f"0 0 {height} mm", "fixed": {"set": face},
                 "material": {"model": "neo-hookean", "young_modulus": "100 kPa", "poisson_ratio": poisson_ratio},
@@ -231,13 +231,13 @@ def halves(edges, poisson_ratio):
 
 @pytest.mark.parametrize("edges", [("5 mm", "5 mm"), ("5 mm", "4 mm")])
 def test_flush_blocks_press_on_each_other_at_their_rims_and_corners(edges):
-    """One block in two halves, whose rims lie on each other at the start, is as stiff as in one piece."""
+    """A block cut into two halves, with initially coincident rims, is as stiff as in one piece."""
     sim = sinew.load({"sinew": 1, "time_step": "0.1 s", "gravity": "0 0 0 m/s^2", "solver": {"tolerance": 1e-10},
                       "bodies": halves(edges, 0.0),
                       "contacts": {"cut": {"between": ["low", "up"]}}})
     sim.step(5)
     stretch = 0.95
-    uniform = 100e3 / 2 * (stretch - 1 / stretch) * 4e-4  # without lateral strain, about
+    uniform = 100e3 / 2 * (stretch - 1 / stretch) * 4e-4  # approximately without lateral strain
     assert sim.contact("cut").force[2] == pytest.approx(uniform, rel=0.02)
     for name, z in (("low", 9.5e-3), ("up", 9.5e-3)):
         body = sim.body(name)
@@ -248,9 +248,9 @@ def test_flush_blocks_press_on_each_other_at_their_rims_and_corners(edges):
 @pytest.mark.parametrize("element", ["hex8", "tet4", "tet10"])
 @pytest.mark.parametrize("steps", [2, 4, 8])
 def test_flush_corners_hold_each_other_while_bodies_slide_a_little(element, steps):
-    """Where both corners stand beside the other face by a micrometre, the crossing of their rims is all that holds them.
+    """If both corners lie a micrometre beside the other face, only the crossing of their rims keeps them apart.
 
-    With four steps and linear tetrahedra, corners passed each other by 1.1 mm, for faces that tilt by 1e-4.
+    Regression: with four steps and linear tetrahedra, corners passed each other by 1.1 mm, because faces tilted by 1e-4.
     """
     def half(height, face):
         return {"type": "fem", "element": element, "density": 1000.0, "position": [0, 0, height], "fixed": {"set": face},
@@ -272,7 +272,7 @@ def test_flush_corners_hold_each_other_while_bodies_slide_a_little(element, step
 
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_flush_blocks_with_fine_meshes_are_solved(friction):
-    """Most of their 758 points are crossing edges, which wait: the law of all of them has 2274 rows of rank 843."""
+    """Most of the 758 points are crossing edges, which carry no force yet: a law of all points has 2274 rows of rank 843."""
     def pressed(edges):
         sim = sinew.load({"sinew": 1, "time_step": "0.1 s", "gravity": "0 0 0 m/s^2",
                           "bodies": halves(edges, 0.3),

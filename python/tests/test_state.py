@@ -1,4 +1,4 @@
-"""States and inputs as values: what a run goes on from."""
+"""States and inputs as values, from which a run continues."""
 
 import copy
 import pickle
@@ -106,7 +106,7 @@ def test_a_controller_takes_up_its_memory():
         ik.step()
     assert sim.state() == there and ik.status == status
     clone = sinew.load(scene)
-    clone.restore(half)  # without a controller: the memory waits for none
+    clone.restore(half)  # without a controller, the controller's memory is ignored
     assert clone.steps == 5
 
 

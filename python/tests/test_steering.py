@@ -36,15 +36,15 @@ def test_a_trunk_leans_on_a_tube_and_arrives_behind_it(friction):
 
 def test_fingers_hold_a_shell_with_the_force_asked_for():
     grip = load("grip")
-    # The hand rises as soon as it holds the shell, and the shell has come to rest in it.
+    # The hand rises as soon as it holds the shell, which is then at rest in it.
     grip.LIFTS, grip.LIFTED, grip.END, grip.ASIDE = 1.2, 2.2, 3.5, 0.0
     rows, sim = grip.hold(1.0)
     late = rows[rows[:, 0] > grip.LIFTS]
-    # The aim is 2 %; where the fingers slip as they close it is 4 %, see docs/steering.md.
+    # The goal is 2 %, or 4 % while the fingers slip as they close, see docs/steering.md.
     assert np.abs(late[:, 1:4] - 1.0).max() < 2e-3
     assert late[-1, 4] > 0.06
     assert rows[:, 5].min() > -1e-8
-    # A minute's aim is 1e-6 of its size: no node goes farther, the steps' own alternation included.
+    # The goal for a minute is 1e-6 of the size: no node moves farther, including the alternation between steps.
     assert 0.0 < grip.creep(sim, 0.3) < 1e-6 * 2 * grip.TALL
 
 
@@ -57,7 +57,7 @@ def test_fingers_carry_a_cup_along_a_circle_without_turning_it():
     assert np.median(rows[:, 2]) < 1e-4 and rows[:, 2].max() < 0.02
     assert rows[:, 3:6].min() > 0.99 * manipulation.LEAST
     assert rows[:, 9].min() > -1e-8
-    assert np.linalg.norm(way[-1]) > 7e-3  # half way around
+    assert np.linalg.norm(way[-1]) > 7e-3  # halfway around the circle
 
 
 def test_fingertips_roll_a_cylinder_between_them():
@@ -65,13 +65,13 @@ def test_fingertips_roll_a_cylinder_between_them():
     in_hand.TURNED, in_hand.END = 0.65, 0.7
     angle = np.radians(15.0)
     rows, _, _ = in_hand.roll(angle, 1.0)
-    # Columns: time, asked, found, distance of the axis, two normal forces, sticking, slipping, two bones, seconds.
+    # Columns: time, target, angle, distance of the axis, two normal forces, sticking, slipping, two bones, seconds.
     late = rows[rows[:, 0] > in_hand.HELD + 0.1]
     assert np.abs(late[:, 2] - late[:, 1]).max() < 1e-4
     assert rows[-1, 2] == pytest.approx(angle, abs=1e-5)
     assert late[:, 3].max() < 1e-5
     assert np.abs(late[:, 4] - 1.0).max() < 1e-3
-    # One bone rises and the other one sinks, each by about the arc; the pads shear.
+    # One bone rises and the other one sinks, each by about the arc length; the pads shear.
     assert rows[-1, 8:10] - rows[0, 8:10] == pytest.approx(in_hand.RADIUS * angle * np.array([1.0, -1.0]), abs=0.5e-3)
 
 
@@ -79,9 +79,9 @@ def test_a_wheel_rolls_to_a_position():
     roll = load("roll")
     roll.STAYS = 1.6
     rows, _ = roll.roll([10e-3])
-    # Columns: time, asked, position, normal force, points that slip, smallest gap, seconds.
+    # Columns: time, target, position, normal force, slipping points, smallest gap, seconds.
     assert rows[-1, 2] == pytest.approx(10e-3, abs=2.5e-3)
-    assert np.abs(rows[-10:, 2] - rows[-1, 2]).max() < 1e-3  # it does not rock
+    assert np.abs(rows[-10:, 2] - rows[-1, 2]).max() < 1e-3  # it does not oscillate
     assert rows[:, 5].min() > -1e-8
 
 
@@ -89,7 +89,7 @@ def test_pressures_are_found_for_a_stride():
     stride = load("stride")
     stride.SHARES, stride.NEAR = (0.78, 0.85), 2e-2
     rows, log, _ = stride.walk([5e-3])
-    # The stride that is made is the one found: the search takes back what it tried.
+    # The stride that is made is the one found, because the search undoes its trials.
     assert rows[0, 1] == pytest.approx(5e-3, abs=0.3e-3)
     assert log[-1, 1] == rows[0, 1] and 0.78 < rows[0, 2] < 0.85
 

@@ -1,4 +1,4 @@
-"""What a step says of itself, and that Python warns of it."""
+"""Status of steps, and warnings in Python."""
 
 import pathlib
 import warnings
@@ -6,7 +6,7 @@ import warnings
 import pytest
 import sinew
 
-# One linearisation without the cables' own stiffness: what diverges when a slender robot is pulled.
+# One linearisation without the geometric stiffness of cables, which diverges when a slender robot is pulled.
 ROUGH = [
     "solver={method: one-linearisation, tangent: corotated}",
     "actuators.long_0.geometric_stiffness=false",
@@ -71,7 +71,7 @@ def test_a_swing_reports_the_energy_that_it_gained():
 
 
 def test_one_linearisation_follows_a_swing():
-    """A hinged beam let go level passes below its hinge when Newton says so."""
+    """A hinged beam, released level, passes below its hinge at the time that Newton's method gives."""
 
     def passes(method):
         sim = sinew.load({"sinew": 1, "gravity": [0, 0, -9.81], "integrator": "bdf2", "time_step": 0.002, "solver": method, "bodies": {"beam": {
@@ -88,7 +88,7 @@ def test_one_linearisation_follows_a_swing():
 
 
 def test_one_linearisation_passes_indefinite_tangents():
-    """A column that weighs 60 times Euler's load stands: whatever factorises, the projected tangent takes over."""
+    """A column with 60 times Euler's load as its weight: with all factorisations, the projected tangent takes over."""
 
     def tips(factorisation):
         sim = sinew.load({"sinew": 1, "gravity": [0, 0, -9.81], "integrator": "quasi-static",
@@ -104,7 +104,7 @@ def test_one_linearisation_passes_indefinite_tangents():
         return result
 
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", sinew.SinewWarning)  # of the first step, which only begins to sag
+        warnings.simplefilter("ignore", sinew.SinewWarning)  # about the first step, which is not in equilibrium yet
         expected = tips("block")
         for factorisation in ("eigen-ldlt", "eigen-llt"):
             for tip, other in zip(tips(factorisation), expected):
@@ -113,7 +113,7 @@ def test_one_linearisation_passes_indefinite_tangents():
 
 @pytest.mark.parametrize("integrator", ["backward-euler", "generalized-alpha"])
 def test_a_cable_whose_points_meet_is_named(integrator):
-    """A pull far beyond Euler's load folds the beam until the cable's end meets its guide."""
+    """A tension far beyond Euler's load folds the beam until the end of the cable meets its guide."""
     sim = sinew.load(
         {
             "sinew": 1,

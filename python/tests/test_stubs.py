@@ -1,4 +1,4 @@
-"""The type stubs say what the compiled module has."""
+"""The type stubs match the compiled module."""
 
 import ast
 import inspect
@@ -21,7 +21,7 @@ def public(names):
 
 
 def parameters(node):
-    """Parameters of a stubbed function as (name, kind, default), self left out."""
+    """Parameters of a stubbed function as (name, kind, default), without self."""
     plain = node.args.args
     defaults = [None] * (len(plain) - len(node.args.defaults)) + node.args.defaults
     found = [(a.arg, "plain", d) for a, d in zip(plain, defaults)]
@@ -34,7 +34,7 @@ def parameters(node):
 
 
 def runtime_parameters(function):
-    """The same of a compiled function, from the signature in its docstring."""
+    """Parameters of a compiled function, from the signature in its docstring."""
     found = []
     for parameter in inspect.signature(function).parameters.values():
         if parameter.name == "self":

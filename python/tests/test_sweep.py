@@ -1,4 +1,4 @@
-"""Sweeps: samples, workers, tables, what goes wrong, sensitivity. Clusters are real ones of two processes."""
+"""Sweeps: samples, workers, tables, failures, sensitivity. Clusters are real, with two processes."""
 
 import contextlib
 import os
@@ -45,7 +45,7 @@ def slow(sample):
 
 @pytest.fixture(scope="module")
 def cluster():
-    """Two worker processes, which tests share."""
+    """Two worker processes, shared by the tests."""
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0", silence_logs=50) as made:
         yield made
 
@@ -57,7 +57,7 @@ def client(cluster):
 
 
 def plain(scene, vary, measure, **options):
-    """The same samples in a loop in this process, each loaded anew."""
+    """The same samples in a loop in this process, each with a newly loaded scene."""
     design = samples.design(vary, options.pop("sample", None))
     found = []
     for index in range(design.size):
@@ -67,7 +67,7 @@ def plain(scene, vary, measure, **options):
     return found
 
 
-# What is varied
+# Varied keys and samples
 
 
 def test_a_grid_has_all_combinations_and_both_ends():
@@ -94,7 +94,7 @@ def test_ranges_are_sampled_within_their_ends_and_reproducibly():
 
 
 def test_sobol_points_fill_space_better_than_chance():
-    # The mean of 256 random numbers is off by about 0.018; scrambled Sobol points are balanced to 1/256.
+    # The mean of 256 random numbers has an error of about 0.018; scrambled Sobol points are balanced to 1/256.
     design = samples.design({"a": "0:1", "b": "0:1"}, "sobol:256")
     assert np.abs(np.mean([design.values(k) for k in range(256)], axis=0) - 0.5).max() < 2e-3
 
@@ -122,7 +122,7 @@ def test_wrong_variations_say_what_and_what_instead(vary, sample, words):
         assert word in str(error.value)
 
 
-# One process: simulations that are kept
+# One process: reuse of simulations
 
 
 @pytest.mark.parametrize("static", [False, True])
@@ -215,7 +215,7 @@ def test_a_function_loads_the_scene_with_its_values(scene, cluster, tmp_path):
 
 
 def meshed(sample):
-    """A cantilever that Gmsh meshes with elements of the sample's size, under its weight."""
+    """A cantilever under its own weight, meshed by Gmsh with elements of the sample's size."""
     with tempfile.TemporaryDirectory() as folder:
         shape, mesh = pathlib.Path(folder, "beam.geo"), pathlib.Path(folder, "beam.msh")
         size = 1e3 * sample["size"]  # mm
@@ -237,19 +237,19 @@ def meshed(sample):
 def test_samples_mesh_with_gmsh_and_one_that_takes_too_long_is_ended_with_it(cluster, tmp_path):
     table = sinew.sweep.run(function=meshed, vary={"size": [10e-3, 3e-3, 0.05e-3]}, out=tmp_path, timeout=6.0,
                             scheduler=cluster.scheduler_address)
-    assert list(table["status"]) == ["done", "done", "failed"], table["error"].iloc[0]  # the last mesh would have 5e8 elements
+    assert list(table["status"]) == ["done", "done", "failed"], table["error"].iloc[0]  # the finest mesh would have 5e8 elements
     assert "more than 6 s" in table["error"].iloc[2]
     running = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True).stdout
     assert "beam.msh" not in running
     done = table.iloc[:2]
     assert done["volume"].to_numpy() == pytest.approx(6e-6, rel=1e-9) and done["nodes"].iloc[1] > 3 * done["nodes"].iloc[0]
-    # Euler and Bernoulli: rho g A L^4 / (8 E I), small deflections. A sixth of the length is 2 % less; 2 % more for the mesh.
+    # Euler-Bernoulli: rho g A L^4 / (8 E I) for small deflections. Tolerance: 2 % for a deflection of L/6, 2 % for the mesh.
     slender = 1000.0 * 9.81 * 1e-4 * 0.06**4 / (8.0 * 200e3 * 0.01**4 / 12.0)
     assert done["sag"].to_numpy() == pytest.approx(slender, rel=0.04)
 
 
 def controlled(sample):
-    """The tip is brought to a goal by inverse control."""
+    """Sample function: inverse control brings the tip to a goal."""
     sim = sample.load(set={MODULUS: sample[MODULUS]})
     goal = sim.effector("tip").position + [sample["x"], sample["y"], -3e-3]
     controller = sinew.InverseController(sim, targets={"tip": goal}, actuators=["east", "north", "west", "south"])
@@ -264,7 +264,7 @@ def test_a_sample_may_have_a_controller(scene, cluster, tmp_path):
     assert set(table["status"]) == {"done"}, table["error"].iloc[0]
     assert table["on_target"].all() and table["missed"].max() < 1e-5
     efforts = sinew.sweep.arrays(tmp_path, "efforts")
-    # Without weight all forces are proportional to the modulus; the solver stops at 1e-8 of them. East pulls towards +x.
+    # Without gravity, all forces are proportional to the modulus; the solver tolerance is 1e-8. East pulls towards +x.
     assert efforts[4:] == pytest.approx(2.0 * efforts[:4], rel=1e-6, abs=1e-6)
     assert (efforts[[2, 3], 0] > efforts[[0, 1], 0] + 1.0).all()
 
@@ -342,7 +342,7 @@ def test_a_scheduler_that_goes_leaves_its_rows_and_a_local_cluster_goes_on(tmp_p
     table = sinew.sweep.run(function=slow, vary={"x": "0:1"}, sample="halton:300", out=tmp_path, workers=2, resume=True)
     assert list(table.index) == list(range(300))
     assert np.array_equal(table["double"], 2.0 * table["x"])
-    assert there.equals(table.loc[there.index])  # what was there was not run again
+    assert there.equals(table.loc[there.index])  # existing samples were not run again
 
 
 @pytest.mark.skipif(shutil.which("dask-scheduler") is None, reason="Dask's programs are not installed")
@@ -352,7 +352,7 @@ def test_a_cluster_started_by_hand_as_the_guide_says(tmp_path):
     lines = guide[guide.index("    dask-scheduler"):].split("\n\n")[0]
     lines = lines.replace("8786", str(free_port())).replace("out/mass", str(tmp_path / "out"))
     assert lines.count("dask-worker tcp://127.0.0.1") == 2 and "sinew sweep examples/trunk/trunk.yaml" in lines
-    program = tmp_path / "sinew"  # what the program does with `sweep`
+    program = tmp_path / "sinew"  # stand-in for the program's command `sweep`
     program.write_text(f'#!/bin/sh\nshift\nexec {sys.executable} -m sinew.sweep "$@"\n')
     program.chmod(0o755)
     environment = {**ENVIRONMENT, "PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}", "DASK_TEMPORARY_DIRECTORY": str(tmp_path)}
@@ -393,7 +393,7 @@ def test_an_interrupt_keeps_the_rows_and_other_samples_follow(cluster, tmp_path)
 
 @pytest.fixture
 def interruptible():
-    """Python's own handler of SIGINT, also where a shell in the background had pytest ignore it."""
+    """Installs Python's SIGINT handler, because pytest ignores SIGINT if a background shell started it."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
@@ -401,7 +401,7 @@ def interruptible():
 
 def test_an_interrupt_is_not_lost_where_python_ignores_exceptions(interruptible):
     class Future:
-        def __del__(self):  # Dask's futures have a destructor, too
+        def __del__(self):  # like Dask's futures
             signal.raise_signal(signal.SIGINT)
 
     with engine.held_interrupts() as act:
@@ -411,7 +411,7 @@ def test_an_interrupt_is_not_lost_where_python_ignores_exceptions(interruptible)
             act()
         act()
         signal.raise_signal(signal.SIGINT)
-        with pytest.raises(KeyboardInterrupt):  # who presses Ctrl-C again does not want to wait
+        with pytest.raises(KeyboardInterrupt):  # a second Ctrl-C acts at once
             signal.raise_signal(signal.SIGINT)
         with pytest.raises(KeyboardInterrupt):
             act()
@@ -479,7 +479,7 @@ ABOUT = {"sinew_version": "1", "instruction_set": "x", "samples": 9, "seed": 1, 
 
 
 def writer_that_is_killed(folder):
-    """Writes rows, says so, and waits to be killed."""
+    """Starts a process that writes rows, reports it, and waits to be killed."""
     script = f"""
 import sys, time
 sys.path[:0] = {[os.path.dirname(__file__)]!r}
@@ -557,10 +557,10 @@ def test_sobol_indices_of_the_ishigami_function():
     # Ishigami and Homma 1990; the variances in closed form as in Saltelli et al., Global Sensitivity Analysis (2008).
     a, b, pi = 7.0, 0.1, np.pi
     parts = np.array([0.5 * (1.0 + b * pi**4 / 5.0) ** 2, a**2 / 8.0, 0.0])
-    together = b**2 * pi**8 * 8.0 / 225.0  # of the first and the third input
+    together = b**2 * pi**8 * 8.0 / 225.0  # interaction of the first and the third input
     variance = parts.sum() + together
     found = sinew.sweep.sobol_indices(ishigami(sinew.sweep.saltelli_points(3, 8192, seed=1)))
-    # Scrambled Sobol points: the error at N = 8192 is near 1e-3 over seeds.
+    # The error of scrambled Sobol points at N = 8192 is about 1e-3 for all seeds.
     assert np.allclose(found.first, parts / variance, atol=5e-3)
     assert np.allclose(found.total, (parts + [together, 0.0, together]) / variance, atol=5e-3)
     assert found.count == 8192
@@ -587,7 +587,7 @@ def test_a_saltelli_sweep_gives_indices_by_key(cluster, tmp_path):
                             scheduler=cluster.scheduler_address)
     assert len(table) == 128 * 5
     found = sinew.sweep.indices(tmp_path, "y")
-    # Linear: shares 9/25, 16/25, 0 of the variance.
+    # Linear function: fractions 9/25, 16/25 and 0 of the variance.
     assert np.allclose(found["first"], [0.36, 0.64, 0.0], atol=0.02) and np.allclose(found["total"], [0.36, 0.64, 0.0], atol=0.02)
     assert list(found.index) == ["a", "b", "c"]
 
@@ -629,7 +629,7 @@ LINE = re.compile(r"\[([#.]{30})\] +(\d+) %  (\d+) of (\d+), ([\d.e+]+)/s, (\d+)
 def test_the_line_of_progress_has_rate_and_time_left(monkeypatch, capsys):
     now = [1000.0]
     monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
-    shown = progress.Progress(total=240, there=40, shown=True)  # 40 rows of an earlier sweep count for the share, not for the rate
+    shown = progress.Progress(total=240, there=40, shown=True)  # 40 rows of an earlier sweep count for the percentage, not for the rate
     shown.draw(2)
     for second, rows, failed in ((1.0, 10, 0), (1.05, 5, 0), (10.0, 85, 3)):
         now[0] = 1000.0 + second
@@ -637,7 +637,7 @@ def test_the_line_of_progress_has_rate_and_time_left(monkeypatch, capsys):
         shown.draw(2)
     shown.end()
     lines = capsys.readouterr().err.split("\r\033[K")[1:]
-    # 1.05 s is within a tenth of a second of the line before.
+    # No line at 1.05 s, because it is within 0.1 s of the previous line.
     assert lines == ["[#####.........................]  17 %  40 of 240, 0/s, 2 workers",
                      "[######........................]  21 %  50 of 240, 10/s, 2 workers, 0:19 left",
                      "[#################.............]  58 %  140 of 240, 10/s, 2 workers, 0:10 left, 3 failed", ""]
@@ -645,7 +645,7 @@ def test_the_line_of_progress_has_rate_and_time_left(monkeypatch, capsys):
 
 
 def test_the_command_shows_its_progress_on_a_terminal(scene, cluster, client, tmp_path):
-    client.wait_for_workers(2)  # one that another test has killed may not be back yet
+    client.wait_for_workers(2)  # a worker killed by another test may not have restarted yet
     reader, terminal = os.openpty()
     begin = time.monotonic()
     process = subprocess.Popen([sys.executable, "-m", "sinew.sweep", str(scene), "--vary", f"{MODULUS}=300kPa:600kPa:300", "--measure",
@@ -653,7 +653,7 @@ def test_the_command_shows_its_progress_on_a_terminal(scene, cluster, client, tm
                                env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=terminal)
     os.close(terminal)
     told = b""
-    with contextlib.suppress(OSError):  # EIO is the end of a terminal
+    with contextlib.suppress(OSError):  # EIO: the terminal is closed
         while piece := os.read(reader, 4096):
             told += piece
     os.close(reader)
@@ -664,7 +664,7 @@ def test_the_command_shows_its_progress_on_a_terminal(scene, cluster, client, tm
     for line in lines:
         done, total, rate = int(line[3]), int(line[4]), float(line[5])
         assert total == 300 and line[1].count("#") == done // 10 and int(line[2]) == round(done / 3)
-        assert line[6] == "2" and rate * wall >= 0.99 * done  # the rate counts no more time than there was
+        assert line[6] == "2" and rate * wall >= 0.99 * done  # the rate is not based on more time than has passed
         if done:
             left = 60 * int(line[7]) + int(line[8])
             assert left == pytest.approx((total - done) / rate, rel=0.01, abs=0.51)
@@ -672,7 +672,7 @@ def test_the_command_shows_its_progress_on_a_terminal(scene, cluster, client, tm
 
 
 def test_the_command_ends_cleanly_on_an_interrupt(scene, tmp_path):
-    # In a session of its own, so that the signal reaches all of its processes, as Ctrl-C does.
+    # In a separate session, so the signal reaches all of its processes, as Ctrl-C does.
     process = subprocess.Popen([sys.executable, "-m", "sinew.sweep", str(scene), "--vary", f"{MODULUS}=300kPa:600kPa:5000",
                                 "--measure", "tip.position", "--out", str(tmp_path / "out"), "--workers", "1", "--duration", "2s"],
                                env=ENVIRONMENT, stderr=subprocess.PIPE, text=True, start_new_session=True)

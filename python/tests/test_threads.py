@@ -1,4 +1,4 @@
-"""Several simulations side by side, and one simulation used from several threads."""
+"""Several simulations in parallel, and one simulation used from several threads."""
 
 import threading
 import time
@@ -9,7 +9,7 @@ import sinew
 
 
 def drive(scene, tension):
-    """A run of its own; its final hash."""
+    """State hash at the end of a separate run."""
     sim = sinew.load(scene)
     sim.actuator("east").tension = tension
     sim.actuator("north").displacement = sinew.Sine(0.004, 0.3)
@@ -18,7 +18,7 @@ def drive(scene, tension):
 
 
 def stepping(sim, done):
-    """A thread that steps until `done` is set; its failure, if any, is in `.failure`."""
+    """Starts a thread that steps until `done` is set."""
 
     def work():
         while not done.is_set():
@@ -30,7 +30,7 @@ def stepping(sim, done):
 
 
 def wait_for(condition, seconds=30.0):
-    """Whether the condition came true in time."""
+    """Whether the condition became true in time."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         if condition():
@@ -67,7 +67,7 @@ def test_two_simulations_step_at_the_same_time(scene):
             return False
         before = [sim.steps for sim in sims]
         time.sleep(0.001)
-        # Both are within a call of step() all the while, and both have moved on.
+        # Both are inside a call of step() at the same time, and both have made steps.
         return all(sim.busy and sim.steps > count for sim, count in zip(sims, before))
 
     try:

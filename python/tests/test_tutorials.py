@@ -1,4 +1,4 @@
-"""The tutorials run as they are printed, and their output is the output that they show."""
+"""The tutorials run as printed, and their output is the one that they show."""
 
 import os
 import re
@@ -22,7 +22,7 @@ pytestmark = pytest.mark.skipif(shutil.which("gmsh") is None, reason="Gmsh is no
 
 
 def environment():
-    """As docs/install.md says."""
+    """Environment as in docs/install.md."""
     folder = Path(sinew.__file__).parents[2] / "bin"
     return {
         **os.environ,
@@ -34,7 +34,7 @@ def environment():
 
 
 def shell(commands, folder):
-    """The standard output of commands, which must succeed."""
+    """Standard output of commands, which must succeed."""
     result = subprocess.run(
         ["bash", "-e", "-c", commands],
         cwd=folder, env=environment(), capture_output=True, text=True, timeout=300, check=False,
@@ -74,7 +74,7 @@ def agrees(candidate, line):
 
 
 def follow(page, folder):
-    """Does what a page says, block by block."""
+    """Executes the blocks of a page in order."""
     output = ""
     for language, text in BLOCK.findall((TUTORIALS / f"{page}.md").read_text(encoding="utf-8")):
         if language in ("yaml", "python", "none"):

@@ -1,4 +1,4 @@
-"""Universal and cylindrical joints: Cardan's relation, the torque it carries, and what a sleeve on a shaft is free to do."""
+"""Universal and cylindrical joints: Cardan's relation, the transmitted torque, and the freedom of a sleeve on a shaft."""
 
 import numpy as np
 import pytest
@@ -13,14 +13,14 @@ def make(bodies, joints, step=1e-3, integrator="bdf2", gravity=(0.0, 0.0, 0.0), 
 
 
 def shaft(centre, turn, **more):
-    """A cylinder along x before it is turned about z."""
+    """A cylinder along x, rotated about z by `turn`."""
     lies = Rotation.from_euler("yz", [90.0, turn], degrees=True).as_rotvec()
     return {"type": "rigid", "shape": {"cylinder": {"radius": 0.005, "height": 0.08}}, "mass": MASS,
             "pose": {"position": list(centre), "rotation": lies.tolist()}, **more}
 
 
 def cardan(bend, integrator="bdf2", **actuators):
-    """A shaft along x drives one that is bent by `bend` (deg); the arm of the first stands upright at the start."""
+    """A shaft along x drives one at an angle of `bend` (deg); the arm of the first is vertical at the start."""
     out = np.array([np.cos(np.radians(bend)), np.sin(np.radians(bend)), 0.0])
     arm = [-out[1], out[0], 0.0]
     return make(
@@ -33,7 +33,7 @@ def cardan(bend, integrator="bdf2", **actuators):
 
 @pytest.mark.parametrize("bend", [20.0, 45.0, 60.0])
 def test_angles_of_a_cardan_joint(bend):
-    # Arms z cos(a) - y sin(a) and m cos(b) + z sin(b) are normal to each other: tan(b) = cos(bend) tan(a).
+    # The arms z cos(a) - y sin(a) and m cos(b) + z sin(b) are perpendicular: tan(b) = cos(bend) tan(a).
     sim = cardan(bend, motor={"type": "motor", "joint": "in", "command": {"velocity": 10.0}})
     share = np.cos(np.radians(bend))
     slowest, fastest = np.inf, 0.0
@@ -43,7 +43,7 @@ def test_angles_of_a_cardan_joint(bend):
         wanted = np.arctan2(share * np.sin(a), np.cos(a))
         wanted += 2.0 * np.pi * np.round((a - wanted) / (2.0 * np.pi))
         assert b == pytest.approx(wanted, abs=1e-9)
-        if sim.time > 0.05:  # the jump from rest has died away
+        if sim.time > 0.05:  # the start from rest has decayed
             rate = np.linalg.norm(sim.body("second").velocity[3:]) / 10.0
             slowest, fastest = min(slowest, rate), max(fastest, rate)
     # db/da = cos(bend)/(cos(a)^2 + cos(bend)^2 sin(a)^2) lies between cos(bend) and its inverse; rates are of second order.
@@ -53,7 +53,7 @@ def test_angles_of_a_cardan_joint(bend):
 
 @pytest.mark.parametrize("angle", [0.2, 0.6, 1.3])
 def test_torque_through_a_cardan_joint(angle):
-    # Virtual work: the motor that holds the first shaft against a torque T on the second one carries -T db/da.
+    # Virtual work: a torque T on the second shaft requires -T db/da of the motor that holds the first one.
     bend, load = 40.0, 0.05
     sim = cardan(bend, "backward-euler", hold={"type": "motor", "joint": "in", "command": {"angle": {"ramp": {"to": angle, "duration": 0.1}}}},
                  load={"type": "motor", "joint": "out", "command": {"torque": {"ramp": {"to": load, "duration": 0.1}}}})  # fmt: skip
@@ -87,20 +87,20 @@ def test_a_sleeve_slides_and_spins_freely(integrator):
 
 @pytest.mark.parametrize("integrator", ["bdf2", "generalized-alpha"])
 def test_a_sleeve_falls_along_its_rail(integrator):
-    # Only the weight along the rail moves it; the rest is what the rail carries.
+    # Only the component of the weight along the rail accelerates the sleeve; the rail carries the rest.
     axis, sim = sleeve({}, integrator=integrator, gravity=(0.0, 0.0, -9.81))
     sim.step(200)
     body, weight = sim.body("sleeve"), np.array([0.0, 0.0, -9.81])
     np.testing.assert_allclose(body.velocity[:3], 0.2 * (weight @ axis) * axis, atol=1e-9)
     np.testing.assert_allclose(body.velocity[3:], 0.0, atol=1e-9)
-    # It begins with a step of backward Euler, whose way is too long by g h^2/2.
+    # The first step is backward Euler, whose displacement is too large by g h^2/2.
     assert body.position @ axis == pytest.approx(0.5 * 0.2**2 * (weight @ axis), abs=9.81 * 1e-6)
     np.testing.assert_allclose(body.position - body.position @ axis * axis, 0.0, atol=1e-11)
     np.testing.assert_allclose(np.asarray(sim.joint("rail").force), -MASS * (weight - weight @ axis * axis), atol=1e-9)
 
 
 def thrown(step, duration=0.2):
-    """Two sleeves on one axis that turn, slide and tumble together; linear and angular momentum at the end."""
+    """Final linear and angular momentum of two sleeves on one axis that rotate, slide and tumble together."""
     inertia = MASS * np.array([(3 * 0.02**2 + 0.05**2) / 12, (3 * 0.02**2 + 0.05**2) / 12, 0.02**2 / 2])
     tumble, speed = np.array([0.0, 4.0, 0.0]), np.array([0.1, 0.2, -0.1])
     bodies = {}
@@ -135,8 +135,8 @@ def test_bodies_on_one_axle_keep_their_momentum():
         before, after, apart, spin = thrown(step)
         np.testing.assert_allclose(after[0], before[0], rtol=0, atol=1e-12)
         np.testing.assert_allclose(apart, 0.0, atol=1e-10)
-        assert spin == pytest.approx(-40.0, rel=1e-3)  # nothing has a moment about the axle
+        assert spin == pytest.approx(-40.0, rel=1e-3)  # no moment acts about the axle
         errors.append(np.linalg.norm(after[1] - before[1]) / np.linalg.norm(before[1]))
-    # The integrator's second order.
+    # The integrator is of second order.
     assert errors[-1] < 1e-4
     assert np.log2(errors[0] / errors[2]) / 2 == pytest.approx(2.0, abs=0.3)

@@ -1,4 +1,4 @@
-"""Robots in URDF files against the same robots written in the scene."""
+"""Robots from URDF files, compared with the same robots written in the scene."""
 
 import warnings
 
@@ -53,7 +53,7 @@ def make(file, robot=None, step="1 ms", integrator="bdf2", gravity=GRAVITY, bodi
 
 
 def by_hand(turn, position, **more):
-    """The pendulum as a scene: `turn`, `position` place the base."""
+    """The pendulum as a scene; `turn` and `position` are the pose of the base."""
     upper = turn * Rotation.from_rotvec([0.2, 0, 0])
     lower = upper * Rotation.from_rotvec([0, 0, 0.3])
     at = position + turn.apply([0, 0, 0.5])
@@ -93,7 +93,7 @@ def test_a_double_pendulum_swings_as_the_one_written_by_hand(tmp_path):
             np.testing.assert_allclose(one.centre_of_mass, other.centre_of_mass, atol=1e-9)
             np.testing.assert_allclose(one.velocity, other.velocity, atol=1e-8)
             np.testing.assert_allclose(one.rotation, other.rotation, atol=1e-9)
-            # The frame of a link stands at its joint.
+            # The frame of a link is at its joint.
             frame = Rotation.from_quat(np.roll(one.rotation, -1))
             np.testing.assert_allclose(one.position, other.position - frame.apply([0.1, 0, 0]), atol=1e-9)
         for name in ("top", "middle"):
@@ -108,7 +108,7 @@ def test_angles_at_the_start(tmp_path):
     frame = Rotation.from_quat(np.roll(sim.body("robot.lower").rotation, -1))
     np.testing.assert_allclose(frame.as_matrix(), lower.as_matrix(), atol=1e-12)
     np.testing.assert_allclose(sim.body("robot.lower").position, [0, 0, 0.5] + upper.apply([0.2, 0, 0]), atol=1e-12)
-    # The limits stay where the file has them: it stops at 2 rad, which is 2 - pi / 6 from the start.
+    # The limits refer to the zero of the file: the stop at 2 rad is 2 - pi / 6 from the initial angle.
     pushed = make(pendulum(tmp_path), {"angles": {"top": "30 deg"}}, gravity="0 0 0 m/s^2",
                   integrator="backward-euler", actuators={
                       "motor": {"type": "motor", "joint": "robot.top", "command": {"torque": "0.1 N m"}}})
@@ -125,11 +125,11 @@ def test_motors_drive_an_arm_within_the_limits_of_the_file(tmp_path):
     sim.run(duration=2.0)
     assert sim.joint("robot.top").angle == pytest.approx(-0.5, abs=1e-9)
     assert sim.joint("robot.middle").angle == pytest.approx(0.4, abs=1e-9)
-    # Torques are those of the weights about the axes.
+    # The torques balance the weights about the axes.
     weight, centres = 0.1 * 9.81, [sim.body(b).centre_of_mass for b in ("robot.upper", "robot.lower")]
     moment = sum(np.cross(c - [0, 0, 0.5], [0, 0, weight]) for c in centres)
     assert sim.actuator("shoulder").torque == pytest.approx(
-        Rotation.from_rotvec([0.2, 0, 0]).apply([0, 1, 0]) @ moment, rel=1e-8)  # as far as a step is solved
+        Rotation.from_rotvec([0.2, 0, 0]).apply([0, 1, 0]) @ moment, rel=1e-8)  # to the tolerance of a step
     weak = make(pendulum(tmp_path, '<limit lower="-1" upper="2" effort="0.2" velocity="30"/>'), integrator="bdf2",
                 actuators=motors)
     weak.run(duration=0.3)
@@ -262,7 +262,7 @@ def test_contact_of_links(tmp_path):
                 joint("j", "continuous", "base", "arm", "0 0 0.1"))
     sim = make(file, integrator="backward-euler", contacts={"floor": {"between": ["robot.base", "robot.arm"]}})
     sim.run(duration=0.5)
-    # The end of the bar, 0.2 m out and 5 mm below its middle, lies on the floor 0.1 m lower.
+    # The end of the bar, 0.2 m from the axis and 5 mm below the midline, lies on the floor, 0.1 m lower.
     angle = sim.joint("robot.j").angle
     assert 0.2 * np.sin(angle) + 0.005 * np.cos(angle) == pytest.approx(0.1, abs=1e-5)
 

@@ -1,4 +1,4 @@
-"""sinew.view(): who steps, what the page's address serves, and what is left afterwards.
+"""sinew.view(): who steps, what the address serves, and the state afterwards.
 
 The page itself, driving and watching a script, is tested in a browser (web/test).
 """
@@ -19,7 +19,7 @@ HERE = {"port": 0, "open_browser": False}
 
 @pytest.fixture(autouse=True)
 def hears_interrupts():
-    """Python does not listen for Ctrl-C where it was started in the background."""
+    """Installs the SIGINT handler, which Python omits if it is started in the background."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
@@ -35,14 +35,14 @@ def test_a_script_that_is_watched_gets_the_same_bits(scene):
             assert view.update()
     assert view.closed
     assert view.update() is False
-    view.close()  # once more does no harm
+    view.close()  # a second call has no effect
     assert watched.state_hash == alone.state_hash
 
 
 def test_the_page_is_served_and_nothing_else(scene):
     with sinew.view(sinew.load(scene), block=False, **HERE) as view:
         with urllib.request.urlopen(view.url) as answer:
-            page = answer.read()  # urllib takes no compression
+            page = answer.read()  # urllib does not accept compression
         assert b"<title>Sinew</title>" in page
         for path in ("../etc/passwd", "download/run.h5", "app.js.map"):
             with pytest.raises(urllib.error.HTTPError):
@@ -59,7 +59,7 @@ def test_the_page_drives_until_interrupted(follow):
     steps = sim.steps
     assert steps > 5
     assert not sim.busy
-    # The controller that was attached before steers still, through the same handle.
+    # The controller attached before still controls the robot, through the same handle.
     assert controller.status in ("on-target", "moving", "rate-limited", "out-of-reach")
     sim.step(3)
     assert sim.steps == steps + 3
@@ -116,7 +116,7 @@ def test_broken_arguments(follow, arguments, kind, block):
     with pytest.raises(sinew.Error) as caught:
         sinew.view(sim, block=block, **{**HERE, **arguments})
     assert caught.value.kind == kind
-    sim.step()  # the simulation is as it was, its controller attached
+    sim.step()  # the simulation is unchanged, with its controller attached
     assert sim.controller.status in ("moving", "rate-limited", "on-target")
 
 
@@ -126,7 +126,7 @@ def test_a_notebook_shows_the_page_in_a_frame(scene):
         assert view._repr_html_() == f'<iframe src="{view.url}" width="100%" height="600" style="border: 0"></iframe>'
         with urllib.request.urlopen(view.url) as answer:
             ancestors = answer.headers["Content-Security-Policy"].split("frame-ancestors ")[1]
-        assert ancestors == "http://localhost:* http://127.0.0.1:*"  # pages of this machine alone
+        assert ancestors == "http://localhost:* http://127.0.0.1:*"  # pages of this machine only
     assert view._repr_html_() is None
     assert sim._repr_png_() is None or sim._repr_png_().startswith(b"\x89PNG")
 

@@ -1,4 +1,4 @@
-"""Viscoelastic and softening materials: state, restart, adaptive substeps, scenes that are refused."""
+"""Viscoelastic and softening materials: state, restart, adaptive substeps, invalid scenes."""
 
 import numpy as np
 import pytest
@@ -61,7 +61,7 @@ def test_statics_are_those_of_slow_motion():
         sim.solve_static()
     assert height(viscous) == pytest.approx(height(elastic), abs=1e-9)
     assert height(elastic) < start - 1e-3
-    # There nothing is left to relax: it stays.
+    # All relaxation has ended there, so the height stays constant.
     rest = height(viscous)
     viscous.step(5)
     assert height(viscous) == pytest.approx(rest, abs=1e-6)
@@ -79,7 +79,7 @@ def test_moduli_of_a_sudden_strain_are_reduced():
 def test_rejected_substeps_leave_no_history():
     fine = sinew.load(beam(time_step=0.0005))
     fine.step(200)
-    # The whole step is tried first, and is too long for the tolerance.
+    # The whole step is tried first and does not meet the tolerance.
     solver = {"method": "newton", "adaptive": {"tolerance": 1e-4, "smallest": 1e-5}}
     adaptive, whole = sinew.load(beam(time_step=0.05, solver=solver)), sinew.load(beam(time_step=0.05))
     for sim in (adaptive, whole):

@@ -1,8 +1,8 @@
-"""Broken inputs of every kind that Sinew reads, and what it must say of each.
+"""Invalid inputs of every kind that Sinew reads, with the expected errors.
 
-A case says how to break a sound input, and what the error must be: its kind, where it is (`place`),
-and words of the message: the offending value and the remedy (`says`). A place that begins with ":"
-is a line and column of the file in which the fault is.
+A case describes how to break a valid input, and the expected error: its kind, its location (`place`),
+and words of its message, with the offending value and the remedy (`says`). A place that begins with ":"
+is a line and column of the faulty file.
 """
 
 import pathlib
@@ -85,7 +85,7 @@ Edit = Tuple[str, str]
 
 @dataclass(frozen=True)
 class Case:
-    """One broken input.
+    """One invalid input.
 
     `scene` edits SCENE (old, new); `files` are written beside it; `line` is a command line with
     {scene}, {out} and {folder} filled in. `call` is a call of the Python package instead.
@@ -107,14 +107,14 @@ def scene(name, kind, place, says, *edits, files=()):
 
 
 def mesh(name, kind, place, says, file, text, *edits):
-    """A mesh of this content in place of the block."""
+    """Case with a mesh file of this content instead of the block."""
     block = "{shape: block, length: 100 mm, width: 20 mm, height: 20 mm, element_size: 10 mm}"
     return Case(name, kind, place, says, files=((file, text),),
                 scene=((block, f"{{file: {file}, unit: mm}}"), *edits))
 
 
 def table(name, kind, place, says, text):
-    """A cable's points from this table."""
+    """Case with the points of a cable from this table."""
     points = "[0 10 16 mm, 30 10 16 mm, 60 10 16 mm, 98 10 16 mm]"
     return Case(name, kind, place, says, files=(("points.csv", text),),
                 scene=((points, "{file: points.csv, unit: mm}"),))

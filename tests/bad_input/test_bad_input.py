@@ -1,4 +1,4 @@
-"""Every broken input of cases.py gets its own clear error, and leaves what is on disk as it was.
+"""Every invalid input of cases.py causes a specific error and leaves the files on disk unchanged.
 
     SINEW_PROGRAM=build/release/bin/sinew PYTHONPATH=build/release/python \\
         /usr/bin/python3 -m pytest tests/bad_input
@@ -16,7 +16,7 @@ from cases import CASES, SCENE
 
 PROGRAM = os.path.abspath(os.environ.get("SINEW_PROGRAM", "build/release/bin/sinew"))
 SURFACES = pathlib.Path(__file__).resolve().parents[1] / "mesh" / "data_surface"
-PATIENCE = 60  # s
+PATIENCE = 60  # s, time limit of the program
 try:
     import sinew
 except ImportError:  # builds without the Python package

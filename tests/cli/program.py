@@ -1,4 +1,4 @@
-"""The sinew program as the tests call it."""
+"""Calls of the sinew program in the tests."""
 
 import csv
 import os

@@ -1,4 +1,4 @@
-"""sinew reach, plan, brace and identify from outside, their numbers against the Python package's.
+"""sinew reach, plan, brace and identify as programs, compared with the Python package.
 
     SINEW_PROGRAM=build/release/bin/sinew /usr/bin/python3 -m pytest tests/cli
 """
@@ -85,7 +85,7 @@ def test_a_planned_motion_runs_to_its_goal(tmp_path, step_ms):
     torque = np.array([[float(cell) for cell in row.values()] for row in rows])
     assert np.all(np.abs(torque[:, 1:]) <= np.array(TORQUES) + 1e-6)
     assert np.abs(np.diff(torque[:, 1:], axis=0) / np.diff(torque[:, 0])[:, None]).max() < 2.0 + 1e-4
-    # What the command says to type, with the scene's own step.
+    # Uses the options printed by the command, with the time step of the scene.
     words = [word.strip(" '\\") for word in done.stdout.split("--set")[1:]]
     run = sinew("run", ARM, "--duration", "1.6s", "--out", "out", "--quiet", "--set", f"time_step={step_ms}ms",
                 *[word for value in words for word in ("--set", value.splitlines()[0].strip(" '\\"))], cwd=tmp_path)
@@ -93,7 +93,7 @@ def test_a_planned_motion_runs_to_its_goal(tmp_path, step_ms):
     last = rows_of(tmp_path / "out" / "run.csv")[-1]
     tip = np.array([float(last[f"tip.{axis} [m]"]) for axis in "xyz"])
     assert float(last["time [s]"]) == pytest.approx(1.6)
-    # Both are of second order; the replay's steps are of 1 ms.
+    # Both are of second order; the replay has steps of 1 ms.
     assert np.linalg.norm(tip - replay.tip[-1]) < 1e-5 * step_ms**2
     assert np.linalg.norm(tip - goal) < 2.2e-3
 
@@ -225,7 +225,7 @@ def test_reach_wants_limits(tmp_path):
 
 @pytest.fixture(name="takes", scope="module")
 def record_takes(tmp_path_factory):
-    """Two records of a driven arm whose masses, stiffness and damping are not the scene's."""
+    """Two records of a driven arm with other masses, stiffness and damping than the scene."""
     needs("identify")
     identify = module("identify")
     folder = tmp_path_factory.mktemp("takes")
@@ -272,7 +272,7 @@ def test_identify_finds_what_python_does(takes, tmp_path):
     assert (tmp_path / "arm.png").read_bytes().startswith(b"\x89PNG")
     info = json.loads(sinew("info", "found.yaml", "--json", cwd=tmp_path).stdout)
     assert info["bodies"][0]["mass_kg"] == pytest.approx(sum(p["value"] for p in told["parameters"][:4]), rel=1e-9)
-    # The scene that was written holds them: fitted once more, they stay.
+    # The written scene contains the values: another fit does not change them.
     again = sinew("identify", "found.yaml", takes / "take_1.csv", "--fixed", "mass_0", "--json", "again.json",
                   cwd=tmp_path)
     assert again.returncode == DONE, again.stderr
@@ -320,7 +320,7 @@ def test_identify_finds_actuators_driven_by_volumes(tmp_path):
     for k in range(3):
         assert found[f"coefficient_{k}"]["value"] == pytest.approx(4e12, rel=0.03)
     assert found["delay"]["value"] == pytest.approx(0.08, abs=1e-3)
-    # Volumes are no torques: scenes do not take them, and what was found is said where it is not forgotten.
+    # A scene cannot contain actuators driven by volumes, so the identified law is a comment in the written scene.
     assert "second: torque =" in (tmp_path / "found.yaml").read_text()
 
 

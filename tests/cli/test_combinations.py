@@ -1,5 +1,5 @@
-"""Scenes that combine features, through the program and the Python package: a sample of those that
-the combination tests step, save and load in C++.
+"""Scenes that combine features, in the program and the Python package: a sample of those that the
+combination tests step, save and load in C++.
 
     SINEW_PROGRAM=... SINEW_COMBINATIONS=build/release/bin/combinations /usr/bin/python3 -m pytest tests/cli
 """
@@ -17,7 +17,7 @@ from program import DONE, PROGRAM, rows_of
 COMBINATIONS = os.environ.get("SINEW_COMBINATIONS", "build/release/bin/combinations")
 FLAGGED = 1
 NOTICES = ("[bare-points]", "[other-tangent]", "[coarse-contact]", "[locking-element]")
-SAMPLE = range(1, 73, 8)  # of the cover of all pairs
+SAMPLE = range(1, 73, 8)  # a sample of the scenes that cover all pairs of features
 
 
 def sinew(*args, codes=(DONE,)):
@@ -42,7 +42,7 @@ def test_the_program_tells_runs_records_and_plots_it(scene, tmp_path):
     assert facts["bodies"]
     out = tmp_path / "out"
     done = sinew("run", scene, "--duration", "30ms", "--out", out, "--vtk", "--quiet", codes=(DONE, FLAGGED))
-    # A notice of the scene, such as of cables at bare points, is no flag of the run.
+    # A notice about the scene, such as bare cable points, does not flag the run.
     flagged = any("sinew: warning:" in line and not line.endswith(NOTICES) for line in done.stderr.splitlines())
     stopped = "sinew: error:" in done.stderr
     assert (done.returncode == DONE) != (flagged or stopped), done.stderr
@@ -81,7 +81,7 @@ def test_python_runs_copies_and_linearises_it(scene):
         assert sim.state() == state
         try:
             linear = sim.linearise()
-        except package.RunError as error:  # a link that swings and a pillow that flies have no stiffness
+        except package.RunError as error:  # free bodies have a singular stiffness
             assert error.kind == "singular-matrix" and any(free in scene.read_text() for free in ("type: rigid", "pillow:"))
             return
         assert linear.W.shape == (len(linear.rows), len(linear.rows)) and set(linear.rows) <= set(sim.rows)

@@ -1,4 +1,4 @@
-"""The commands themselves: arguments, help, completion, checks, benchmarks, validation.
+"""The commands: arguments, help, completion, checks, benchmarks, validation.
 
     SINEW_PROGRAM=build/release/bin/sinew /usr/bin/python3 -m pytest tests/cli
 """
@@ -87,7 +87,7 @@ def test_help(command):
     examples = re.findall(r"^  (sinew .*)", result.stdout, re.MULTILINE)
     assert examples
     if command:
-        assert all(command[0] in line for line in examples)  # its own, not the program's
+        assert all(command[0] in line for line in examples)  # its own examples, not those of the program
 
 
 def test_version():
@@ -117,11 +117,11 @@ COMPLETIONS = [
     ("sinew completion ''", {"bash", "zsh", "fish"}, {"beam.yaml"}),
 ]
 
-# A script for each shell: what comes first, then what completes the words of a case.
+# Script for each shell: the preamble, and the commands that complete the words of a case.
 COMPLETE = {
     "bash": ("source <({program} completion bash)",
              "COMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); _sinew; printf '%s\\n' \"${{COMPREPLY[@]}}\""),
-    # What zsh's own functions would offer is printed: words that begin as the one at the cursor does.
+    # Replaces zsh's completion functions by ones that print their matches for the word at the cursor.
     "zsh": ("""compdef() {{ }}
 offer() {{ for word in "$@"; do [[ $word == $PREFIX* ]] && print -r -- $word; done }}
 compadd() {{ shift; offer "$@" }}

@@ -1,4 +1,4 @@
-"""Meshes, surfaces and scenes from outside: sinew mesh, info, convergence.
+"""Commands for meshes, surfaces and scenes: sinew mesh, info, convergence.
 
     SINEW_PROGRAM=build/release/bin/sinew /usr/bin/python3 -m pytest tests/cli
 """
@@ -67,7 +67,7 @@ def test_info_of_every_kind(scene, tmp_path):
     assert sinew("run", path, "--out", tmp_path / "o").returncode == DONE
     run = json.loads(sinew("info", tmp_path / "o" / "run.h5", "--json").stdout)
     assert run["kind"] == "run" and run["frames"] == 11 and run["bodies"] == ["beam"]
-    assert json.loads(sinew("info", tmp_path / "o", "--json").stdout) == run  # the folder of a run
+    assert json.loads(sinew("info", tmp_path / "o", "--json").stdout) == run  # the folder of a run gives the same
     described = json.loads(sinew("info", path, "--json").stdout)
     assert described["kind"] == "scene" and described["bodies"][0]["mass_kg"] == pytest.approx(0.0428)
     stl = tmp_path / "t.stl"

@@ -1,4 +1,4 @@
-"""The picture of the house is that of the sources, in which no folder includes one above it."""
+"""The drawing of the house matches the sources, in which no folder includes one above it."""
 
 import pathlib
 import subprocess

@@ -1,4 +1,4 @@
-"""Recordings from outside: commands, probes and sensors in them, and what is plotted, fitted and swept.
+"""Recordings of the program: commands, probes and sensors, and plots, fits and sweeps.
 
     SINEW_PROGRAM=build/release/bin/sinew /usr/bin/python3 -m pytest tests/cli
 """
@@ -47,7 +47,7 @@ def test_a_controller_commands_efforts(scene, tmp_path):
 
 
 def make_older(folder):
-    """Turns a recording into one of format 2."""
+    """Converts a recording to format 2."""
     with h5py.File(folder / "run.h5", "r+") as file:
         file.attrs["format_version"] = np.int64(2)
         for actuator in file["actuators"].values():
@@ -97,7 +97,7 @@ def test_plot_draws_a_run(scene, tmp_path):
     assert missing.returncode == WRONG and "file-not-found" in missing.stderr
     (out / "mine.png").write_bytes(b"a picture")
     assert sinew("run", scene(), "--out", out, "--quiet").returncode == DONE
-    assert not (out / "run.png").exists()  # it was of the former run
+    assert not (out / "run.png").exists()  # the plot of the previous run is removed
     assert (out / "mine.png").read_bytes() == b"a picture"
 
 

@@ -1,4 +1,4 @@
-"""sinew run from outside: what it records, draws and writes.
+"""sinew run as a program: recordings, pictures and files.
 
     SINEW_PROGRAM=build/release/bin/sinew /usr/bin/python3 -m pytest tests/cli
 """
@@ -70,7 +70,7 @@ def test_the_energy_ledger_is_kept(tmp_path, step_ms):
     assert column["gravity_energy"].min() < -1e-3 and column["kinetic_energy"].max() > 1e-3
     np.testing.assert_allclose(column["numerical_loss"], column["actuator_work"] - energy, atol=1e-15)
     assert np.all(column["dissipation"] == 0.0)
-    # Backward Euler loses energy, less of it with a smaller step, and never makes any.
+    # Backward Euler loses energy, less with a smaller step, and never gains any.
     assert np.all(np.diff(column["numerical_loss"]) > -1e-9)
     share = column["numerical_loss"][-1] / -column["gravity_energy"].min()
     assert 0.0 < share < 0.06 * step_ms
@@ -97,7 +97,7 @@ def test_vtk_series(scene, tmp_path):
     assert (tmp_path / "o" / "run.pvd").read_text().count("DataSet") == 4
     last = meshio.read(sorted((tmp_path / "o" / "run").glob("*.vtu"))[-1])
     assert {"rest_position", "velocity", "reaction"} <= set(last.point_data)
-    assert "displacement" not in last.point_data  # would be added twice by ParaView's Warp By Vector
+    assert "displacement" not in last.point_data  # ParaView's Warp By Vector would add it twice
     stress = last.cell_data["cauchy_stress"][0].reshape(-1, 3, 3)
     deviator = stress - np.trace(stress, axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3)
     assert last.cell_data["von_mises_stress"][0] == pytest.approx(np.sqrt(1.5 * (deviator**2).sum((1, 2))), rel=1e-6)  # float32
@@ -125,7 +125,7 @@ def test_run_writes_its_motion(scene, tmp_path):
         start = 28 + length + view["byteOffset"]
         return np.frombuffer(data[start : start + view["byteLength"]], dtype=np.float32)
 
-    # Thirty frames a second of the steps of 10 ms: at 0, 40, 80, 120, 160 and 200 ms.
+    # Thirty frames per second with steps of 10 ms: frames at 0, 40, 80, 120, 160 and 200 ms.
     times = floats(motion["animations"][0]["samplers"][0]["input"])
     assert times == pytest.approx(0.04 * np.arange(6), abs=1e-6)
     with h5py.File(tmp_path / "o" / "run.h5") as run:
@@ -201,7 +201,7 @@ def test_elements_are_named_and_warned_of(scene, tmp_path):
     assert facts["notices"][0]["level"] == "remark" and list(facts["bodies"][0]["elements"]) == ["tet4"]
     rubber = sinew("run", scene(replace=(law[0], "dragon-skin-30")), *short)
     assert rubber.returncode == DONE and " tet10 elements" in rubber.stdout
-    # Its cable has bare points, which quadratic elements feel.
+    # Its cable has bare points, which matter for quadratic elements.
     assert rubber.stderr.count("\n") == 1 and rubber.stderr.rstrip().endswith("[bare-points]")
     assert "guide_radius: " in rubber.stderr
 
@@ -256,7 +256,7 @@ record: {every: 1, states: true}
 
 
 def write_vtk_in_millimetres(vtu, path):
-    """A VTU of ours, in m, as legacy VTK in mm."""
+    """Converts a VTU of Sinew, in m, to legacy VTK in mm."""
     mesh = meshio.read(vtu)
     cells = mesh.cells_dict["tetra"]
     lines = ["# vtk DataFile Version 3.0", "trunk", "ASCII", "DATASET UNSTRUCTURED_GRID"]

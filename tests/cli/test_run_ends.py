@@ -1,4 +1,4 @@
-"""How runs end: by a signal, an error, a full disk; what is then on the disk.
+"""Ends of runs by a signal, an error or a full disk, and the files afterwards.
 
     SINEW_PROGRAM=build/release/bin/sinew /usr/bin/python3 -m pytest tests/cli
 """
@@ -22,7 +22,7 @@ def test_interrupted_runs_end_cleanly(scene, tmp_path, how):
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         table = out / "run.csv"
         for _ in range(600):
-            if table.exists() and table.read_text().count("\n") > 6:  # and the header
+            if table.exists() and table.read_text().count("\n") > 6:  # including the header
                 break
             time.sleep(0.05)
         process.send_signal(how)
@@ -34,7 +34,7 @@ def test_interrupted_runs_end_cleanly(scene, tmp_path, how):
         assert len(file["time"]) == len(rows) > 5
         assert file["time"][-1] == float(rows[-1]["time [s]"])
 
-# 1681 points on a floor, more than Newton's method for contacts takes: one law takes far longer than the test.
+# 1681 points on a floor, too many for Newton's method for contacts: solving one contact law takes far longer than the test.
 LONG_STEP = """sinew: 1
 gravity: 0 0 -9.81 m/s^2
 integrator: backward-euler
@@ -79,7 +79,7 @@ def test_a_long_step_in_the_view_can_be_ended(tmp_path):
     words = [os.path.abspath(PROGRAM), "view", str(tmp_path / "long.yaml"), "--no-open", "--port", "0"]
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as view:
         assert "the view is at" in view.stdout.readline()
-        time.sleep(3)  # into the first step
+        time.sleep(3)  # the first step is running then
         sent = time.monotonic()
         view.send_signal(signal.SIGINT)
         view.communicate(timeout=60)
@@ -88,7 +88,7 @@ def test_a_long_step_in_the_view_can_be_ended(tmp_path):
 
 
 def test_a_run_that_fails_keeps_what_it_recorded(scene, tmp_path):
-    # A soft beam crushed by a force that no step can follow.
+    # A force that no step can follow crushes a soft beam.
     path = scene(replace=("command: {displacement: {ramp: {from: 0 mm, to: 4 mm, start: 0 s, duration: 0.1 s}}}",
                           "command: {tension: {ramp: {from: 0 N, to: 1e7 N, start: 0.05 s, duration: 0.05 s}}}"))
     result = sinew("run", path, "--duration", "1s", "--out", tmp_path / "o")
@@ -124,7 +124,7 @@ def test_without_an_end_the_remedy_is_named(scene):
 
 
 def test_a_full_disk_fails_the_run(scene, tmp_path):
-    # A file system of its own would need root; the limit on file sizes acts alike.
+    # A separate file system would need root; the limit on file sizes has the same effect.
     limited = f"ulimit -f 2000; trap '' XFSZ; exec '{os.path.abspath(PROGRAM)}' run '{scene()}' --duration 20s --out '{tmp_path}/o'"
     result = subprocess.run(["bash", "-c", limited], capture_output=True, text=True, timeout=120, check=False)
     assert result.returncode == FAILED, result.stderr

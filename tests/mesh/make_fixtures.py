@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Writes the small meshes in data/ with programs other than Sinew.
 
-meshio writes VTK legacy, VTU and Gmsh 2.2; Gmsh writes its own formats and VTK legacy; the appended
-and big-endian VTU variants, which meshio does not write, are encoded here after VTK's description of
-the format and read back with meshio. Needs meshio and gmsh. Run: make_fixtures.py [FOLDER]
+meshio writes VTK legacy, VTU and Gmsh 2.2; Gmsh writes its own formats and VTK legacy. This script
+encodes the appended and big-endian VTU variants, which meshio does not write, according to VTK's
+description of the format, and reads them back with meshio. Needs meshio and gmsh.
+Run: make_fixtures.py [FOLDER]
 """
 import base64
 import pathlib

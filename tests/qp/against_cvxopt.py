@@ -2,9 +2,9 @@
 
 usage: against_cvxopt.py DUMP_PROGRAM
 
-DUMP_PROGRAM FILE writes the problems with our answers. Infeasible ones are compared with the linear
-programs for the least worst and the least summed violation, solved by SciPy's HiGHS. Semidefinite
-ones are compared with Tikhonov's regularisation. Fails when cvxopt or SciPy is missing.
+DUMP_PROGRAM FILE writes the problems with our solutions. Infeasible problems are compared with the
+linear programs that minimise the largest and the summed violation, solved by SciPy's HiGHS.
+Semidefinite problems are compared with Tikhonov regularisation. Fails if cvxopt or SciPy is missing.
 """
 
 import json
@@ -26,7 +26,7 @@ def limits(values, default):
 
 
 def one_sided(problem, row_share):
-    """A x <= b for bounds and rows; `row_share` columns of slack loosen the rows."""
+    """Bounds and rows as A x <= b; the columns of `row_share` are slack variables that relax the rows."""
     n = len(problem["gradient"])
     extra = row_share.shape[1]
     blocks, right = [], []
@@ -43,14 +43,15 @@ def one_sided(problem, row_share):
 
 
 def unit_scale(problem):
-    """What makes the Hessian's diagonal one, where it is not zero."""
+    """Scale that makes the nonzero entries of the Hessian's diagonal one."""
     diagonal = np.diag(np.array(problem["hessian"]))
     return np.where(diagonal > 0.0, np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)), 1.0)
 
 
 def reference(problem, shift=0.0):
-    """x of the quadratic program, scaled to a unit diagonal; equalities as pairs would have no
-    interior, so they go apart, without dependent ones. `shift` is added to the scaled diagonal."""
+    """Solution x of the quadratic program, computed with a unit diagonal. Equalities are passed
+    separately, without dependent ones, because pairs of inequalities have no interior. `shift` is
+    added to the scaled diagonal."""
     a, b = one_sided(problem, np.zeros((len(problem["rows"]), 0)))
     scale = 1.0 / unit_scale(problem)
     a = a * scale
@@ -75,7 +76,8 @@ def reference(problem, shift=0.0):
 
 
 def least_violation(problem, measure):
-    """By a simplex method: interior points stop short of these degenerate linear programs."""
+    """Smallest violation, by a simplex method: interior-point methods are too inaccurate for these
+    degenerate linear programs."""
     m, n = len(problem["rows"]), len(problem["gradient"])
     share = np.eye(m) if measure == "sum" else np.ones((m, 1))
     a, b = one_sided(problem, share)
@@ -104,8 +106,8 @@ def compare_feasible(problem, report):
 
 
 def compare_semidefinite(problem, report):
-    """Many x are optimal. Tikhonov's solution tends to the least of them as the shift goes to zero,
-    at a rate that is the problem's own; it is never longer."""
+    """The optimum is not unique. Tikhonov's solution is never longer than the one of minimum norm and
+    converges to it as the shift goes to zero, at a rate that depends on the problem."""
     theirs = reference(problem, shift=1e-5)
     ours = np.array(problem["x"])
     scale = unit_scale(problem)

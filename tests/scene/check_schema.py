@@ -71,7 +71,7 @@ INVALID = {
     "bodies.trunk.type": ["rod", "fen"],
     "bodies.trunk.element": ["tet5"],
     "bodies.trunk.mass": ["42 mm", -1, "heavy"],
-    "bodies.trunk.density": [1000],  # beside mass
+    "bodies.trunk.density": [1000],  # in addition to the mass
     "bodies.trunk.mesh": [{"unit": "mm"}, {"file": "a", "unit": "g"}, {"shape": "ball"},
                           {"shape": "block", "length": 1}],
     "bodies.trunk.material": ["ecoflex-00-03", {"young_modulus": 1}, {"model": "neo-hookean", "shear_modulus": 1}],

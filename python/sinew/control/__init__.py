@@ -1,7 +1,7 @@
 """Closed-loop control: commands for a robot from measured effectors and a model that runs in parallel.
 
     loop = sinew.control.ClosedLoop(model, {"tip": [0.03, 0.0, 0.18]}, sensors={"tip": plant.sensor("camera")})
-    commands = loop.step(time=plant.time)              # {"long_0": 0.012, ...}: loop.quantities names what they are
+    commands = loop.step(time=plant.time)              # {"long_0": 0.012, ...}: loop.quantities gives the quantities
     loop.send(plant, commands)                         # or to the motors of a robot
     loop.status, loop.errors, loop.least_eigenvalue
 

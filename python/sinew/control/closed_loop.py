@@ -105,7 +105,7 @@ class ClosedLoop(Loop):
         self.gains = gains
         self._compensate = bool(compensate)
         self._weights = Weights.checked(self._row_weights, change, relaxation, self._place)
-        self._integral = np.zeros(len(self._row_weights))  # of the error, m s
+        self._integral = np.zeros(len(self._row_weights))  # time integral of the error, m s
 
     @property
     def gains(self) -> Union[Gains, Schedule]:

@@ -55,7 +55,7 @@ class JacobianEstimator:
         self.updates = 0
         count = len(self.noise)
         self._information = np.zeros((count, count, count))  # A_i
-        self._weighted = np.zeros((count, count))  # b_i, a row each
+        self._weighted = np.zeros((count, count))  # b_i, one per row
 
     def clone(self) -> "JacobianEstimator":
         """A copy with the same information."""
@@ -100,5 +100,5 @@ class JacobianEstimator:
         return math.sqrt(max(float(left**2 @ variances), 0.0))
 
     def _with_prior(self) -> np.ndarray:
-        """Lambda_i."""
+        """Information matrices Lambda_i of all rows."""
         return self._information + np.eye(len(self.noise)) / self.spread**2

@@ -52,7 +52,7 @@ def _positive(value: float, place: str, *, zero: bool = False) -> float:
 class Loop:
     """Base of ClosedLoop and PredictiveController. The docstring of ClosedLoop describes the parameters."""
 
-    _observer = 1.0  # part of a new difference between measurement and model that is taken up
+    _observer = 1.0  # fraction of a new difference between measurement and model that is added
 
     def __init__(self, model: Any, effectors: Mapping[str, Any], actuators: Optional[Sequence[str]],
                  command: Union[str, Mapping[str, str], None], weights: Optional[Mapping[str, Any]], tolerance: float,
@@ -75,7 +75,7 @@ class Loop:
         self._row_weights = self._to_weights(weights)
         self._tolerance = _positive(tolerance, f"{place}(tolerance)")
         self._sensors = self._to_sensors(sensors)
-        self._ages = dict.fromkeys(effectors, 0)  # of what is measured, steps
+        self._ages = dict.fromkeys(effectors, 0)  # age of the samples, steps
         self._hold = _positive(hold, f"{place}(hold)", zero=True)
         if not callable(real_jacobian) and real_jacobian not in _JACOBIANS:
             raise Error("unknown-choice", f"{place}(real_jacobian)", f"there is no {real_jacobian!r}",
@@ -84,14 +84,14 @@ class Loop:
         self._window, self._estimator = self._to_estimator(**(estimator or {}))
         self._status, self._time = "not-started", -math.inf
         self._lost_since: Optional[float] = None
-        self._offsets = {name: np.zeros(3) for name in effectors}  # measured less modelled
+        self._offsets = {name: np.zeros(3) for name in effectors}  # measurement minus model
         self._errors: dict[str, float] = {name: math.nan for name in effectors}
         self._least, self._least_std = math.nan, math.nan
         self._memory: list[Memory] = []
         robot = self._robot
         self._commands = np.where(robot.by_motion, robot.motions, robot.efforts)
 
-    # What a kind of loop does.
+    # Methods that a subclass defines.
 
     def _choose(self, answer: Answer, standing: Standing, found: Mapping[str, Any]) -> Choice:
         raise NotImplementedError
@@ -102,7 +102,7 @@ class Loop:
     def _restore(self, state: tuple) -> None:
         del state
 
-    # What users see.
+    # Public interface.
 
     @property
     def status(self) -> str:
@@ -304,7 +304,7 @@ class Loop:
         other.restore(self.state())
         return other
 
-    # How it does it.
+    # Implementation.
 
     def _to_weights(self, weights: Optional[Mapping[str, Any]]) -> np.ndarray:
         place = f"{self._place}(weights)"
@@ -325,7 +325,7 @@ class Loop:
 
     def _to_estimator(self, noise: float = 1e-4, noise_rotation: float = 1e-3, spread: float = 0.3,
                       forgetting: float = 0.9, window: int = 5) -> tuple[int, JacobianEstimator]:
-        """Errors with weights, for the estimator."""
+        """Window of differences, and the estimator of the weighted errors."""
         if not (isinstance(window, int) and window >= 1):
             raise Error("out-of-range", f"{self._place}(estimator)['window']", f"it is {window!r}",
                         "give 1 sample or more")
@@ -404,7 +404,7 @@ class Loop:
             return _TRACKED
         if self._lost_since is None:
             self._lost_since = time
-        # Half a step beside rounding of sums of time steps.
+        # The margin of half a step absorbs rounding in sums of time steps.
         return _HOLDING if time - self._lost_since < self._hold - 0.5 * self.model.time_step else _OPEN
 
     def _past(self, name: str, step: int, age: int) -> Optional[np.ndarray]:
@@ -525,7 +525,7 @@ class Loop:
         self._memory.append(Memory(self._robot.positions(), before, measured, dict(self._ages)))
         keep = max(2 * (self._samples() + self._window) + 2, 4)
         if len(self._memory) > 2 * keep:
-            # Whole windows go, so that their phase stays.
+            # Only whole windows are removed, which keeps their phase.
             del self._memory[:keep // self._window * self._window]
         self._robot.send(self.model, self.commands)
         self.model.step()

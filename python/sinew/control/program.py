@@ -124,7 +124,7 @@ def choose(robot: Robot, answer: Answer, standing: Standing, wanted: np.ndarray,
     difference = np.eye(steps) - np.eye(steps, k=-1)  # z_j - z_(j-1)
     hessian = np.kron(np.eye(steps), reached + pull + 1e-9 * size * np.eye(count))
     hessian += np.kron(difference.T @ difference, damp)
-    sources = np.tile(weighted, (steps, 1))  # d gradient / d wanted, of the same motion wanted in all steps
+    sources = np.tile(weighted, (steps, 1))  # d gradient / d wanted, for one motion wanted in all steps
     gradient = -(wanted @ weighted.T).ravel() + np.tile(pull @ (standing.efforts / scale), steps)
 
     rows, row_lower, row_upper = _motion_rows(robot, answer, standing, steps, time_step)
@@ -140,7 +140,7 @@ def choose(robot: Robot, answer: Answer, standing: Standing, wanted: np.ndarray,
             bounds.append((every - np.tile(standing.efforts, steps)) / np.tile(scale, steps))
         return qp.solve_quadratic(hessian, gradient, *bounds, rows, row_lower, row_upper)
 
-    # Limits of motions let every robot stay where it is. One whose efforts are beyond theirs comes back, if it can.
+    # The motion limits always contain the present state. Efforts beyond their limits return to them if the motion limits permit.
     found = solve(False)
     conflict = found.status == "infeasible" and bool((within != standing.efforts).any())
     if conflict:

@@ -63,7 +63,7 @@ class Robot:
                 raise Error("wrong-actuator-type", f"{place}(actuators)",
                             f"'{name}' is a spring, which takes no command", "name actuators that can be commanded")
         self.by_motion = np.array([kind == "motion" for kind in self._kinds(command, place)])
-        # limits: {effort's name: Limits, motion's name: Limits}
+        # actuator.limits: {name of the effort: Limits, name of the motion: Limits}, in this order
         limits = [tuple(actuator.limits.items()) for actuator in self.actuators.values()]
         self._effort_names = [each[0][0] for each in limits]
         self._motion_names = [each[1][0] for each in limits]

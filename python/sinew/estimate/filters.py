@@ -16,7 +16,7 @@ from .quantities import Measured
 
 __all__ = ["ExtendedKalman", "Filter", "MovingHorizon", "ProcessModel", "Reading", "UnscentedKalman"]
 
-_TOGETHER = 1e-9  # s: instants nearer than this are one
+_TOGETHER = 1e-9  # s: times closer than this are one instant
 
 
 class ProcessModel(Protocol):
@@ -74,7 +74,7 @@ class Reading:
 
 @dataclass
 class _Instant:
-    """The estimate at one time after its readings, and those readings."""
+    """Estimate at one time, after the readings of that time, and these readings."""
 
     time: float
     mean: np.ndarray
@@ -128,7 +128,7 @@ class Filter:
         mean, covariance = model.start() if start is None else start
         self._past = [_Instant(time, mean, covariance, model.save(), [])]
         self._last = dict.fromkeys(range(len(model.sensors)), time)
-        self._at = self._past[0]  # where the model is
+        self._at = self._past[0]  # instant of the model's present state
         self._variances: dict[tuple[int, ...], np.ndarray] = {}
         self.dropped = 0
 
@@ -256,7 +256,7 @@ class Filter:
         if getattr(self.model, "reading_moves", True):
             now.kept = self.model.save()
 
-    # What a filter is
+    # Methods that a subclass defines.
 
     def predict(self, mean: np.ndarray, covariance: np.ndarray, time: float, step: float) -> tuple[np.ndarray, np.ndarray]:
         raise NotImplementedError
@@ -325,7 +325,7 @@ class UnscentedKalman(Filter):
         return np.concatenate([mean + spread.T, mean - spread.T])
 
     def predict(self, mean, covariance, time, step):
-        if getattr(self.model, "walks", False):  # linear: exact by its derivative
+        if getattr(self.model, "walks", False):  # linear model: the derivative is exact
             transition = self.model.transition(mean, time, step)
             return self.model.advance(mean, time, step), transition @ covariance @ transition.T + self.model.noise(step)
         moved = np.array([self.model.advance(point, time, step) for point in self._points(mean, covariance)])

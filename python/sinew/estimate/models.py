@@ -40,7 +40,7 @@ class TwinModel:
     """
 
     walks = True  # the derivative of advance() is the same everywhere
-    reading_moves = True  # read() leaves the simulation elsewhere
+    reading_moves = True  # read() changes the state of the simulation
 
     def __init__(self, twin: Twin, commands: Optional[Callable[[float], Mapping[str, float]]] = None) -> None:
         if any(isinstance(u, Parameter) for u in twin.unknowns):
@@ -279,7 +279,7 @@ class ArmModel:
         else:
             segment, fraction = self._points[name.removesuffix(".position")]
             result[:, :self.n] = self.arm(x[2 * self.n:]).jacobian(x[:self.n], segment, fraction)
-            for k in range(2 * self.n, 2 * self.n + self._constants):  # a length that is unknown moves points
+            for k in range(2 * self.n, 2 * self.n + self._constants):  # unknown parameters, such as a length, move points
                 step = np.zeros(len(x))
                 step[k] = _DIFFERENCE * max(1.0, abs(x[k]))
                 result[:, k] = (self.read(x + step, sensor) - self.read(x - step, sensor)) / (2.0 * step[k])

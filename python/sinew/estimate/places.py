@@ -107,7 +107,7 @@ def patches(sim: _core.Simulation, body: str, count: int = 48) -> list[Patch]:
     corners = rest[triangles]
     normals = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     areas, centres = np.linalg.norm(normals, axis=1), corners.mean(axis=1)
-    # A thin body has two sides at one place: the normal counts as half a patch's width.
+    # The normal, scaled by half a patch width, is part of the features: it separates the two sides of a thin body.
     width = math.sqrt(areas.sum() / count)
     features = np.hstack([centres, 0.5 * width * normals / areas[:, None]])
     label = _cluster(features, areas, count)
@@ -185,7 +185,7 @@ class Search:
         return order[:int(np.searchsorted(np.cumsum(self.probability[order]), share)) + 1].tolist()
 
 
-# Points in a triangle that stand for quarters of it, by their weights at its corners.
+# Centroids of the four quarters of a triangle, as weights of its corners.
 _QUARTERS = np.array([[4, 1, 1], [1, 4, 1], [1, 1, 4], [2, 2, 2]]) / 6.0
 
 
@@ -195,7 +195,7 @@ class _State:
 
     estimate: Estimate
     evidence: np.ndarray  # (points,) log p(readings | point)
-    forces: np.ndarray  # (points, 3) posterior means by the linearisation here
+    forces: np.ndarray  # (points, 3) posterior means of the linearised model
 
 
 class _Locator:
@@ -208,9 +208,9 @@ class _Locator:
         self.nodes = np.repeat(np.concatenate([a.triangles for a in areas]), len(_QUARTERS), axis=0)
         self.weights = np.tile(_QUARTERS, (len(self.nodes) // len(_QUARTERS), 1))
         self.patch = np.concatenate([np.full(len(_QUARTERS) * len(a.triangles), k) for k, a in enumerate(areas)])
-        self.share = np.concatenate([np.repeat(a.shares, len(_QUARTERS)) for a in areas]) / len(_QUARTERS)  # of the patch
+        self.share = np.concatenate([np.repeat(a.shares, len(_QUARTERS)) for a in areas]) / len(_QUARTERS)  # fraction of the patch's area
         area = np.array([a.area for a in areas])
-        self.log_prior = np.log(area / area.sum())  # of patches
+        self.log_prior = np.log(area / area.sum())  # of each patch
         self.frames = np.array([_frame(a.normal) for a in areas])
 
     def force(self, point: int, normal: float) -> NodalForce:
@@ -238,7 +238,8 @@ class _Locator:
         values = state.estimate.unknowns
         return values if point is None else np.concatenate([values[:at], values[at + 3:]])
 
-    # y ~ N(h + J_o (mean_o - o) + S f, R + J_o P_o J_o^T) for a force f in place of that which acts.
+    # Evidence and force of every point from y ~ N(h + J_o (mean_o - o) + S f, R + J_o P_o J_o^T), with a force f there instead of
+    # the present one and the other unknowns o.
     def _rank(self, model: Twin, estimate: Estimate, point: Optional[int], force: np.ndarray):
         numbers, commands = self.twin.split(self.readings)
         seen = np.isfinite(numbers)
@@ -262,12 +263,12 @@ class _Locator:
         evidence, forces = self._evidence(whitened, np.linalg.solve(lower, residual))
         return constant + evidence, forces
 
-    # log N(r; 0, I + A P A^T) of each point by Woodbury's identity, times the share of pushes.
+    # log N(r; 0, I + A P A^T) of each point by Woodbury's identity, plus the log probability that the force pushes.
     def _evidence(self, columns: np.ndarray, residual: np.ndarray):
         gram = np.einsum("mpc,mpd->pcd", columns, columns)
         answer = np.einsum("mpc,m->pc", columns, residual)
         tangent = np.full(len(gram), self.friction * self.prior)
-        for _ in range(3):  # friction follows the normal force
+        for _ in range(3):  # the friction prior depends on the normal force
             std = np.column_stack([np.full(len(gram), self.prior), tangent, tangent])
             information = gram + np.eye(3) * (std**-2.0)[:, None, :]
             force = np.linalg.solve(information, answer[..., None])[..., 0]
@@ -360,7 +361,7 @@ def _try(locator: _Locator, point: int, state: _State, before: Optional[int]) ->
 
 
 def _climb(locator: _Locator, base: _State) -> tuple[int, _State]:
-    """Moves from point to point until the best one about its own equilibrium is the point itself, or all were visited."""
+    """Moves to the best point of each linearisation, until that is the point itself or one visited before."""
     state, at, seen = base, None, {}
     for _ in range(8):
         order = np.argsort(-state.evidence, kind="stable")
@@ -368,7 +369,7 @@ def _climb(locator: _Locator, base: _State) -> tuple[int, _State]:
         if point in seen:
             break
         tried = _try(locator, point, state, at)
-        if tried is None and at is None:  # the linear force is too large to stand: begin with less
+        if tried is None and at is None:  # there is no equilibrium under the linear force: start with a smaller one
             tried = _try_less(locator, point, state)
         if tried is None:
             break

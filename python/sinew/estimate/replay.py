@@ -65,7 +65,7 @@ def measured_of(record: Record, stds: Mapping[str, float], actuators: Sequence[s
 
 
 def _commands(record: Record, commanded: Mapping[str, str]) -> Callable[[float], dict[str, float]]:
-    """Commands at a time: the last reading that is not NaN."""
+    """Function of time that returns the commands: the last readings that are not NaN, or 0 before the first."""
     columns = {owner: record.columns[f"{owner}.{quantity}"] for owner, quantity in commanded.items()}
     filled = {}
     for owner, values in columns.items():

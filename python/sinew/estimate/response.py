@@ -15,9 +15,9 @@ __all__ = ["Response"]
 _CONTACT = re.compile(r"(?P<name>.+) point (?P<point>\d+) normal$")
 _MOTIONS = {"displacement", "angle", "volume_growth"}
 _ROW_TYPES = {"cable", "force", "chamber", "torque"}
-_CLOSED = 1e-9  # of the largest effort: a contact or a cable below it has no force
-_LARGEST = 1e10  # of an inverse whose matrix has a diagonal of one: beyond it rows repeat each other
-_SLIDES = 1e-6  # of friction's limit: nearer to it a point slides
+_CLOSED = 1e-9  # fraction of the largest effort below which a contact or a cable counts as open or slack
+_LARGEST = 1e10  # largest entry of the inverse at a unit diagonal; beyond it, rows are linearly dependent
+_SLIDES = 1e-6  # relative distance from the friction limit below which a point slides
 
 
 def has_rows_alone(sim: _core.Simulation) -> bool:
@@ -59,8 +59,8 @@ class Response:
         self._hold_actuators(drives(sim) if actuators is None else actuators)
         self._hold_contacts(sim)
         basis = np.array(self._basis).reshape(-1, len(linear.rows)).T
-        self._efforts = basis @ _inverse(self._compliance[self.held] @ basis)  # (rows, held): of all rows for held motions
-        self._motions = self._compliance @ self._efforts  # (rows, held): their motions
+        self._efforts = basis @ _inverse(self._compliance[self.held] @ basis)  # (rows, held): efforts of all rows per unit held motion
+        self._motions = self._compliance @ self._efforts  # (rows, held): motions of all rows
 
     def _hold(self, row: int, efforts: dict[int, float]) -> None:
         direction = np.zeros(len(self.linear.rows))
@@ -134,7 +134,7 @@ class DrivenActuator(NamedTuple):
     name: str
     is_cable: bool
     holds_motion: bool  # commanded in motion
-    most: float  # N, of its effort
+    most: float  # N, upper limit of its effort
 
 
 def drives(sim: _core.Simulation) -> list[DrivenActuator]:
@@ -162,7 +162,7 @@ def _inverse(matrix: np.ndarray) -> np.ndarray:
 
 
 class StandingRows:
-    """The same derivatives for a robot without contacts, whose rows and laws do not change: used by a filter in every step.
+    """The derivatives of Response for a robot without contacts, whose rows and laws do not change: fast enough for every filter step.
 
     Parameters
     ----------

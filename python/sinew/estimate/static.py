@@ -17,7 +17,7 @@ from .twin import Twin
 
 __all__ = ["Estimate", "Observability", "observability", "solve"]
 
-_SEEN = 1.0  # singular value from which readings tell more of a direction than the prior does
+_SEEN = 1.0  # singular value above which readings outweigh the prior
 
 
 @dataclass(frozen=True)
@@ -196,13 +196,13 @@ def _descend(problem: _Problem, v: np.ndarray, max_iterations: int, tolerance: f
             scale *= 0.5
             if scale < 1e-3:
                 break
-        if scale < 1e-3:  # rounding, or the model cannot go there
+        if scale < 1e-3:  # limited by rounding, or there is no equilibrium in this direction
             residual = problem.residual(v)
             status = "converged" if foreseen < 1e-6 * (1.0 + cost) else "iteration-limit"
             break
         v, residual = v + scale * step, trial
         fell, cost = cost - _cost(residual, v), _cost(residual, v)
-        # The step in units of the estimate's own deviation is sqrt(2 foreseen).
+        # The length of the step in standard deviations of the estimate is sqrt(2 foreseen).
         if foreseen < 0.5 * tolerance**2 or (scale == 1.0 and fell < 0.5 * tolerance**2):
             status = "converged"
             break
@@ -271,7 +271,7 @@ def _told(twin: Twin, problem: _Problem, v, residual, covariance, seen, evidence
         values[name], std[name] = float(value), float(deviation)
     outputs = [name for name, seen_ in zip(twin.outputs, problem.seen) if seen_]
     chi_squared = 2.0 * _cost(residual, v)
-    degrees = len(residual)  # as many terms as readings and prior give, less one for each unknown
+    degrees = len(residual)  # terms of readings and prior, minus one per unknown, which leaves the number of readings
     return Estimate(values, std, twin.inputs, covariance, unknowns, seen,
                     dict(zip(outputs, twin.read()[problem.seen])), dict(zip(outputs, residual)), chi_squared, degrees,
                     float(scipy.stats.chi2.sf(chi_squared, degrees)), float(evidence), iterations, status,

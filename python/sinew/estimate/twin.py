@@ -19,9 +19,9 @@ __all__ = ["Twin"]
 
 _EFFORTS = {"tension", "force", "pressure", "torque"}
 _MOTIONS = {"displacement", "angle", "volume_growth"}
-# Of a search for equilibrium: an estimate that is out of reach is left early, and a shorter step tried.
+# Limits of an equilibrium search. They are low: if it fails, the estimator tries a shorter step.
 _ITERATIONS, _LOAD_STEPS, _RELAXATION_STEPS = 25, 4, 1
-_STEP = 1e-3  # of a prior's standard deviation: half the difference that gives a derivative
+_STEP = 1e-3  # step of central differences, in standard deviations of the prior
 
 
 @dataclass(frozen=True)
@@ -30,8 +30,8 @@ class _Output:
 
     name: str
     of: Measured
-    component: int  # of the observable; -1: it is a number
-    row: str  # "": no row gives it
+    component: int  # component of the observable; -1 for a scalar
+    row: str  # name of the row; "" if there is none
     kind: str  # "motion", "effort", "rotation", "observable"
 
 
@@ -42,7 +42,7 @@ class _Input:
     name: str
     unknown: Unknown
     component: int
-    measured: Optional[Measured] = None  # a reading of a command: its prior
+    measured: Optional[Measured] = None  # sensor of a measured command, whose reading is the prior mean
 
 
 def _tree(scene: Any, folder: str, overrides: Any) -> dict:
@@ -199,7 +199,7 @@ class Twin:
             raise Error(error.kind, "Twin(measured)", error.message, error.remedy) from None
         return {name: recorded[name][-1] for name in names}
 
-    # What there is
+    # Inputs and outputs.
 
     @property
     def inputs(self) -> list[str]:
@@ -290,7 +290,7 @@ class Twin:
                             f"the model has {', '.join([*by_sensor, *commands])}")
         return np.array(list(values.values())), commands
 
-    # What the model answers
+    # Predictions.
 
     def predict(self, values: Sequence[float]) -> np.ndarray:
         """(outputs,) noise-free readings at the static equilibrium for given unknowns.
@@ -343,7 +343,7 @@ class Twin:
             found.append((actuator, actuator.command[0]))
         return found
 
-    # The scene with other numbers, the same commands.
+    # Rebuilds the simulation for other parameter values, with the same commands.
     def _build(self, logarithms: list[float]) -> None:
         if not logarithms or tuple(logarithms) == self._parameters:
             return
@@ -505,9 +505,9 @@ class Twin:
 
         Parameters
         ----------
-        unknowns : iterable of NodalForce, Effort, Motion, or of this model's own
+        unknowns : iterable of NodalForce, Effort, Motion, or unknowns of this model
         measured : iterable of Measured, optional
-            In place of this model's.
+            Replaces the sensors of this model.
         """
         other = object.__new__(Twin)
         other.__dict__.update(self.__dict__)

@@ -45,7 +45,7 @@ class Episode:
         self.model: TaskModel = models[0]
         self.robot: Optional[Robot] = None
         self.goal: Optional[np.ndarray] = None
-        self.memory: dict[str, Any] = {}  # the task's own
+        self.memory: dict[str, Any] = {}  # data of the task
         self.steps = self.count = 0
         self.commands = self.action = np.zeros(len(task.low))
         self._late: deque[np.ndarray] = deque()
@@ -111,14 +111,14 @@ class Episode:
             self.robot = None
 
     def _put(self, model: TaskModel) -> None:
-        """Use a robot of this model."""
+        """Takes a robot of this model."""
         if self.robot is None or model is not self.model:
             self.release()
             self.model, self.robot = model, model.take()
 
 
 def checked_actions(actions: Any, shape: tuple[int, ...], place: str) -> np.ndarray:
-    """Return the actions as an array of the given shape, clipped to [-1, 1].
+    """Returns the actions as an array of the given shape, clipped to [-1, 1].
 
     Raises
     ------

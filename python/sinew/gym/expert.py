@@ -18,7 +18,7 @@ from .vector_env import VectorEnv
 __all__ = ["Expert", "expert"]
 
 _CONTROLLED = (TrunkReach, TrunkFollow, TrunkHold)
-_CORRECTION = 0.5  # share of what the twin's tip misses that is corrected at each step
+_CORRECTION = 0.5  # fraction of a change of the offset between the tips that is taken up per step
 
 
 def _has_script(task: type[Task]) -> bool:
@@ -65,7 +65,7 @@ class _Script:
         self.episode = episode
 
     def action(self) -> np.ndarray:
-        """Return the action of Task.scripted."""
+        """Returns the action of Task.scripted."""
         return self.episode.task.scripted(self.episode)
 
 
@@ -73,9 +73,9 @@ class Expert:
     """Policy by the inverse controller or by a script; created by `expert`.
 
     **Trunks.** Every environment has a twin, a simulation of its robot without pushes and delays, whose inverse controller moves
-    the tip to the goal. The action is the change of tensions of the twin. In every step, the twin's target is shifted by half of
-    the distance between the tips of twin and environment. The policy therefore responds to pushes, although the twin does not
-    know them.
+    the tip to the goal. The action is the change of tensions of the twin. The twin's target is the goal plus the offset of its
+    tip from that of the environment, which is filtered: every step takes up half of a change. The policy therefore responds to
+    pushes, which the twin does not feel.
 
     **Grasp.** The script pulls every cable in by 8 mm within 0.8 s, then moves the feet by the missing height of the cup.
 

@@ -86,7 +86,7 @@ class TaskModel:
         return self.drawn["payload"]
 
     def take(self) -> Robot:
-        """Return an unused simulation of the model, in any state."""
+        """Returns an unused simulation of the model, in any state."""
         with self._lock:
             return self._free.pop() if self._free else Robot(self.first.sim.clone())
 

@@ -48,7 +48,7 @@ class Picture:
             self._view.update()
 
     def after_step(self, episode: Any) -> None:
-        """Show the present state."""
+        """Shows the present state."""
         if self._mode == "human":
             self.after_reset(episode)
 

@@ -23,7 +23,7 @@ Range = Union[float, Sequence[float]]
 
 
 def unknown(place: str, what: str, name: Any, known: Sequence[str]) -> Error:
-    """Return an error of kind unknown-name that suggests the most similar known name."""
+    """Returns an error of kind unknown-name that suggests the most similar known name."""
     near = difflib.get_close_matches(str(name), known, n=1, cutoff=0.5)
     remedy = f"did you mean {near[0]!r}? " if near else ""
     return Error("unknown-name", place, f"there is no {what} {name!r}", f"{remedy}there are: {', '.join(known)}")
@@ -76,13 +76,13 @@ class Task:
     name = ""
     summary = ""
     scene: Path = SCENES
-    settings: dict[str, Any] = {}  # of the scene, where the task differs from the file
+    settings: dict[str, Any] = {}  # scene values in which the task differs from the file
     actions: tuple[str, ...] = ()
-    substeps = 1  # simulated steps to an action
+    substeps = 1  # simulated steps per action
     default_time_limit = 1.0
-    camera = "corner"  # of pictures
-    observables: tuple[str, ...] = ()  # that sense_rows and reward_rows look at, as sinew.Batch reads them
-    failure_reward = -100.0  # of a step that the simulation cannot take; the episode then ends
+    camera = "corner"  # default view of pictures
+    observables: tuple[str, ...] = ()  # names of the values for sense_rows and reward_rows, as in Batch.read()
+    failure_reward = -100.0  # reward of a failed simulation step, which ends the episode
 
     def __init__(
         self,
@@ -94,7 +94,7 @@ class Task:
         payload: Range = 0.0,
         models: int = 8,
         action_delay: Union[int, Sequence[int]] = 0,
-        set: Optional[Mapping[str, Any]] = None,  # noqa: A002 - as of sinew.load
+        set: Optional[Mapping[str, Any]] = None,  # noqa: A002 - as in sinew.load
     ) -> None:
         self.observe = observe
         if observe not in ("sensors", "state"):
@@ -141,11 +141,11 @@ class Task:
         self.episode_steps = round(self._time_limit / self.time_step)
         self.kind, self.is_increment = self.action.split("-")[0], self.action.endswith("-increment")
         self.low, self.high, rates = self.limits(robot)
-        self.increment = np.minimum(rates * self.time_step, self.high - self.low)  # the greatest change in a step
+        self.increment = np.minimum(rates * self.time_step, self.high - self.low)  # largest change per step
         self.action_space = Box(low=-1.0, high=1.0, shape=self.low.shape, dtype=np.float32)
         self.observation_space = Box(low=-np.inf, high=np.inf, shape=(self.observation_size(robot),), dtype=np.float32)
 
-    # What a subclass may define.
+    # Methods and attributes that a subclass may define.
 
     def described(self, folder: Path) -> Union[Path, dict[str, Any]]:
         """The scene, in a form that sinew.load accepts. Meshes may be written to the folder, which exists until the scene is loaded."""
@@ -190,14 +190,14 @@ class Task:
             setattr(actuator, self.kind, value)
 
     def disturb(self, episode: Any) -> None:
-        """Change the environment of the robot just before a step."""
+        """Changes the environment of the robot just before a step."""
 
     def observation_names(self, robot: Robot) -> list[str]:
         """Name of every number of an observation."""
         raise NotImplementedError
 
     def sense(self, episode: Any, out: np.ndarray) -> None:
-        """Write an observation into out, (observation size,)."""
+        """Writes an observation into out, (observation size,)."""
         self.sense_rows([episode], episode.robot.read(self.observables), out[None])
 
     def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
@@ -231,7 +231,7 @@ class Task:
         """
         raise NotImplementedError
 
-    #: Names that reset(options=...) takes for an environment, and how many axes a value has.
+    #: Names accepted by reset(options=...) for an environment, with the number of axes of a value.
     options: Mapping[str, int] = {}
 
     def scripted(self, episode: Any) -> np.ndarray:
@@ -243,18 +243,18 @@ class Task:
         return len(self.observation_names(robot))
 
     def commands(self, episode: Any, action: np.ndarray) -> np.ndarray:
-        """Return the actuators' commands (N, m or N m) for an action in [-1, 1]; both are (actuators,)."""
+        """Commands of the actuators (N, m or N m) for an action in [-1, 1]; both are (actuators,)."""
         return self.next_commands(episode.commands, action)
 
     def next_commands(self, commands: np.ndarray, action: np.ndarray) -> np.ndarray:
-        """The same, starting from the last commands, (..., actuators) each."""
-        if self.is_increment:  # np.clip takes four times as long
+        """The same from given last commands, (..., actuators) each."""
+        if self.is_increment:  # np.clip is four times slower
             return np.minimum(np.maximum(commands + action * self.increment, self.low), self.high)
         return self.low + 0.5 * (action + 1.0) * (self.high - self.low)
 
     @classmethod
     def keywords(cls) -> list[str]:
-        """Return the names of all keyword arguments of the task."""
+        """Names of all keyword arguments of the task."""
         found: list[str] = []
         for base in cls.__mro__:
             if "__init__" in vars(base) and base is not object:

@@ -12,13 +12,13 @@ from .task import Task
 
 __all__ = ["Together"]
 
-_STATUS = "status"  # of the last step, a number; 0 is "solved"
+_STATUS = "status"  # status of the last step as a number; 0 is "solved"
 
 
 class Together:
     """Performs actions in many episodes of a task that names `observables`, with the same bits as Episode.step.
 
-    Threads without Python step the simulations. Commands, observations and rewards are computed for all episodes at once.
+    Native threads step the simulations. Commands, observations and rewards are computed for all episodes at once.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class Together:
         self._names = [*task.observables, _STATUS]
         self._robots: list[Any] = [None] * len(episodes)
         self._batch: Optional[Batch] = None
-        self._counts = [0] * len(episodes)  # of their resets
+        self._counts = [0] * len(episodes)  # episodes started, to detect resets
         self._commands, self._actions = np.zeros((2, len(episodes), len(task.low)))
 
     def step(self, actions: np.ndarray, acts: np.ndarray, observations: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
@@ -93,7 +93,7 @@ class Together:
         infos[key][which], infos[f"_{key}"][which] = values, True
 
     def _follow_resets(self) -> None:
-        """Takes over the robots and commands of episodes that were reset; from then on their commands and actions are rows of the arrays."""
+        """Takes over the robots and commands of reset episodes, whose commands and actions then become rows of the shared arrays."""
         episodes = self._episodes
         for i, episode in enumerate(episodes):
             if self._counts[i] != episode.count:
@@ -105,7 +105,7 @@ class Together:
             self._robots, self._batch = robots, Batch([robot.sim for robot in robots], threads=self._threads)
 
     def _take(self, actions: np.ndarray, acts: np.ndarray) -> None:
-        """Commands of the actions that take effect now."""
+        """Computes the commands of the actions that take effect now."""
         told = acts
         if self.task.action_delay[1] > 0:
             late = [episode.late(action.copy()) if act else None for episode, action, act in zip(self._episodes, actions, acts)]

@@ -127,7 +127,7 @@ class VectorEnv(VectorEnvBase):
                 infos[i] = self.episodes[i].reset(seeds[i], self._options_of(i, options))
                 self.task.sense(self.episodes[i], self._observations[i])
 
-        self._begun[mask], self._ended[mask] = False, False  # an error leaves them not begun
+        self._begun[mask], self._ended[mask] = False, False  # after an error, they count as not reset
         self._each(work)
         self._begun |= mask
         self._picture.after_reset(self.episodes[0])
@@ -201,7 +201,7 @@ class VectorEnv(VectorEnvBase):
 
         def work(i: int) -> None:
             episode, seen = self.episodes[i], self._observations[i]
-            if self._ended[i]:  # of the mode NEXT_STEP; the others have none here
+            if self._ended[i]:  # only in the mode NEXT_STEP
                 infos[i] = episode.reset(None, {})
                 sense(episode, seen)
                 return
@@ -251,7 +251,7 @@ class VectorEnv(VectorEnvBase):
         others = [self._executor.submit(block, indices) for indices in self._blocks[1:]] if self._executor else []
         try:
             block(self._blocks[0])
-        finally:  # no thread may still be at work when an error leaves this function
+        finally:  # waits for all threads, also if this one raises
             raised = [future.exception() for future in others]
         for error in raised:
             if error is not None:

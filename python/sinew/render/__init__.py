@@ -53,7 +53,7 @@ def render(sim: Any, size: tuple[int, int] = (640, 480), camera: Union[Camera, s
         tool-missing: ModernGL or a graphics driver is missing. unknown-name: field, camera or colour map. out-of-range,
         wrong-shape, wrong-type, not-finite; simulation-busy.
     """
-    # The last renderer of this thread is kept, without the simulation: surfaces take longer to make than to draw.
+    # Keeps the last renderer of this thread, without its simulation, because surfaces take longer to create than to draw.
     goals, key = options.pop("goals", None), repr((size, sorted(options.items())))
     last = getattr(_kept, "last", None)
     if last is not None and last[0]() is sim and last[1] == key:

@@ -14,10 +14,10 @@ from ..errors import Error
 
 __all__ = ["Camera", "VIEWS", "axes_of_view", "camera_of", "fit"]
 
-# Where the camera stands: rightward, towards the front, and up, in the axes of axes_of_view().
+# Directions from the target to the camera: components to the right, to the front and up, see axes_of_view().
 VIEWS = {"corner": (0.45, 0.80, 0.36), "front": (0.0, 1.0, 0.0), "side": (1.0, 0.0, 0.0), "top": (0.0, 0.0, 1.0)}
-_FIELD_OF_VIEW = 0.55  # rad, that of a lens somewhat longer than the eye: little distortion
-_MIN_SIZE = 1e-6  # m, of a scene
+_FIELD_OF_VIEW = 0.55  # rad, slightly telephoto, for little distortion
+_MIN_SIZE = 1e-6  # m, smallest size of a scene
 
 
 @dataclasses.dataclass(frozen=True)
@@ -143,9 +143,9 @@ def fit(points: np.ndarray, up: np.ndarray, view: str, size: tuple[int, int], le
     frame = np.stack([right, np.cross(back, right), back])
     seen = points @ frame.T
     tangent = math.tan(0.5 * _FIELD_OF_VIEW) / margin
-    above = np.array([tangent * size[0] / size[1], tangent])  # slopes of the right and of the upper side of the picture
+    above = np.array([tangent * size[0] / size[1], tangent])  # slopes of the right and upper planes of the view frustum
     below = above * [1.0 - 2.0 * left, 1.0]
-    # Each side is a plane through the camera; the two of a pair that touch the points give the distance and the middle.
+    # Opposite frustum planes that touch the points determine the distance and the centre.
     depth = seen[:, 2:]
     high, low = (seen[:, :2] + above * depth).max(axis=0), (seen[:, :2] - below * depth).min(axis=0)
     distance = max(((high - low) / (above + below)).max(), depth.max() + _MIN_SIZE, _MIN_SIZE)

@@ -21,7 +21,7 @@ _SAMPLES = {
     "cividis": [(0, 32, 77), (0, 51, 111), (57, 72, 107), (87, 92, 109), (112, 113, 115), (138, 134, 120), (166, 157, 117),
                 (196, 181, 108), (255, 234, 70)],
 }  # fmt: skip
-#: Names of the colour maps. Both suit readers who do not tell red from green.
+#: Names of the colour maps. Both are suitable for readers with red-green colour blindness.
 MAPS = tuple(_SAMPLES)
 _STEPS = 256
 _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
@@ -86,7 +86,7 @@ def _font(size: int) -> Any:
 
     try:
         return ImageFont.truetype("DejaVuSans.ttf", size)
-    except OSError:  # Pillow has a small one of its own
+    except OSError:  # Pillow has a small built-in font
         return ImageFont.load_default()
 
 

@@ -16,9 +16,9 @@ from . import shaders
 
 __all__ = ["Context", "context", "current"]
 
-_SAMPLES = 4  # of each pixel, for smooth edges
-_SHADOW = 256  # pixels of the shadow's side
-_KEPT = 8  # sizes of pictures whose buffers are kept
+_SAMPLES = 4  # per pixel, for smooth edges
+_SHADOW = 256  # pixels along a side of the shadow texture
+_KEPT = 8  # number of picture sizes whose buffers are kept
 
 _own = threading.local()
 
@@ -41,7 +41,7 @@ class Context:
                         "install python3-moderngl, or pip install sinew[render]") from None
         try:
             self.gl = moderngl.create_context(standalone=True, backend="egl", require=330)
-        except Exception as problem:  # of many kinds, whatever the driver is
+        except Exception as problem:  # the type depends on the driver
             raise Error("tool-missing", "render", f"no graphics context could be created: {problem}",
                         "install libegl1 and libgl1-mesa-dri, whose software renderer needs no graphics card") from None
         self.body, self.plain, self.mark, self.plane = (
@@ -79,7 +79,7 @@ class Context:
         return self._palettes[name]
 
     def __del__(self) -> None:
-        # At the end of its thread. A context stays in memory for as long as it is a thread's current one.
+        # Runs at the end of the thread: a context stays in memory as long as it is current in a thread.
         gl = getattr(self, "gl", None)
         if gl is None or sys.is_finalizing() or self._owner != (os.getpid(), threading.get_ident()):
             return
@@ -101,7 +101,7 @@ def context() -> Context:
     Error
         tool-missing: ModernGL is not installed, or the machine has neither a graphics driver nor Mesa's software renderer.
     """
-    # A context does not outlive a fork.
+    # After a fork, the child needs a new context.
     if current() is None:
         _own.context, _own.process = Context(), os.getpid()
     return _own.context

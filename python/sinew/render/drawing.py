@@ -13,13 +13,13 @@ from .marks import Marks
 
 __all__ = ["DrawList", "Patch", "Triangles", "draw"]
 
-# Where the light of the sun comes from: rightward, towards the front, and up, in the axes of axes_of_view().
+# Direction towards the light source: components to the right, to the front and up, see axes_of_view().
 _SUN = np.array([-0.38, 0.42, 0.82])
 _SUN = _SUN / np.linalg.norm(_SUN)
 _HIDDEN = 0.38  # opacity of marks behind or inside bodies
 _EDGE = (0.10, 0.12, 0.15, 0.45)
 _INK, _TINT = (0.35, 0.40, 0.46), (0.80, 0.83, 0.86)
-_SHADE = 0.34  # darkest shadow
+_SHADE = 0.34  # opacity of the darkest shadow
 
 
 class Triangles:
@@ -223,7 +223,7 @@ def _draw_patch(context: Context, patch: Patch, camera: Camera, shadow: Optional
     for name, value in (("middle", patch.middle), ("origin", patch.origin), ("first_axis", patch.first_axis), ("second_axis", second)):
         plane[name].value = tuple(float(x) for x in value)
     plane["reach"].value, plane["cell"].value, plane["solid"].value = patch.reach, patch.cell, patch.solid
-    # From below a floor is a veil.
+    # Seen from below, a floor is translucent.
     plane["visible"].value, plane["shade"].value = (1.0 if above else 0.3), (_SHADE if above and shadow is not None else 0.0)
     plane["ink"].value, plane["tint"].value = _INK, _TINT
     context.patch.render(moderngl.TRIANGLE_STRIP)
@@ -257,5 +257,5 @@ class _Uploaded:
 
 
 def _bytes(matrix: np.ndarray) -> bytes:
-    """In GLSL's order, column by column."""
+    """Bytes of a matrix in GLSL's column-major order."""
     return np.ascontiguousarray(matrix.T, dtype="f4").tobytes()

@@ -9,13 +9,13 @@ import numpy as np
 
 __all__ = ["Skin", "boundary_of"]
 
-_CREASE = math.radians(50.0)  # neighbouring faces whose normals differ by more at rest meet in an edge
+_CREASE = math.radians(50.0)  # angle between the rest normals of neighbouring faces above which their edge is sharp
 
-# Faces from outside, counter-clockwise, in VTK's order of nodes; of quadratic tetrahedra corners, then middles.
+# Faces of elements in VTK's node order, counter-clockwise seen from outside; corners first, then mid-edge nodes.
 _TETRAHEDRON = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
 _QUADRATIC = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])
 _HEXAHEDRON = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
-# Triangles of a face, and the parts of its rim.
+# Triangles and edges of a face with 3, 4 or 6 nodes.
 _SPLIT = {3: [[0, 1, 2]], 4: [[0, 1, 2], [0, 2, 3]], 6: [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]}
 _RIM = {3: [[0, 1], [1, 2], [2, 0]], 4: [[0, 1], [1, 2], [2, 3], [3, 0]], 6: [[0, 3], [3, 1], [1, 4], [4, 2], [2, 5], [5, 0]]}
 
@@ -86,7 +86,7 @@ class Skin:
         vertex_of = np.zeros(len(rest), dtype=np.int64)
         vertex_of[self.nodes] = np.arange(len(self.nodes))
         self.edges = vertex_of[edges]
-        # Corners of triangles by vertex, for sums over the triangles round each.
+        # Triangle corners sorted by vertex, for sums over the triangles at each vertex.
         order = np.argsort(vertices, kind="stable")
         self._triangle = order // 3
         self._start = np.searchsorted(vertices[order], np.arange(len(self.nodes)))
@@ -125,7 +125,7 @@ def _smooth_parts(triangles: np.ndarray, rest: np.ndarray) -> np.ndarray:
     count = len(triangles)
     areas = _areas(rest, triangles)
     normals = areas / np.maximum(np.linalg.norm(areas, axis=1), 1e-300)[:, None]
-    # Half-edges, each from corner k of a triangle to the next; the neighbour has it the other way round.
+    # Half-edges from corner k of a triangle to the next corner; the neighbour has the reversed half-edge.
     start, end = triangles.reshape(-1), triangles[:, [1, 2, 0]].reshape(-1)
     key, reverse = start * len(rest) + end, end * len(rest) + start
     order = np.argsort(key, kind="stable")
@@ -140,7 +140,7 @@ def _smooth_parts(triangles: np.ndarray, rest: np.ndarray) -> np.ndarray:
     def following(corner: np.ndarray) -> np.ndarray:
         return corner - corner % 3 + (corner + 1) % 3
 
-    # The edge's start is the neighbour's end.
+    # The start of a half-edge is the end of the neighbour's.
     first = np.concatenate([half, following(half)])
     second = np.concatenate([following(mate), mate])
     labels = np.arange(3 * count)

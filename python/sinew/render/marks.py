@@ -9,7 +9,7 @@ import numpy as np
 
 __all__ = ["Marks"]
 
-_TUBE, _FINE = 8, 20  # sides of tubes, which are thin; of rods and balls
+_TUBE, _FINE = 8, 20  # number of sides: of tubes, which are thin; of rods and balls
 
 
 class Marks:
@@ -50,7 +50,7 @@ class Marks:
             return
         along = _units(np.diff(points, axis=0))
         along = _units(np.vstack([along[:1], along[:-1] + along[1:], along[-1:]]))
-        # The axis that the tube comes least near to is no tangent of it, so that the frames do not flip.
+        # The world axis that is least parallel to the tube is the reference, which keeps the frames from flipping.
         aside = _units(np.cross(along, np.eye(3)[np.argmin(np.abs(along).max(axis=0))]))
         normals = _rings(along, aside, _TUBE)
         k = len(points)

@@ -1,4 +1,4 @@
-"""State of a robot at one moment, as far as a picture shows it, from a simulation or a recorded run."""
+"""State of a robot that a picture shows, from a simulation or a recorded run."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def moment_of(sim: Any, outline: Outline, field: Optional[str] = None) -> Moment
     lines = {name: part for name, part in sim.actuators.items() if part.type in ("cable", "spring")}
     slack = {name for name, part in lines.items() if part.type == "cable" and not part.tension > 0.0}
     moving = [name for name, surface in outline.surfaces.items() if surface.moves]
-    # A run of no steps reads what a simulation tells only of a run.
+    # The poses are available as observables only: a run of zero steps reads them.
     told = sim.run(0.0, record=[f"{name}.pose" for name in moving]) if moving else {}
     contacts = list(sim.contacts.values())
     touching = [contact.positions for contact in contacts]
@@ -94,7 +94,7 @@ def _values(body: Any, field: str) -> Optional[np.ndarray]:
     """(n,): a field at a body's nodes; None if the body does not have the field."""
     if field == "displacement":
         return np.linalg.norm(np.asarray(body.positions) - np.asarray(body.rest_positions), axis=1)
-    unit_of(field)  # or an error
+    unit_of(field)  # raises unknown-name
     try:
         return np.nan_to_num(body.nodal_field(field))
     except Error as error:

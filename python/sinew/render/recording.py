@@ -65,7 +65,7 @@ class Recording:
         if "positions" not in self._file:
             raise Error("malformed-file", (str(self.path), 0, 0, ""), "the run was recorded without positions",
                         "run the scene again, with record: {states: true}")
-        # A run that was killed may have series that are longer than others.
+        # If the run was killed, its series may differ in length.
         frames = min(len(series) for series in [self._file["time"], *self._file["positions"].values()])
         self.times = self._file["time"][:frames]
         self.sim = _core.load_recorded(self._file["scene"][()].decode("utf-8"))

@@ -23,14 +23,14 @@ from .scene import Surface, outline_of
 
 __all__ = ["Renderer"]
 
-_BODIES = tuple(colours.parse(c, "") for c in ("#d9a066", "#7fa6c9", "#9cb380"))  # told apart by lightness too
-_PLAIN = colours.parse("#b4bac2", "")  # of bodies without the field that is shown
+_BODIES = tuple(colours.parse(c, "") for c in ("#d9a066", "#7fa6c9", "#9cb380"))  # also distinguishable by lightness
+_PLAIN = colours.parse("#b4bac2", "")  # colour of bodies without the displayed field
 _TAUT, _SLACK, _SPRING = (colours.parse(c, "") for c in ("#0072b2", "#8a8f98", "#6b7480"))
 _GOAL, _EFFECTOR, _FORCE, _SURFACE = (colours.parse(c, "") for c in ("#d55e00", "#262b33", "#cc3311", "#8796a5"))
-# Sizes, of the size of the scene.
+# Sizes relative to the scene.
 _CABLE, _BALL, _SHAFT, _ARROW = 0.0045, 0.011, 0.0042, 0.22
-_FAR = 10.0  # planes that are farther away, in sizes of the robot, need not be in the picture
-_MIN_FORCE = 0.01  # forces under this share of the largest are not drawn
+_FAR = 10.0  # in sizes of the robot: planes farther away than this may lie outside the picture
+_MIN_FORCE = 0.01  # forces below this fraction of the largest are not drawn
 
 
 class Renderer:
@@ -109,7 +109,7 @@ class Renderer:
         self.field, self._range = field, checked_range(field_range)
         self._fixed_range = field_range is not None
         if field is not None:
-            colours.unit_of(field)  # or an error
+            colours.unit_of(field)  # raises unknown-name
         self.colour_map, self._bar = colour_map, colour_bar
         self._palette = colours.table(colour_map)
         self.goals = goals
@@ -149,7 +149,7 @@ class Renderer:
         """
         if self._triangles is None:
             raise Error("closed", "Renderer.frame", "the renderer is closed", "make a new one")
-        # Another thread may draw with it, with a context of its own.
+        # Contexts belong to threads: rebuild the buffers if another thread draws now.
         if context() is not self._context:
             self._context = context()
             self._build()
@@ -179,7 +179,7 @@ class Renderer:
         left = min(0.3, 0.2 * self.size[1] / self.size[0]) if self._bar and self.field is not None else 0.0
         self.camera = camera_of(self.camera, points, self.outline.up, self.size, left)
         self._reach = 1.5 * max(self._scale, 0.6 * float(np.linalg.norm(np.ptp(points, axis=0))))
-        # Lines of the grid pass through the origin.
+        # Height of the floor grid, whose lines pass through the origin.
         self._ground = min(float((part @ self.outline.up).min()) for part in (points, self._rest)) * self.outline.up
 
     def extent(self, moment: Moment) -> np.ndarray:
@@ -210,7 +210,7 @@ class Renderer:
 
     def close(self) -> None:
         """Releases the graphics memory. May be called repeatedly."""
-        # What another thread's context holds goes with that thread.
+        # Buffers in the context of another thread are freed with that thread.
         if getattr(self, "_triangles", None) is not None and current() is self._context:
             self._triangles.release()
         self._triangles = None
@@ -267,7 +267,7 @@ class Renderer:
 
     def _patches(self, surfaces: list[Surface]) -> list[Patch]:
         planes = [surface for surface in surfaces if surface.kind == "plane"]
-        # Planes of several contacts are often one floor.
+        # Several contacts often share one floor plane.
         found: list[Patch] = []
         for plane in planes:
             point, normal = plane.points[0], plane.normal

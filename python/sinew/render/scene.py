@@ -71,7 +71,7 @@ def parsed(text: str) -> dict[str, Any]:
     except ImportError:
         raise Error("tool-missing", "render", "pictures need PyYAML, which is not installed",
                     "install python3-yaml, or pip install sinew[render]") from None
-    # As text: "1e-3" and "yes" are no number and no truth of YAML 1.1 here.
+    # All scalars stay text: YAML 1.1 reads "1e-3" as text and "yes" as true, unlike Sinew.
     return yaml.load(text, Loader=yaml.BaseLoader)
 
 
@@ -109,7 +109,7 @@ def _vector(written: Any) -> np.ndarray:
     """(3,), SI, from "0 0 190 mm" or a list of numbers."""
     if not isinstance(written, str):
         return np.array([_core._quantity(str(number))[0] for number in written])
-    # The unit may stand against the last number.
+    # The unit may follow the last number without a space.
     x, y, rest = written.split(None, 2)
     z, unit = re.fullmatch(r"([-+.\d]+(?:[eE][-+]?\d+)?)\s*(.*)", rest.strip()).groups()
     return np.array([_core._quantity(f"{number} {unit}".strip())[0] for number in (x, y, z)])

@@ -17,7 +17,7 @@ vec3 shaded(vec3 base, vec3 normal, vec3 at) {
 }
 """
 
-#: Surfaces of bodies: a colour of each vertex, or of its value where that is not negative.
+#: Surfaces of bodies: coloured by the value of each vertex, or by its own colour if the value is negative.
 BODY = (
     """
 #version 330
@@ -45,7 +45,7 @@ void main() {
 """,
 )
 
-#: The same points in one colour: edges of the mesh, drawn a little nearer than the surface; and the shadow's outline.
+#: The same points in one colour, for mesh edges, which are drawn slightly in front of the surface, and for the shadow.
 PLAIN = (
     """
 #version 330
@@ -65,7 +65,7 @@ void main() { result = colour; }
 """,
 )
 
-#: Round things, each in its colour.
+#: Round objects, each in its colour.
 MARK = (
     """
 #version 330
@@ -85,7 +85,7 @@ void main() { result = vec4(shaded(paint, across, at), opacity); }
 """,
 )
 
-#: A patch of a plane: a tint, lines, and the shadow of the bodies, fading towards its rim.
+#: Patch of a plane with tint, grid lines and the shadow of the bodies, fading towards its rim.
 PLANE = (
     """
 #version 330

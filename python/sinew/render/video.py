@@ -23,7 +23,7 @@ __all__ = ["check_path", "need_pillow", "video"]
 
 _ANIMATED = (".webp", ".gif")
 _MAX_FRAMES = 1_000_000
-_LOOKED_AT = 40  # moments of a recorded run, before it is drawn
+_LOOKED_AT = 40  # moments of a recorded run from which camera and colour range are determined
 
 
 def video(
@@ -116,7 +116,7 @@ def _of_simulation(sim: Simulation, count: int, interval: float, options: dict[s
 def _of_recording(run: Recording, count: int, interval: float, options: dict[str, Any]) -> Iterator[np.ndarray]:
     with Renderer(run.sim, **options) as renderer:
         moments = [run.at(run.times[0] + k * interval, renderer.field) for k in range(0, count, max(1, count // _LOOKED_AT))]
-        # Camera and colours suit the whole run.
+        # Fits camera and colour range to the whole run.
         renderer.see(np.concatenate([renderer.extent(moment) for moment in moments]))
         renderer.widen(moments)
         for k in range(count):
@@ -193,7 +193,7 @@ def _write_series(path: pathlib.Path, frames: Iterator[np.ndarray], _: float) ->
 def _write_animated(path: pathlib.Path, frames: Iterator[np.ndarray], fps: float) -> pathlib.Path:
     image = need_pillow()
     path.parent.mkdir(parents=True, exist_ok=True)
-    # A GIF counts hundredths of a second.
+    # GIF stores durations in hundredths of a second.
     first, *rest = [image.fromarray(frame) for frame in frames]
     first.save(path, save_all=True, append_images=rest, duration=round(1000.0 / fps), loop=0,
                **({"quality": 88, "method": 3} if path.suffix == ".webp" else {"optimize": False}))  # fmt: skip
@@ -204,7 +204,7 @@ def _write_mp4(path: pathlib.Path, frames: Iterator[np.ndarray], fps: float) -> 
     path.parent.mkdir(parents=True, exist_ok=True)
     first = next(frames)
     height, width = first.shape[:2]
-    # Most players want even sizes, and colours at half the resolution.
+    # Most players need even sizes and 4:2:0 chroma subsampling.
     command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", f"{fps:g}",
                "-i", "-", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", "-movflags", "+faststart", str(path)]  # fmt: skip
     with tempfile.TemporaryFile() as complaints:
@@ -215,7 +215,7 @@ def _write_mp4(path: pathlib.Path, frames: Iterator[np.ndarray], fps: float) -> 
                 process.stdin.write(frame.tobytes())
             process.stdin.close()
         except BrokenPipeError:
-            pass  # its exit code and words tell why
+            pass  # its exit code and messages give the reason
         except BaseException:
             process.kill()
             process.wait()

@@ -1,4 +1,4 @@
-"""Samples with a time limit run in a separate process, which can be killed with all processes that it started."""
+"""Runs samples with a time limit in a separate process, which can be killed together with its children."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from typing import Any, Optional
 
 _LENGTH = struct.Struct("<Q")
 _PR_SET_PDEATHSIG = 1
-_LONGEST_WAIT = 3600.0  # s; select() takes no infinity
+_LONGEST_WAIT = 3600.0  # s, because select() does not accept infinity
 
 
 class Child:
@@ -42,7 +42,7 @@ class Child:
         try:
             if self._process is None:
                 self._start()
-                begin = time.perf_counter()  # starting it is none of the sample's time
+                begin = time.perf_counter()  # the start of the process does not count
             self._send((index, values))
             return self._receive(begin + self._timeout)
         except TimeoutError:
@@ -74,7 +74,7 @@ class Child:
         self._process = subprocess.Popen([sys.executable, "-c", "from sinew.sweep import child; child.serve()"], stdin=subprocess.PIPE,
                                          stdout=subprocess.PIPE, env=environment, start_new_session=True)
         self._send(self._packed)
-        self._receive(time.perf_counter() + 300.0)  # it has loaded the package
+        self._receive(time.perf_counter() + 300.0)  # acknowledges that the package is loaded
 
     def _send(self, what: Any) -> None:
         data = pickle.dumps(what)
@@ -103,9 +103,9 @@ class Child:
 
 def serve() -> None:
     """Main loop of the process: reads the job, then samples, until its input ends."""
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)  # not to outlive the worker
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)  # ends with the worker
     source, sink = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
-    # What samples print must not come between the rows, nor may they wait for input.
+    # Samples print to standard error instead of the pipe of the rows, and read an empty standard input.
     os.dup2(2, 1)
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)

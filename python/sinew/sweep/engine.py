@@ -1,4 +1,4 @@
-"""Runs the samples of a sweep on Dask's workers and writes the results."""
+"""Runs the samples of a sweep on Dask workers and writes the results."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from .samples import Design
 from .store import Store
 from .worker import Row, run_batch
 
-_BATCH = 0.5  # s that a batch is to take
+_BATCH = 0.5  # s, intended duration of a batch
 _LARGEST = 10_000
 _GROWTH = 8
 _POLL = 0.1  # s
-_ANSWER, _NO_ANSWER = 3.0, 10.0  # s for a question to the scheduler, and without a connection to it
+_ANSWER, _NO_ANSWER = 3.0, 10.0  # s: timeouts of a request to the scheduler, and of a lost connection
 _CONNECT, _FIRST_WORKER = 20.0, 120.0  # s
 
 
@@ -33,7 +33,7 @@ class Batches:
     """Size of batches of samples, from the times measured so far."""
 
     def __init__(self) -> None:
-        self._recent: deque[float] = deque(maxlen=9)  # s a sample
+        self._recent: deque[float] = deque(maxlen=9)  # s per sample
         self._largest = 1
 
     def add(self, rows: Sequence[Row]) -> None:
@@ -52,7 +52,7 @@ class Batches:
 
 @contextlib.contextmanager
 def connect(scheduler: Any, workers: Optional[int]) -> Iterator[Any]:
-    """A Dask client: of a running scheduler, of its address, or of a cluster of processes on this machine.
+    """A Dask client: the given one, one for the address of a scheduler, or one for a new cluster of local processes.
 
     Raises
     ------
@@ -70,7 +70,7 @@ def connect(scheduler: Any, workers: Optional[int]) -> Iterator[Any]:
     with contextlib.ExitStack() as stack:
         stack.enter_context(_quiet())
         if scheduler is None:
-            # A process that starts tells of folders that killed ones have left, before it can be told to be silent.
+            # A new process reports folders left behind by killed ones before silence_logs takes effect.
             silent = dask.config.set({"distributed.nanny.pre-spawn-environ.DASK_LOGGING__DISTRIBUTED": "critical"})
             with _without_interrupts(), silent:
                 cluster = distributed.LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0",
@@ -102,7 +102,7 @@ def _without_interrupts() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    resource_tracker.ensure_running()  # it would unblock the signal in the thread that starts it
+    resource_tracker.ensure_running()  # its own start would unblock the signal in this thread
     waiting: list[int] = []
     before = signal.signal(signal.SIGINT, lambda number, _: waiting.append(number))
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
@@ -226,7 +226,7 @@ class Engine:
         """Number of threads of all workers, updated about once per second."""
         if time.monotonic() - self._counted > 1.0 or self._workers == 0:
             try:
-                # As Client.nthreads(), which waits long for a scheduler that has gone.
+                # As Client.nthreads(), which waits too long if the scheduler is gone.
                 self._workers = sum(self._client.sync(self._client.scheduler.ncores, callback_timeout=_ANSWER).values())
             except (OSError, RuntimeError, TimeoutError) as problem:
                 if self._client.status != "running" or self._workers == 0:
@@ -252,7 +252,7 @@ class Engine:
         if future not in self._flying:
             return
         samples, apart = self._flying[future]
-        if future.status in ("pending", "lost"):  # its worker died before the rows were here; Dask repeats it
+        if future.status in ("pending", "lost"):  # the worker died before its rows arrived; Dask repeats the task
             future.add_done_callback(self._done.put)
             return
         if future.status == "cancelled":
@@ -264,7 +264,7 @@ class Engine:
             self._died(samples, apart)
         except (OSError, TimeoutError) as problem:
             self._lost(problem)
-        except Exception as problem:  # of Dask or of the worker's installation: samples do not raise
+        except Exception as problem:  # from Dask or the worker's installation, because samples do not raise
             if type(problem).__name__ == "CancelledError":
                 self._forgotten(future)
                 return
@@ -276,14 +276,14 @@ class Engine:
         del self._flying[future]
 
     def _forgotten(self, future: Any) -> None:
-        """Submits a batch again that the scheduler has lost, because it is another one at the same address; ends if it is gone."""
+        """Resubmits a batch that is unknown to the scheduler, which was restarted at the same address; raises if it is gone."""
         if self._client.status != "running":
             self._lost("the connection broke")
         self._submit(*self._flying.pop(future))
 
     def _died(self, samples: list[int], apart: bool) -> None:
-        """Handles a batch whose workers died several times, perhaps because of another batch that waited beside it. Run apart from
-        the worker, the sample that ends its process becomes known.
+        """Handles a batch whose workers died several times, perhaps because of another batch on them. Its samples are run again in
+        separate processes, which shows the sample that ends its process.
         """
         if not apart:
             for index in samples:

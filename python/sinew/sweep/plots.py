@@ -15,7 +15,7 @@ from .table import component_names, load
 
 _Path = Union[str, "os.PathLike[str]"]
 _MAX_PANELS = 7
-# Powers of ten that numbers of a unit are shown by.
+# Displayed unit of each SI unit, and the conversion factor.
 _SHOWN = {"m": ("mm", 1e3), "Pa": ("kPa", 1e-3), "m^3": ("ml", 1e6), "J": ("mJ", 1e3)}
 
 
@@ -58,7 +58,7 @@ class _Table:
 
 
 def _scatter(plt: Any, table: _Table) -> Any:
-    """Each column against each other, with histograms on the diagonal."""
+    """Scatter matrix of all pairs of columns, with histograms on the diagonal."""
     names = (table.inputs[: _MAX_PANELS - 1] + table.outputs)[:_MAX_PANELS]
     if len(names) < 2:
         return None
@@ -118,7 +118,7 @@ def _surface(plt: Any, table: _Table) -> Any:
             continue
         second = table.numbers(table.inputs[1])
         axis.set_ylabel(table.label(table.inputs[1]))
-        # More inputs than two leave several values at a place: points then, which hide nothing.
+        # With more than two inputs there are several values at a point: draw points instead of contours.
         flat = len(np.unique(first)) < 2 or len(np.unique(second)) < 2 or len(first) < 4
         if len(table.inputs) > 2 or flat:
             drawn = axis.scatter(first, second, c=values, s=14, cmap="viridis")
@@ -145,7 +145,7 @@ def _workspace(plt: Any, table: _Table) -> Any:
         try:
             return ConvexHull(of)
         except (QhullError, ValueError):
-            return None  # all in a line or a plane, or too few
+            return None  # collinear, coplanar, or too few points
 
     whole = hull(points)
     figure, axes = plt.subplots(1, 3, figsize=(13, 4.4))

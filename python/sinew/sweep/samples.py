@@ -17,7 +17,7 @@ from .sensitivity import saltelli_points
 Value = Union[int, float, str]
 METHODS = ("sobol", "halton", "random", "saltelli")
 _MAX_SAMPLES = 10_000_000
-_BASE_UNITS = ("m", "kg", "s", "K")  # as _core._quantity() orders them
+_BASE_UNITS = ("m", "kg", "s", "K")  # in the order of _core._quantity()
 _UNITS = {(-1, 1, -2, 0): "Pa", (1, 1, -2, 0): "N", (2, 1, -2, 0): "J", (2, 1, -3, 0): "W", (-3, 1, 0, 0): "kg/m^3", (1, 0, -1, 0): "m/s"}
 
 
@@ -123,7 +123,7 @@ def _shares(method: str, dimensions: int, count: int, seed: int) -> np.ndarray:
     if method == "saltelli":
         return saltelli_points(dimensions, count, seed).reshape(-1, dimensions)
     if method == "sobol":
-        # Whole powers of two keep the points balanced; the first of them are those of any count.
+        # Generate a power of two, which Sobol points need to be balanced, and use the first `count` points.
         return qmc.Sobol(dimensions, scramble=True, seed=seed).random_base2(max(0, math.ceil(math.log2(count))))[:count]
     if method == "halton":
         return qmc.Halton(dimensions, scramble=True, seed=seed).random(count)
@@ -230,7 +230,7 @@ def _list_axis(key: str, values: list[Any]) -> Axis:
 
 
 def _quantity(value: Any) -> Union[tuple[float, str], Error]:
-    """SI value and unit, or what is wrong."""
+    """SI value and unit, or the error."""
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return (float(value), "") if math.isfinite(value) else Error("not-finite", "", f"{value!r} is not finite")
     try:

@@ -145,7 +145,7 @@ class Store:
                 if name in table:
                     self._file[name][self.count:end] = table[name]
         self._file.flush()
-        # A row counts from here on.
+        # Writing /sample last completes the rows.
         self._file["sample"].resize(end, axis=0)
         self._file["sample"][self.count:end] = table["sample"]
         self._file.flush()

@@ -151,7 +151,7 @@ def _source(path: pathlib.Path) -> str:
     try:
         return path.read_text(encoding="utf-8", errors="ignore")
     except OSError:
-        return "__name__"  # not there any more: nobody imports it
+        return "__name__"  # the file no longer exists, so no worker imports it
 
 
 def _packed(job: Job) -> bytes:
@@ -164,7 +164,7 @@ def _packed(job: Job) -> bytes:
 
 def _job(scene: Any, samples: Design, measure: list[str], function: Any, duration: Optional[float], static: bool, given: scenes.Overrides,
          timeout: Optional[float], seed: int) -> Job:
-    """Makes all checks that are possible before any work."""
+    """The job, after all checks that are possible before the first sample."""
     if function is None and scene is None:
         raise Error("bad-argument", "sweep.run()", "there is neither a scene nor a function", "give one of them")
     if function is None and not measure:
@@ -185,7 +185,7 @@ def _job(scene: Any, samples: Design, measure: list[str], function: Any, duratio
         return Job(scene="", **common)
     with warnings.catch_warnings():
         if function is None:
-            warnings.simplefilter("ignore")  # told of the first sample, below
+            warnings.simplefilter("ignore")  # issued when the first sample is loaded, below
         base = scenes.load(scene, set=given, threads=1)
     if function is not None:
         return Job(scene=base.to_yaml(), **common)
@@ -217,7 +217,7 @@ def _check_duration(sim: _core.Simulation, duration: Optional[float]) -> None:
 
 
 def _is_command(sim: _core.Simulation, axis: Axis) -> bool:
-    """Whether a loaded simulation can take the value: a number that an actuator is commanded."""
+    """Whether the axis is a constant command of an actuator, which a loaded simulation can take."""
     return axis.is_number and bool(_COMMAND.fullmatch(axis.key)) and axis.key.split(".")[1] in sim.actuators
 
 
@@ -259,7 +259,7 @@ def _spell_function(function: Any) -> str:
 
 
 def _open_store(out: Any, job: Job, samples: Design, what: dict[str, Any], resume: bool) -> tuple[Store, Sequence[int]]:
-    """The table, and the samples that it contains."""
+    """The table, and the samples that it already contains."""
     path = table_path(out)
     before: Optional[Rows] = None
     if path.exists():

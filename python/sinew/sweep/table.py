@@ -1,4 +1,4 @@
-"""Read the tables of sweeps."""
+"""Reads the tables of sweeps."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .store import Rows
 if TYPE_CHECKING:
     import pandas
 
-_MAX_COLUMNS = 64  # of one output
+_MAX_COLUMNS = 64  # per output
 _AXES = {(3,): "xyz", (4,): "wxyz"}
 _Path = Union[str, "os.PathLike[str]"]
 

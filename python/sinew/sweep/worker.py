@@ -21,9 +21,9 @@ from ..errors import Error, SinewWarning
 from .child import Child
 from .samples import Axis, Value
 
-#: Work and losses since the start, which an equilibrium without steps has none of.
+#: Work and losses since the start; undefined for a static equilibrium, which makes no steps.
 LEDGER = ("actuator_work", "outside_work", "dissipation", "numerical_loss")
-#: What a body is measured by beside the observables of its simulation: "trunk.strain_energy".
+#: Quantities of a body that can be measured in addition to the observables: "trunk.strain_energy".
 OF_BODY = ("strain_energy", "kinetic_energy", "gravity_energy", "mass", "volume")
 _ALL_STEPS = 1_000_000_000
 
@@ -162,7 +162,7 @@ class Runner:
     def __init__(self, job: Job) -> None:
         self.job = job
         self._sim: Optional[_core.Simulation] = None
-        self._of: tuple[Value, ...] = ()  # what else was varied of it
+        self._of: tuple[Value, ...] = ()  # values of the kept simulation other than commands
         self._reusable: Optional[bool] = None if job.commands else False
 
     def row(self, index: int, values: Sequence[Value]) -> Row:
@@ -175,7 +175,7 @@ class Runner:
             remarks = [str(one.message) for one in told if issubclass(one.category, SinewWarning)]
             remarks = [] if self.job.function else remarks
             status, error = ("flagged", "; ".join(remarks)) if remarks else ("done", "")
-        except (Exception, SystemExit) as problem:  # a script may end by sys.exit()
+        except (Exception, SystemExit) as problem:  # a function may call sys.exit()
             self._sim = None
             status, error, outputs = "failed", describe(problem), {}
         return Row(index, status, error, time.perf_counter() - begin, outputs)
@@ -233,7 +233,7 @@ class Runner:
 
     def _load(self, overrides: scene.Overrides) -> _core.Simulation:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # told of once, by who started the sweep
+            warnings.simplefilter("ignore")  # issued once, by the process that started the sweep
             return scene.loads(self.job.scene, set=overrides, threads=1)
 
     def _command(self, sim: _core.Simulation, values: Sequence[Value]) -> bool:
@@ -269,7 +269,7 @@ def describe(problem: BaseException) -> str:
 
 
 _turn = threading.Lock()
-_known: dict[str, Any] = {}  # the last job's digest, and what runs its samples
+_known: dict[str, Any] = {}  # digest of the last job, and its runners
 
 
 def run_batch(digest: str, packed: bytes, samples: Sequence[tuple[int, Sequence[Value]]],
@@ -279,14 +279,14 @@ def run_batch(digest: str, packed: bytes, samples: Sequence[tuple[int, Sequence[
     Parameters
     ----------
     digest : str
-        Of `packed`: a worker unpacks a job once.
+        Digest of `packed`: a worker unpacks a job only once.
     packed : bytes
         The Job.
     samples : list of (index, values)
     apart : bool
-        Run in a separate process, also without a time limit: a sample may end its process.
+        Run in a separate process even without a time limit, because a sample may end its process.
     """
-    with _turn:  # one simulation, one sample at a time, whatever the number of a worker's threads
+    with _turn:  # one sample at a time, for any number of threads of the worker
         if _known.get("digest") != digest:
             _forget()
             job = pickle.loads(packed)

@@ -23,12 +23,12 @@ __all__ = ["C10", "C20", "CHAMBERS", "FEET", "LIMITS", "cells", "scene"]
 
 CHAMBERS = ("front_left", "front_right", "trunk", "rear_left", "rear_right")
 FEET = ("front_left", "front_right", "rear_left", "rear_right")
-WALL, AIR, GAP = 1.5e-3, 4e-3, 3e-3  # m along x: a bellow is wall, air, wall
+WALL, AIR, GAP = 1.5e-3, 4e-3, 3e-3  # m along x: a bellow consists of wall, air, wall
 ACROSS = (2e-3, 11e-3, 2e-3, 8e-3, 2e-3, 11e-3, 2e-3)  # m along y: a leg, the slot between the legs, a leg
 UPWARDS = (2e-3, 10e-3, 2e-3)  # m: sole, air, roof
-BELLOWS = 2  # of a leg, and of the trunk
-LIMITS = {"leg": (60e3, 300e3), "trunk": (40e3, 200e3)}  # Pa, Pa/s: greatest pressure, its greatest rate
-C10, C20 = 44e3, 16e3  # Pa, of Yeoh's law: Young's modulus of Dragon Skin 10, 264 kPa; the stiffening is assumed
+BELLOWS = 2  # per leg, and of the trunk
+LIMITS = {"leg": (60e3, 300e3), "trunk": (40e3, 200e3)}  # Pa, Pa/s: maximum pressure, maximum rate
+C10, C20 = 44e3, 16e3  # Pa, Yeoh's law: 6 C10 is Young's modulus of Dragon Skin 10, 264 kPa; C20 is assumed
 TIME_STEP = 0.04  # s
 
 
@@ -46,7 +46,7 @@ def cells() -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
     count = 3 * BELLOWS
     along = np.tile([WALL, AIR, WALL, GAP], count)[:-1]
     solid = np.ones((len(along), len(ACROSS), len(UPWARDS)), dtype=bool)
-    solid[3::4, :, 1:] = False  # between the bellows there is the sole alone
+    solid[3::4, :, 1:] = False  # only the sole lies between the bellows
     chamber = np.zeros(solid.shape, dtype=int)
     rear, trunk, front = (slice(4 * BELLOWS * part + 1, 4 * BELLOWS * (part + 1), 4) for part in range(3))
     for number, (part, lanes) in enumerate(((front, slice(5, 6)), (front, slice(1, 2)), (trunk, slice(1, 6)),
@@ -74,12 +74,12 @@ def scene(folder: Path, friction: float) -> dict[str, Any]:
     """
     solid, chamber, edges = cells()
     nodes, cubes, places = hexahedra.voxels(solid, edges)
-    wall = np.zeros(np.array(solid.shape) + 1, dtype=int)  # of the chamber whose wall a node belongs to
+    wall = np.zeros(np.array(solid.shape) + 1, dtype=int)  # number of the chamber whose wall a node belongs to, or 0
     for corner in np.ndindex(2, 2, 2):
         i, j, k = (np.argwhere(chamber) + corner).T
         wall[i, j, k] = chamber[chamber > 0]
     hexahedra.write(folder / "crawler.vtk", nodes, cubes, {"chamber": wall[tuple(places.T)]})
-    leg, last = 4 * BELLOWS - 1, len(edges[0]) - 1  # planes of x: where a rear leg ends, the front
+    leg, last = 4 * BELLOWS - 1, len(edges[0]) - 1  # x planes: front of a rear leg, front of the robot
 
     def touching(first: int, end: int, lanes: tuple[int, ...]) -> list[list[float]]:
         return [[edges[0][i], edges[1][j], 0.0] for i in (first, (first + end) // 2, end) for j in lanes]
@@ -91,7 +91,7 @@ def scene(folder: Path, friction: float) -> dict[str, Any]:
     bounds = {name: LIMITS["trunk" if name == "trunk" else "leg"] for name in CHAMBERS}
     return {
         "sinew": 1, "gravity": "0 0 -9.81 m/s^2", "integrator": "backward-euler", "time_step": TIME_STEP,
-        "solver": {"tolerance": 1e-5},  # with 1e-8 a step takes longer, and the gait goes 1 % less far
+        "solver": {"tolerance": 1e-5},  # with 1e-8, steps take longer and the gait covers 1 % less distance
         "bodies": {"crawler": {
             "type": "fem", "mesh": {"file": str(folder / "crawler.vtk")}, "density": "1070 kg/m^3",
             "material": {"model": "yeoh", "c10": C10, "c20": C20, "poisson_ratio": 0.49,

@@ -13,9 +13,9 @@ __all__ = ["CUP_FLOOR", "CUP_HEIGHT", "CUP_MODULUS", "FINGERS", "scene", "write_
 
 FINGERS = 3
 CUP_RADII, CUP_HEIGHT, CUP_WALL, CUP_FLOOR = (18e-3, 35e-3), 78.6e-3, 4e-3, 5e-3  # m; outer radii at the floor and at the rim
-CUP_MODULUS = 1e6  # Pa, of Young
-QUARTER, LAYERS = 4, 5  # of the cup: cells along a quarter of its circle, layers from the floor to the rim
-APART, ABOVE, HELD = 50e-3, 220e-3, 20e-3  # m: feet from the middle and above the table; how much of a finger is held
+CUP_MODULUS = 1e6  # Pa, Young's modulus
+QUARTER, LAYERS = 4, 5  # cells along a quarter of the cup's circle, layers from its floor to its rim
+APART, ABOVE, HELD = 50e-3, 220e-3, 20e-3  # m: distance of the feet from the axis, their height above the table, clamped length of a finger
 
 
 def write_cup(path: Path) -> None:
@@ -45,8 +45,8 @@ def scene(folder: Path, friction: float) -> dict[str, Any]:
     }  # fmt: skip
     contacts: dict[str, Any] = {"table": {"body": "cup", "surface": {"plane": {}}, "friction": friction}}
     cables = {}
-    depth = np.append(0.0, np.linspace(21e-3, 190e-3, 20))  # of a cable's points below the foot
-    inwards = np.interp(depth, depth[[1, -1]], [10e-3, 3.5e-3])  # from the finger's axis to the cable
+    depth = np.append(0.0, np.linspace(21e-3, 190e-3, 20))  # m, cable points below the foot
+    inwards = np.interp(depth, depth[[1, -1]], [10e-3, 3.5e-3])  # m, distance of the cable from the finger's axis
     for k in range(FINGERS):
         turn = 2.0 * np.pi * k / FINGERS
         outwards = np.array([np.cos(turn), np.sin(turn), 0.0])

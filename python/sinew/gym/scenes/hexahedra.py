@@ -71,7 +71,7 @@ def cup(
     """
     plane, cells, rim = _disc(quarter)
     heights = np.concatenate([[0.0], np.linspace(floor, height, layers)])
-    level = len(plane) + len(rim)  # nodes: those of the inside, then those of the outer circle
+    level = len(plane) + len(rim)  # nodes per level: the inner ones, then the outer circle
     nodes = np.concatenate([np.column_stack([np.vstack([(r - wall) * plane, r * plane[rim]]), np.full(level, z)])
                             for r, z in zip(np.interp(heights, [0.0, height], radii), heights)])  # fmt: skip
     outer = len(plane) + np.arange(len(rim))

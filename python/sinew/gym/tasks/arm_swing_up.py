@@ -38,8 +38,8 @@ class ArmSwingUp(Task):
     substeps = 10
     default_time_limit = 4.0
     camera = "front"
-    HIGH = 0.3  # m above where the tip hangs; torques at their limits hold it at 0.120 m and swing it to 0.20 m
-    RATE = 3.0  # rad/s, from which the scripted expert pulls with all it has
+    HIGH = 0.3  # m above the hanging tip; constant torques at their limits swing it to 0.20 m and hold it at 0.120 m
+    RATE = 3.0  # rad/s, above which the scripted expert uses the full torques
 
     def randomised(self, material_scale: float, payload: float) -> dict[str, Any]:
         """Stiffness of all segments; the payload is added to the mass of the last one."""
@@ -91,7 +91,7 @@ class ArmSwingUp(Task):
                 + [f"{name} torque / limit" for name in robot.sim.actuators] + ["tip x / 0.56 m", "tip z / 0.56 m"])  # fmt: skip
 
     def sense_rows(self, episodes: Sequence[Any], read: np.ndarray, out: np.ndarray) -> None:
-        """Write observations."""
+        """Writes observations."""
         out[:, :4] = read[:, :4]
         out[:, 4:8] = read[:, 4:8] / 10.0
         out[:, 8:11] = read[:, 8:11] / self.high

@@ -15,10 +15,10 @@ from .contact import ContactTask
 
 __all__ = ["PERIOD", "Crawl", "gait"]
 
-PERIOD = 2.0  # s, of the gait
-_FILL, _FULL, _LAG = 0.2, 0.5, 0.15  # of the period: how long a chamber fills, when it begins to empty, from group to group
-_TURN = {"front_left": 0, "front_right": 0, "trunk": 1, "rear_left": 2, "rear_right": 2}  # when a chamber has its turn
-_FAR = 0.030  # m, that is a success
+PERIOD = 2.0  # s, period of the gait
+_FILL, _FULL, _LAG = 0.2, 0.5, 0.15  # fractions of the period: filling time, start of emptying, lag between groups
+_TURN = {"front_left": 0, "front_right": 0, "trunk": 1, "rear_left": 2, "rear_right": 2}  # group of each chamber in the order of the gait
+_FAR = 0.030  # m, distance that counts as success
 
 
 def gait(time: float) -> np.ndarray:
@@ -133,7 +133,7 @@ class Crawl(ContactTask):
         return names
 
     def sense(self, episode: Any, out: np.ndarray) -> None:
-        """Write an observation."""
+        """Writes an observation."""
         robot, rest = episode.robot, episode.model.rest
         out[:5] = [actuator.pressure for actuator in robot.actuators] / self.high
         out[5:10] = [actuator.volume for actuator in robot.actuators] / rest["volumes"] - 1.0

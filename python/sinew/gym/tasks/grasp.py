@@ -16,10 +16,10 @@ from .contact import ContactTask
 
 __all__ = ["Grasp"]
 
-_LIFT, _LIFT_RATE = 0.08, 0.06  # m, m/s: how high the feet go, how fast
-_CLOSE, _CLOSE_RATE = 8e-3, 10e-3  # m, m/s: what the script pulls; 10 mm would push the fingertips around the cup
-_NEAR, _UPRIGHT, _TOPPLED = 5e-3, math.radians(10.0), math.radians(45.0)  # m, rad
-_LIFTED, _DOWN = 10e-3, 2e-3  # m: a cup that has been higher than the first is dropped when it is lower than the second
+_LIFT, _LIFT_RATE = 0.08, 0.06  # m, m/s: largest height of the feet, largest speed
+_CLOSE, _CLOSE_RATE = 8e-3, 10e-3  # m, m/s: pull of the script; 10 mm would push the fingertips around the cup
+_NEAR, _UPRIGHT, _TOPPLED = 5e-3, math.radians(10.0), math.radians(45.0)  # m, rad, rad
+_LIFTED, _DOWN = 10e-3, 2e-3  # m: once higher than _LIFTED, a cup lower than _DOWN counts as dropped
 
 
 class Grasp(ContactTask):
@@ -142,7 +142,7 @@ class Grasp(ContactTask):
         return names
 
     def sense(self, episode: Any, out: np.ndarray) -> None:
-        """Write an observation."""
+        """Writes an observation."""
         robot, rest, grips, moved = episode.robot, episode.model.rest, self.grips(episode), self.risen(episode)
         out[0:3] = [actuator.displacement / 0.010 for actuator in robot.actuators]
         out[3:6] = [actuator.tension / 10.0 for actuator in robot.actuators]
@@ -151,7 +151,7 @@ class Grasp(ContactTask):
         out[10:13] = rest["shares"] @ robot.body.velocities / 0.1
         out[13:15] = self.axis(episode)[:2]
         out[15:18] = [grip.normal_force / 0.5 for grip in grips]
-        out[18:21] = [-grip.force[2] / 0.2 for grip in grips]  # `force` is that on the finger
+        out[18:21] = [-grip.force[2] / 0.2 for grip in grips]  # `force` acts on the finger
         out[21] = (episode.memory["height"] - moved[2]) / 0.05
         if self.observe == "state":
             bodies = list(robot.sim.bodies.values())

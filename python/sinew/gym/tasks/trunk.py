@@ -13,10 +13,10 @@ from ..task import SCENES, Task
 
 __all__ = ["TrunkTask", "surface"]
 
-_LENGTH = 0.01  # m, that a cable's displacement is divided by
-_PLACE = 0.1  # m, that positions are divided by
-_RATE = 0.1  # m/s, that rates of cables are divided by
-_SPEED = 1.0  # m/s, that nodes' velocities are divided by
+_LENGTH = 0.01  # m, unit of cable displacements
+_PLACE = 0.1  # m, unit of positions
+_RATE = 0.1  # m/s, unit of cable rates
+_SPEED = 1.0  # m/s, unit of nodal velocities
 
 
 def surface(across: Sequence[float]) -> np.ndarray:

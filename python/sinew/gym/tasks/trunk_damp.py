@@ -31,17 +31,17 @@ class TrunkDamp(TrunkTask):
     settings = {"integrator": {"type": "generalized-alpha", "spectral_radius": 0.8}, "solver": {"tolerance": 1e-4},
                 "bodies.trunk.damping": {"stiffness": 0.002}}  # fmt: skip
     BLOW = 0.06  # s
-    RATE, GAIN = 0.1, 15.0  # m/s, that observed rates are divided by; N s/m, of the scripted expert
+    RATE, GAIN = 0.1, 15.0  # m/s, unit of the observed rates; N s/m, gain of the scripted expert
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """Draw the blow."""
+        """Draws the blow."""
         random = episode.random
         turn, size = random.uniform(0.0, 2.0 * np.pi), random.uniform(0.2, 0.4)
         self.push(episode, size * np.array([np.cos(turn), np.sin(turn), 0.0]))
         episode.memory.update(displacements=None)
 
     def disturb(self, episode: Any) -> None:
-        """End the blow."""
+        """Ends the blow."""
         if episode.steps == round(self.BLOW / self.time_step):
             self.push(episode, np.zeros(3))
 
@@ -52,7 +52,7 @@ class TrunkDamp(TrunkTask):
         lengthens and returns energy while it shortens. The script therefore pulls it in the first case and slackens it in the second.
         The difference cancels motion that lengthens both cables.
         """
-        rates = self.RATE * episode.memory["rates"].reshape(2, 4)  # m/s, positive where a cable becomes shorter; long, then short
+        rates = self.RATE * episode.memory["rates"].reshape(2, 4)  # m/s, positive for shortening; long cables, then short ones
         tensions = self.GAIN * np.maximum(np.roll(rates, 2, axis=1) - rates, 0.0).ravel()
         return np.clip(2.0 * (tensions - self.low) / (self.high - self.low) - 1.0, -1.0, 1.0)
 
@@ -65,7 +65,7 @@ class TrunkDamp(TrunkTask):
         return self.cable_rates(episode)
 
     def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
-        """Return minus the energy in mJ."""
+        """Minus the energy in mJ."""
         body = episode.robot.body
         energy = body.kinetic_energy + body.strain_energy + body.gravity_energy - episode.model.rest["energy"]
         return -1e3 * energy, False, {"energy": energy}

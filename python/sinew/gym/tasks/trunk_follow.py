@@ -28,7 +28,7 @@ class TrunkFollow(TrunkTask):
     default_time_limit = 2.0
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """Draw the curve."""
+        """Draws the curve."""
         random = episode.random
         episode.memory["curve"] = (random.uniform(0.020, 0.045, 2), random.uniform(1.5, 4.0, 2), random.uniform(0.0, 2.0 * np.pi, 2))
         episode.goal = self.goal_at(episode, 0.0)

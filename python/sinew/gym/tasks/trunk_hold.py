@@ -10,7 +10,7 @@ from .trunk import TrunkTask
 
 __all__ = ["TrunkHold"]
 
-GROWTH = 0.1  # s, in which a push grows
+GROWTH = 0.1  # s, transition time to a new push
 
 
 class TrunkHold(TrunkTask):

@@ -14,7 +14,7 @@ __all__ = ["TrunkReach"]
 
 def random_goal(random: np.random.Generator, radius: float = 0.06, depth: float = 0.004) -> np.ndarray:
     """A goal that the tip can reach, (3,) m: uniform on a disc across the axis and within +-depth of the tip's surface."""
-    turn, part, off = random.random(3).tolist()  # plain numbers: NumPy's functions take a microsecond each, of a reset of 30
+    turn, part, off = random.random(3).tolist()  # plain floats: a NumPy call takes 1 us, a reset 30 us
     out = radius * math.sqrt(part)
     goal = surface((out * math.cos(2.0 * math.pi * turn), out * math.sin(2.0 * math.pi * turn)))
     goal[2] += depth * (2.0 * off - 1.0)
@@ -38,7 +38,7 @@ class TrunkReach(TrunkTask):
     options = {"goal": 1}
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
-        """Draw the goal."""
+        """Draws the goal."""
         goal = random_goal(episode.random)
         if not self.goal_given(episode, options):
             episode.goal = goal
