@@ -102,6 +102,9 @@ class ContactRows {
 
   /// Whether a point has a force that had none when the step began. @param effort (rows,) N.
   bool gap_closed(std::span<const double> effort) const;
+  /// Whether a point has a force that had one when the step began, but moved along its normal then:
+  /// its velocity jumps. Asked under BDF2. @param effort (rows,) N.
+  bool stops_touching_point(std::span<const double> effort) const;
   /// Whether the step holds a point that moved when it began: an impact along the normal, or one
   /// that slid and sticks. Before bodies' velocities follow. @param effort (rows,) N.
   /// @param time_step s.
@@ -150,6 +153,7 @@ class ContactRows {
   bool has_zones() const;
   double fastest_node() const;
   void judge_sliding(std::span<const double> effort, double time_step);
+  void judge_moving(std::span<const double> effort, double time_step);
   void judge_sliding(const constraint::Contact& contact, std::size_t point,
                      std::span<const double> effort);
   bool hold_reversed(const RowNumbering& numbering, const linalg::AlignedNumbers& effort);
@@ -170,6 +174,7 @@ class ContactRows {
   std::vector<char> touched_;            // (rows,) normal rows with a force when the step began
   bool has_kinetic_ = false;             // some contact has two coefficients
   double still_ = 0.0;                   // m/s: what is slower stays
+  std::vector<char> moved_;              // (rows,) the same, of points that moved along the normal
   std::vector<char> slides_;             // (rows,) normal rows whose friction is kinetic
   std::vector<Vector3>
       along_;  // (rows,) where those slide to, of any length; empty: no such contact
