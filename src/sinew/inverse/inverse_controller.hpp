@@ -106,6 +106,7 @@ class InverseController : public TargetController, public step::Controller {
   VectorX gap_linearised_;     // where it was linearised for that choice
   VectorX change_;             // (controlled,) of efforts by that choice
   VectorX expected_;           // (effector rows,) m, how the change was to move the effectors
+  mutable VectorX without_;    // (effector rows,) m, of review()
   EffortProgram program_;
   VectorX efforts_;
   double predicted_error_ = std::numeric_limits<double>::quiet_NaN();
