@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Three soft trunks carry a soft cup along a circle without turning it: the pose of a grasped object as the target of twelve cables.
+"""Three soft fingers carry a soft cup along a circle without turning it: the pose of a grasped object as the target of twelve cables.
 
     PYTHONPATH=build/release/python /usr/bin/python3 examples/steer/manipulation.py [--radius 5] [--out FOLDER]
 
-The gripper of the learning environment `grasp`, with four cables in each finger in place of one. The fingers close on the
-standing cup and lift it. Then an inverse controller takes the cables. It is asked for the place and the rotation of the cup,
-and for at least 0.25 N of normal force of each finger. Nothing but contact connects the cup with the fingers.
-FOLDER gets manipulation.png.
+Each finger is a tapered body with four cables. A neck joins it to a pad that is hollow as the cup is round, and that turns with
+the wall of the cup. The fingers close on the standing cup and lift it. Then an inverse controller takes the cables. It is asked
+for the place and the rotation of the cup, and for at least 0.3 N of normal force of each finger. Nothing but contact, soft with
+soft, connects the cup with the fingers. FOLDER gets manipulation.png.
 """
 
 import argparse
@@ -16,48 +16,94 @@ from pathlib import Path
 
 import numpy as np
 import sinew
-from sinew.gym.scenes import gripper, hexahedra
+from sinew.gym.scenes import hexahedra
 
-FRICTION, LEAST = 0.6, 0.25  # coefficient; normal force of each finger, N
-PULL, LIFT = 7e-3, 30e-3  # m
+FINGERS = 3
+FRICTION, LEAST = 0.9, 0.3  # coefficient; normal force of each finger, N
+PULL, LIFT = 9e-3, 30e-3  # m
 CLOSED, LIFTS, LIFTED, HELD, END = 0.8, 1.0, 1.5, 1.7, 3.9  # s
 TURNS = 2.0  # s: time of the circle
 STEP = 0.01  # s
+TOLERANCE = 1e-2  # of the forces: one iteration a step, whose error the controller sees and corrects in the next
 ARM = 30e-3  # m: a rotation of 1 rad counts as much as a way of this length
+CUP_RADII, CUP_HEIGHT, CUP_WALL, CUP_FLOOR = (20e-3, 34e-3), 70e-3, 3e-3, 5e-3  # m; outer radii at the floor and at the rim
+QUARTER, LAYERS = 6, 6  # of the cup: cells along a quarter of its circle, layers from the floor to the rim
+APART, ABOVE, LENGTH, FIXED = 54e-3, 225e-3, 200e-3, 20e-3  # m: a finger's axis from the middle, its foot above the table
+WIDE, DEEP = (24e-3, 18e-3), (22e-3, 14e-3)  # m: a finger at its foot and at its tip
+PAD, NECK, SLIT = (36e-3, 24e-3, 5e-3), 8e-3, 6e-3  # m: height, width and thickness; the neck's height and length
+SOFT = {"density": "1070 kg/m^3", "material": {"model": "neo-hookean", "poisson_ratio": 0.45}}
 
 
-def cables(finger):
+def finger():
+    """Nodes (m) and hexahedra of a finger whose axis is the line x = 0, y = 0, with the cup at negative x, and where it ends (m).
+
+    Across x there are four cells: the pad, the neck, and two of the finger.
+    """
+    middle = LENGTH - 0.5 * PAD[0]  # of the pad, below the foot; there the finger ends, with the neck
+    upper, lower = np.linspace(LENGTH - PAD[0], middle - 0.5 * NECK, 3), np.linspace(middle + 0.5 * NECK, LENGTH, 3)
+    below = np.concatenate([np.linspace(0.0, upper[0], 11), upper[1:], lower])
+    cell = 0.5 * (below[1:] + below[:-1])
+    solid = np.stack([cell > upper[0], np.abs(cell - middle) < 0.5 * NECK, cell < lower[0], cell < lower[0]])
+    planes = [np.arange(size + 1.0) for size in (4, 3, len(cell))]
+    nodes, hexahedra_, places = hexahedra.voxels(np.repeat(solid[:, None, :], 3, axis=1), planes)
+    layer, depth = places[:, 0], below[places[:, 2]]
+    half_wide, half_deep = (0.5 * np.interp(depth, [0.0, LENGTH], size) for size in (WIDE, DEEP))
+    y = np.where(layer < 2, 0.5 * PAD[1], half_wide) * (2.0 * places[:, 1] / 3.0 - 1.0)
+    radius = np.interp(ABOVE - depth, [0.0, CUP_HEIGHT], CUP_RADII)
+    back = -0.5 * np.interp(middle, [0.0, LENGTH], DEEP) - SLIT - (radius - np.sqrt(radius**2 - y**2))
+    x = np.choose(layer, [back - PAD[2], back, -half_deep, np.zeros_like(y), half_deep])
+    # Depth is down: the layers of a hexahedron change places.
+    return np.column_stack([x, y, ABOVE - depth]), hexahedra_[:, [4, 5, 6, 7, 0, 1, 2, 3]], lower[0]
+
+
+def cables(finger, end):
     """Four cables of a finger (in, one side, out, the other side), the first of which closes it."""
-    turn = 2.0 * np.pi * finger / gripper.FINGERS
+    turn = 2.0 * np.pi * finger / FINGERS
     outwards, aside = np.array([np.cos(turn), np.sin(turn), 0.0]), np.array([-np.sin(turn), np.cos(turn), 0.0])
-    depth = np.append(0.0, np.linspace(21e-3, 190e-3, 20))  # of a cable's points below the foot
-    away = np.interp(depth, depth[[1, -1]], [10e-3, 3.5e-3])  # from the finger's axis
+    depth = np.append(0.0, np.linspace(FIXED + 1e-3, end - 4e-3, 18))  # of a cable's points below the foot
+    away = {side: np.interp(depth, [0.0, LENGTH], size) for side, size in (("deep", [9e-3, 4.5e-3]), ("wide", [11e-3, 8e-3]))}
     made = {}
-    for side, direction in enumerate((-outwards, aside, outwards, -aside)):
-        points = gripper.APART * outwards + away[:, None] * direction + (gripper.ABOVE - depth)[:, None] * [0.0, 0.0, 1.0]
+    for number, (direction, side) in enumerate(((-outwards, "deep"), (aside, "wide"), (outwards, "deep"), (-aside, "wide"))):
+        points = APART * outwards + away[side][:, None] * direction + (ABOVE - depth)[:, None] * [0.0, 0.0, 1.0]
         close = {"displacement": {"ramp": {"to": PULL, "duration": CLOSED}}}
-        made[f"cable_{finger}_{side}"] = {
+        made[f"cable_{finger}_{number}"] = {
             "type": "cable", "body": f"finger_{finger}", "pull": "body", "points": points.tolist(),
             "limits": {"tension": {"min": 0.0, "max": 20.0}, "displacement": {"rate": "200 mm/s"}},
-            "command": close if side == 0 else {"tension": 0.2},
+            "command": close if number == 0 else {"tension": 0.2},
         }  # fmt: skip
     return made
 
 
+def soft(file, modulus):
+    return {"type": "fem", "mesh": {"file": str(file)}, **SOFT, "material": {**SOFT["material"], "young_modulus": modulus}}
+
+
 def scene(folder):
-    made = gripper.scene(folder, FRICTION)
-    made["time_step"] = STEP
-    made["solver"] = {"tolerance": 1e-4}  # with 1e-8 a step takes nine iterations and not two, for the same path
-    made["actuators"] = {}
-    for finger in range(gripper.FINGERS):
-        made["actuators"] |= cables(finger)
-        ramp = {"to": LIFT, "start": LIFTS, "duration": LIFTED - LIFTS}
-        made["bodies"][f"finger_{finger}"]["base"] = {"z": {"ramp": ramp}}
-    nodes, _ = hexahedra.cup(gripper.QUARTER, gripper.LAYERS, gripper.CUP_RADII, gripper.CUP_HEIGHT, gripper.CUP_WALL, gripper.CUP_FLOOR)
-    rim = nodes[nodes[:, 2] > gripper.CUP_HEIGHT - 1e-6]
+    """The scene; its meshes are written to the folder, which must exist until it is loaded."""
+    cup, cells = hexahedra.cup(QUARTER, LAYERS, CUP_RADII, CUP_HEIGHT, CUP_WALL, CUP_FLOOR)
+    hexahedra.write(folder / "cup.vtk", cup, cells)
+    bodies = {"cup": soft(folder / "cup.vtk", "500 kPa")}
+    contacts = {"table": {"body": "cup", "surface": {"plane": {}}, "friction": FRICTION}}
+    actuators = {}
+    nodes, cells, end = finger()
+    lift = {"to": LIFT, "start": LIFTS, "duration": LIFTED - LIFTS}
+    for k in range(FINGERS):
+        turn = 2.0 * np.pi * k / FINGERS
+        about_z = np.array([[np.cos(turn), -np.sin(turn), 0.0], [np.sin(turn), np.cos(turn), 0.0], [0.0, 0.0, 1.0]])
+        hexahedra.write(folder / f"finger_{k}.vtk", (nodes + [APART, 0.0, 0.0]) @ about_z.T, cells)
+        bodies[f"finger_{k}"] = soft(folder / f"finger_{k}.vtk", "600 kPa") | {
+            "fixed": {"box": [-0.2, -0.2, ABOVE - FIXED - 1e-6, 0.2, 0.2, ABOVE + 1e-6]}, "base": {"z": {"ramp": lift}},
+        }  # fmt: skip
+        contacts[f"grip_{k}"] = {"between": [f"finger_{k}", "cup"], "friction": FRICTION}
+        actuators |= cables(k, end)
+    rim = cup[cup[:, 2] > CUP_HEIGHT - 1e-6]
     frame = [[0.0, 0.0, 0.0], *(rim[np.argmax(rim[:, axis])].tolist() for axis in (0, 1))]
-    made["effectors"] = {"cup": {"body": "cup", "points": nodes.tolist()}, "turn": {"body": "cup", "orientation": frame}}
-    return made
+    return {
+        "sinew": 1, "gravity": "0 0 -9.81 m/s^2", "integrator": "backward-euler", "time_step": STEP,
+        "solver": {"tolerance": TOLERANCE},
+        "bodies": bodies, "actuators": actuators, "contacts": contacts,
+        "effectors": {"cup": {"body": "cup", "points": cup.tolist()}, "turn": {"body": "cup", "orientation": frame}},
+    }  # fmt: skip
 
 
 def circle(time, radius):
@@ -67,17 +113,22 @@ def circle(time, radius):
     return radius * np.array([1.0 - np.cos(angle), np.sin(angle), 0.0])
 
 
-def carry(radius):
-    """One row a step from when the controller takes over, the way of the cup (steps, 3) m, and the simulation at its end.
-
-    Columns: time (s), distance of the cup from its place (m), its rotation (rad), three normal forces (N), points that take part,
-    that stick and that slip, smallest gap (m), seconds taken.
-    """
+def hold():
+    """The simulation when the fingers have lifted the cup."""
     with tempfile.TemporaryDirectory() as folder:
         sim = sinew.load(scene(Path(folder)), threads=1)
     sim.step(round(HELD / STEP))
+    return sim
+
+
+def carry(sim, radius):
+    """One row a step from when the controller takes over, the way of the cup (steps, 3) m.
+
+    Columns: time (s), distance of the cup from its place (m), its rotation (rad), three normal forces (N), points that take part in
+    the law, that stick and that slip, smallest gap (m), seconds taken.
+    """
     cup, turn = sim.effector("cup"), sim.effector("turn")
-    grips = [sim.contact(f"grip_{finger}") for finger in range(gripper.FINGERS)]
+    grips = [sim.contact(f"grip_{finger}") for finger in range(FINGERS)]
     start, rotation = cup.position.copy(), turn.value.copy()
     ik = sinew.InverseController(sim, targets={"cup": start, "turn": rotation}, weights={"turn": ARM**2},
                                  contacts={grip.name: {"normal_force": {"min": LEAST}} for grip in grips})  # fmt: skip
@@ -93,15 +144,15 @@ def carry(radius):
                      *(grip.normal_force for grip in grips), len(sim.contact_problem().friction), np.sum(states == "stick"),
                      np.sum(states == "slip"), min(grip.gap for grip in grips), taken))  # fmt: skip
         way.append(cup.position - start)
-    return np.array(rows), np.array(way), sim
+    return np.array(rows), np.array(way)
 
 
 def report(rows):
     print(f"the cup is off its path by {1e3 * np.median(rows[:, 1]):.5f} mm (median), {1e3 * np.quantile(rows[:, 1], 0.95):.4f} mm (95 %), "
           f"{1e3 * rows[:, 1].max():.3f} mm (largest), turned by {np.degrees(np.median(rows[:, 2])):.5f} degrees (largest "
           f"{np.degrees(rows[:, 2].max()):.3f}); normal forces {rows[:, 3:6].min():.3f} to {rows[:, 3:6].max():.3f} N; "
-          f"{np.median(rows[:, 6]):.0f} points take part ({rows[:, 6].max():.0f} at most), {np.median(rows[:, 7]):.0f} stick and "
-          f"{np.median(rows[:, 8]):.0f} slip; gap >= {1e6 * rows[:, 9].min():.3f} um; "
+          f"{np.median(rows[:, 6]):.0f} points in the law ({rows[:, 6].min():.0f} to {rows[:, 6].max():.0f}), "
+          f"{np.median(rows[:, 7] + rows[:, 8]):.0f} with a force, of which {np.median(rows[:, 7]):.0f} stick; gap >= {1e6 * rows[:, 9].min():.3f} um; "
           f"{1e3 * np.median(rows[:, 10]):.1f} ms a step (95 %: {1e3 * np.quantile(rows[:, 10], 0.95):.1f})")  # fmt: skip
 
 
@@ -120,7 +171,7 @@ def draw(rows, way, radius, sim, path):
     axes[2].semilogy(rows[:, 0], np.degrees(np.maximum(rows[:, 2], 1e-9)), label="rotation [degrees]")
     axes[2].set(xlabel="time [s]", ylabel="error of the cup's pose")
     axes[2].legend()
-    axes[3].plot(rows[:, 0], rows[:, 3:6], label=[f"finger {k}" for k in range(gripper.FINGERS)])
+    axes[3].plot(rows[:, 0], rows[:, 3:6], label=[f"finger {k}" for k in range(FINGERS)])
     axes[3].axhline(LEAST, color="0.6", lw=0.8)
     axes[3].set(xlabel="time [s]", ylabel="normal force [N]", ylim=(0.0, None))
     axes[3].legend()
@@ -134,7 +185,8 @@ def main():
     parser.add_argument("--out", type=Path, help="folder for manipulation.png")
     given = parser.parse_args()
     radius = 1e-3 * given.radius
-    rows, way, sim = carry(radius)
+    sim = hold()
+    rows, way = carry(sim, radius)
     report(rows)
     if given.out is not None:
         given.out.mkdir(parents=True, exist_ok=True)

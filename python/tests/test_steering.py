@@ -51,13 +51,29 @@ def test_fingers_hold_a_shell_with_the_force_asked_for():
 def test_fingers_carry_a_cup_along_a_circle_without_turning_it():
     manipulation = load("manipulation")
     manipulation.END = 2.7
-    rows, way, _ = manipulation.carry(4e-3)
+    rows, way = manipulation.carry(manipulation.hold(), 4e-3)
     # Columns: time, distance, rotation, three normal forces, points, sticking, slipping, smallest gap, seconds.
-    assert np.median(rows[:, 1]) < 1e-6 and rows[:, 1].max() < 1e-3
-    assert np.median(rows[:, 2]) < 1e-4 and rows[:, 2].max() < 0.02
+    assert np.median(rows[:, 1]) < 1e-6 and rows[:, 1].max() < 1e-5
+    assert np.median(rows[:, 2]) < 1e-5 and rows[:, 2].max() < 1e-4
     assert rows[:, 3:6].min() > 0.99 * manipulation.LEAST
+    assert rows[:, 6].min() >= 81 and np.median(rows[:, 7] + rows[:, 8]) > 25  # those that Coevoet et al. (2019) have
+    assert rows[:, 7].min() > 0  # they hold the cup: some stick in every step
     assert rows[:, 9].min() > -1e-8
     assert np.linalg.norm(way[-1]) > 7e-3  # halfway around the circle
+
+
+def test_one_linearisation_a_step_carries_the_cup_as_well(tmp_path):
+    # What a linearisation misses is there without the controller's choice. Steps that were damped for it lost the cup by
+    # millimetres.
+    manipulation = load("manipulation")
+    manipulation.END = 2.7
+    held = manipulation.hold()
+    sim = sinew.load({**manipulation.scene(tmp_path), "solver": {"method": "one-linearisation"}}, threads=1)
+    sim.restore(held.state())
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", sinew.SinewWarning)
+        rows, _ = manipulation.carry(sim, 4e-3)
+    assert np.median(rows[:, 1]) < 1e-6 and rows[:, 1].max() < 1e-5
 
 
 def test_fingertips_roll_a_cylinder_between_them():

@@ -167,6 +167,51 @@ TEST(ReducedRankFilter, AnEquilibriumIsLeastSquares) {
   EXPECT_LT((filter.state_deviation() - 3.0 * (mean - acted)).norm(), 1e-12);
 }
 
+// Two inputs whose difference is known leave a covariance of rank one, and its factor too: no part
+// of the columns, and none of a measurement's correction, goes along the difference.
+TEST(ReducedRankFilter, AnEquilibriumBeginsFromASemidefiniteCovariance) {
+  const VectorX prior{{1.0, 1.0}};
+  const VectorX difference{{1.0, -1.0}};
+  ReducedRankFilter filter(prior, VectorX::Zero(2), 1, 1, 0, 4);
+  const auto rest = [&](const VectorX& sensitivity) {
+    filter.begin_rest();
+    for (Eigen::Index k = 0; k < filter.columns(); ++k) {
+      const VectorX own = filter.input_column(k);
+      filter.put_column(k, sensitivity.transpose() * own, own.head(1));
+    }
+    filter.end_rest(filter.mean());
+  };
+  rest(difference);
+  filter.correct(0, 0, VectorX::Constant(1, 0.5), VectorX::Constant(1, 1e-40));
+  rest(VectorX{{1.0, 0.0}});
+  for (Eigen::Index k = 0; k < filter.columns(); ++k) {
+    EXPECT_LT(std::abs(difference.dot(filter.input_column(k))), 1e-12) << k;
+  }
+  filter.correct(0, 0, VectorX::Constant(1, 0.3), VectorX::Constant(1, 1e-4));
+  EXPECT_NEAR(filter.mean()[0] - filter.mean()[1], 0.5, 1e-12);
+  EXPECT_NEAR(filter.mean()[0], 0.25 + 0.3 * 0.5 / (0.5 + 1e-4), 1e-12);
+}
+
+// A mean that differs from the inputs only where something is uncertain.
+TEST(ReducedRankFilter, AnEquilibriumEndsWithASemidefiniteCovariance) {
+  ReducedRankFilter filter(VectorX{{1.0, 2.0}}, VectorX::Zero(2), 1, 1, 0, 2);
+  const auto rest = [&](double of_first, double of_second, const VectorX& inputs) {
+    filter.begin_rest();
+    for (Eigen::Index k = 0; k < filter.columns(); ++k) {
+      const VectorX own = filter.input_column(k);
+      const VectorX said{{of_first * own[0] + of_second * own[1]}};
+      filter.put_column(k, said, 3.0 * said);
+    }
+    filter.end_rest(inputs);
+  };
+  rest(1.0, 0.0, VectorX::Zero(2));
+  filter.correct(0, 0, VectorX::Constant(1, 0.5), VectorX::Constant(1, 1e-300));
+  ASSERT_EQ(filter.covariance()(0, 0), 0.0);
+  rest(1.0, 1.0, VectorX{{0.5, 0.2}});
+  EXPECT_NEAR(filter.reading_deviation(0)[0], -0.2, 1e-12);
+  EXPECT_NEAR(filter.state_deviation()[0], -0.6, 1e-12);
+}
+
 TEST(ReducedRankFilter, GoesOnFromItsNumbers) {
   const Chain chain;
   Path run(chain, 8);

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/sim/state.hpp"
-
 #include "event_robots.hpp"
 
 namespace sinew::testing {
@@ -160,25 +158,8 @@ TEST(EventDriven, WithoutRestitutionItStaysWhereItLands) {
 
 // States saved in flight, between rebounds, and at rest.
 TEST(EventDriven, StatesGoOnBitForBit) {
-  const auto simulation = ball(20e-3, 0.9, 0.2);
-  const std::uint64_t start = simulation->state().hash();
-  for (const int steps : {5, 40, 200, 100}) {
-    for (int k = 0; k < steps; ++k) simulation->step();
-    const auto copy = simulation->clone();
-    const sim::State kept = simulation->state();
-    for (int k = 0; k < 30; ++k) copy->step();
-    for (int k = 0; k < 30; ++k) simulation->step();
-    EXPECT_EQ(copy->state().hash(), simulation->state().hash());
-    EXPECT_TRUE(copy->state() == simulation->state());
-    copy->restore(kept);
-    for (int k = 0; k < 30; ++k) copy->step();
-    EXPECT_TRUE(copy->state() == simulation->state());
-  }
-  const sim::State end = simulation->state();
-  simulation->reset();
-  EXPECT_EQ(simulation->state().hash(), start);
-  for (std::int64_t k = 0; k < end.steps; ++k) simulation->step();
-  EXPECT_TRUE(simulation->state() == end);
+  const int pauses[] = {5, 40, 200, 100};
+  expect_same_run(*ball(20e-3, 0.9, 0.2), pauses, 30, 2);
 }
 
 }  // namespace

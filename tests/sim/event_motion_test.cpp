@@ -116,16 +116,8 @@ TEST_P(MovingTable, StartsAtOnceAndThrowsTheBall) {
 }
 
 TEST_P(MovingTable, GoesOnFromAStateBitForBit) {
-  const auto simulation = ball_on(GetParam(), rising(0.4), events(20e-3, 0.8));
-  for (const int steps : {5, 25}) {
-    for (int k = 0; k < steps; ++k) simulation->step();
-    const auto copy = simulation->clone();
-    for (int k = 0; k < 5; ++k) {
-      copy->step();
-      simulation->step();
-    }
-    EXPECT_TRUE(copy->state() == simulation->state());
-  }
+  const int pauses[] = {5, 25};
+  expect_same_run(*ball_on(GetParam(), rising(0.4), events(20e-3, 0.8)), pauses, 5, 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Tables, MovingTable,

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
+#include <gtest/gtest.h>
 
 #include "sinew/collision/polyhedron.hpp"
 #include "sinew/collision/shape.hpp"
@@ -22,6 +25,7 @@
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 
 #include "contact_robots.hpp"
 
@@ -93,6 +97,57 @@ inline void add_pair(sim::ModelBuilder& builder, int first, int second, double f
 
 inline const mechanics::HasPose& pose(const sim::Simulation& simulation, int body) {
   return *mechanics::as<const mechanics::HasPose>(simulation.body(body));
+}
+
+/// A body that tumbles, body 0, comes to rest within 3 s, and its energy never grows beyond the
+/// error of the midpoint rule, by which it turns about its edge.
+/// @param fall J, m g h. @param height m, of its origin at rest. @param off m, that it may be off.
+/// @param rate of its velocities then, m/s and rad/s.
+inline void expect_rest(sim::Simulation& simulation, double fall, double height, double off,
+                        double rate) {
+  double energy = simulation.energies().total();
+  while (simulation.time() < 3.0) {
+    simulation.step();
+    const double now = simulation.energies().total();
+    EXPECT_LE(now, energy + 1e-6 * fall) << "at " << simulation.time();
+    energy = now;
+  }
+  const mechanics::HasPose& body = pose(simulation, 0);
+  EXPECT_NEAR(body.origin()[2], height, off);
+  EXPECT_LT(body.linear_velocity().norm() + body.angular_velocity().norm(), rate);
+}
+
+/// After each of these numbers of steps a simulation on other threads takes up the state, and goes
+/// on as the one that it came from: bit for bit, and once more after restore(). So does the run
+/// from reset() on. @param further steps, of both. @param threads of the other one.
+inline void expect_same_run(sim::Simulation& simulation, std::span<const int> pauses, int further,
+                            int threads) {
+  const auto advance = [](sim::Simulation& one, std::int64_t steps) {
+    for (std::int64_t k = 0; k < steps; ++k) one.step();
+  };
+  const std::uint64_t start = simulation.state().hash();
+  for (const int steps : pauses) {
+    advance(simulation, steps);
+    const sim::State kept = simulation.state();
+    sim::Simulation other(simulation.shared_model(), threads);
+    other.restore(kept);
+    const auto copy = simulation.clone();
+    advance(simulation, further);
+    const sim::State expected = simulation.state();
+    for (sim::Simulation* twin : {&other, copy.get()}) {
+      advance(*twin, further);
+      EXPECT_TRUE(twin->state() == expected) << "from step " << kept.steps;
+      EXPECT_EQ(twin->state().hash(), expected.hash());
+      twin->restore(kept);
+      advance(*twin, further);
+      EXPECT_TRUE(twin->state() == expected) << "again from step " << kept.steps;
+    }
+  }
+  const sim::State end = simulation.state();
+  simulation.reset();
+  EXPECT_EQ(simulation.state().hash(), start);
+  advance(simulation, end.steps);
+  EXPECT_TRUE(simulation.state() == end);
 }
 
 }  // namespace sinew::testing

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SVD>
@@ -70,9 +69,16 @@ void ReducedRankFilter::begin_step(double seconds) {
   mean_.segment(n, readings_).setZero();
 }
 
+// With L_x^T = Q R the covariance of the inputs is R^T R: a triangular factor that needs no
+// positive pivots, so a semidefinite covariance has one (Golub & Van Loan, Matrix Computations, 4th
+// ed. 2013, sec. 5.2). Its columns take Cholesky's signs.
 void ReducedRankFilter::begin_rest() {
   const Eigen::Index n = size();
-  const MatrixX own = covariance().llt().matrixL();
+  const Eigen::HouseholderQR<MatrixX> qr(factor_.topRows(n).transpose());
+  MatrixX own = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>().transpose();
+  for (Eigen::Index k = 0; k < n; ++k) {
+    if (own(k, k) < 0.0) own.col(k) *= -1.0;
+  }
   factor_.setZero(rows(), n);
   factor_.topRows(n) = own;
   mean_.tail(rows() - n).setZero();
@@ -86,10 +92,13 @@ void ReducedRankFilter::put_column(Eigen::Index column, const VectorX& reading,
 
 void ReducedRankFilter::end_step() { cut(); }
 
-// deviation = L c with L_x c = mean - inputs
+// deviation = L c with L_x c = mean - inputs, c the shortest in the least squares' sense: what is
+// certain does not differ. Inputs count in their priors.
 void ReducedRankFilter::end_rest(const VectorX& inputs) {
   const Eigen::Index n = size();
-  const VectorX part = factor_.topRows(n).triangularView<Eigen::Lower>().solve(mean() - inputs);
+  const auto scale = prior_.cwiseInverse().asDiagonal();
+  const Eigen::CompleteOrthogonalDecomposition<MatrixX> own(scale * factor_.topRows(n));
+  const VectorX part = own.solve(scale * (mean() - inputs));
   mean_.tail(rows() - n) = factor_.bottomRows(rows() - n) * part;
 }
 

@@ -123,22 +123,25 @@ void InverseController::review_choice(const StepProblem& problem, const Response
 // A quasi-static step moves effectors as predicted, since it is linear. W_ea shows that they move
 // differently from there on: by the trapezoidal rule, the change d of efforts gains
 //   1/2 (W_ea d - W_ea' d)^T Q gap
-// less than predicted. This is the second-derivative term that least squares omit, estimated as in
-// J. E. Dennis, D. M. Gay & R. E. Welsch, ACM Trans. Math. Software 7 (1981) 348-368, section 3.
+// less than foreseen. It is the second derivatives' part that least squares leave out, as J. E.
+// Dennis, D. M. Gay & R. E. Welsch, ACM Trans. Math. Software 7 (1981) 348-368, section 3, find it.
+// In motion most of what a linearisation misses is there without d, in the way that the robot goes
+// anyhow: a smaller d would miss as much, and the damping that makes it smaller would stay for
+// good. Of a dynamic step what d was to gain and what it gained by W_ea are compared alone, with
+// the gap that there would be without it.
 void InverseController::review(StepDamping& damping, const Response& response,
                                const VectorX& before) const {
-  const double foreseen = objective(foreseen_);
-  double found = objective(gap_);
-  if (!simulation_.model().step().dynamic()) {
-    double bend = 0.0;
-    for (Eigen::Index k = 0; k < before.size(); ++k) {
-      const int row = effector_rows_[static_cast<std::size_t>(k)];
-      const double leads = response.compliance().row(row).dot(change_);
-      bend += 0.5 * row_weights_[k] * (expected_[k] - leads) * before[k];
-    }
-    found = std::max(found, foreseen + bend);
+  const bool dynamic = simulation_.model().step().dynamic();
+  const VectorX& begun = dynamic ? (without_ = foreseen_ + expected_) : before;
+  double bend = 0.0;
+  for (Eigen::Index k = 0; k < begun.size(); ++k) {
+    const int row = effector_rows_[static_cast<std::size_t>(k)];
+    const double leads = response.compliance().row(row).dot(change_);
+    bend += 0.5 * row_weights_[k] * (expected_[k] - leads) * begun[k];
   }
-  damping.review(objective(before), foreseen, found, negligible_objective());
+  const double foreseen = objective(foreseen_);
+  const double found = dynamic ? foreseen + bend : std::max(objective(gap_), foreseen + bend);
+  damping.review(objective(begun), foreseen, found, negligible_objective());
 }
 
 void InverseController::measure_gap(const StepProblem& problem) {

@@ -106,9 +106,10 @@ class InverseController : public TargetController, public step::Controller {
   StepDamping inner_damping_;  // over the choices of one step
   VectorX last_choice_;        // (controlled,) efforts
   bool tried_ = false;         // whether the robot has followed it
-  VectorX gap_linearised_;     // gap at which that choice was linearised
-  VectorX change_;             // (controlled,) change of efforts by that choice
-  VectorX expected_;  // (effector rows,) m, predicted motion of the effectors due to the change
+  VectorX gap_linearised_;     // where it was linearised for that choice
+  VectorX change_;             // (controlled,) of efforts by that choice
+  VectorX expected_;           // (effector rows,) m, how the change was to move the effectors
+  mutable VectorX without_;    // (effector rows,) m, of review()
   EffortProgram program_;
   VectorX efforts_;
   double predicted_error_ = std::numeric_limits<double>::quiet_NaN();

@@ -55,6 +55,7 @@ ContactRows::ContactRows(const Model& model, const constraint::Configuration& co
       rows_(rows),
       planes_(model, configuration, rows, pool),
       touched_(static_cast<std::size_t>(model.rows().rows()), 0),
+      moved_(touched_),
       slides_(touched_),
       closed_(touched_) {
   auto touching = planes_.surfaces().begin();
@@ -163,6 +164,21 @@ void ContactRows::choose_active(std::span<const double> effort, double time_step
   }
   std::ranges::transform(effort, touched_.begin(), [](double r) { return r > 0.0 ? 1 : 0; });
   judge_sliding(effort, time_step);
+  judge_moving(effort, time_step);
+}
+
+// Under BDF2 a point that stays has the velocity 0 along its normal but for an error of second
+// order; one that moves there has landed before, or goes over an edge.
+void ContactRows::judge_moving(std::span<const double> effort, double time_step) {
+  if (model_.step().integrator != mechanics::Integrator::bdf2) return;
+  const double still = std::max(kStill * fastest_node(), kNoMotion * model_.size() / time_step);
+  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
+    const auto row = static_cast<std::size_t>(contact.row(k));
+    moved_[row] = 0;
+    if (!(effort[row] > 0.0)) return;
+    const Vector3& normal = rows_.direction[contact.entry(k)];
+    moved_[row] = std::abs(normal.dot(planes_.velocity_beside(contact, k))) > still ? 1 : 0;
+  });
 }
 
 void ContactRows::want(std::span<const int> contacts) {
@@ -409,6 +425,13 @@ bool ContactRows::gap_closed(std::span<const double> effort) const {
       const auto row = static_cast<std::size_t>(contact.row(k));
       if (effort[row] > 0.0 && touched_[row] == 0) return true;
     }
+  }
+  return false;
+}
+
+bool ContactRows::stops_touching_point(std::span<const double> effort) const {
+  for (std::size_t row = 0; row < moved_.size(); ++row) {
+    if (moved_[row] != 0 && effort[row] > 0.0) return true;
   }
   return false;
 }

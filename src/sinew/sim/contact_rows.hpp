@@ -105,8 +105,11 @@ class ContactRows {
 
   /// Whether a point has a force that had none at the start of the step. @param effort (rows,) N.
   bool gap_closed(std::span<const double> effort) const;
-  /// Whether the step stops a point that was moving at its start: an impact along the normal, or a
-  /// sliding point that sticks. Call before velocities are updated. @param effort (rows,) N.
+  /// Whether a point has a force that had one when the step began, but moved along its normal then:
+  /// its velocity jumps. Asked under BDF2. @param effort (rows,) N.
+  bool stops_touching_point(std::span<const double> effort) const;
+  /// Whether the step holds a point that moved when it began: an impact along the normal, or one
+  /// that slid and sticks. Before bodies' velocities follow. @param effort (rows,) N.
   /// @param time_step s.
   bool stops_points(std::span<const double> effort, double time_step) const;
   /// Whether the friction of a point with a kinetic coefficient is at its static limit: the force
@@ -155,6 +158,7 @@ class ContactRows {
   bool has_zones() const;
   double fastest_node() const;
   void judge_sliding(std::span<const double> effort, double time_step);
+  void judge_moving(std::span<const double> effort, double time_step);
   void judge_sliding(const constraint::Contact& contact, std::size_t point,
                      std::span<const double> effort);
   bool hold_reversed(const RowNumbering& numbering, const linalg::AlignedNumbers& effort);
@@ -171,10 +175,11 @@ class ContactRows {
   bool left_out_ = false;                             // whether any point is left out
   int rounds_left_ = 0;                  // rounds in which overlapping surfaces may get points
   std::vector<double> gaps_, friction_;  // (points,) m, and coefficients, of one contact
-  int zone_rounds_left_ = 0;             // rounds in which zones may redistribute their forces
-  std::vector<char> touched_;            // (rows,) normal rows with a force at the step's start
-  bool has_kinetic_ = false;             // whether a contact has two coefficients
-  double still_ = 0.0;                   // m/s: slower points are at rest
+  int zone_rounds_left_ = 0;             // of a step, in which zones spread their forces anew
+  std::vector<char> touched_;            // (rows,) normal rows with a force when the step began
+  bool has_kinetic_ = false;             // some contact has two coefficients
+  double still_ = 0.0;                   // m/s: what is slower stays
+  std::vector<char> moved_;              // (rows,) the same, of points that moved along the normal
   std::vector<char> slides_;             // (rows,) normal rows whose friction is kinetic
   std::vector<Vector3> along_;  // (rows,) sliding directions, of any length; empty: no such contact
   bool events_ = false;

@@ -21,6 +21,10 @@ constexpr int kMaxTrials = 200;
 constexpr double kSmallest = 1.0 / 64.0;
 // Smaller motions in a part, relative to the robot's size, are zero.
 constexpr double kStill = 1e-9;
+// Of the kinetic energy: what the forces of points that slide on turning faces may do in a part.
+constexpr double kFalseWork = 1e-6;
+// Of the step: what rounding leaves of it.
+constexpr double kNoTime = 1e-12;
 
 bool stops(const step::ActuatorBlock& block) {
   return std::isfinite(block.motion_min) || std::isfinite(block.motion_max);
@@ -62,7 +66,7 @@ void EventStepper::make_parts(double begin, double time_step) {
     if (++report.substeps > kMaxParts) give_up("impacts follow each other too fast");
     const double left = time_step - done, now = begin + done;
     const double length = advance(now, std::min({left, longest_, points_.next_corner(now) - now}));
-    done = length < left ? done + length : time_step;
+    done = left - length > kNoTime * time_step ? done + length : time_step;
     points_.forget_rest();
     collide(begin + done);
   }
@@ -96,6 +100,12 @@ double EventStepper::advance(double time, double left) {
       run_.restore(start_);
       continue;
     }
+    if (carried_on_ && turns_too_far()) {
+      longest_ = length = 0.5 * length;
+      ++run_.report.retries;
+      run_.restore(start_);
+      continue;
+    }
     const double free = points_.free_length(length, run_.report.substeps);
     if (free >= length && !points_.found_rest()) {
       hold(time + length);
@@ -111,9 +121,14 @@ double EventStepper::advance(double time, double left) {
   give_up("the moment of an impact is not found");
 }
 
-// Removes velocities along held rows that the midpoint rule leaves. Also after backward Euler if
-// bodies are held by something with a prescribed motion, since this method gives them its mean
-// velocity.
+// Points slide on what turns, by so much that the rule is off: its error goes with length^3.
+bool EventStepper::turns_too_far() {
+  const double work = midpoint_.false_work();
+  return work > 0.0 && work > kFalseWork * run_.world.bodies().energies().kinetic;
+}
+
+// What the midpoint rule leaves of velocities along rows that are held; and backward Euler, where
+// bodies are held on what moves by itself: it gives them the mean velocity of that.
 void EventStepper::hold(double time) {
   using mechanics::StepEnd;
   moved_bases_ |= std::ranges::any_of(run_.world.bodies().ends(), &StepEnd::moved_from_outside);
@@ -123,6 +138,7 @@ void EventStepper::hold(double time) {
     run_.surroundings.set_base_rates(time, Signal::Side::before);
     run_.world.contacts().planes().move_on(time);
   }
+  if (carried_on_) midpoint_.turn_to_end();
   if (joins || ((carried_on_ || moves) && points_.drift(run_.effort))) impact_.hold();
 }
 

@@ -47,6 +47,7 @@ class EventStepper {
   double move(double time, double length);
   bool is_smooth(double end, double length);
   bool stays_smooth() const;
+  bool turns_too_far();
   void rest(double time);
   void hold(double time);
   [[noreturn]] void give_up(const char* what);

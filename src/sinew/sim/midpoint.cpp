@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/constraint/surface_contact.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/substep.hpp"
+#include "sinew/sim/touching_surfaces.hpp"
 
 namespace sinew::sim {
 
@@ -14,15 +16,20 @@ namespace {
 constexpr double kHeld = 1e-12;
 // Each round reduces the error to about the square of the step's rotation.
 constexpr int kMaxRounds = 12;
+// Solutions after which the places of the middle are those of the one before, but for h^4.
+constexpr int kTurns = 2;
 
 }  // namespace
 
-Midpoint::Midpoint(Run& run) : run_(run), widened_(run.effort.size(), 0.0) {}
+Midpoint::Midpoint(Run& run)
+    : run_(run), widened_(run.effort.size(), 0.0), turned_(run.effort.size(), 0) {}
 
 void Midpoint::carry_on(Substep& substep, double half) {
   Bodies& bodies = run_.world.bodies();
   const double middle = run_.now;
-  std::ranges::fill(widened_, 0.0);  // an earlier part may have ended with an error
+  std::ranges::fill(widened_, 0.0);  // where an earlier part ended with an error
+  std::ranges::fill(turned_, 0);
+  for (int turn = 0; turn < kTurns && turn_points(); ++turn) substep.solve(half);
   bodies.scale_motion(2.0);
   place(middle + half);
   for (int round = 0; correct() > kHeld * run_.model->size() && round < kMaxRounds; ++round) {
@@ -32,10 +39,37 @@ void Midpoint::carry_on(Substep& substep, double half) {
     bodies.scale_motion(2.0);
     place(middle + half);
   }
+  false_work_ = work_of_turned();
   release();
 }
 
-// Places rigid bases and surfaces with prescribed motion.
+// Where bodies are now; the step begins where it did. Also points without a force: a surface that
+// turns may press one that it would pass by. Whether there were any.
+bool Midpoint::turn_points() {
+  ContactRows& contacts = run_.world.contacts();
+  bool found = false;
+  for (const auto& touching : contacts.planes().surfaces()) {
+    bool looked = false;
+    for (std::size_t k = 0; k < touching->count(); ++k) {
+      const int row = touching->contact().row(k);
+      if (!contacts.is_closed(row)) continue;
+      if (!looked) touching->look_around();
+      looked = true;
+      if (!touching->turn(k)) continue;
+      contacts.planes().begin_point(row);
+      contacts.planes().keep_gap(row);
+      turned_[static_cast<std::size_t>(row)] = 1;
+      found = true;
+    }
+  }
+  return found;
+}
+
+void Midpoint::turn_to_end() {
+  if (has_turned()) turn_points();
+}
+
+// Of rigid bodies and surfaces that are put there.
 void Midpoint::place(double time) {
   if (run_.model->base_motions().empty() && !run_.world.contacts().planes().moves()) return;
   run_.surroundings.put_bases(time);
@@ -48,6 +82,9 @@ void Midpoint::place(double time) {
 double Midpoint::correct() {
   World& world = run_.world;
   const VectorX& delta = world.measure_delta();
+  if (has_turned()) {
+    for (const auto& touching : world.contacts().planes().surfaces()) touching->look_around();
+  }
   double worst = 0.0;
   for (step::BilateralBlock& block : world.problem().bilaterals) {
     const double off = delta[world.numbering().model_row_of(block.row)];
@@ -58,12 +95,35 @@ double Midpoint::correct() {
     const int row = world.numbering().model_row_of(block.row);
     const auto own = static_cast<std::size_t>(row);
     if (!world.contacts().is_closed(row) || !(run_.effort[own] > 0.0)) continue;
-    const double off = delta[row] - widened_[own];
+    const double off = opening(block, delta[row] - widened_[own]);
     world.contacts().planes().widen(row, 0.5 * off);
     widened_[own] += 0.5 * off;
     worst = std::max(worst, std::abs(off));
   }
   return worst;
+}
+
+bool Midpoint::has_turned() const { return std::ranges::find(turned_, 1) != turned_.end(); }
+
+double Midpoint::work_of_turned() const {
+  const VectorX& delta = run_.world.delta();
+  double work = 0.0;
+  for (std::size_t row = 0; row < turned_.size(); ++row) {
+    if (turned_[row] == 0) continue;
+    work += run_.effort[row] * (delta[static_cast<Eigen::Index>(row)] - widened_[row]);
+  }
+  return std::abs(work);
+}
+
+// m: of a point that turned between its surfaces, of others by their rows.
+double Midpoint::opening(const step::ContactBlock& block, double by_row) const {
+  const ContactRows& contacts = run_.world.contacts();
+  const int row = run_.world.numbering().model_row_of(block.row);
+  const auto number = static_cast<std::size_t>(block.contact);
+  const TouchingSurfaces* surfaces = contacts.surfaces(number);
+  if (surfaces == nullptr || turned_[static_cast<std::size_t>(row)] == 0) return by_row;
+  const int first = contacts.planes().contacts()[number]->first_row();
+  return surfaces->opening(static_cast<std::size_t>(row - first) / 3).value_or(by_row);
 }
 
 void Midpoint::release() {

@@ -1,5 +1,8 @@
 #include "sinew/sim/substep.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "sinew/core/error.hpp"
 #include "sinew/sim/linear_step.hpp"
 #include "sinew/sim/newton_step.hpp"
@@ -9,6 +12,13 @@
 
 namespace sinew::sim {
 
+namespace {
+
+// Of the energy: gains that rounding makes.
+constexpr double kRounding = 1e-12;
+
+}  // namespace
+
 void Substep::read_commands(double end, double time_step) {
   run_.now = end;
   run_.read_commands(end, time_step);
@@ -17,6 +27,9 @@ void Substep::read_commands(double end, double time_step) {
 void Substep::begin(double time_step) {
   run_.keep(run_.before);
   held_before_ = run_.report.choice_held;
+  lands_by_bdf2_ = run_.model->step().integrator == mechanics::Integrator::bdf2 &&
+                   !run_.model->contacts().empty() && run_.last_step > 0.0;
+  if (lands_by_bdf2_) energy_before_ = run_.world.bodies().energies().total();
   begin_world(time_step);
 }
 
@@ -27,6 +40,7 @@ void Substep::begin_world(double time_step) {
 }
 
 void Substep::solve(double time_step, bool divisible) {
+  divisible_ = divisible;
   try {
     solve_equation(time_step, divisible);
     if (!reaches_back()) return;
@@ -59,7 +73,8 @@ bool Substep::stops_points(double time_step) const {
 void Substep::solve_afresh(double time_step, bool divisible) {
   run_.go_back();
   run_.last_step = 0.0;
-  // The discarded solution set this flag if it held the controller's choice.
+  lands_by_bdf2_ = false;
+  // Where the first solution held a controller's choice, its actuators were taken from it.
   run_.report.choice_held = held_before_;
   run_.read_commands(run_.now, time_step);
   begin_world(time_step);
@@ -85,17 +100,54 @@ void Substep::solve_equation(double time_step, bool divisible) {
   run_.report.contact_sweeps = contacts.sweeps;
 }
 
+// By BDF2, v = (3 d - d_before)/(2 h), a point that stops within the step has the velocity
+// -d_before/(2 h), back to where it came from: a rebound with up to half its speed, how much
+// depends on the gap that was left. Several such points gain energy, as with several coefficients
+// of restitution (Kane's paradox). Backward Euler does not: with M (v - v_before) = h (p + H^T
+// lambda) and v = d/h the energy changes by
+//   lambda.H d - |v - v_before|^2_M/2 <= 0,   lambda.H d = -lambda_n.gap + lambda_t.slip <= 0,
+// for a convex potential and rows that do not turn. A landing that gains is made again so; others
+// stay, since bodies that roll land all the time.
 double Substep::end(double time_step) {
+  const double error = end_once(time_step);
+  if (!lands_by_bdf2_ || !jumps() || !has_gained()) return error;
+  try {
+    solve_afresh(time_step, divisible_);
+  } catch (...) {
+    run_.go_back();
+    throw;
+  }
+  stops_points_ = true;
+  return end_once(time_step);
+}
+
+double Substep::end_once(double time_step) {
   const double error = run_.world.bodies().end_step(run_.step_weights(time_step));
-  // A closing gap stops its point at once. A multistep formula across such a jump would let the
-  // point rebound and gain energy; it therefore restarts after the jump. So it does when friction
-  // falls from its static to its kinetic limit.
-  const ContactRows& contacts = run_.world.contacts();
-  const bool jumps =
-      stops_points_ || contacts.gap_closed(run_.effort) || contacts.breaks_loose(run_.effort);
-  run_.last_step = jumps ? 0.0 : time_step;
+  run_.last_step = jumps() ? 0.0 : time_step;
   count();
   return error;
+}
+
+// A gap that closes stops its point: in this step, or, as the gap is closed at the end of it alone,
+// in the next one. A multistep formula that reaches back over such a jump would have the point
+// rebound, and gain energy: it starts afresh behind it. So it does where friction falls from its
+// static limit to the kinetic one.
+bool Substep::jumps() const {
+  const ContactRows& contacts = run_.world.contacts();
+  return stops_points_ || contacts.gap_closed(run_.effort) ||
+         contacts.stops_touching_point(run_.effort) || contacts.breaks_loose(run_.effort);
+}
+
+// Beyond the work of actuators, loads and surfaces that move. A base that moves does work that
+// nobody counts: it may have gained then.
+bool Substep::has_gained() const {
+  Bodies& bodies = run_.world.bodies();
+  if (std::ranges::any_of(bodies.ends(), &mechanics::StepEnd::moved_from_outside)) return true;
+  const EnergyLedger &before = run_.before.ledger, &now = run_.ledger.sums();
+  const double work = now.actuators - before.actuators + now.outside - before.outside;
+  const mechanics::Energies energies = bodies.energies();
+  const double size = energies.kinetic + energies.strain + std::abs(energies.gravity);
+  return energies.total() - energy_before_ - work > kRounding * size;
 }
 
 void Substep::end_as_midpoint(double time_step) {

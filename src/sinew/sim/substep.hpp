@@ -33,11 +33,17 @@ class Substep {
   void solve_afresh(double time_step, bool divisible);
   bool reaches_back() const;
   bool stops_points(double time_step) const;
+  double end_once(double time_step);
+  bool jumps() const;
+  bool has_gained() const;
   void count();
 
   Run& run_;
-  bool stops_points_ = false;  // whether contacts stopped points that moved at the start
-  bool held_before_ = false;   // whether a controller's choice was held in earlier parts
+  bool stops_points_ = false;   // of contacts, which moved when the part began
+  bool divisible_ = false;      // see solve()
+  bool lands_by_bdf2_ = false;  // a point that lands in the part, which reaches back by BDF2
+  double energy_before_ = 0.0;  // J, then: of the bodies when the part began
+  bool held_before_ = false;    // a controller's choice, in earlier parts of the step
 };
 
 }  // namespace sinew::sim

@@ -20,6 +20,11 @@ constexpr double kSlack = 0.5, kEdgeSlack = 1e-9;
 // Overlaps up to this many separations, 1e-6 of the larger body, are left to the next step: where
 // flat meshes lie on each other, their edges cross and overlap at second order in the motion.
 constexpr double kOverlap = 10.0;
+// Cosine of the angle up to which a point's normal turns within a part: with the face that it
+// slides on, but not to the face beyond an edge.
+constexpr double kSameFace = 0.9;
+// Normals that differ by less are one.
+constexpr double kSameNormal = 1e-9;
 constexpr std::size_t kKeyMemory = 3;
 
 Vector3 normal_of(const Points& nodes, const collision::Triangle& triangle) {
@@ -193,19 +198,50 @@ void TouchingSurfaces::look_at_overlaps() {
   find(contact_.separation());
 }
 
-// Of several pairs with the same key, as in a groove, the one with the most similar normal.
-double TouchingSurfaces::gap_there(std::size_t point) const {
+// Of several pairs of the same name, as in a groove, that which looks the same way.
+// @param least cosine between their normals.
+const collision::ProximityPair* TouchingSurfaces::pair_there(std::size_t point,
+                                                             double least) const {
   const Vector3& normal = rows_.direction[contact_.entry(point)];
-  double gap = rows_.delta[contact_.row(point)], nearest = 0.0;
+  const collision::ProximityPair* best = nullptr;
   auto one = std::ranges::lower_bound(
       found_, keys_[point], [](const Key& a, const Key& b) { return a < b; }, &Named::key);
   for (; one != found_.end() && one->key == keys_[point]; ++one) {
     const double along = normal.dot(one->pair.normal);
-    if (along <= nearest) continue;
-    nearest = along;
-    gap = one->pair.distance - contact_.separation();
+    if (along <= least) continue;
+    least = along;
+    best = &one->pair;
   }
-  return gap;
+  return best;
+}
+
+double TouchingSurfaces::gap_there(std::size_t point) const {
+  const collision::ProximityPair* pair = pair_there(point, 0.0);
+  return pair != nullptr ? pair->distance - contact_.separation()
+                         : rows_.delta[contact_.row(point)];
+}
+
+void TouchingSurfaces::look_around() {
+  move_trees(configuration_.surface_nodes(contact_.body()),
+             configuration_.surface_nodes(contact_.other_body()));
+  find(reach_);
+}
+
+bool TouchingSurfaces::turn(std::size_t point) {
+  const collision::ProximityPair* pair = pair_there(point, kSameFace);
+  const Vector3& normal = rows_.direction[contact_.entry(point)];
+  if (pair == nullptr || (pair->normal - normal).norm() <= kSameNormal) return false;
+  pairs_[point].first = pair->first;
+  pairs_[point].second = pair->second;
+  pairs_[point].normal = pair->normal;
+  contact_.put(point, pairs_[point], first_start_, second_start_, rows_);
+  return true;
+}
+
+std::optional<double> TouchingSurfaces::opening(std::size_t point) const {
+  const collision::ProximityPair* pair = pair_there(point, kSameFace);
+  if (pair == nullptr) return std::nullopt;
+  return pair->distance - pairs_[point].distance;
 }
 
 double TouchingSurfaces::deepest() const {

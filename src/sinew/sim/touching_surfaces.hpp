@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -64,7 +65,14 @@ class TouchingSurfaces {
   /// m: gap of a point after look_at_overlaps(); if its surfaces overlap, along their present
   /// normal.
   double gap_there(std::size_t point) const;
-  /// m: smallest gap of all pairs found last, whether points or not.
+  /// Of event-driven integration, where a part has led: looks as far as when it began.
+  void look_around();
+  /// Then: gives a point the places and the normal that its pair has there; it begins where it did.
+  /// Whether they are others. Not beyond an edge, where the pair is gone or looks another way.
+  bool turn(std::size_t point);
+  /// m, then: how far the gap of a point has opened since the step began; nothing beyond an edge.
+  std::optional<double> opening(std::size_t point) const;
+  /// m: the least gap of all pairs, of points or not, that were found last.
   double deepest() const;
   /// The time, as a fraction of the part, at which surfaces first passed each other that ended
   /// deeper than `allowed`; infinity if none did. @param allowed m.
@@ -103,6 +111,7 @@ class TouchingSurfaces {
     Vector3 force;  // N, in the world
   };
   static Key name(const collision::ProximityPair& pair);
+  const collision::ProximityPair* pair_there(std::size_t point, double least) const;
   void find(double reach);
   void add_point(const Named& one);
   void move_trees(const Points& first, const Points& second);
@@ -121,14 +130,15 @@ class TouchingSurfaces {
   ThreadPool& pool_;
   collision::Proximity proximity_;
   collision::SurfaceImpacts impacts_;
-  collision::SurfaceTree first_, second_;        // second_ is unused for contact within one surface
-  std::vector<Named> found_;                     // sorted by key
-  std::vector<Key> keys_;                        // of the points
-  std::vector<collision::ProximityPair> pairs_;  // of the points; between_flat: waiting
-  double reach_ = 0.0;                           // m, of the step
-  std::vector<Force> before_;                    // of the last step, sorted by key
-  Points first_start_, second_start_;            // m, at the start of the step
-  Points first_end_, second_end_;                // m, after the proposed motion
+  collision::SurfaceTree first_, second_;  // the second one stands still within one surface
+  std::vector<Named> found_;               // by name
+  std::vector<Key> keys_;                  // of the points
+  // Of the points; of those that wait between_flat. Their distance is that of the step's begin.
+  std::vector<collision::ProximityPair> pairs_;
+  double reach_ = 0.0;                 // m, of the step
+  std::vector<Force> before_;          // of the last step, by name
+  Points first_start_, second_start_;  // m, when the step began
+  Points first_end_, second_end_;      // m, where a motion leads
 };
 
 }  // namespace sinew::sim

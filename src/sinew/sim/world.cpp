@@ -119,18 +119,25 @@ linalg::FactorStatus World::condense() {
 step::LawStatus World::solve_step(step::StepSolver& solver, step::Controller* controller,
                                   std::span<double> effort, StageClock& clock) {
   effort_before_.assign(effort.begin(), effort.end());
+  // Each choice of a controller takes several solutions of the law. Which points of surfaces take
+  // part shows almost as well at the efforts that it starts from, for one solution a round.
+  const bool looks = controller != nullptr && !contacts_.planes().surfaces().empty();
+  step::Controller* chooses = looks ? nullptr : controller;
   step::LawStatus status = step::LawStatus::solved;
   bool mended = true;
   while (mended) {
     numbering_.gather_efforts(effort_before_, problem_.effort_before);
     numbering_.gather_efforts(effort, problem_effort_);
-    status = solver.solve(problem_, controller, problem_effort_);
+    status = solver.solve(problem_, chooses, problem_effort_);
     clock.mark(Stage::law);
     if (status == step::LawStatus::failed) return status;
     numbering_.scatter_efforts(problem_effort_, effort);
     bodies_.solve_motion(effort);
     mended = contacts_.are_guessed() && correct_contacts();
     clock.mark(Stage::correction);
+    if (mended || chooses == controller) continue;
+    chooses = controller;
+    mended = true;
   }
   for (const step::StiffnessBlock& block : problem_.stiffness) {
     effort[static_cast<std::size_t>(block.row)] = 0.0;  // part of no equilibrium

@@ -51,8 +51,11 @@ LawStatus StepSolver::solve(const StepProblem& problem, Controller* controller,
 
 LawStatus StepSolver::steer(const StepProblem& problem, Controller& controller,
                             std::span<double> effort) {
-  response_.form(problem, effort);
-  const bool alone = response_.holds_for_all() && !response_.has_unknowns();
+  bool alone = problem.contacts.empty();
+  if (alone) {
+    response_.form(problem, effort);
+    alone = response_.holds_for_all() && !response_.has_unknowns();
+  }
   if (!alone) {
     if (direct_.solve(problem, effort) == LawStatus::failed) return LawStatus::failed;
     response_.form(problem, effort);

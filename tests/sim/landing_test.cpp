@@ -1,0 +1,103 @@
+// Bodies that land under BDF2: no step gains energy, at any moment within it.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "event_robots.hpp"
+
+namespace sinew::testing {
+namespace {
+
+constexpr double kFall = 0.03;     // m
+constexpr double kNothing = 1e-9;  // of m g h
+const Vector3 kSize(0.06, 0.04, 0.02);
+
+using Scene = void (*)(sim::ModelBuilder& builder, double friction);
+
+struct Landing {
+  const char* name;
+  Scene scene;
+};
+
+int add_block(sim::ModelBuilder& builder, const std::string& name, const Vector3& at,
+              const Vector3& velocity = Vector3::Zero(), double lean = 0.0) {
+  rigid::RigidSettings block;
+  block.name = name;
+  block.shape = rigid::Box{kSize};
+  block.mass = 0.05;
+  block.position = at;
+  block.velocity = velocity;
+  block.rotation = Eigen::AngleAxisd(lean, Vector3::UnitY()).toRotationMatrix();
+  block.gravity = Vector3(0.0, 0.0, -kGravity);
+  return builder.add_rigid_body(block);
+}
+
+// It slides on, and comes to rest.
+void block(sim::ModelBuilder& builder, double friction) {
+  const int body = add_block(builder, "block", {0.0, 0.0, 0.01 + kFall}, {0.3, 0.0, 0.0});
+  add_floor(builder, body, Vector3::UnitZ(), friction);
+}
+
+// On an edge, and then on its face.
+void leaning_block(sim::ModelBuilder& builder, double friction) {
+  const int body = add_block(builder, "block", {0.0, 0.0, 0.06}, {0.3, 0.0, 0.0}, 0.4);
+  add_floor(builder, body, Vector3::UnitZ(), friction);
+}
+
+// One after the other, beside each other's centres, the highest one sliding.
+void stack(sim::ModelBuilder& builder, double friction) {
+  const int low = add_block(builder, "low", {0.0, 0.0, 0.01 + 0.5 * kFall});
+  const int middle = add_block(builder, "middle", {0.01, 0.003, 0.04 + kFall});
+  const int high = add_block(builder, "high", {-0.005, 0.0, 0.09 + kFall}, {0.2, 0.0, 0.0});
+  add_floor(builder, low, Vector3::UnitZ(), friction);
+  add_pair(builder, low, middle, friction);
+  add_pair(builder, middle, high, friction);
+}
+
+// A ball falls on another one that falls, and rolls off.
+void balls(sim::ModelBuilder& builder, double friction) {
+  const Vector3 gravity(0.0, 0.0, -kGravity);
+  const int low = add_ball(builder, "low", {0.0, 0.0, 0.02 + kFall}, {}, gravity, 0.02);
+  const int high = add_ball(builder, "high", {0.005, 0.0, 0.09 + kFall}, {}, gravity, 0.02);
+  for (const int ball : {low, high}) add_floor(builder, ball, Vector3::UnitZ(), friction);
+  add_pair(builder, low, high, friction);
+}
+
+class Landings : public ::testing::TestWithParam<Landing> {};
+
+TEST_P(Landings, GainNoEnergy) {
+  for (const double friction : {0.0, 0.5}) {
+    for (const double time_step : {5e-3, 2e-3, 1e-3, 0.5e-3}) {
+      sim::ModelBuilder builder(
+          {.time_step = time_step, .integrator = mechanics::Integrator::bdf2});
+      GetParam().scene(builder, friction);
+      sim::Simulation simulation(builder.build());
+      double mass = 0.0;
+      for (int k = 0; k < simulation.bodies(); ++k) {
+        mass += mechanics::as<const mechanics::HasShape>(simulation.body(k).model())->mass();
+      }
+      const double start = simulation.energies().total();
+      double energy = start, least = start;
+      while (simulation.time() < 0.3) {
+        simulation.step();
+        const double now = simulation.energies().total();
+        EXPECT_LE(now - energy, kNothing * mass * kGravity * kFall)
+            << "at " << simulation.time() << ", steps of " << time_step << ", mu " << friction;
+        energy = now;
+        least = std::min(least, now);
+      }
+      EXPECT_LT(least, start) << "nothing has landed";
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Bdf2, Landings,
+                         ::testing::Values(Landing{"block", block},
+                                           Landing{"leaning_block", leaning_block},
+                                           Landing{"stack", stack}, Landing{"balls", balls}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace sinew::testing
