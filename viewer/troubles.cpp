@@ -101,9 +101,10 @@ nlohmann::json list_troubles(const sim::Simulation& simulation,
   }
   if (controller != nullptr) add_controller(*controller, name, troubles);
   if (const sim::StepStatus step = simulation.report().status; sim::is_flagged(step)) {
-    troubles.push_back(trouble("warning", std::string(sim::step_status_name(step)).c_str(), "step",
-                               fmt::format("this step is {}; {}", sim::step_status_name(step),
-                                           sim::step_status_remedy(step))));
+    troubles.push_back(
+        trouble("warning", std::string(sim::step_status_name(step)).c_str(), "step",
+                fmt::format("this step is {}; {}", sim::step_status_name(step),
+                            sim::step_status_remedy(step, simulation.model().step()))));
   }
   return troubles;
 }

@@ -287,14 +287,18 @@ Facts run_facts(const std::string& file) {
                 {"contacts", run.contacts()},
                 {"format_version", run.format_version()},
                 {"lacks", run.lacks()}};
-  facts.text = fmt::format(
-      "{}: run of {} by Sinew {}\n  {} frames from {:g} s to {:g} s, {}\n  bodies: {}\n"
-      "  actuators: {}\n  effectors: {}\n  probes: {}\n  contacts: {}\n",
-      file, run.scene_name(), run.sinew_version(), run.frames(), first, last,
-      run.has_states() ? "with positions of all nodes" : "without positions of nodes",
-      fmt::join(run.bodies(), ", "), fmt::join(run.actuators(), ", "),
-      fmt::join(run.effectors(), ", "), fmt::join(run.probes(), ", "),
-      fmt::join(run.contacts(), ", "));
+  facts.text =
+      fmt::format("{}: run of {} by Sinew {}\n  {} frames from {:g} s to {:g} s, {}\n", file,
+                  run.scene_name(), run.sinew_version(), run.frames(), first, last,
+                  run.has_states() ? "with positions of all nodes" : "without positions of nodes");
+  const auto list = [&](const char* what, const std::vector<std::string>& names) {
+    if (!names.empty()) facts.text += fmt::format("  {}: {}\n", what, fmt::join(names, ", "));
+  };
+  list("bodies", run.bodies());
+  list("actuators", run.actuators());
+  list("effectors", run.effectors());
+  list("probes", run.probes());
+  list("contacts", run.contacts());
   if (!run.lacks().empty()) facts.text += fmt::format("  {}\n", run.lacks());
   return facts;
 }

@@ -159,11 +159,11 @@ std::vector<std::vector<std::string>> summary(const Tally& tally, Session& sessi
 }
 
 // Prints warnings about flagged steps on stderr.
-void warn(const Tally& tally) {
+void warn(const Tally& tally, const sim::StepSettings& step) {
   for (const auto& [status, flagged] : tally.flagged) {
     fmt::print(stderr, "sinew: warning: {} of {} steps are {}, the first at t = {:g} s; {}\n",
                flagged.steps, tally.steps, sim::step_status_name(status), flagged.first,
-               sim::step_status_remedy(status));
+               sim::step_status_remedy(status, step));
   }
 }
 
@@ -255,6 +255,7 @@ int run(const RunOptions& options) {
   settings.vtk = options.vtk;
   sim::Observables observables(session.simulation());
   inverse::add_controller(observables, session.controller());
+  const bool replaces = std::filesystem::exists(settings.folder / "run.csv");
   Records records;
   records.run.emplace(std::move(observables), settings);
   if (!options.glb.empty()) records.motion.emplace(session.simulation(), description.name);
@@ -265,7 +266,8 @@ int run(const RunOptions& options) {
     records.run->finish();
     if (options.quiet) return;
     auto rows = summary(tally, session);
-    rows.push_back({"recorded in", settings.folder.string()});
+    rows.push_back({"recorded in",
+                    settings.folder.string() + (replaces ? " (an earlier run was replaced)" : "")});
     fmt::print("{}", format_table(rows));
   };
   const auto write_motion = [&] {
@@ -284,7 +286,7 @@ int run(const RunOptions& options) {
   }
   finish();
   write_motion();
-  warn(tally);
+  warn(tally, session.simulation().model().step());
   if (tally.steps < steps) {
     fmt::print(
         stderr,

@@ -34,12 +34,15 @@ scene::Robot load(const SceneOptions& options) {
 
 // Advice if the contacts have many points; else empty.
 std::string contact_hint(const sim::Model& model) {
-  std::size_t points = 0;
+  std::size_t points = 0, single = 0;
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
-    points += model.contact(static_cast<int>(i)).size();
+    const std::size_t size = model.contact(static_cast<int>(i)).size();
+    points += size;
+    if (!(model.contacts()[i].aggregate > 0.0)) single += size;
   }
   if (points < kManyPoints) return {};
-  return fmt::format("; the contacts have {} points: use fewer, or `aggregate`", points);
+  return fmt::format("; the contacts have {} points: use fewer, or {}", points,
+                     single < kManyPoints ? "a larger `aggregate`" : "`aggregate`");
 }
 
 // The controller to attach: none, the named one, or the first.

@@ -93,7 +93,7 @@ Error
       .def(py::init([](std::vector<std::shared_ptr<Session>> simulations, int threads) {
              return std::make_unique<Batch>(std::move(simulations), threads);
            }),
-           py::arg("simulations"), py::kw_only(), py::arg("threads") = 1)
+           py::arg("simulations"), py::kw_only(), py::arg("threads") = 1, "See help(sinew.Batch).")
       .def("__len__", &Batch::size)
       .def("__getitem__", &Batch::at, py::arg("index"))
       .def_property_readonly("threads", &Batch::threads, "int: as given.")

@@ -331,7 +331,7 @@ void bind_methods(py::class_<Controller>& type) {
            py::arg("regularisation") = "change", py::arg("epsilon") = py::none(),
            py::arg("tolerance") = py::none(), py::arg("largest_step") = py::none(),
            py::arg("contacts") = py::none(), py::arg("priorities") = py::none(),
-           py::arg("certify") = false)
+           py::arg("certify") = false, "See help(sinew.InverseController).")
       .def(
           "step",
           [](const Controller& self, const py::object& n) {

@@ -144,9 +144,9 @@ void Session::note_status() {
 void Session::warn() {
   for (auto& [status, flagged] : flagged_) {
     if (std::exchange(flagged.warned, true)) continue;
-    const std::string message =
-        fmt::format("the step to t = {:g} s is {}; {}", flagged.first,
-                    sim::step_status_name(status), sim::step_status_remedy(status));
+    const std::string message = fmt::format(
+        "the step to t = {:g} s is {}; {}", flagged.first, sim::step_status_name(status),
+        sim::step_status_remedy(status, simulation_.model().step()));
     const pybind11::object kind = pybind11::module_::import("sinew.errors").attr("SinewWarning");
     if (PyErr_WarnEx(kind.ptr(), message.c_str(), 1) != 0) throw pybind11::error_already_set();
   }

@@ -99,6 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadQuantity{"1 kg/m^2", dimension::kMass, ErrorKind::wrong_dimension, "kg m^-2"},
         BadQuantity{"42 gramm", dimension::kMass, ErrorKind::unknown_unit, "gramm"},
         BadQuantity{"4 kpa", dimension::kPressure, ErrorKind::unknown_unit, "did you mean 'kPa'?"},
+        BadQuantity{"4 kpaa", dimension::kForce, ErrorKind::unknown_unit, "write one of N, mN, kN"},
         BadQuantity{"4 m3", dimension::kVolume, ErrorKind::unknown_unit, "m^3"},
         BadQuantity{"4 m^", dimension::kVolume, ErrorKind::unknown_unit, "power"},
         BadQuantity{"4 m^99", dimension::kVolume, ErrorKind::unknown_unit, "power"},

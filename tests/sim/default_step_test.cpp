@@ -28,6 +28,17 @@ double distance_to_rest(Simulation& simulation) {
   return distance(stepped, simulation.body(0).positions());
 }
 
+TEST(DefaultStep, RemediesDoNotNameWhatIsChosen) {
+  StepSettings step;
+  step.method = Method::one_linearisation;
+  const auto remedy = [&] { return step_status_remedy(StepStatus::not_in_equilibrium, step); };
+  EXPECT_NE(remedy().find("use `solver: newton`"), std::string::npos);
+  step.method = Method::newton;
+  EXPECT_EQ(remedy(), "take a smaller time step, or change commands more slowly");
+  step.tangent = mechanics::Tangent::corotated;
+  EXPECT_NE(remedy().find("use `tangent: exact`"), std::string::npos);
+}
+
 TEST(DefaultStep, APulledCableBendsTheBeamToItsEquilibrium) {
   for (const double length : {0.002, 0.01, 0.02}) {
     Simulation simulation(beam());

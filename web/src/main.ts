@@ -372,7 +372,7 @@ function show(): void {
   const parts = [`t = ${latest.time.toFixed(2)} s`, `step ${latest.step}`];
   if (Number.isFinite(factor)) parts.push(`${factor.toFixed(2)} x real time`);
   if (mode === 'replay') parts.push(`steps of ${told(scene.time_step, 's')}`);
-  else if (stepTimes.length > 0) parts.push(`${told(stepTimes.reduce((a, b) => a + b) / stepTimes.length, 's')} a step`);
+  else if (stepTimes.length > 0 && latest.step > 0) parts.push(`${told(stepTimes.reduce((a, b) => a + b) / stepTimes.length, 's')} a step`);
   if (status?.source.playing) stepTimes = [];
   numbers.textContent = [...parts, `${framesPerSecond.toFixed(0)} frames/s`].join(', ');
 }

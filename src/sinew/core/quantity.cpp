@@ -232,7 +232,7 @@ std::vector<double> parse_list(std::string_view text, Dimension expected, int co
   NumberReader reader(text, expected, place);
   std::vector<double> values = reader.numbers();
   const std::string_view whole = trimmed(text);
-  const Unit unit = parse_unit_expression(reader.unit(), place);
+  const Unit unit = parse_unit_expression(reader.unit(), place, expected);
   if (count >= 0 && values.size() != static_cast<std::size_t>(count)) {
     fail_length(whole, values.size(), count, place);
   }

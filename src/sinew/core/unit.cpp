@@ -6,8 +6,10 @@
 #include <numbers>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "sinew/core/text.hpp"
 
@@ -78,8 +80,9 @@ std::optional<Unit> find_unit(std::string_view name) {
   return std::nullopt;
 }
 
-/// A remedy with the most likely intended name, from common units only.
-std::string suggest(std::string_view name) {
+/// A remedy with the most likely intended name, from common units only, and only from those of the
+/// expected dimension if there is one.
+std::string suggest(std::string_view name, std::optional<Dimension> expected) {
   constexpr std::array<std::string_view, 34> kCommon = {
       "m",  "mm", "cm",  "um",   "km",  "kg",  "g",   "mg",  "s",   "ms", "us", "N",
       "mN", "kN", "Pa",  "kPa",  "MPa", "GPa", "J",   "mJ",  "W",   "K",  "Hz", "Nm",
@@ -88,7 +91,15 @@ std::string suggest(std::string_view name) {
   if (digits != std::string_view::npos && digits > 0 && find_unit(name.substr(0, digits))) {
     return fmt::format("write '{}^{}' for a power", name.substr(0, digits), name.substr(digits));
   }
-  const std::string nearest = nearest_word(name, kCommon);
+  std::vector<std::string_view> candidates(kCommon.begin(), kCommon.end());
+  if (expected) {
+    std::erase_if(candidates,
+                  [&](std::string_view unit) { return find_unit(unit)->dimension != *expected; });
+  }
+  const std::string nearest = nearest_word(name, candidates);
+  if (nearest.empty() && !candidates.empty() && expected) {
+    return fmt::format("write one of {}, or a product of units", fmt::join(candidates, ", "));
+  }
   if (nearest.empty())
     return "known are m, g, s, N, Pa, J, W, K, Hz, l, bar, A, Ohm, F with SI prefixes, psi, "
            "atm, in, min, h, deg, rad, dB, % and their products";
@@ -106,7 +117,8 @@ std::pair<double, double> reduced(double numerator, double denominator) {
 /// Recursive descent over product = factor { ('*' | '/' | blank) factor }.
 class Parser {
  public:
-  Parser(std::string_view text, const Location& place) : text_(text), place_(place) {}
+  Parser(std::string_view text, const Location& place, std::optional<Dimension> expected)
+      : text_(text), place_(place), expected_(expected) {}
 
   Unit whole() {
     skip_blanks();
@@ -186,7 +198,11 @@ class Parser {
     const std::string_view name = text_.substr(start, position_ - start);
     if (name.empty()) fail(fmt::format("a unit's name is missing in '{}'", text_));
     const std::optional<Unit> unit = find_unit(name);
-    if (!unit) fail(fmt::format("the unit '{}' is not known", name), suggest(name));
+    if (!unit) {
+      const bool alone = name == text_;
+      fail(fmt::format("the unit '{}' is not known", name),
+           suggest(name, alone ? expected_ : std::nullopt));
+    }
     return *unit;
   }
 
@@ -206,6 +222,7 @@ class Parser {
 
   std::string_view text_;
   const Location& place_;
+  std::optional<Dimension> expected_;
   std::size_t position_ = 0;
   int depth_ = 0;
 };
@@ -235,8 +252,9 @@ Unit power(const Unit& unit, int exponent) {
   return exponent < 0 ? inverse(result) : result;
 }
 
-Unit parse_unit_expression(std::string_view text, const Location& place) {
-  return Parser(text, place).whole();
+Unit parse_unit_expression(std::string_view text, const Location& place,
+                           std::optional<Dimension> expected) {
+  return Parser(text, place, expected).whole();
 }
 
 std::string si_unit_name(Dimension dimension) {

@@ -2,6 +2,7 @@
 /// Units and unit expressions such as "kg/m^3".
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -27,8 +28,10 @@ Unit inverse(const Unit& unit);
 Unit power(const Unit& unit, int exponent);
 
 /// Parses a unit expression; empty text is the unit 1. Throws Error(unknown-unit) at `place`, for
-/// an unknown name with the nearest known one as the remedy.
-Unit parse_unit_expression(std::string_view text, const Location& place);
+/// an unknown name with the nearest known one as the remedy. @param expected dimension of the
+/// quantity: the remedy for an unknown name that stands alone is a unit of this dimension.
+Unit parse_unit_expression(std::string_view text, const Location& place,
+                           std::optional<Dimension> expected = {});
 
 /// Name in SI base units such as "kg m^-3"; "1" if dimensionless.
 std::string si_unit_name(Dimension dimension);

@@ -85,8 +85,10 @@ void check_law(const BodyDescription& body, const MaterialDescription& material,
 std::string remedy(const BodyDescription& body, bool only_tetrahedra) {
   if (!only_tetrahedra) return "give a mesh of hexahedra or of tetrahedra alone";
   if (is_hyperelastic(body)) return "write element: tet10, or leave `element` out";
-  return "write element: tet10 and a hyperelastic law, for instance model: neo-hookean with the "
-         "same moduli; element: tet4 keeps it as it is";
+  const std::string other =
+      "write element: tet10 and a hyperelastic law, for instance model: neo-hookean with the same "
+      "moduli";
+  return body.element == Element::tet4 ? other : other + "; element: tet4 keeps it as it is";
 }
 
 // The mesh in the frame of its file, with the element type that the body names.

@@ -1,6 +1,7 @@
 #include "sinew/sim/newton_step.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -80,14 +81,34 @@ void NewtonStep::solve(double time_step) {
   if (result.status == NewtonStatus::law_failed) fail_law(run_);
   const std::string folded =
       describe_folded_cable(*run_.model, run_.world.configuration(), run_.effort);
-  fail(run_, ErrorKind::not_converged,
-       fmt::format(
-           "Newton ended as '{}' after {} iterations, relative residual {:.3g}, commands and "
-           "limits missed by {:.2g} m{}",
-           newton_status_name(result.status), result.iterations, result.relative_residual,
-           result.violation, folded),
-       folded.empty() ? "take a smaller time step, or change commands more slowly"
+  fail(run_, ErrorKind::not_converged, describe(result, settings(time_step)) + folded,
+       folded.empty() ? remedy(result.status)
                       : "lessen its tension, or place its points so that they stay apart");
+}
+
+std::string NewtonStep::describe(const NewtonReport& result, const NewtonSettings& how) const {
+  std::string text = fmt::format(
+      "Newton ended as '{}' after {} iterations, relative residual {:.3g} (tolerance {:.3g})",
+      newton_status_name(result.status), result.iterations, result.relative_residual,
+      how.tolerance);
+  if (result.violation > how.motion_tolerance * run_.model->size()) {
+    text += fmt::format(", commands and limits missed by {:.2g} m", result.violation);
+  }
+  const mechanics::SmallestVolume& volume = result.motion.volume;
+  if (result.status == NewtonStatus::inverted && volume.element >= 0) {
+    text += fmt::format(": it would turn element {} inside out", volume.element);
+  }
+  return text;
+}
+
+std::string NewtonStep::remedy(NewtonStatus status) const {
+  const std::string common = run_.model->step().dynamic()
+                                 ? "take a smaller time step, or change commands more slowly"
+                                 : "change commands more slowly";
+  if (status != NewtonStatus::inverted) return common;
+  return common +
+         "; if that does not help, the robot cannot bear the command or load: lessen it, "
+         "or refine the mesh where it is crushed";
 }
 
 NewtonReport NewtonStep::search(double time_step) {

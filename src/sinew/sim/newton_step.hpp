@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "sinew/sim/joint_conflict.hpp"
 #include "sinew/sim/newton.hpp"
@@ -26,6 +27,8 @@ class NewtonStep {
  private:
   NewtonSettings settings(double time_step) const;
   NewtonSettings settings_of_part(double time_step) const;
+  std::string describe(const NewtonReport& result, const NewtonSettings& how) const;
+  std::string remedy(NewtonStatus status) const;
   NewtonReport search(double time_step);
   std::optional<NewtonReport> hold_motors(double time_step);
   NewtonReport hold_choice(const NewtonReport& chosen, double time_step);

@@ -20,20 +20,25 @@ std::string_view step_status_name(StepStatus status) {
   return "unknown";
 }
 
-std::string_view step_status_remedy(StepStatus status) {
+std::string step_status_remedy(StepStatus status, const StepSettings& step) {
+  const bool newton = step.method == Method::newton;
+  const std::string method = !newton                                     ? "`solver: newton`"
+                             : step.tangent != mechanics::Tangent::exact ? "`tangent: exact`"
+                                                                         : "";
+  const std::string use = method.empty() ? "" : ", or use " + method;
   switch (status) {
     case StepStatus::solved:
       return "";
     case StepStatus::limits_conflict:
       return "loosen the limits that contradict each other";
     case StepStatus::command_not_reached:
-      return "change the command more slowly, or use `solver: newton`";
+      return "change the command more slowly" + use;
     case StepStatus::cut_back:
       return "take a smaller time step, change commands more slowly, or refine the mesh";
     case StepStatus::not_in_equilibrium:
-      return "take a smaller time step, change commands more slowly, or use `solver: newton`";
+      return "take a smaller time step, or change commands more slowly" + use;
     case StepStatus::gaining_energy:
-      return "use `solver: newton`, or take a smaller time step";
+      return "take a smaller time step" + use;
   }
   return "";
 }

@@ -2,7 +2,10 @@
 /// The status of a step, which callers should check.
 #pragma once
 
+#include <string>
 #include <string_view>
+
+#include "sinew/sim/step_settings.hpp"
 
 namespace sinew::sim {
 
@@ -24,7 +27,8 @@ constexpr bool is_flagged(StepStatus status) { return status > StepStatus::limit
 /// "gaining-energy".
 std::string_view step_status_name(StepStatus status);
 
-/// Suggests a remedy as a clause; empty for `solved`.
-std::string_view step_status_remedy(StepStatus status);
+/// Suggests a remedy as a clause; empty for `solved`. @param step settings of the flagged step: the
+/// remedy does not name what is already chosen.
+std::string step_status_remedy(StepStatus status, const StepSettings& step);
 
 }  // namespace sinew::sim
