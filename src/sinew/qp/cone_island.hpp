@@ -103,6 +103,7 @@ class ConeIsland {
   bool has_factors(int count) const;
   bool factorise_dense(const ConePart& part, int count, double proximal);
   void fill_dense(const ConePart& part, int symmetric, int count, double proximal);
+  void form_turns(const ConePart& part, int count);
   void turn_slips(const ConePart& part, int count);
   bool solve_sparse(const ConePart& part, int count, double proximal);
   // What is added to a diagonal entry. @param row_scale 1/sqrt(w).
@@ -147,8 +148,9 @@ class ConeIsland {
   double held_share_ = 0.0;        // up to which slips hold their directions
   std::vector<int> turning_;       // cones that hold them
   std::vector<std::size_t> last_;  // cones whose equations are not symmetric
-  linalg::ScratchMatrix effort_, moved_, answer_, turns_;
-  std::vector<Branch> branches_;  // (cones,)
+  linalg::ScratchMatrix moved_, answer_, turns_;
+  linalg::ScratchMatrix by_turn_, of_answer_, of_turns_;  // see form_turns()
+  std::vector<Branch> branches_;                          // (cones,)
   std::size_t newton_tries_ = 0;
   VectorX right_;                 // (unknowns,) and more
   linalg::AlignedNumbers best_;   // (n,)
