@@ -18,8 +18,10 @@ class StepDamping {
  public:
   /// @param before,foreseen,found objectives: before a step, after it by the linearisation, and
   ///   after it in truth, all with the targets of that step.
-  /// @param negligible objective that is as good as zero.
-  void review(double before, double foreseen, double found, double negligible);
+  /// @param negligible objective that is as good as zero. False: there was too little to judge by.
+  bool review(double before, double foreseen, double found, double negligible);
+  /// Trusts the linearisation twice as far.
+  void relax();
   /// >= 1, no unit.
   double value() const { return value_; }
   /// @param value >= 1.
