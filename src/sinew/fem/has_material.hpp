@@ -23,6 +23,10 @@ class HasMaterial {
   virtual Points load_forces() const = 0;
   /// What its elements have behind them.
   virtual const ElementHistory& history() const = 0;
+  /// Multiplies all moduli of its elements, at a given strain all stresses, and with them stiffness
+  /// damping: an input, as forces are. Membranes keep theirs. 1 at the start.
+  virtual double stiffness_factor() const = 0;
+  virtual void set_stiffness_factor(double factor) = 0;  ///< @param factor > 0.
   /// Adds the force that rows put on each free node, as of the last linearisation.
   /// @param effort (rows,) N of the world's rows. @param forces (n, 3) N, added to.
   virtual void add_row_forces(std::span<const double> effort, Points& forces) const = 0;

@@ -18,10 +18,14 @@ struct Unknown {
   enum class Kind {
     force,   ///< a dead force on a point: components along x, y and z of the world
     effort,  ///< of an actuator: what is added to its commanded effort, see command_known
+    /// Of a body of finite elements: the logarithm of a factor of all its moduli. The factor is
+    /// lognormal before anything is measured, with the median 1, and stays positive.
+    stiffness,
   };
   std::string name;
   Kind kind = Kind::force;
-  int first_actuator = 0;  ///< of the estimator's robot: three forces in turn, or the actuator
+  int first_actuator = -1;  ///< of the estimator's robot: three forces in turn, or the actuator
+  int body = -1;            ///< whose stiffness it is
   double prior = 1.0;  ///< standard deviation of each component before anything is measured, in its
                        ///< unit
   double walk = 1.0;   ///< its unit over sqrt(s), of each component's random walk
@@ -59,7 +63,7 @@ struct EstimatorModel {
 
   Eigen::Index size() const;      ///< n: components of all unknowns
   Eigen::Index readings() const;  ///< m: numbers that all sensors say
-  /// (n,) "hand.x", "hand.y", "hand.z" of a force, "leak" of an effort.
+  /// (n,) "hand.x", "hand.y", "hand.z" of a force, "leak" of an effort, "soft" of a stiffness.
   std::vector<std::string> component_names() const;
   /// (n,) a number of the unknown that each component belongs to. @param number prior or walk.
   VectorX of_components(double Unknown::*number) const;
@@ -67,8 +71,13 @@ struct EstimatorModel {
   /// the rotation vector of R_to R_from^T. @param sensor its number among `sensors`.
   /// @param to,from (k,) of it.
   VectorX difference(std::size_t sensor, const VectorX& to, const VectorX& from) const;
-  /// (n,) of the estimator's robot, whose effort each component is part of.
+  /// (n,) of the estimator's robot, whose effort each component is part of; -1: a stiffness.
   std::vector<int> actuators() const;
+  /// Whether a stiffness is among the unknowns.
+  bool has_stiffness() const;
+  /// Replaces the logarithms in a mean by factors, and the deviations of logarithms by those of
+  /// factors to the first order: std(exp(u)) = exp(u) std(u). @param mean,deviation (n,).
+  void take_exponentials(VectorX& mean, VectorX& deviation) const;
 };
 
 /// What ModelBuilder::add_estimator() is told: sensors by name.
