@@ -70,12 +70,15 @@ for kind in vertex-face edge-edge; do
   echo "== impact_queries $kind"
   gzip -dc "$queries" | build/release/bin/impact_queries "$kind" || failed="$failed impact_queries"
 done
+echo "== compliance_cost"
+build/release/bin/compliance_cost || failed="$failed compliance_cost"
 contact fclib "$data/fclib" "$data/fclib"
 contact law "" "$data"
 contact lean "$data/trunk/trunk.vtk" "$data"
 contact grasp "$data/grasp/cup.vtk" "$data"
 contact manipulation "$data/grasp/cup.vtk" "$data"
 contact flush_blocks ""
+contact sole "$data/multigait/multigait.vtk" "$data"
 contact detection ""
 contact heaps "" --heaps 4
 contact bodies ""

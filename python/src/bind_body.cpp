@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "sinew/core/rotation.hpp"
@@ -73,6 +75,20 @@ void set_external_forces(const Body& self, const py::object& value) {
   external_forces(self) = forces;
 }
 
+double stiffness_factor(const Body& self) {
+  return fem::of_elements<const fem::HasMaterial>(body(self)).stiffness_factor();
+}
+
+void set_stiffness_factor(const Body& self, double factor) {
+  if (!(factor > 0.0) || !std::isfinite(factor)) {
+    throw Error(ErrorKind::out_of_range,
+                {.item = fmt::format("body('{}').stiffness_factor", name(self))},
+                fmt::format("it is {:g}", factor), "give a positive number");
+  }
+  const Session::Use use(*self.session);
+  fem::of_elements<fem::HasMaterial>(body(self)).set_stiffness_factor(factor);
+}
+
 Points positions_from(const Body& self, const py::object& positions, const char* what) {
   const Points& now = fem::of_elements<const fem::HasMaterial>(body(self)).positions();
   if (positions.is_none()) return now;
@@ -86,7 +102,7 @@ Array internal_forces(const Body& self, const py::object& positions) {
   const Points at = positions_from(self, positions, "internal_forces");
   ThreadPool pool;
   fem::Assembly assembly(model(self).shared_elements(), pool);
-  assembly.evaluate(at, {fem::Tangent::none, 1.0, 0.0});
+  assembly.evaluate(at, {fem::Tangent::none, 1.0, 0.0, true, stiffness_factor(self)});
   Points forces = Points::Zero(at.rows(), 3);
   const auto nodes = elements(self).free_nodes();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -104,7 +120,7 @@ py::object stiffness(const Body& self, const py::object& positions, const std::s
   const Points at = positions_from(self, positions, "stiffness");
   ThreadPool pool;
   fem::Assembly assembly(model(self).shared_elements(), pool);
-  assembly.evaluate(at, {chosen, 1.0, 0.0});
+  assembly.evaluate(at, {chosen, 1.0, 0.0, true, stiffness_factor(self)});
   const auto& pattern = elements(self).pattern();
   const auto matrix = std::as_const(assembly).matrix();
   std::vector<double> values;
@@ -253,7 +269,14 @@ while another thread steps. Copy it to keep a moment: `body.positions.copy()`.)"
           R"((n, 3) ndarray: dead loads on the nodes in addition to gravity (N).
 
 A live, writable view: `body.external_forces[5] = [0, 0, -0.1]` acts from the next step on. The forces
-stay until changed; reset() sets them to zero. Forces on fixed nodes have no effect.)");
+stay until changed; reset() sets them to zero. Forces on fixed nodes have no effect.)")
+      .def_property(
+          "stiffness_factor", &stiffness_factor, &set_stiffness_factor,
+          R"(float: factor of all moduli of the elements, above 0; 1 is the scene's material.
+
+It multiplies the stresses at a given strain, and with them stiffness damping, of the material and of all
+parts; membranes keep theirs. It acts from the next step on and stays until changed; reset() sets it to 1.
+Raises Error: wrong-type for a body that is not of type fem, out-of-range.)");
 }
 
 void bind_loads_of(py::class_<Body>& type) {

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <string>
 
 #include "sinew/sim/estimator.hpp"
@@ -49,6 +50,20 @@ py::dict unknowns(const Estimator& self, sim::Unknown::Kind kind) {
   return all;
 }
 
+py::dict stiffness_factors(const Estimator& self) {
+  const Session::Use use(*self.session);
+  const VectorX mean = self.session->simulation().estimator(self.index).mean();
+  py::dict all;
+  Eigen::Index k = 0;
+  for (const sim::Unknown& unknown : model(self).unknowns) {
+    if (unknown.kind == sim::Unknown::Kind::stiffness) {
+      all[py::str(unknown.name)] = std::exp(mean[k]);
+    }
+    k += unknown.size();
+  }
+  return all;
+}
+
 py::dict forces(const Estimator& self) { return unknowns(self, sim::Unknown::Kind::force); }
 py::dict efforts(const Estimator& self) { return unknowns(self, sim::Unknown::Kind::effort); }
 
@@ -72,20 +87,24 @@ void bind_estimator(py::module_& module) {
           "components",
           [](const Estimator& self) { return list_of(model(self).component_names()); },
           "list of str (n,): 'hand.x', 'hand.y', 'hand.z' of an unknown force, 'leak' of an "
-          "unknown "
-          "pressure or tension.")
+          "unknown pressure, tension or stiffness.")
       .def_property_readonly("forces", &forces,
                              "dict of (3,) ndarray: the estimate of each unknown force (N), in "
                              "world axes.")
       .def_property_readonly("efforts", &efforts,
                              "dict of float: the estimate of each unknown pressure (Pa) and "
                              "tension (N).")
+      .def_property_readonly("stiffness", &stiffness_factors,
+                             "dict of float: the estimate of each unknown stiffness, as a factor "
+                             "of the body's moduli in the scene.")
       .def_property_readonly(
           "mean", of_estimator([](const sim::Estimator& one) { return copy(one.mean()); }),
-          "(n,) ndarray: the estimate of all components (N or Pa).")
+          "(n,) ndarray: the estimate of all components (N or Pa; of a stiffness, the logarithm of "
+          "the factor).")
       .def_property_readonly(
           "std", of_estimator([](const sim::Estimator& one) { return copy(one.deviation()); }),
-          "(n,) ndarray: standard deviations of the components (N or Pa).")
+          "(n,) ndarray: standard deviations of the components (N or Pa; of a stiffness, of the "
+          "logarithm, about the relative standard deviation of the factor).")
       .def_property_readonly(
           "covariance",
           of_estimator([](const sim::Estimator& one) { return copy(one.covariance()); }),

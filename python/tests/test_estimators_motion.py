@@ -96,6 +96,24 @@ def test_late_samples_count_for_their_time():
     assert (one.std >= other.std * (1.0 - 1e-6)).all()
 
 
+def test_slack_cables_count_on_the_side_on_which_they_pull():
+    """Two cables side by side, whose tensions are about zero: after some samples a column of the covariance raises the one and lowers
+    the other. The covariance is that of cables that are under tension, in a beam that is linear."""
+    runs = []
+    for tension in ("0 N", "10 mN"):
+        tree = beam(loads={}, actuators={
+            name: {"type": "cable", "body": "beam", "points": [f"{x} {y} 9 mm" for x in (0, 30, 58)], "command": {"tension": tension}}
+            for name, y in (("left", 3), ("right", 7))})
+        tree["estimators"]["push"]["unknowns"] = {
+            name: {"tension": {"actuator": name}, "prior": "1e-4 N", "walk": "1e-5 N"} for name in ("left", "right")}
+        runs.append(sinew.load(tree))
+    for _ in range(20):
+        for sim in runs:
+            sim.step()
+        slack, tight = (sim.estimator("push") for sim in runs)
+        np.testing.assert_allclose(slack.covariance, tight.covariance, atol=0.02 * tight.std.prod())
+
+
 def pendulum(force):
     """A hanging soft finger that is released from the side and pushed while it swings."""
     tree = beam(gravity="0 0 -9.81 m/s^2", solver={})

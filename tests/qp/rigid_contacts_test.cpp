@@ -302,5 +302,22 @@ TEST(Eliminate, LeavesTheSchurComplement) {
   }
 }
 
+// Sizes around the groups of columns, and rows that fill no whole vector; no diagonal to lean on.
+TEST(Eliminate, SolvesWholeSystems) {
+  Random random(11);
+  for (const int size : {2, 47, 48, 49, 50, 96, 97, 145, 203, 301}) {
+    const MatrixX a = random.matrix(size, size);
+    MatrixX work = a;
+    std::vector<int> pivot(static_cast<std::size_t>(size));
+    ASSERT_TRUE(eliminate({work.data(), size, size}, pivot));
+    const VectorX expected = random.vector(size);
+    VectorX x = a * expected;
+    substitute(work, pivot, x);
+    EXPECT_LT((x - expected).norm(), 1e-9 * expected.norm()) << size;
+    EXPECT_LE(work.triangularView<Eigen::StrictlyLower>().toDenseMatrix().cwiseAbs().maxCoeff(),
+              1.0);
+  }
+}
+
 }  // namespace
 }  // namespace sinew::qp

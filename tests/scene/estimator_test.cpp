@@ -8,15 +8,24 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/scene.hpp"
+#include "sinew/sim/estimator_model.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/motion_filter.hpp"
+#include "sinew/sim/run.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
 
 namespace sinew::scene {
 namespace {
 
-std::unique_ptr<sim::Simulation> estimating(const std::string& integrator) {
+std::shared_ptr<const sim::Model> estimated(const std::string& integrator,
+                                            const std::string& more = "") {
   const std::string scene = fmt::format(R"(sinew: 1
 time_step: 10 ms
 integrator: {}
@@ -27,10 +36,14 @@ sensors:
   tip: {{type: marker, body: beam, point: 60 0 0 mm, noise: 0.1 mm, delay: 10 ms}}
 estimators:
   push: {{type: filter, sensors: [tip], rank: 4, unknowns: {{
-    hand: {{force: {{body: beam, point: 40 0 0 mm}}, prior: 0.01 N}}}}}}
+    hand: {{force: {{body: beam, point: 40 0 0 mm}}, prior: 0.01 N}}{}}}}}
 )",
-                                        integrator);
-  return std::make_unique<sim::Simulation>(build(parse_scene_text(scene, "beam.yaml", ".")).model);
+                                        integrator, more);
+  return build(parse_scene_text(scene, "beam.yaml", ".")).model;
+}
+
+std::unique_ptr<sim::Simulation> estimating(const std::string& integrator) {
+  return std::make_unique<sim::Simulation>(estimated(integrator));
 }
 
 TEST(Estimators, RefuseDamagedMemoryAndBeginAnewOtherwise) {
@@ -71,6 +84,38 @@ TEST(Estimators, OfBothKindsAgreeAtRest) {
             5e-3 * still->estimator(0).deviation().norm());
   EXPECT_LT((still->estimator(0).deviation() - moving->estimator(0).deviation()).norm(),
             1e-2 * still->estimator(0).deviation().norm());
+}
+
+// The robot cannot take a hundred kilonewtons: the columns of the hand, which come first, count as
+// little as the others, and the path stays where the covariance is of.
+TEST(Estimators, AStepOfWhichAColumnFailsIsNotMade) {
+  const auto model = estimated("backward-euler",
+                               ", blow: {force: {body: beam, point: 60 0 0 mm}, prior: 1000 kN}");
+  const sim::Run run(model, 1);
+  sim::MotionFilter filter(model->estimators().front(), 1);
+  filter.restart(run);
+  const sim::State start = filter.robot().state();
+  filter.advance(run, 0.01);
+  EXPECT_TRUE(filter.failed());
+  EXPECT_FALSE(filter.knows(0));
+  EXPECT_EQ(filter.robot().state().bodies, start.bodies);
+  filter.correct(0, 0, VectorX::Ones(3), VectorX::Constant(3, 1e-6));
+  EXPECT_EQ(filter.mean(), VectorX::Zero(6));
+  sim::Simulation whole(model);
+  whole.step();
+  EXPECT_EQ(whole.estimator(0).status(), sim::EstimatorStatus::no_equilibrium);
+  EXPECT_FALSE(whole.estimator(0).message().empty());
+}
+
+// One mesh and one tree of its elements for the robot of the scene and those of its estimators.
+TEST(Estimators, ShareTheMeshOfTheScene) {
+  const auto model = estimated("quasi-static");
+  const auto settings = [](const sim::Model& of) -> const fem::FemBodySettings& {
+    return mechanics::as<const fem::HasElements>(of.body(0))->settings();
+  };
+  const sim::Model& known = *model->estimators().front().robot;
+  EXPECT_EQ(settings(known).mesh, settings(*model).mesh);
+  EXPECT_EQ(settings(known).embedder, settings(*model).embedder);
 }
 
 }  // namespace

@@ -128,7 +128,13 @@ void Assembly::evaluate(const Points& positions, const AssemblyWeights& weights)
   }
   const Records records(*work_, model_->elements().batches(), weights.tangent);
   evaluate_elements(positions, weights.tangent, weights.softened, records);
-  gather(weights, records);
+  AssemblyWeights scaled = weights;
+  scaled.stiffness *= weights.moduli;
+  gather(scaled, records);
+  if (weights.moduli != 1.0) {
+    for (double& force : work_->forces) force *= weights.moduli;
+    work_->energy *= weights.moduli;
+  }
   work_->energy += model_->membranes().add(positions, weights.tangent, weights.stiffness,
                                            work_->forces, matrix());
 }

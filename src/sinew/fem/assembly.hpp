@@ -39,6 +39,8 @@ struct AssemblyWeights {
   double mass = 0.0;
   /// Whether the Mullins effect of earlier strains softens the material.
   bool softened = true;
+  /// Factor of all moduli of the elements: of forces, energy and K; membranes have their own.
+  double moduli = 1.0;
 
   bool operator==(const AssemblyWeights&) const = default;
 };

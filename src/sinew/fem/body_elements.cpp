@@ -54,7 +54,8 @@ void BodyElements::linearise(const mechanics::LinearisationRequest& request, boo
   const RayleighDamping& damping = state_.model.settings().damping;
   const double mass = weights.acceleration.motion + damping.mass * weights.velocity.motion;
   const double rate = damping.stiffness * weights.velocity.motion;
-  const AssemblyWeights wanted{element_tangent(request.tangent), 1.0, mass};
+  const AssemblyWeights wanted{element_tangent(request.tangent), 1.0, mass, true,
+                               state_.stiffness_factor};
   active_->damped = rate > 0.0;
   if (active_->damped && first) keep_damping_stiffness(request.weights);
   const bool historic = !state_.element_history.empty();
@@ -72,7 +73,7 @@ void BodyElements::linearise(const mechanics::LinearisationRequest& request, boo
 // that at the start positions.
 void BodyElements::keep_damping_stiffness(const mechanics::StepWeights& weights) {
   constexpr double kMinVolume = 0.5;
-  const AssemblyWeights wanted{Tangent::rates, 1.0, 0.0, false};
+  const AssemblyWeights wanted{Tangent::rates, 1.0, 0.0, false, state_.stiffness_factor};
   const bool chord = weights.velocity.velocity == 0.0 && weights.velocity.first == 0.0;
   const double ahead = (chord ? 0.5 : 1.0) * weights.time_step;
   ahead_ = state_.start_positions + ahead * state_.velocities;
@@ -111,8 +112,12 @@ void BodyElements::release() {
 double BodyElements::strain_energy() {
   // Energy stored in the relaxing parts, in addition to that of the law, is not included.
   prepare_history(0.0);
-  const bool present = active_->present.has_value() && state_.element_history.empty();
-  if (!present) active_->assembly.evaluate(state_.positions, {Tangent::none, 1.0, 0.0});
+  const double moduli = state_.stiffness_factor;
+  const bool present = active_->present.has_value() && active_->present->moduli == moduli &&
+                       state_.element_history.empty();
+  if (!present) {
+    active_->assembly.evaluate(state_.positions, {Tangent::none, 1.0, 0.0, true, moduli});
+  }
   return active_->assembly.strain_energy();
 }
 

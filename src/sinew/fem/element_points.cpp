@@ -111,7 +111,21 @@ void visit_solids(const SolidGroup& group, const std::vector<double>& positions,
 
 }  // namespace
 
-void visit_points(const HasMaterial& body, const std::function<void(const PointBatch&)>& visit) {
+void visit_points(const HasMaterial& body,
+                  const std::function<void(const PointBatch&)>& visit_scaled) {
+  const double factor = body.stiffness_factor();
+  const auto visit = [&](const PointBatch& point) {
+    if (factor == 1.0) return visit_scaled(point);
+    PointBatch own = point;
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) {
+        own.piola[r][c] *= factor;
+        own.cauchy[r][c] *= factor;
+      }
+    }
+    own.energy *= factor;
+    visit_scaled(own);
+  };
   visit_tetrahedra(body, visit);
   const auto& solids = body.material().elements().solids();
   if (solids.empty()) return;

@@ -106,6 +106,9 @@ Points FemBody::load_forces() const { return step_->load_forces(); }
 const HasElements& FemBody::material() const { return state_->model; }
 const ElementHistory& FemBody::history() const { return state_->element_history; }
 
+double FemBody::stiffness_factor() const { return state_->stiffness_factor; }
+void FemBody::set_stiffness_factor(double factor) { state_->stiffness_factor = factor; }
+
 void FemBody::add_row_forces(std::span<const double> effort, Points& forces) const {
   step_->add_row_forces(effort, forces);
 }

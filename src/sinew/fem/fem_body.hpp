@@ -63,6 +63,8 @@ class FemBody : public mechanics::Body,
 
   const HasElements& material() const override;
   const ElementHistory& history() const override;
+  double stiffness_factor() const override;
+  void set_stiffness_factor(double factor) override;
   void add_row_forces(std::span<const double> effort, Points& forces) const override;
 
  private:

@@ -23,7 +23,9 @@ FemBodyModel::FemBodyModel(FemBodySettings settings) : settings_(std::move(setti
     }
   }
   check_mesh(*settings_.mesh);
-  embedder_ = std::make_unique<mesh::Embedder>(*settings_.mesh);
+  if (!settings_.embedder) {
+    settings_.embedder = std::make_shared<const mesh::Embedder>(*settings_.mesh);
+  }
   for (const PointMassSettings& mass : settings_.masses) attach_mass(mass);
   elements_ = std::make_shared<const FemModel>(settings_.mesh, settings_.elements);
 }
@@ -66,7 +68,7 @@ Points FemBodyModel::start_velocities() const {
 
 mesh::EmbeddedPoint FemBodyModel::locate(const Vector3& rest_position, mesh::Outside outside,
                                          const std::string& what) const {
-  return embedder_->locate(rest_position, outside, what);
+  return settings_.embedder->locate(rest_position, outside, what);
 }
 
 int FemBodyModel::attach(const Vector3& rest_position, mesh::Outside outside,
@@ -76,7 +78,7 @@ int FemBodyModel::attach(const Vector3& rest_position, mesh::Outside outside,
 
 int FemBodyModel::attach_ball(const Vector3& centre, double radius, mesh::Outside outside,
                               const std::string& what) {
-  const mesh::EmbeddedPoint point = embedder_->spread(centre, radius, outside, what);
+  const mesh::EmbeddedPoint point = settings_.embedder->spread(centre, radius, outside, what);
   return attach_nodes(point.nodes, point.weights);
 }
 

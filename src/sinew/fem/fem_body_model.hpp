@@ -107,7 +107,6 @@ class FemBodyModel final : public mechanics::BodyModel,
   void attach_mass(const PointMassSettings& mass);
 
   FemBodySettings settings_;
-  std::unique_ptr<mesh::Embedder> embedder_;
   std::vector<Attachment> attachments_;
   int surface_site_ = -1;
   // From attach_surface() on.

@@ -37,8 +37,9 @@ struct InitialVelocity {
 struct FemBodySettings {
   std::string name;
   std::shared_ptr<const mesh::Mesh> mesh;
-  FemModelSettings elements;          ///< couplings are filled in by finish()
-  Vector3 gravity = Vector3::Zero();  ///< m/s^2
+  std::shared_ptr<const mesh::Embedder> embedder;  ///< of the mesh; null: the body makes one
+  FemModelSettings elements;                       ///< couplings are filled in by finish()
+  Vector3 gravity = Vector3::Zero();               ///< m/s^2
   RayleighDamping damping;
   std::vector<PointMassSettings> masses;
   InitialVelocity initial_velocity;  ///< of the free nodes; used in dynamics only

@@ -23,8 +23,12 @@ class HasMaterial {
   virtual Points load_forces() const = 0;
   /// Strain history of its elements.
   virtual const ElementHistory& history() const = 0;
-  /// Adds the forces of the rows on free nodes, with the Jacobian of the last linearisation.
-  /// @param effort (rows,) N over all rows of the world. @param forces (n, 3) N, added to.
+  /// Multiplies all moduli of its elements, at a given strain all stresses, and with them stiffness
+  /// damping: an input, as forces are. Membranes keep theirs. 1 at the start.
+  virtual double stiffness_factor() const = 0;
+  virtual void set_stiffness_factor(double factor) = 0;  ///< @param factor > 0.
+  /// Adds the force that rows put on each free node, as of the last linearisation.
+  /// @param effort (rows,) N of the world's rows. @param forces (n, 3) N, added to.
   virtual void add_row_forces(std::span<const double> effort, Points& forces) const = 0;
 };
 

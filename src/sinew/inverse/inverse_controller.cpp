@@ -128,7 +128,7 @@ void InverseController::review_choice(const StepProblem& problem, const Response
 // In motion most of what a linearisation misses is there without d, in the way that the robot goes
 // anyhow: a smaller d would miss as much, and the damping that makes it smaller would stay for
 // good. Of a dynamic step what d was to gain and what it gained by W_ea are compared alone, with
-// the gap that there would be without it.
+// the gap that there would be without it. Where that is nothing, damping fades.
 void InverseController::review(StepDamping& damping, const Response& response,
                                const VectorX& before) const {
   const bool dynamic = simulation_.model().step().dynamic();
@@ -141,7 +141,8 @@ void InverseController::review(StepDamping& damping, const Response& response,
   }
   const double foreseen = objective(foreseen_);
   const double found = dynamic ? foreseen + bend : std::max(objective(gap_), foreseen + bend);
-  damping.review(objective(begun), foreseen, found, negligible_objective());
+  const bool judged = damping.review(objective(begun), foreseen, found, negligible_objective());
+  if (dynamic && !judged) damping.relax();
 }
 
 void InverseController::measure_gap(const StepProblem& problem) {

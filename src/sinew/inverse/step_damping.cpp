@@ -17,16 +17,19 @@ constexpr double kNegligible = 1e-6;
 
 }  // namespace
 
-void StepDamping::review(double before, double foreseen, double found, double negligible) {
+bool StepDamping::review(double before, double foreseen, double found, double negligible) {
   const double noise = kNegligible * before + negligible;
   const double change = std::abs(before - foreseen);
-  if (change <= noise && std::abs(found - before) <= noise) return;
+  if (change <= noise && std::abs(found - before) <= noise) return false;
   const double worse = found - foreseen;
   if (worse > kBad * change + noise) {
     value_ = std::min(kMaxDamping, kGrowth * value_);
   } else if (worse <= kGood * change) {
-    value_ = std::max(1.0, kDecay * value_);
+    relax();
   }
+  return true;
 }
+
+void StepDamping::relax() { value_ = std::max(1.0, kDecay * value_); }
 
 }  // namespace sinew::inverse

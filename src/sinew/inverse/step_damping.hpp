@@ -16,11 +16,13 @@ namespace sinew::inverse {
 /// 105-116, section 4; J. Nocedal and S. J. Wright, Numerical Optimization (2006), algorithm 4.1.
 class StepDamping {
  public:
-  /// Updates the damping after a step. @param before,foreseen,found objectives before the step,
-  /// after it by the linearisation, and after it in fact, all with the targets of that step.
-  /// @param negligible objective that counts as zero.
-  void review(double before, double foreseen, double found, double negligible);
-  /// The damping factor, >= 1, dimensionless.
+  /// @param before,foreseen,found objectives: before a step, after it by the linearisation, and
+  ///   after it in truth, all with the targets of that step.
+  /// @param negligible objective that is as good as zero. False: there was too little to judge by.
+  bool review(double before, double foreseen, double found, double negligible);
+  /// Trusts the linearisation twice as far.
+  void relax();
+  /// >= 1, no unit.
   double value() const { return value_; }
   /// @param value >= 1.
   void set(double value) { value_ = value; }

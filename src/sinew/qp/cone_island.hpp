@@ -104,6 +104,7 @@ class ConeIsland {
   bool has_factors(int count) const;
   bool factorise_dense(const ConePart& part, int count, double proximal);
   void fill_dense(const ConePart& part, int symmetric, int count, double proximal);
+  void form_turns(const ConePart& part, int count);
   void turn_slips(const ConePart& part, int count);
   bool solve_sparse(const ConePart& part, int count, double proximal);
   // The proximal term of a diagonal entry. @param row_scale 1/sqrt(w).
@@ -145,11 +146,12 @@ class ConeIsland {
   std::vector<int> factored_row_;  // of the unknowns of factor_
   int factored_symmetric_ = 0;
   linalg::Gmres gmres_{kMaxTurnSteps, kTurnTolerance};
-  double held_share_ = 0.0;        // value of `share` up to which slips hold their directions
-  std::vector<int> turning_;       // cones that hold their directions
-  std::vector<std::size_t> last_;  // cones with unsymmetric equations
-  linalg::ScratchMatrix effort_, moved_, answer_, turns_;
-  std::vector<Branch> branches_;  // (cones,)
+  double held_share_ = 0.0;        // up to which slips hold their directions
+  std::vector<int> turning_;       // cones that hold them
+  std::vector<std::size_t> last_;  // cones whose equations are not symmetric
+  linalg::ScratchMatrix moved_, answer_, turns_;
+  linalg::ScratchMatrix by_turn_, of_answer_, of_turns_;  // see form_turns()
+  std::vector<Branch> branches_;                          // (cones,)
   std::size_t newton_tries_ = 0;
   VectorX right_;                 // (unknowns,) and more
   linalg::AlignedNumbers best_;   // (n,)

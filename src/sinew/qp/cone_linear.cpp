@@ -112,73 +112,91 @@ void ConeIsland::fill_dense(const ConePart& part, int symmetric, int count, doub
   for (int j = 0; j < rest; ++j) corner.col(j).array() *= rest_scale[j] * rest_scale;
 }
 
-// Computes the turns of the cones that hold their directions: x takes their efforts, and their
-// motion is subtracted from the right-hand side. Uses the present factors.
+// What turns of the cones that hold their directions do to the unknowns and to each other: with
+// v_i = W p_i, p_i normal to the direction of cone i, a column each of
+//   by_turn_:    the unknowns' rows of v_i, the motion by a turn
+//   of_answer_:  e_j.v_i, e_j the efforts of unknown j, the motion along p_i by an answer
+//   of_turns_:   p_k.v_i
+// Products with these read a sixth of what products with W do.
+void ConeIsland::form_turns(const ConePart& part, int count) {
+  const auto turns = static_cast<Eigen::Index>(turning_.size());
+  auto by_turn = by_turn_.shape(count, turns), of_answer = of_answer_.shape(count, turns),
+       of_turns = of_turns_.shape(turns, turns);
+  auto moved = moved_.shape(x_.size(), 1).col(0);
+  for (Eigen::Index i = 0; i < turns; ++i) {
+    const auto k = static_cast<std::size_t>(turning_[static_cast<std::size_t>(i)]);
+    const Eigen::Vector2d p = normal_to(branches_[k].direction);
+    const int row = part.problem.cones[k].row + 1;
+    moved = p[0] * part.problem.matrix.col(row) + p[1] * part.problem.matrix.col(row + 1);
+    for (int j = 0; j < count; ++j) {
+      by_turn(j, i) = moved[unknown_row_[static_cast<std::size_t>(j)]];
+    }
+    of_answer.col(i) = by_turn.col(i);
+    for (Eigen::Index m = 0; m < turns; ++m) {
+      const auto other = static_cast<std::size_t>(turning_[static_cast<std::size_t>(m)]);
+      const auto own = moved.segment<2>(part.problem.cones[other].row + 1);
+      of_answer(cone_at_[other], i) += branches_[other].along().dot(own);
+      of_turns(m, i) = normal_to(branches_[other].direction).dot(own);
+    }
+  }
+}
+
+// The turns of the cones that hold their directions: x takes their efforts, and the right side
+// loses their motion. With the factors at hand.
 void ConeIsland::turn_slips(const ConePart& part, int count) {
   if (turning_.empty()) return;
+  form_turns(part, count);
   const auto turns = static_cast<Eigen::Index>(turning_.size());
+  const auto by_turn = by_turn_.view(), of_answer = of_answer_.view(), of_turns = of_turns_.view();
+  auto answer = answer_.shape(count, 1).col(0);
+  auto moved = moved_.shape(turns, 1).col(0);  // along p
   const auto each = [&](auto&& act) {
     for (Eigen::Index i = 0; i < turns; ++i) {
-      const auto k = static_cast<std::size_t>(turning_[static_cast<std::size_t>(i)]);
-      act(i, k, part.problem.cones[k].row + 1, normal_to(branches_[k].direction));
+      act(i, static_cast<std::size_t>(turning_[static_cast<std::size_t>(i)]));
     }
   };
-  auto effort = effort_.shape(x_.size(), 1).col(0);
-  auto moved = moved_.shape(x_.size(), 1).col(0);
-  auto answer = answer_.shape(count, 1).col(0);
-  // The efforts of the turns g, and the right-hand side due to their motion.
+  // The right side that the motion of turns g makes.
   const auto take_turns = [&](const Eigen::Ref<const VectorX>& g) {
-    effort.setZero();
-    each([&](Eigen::Index i, std::size_t, int row, const Eigen::Vector2d& p) {
-      effort.segment<2>(row) = g[i] * p;
-    });
-    moved.noalias() = part.problem.matrix * effort;
-    for (int j = 0; j < count; ++j) {
-      answer[j] = -moved[unknown_row_[static_cast<std::size_t>(j)]];
-    }
+    answer.noalias() = by_turn * g;
+    answer = -answer;
     for (std::size_t k = 0; k < part.problem.cones.size(); ++k) {
       if (cone_at_[k] < 0 || !branches_[k].slips || branches_[k].holds) continue;
       answer.segment<3>(cone_at_[k]) = branches_[k].act(answer.segment<3>(cone_at_[k]));
     }
     answer.array() *= row_scale_.head(count).array();
   };
-  // Solves for `answer`, and computes the motion due to it and to its friction.
+  // The motion of its answer.
   const auto answer_them = [&] {
     factor_.solve(answer);
-    for (int j = 0; j < count; ++j) {
-      effort[unknown_row_[static_cast<std::size_t>(j)]] = row_scale_[j] * answer[j];
-    }
-    each([&](Eigen::Index, std::size_t k, int row, const Eigen::Vector2d&) {
-      effort.segment<2>(row) += effort[row - 1] * branches_[k].along();
-    });
-    moved.noalias() = part.problem.matrix * effort;
+    answer.array() *= row_scale_.head(count).array();
+    moved.noalias() = of_answer.transpose() * answer;
   };
   const auto gain = [&](std::size_t k) { return branches_[k].share / (1.0 - branches_[k].share); };
 
   auto g = turns_.shape(turns, 1).col(0);
-  effort.setZero();
   answer = right_.head(count);
   answer_them();
-  each([&](Eigen::Index i, std::size_t k, int row, const Eigen::Vector2d& p) {
+  each([&](Eigen::Index i, std::size_t k) {
+    const Branch& own = branches_[k];
+    const Eigen::Vector2d p = normal_to(own.direction);
     const Eigen::Vector2d by =
-        motion_.segment<2>(row) + moved.segment<2>(row) - branches_[k].motion.tail<2>();
-    g[i] = -gain(k) * p.dot(branches_[k].effort + by / scale_[k]);
+        motion_.segment<2>(part.problem.cones[k].row + 1) - own.motion.tail<2>();
+    g[i] = -gain(k) * (p.dot(own.effort) + (p.dot(by) + moved[i]) / scale_[k]);
   });
   const auto without_share = [&](const Eigen::Ref<const VectorX>& direction,
                                  Eigen::Ref<VectorX> product) {
     take_turns(direction);
     answer_them();
+    moved.noalias() += of_turns * direction;
     product = direction;
-    each([&](Eigen::Index i, std::size_t k, int row, const Eigen::Vector2d& p) {
-      product[i] += gain(k) * p.dot(moved.segment<2>(row)) / scale_[k];
-    });
+    each([&](Eigen::Index i, std::size_t k) { product[i] += gain(k) * moved[i] / scale_[k]; });
   };
   const double left = gmres_.solve(std::cref(without_share), g);  // a copy would allocate
   if (!(left <= kUsableTurns)) held_share_ *= 0.1;
   take_turns(g);
   right_.head(count) += answer;
-  each([&](Eigen::Index i, std::size_t, int row, const Eigen::Vector2d& p) {
-    x_.segment<2>(row) += g[i] * p;
+  each([&](Eigen::Index i, std::size_t k) {
+    x_.segment<2>(part.problem.cones[k].row + 1) += g[i] * normal_to(branches_[k].direction);
   });
 }
 

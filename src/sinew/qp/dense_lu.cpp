@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sinew/linalg/dense_kernels.hpp"
 #include "sinew/linalg/vector_lanes.hpp"
 #include "sinew/qp/padded_columns.hpp"
 
@@ -12,8 +13,11 @@ namespace sinew::qp {
 namespace {
 
 constexpr int kPanel = 8;
-constexpr int kGroup = 64;  // columns that stay in the cache while all panels act on them
-static_assert(kGroup % kPanel == 0);
+// Columns that stay in the cache while all that stands left of them acts on them, that much at a
+// time: whole panels, and whole nodes of the kernels of products.
+constexpr int kNode = 3;
+constexpr int kGroup = 48;
+static_assert(kGroup % kPanel == 0 && kGroup % kNode == 0);
 
 constexpr int kTile = 4;  // columns that share the loads of a panel
 
@@ -59,11 +63,12 @@ class LuElimination {
       const int end = std::min(begin + kGroup, size_);
       const int done = std::min(begin, pivots_);
       swap_rows(0, done, begin, end);
-      for (int first = 0; first < done; first += kPanel) apply_panel(first, begin, end);
+      for (int first = 0; first < done; first += kGroup) apply_group(first, begin, end);
       for (int first = begin; first < std::min(end, pivots_); first += kPanel) {
-        if (!factor_panel(first, end)) return false;
-        apply_panel(first, first + width(first), end);
+        if (!factor_panel(first, begin, end)) return false;
+        apply_panel(first, first + width(first), end, size_);
       }
+      swap_rows(begin, std::min(end, pivots_) - begin, 0, begin);
     }
     return true;
   }
@@ -71,23 +76,26 @@ class LuElimination {
  private:
   int width(int first) const { return std::min(kPanel, pivots_ - first); }
 
+  // All swaps of a column before the next column, whose numbers are far from its own.
   void swap_rows(int first, int count, int begin, int end) {
-    for (int k = first; k < first + count; ++k) {
-      const int other = pivot_[static_cast<std::size_t>(k)];
-      if (other == k) continue;
-      for (int j = begin; j < end; ++j) std::swap(a_(k, j), a_(other, j));
+    for (int j = begin; j < end; ++j) {
+      double* const column = &a_(0, j);
+      for (int k = first; k < first + count; ++k) {
+        const int other = pivot_[static_cast<std::size_t>(k)];
+        if (other != k) std::swap(column[k], column[other]);
+      }
     }
   }
 
-  // `end` of the up-to-date columns; rows of those to the right are exchanged when they are
-  // reached.
-  bool factor_panel(int first, int end) {
+  // Swaps the rows of its group alone, from `begin` to `end`: the columns left of it are swapped
+  // when the group is finished, those right of it when they are reached.
+  bool factor_panel(int first, int begin, int end) {
     for (int k = first; k < first + width(first); ++k) {
       Eigen::Index below = 0;
       const double largest = a_.col(k).segment(k, pivots_ - k).cwiseAbs().maxCoeff(&below);
       if (!(largest > std::numeric_limits<double>::min())) return false;
       pivot_[static_cast<std::size_t>(k)] = static_cast<int>(below) + k;
-      swap_rows(k, 1, 0, end);
+      swap_rows(k, 1, begin, end);
       const int rest = size_ - k - 1;
       a_.col(k).tail(rest) /= a_(k, k);
       for (int j = k + 1; j < first + width(first); ++j) {
@@ -97,8 +105,43 @@ class LuElimination {
     return true;
   }
 
-  // Columns begin .. end - 1: the rows of U, and the update of the panel's width below them.
-  void apply_panel(int first, int begin, int end) {
+  // Columns begin .. end - 1: the rows of U that a finished group of columns has, by its panels,
+  // and below them one product with all that it has there.
+  void apply_group(int first, int begin, int end) {
+    const int last = std::min(first + kGroup, pivots_);
+    for (int k = first; k < last; k += kPanel) apply_panel(k, begin, end, last);
+    const int whole = (end - begin) / kNode * kNode;
+    if (whole > 0) subtract_product(first, last, begin, whole);
+    for (int j = begin + whole; j < end; ++j) update<1>(first, last, j, size_);
+  }
+
+  // The kernel may go on to the end of the last vector of rows, where the next column begins: the
+  // rows of the last one are multiplied apart.
+  void subtract_product(int first, int last, int begin, int columns) {
+    using linalg::kLanes;
+    for (int k = first; k < last; ++k) {
+      for (int j = 0; j < columns; ++j) turned_[(k - first) * kGroup + j] = a_(k, begin + j);
+    }
+    const linalg::Product product{.a = &a_(0, first),
+                                  .leading_a = size_,
+                                  .b = turned_,
+                                  .leading_b = kGroup,
+                                  .depth = last - first,
+                                  .columns = columns};
+    const int whole = last + (size_ - last) / kLanes * kLanes;
+    if (whole > last) {
+      linalg::multiply(product, last, whole, &a_(last, begin), size_, linalg::Store::subtract);
+    }
+    if (whole == size_) return;
+    linalg::multiply(product, whole, size_, apart_, kLanes, linalg::Store::assign);
+    for (int j = 0; j < columns; ++j) {
+      for (int i = whole; i < size_; ++i) a_(i, begin + j) -= apart_[kLanes * j + i - whole];
+    }
+  }
+
+  // Columns begin .. end - 1: the rows of U, and the update of the panel's width in the rows below
+  // them up to row_end.
+  void apply_panel(int first, int begin, int end, int row_end) {
     if (width(first) == kPanel) {
       solve_rows(first, begin, end);
     } else {
@@ -106,13 +149,14 @@ class LuElimination {
     }
     const int last = first + width(first);
     int j = begin;
-    for (; j + kTile <= end; j += kTile) update<kTile>(first, last, j);
-    for (; j < end; ++j) update<1>(first, last, j);
+    for (; j + kTile <= end; j += kTile) update<kTile>(first, last, j, row_end);
+    for (; j < end; ++j) update<1>(first, last, j, row_end);
   }
 
   template <int columns>
-  void update(int first, int last, int column) {
-    const int rest = size_ - last;
+  void update(int first, int last, int column, int row_end) {
+    if (last == row_end) return;
+    const int rest = row_end - last;
     int k = first;
     for (; k + 4 <= last; k += 4) {
       subtract<columns, 4>(&a_(last, k), &a_(k, column), size_, &a_(last, column), rest);
@@ -155,6 +199,8 @@ class LuElimination {
   Eigen::Map<MatrixX> a_;
   std::span<int> pivot_;
   int size_, pivots_;
+  alignas(64) double turned_[kGroup * kGroup];         // U, transposed
+  alignas(64) double apart_[kGroup * linalg::kLanes];  // of the last rows
 };
 
 }  // namespace

@@ -9,13 +9,12 @@
 
 namespace sinew::qp {
 
-/// Eliminates the first `pivot.size()` rows and columns of a square matrix in place. These become P
-/// A = L U (Golub & Van Loan 2013, algorithm 3.4.1); the rest becomes the Schur complement
-/// A_22 - L_21 U_12. Pivots are chosen among the eliminated rows. The algorithm goes from left to
-/// right over groups of columns that fit the cache, each by panels; the grouping does not change a
-/// bit of the result. @param a (n, n).
-/// @param pivot (k,) out: the row with which row i was exchanged.
-/// @return false if a pivot vanishes.
+/// Eliminates the first `pivot.size()` rows and columns of a square matrix in place: P A = L U
+/// there (Golub & Van Loan 2013, algorithm 3.4.1), and in the rest A_22 - L_21 U_12. Pivots are
+/// taken by rows among the eliminated ones. Works by groups of columns from left to right: what
+/// stands left of a group acts on it by products, and within it panels act on each other. The
+/// bits depend on n and k alone. @param a (n, n). @param pivot (k,) out: the row that row i was
+/// swapped with. @return false where a pivot vanishes.
 bool eliminate(const Eigen::Map<MatrixX>& a, std::span<int> pivot);
 
 /// right <- A^-1 right, with the factors of a whole matrix.

@@ -110,7 +110,9 @@ const SceneController& Robot::controller(const std::string& name, const Location
                                : fmt::format("choose among {}", fmt::join(known, ", ")));
 }
 
-Robot build(SceneDescription description) {
+Robot build(SceneDescription description) { return build(std::move(description), {}); }
+
+Robot build(SceneDescription description, const SharedMeshes& shared) {
   Robot robot;
   sim::StepSettings step = step_settings(description);
   if (auto notice = replace_tangent(description, step)) {
@@ -119,7 +121,9 @@ Robot build(SceneDescription description) {
   std::ranges::move(expand_urdf(description), std::back_inserter(robot.notices));
   sim::ModelBuilder builder(step);
   for (const BodyDescription& body : description.bodies) {
-    if (auto notice = add_body(builder, description, body)) {
+    const auto made = shared.find(body.name);
+    if (auto notice =
+            add_body(builder, description, body, made == shared.end() ? nullptr : &made->second)) {
       robot.notices.push_back(std::move(*notice));
     }
   }

@@ -113,11 +113,17 @@ void fix(const FixedRegion& fixed, const mesh::Mesh& mesh, fem::FemModelSettings
   }
 }
 
-fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescription& body) {
+fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescription& body,
+                                  const SharedMesh* shared) {
   fem::FemBodySettings settings;
   settings.name = body.name;
-  settings.mesh = std::make_shared<const mesh::Mesh>(make_body_mesh(body));
-  check_element(body, *settings.mesh);
+  if (shared != nullptr) {
+    settings.mesh = shared->mesh;
+    settings.embedder = shared->embedder;
+  } else {
+    settings.mesh = std::make_shared<const mesh::Mesh>(make_body_mesh(body));
+    check_element(body, *settings.mesh);
+  }
   settings.gravity = scene.gravity;
   settings.damping = {body.mass_damping, body.stiffness_damping};
   for (const MassDescription& mass : scene.masses) {
@@ -172,7 +178,7 @@ rigid::Solid make_solid(mesh::Surface surface, bool convex) {
 }
 
 std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
-                               const BodyDescription& body) {
+                               const BodyDescription& body, const SharedMesh* shared) {
   std::optional<Notice> notice;
   try {
     if (body.arm) {
@@ -183,8 +189,8 @@ std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescriptio
       add_rigid(builder, scene, body);
       return notice;
     }
-    fem::FemBodySettings settings = fem_settings(scene, body);
-    notice = locking_notice(body, *settings.mesh);
+    fem::FemBodySettings settings = fem_settings(scene, body, shared);
+    if (shared == nullptr) notice = locking_notice(body, *settings.mesh);
     const int number = builder.add_fem_body(std::move(settings), body.place);
     add_base(builder, number, body);
   } catch (const Error& error) {

@@ -10,6 +10,10 @@
 
 #include "sinew/core/axis_names.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/sim/estimator_model.hpp"
@@ -25,7 +29,9 @@ namespace {
 constexpr std::array kTypes = {"marker",   "orientation", "cable-length", "cable-tension",
                                "pressure", "volume",      "motor-current"};
 constexpr const char* kSwitch = "touch";
-// Least coupling of two rows relative to the bound by their own compliances; less is rounding.
+// These say nothing of forces.
+constexpr std::array kShapes = {"marker", "orientation", "cable-length", "volume"};
+// Of what the compliances of two rows allow: less is rounding.
 constexpr double kResponds = 1e-12;
 
 bool reads_shape(const SensorDescription& sensor) {
@@ -123,17 +129,29 @@ SceneDescription known_robot(const SceneDescription& scene, const EstimatorDescr
   for (const UnknownDescription& unknown : estimator.unknowns) {
     if (unknown.is_force()) {
       add_forces(known, unknown);
-    } else {
+    } else if (!unknown.is_stiffness()) {
       free_effort(known, unknown);
     }
   }
   return known;
 }
 
-std::shared_ptr<const sim::Model> build_known(const SceneDescription& scene,
-                                              const EstimatorDescription& estimator) {
+SharedMeshes meshes_of(const sim::ModelBuilder& builder, const SceneDescription& scene) {
+  SharedMeshes meshes;
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
+    const auto* made =
+        mechanics::as<const fem::HasElements>(builder.added_body(static_cast<int>(k)));
+    if (made == nullptr) continue;
+    meshes[scene.bodies[k].name] = {made->settings().mesh, made->settings().embedder};
+  }
+  return meshes;
+}
+
+std::shared_ptr<const sim::Model> build_known(const SceneDescription& known,
+                                              const EstimatorDescription& estimator,
+                                              const SharedMeshes& meshes) {
   try {
-    return build(known_robot(scene, estimator)).model;
+    return build(known, meshes).model;
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::nothing_fixed) throw;
     throw Error(ErrorKind::nothing_fixed, estimator.place,
@@ -179,11 +197,58 @@ void check_type(const SceneDescription& scene, const EstimatorDescription& estim
               sensor.type == "volume" ? "measure its pressure" : "measure its tension");
 }
 
-// Checks unknown efforts: their actuator has them, and no two unknowns have the same actuator.
+// Whether something acts on the robot by a force that the estimator knows or measures, or by its
+// inertia: if none does, every stiffness has the same shape.
+bool has_known_force(const SceneDescription& scene, const EstimatorDescription& estimator,
+                     const SceneDescription& known) {
+  const bool weighs = !scene.gravity.isZero(0.0);
+  const bool measures = std::ranges::any_of(estimator.sensors, [&](const std::string& name) {
+    const auto& of = *std::ranges::find(scene.sensors, name, &SensorDescription::name);
+    return std::ranges::find(kShapes, of.type) == kShapes.end();
+  });
+  const bool pulled = std::ranges::any_of(known.actuators, [&](const ActuatorDescription& one) {
+    const bool unknown = one.type == ActuatorDescription::Type::force &&
+                         std::ranges::find(scene.actuators, one.name, &ActuatorDescription::name) ==
+                             scene.actuators.end();
+    return !unknown && !is_unknown(estimator, one.name) &&
+           (one.command.kind != sim::CommandKind::motion || is_driven(scene, one.name));
+  });
+  return weighs || measures || pulled || !known.loads.empty() || !scene.membranes.empty() ||
+         !scene.contacts.empty() || !scene.joints.empty() || has_inertia(scene, estimator);
+}
+
+// Of a stiffness: the body has moduli, which no other unknown scales, and forces tell of them.
+void check_stiffness(const SceneDescription& scene, const EstimatorDescription& estimator,
+                     const SceneDescription& known) {
+  std::set<std::string> taken;
+  for (const UnknownDescription& unknown : estimator.unknowns) {
+    if (!unknown.is_stiffness()) continue;
+    const auto body = std::ranges::find(scene.bodies, unknown.body, &BodyDescription::name);
+    if (body->arm || body->rigid) {
+      throw Error(ErrorKind::wrong_type, unknown.where_place,
+                  fmt::format("'{}' is of type {}, whose stiffness is not estimated", body->name,
+                              body->arm ? "pcc" : "rigid"),
+                  "name a body of type fem");
+    }
+    if (!taken.insert(unknown.body).second) {
+      throw Error(ErrorKind::conflicting_keys, unknown.where_place,
+                  fmt::format("the stiffness of '{}' is unknown twice", unknown.body),
+                  "keep one of the two");
+    }
+    if (has_known_force(scene, estimator, known)) continue;
+    throw Error(ErrorKind::conflicting_keys, unknown.where_place,
+                fmt::format("no force that '{}' knows or measures acts on '{}', and the sensors "
+                            "read the same at any stiffness",
+                            estimator.name, unknown.body),
+                "measure a tension, a pressure or the current of a motor, or let a known load act");
+  }
+}
+
+// Of an effort: the actuator has it, and no other unknown.
 void check_efforts(const SceneDescription& scene, const EstimatorDescription& estimator) {
   std::set<std::string> taken;
   for (const UnknownDescription& unknown : estimator.unknowns) {
-    if (unknown.is_force()) continue;
+    if (unknown.is_force() || unknown.is_stiffness()) continue;
     const auto on =
         std::ranges::find(scene.actuators, unknown.actuator, &ActuatorDescription::name);
     const sim::ActuatorWords& words = sim::actuator_words(on->type);
@@ -249,13 +314,23 @@ class RestResponse {
   sim::Linearisation at_rest_;
 };
 
-// Checks that unknowns move the robot and that sensors respond to them. The latter is not checked
-// with contacts, which may transmit forces later, or with inertia, which may transmit them in later
-// steps.
+// At rest a stiffness moves nothing. What is on the body answers to it, or what is joined to it.
+bool may_tell(const SceneDescription& scene, const SensorDescription& sensor,
+              const UnknownDescription& unknown) {
+  if (!scene.joints.empty() || sensor.body == unknown.body) return true;
+  const auto on = std::ranges::find(scene.actuators, sensor.actuator, &ActuatorDescription::name);
+  if (on == scene.actuators.end()) return false;
+  if (on->body == unknown.body) return true;
+  const auto* cable = std::get_if<CableDescription>(&on->own);
+  return cable != nullptr &&
+         std::ranges::find(cable->point_bodies, unknown.body) != cable->point_bodies.end();
+}
+
+// Contacts pass on forces that they do not at rest, and motion forces that one step does not.
 void check_response(const SceneDescription& scene, const EstimatorDescription& estimator,
                     const RestResponse& rest) {
   for (const UnknownDescription& unknown : estimator.unknowns) {
-    if (rest.moves(unknown)) continue;
+    if (unknown.is_stiffness() || rest.moves(unknown)) continue;
     throw Error(
         ErrorKind::everything_fixed, unknown.where_place,
         unknown.is_force()
@@ -268,8 +343,10 @@ void check_response(const SceneDescription& scene, const EstimatorDescription& e
   for (std::size_t k = 0; k < estimator.sensors.size(); ++k) {
     const SensorDescription& sensor =
         *std::ranges::find(scene.sensors, estimator.sensors[k], &SensorDescription::name);
-    const bool any = std::ranges::any_of(
-        estimator.unknowns, [&](const auto& unknown) { return rest.responds(sensor, unknown); });
+    const bool any = std::ranges::any_of(estimator.unknowns, [&](const auto& unknown) {
+      return unknown.is_stiffness() ? may_tell(scene, sensor, unknown)
+                                    : rest.responds(sensor, unknown);
+    });
     if (any) continue;
     throw Error(ErrorKind::conflicting_keys, estimator.sensor_places[k],
                 fmt::format("'{}' answers to nothing that is unknown", sensor.name),
@@ -289,6 +366,13 @@ std::vector<sim::Unknown> unknowns_of(const SceneDescription& scene,
     one.walk = unknown.walk;
     if (unknown.is_force()) {
       one.first_actuator = std::exchange(next, next + 3);
+      continue;
+    }
+    if (unknown.is_stiffness()) {
+      const auto body = std::ranges::find(scene.bodies, unknown.body, &BodyDescription::name);
+      one.kind = sim::Unknown::Kind::stiffness;
+      one.body = static_cast<int>(body - scene.bodies.begin());
+      one.unit = "";
       continue;
     }
     const auto on =
@@ -311,10 +395,12 @@ void add_estimator(sim::ModelBuilder& builder, const SceneDescription& scene,
                estimator.sensor_places[k]);
   }
   check_efforts(scene, estimator);
+  const SceneDescription known = known_robot(scene, estimator);
+  check_stiffness(scene, estimator, known);
   sim::EstimatorSettings settings;
   settings.name = estimator.name;
   settings.place = estimator.place;
-  settings.robot = build_known(scene, estimator);
+  settings.robot = build_known(known, estimator, meshes_of(builder, scene));
   settings.sensors = estimator.sensors;
   settings.sensor_places = estimator.sensor_places;
   settings.unknowns = unknowns_of(scene, estimator);

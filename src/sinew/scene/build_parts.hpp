@@ -3,6 +3,8 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,13 +17,18 @@
 namespace sinew::mechanics {
 class BodyModel;
 }
+namespace sinew::mesh {
+class Embedder;
+}
 namespace sinew::sim {
 class ModelBuilder;
 }  // namespace sinew::sim
 
 namespace sinew::scene {
 
-/// A body that the model builder already has.
+struct Robot;
+
+/// A body of the model.
 struct BuiltBody {
   int number = 0;
   const mechanics::BodyModel* model = nullptr;  ///< null: the world
@@ -76,9 +83,23 @@ std::vector<Notice> expand_urdf(SceneDescription& scene);
 /// @param surface of the solid. @param convex whether contacts use the convex hull.
 rigid::Solid make_solid(mesh::Surface surface, bool convex);
 
-/// Adds a body of the scene to the model. @return a notice about it, if there is one.
+/// The mesh of a body of finite elements as another model of the same body has it.
+struct SharedMesh {
+  std::shared_ptr<const mesh::Mesh> mesh;
+  std::shared_ptr<const mesh::Embedder> embedder;  ///< of it
+};
+/// By the names of the bodies.
+using SharedMeshes = std::map<std::string, SharedMesh>;
+
+/// build() of a scene whose meshes another model has already made and checked.
+/// @param description,shared the scene, without robots in files, and the meshes of its bodies of
+/// finite elements; those that are not there are made.
+Robot build(SceneDescription description, const SharedMeshes& shared);
+
+/// Adds a body that its scene describes. @param shared its mesh; null: it is made. @return what a
+/// user should know of it, once for each mesh that is made.
 std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
-                               const BodyDescription& body);
+                               const BodyDescription& body, const SharedMesh* shared);
 
 /// Adds an actuator. @param builder that has the bodies. @param scene of the actuator.
 /// @param actuator to be added. @param body_of,joint_of find what it acts on.

@@ -328,20 +328,21 @@ struct SensorDescription {
   std::shared_ptr<const sim::SensorRecord> record;  ///< samples from a file
 };
 
-/// An unknown of an estimator: an external force, or the effort of an actuator.
+/// A force from outside, the effort of an actuator or the stiffness of a body, to be found.
 struct UnknownDescription {
   std::string name;
   Location place, where_place;
-  std::string body;                 ///< on which the force acts; empty for an effort
+  std::string body;                 ///< that the force acts on, or whose stiffness it is
   Vector3 point = Vector3::Zero();  ///< m
   mesh::Outside outside = mesh::Outside::error;
-  std::string actuator;       ///< whose effort is unknown; empty for a force
-  std::string quantity;       ///< of the effort: "pressure"
+  std::string actuator;       ///< whose effort it is
+  std::string quantity;       ///< "pressure", "tension", "stiffness"; empty: a force
   bool command_known = true;  ///< see sim::Unknown
-  double prior = 0.0;         ///< standard deviation of the prior, N or Pa, > 0
-  double walk = 0.0;          ///< random walk, N or Pa per sqrt(s), > 0; default: value of `prior`
+  double prior = 0.0;         ///< N or Pa, > 0; of the logarithm of a stiffness
+  double walk = 0.0;          ///< over sqrt(s), >= 0
 
-  bool is_force() const { return actuator.empty(); }
+  bool is_force() const { return quantity.empty(); }
+  bool is_stiffness() const { return quantity == "stiffness"; }
 };
 
 /// An estimator of forces and efforts from sensor samples.

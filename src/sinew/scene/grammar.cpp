@@ -243,7 +243,8 @@ KeyTable scene_table() {
       {.name = "estimators",
        .forms = {names(estimator_form())},
        .example = "{push: {type: filter, sensors: [tip, length], unknowns: {hand: ...}}}",
-       .description = "Estimators of unknown forces, pressures and tensions from sensors. They do "
+       .description = "Estimators of unknown forces, pressures, tensions and stiffnesses from "
+                      "sensors. They do "
                       "not affect the robot."});
   scene.keys.push_back(
       {.name = "contacts",

@@ -46,7 +46,42 @@ std::shared_ptr<const KeyTable> effort_place_table() {
   return table;
 }
 
-// Words and measures for one kind of unknown.
+Form stiffness_form() {
+  const auto body = make_table({.name = "body of an unknown stiffness",
+                                .description = "A body of type fem whose stiffness is unknown.",
+                                .keys = {body_key()}});
+  return table(
+      make_table(
+          {.name = "unknown: stiffness",
+           .description =
+               "A factor of all moduli of a body of type fem: of its material and its parts, and "
+               "with them of its stiffness damping, but not of membranes. The estimator starts "
+               "from the moduli in the scene; the logarithm of the factor has a normal "
+               "distribution about 0. Only known forces tell a stiffness: weight, loads, commanded "
+               "or measured pressures and tensions, or inertia.",
+           .keys = {{.name = "stiffness",
+                     .forms = {table(body)},
+                     .example = "{body: trunk}",
+                     .description = "The body.",
+                     .required = true},
+                    {.name = "prior",
+                     .forms = {quantity(plain_number(),
+                                        {.min = 0.0, .max = 2.0, .above_min = true})},
+                     .example = "30 %",
+                     .description = "Standard deviation of the logarithm of the factor before "
+                                    "anything is measured, about the relative standard deviation "
+                                    "of the factor.",
+                     .required = true},
+                    {.name = "walk",
+                     .forms = {quantity(plain_number(), non_negative())},
+                     .example = "1 %",
+                     .default_text = "0",
+                     .description = "Random walk of the logarithm: the standard deviation of its "
+                                    "change in 1 s, which grows with the square root of time."}}}),
+      "stiffness");
+}
+
+// What an unknown of one kind is called and measured in.
 struct UnknownWords {
   const char* key = "";
   const char* name = "";
@@ -101,6 +136,7 @@ Form unknowns_form() {
       {"tension", "unknown: tension",
        "The tension of a cable, or its deviation from the commanded tension.", "{actuator: long_0}",
        effort_place_table(), "The cable.", force(), "1 N", "0.5 N", ""}));
+  form.items.push_back(stiffness_form());
   return form;
 }
 
@@ -110,9 +146,9 @@ Form estimator_form() {
   const auto filter = make_table(
       {.name = "estimator: type filter",
        .description =
-           "Kalman filter of external forces, pressures and tensions. It knows the robot, the "
-           "commands, the loads and the samples of its sensors. Its own robot has the integrator "
-           "of the scene.",
+           "Kalman filter of external forces, pressures, tensions and stiffnesses. It knows the "
+           "robot, the commands, the loads and the samples of its sensors. Its own robot has the "
+           "integrator of the scene.",
        .keys = {
            {.name = "sensors",
             .forms = {list({reference("sensors")})},
@@ -125,8 +161,8 @@ Form estimator_form() {
            {.name = "unknowns",
             .forms = {unknowns_form()},
             .example = "{hand: {force: {body: trunk, point: 0 10 150 mm}, prior: 1 N}}",
-            .description = "Unknown forces, pressures and tensions by name. A load of the same "
-                           "name is unknown to the estimator.",
+            .description = "Unknown forces, pressures, tensions and stiffnesses by name. A load of "
+                           "the same name is unknown to the estimator.",
             .required = true},
            {.name = "unknown_loads",
             .forms = {list({reference("loads")})},

@@ -27,6 +27,11 @@ void read_effort_place(const Fields& effort, UnknownDescription& unknown) {
   effort.read_choice("command", unknown.command_known, {{"known", true}, {"unknown", false}});
 }
 
+void read_stiffness_place(const Fields& stiffness, UnknownDescription& unknown) {
+  stiffness.read("body", unknown.body);
+  unknown.where_place = stiffness.place("body");
+}
+
 UnknownDescription read_unknown(const Node::Entry& entry, const std::vector<Form>& forms) {
   UnknownDescription unknown;
   unknown.name = entry.key;
@@ -38,15 +43,19 @@ UnknownDescription read_unknown(const Node::Entry& entry, const std::vector<Form
   const Form& form = select_form(entry.value, forms, {});
   const Fields fields(entry.value, form);
   fields.read("prior", unknown.prior);
-  unknown.walk = unknown.prior;
-  fields.read("walk", unknown.walk);
   const Fields where = fields.below(form.telltale);
   if (form.telltale == "force") {
     read_force_place(where, unknown);
   } else {
     unknown.quantity = form.telltale;
-    read_effort_place(where, unknown);
+    if (unknown.is_stiffness()) {
+      read_stiffness_place(where, unknown);
+    } else {
+      read_effort_place(where, unknown);
+    }
   }
+  unknown.walk = unknown.is_stiffness() ? 0.0 : unknown.prior;
+  fields.read("walk", unknown.walk);
   return unknown;
 }
 

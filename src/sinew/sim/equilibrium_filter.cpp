@@ -18,7 +18,13 @@ EquilibriumFilter::EquilibriumFilter(const EstimatorModel& model, int threads)
       filter_(model.of_components(&Unknown::prior), model.of_components(&Unknown::walk),
               model.lags),
       settled_from_(filter_),
-      controlled_(model.actuators()) {
+      predicted_(filter_) {
+  const std::vector<int> actuators = model.actuators();
+  for (std::size_t k = 0; k < actuators.size(); ++k) {
+    if (actuators[k] < 0) continue;
+    controlled_.push_back(actuators[k]);
+    with_.push_back(static_cast<Eigen::Index>(k));
+  }
   EquilibriumFilter::forget();
 }
 
@@ -37,27 +43,65 @@ void EquilibriumFilter::begin_settling() {
 void EquilibriumFilter::predict(const Run& run, double time_step) {
   filter_.predict(time_step);
   std::rotate(instants_.begin(), instants_.end() - 1, instants_.end());  // as a range: no clang 14
-  take_up(run, false);
+  if (iterates()) {
+    predicted_ = filter_;
+    start_ = own_robot().state();
+  }
+  take_up(run, filter_.mean(), false);
+}
+
+// Where the robot fails, what was known before stays.
+void EquilibriumFilter::predict_again(const Run& run) {
+  const Instant before = instants_.front();
+  const State after = own_robot().state();
+  const estimate::RandomWalkFilter corrected = std::exchange(filter_, predicted_);
+  own_robot().restore(start_);
+  take_up(run, corrected.mean(), false);
+  if (instants_.front().known) return;
+  instants_.front() = before;
+  filter_ = corrected;
+  own_robot().restore(after);
 }
 
 void EquilibriumFilter::predict_rest(const Run& run) {
-  take_up(run, true);
-  filter_ = settled_from_;
+  take_up(run, filter_.mean(), true);
+  if (instants_.front().known) filter_ = settled_from_;
 }
 
-void EquilibriumFilter::take_up(const Run& run, bool settles) {
+void EquilibriumFilter::take_up(const Run& run, const VectorX& unknowns, bool settles) {
   Instant& now = instants_.front();
-  now.known = move(run, filter_.mean(), settles);
+  State from;
+  if (model().has_stiffness()) from = own_robot().state();
+  now.known = move(run, unknowns, settles);
   now.unknowns = acted();
   if (!now.known) return;
   now.readings = readings();
   now.sensitivity = sensitivity();
+  if (model().has_stiffness()) now.known = add_stiffness(run, from, settles);
+}
+
+bool EquilibriumFilter::add_stiffness(const Run& run, const State& from, bool settles) {
+  constexpr double kDifference = 0.01;
+  Instant& now = instants_.front();
+  const State after = own_robot().state();
+  const std::vector<int> actuators = model().actuators();
+  bool good = true;
+  for (Eigen::Index k = 0; k < filter_.size() && good; ++k) {
+    if (actuators[static_cast<std::size_t>(k)] >= 0) continue;
+    own_robot().restore(settles ? after : from);
+    good = move(run, now.unknowns + kDifference * VectorX::Unit(filter_.size(), k), settles);
+    if (!good) break;
+    now.sensitivity.col(k) = reading_difference(readings(), now.readings) / kDifference;
+  }
+  own_robot().restore(after);
+  return good;
 }
 
 MatrixX EquilibriumFilter::sensitivity() {
+  MatrixX all = MatrixX::Zero(model().readings(), filter_.size());
+  if (controlled_.empty()) return all;
   const StepResponse response(own_robot(), controlled_);
   const Model& robot = *model().robot;
-  MatrixX all(model().readings(), filter_.size());
   Eigen::Index first = 0;
   for (std::size_t k = 0; k < model().sensors.size(); ++k) {
     const EstimatorSensor& sensor = model().sensors[k];
@@ -65,7 +109,8 @@ MatrixX EquilibriumFilter::sensitivity() {
     const auto row_of = [&](int actuator) {
       return robot.actuators()[static_cast<std::size_t>(actuator)].row;
     };
-    auto own = all.middleRows(first, static_cast<Eigen::Index>(sensor.size));
+    const auto rows = static_cast<Eigen::Index>(sensor.size);
+    auto own = all(Eigen::seqN(first, rows), with_);
     if (sensor.effector >= 0) {
       own = response.motions(robot.effector(sensor.effector).first_row(), 3);
     } else if (const auto* motion = dynamic_cast<const MotionSource*>(source)) {
@@ -74,7 +119,7 @@ MatrixX EquilibriumFilter::sensitivity() {
       const auto& effort = dynamic_cast<const EffortSource&>(*source);
       own = effort.factor() * response.effort(row_of(effort.actuator()));
     }
-    first += own.rows();
+    first += rows;
   }
   return all;
 }

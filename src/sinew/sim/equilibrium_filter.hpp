@@ -7,22 +7,31 @@
 
 #include "sinew/estimate/random_walk_filter.hpp"
 #include "sinew/sim/estimator_filter.hpp"
+#include "sinew/sim/state.hpp"
 
 namespace sinew::sim {
 
-/// An extended Kalman filter (Simon, Optimal State Estimation, Wiley 2006, sec. 13.2) for
-/// equilibria whose unknowns x follow a random walk. The readings h_k(u_k) of step k and their
-/// derivative S_k = dh_k/du are those of the robot's step k and its linearisation (StepResponse).
-/// The measurement equation of a sample of step k is
-///   y = h_k(u_k) + S_k (x_k - u_k) + v,
-/// where u_k is the estimate before step k; estimate::RandomWalkFilter processes it. A late sample
-/// counts for the step in which it was taken. The readings are exact to the tolerance of the step,
-/// and S to the change of the tangent in the last Newton correction.
+/// The readings h_k(u_k) and their derivative S_k = dh_k/du of step k are those of this step of the
+/// robot and its linearisation (StepResponse). With x the unknowns, which wander at random,
+///   y = h_k(u_k) + S_k (x_k - u_k) + v
+/// is what a sample of step k says; estimate::RandomWalkFilter takes it, with u_k = the estimate
+/// before step k. This is the extended Kalman filter (Simon, Optimal State Estimation, Wiley 2006,
+/// sec. 13.2) of equilibria along a random walk; a sample that comes late counts for the step in
+/// which it was taken. Step and sample agree to the step's tolerance, and S to the change of the
+/// tangent by the last Newton correction.
+///
+/// A stiffness has no row of W. Its column is a difference of two steps from the same start,
+///   dh/du_k = (h(u + e_k e) - h(u))/e,   e = 0.01 of the logarithm.
+/// h bends with it as exp(-u), and it does not wander, so that an error of the first linearisation
+/// would last: with a stiffness among the unknowns a step is repeated about the estimate that its
+/// samples led to, until that moves by less than a tenth of its deviation (the iterated filter,
+/// ibid. sec. 13.3.1). Samples that come late keep the linearisation of their step.
 class EquilibriumFilter : public EstimatorFilter {
  public:
   /// See EstimatorFilter; the robot of the model is quasi-static.
   EquilibriumFilter(const EstimatorModel& model, int threads);
 
+  bool iterates() const override { return model().has_stiffness(); }
   void begin_settling() override;
   VectorX mean() const override { return filter_.mean(); }
   MatrixX covariance() const override { return filter_.covariance(); }
@@ -37,6 +46,7 @@ class EquilibriumFilter : public EstimatorFilter {
  protected:
   void forget() override;
   void predict(const Run& run, double time_step) override;
+  void predict_again(const Run& run) override;
   void predict_rest(const Run& run) override;
   void save_own(std::vector<double>& memory) const override;
   bool load_own(std::span<const double>& memory) override;
@@ -51,14 +61,17 @@ class EquilibriumFilter : public EstimatorFilter {
   };
 
   const Instant& at(int lag) const { return instants_[static_cast<std::size_t>(lag)]; }
-  void take_up(const Run& run, bool settles);
+  void take_up(const Run& run, const VectorX& unknowns, bool settles);
   MatrixX sensitivity();
+  bool add_stiffness(const Run& run, const State& from, bool settles);
   template <class Self, class Visitor>
   static void visit_memory(Self& self, Visitor&& visitor);
 
-  estimate::RandomWalkFilter filter_, settled_from_;
-  std::vector<int> controlled_;    // (n,) actuators of the unknowns
-  std::vector<Instant> instants_;  // (lags + 1,) newest first
+  estimate::RandomWalkFilter filter_, settled_from_, predicted_;
+  State start_;                     // of the last step's robot, where it iterates
+  std::vector<int> controlled_;     // actuators of components that have one
+  std::vector<Eigen::Index> with_;  // these components
+  std::vector<Instant> instants_;   // (lags + 1,) from now back
 };
 
 }  // namespace sinew::sim

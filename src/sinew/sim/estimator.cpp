@@ -22,6 +22,8 @@ namespace {
 constexpr double kNever = -1.0;
 // The iterated filter ends when the estimate moves by less than this fraction of its deviation.
 constexpr double kSettled = 1e-3;
+// In steps, whose unknowns wander.
+constexpr double kSettledStep = 0.1;
 constexpr int kMaxSettling = 10;
 // Components of a direction up to this size are omitted from its description.
 constexpr double kUnspoken = 0.1;
@@ -136,28 +138,41 @@ void Estimator::observe() {
   observability_ = filter_->observability(variance);
 }
 
-void Estimator::advance(const Run& run) {
-  filter_->advance(run, plant_.step().time_step);
-  correct(run);
-  note_silence(run);
-  observe();
-}
-
-void Estimator::settle(const Run& run) {
-  filter_->begin_settling();
+// Predictor(round) of a path about the estimate as it is. Each round takes the samples anew.
+template <class Predictor>
+void Estimator::iterate(const Run& run, int rounds, double settled, Predictor&& predictor) {
   const std::vector<double> used = used_;
-  for (int round = 0; round < kMaxSettling; ++round) {
+  const double dropped = dropped_;
+  for (int round = 0; round < rounds; ++round) {
     const VectorX before = filter_->mean();
-    filter_->settle(run);
+    predictor(round);
+    if (round > 0 && filter_->failed()) break;  // what the samples led to before stays
     used_ = used;
+    dropped_ = dropped;
     correct(run);
     const VectorX moved = filter_->mean() - before;
-    if (filter_->failed() || moved.cwiseQuotient(deviation()).cwiseAbs().maxCoeff() < kSettled) {
+    if (filter_->failed() || moved.cwiseQuotient(deviation()).cwiseAbs().maxCoeff() < settled) {
       break;
     }
   }
   note_silence(run);
   observe();
+}
+
+void Estimator::advance(const Run& run) {
+  const auto predictor = [&](int round) {
+    if (round > 0) {
+      filter_->repeat(run);
+    } else {
+      filter_->advance(run, plant_.step().time_step);
+    }
+  };
+  iterate(run, filter_->iterates() ? kMaxSettling : 1, kSettledStep, predictor);
+}
+
+void Estimator::settle(const Run& run) {
+  filter_->begin_settling();
+  iterate(run, kMaxSettling, kSettled, [&](int) { filter_->settle(run); });
 }
 
 EstimatorStatus Estimator::status() const {

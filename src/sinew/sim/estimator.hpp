@@ -1,5 +1,5 @@
 /// @file
-/// Estimation of unknown forces and actuator efforts from the sensors of a run.
+/// What a run concludes from its sensors: forces from outside, efforts of actuators, stiffness.
 #pragma once
 
 #include <memory>
@@ -50,11 +50,13 @@ class Estimator {
   Estimator(Estimator&&) noexcept;
 
   const EstimatorModel& model() const { return model_; }
-  VectorX mean() const;        ///< (n,) N or Pa, see EstimatorModel::component_names()
-  MatrixX covariance() const;  ///< (n, n) of the unknowns
-  VectorX deviation() const;   ///< (n,) N or Pa, standard deviations
-  /// Information of the sensors beyond the prior, see EstimatorFilter::observability(); zeros
-  /// before the first step.
+  /// (n,) N or Pa, and of a stiffness the logarithm of its factor, see
+  /// EstimatorModel::component_names().
+  VectorX mean() const;
+  MatrixX covariance() const;  ///< (n, n) of them
+  VectorX deviation() const;   ///< (n,) of them
+  /// What sensors tell beyond the prior, see EstimatorFilter::observability(); zeros before the
+  /// first step.
   const estimate::Observability& observability() const { return observability_; }
   EstimatorStatus status() const;
   /// Names the silent sensors, the unobservable directions, or the reason why there is no
@@ -87,6 +89,8 @@ class Estimator {
  private:
   void forget();
   void correct(const Run& run);
+  template <class Predictor>
+  void iterate(const Run& run, int rounds, double settled, Predictor&& predictor);
   void note_silence(const Run& run);
   void observe();
   template <class Self, class Visitor>

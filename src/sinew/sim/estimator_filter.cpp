@@ -1,6 +1,7 @@
 #include "sinew/sim/estimator_filter.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "sinew/core/error.hpp"
@@ -34,6 +35,11 @@ void EstimatorFilter::advance(const Run& run, double time_step) {
   keep_time(run);
 }
 
+void EstimatorFilter::repeat(const Run& run) {
+  predict_again(run);
+  keep_time(run);
+}
+
 void EstimatorFilter::settle(const Run& run) {
   predict_rest(run);
   keep_time(run);
@@ -58,7 +64,35 @@ double EstimatorFilter::told(const Run& run, int actuator) const {
   return given ? state.effort : 0.0;
 }
 
-// External forces of scripts and tethers are among the unknowns, and therefore set to zero.
+// Visitor(component, actuator, wanted effort, effort within its limits).
+template <class Visitor>
+void EstimatorFilter::visit_efforts(const Run& run, const VectorX& unknowns,
+                                    Visitor&& visitor) const {
+  Eigen::Index k = 0;
+  for (const Unknown& unknown : model_.unknowns) {
+    const Eigen::Index first = std::exchange(k, k + unknown.size());
+    if (unknown.kind == Unknown::Kind::stiffness) continue;
+    const bool added = unknown.kind == Unknown::Kind::effort && unknown.command_known;
+    for (int own = 0; own < unknown.size(); ++own) {
+      const int actuator = unknown.first_actuator + own;
+      const Limits& limits = model_.robot->actuators()[static_cast<std::size_t>(actuator)].effort;
+      const double offset = added ? told(run, actuator) : 0.0;
+      const double wanted = offset + unknowns[first + own];
+      visitor(first + own, actuator, wanted, std::clamp(wanted, limits.min, limits.max));
+    }
+  }
+}
+
+// As it is where nothing bounds it.
+VectorX EstimatorFilter::bounded(const Run& run, const VectorX& unknowns) const {
+  VectorX acted = unknowns;
+  visit_efforts(run, unknowns, [&](Eigen::Index k, int, double wanted, double effort) {
+    acted[k] = unknowns[k] + (effort - wanted);
+  });
+  return acted;
+}
+
+// What scripts and hands do to the bodies is what is to be found.
 Inputs EstimatorFilter::inputs_of(const Run& run, const VectorX& unknowns) {
   Inputs inputs = run.inputs();
   const std::vector<ActuatorState>& states = run.actuation.states();
@@ -68,26 +102,25 @@ Inputs EstimatorFilter::inputs_of(const Run& run, const VectorX& unknowns) {
     }
   }
   inputs.commands.resize(model_.robot->actuators().size());
-  Eigen::Index k = 0;
-  for (const Unknown& unknown : model_.unknowns) {
-    const bool added = unknown.kind == Unknown::Kind::effort && unknown.command_known;
-    for (int own = 0; own < unknown.size(); ++own, ++k) {
-      const int actuator = unknown.first_actuator + own;
-      const Limits& limits = model_.robot->actuators()[static_cast<std::size_t>(actuator)].effort;
-      const double offset = added ? told(run, actuator) : 0.0;
-      const double wanted = offset + unknowns[k];
-      const double effort = std::clamp(wanted, limits.min, limits.max);
-      acted_[k] = unknowns[k] + (effort - wanted);  // exactly unknowns[k] within the limits
-      inputs.commands[static_cast<std::size_t>(actuator)] = {CommandKind::effort,
-                                                             Signal::constant(effort)};
-    }
-  }
+  visit_efforts(run, unknowns, [&](Eigen::Index, int actuator, double, double effort) {
+    inputs.commands[static_cast<std::size_t>(actuator)] = {CommandKind::effort,
+                                                           Signal::constant(effort)};
+  });
   std::vector<Signal> loads;
   for (const int load : model_.loads) loads.push_back(inputs.loads[static_cast<std::size_t>(load)]);
   inputs.loads = std::move(loads);
   for (BodyInputs& body : inputs.bodies) {
     body.external_forces.setZero();
     body.tether.reset();
+    body.stiffness_factor = 1.0;
+  }
+  Eigen::Index k = 0;
+  for (const Unknown& unknown : model_.unknowns) {
+    if (unknown.kind == Unknown::Kind::stiffness) {
+      inputs.bodies[static_cast<std::size_t>(unknown.body)].stiffness_factor =
+          std::exp(unknowns[k]);
+    }
+    k += unknown.size();
   }
   return inputs;
 }
@@ -95,6 +128,7 @@ Inputs EstimatorFilter::inputs_of(const Run& run, const VectorX& unknowns) {
 // A run continues if its estimator's robot fails.
 bool EstimatorFilter::move(const Run& run, const VectorX& unknowns, bool settles) {
   robot_->set_inputs(inputs_of(run, unknowns));
+  acted_ = bounded(run, unknowns);
   failed_ = false;
   reason_.clear();
   try {
@@ -117,6 +151,18 @@ VectorX EstimatorFilter::readings() const {
     const std::size_t size = model_.sensors[k].size;
     robot_->read_sensor_truth(static_cast<int>(k), {all.data() + first, size});
     first += static_cast<Eigen::Index>(size);
+  }
+  return all;
+}
+
+VectorX EstimatorFilter::reading_difference(const VectorX& to, const VectorX& from) const {
+  VectorX all(to.size());
+  Eigen::Index first = 0;
+  for (std::size_t k = 0; k < model_.sensors.size(); ++k) {
+    const auto size = static_cast<Eigen::Index>(model_.sensors[k].size);
+    all.segment(first, size) =
+        model_.difference(k, to.segment(first, size), from.segment(first, size));
+    first += size;
   }
   return all;
 }

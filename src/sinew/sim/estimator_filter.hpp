@@ -33,7 +33,12 @@ class EstimatorFilter {
   /// Predicts to the end of the run's last step. @param run at its present time.
   /// @param time_step s.
   void advance(const Run& run, double time_step);
-  /// Discards the past instants and stores the present distribution, from which settle() starts.
+  /// Whether a step is repeated after its samples, about the estimate that they led to.
+  virtual bool iterates() const { return false; }
+  /// The last step once more from where it began, with the unknowns as estimated now, and without
+  /// what samples said since. @param run now.
+  void repeat(const Run& run);
+  /// Forgets what happened before, but for the distribution: what settle() begins from.
   virtual void begin_settling() = 0;
   /// Predicts from there to an equilibrium under the run's inputs and the unknowns as estimated
   /// now. Time does not advance. @param run at its present time.
@@ -71,6 +76,8 @@ class EstimatorFilter {
   /// Resets the distribution to the prior.
   virtual void forget() = 0;
   virtual void predict(const Run& run, double time_step) = 0;
+  /// Where it iterates.
+  virtual void predict_again(const Run& /*run*/) {}
   virtual void predict_rest(const Run& run) = 0;
   virtual void save_own(std::vector<double>& memory) const = 0;
   virtual bool load_own(std::span<const double>& memory) = 0;
@@ -84,12 +91,18 @@ class EstimatorFilter {
   /// (n,) the unknowns as they acted in the last move, within the limits of their actuators: a
   /// cable cannot push.
   const VectorX& acted() const { return acted_; }
-  /// (m,) readings of the robot's sensors without errors.
+  /// (n,) the unknowns as they would act.
+  VectorX bounded(const Run& run, const VectorX& unknowns) const;
+  /// (m,) what the sensors say of the robot without errors.
   VectorX readings() const;
+  /// (m,) EstimatorModel::difference() of all sensors. @param to,from (m,).
+  VectorX reading_difference(const VectorX& to, const VectorX& from) const;
 
  private:
   Inputs inputs_of(const Run& run, const VectorX& unknowns);
   double told(const Run& run, int actuator) const;
+  template <class Visitor>
+  void visit_efforts(const Run& run, const VectorX& unknowns, Visitor&& visitor) const;
   void keep_time(const Run& run);
 
   const EstimatorModel& model_;

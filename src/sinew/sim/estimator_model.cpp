@@ -1,5 +1,7 @@
 #include "sinew/sim/estimator_model.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "sinew/constraint/effector.hpp"
@@ -23,7 +25,7 @@ Eigen::Index EstimatorModel::readings() const {
 std::vector<std::string> EstimatorModel::component_names() const {
   std::vector<std::string> names;
   for (const Unknown& unknown : unknowns) {
-    if (unknown.kind == Unknown::Kind::effort) {
+    if (unknown.kind != Unknown::Kind::force) {
       names.push_back(unknown.name);
       continue;
     }
@@ -54,9 +56,25 @@ VectorX EstimatorModel::difference(std::size_t sensor, const VectorX& to,
 std::vector<int> EstimatorModel::actuators() const {
   std::vector<int> all;
   for (const Unknown& unknown : unknowns) {
-    for (int k = 0; k < unknown.size(); ++k) all.push_back(unknown.first_actuator + k);
+    const bool none = unknown.kind == Unknown::Kind::stiffness;
+    for (int k = 0; k < unknown.size(); ++k) all.push_back(none ? -1 : unknown.first_actuator + k);
   }
   return all;
+}
+
+bool EstimatorModel::has_stiffness() const {
+  return std::ranges::find(unknowns, Unknown::Kind::stiffness, &Unknown::kind) != unknowns.end();
+}
+
+void EstimatorModel::take_exponentials(VectorX& mean, VectorX& deviation) const {
+  Eigen::Index k = 0;
+  for (const Unknown& unknown : unknowns) {
+    if (unknown.kind == Unknown::Kind::stiffness) {
+      mean[k] = std::exp(mean[k]);
+      deviation[k] *= mean[k];
+    }
+    k += unknown.size();
+  }
 }
 
 }  // namespace sinew::sim

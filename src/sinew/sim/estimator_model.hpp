@@ -16,17 +16,21 @@ class Model;
 /// A quantity that an estimator estimates.
 struct Unknown {
   enum class Kind {
-    force,   ///< a dead force on a point: components along the world axes
-    effort,  ///< of an actuator: in addition to its commanded effort, see command_known
+    force,   ///< a dead force on a point: components along x, y and z of the world
+    effort,  ///< of an actuator: what is added to its commanded effort, see command_known
+    /// Of a body of finite elements: the logarithm of a factor of all its moduli. The factor is
+    /// lognormal before anything is measured, with the median 1, and stays positive.
+    stiffness,
   };
   std::string name;
   Kind kind = Kind::force;
-  int first_actuator = 0;  ///< of the estimator's robot: the first of three forces, or the actuator
-  double prior = 1.0;      ///< prior standard deviation of each component, in its unit
-  double walk = 1.0;       ///< of each component's random walk, in its unit per sqrt(s)
-  /// For an effort: whether the estimator knows the command. If so, it estimates the difference
-  /// between effort and commanded effort; otherwise, or if no effort is commanded, the whole
-  /// effort.
+  int first_actuator = -1;  ///< of the estimator's robot: three forces in turn, or the actuator
+  int body = -1;            ///< whose stiffness it is
+  double prior = 1.0;  ///< standard deviation of each component before anything is measured, in its
+                       ///< unit
+  double walk = 1.0;   ///< its unit over sqrt(s), of each component's random walk
+  /// Of an effort: whether the estimator knows the command. It then looks for the difference of
+  /// effort and commanded effort; where it does not know, or no effort is commanded, for the whole.
   bool command_known = true;
   const char* unit = "N";
 
@@ -57,9 +61,9 @@ struct EstimatorModel {
   int lags = 0;  ///< number of steps of the longest delay
   int rank = 0;  ///< columns of the covariance for a robot with inertia, see MotionFilter
 
-  Eigen::Index size() const;      ///< n: number of components of all unknowns
-  Eigen::Index readings() const;  ///< m: number of components of all sensors
-  /// (n,) "hand.x", "hand.y", "hand.z" of a force, "leak" of an effort.
+  Eigen::Index size() const;      ///< n: components of all unknowns
+  Eigen::Index readings() const;  ///< m: numbers that all sensors say
+  /// (n,) "hand.x", "hand.y", "hand.z" of a force, "leak" of an effort, "soft" of a stiffness.
   std::vector<std::string> component_names() const;
   /// (n,) the prior or walk of each component's unknown. @param number member of Unknown.
   VectorX of_components(double Unknown::*number) const;
@@ -67,8 +71,13 @@ struct EstimatorModel {
   /// R_from^T. @param sensor index in `sensors`.
   /// @param to,from (k,) readings.
   VectorX difference(std::size_t sensor, const VectorX& to, const VectorX& from) const;
-  /// (n,) the actuator of the estimator's robot that applies each component.
+  /// (n,) of the estimator's robot, whose effort each component is part of; -1: a stiffness.
   std::vector<int> actuators() const;
+  /// Whether a stiffness is among the unknowns.
+  bool has_stiffness() const;
+  /// Replaces the logarithms in a mean by factors, and the deviations of logarithms by those of
+  /// factors to the first order: std(exp(u)) = exp(u) std(u). @param mean,deviation (n,).
+  void take_exponentials(VectorX& mean, VectorX& deviation) const;
 };
 
 /// Settings for ModelBuilder::add_estimator(); sensors are given by name.

@@ -18,6 +18,7 @@ double signature_of(const std::vector<EstimatorModel>& estimators) {
     for (const EstimatorSensor& sensor : one.sensors) hash.add(sensor.index, sensor.size);
     for (const Unknown& unknown : one.unknowns) {
       hash.add(unknown.first_actuator, unknown.size(), unknown.command_known);
+      if (unknown.kind == Unknown::Kind::stiffness) hash.add(unknown.body);
     }
   }
   return static_cast<double>(hash.value() >> 12);

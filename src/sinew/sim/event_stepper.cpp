@@ -157,7 +157,11 @@ double EventStepper::move(double time, double length) {
   substep_.read_commands(time + solved, solved);
   effort_before_ = run_.effort;
   substep_.begin(solved);
-  substep_.solve(solved);
+  if (smooth) {
+    midpoint_.solve(substep_, solved);
+  } else {
+    substep_.solve(solved);
+  }
   carried_on_ = smooth && stays_smooth();
   if (carried_on_) {
     midpoint_.carry_on(substep_, solved);

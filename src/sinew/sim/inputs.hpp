@@ -17,7 +17,8 @@ struct BodyInputs {
   Points external_forces;                   ///< (n, 3) N on all mesh nodes
   std::optional<mechanics::Tether> tether;  ///< spring from a point to an anchor in the world
   std::optional<mechanics::AffineField>
-      base;  ///< displacement of the fixed nodes in the next step; none: they stay
+      base;                       ///< where fixed nodes go in the next step; none: they stay
+  double stiffness_factor = 1.0;  ///< of its elements, > 0: see fem::HasMaterial
 };
 
 /// The inputs of a simulation as a value, see Simulation::inputs().

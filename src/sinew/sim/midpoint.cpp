@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "sinew/constraint/surface_contact.hpp"
 #include "sinew/sim/run.hpp"
@@ -24,12 +25,16 @@ constexpr int kTurns = 2;
 Midpoint::Midpoint(Run& run)
     : run_(run), widened_(run.effort.size(), 0.0), turned_(run.effort.size(), 0) {}
 
+void Midpoint::solve(Substep& substep, double half) {
+  std::ranges::fill(widened_, 0.0);  // where an earlier part ended with an error
+  std::ranges::fill(turned_, 0);
+  substep.solve(half);
+  for (int turn = 0; turn < kTurns && turn_points(); ++turn) substep.solve(half);
+}
+
 void Midpoint::carry_on(Substep& substep, double half) {
   Bodies& bodies = run_.world.bodies();
   const double middle = run_.now;
-  std::ranges::fill(widened_, 0.0);  // where an earlier part ended with an error
-  std::ranges::fill(turned_, 0);
-  for (int turn = 0; turn < kTurns && turn_points(); ++turn) substep.solve(half);
   bodies.scale_motion(2.0);
   place(middle + half);
   for (int round = 0; correct() > kHeld * run_.model->size() && round < kMaxRounds; ++round) {
@@ -82,8 +87,11 @@ void Midpoint::place(double time) {
 double Midpoint::correct() {
   World& world = run_.world;
   const VectorX& delta = world.measure_delta();
-  if (has_turned()) {
-    for (const auto& touching : world.contacts().planes().surfaces()) touching->look_around();
+  for (const auto& touching : world.contacts().planes().surfaces()) {
+    const auto first = static_cast<std::size_t>(touching->contact().first_row());
+    const auto count = static_cast<std::size_t>(touching->contact().row_count());
+    const auto own = std::span(turned_).subspan(first, count);
+    if (std::ranges::find(own, 1) != own.end()) touching->look_around();
   }
   double worst = 0.0;
   for (step::BilateralBlock& block : world.problem().bilaterals) {

@@ -1,5 +1,5 @@
 /// @file
-/// The second half of a step of the midpoint rule.
+/// A step of the midpoint rule, in halves.
 #pragma once
 
 #include <vector>
@@ -20,7 +20,7 @@ class Substep;
 /// quadratic such forces do no work, and motion and energy do not drift (Gonzalez, Mechanical
 /// systems subject to holonomic constraints, Physica D 132 (1999) 165).
 /// A point slides on a surface that turns: its gap is g = n.(x_1 - x_2) at the places that touch at
-/// the time, whose gradient is n there, as x_1 - x_2 lies along n. So a pressed point gets the
+/// the time, whose gradient is n there, as x_1 - x_2 lies along n. So a closed point gets the
 /// places and the normal of the middle, found again after a first solution, and the gap at the end
 /// is measured between the surfaces. With the places and the normal of the start it would be off by
 /// v w h^2 for a slip v and a turn w, and the point would be struck again by v w h.
@@ -28,7 +28,9 @@ class Midpoint {
  public:
   /// @param run must outlive it.
   explicit Midpoint(Run& run);
-  /// Completes the step. @param substep that has solved the first half. @param half s, its length.
+  /// The first half. @param substep that has begun it. @param half s, its length.
+  void solve(Substep& substep, double half);
+  /// The second one, after solve(). @param substep,half the same.
   void carry_on(Substep& substep, double half);
   /// J, then: what the normal forces of points that turned did, |f.motion|. Their gaps are what
   /// they were, so that it is an error, of third order.

@@ -54,6 +54,7 @@ void MotionFilter::begin_settling() {
   settled_from_ = filter_;
 }
 
+// A correction that the robot cannot take is dropped: every later step would begin there.
 void MotionFilter::predict(const Run& run, double time_step) {
   const State before = own_robot().state();
   const State from = moved(before, filter_.state_deviation());
@@ -62,61 +63,73 @@ void MotionFilter::predict(const Run& run, double time_step) {
   filter_.begin_step(time_step);
   std::rotate(path_.begin(), path_.end() - 1, path_.end());
   std::rotate(known_.begin(), known_.end() - 1, known_.end());
-  known_.front() = move_columns(run, from, false) ? 1.0 : 0.0;
-  // A correction that the robot cannot follow is dropped; otherwise every later step would start
-  // from it.
-  if (failed() && own_robot().steps() == before.steps) own_robot().restore(before);
+  const Outcome outcome = move_all(run, from, false);
+  known_.front() = outcome == Outcome::moved ? 1.0 : 0.0;
+  if (outcome == Outcome::column_failed) own_robot().restore(from);
+  if (outcome == Outcome::path_failed) own_robot().restore(before);
   filter_.end_step();
 }
 
 void MotionFilter::predict_rest(const Run& run) {
   const State from = own_robot().state();
-  const VectorX unknowns = filter_.mean();
+  const estimate::ReducedRankFilter before = filter_;
   filter_ = settled_from_;
   filter_.begin_rest();
-  filter_.put_mean(unknowns);
-  known_.front() = move_columns(run, from, true) ? 1.0 : 0.0;
+  filter_.put_mean(before.mean());
+  const bool moved = move_all(run, from, true) == Outcome::moved;
+  known_.front() = moved ? 1.0 : 0.0;
+  if (!moved) {
+    filter_ = before;
+    own_robot().restore(from);
+    return;
+  }
   const VectorX acted = filter_.mean();
   filter_.put_mean(settled_from_.mean());
-  if (known_.front() != 0.0) filter_.end_rest(acted);
+  filter_.end_rest(acted);
 }
 
-// Where an unknown is at its bound, columns are perturbed to the side on which it is free.
-bool MotionFilter::move_columns(const Run& run, const State& from, bool settles) {
-  if (!move(run, filter_.mean(), settles)) return false;
-  const VectorX unknowns = acted();
-  filter_.put_mean(unknowns);
+MotionFilter::Outcome MotionFilter::move_all(const Run& run, const State& from, bool settles) {
+  if (!move(run, filter_.mean(), settles)) return Outcome::path_failed;
+  filter_.put_mean(acted());
   path_.front() = readings();
   const State after = own_robot().state();
-  const VectorX reached = body_numbers(after);
-  bool good = true;
-  for (Eigen::Index k = 0; k < filter_.columns() && good; ++k) {
-    const auto go = [&](double part) {
-      const VectorX wanted = unknowns + part * filter_.input_column(k);
-      own_robot().restore(moved(settles ? after : from, part * filter_.state_column(k)));
-      good = move(run, wanted, settles);
-      return good && acted() == wanted;
-    };
-    double part = kDifference;
-    if (!go(part)) go(part = -part);
-    if (!good) break;
-    filter_.put_column(k, reading_difference(readings(), path_.front()) / part,
-                       (body_numbers(own_robot().state()) - reached) / part);
+  const Reached reached{settles ? after : from, body_numbers(after), settles};
+  const Eigen::Index m = path_.front().size(), states = reached.numbers.size();
+  MatrixX columns = MatrixX::Zero(m + states, filter_.columns());
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    if (!move_column(run, reached, k, columns.col(k))) return Outcome::column_failed;
+  }
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    filter_.put_column(k, columns.col(k).head(m), columns.col(k).tail(states));
   }
   own_robot().restore(after);
-  return good;
+  return Outcome::moved;
 }
 
-VectorX MotionFilter::reading_difference(const VectorX& to, const VectorX& from) const {
-  VectorX all(to.size());
-  Eigen::Index first = 0;
-  for (std::size_t k = 0; k < model().sensors.size(); ++k) {
-    const auto size = static_cast<Eigen::Index>(model().sensors[k].size);
-    all.segment(first, size) =
-        model().difference(k, to.segment(first, size), from.segment(first, size));
-    first += size;
-  }
-  return all;
+// Where an unknown is at its bound, F has a derivative on one side only, and the column goes to
+// that side. With du = du_1 + du_2, du_1 free to the one side and du_2 to the other,
+//   F(s + e ds, u + e du_1) - F(s, u - e du_2) = e F_s ds + e F_u du,
+// to the first order in e, with the derivatives of the sides on which the unknowns are free.
+bool MotionFilter::move_column(const Run& run, const Reached& reached, Eigen::Index k,
+                               Eigen::Ref<VectorX> column) {
+  const VectorX unknowns = filter_.mean(), all = filter_.input_column(k);
+  const VectorX state = filter_.state_column(k);
+  const auto free_part = [&](double part) -> VectorX {
+    const VectorX wanted = unknowns + part * all;
+    return (bounded(run, wanted).array() == wanted.array()).select(all, 0.0);
+  };
+  const auto add = [&](double part, const VectorX& way, const VectorX& inputs) {
+    own_robot().restore(moved(reached.start, part * way));
+    if (!move(run, unknowns + part * inputs, reached.settles)) return false;
+    column.head(path_.front().size()) += reading_difference(readings(), path_.front()) / part;
+    column.tail(way.size()) += (body_numbers(own_robot().state()) - reached.numbers) / part;
+    return true;
+  };
+  const VectorX ahead = free_part(kDifference);
+  if (ahead == all) return add(kDifference, state, all);
+  if (free_part(-kDifference) == all) return add(-kDifference, state, all);
+  return add(kDifference, state, ahead) &&
+         add(-kDifference, VectorX::Zero(state.size()), all - ahead);
 }
 
 void MotionFilter::correct(int lag, Eigen::Index first, const VectorX& innovation,

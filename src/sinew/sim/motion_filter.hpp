@@ -20,9 +20,14 @@ namespace sinew::sim {
 /// A column (du, ds) of the covariance factor is propagated through a step by a difference of two
 /// steps,
 ///   (dy, ds') = (F(s + e ds, u + e du) - F(s, u)) / e,   e = 0.1,
-/// of the full robot, with joints, contacts and drives. This is the derivative of the step up to
-/// first order in e, with an error of the step's tolerance over e. One step of the filter therefore
-/// takes one step of the robot per column, plus one.
+/// of the robot as it is, with its joints, contacts and drives: the derivative of the step to the
+/// first order in e, and to the step's tolerance over e. One step of the filter therefore takes as
+/// many steps of the robot as there are columns, and one more. A column in which unknowns at their
+/// bounds (cables without tension) are free on different sides takes two.
+///
+/// A step that the robot fails to make, along its path or along one of the columns, is not made at
+/// all: the robot stands still, its covariance stays but for the walk of the unknowns, and samples
+/// of that instant tell nothing.
 ///
 /// Neglected: truncated columns (see ReducedRankFilter), second derivatives, and the uncertainty of
 /// states outside the bodies, such as the gas in chambers and the friction memory of contacts.
@@ -51,8 +56,19 @@ class MotionFilter : public EstimatorFilter {
   bool load_own(std::span<const double>& memory) override;
 
  private:
-  bool move_columns(const Run& run, const State& from, bool settles);
-  VectorX reading_difference(const VectorX& to, const VectorX& from) const;
+  enum class Outcome { moved, path_failed, column_failed };
+  // What the path's step led to, and where a column begins: the start of the step, or the
+  // equilibrium.
+  struct Reached {
+    const State& start;
+    VectorX numbers;
+    bool settles = false;
+  };
+
+  Outcome move_all(const Run& run, const State& from, bool settles);
+  // Adds (dy, ds') to (m + states,). Returns whether the robot got there.
+  bool move_column(const Run& run, const Reached& reached, Eigen::Index k,
+                   Eigen::Ref<VectorX> column);
 
   estimate::ReducedRankFilter filter_, settled_from_;
   std::vector<VectorX> path_;  // (lags + 1,) (m,) readings on the path, newest first

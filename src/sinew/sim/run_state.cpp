@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/has_material.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/inputs.hpp"
@@ -113,6 +114,9 @@ Inputs Run::inputs() const {
     if (const auto* standing = mechanics::as<mechanics::HasBase>(*body)) {
       own.base = standing->base_input();
     }
+    if (const auto* made = mechanics::as<fem::HasMaterial>(*body)) {
+      own.stiffness_factor = made->stiffness_factor();
+    }
   }
   return inputs;
 }
@@ -137,6 +141,9 @@ void Run::set_inputs(const Inputs& inputs) {
     }
     if (auto* standing = mechanics::as<mechanics::HasBase>(*bodies[i])) {
       standing->move_base(own.base);
+    }
+    if (auto* made = mechanics::as<fem::HasMaterial>(*bodies[i])) {
+      made->set_stiffness_factor(own.stiffness_factor);
     }
   }
 }

@@ -360,8 +360,10 @@ void add_estimators(Observables& list) {
     list.add(std::move(parts), [&simulation, i](std::span<double> all) {
       const Estimator& one = simulation.estimator(static_cast<int>(i));
       Numbers to(all);
-      for (const double component : one.mean()) to.put(component);
-      for (const double deviation : one.deviation()) to.put(deviation);
+      VectorX mean = one.mean(), deviation = one.deviation();
+      one.model().take_exponentials(mean, deviation);
+      for (const double component : mean) to.put(component);
+      for (const double own : deviation) to.put(own);
       to.put(static_cast<double>(one.status()));
     });
   }

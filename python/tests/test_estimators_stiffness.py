@@ -1,0 +1,202 @@
+"""Estimators of scenes that look for the stiffness of a body, beside forces and alone."""
+import re
+
+import numpy as np
+import pytest
+import scipy.stats
+
+import sinew
+
+PRIOR = 0.3  # of the logarithm
+
+
+def beam(integrator="quasi-static", **changes):
+    """A soft beam that bends under its weight, seen by two markers."""
+    return {
+        "sinew": 1, "time_step": "10 ms", "integrator": integrator, "gravity": "0 0 -9.81 m/s^2",
+        "bodies": {"beam": {"type": "fem", "mesh": {"shape": "block", "length": "60 mm", "width": "10 mm", "height": "10 mm",
+                                                    "element_size": "10 mm"}, "element": "tet4",
+                            "material": {"model": "corotational", "young_modulus": "100 kPa", "poisson_ratio": 0.3},
+                            "density": "1000 kg/m^3", "damping": {"stiffness": "2 ms"}, "fixed": {"set": "x_min"}}},
+        "sensors": {"tip": {"type": "marker", "body": "beam", "point": "60 10 10 mm", "noise": "0.1 mm", "seed": 3},
+                    "middle": {"type": "marker", "body": "beam", "point": "30 0 10 mm", "noise": "0.1 mm", "seed": 4}},
+        "estimators": {"watch": {"type": "filter", "sensors": ["tip", "middle"], "rank": 6, "unknowns": {
+            "soft": {"stiffness": {"body": "beam"}, "prior": PRIOR}}}},
+    } | changes
+
+
+def twin(tree, logarithm, seed):
+    """The scene with the body's moduli multiplied by exp(logarithm), of which its estimator does not know."""
+    for k, sensor in enumerate(tree["sensors"].values()):
+        sensor["seed"] = 100 * seed + k
+    sim = sinew.load(tree)
+    sim.body("beam").stiffness_factor = np.exp(logarithm)
+    return sim
+
+
+def check_ellipsoids(squares, size):
+    """Squared errors by the covariance: chi squared, its mean over many draws within 3.3 of its deviations."""
+    count = len(squares)
+    assert abs(np.mean(squares) - size) < 3.3 * np.sqrt(2.0 * size / count)
+    inside = scipy.stats.binom(count, 0.9)
+    assert inside.ppf(1e-3) <= np.sum(np.array(squares) < scipy.stats.chi2.ppf(0.9, size)) <= inside.ppf(1.0 - 1e-3)
+
+
+def test_a_factor_is_another_modulus():
+    """In rubber that relaxes and softens, too: forces, energies and stresses of a motion."""
+    material = {"model": "neo-hookean", "young_modulus": "100 kPa", "poisson_ratio": 0.45,
+                "viscosity": [{"relative_modulus": 0.3, "relaxation_time": "30 ms"}]}
+    pair = []
+    for modulus, peak, factor in (("100 kPa", "10 Pa", 1.7), ("170 kPa", "17 Pa", 1.0)):
+        tree = beam("bdf2", estimators={}, probes={})
+        tree["bodies"]["beam"] |= {"element": "tet10", "material": {**material, "young_modulus": modulus, "softening": {"r": 2, "m": peak, "beta": 0.1}}}
+        sim = sinew.load(tree)
+        sim.body("beam").stiffness_factor = factor
+        sim.step(10)
+        pair.append(sim)
+    one, other = (sim.body("beam") for sim in pair)
+    np.testing.assert_allclose(one.positions, other.positions, atol=1e-9)
+    np.testing.assert_allclose(one.velocities, other.velocities, atol=1e-6)
+    np.testing.assert_allclose(one.internal_forces(), other.internal_forces(), rtol=1e-4, atol=1e-8)
+    assert abs(one.stiffness() - other.stiffness()).max() < 1e-6 * abs(other.stiffness()).max()
+    assert one.strain_energy == pytest.approx(other.strain_energy, rel=1e-5)
+    clone = pair[0].clone()
+    assert clone.body("beam").stiffness_factor == 1.7
+    pair[0].reset()
+    assert one.stiffness_factor == 1.0
+    for wrong in (0.0, -1.0, np.nan, np.inf):
+        with pytest.raises(sinew.Error, match="out-of-range"):
+            one.stiffness_factor = wrong
+
+
+def test_ellipsoids_of_stiffness_at_rest():
+    rng = np.random.default_rng(11)
+    squares = []
+    for draw in range(50):
+        logarithm = PRIOR * rng.standard_normal()
+        sim = twin(beam(), logarithm, draw)
+        sim.solve_static()
+        watch = sim.estimator("watch")
+        assert watch.status == "estimating"
+        assert watch.std[0] < 0.05
+        squares.append(((watch.mean[0] - logarithm) / watch.std[0]) ** 2)
+        assert watch.stiffness["soft"] == pytest.approx(np.exp(watch.mean[0]))
+    check_ellipsoids(squares, 1)
+
+
+def test_ellipsoids_of_stiffness_in_steps():
+    """The first step's linearisation about the scene's modulus is off by more than the deviation; steps are repeated."""
+    rng = np.random.default_rng(12)
+    squares = []
+    for draw in range(50):
+        logarithm = PRIOR * rng.standard_normal()
+        sim = twin(beam(), logarithm, draw)
+        sim.step(5)
+        watch = sim.estimator("watch")
+        assert watch.std[0] < 0.02
+        squares.append(((watch.mean[0] - logarithm) / watch.std[0]) ** 2)
+    check_ellipsoids(squares, 1)
+
+
+def test_ellipsoids_of_stiffness_beside_a_force():
+    """A hand that lifts is not a stiffer beam: a load cell on a cable tells them apart, and the estimate says how well."""
+    rng = np.random.default_rng(13)
+    squares = []
+    for draw in range(50):
+        logarithm = PRIOR * rng.standard_normal()
+        force = 2e-3 * rng.standard_normal(3)
+        tree = beam(loads={"hand": {"type": "force", "body": "beam", "point": "40 5 0 mm", "force": force.tolist()}})
+        tree["estimators"]["watch"]["unknowns"]["hand"] = {"force": {"body": "beam", "point": "40 5 0 mm"}, "prior": "2 mN"}
+        sim = twin(tree, logarithm, draw)
+        sim.solve_static()
+        watch = sim.estimator("watch")
+        error = watch.mean - np.array([logarithm, *force])
+        squares.append(error @ np.linalg.solve(watch.covariance, error))
+    check_ellipsoids(squares, 4)
+
+
+def test_ellipsoids_of_stiffness_in_motion():
+    """Let go at rest without strain, the beam falls and swings about its equilibrium."""
+    rng = np.random.default_rng(14)
+    squares = []
+    for draw in range(50):
+        logarithm = PRIOR * rng.standard_normal()
+        sim = twin(beam("backward-euler"), logarithm, draw)
+        sim.step(25)
+        watch = sim.estimator("watch")
+        assert watch.status == "estimating"
+        assert watch.std[0] < 0.02
+        squares.append(((watch.mean[0] - logarithm) / watch.std[0]) ** 2)
+    check_ellipsoids(squares, 1)
+
+
+def test_a_stiffness_is_recorded_as_a_factor():
+    sim = twin(beam(), 0.2, 1)
+    rows = sim.run(0.1)
+    watch = sim.estimator("watch")
+    assert rows["watch.soft"][-1] == pytest.approx(np.exp(watch.mean[0]))
+    assert rows["watch.soft.std"][-1] == pytest.approx(np.exp(watch.mean[0]) * watch.std[0])
+    assert rows["watch.soft"][-1] == pytest.approx(np.exp(0.2), abs=4.0 * rows["watch.soft.std"][-1])
+
+
+def test_states_and_clones_go_on_bit_for_bit():
+    for integrator in ("quasi-static", "backward-euler"):
+        sim = twin(beam(integrator), 0.2, 1)
+        sim.step(4)
+        clone, again = sim.clone(), twin(beam(integrator), 0.2, 1)
+        again.restore(sim.state())
+        for one in (sim, clone, again):
+            one.step(3)
+        for one in (clone, again):
+            np.testing.assert_array_equal(one.estimator("watch").mean, sim.estimator("watch").mean)
+            np.testing.assert_array_equal(one.estimator("watch").covariance, sim.estimator("watch").covariance)
+
+
+def test_what_only_the_ratio_of_force_and_stiffness_tells_is_named():
+    """An unknown force on a beam without weight: markers see the ratio alone."""
+    tree = beam(gravity="0 0 0 m/s^2")
+    tree["loads"] = {"hand": {"type": "force", "body": "beam", "point": "60 0 0 mm", "force": "0 0 -3 mN"},
+                     "weight": {"type": "force", "body": "beam", "point": "60 0 0 mm", "force": "0 0 -1e-9 N"}}
+    tree["estimators"]["watch"]["unknowns"]["hand"] = {"force": {"body": "beam", "point": "60 0 0 mm"}, "prior": "3 mN"}
+    sim = sinew.load(tree)
+    sim.solve_static()
+    watch = sim.estimator("watch")
+    assert watch.status == "unobservable"
+    assert "soft" in watch.message
+
+
+def without_weight(tree):
+    tree["gravity"] = [0, 0, 0]
+
+
+def two(tree):
+    tree["estimators"]["watch"]["unknowns"]["hard"] = {"stiffness": {"body": "beam"}, "prior": 0.1}
+
+
+def rigid(tree):
+    tree["bodies"]["ball"] = {"type": "rigid", "shape": {"sphere": {"radius": "5 mm"}}, "mass": "1 g"}
+    tree["integrator"] = "backward-euler"
+    tree["estimators"]["watch"]["unknowns"]["soft"]["stiffness"]["body"] = "ball"
+
+
+def elsewhere(tree):
+    tree["bodies"]["other"] = {**tree["bodies"]["beam"], "position": "0 50 0 mm"}
+    tree["sensors"]["far"] = {"type": "marker", "body": "other", "point": "60 60 10 mm", "noise": "0.1 mm"}
+    tree["estimators"]["watch"]["sensors"].append("far")
+
+
+@pytest.mark.parametrize("change, words", [
+    (without_weight, "at any stiffness.*let a known load act"),
+    (two, "'beam' is unknown twice"),
+    (rigid, "'ball' is of type rigid.*type fem"),
+    (elsewhere, "'far' answers to nothing"),
+    (lambda t: t["estimators"]["watch"]["unknowns"]["soft"].update(prior=0), "prior"),
+    (lambda t: t["estimators"]["watch"]["unknowns"]["soft"].update(walk=-0.1), "walk"),
+    (lambda t: t["estimators"]["watch"]["unknowns"]["soft"]["stiffness"].update(body="baem"), "did you mean"),
+])
+def test_a_stiffness_that_cannot_be_estimated_is_an_error(change, words):
+    tree = beam()
+    change(tree)
+    with pytest.raises(sinew.Error) as caught:
+        sinew.load(tree)
+    assert re.search(words, str(caught.value), re.DOTALL)
