@@ -152,7 +152,8 @@ def report(rows):
           f"{1e3 * rows[:, 1].max():.3f} mm (largest), turned by {np.degrees(np.median(rows[:, 2])):.5f} degrees (largest "
           f"{np.degrees(rows[:, 2].max()):.3f}); normal forces {rows[:, 3:6].min():.3f} to {rows[:, 3:6].max():.3f} N; "
           f"{np.median(rows[:, 6]):.0f} points in the law ({rows[:, 6].min():.0f} to {rows[:, 6].max():.0f}), "
-          f"{np.median(rows[:, 7] + rows[:, 8]):.0f} with a force, of which {np.median(rows[:, 7]):.0f} stick; gap >= {1e6 * rows[:, 9].min():.3f} um; "
+          f"{np.median(rows[:, 7] + rows[:, 8]):.0f} with a force, of which {np.median(rows[:, 7]):.0f} stick; "
+          f"gap >= {1e6 * rows[:, 9].min():.3f} um; "
           f"{1e3 * np.median(rows[:, 10]):.1f} ms a step (95 %: {1e3 * np.quantile(rows[:, 10], 0.95):.1f})")  # fmt: skip
 
 
