@@ -28,6 +28,8 @@ EquilibriumFilter::EquilibriumFilter(const EstimatorModel& model, int threads)
   EquilibriumFilter::forget();
 }
 
+bool EquilibriumFilter::iterates() const { return model().has_stiffness(); }
+
 void EquilibriumFilter::forget() {
   filter_.restart();
   const Eigen::Index count = model().readings(), size = filter_.size();

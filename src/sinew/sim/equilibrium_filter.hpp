@@ -31,7 +31,7 @@ class EquilibriumFilter : public EstimatorFilter {
   /// See EstimatorFilter; the robot of the model is quasi-static.
   EquilibriumFilter(const EstimatorModel& model, int threads);
 
-  bool iterates() const override { return model().has_stiffness(); }
+  bool iterates() const override;
   void begin_settling() override;
   VectorX mean() const override { return filter_.mean(); }
   MatrixX covariance() const override { return filter_.covariance(); }
