@@ -154,11 +154,11 @@ class ContactPlanes {
   bool curved_ = false;
   std::vector<Eigen::Isometry3d> poses_;  // (contacts,)
   struct Carried {
-    const constraint::ShapeContact* contact;
-    const ContactModel* model;
     Eigen::Isometry3d from_end;  // from its pose at the end of the step to that at its start
     Eigen::Isometry3d placed;    // pose in the step
     BaseMotion::Rate rate;       // at the start of the part, or at the time of move_on()
+    const constraint::ShapeContact* contact;
+    const ContactModel* model;
   };
   std::vector<Carried> carried_;  // surfaces of the world that may move
   std::vector<char> strikes_;     // (surfaces,)
