@@ -238,7 +238,7 @@ void substitute(const Eigen::Ref<const MatrixX>& lu, std::span<const int> pivot,
 
 void DenseLu::solve(Eigen::Ref<VectorX> right) const {
   substitute(Eigen::Map<const MatrixX>(storage_.data(), size_, size_),
-             std::span(pivot_).first(static_cast<std::size_t>(size_)), right);
+             std::span(pivot_).first(static_cast<std::size_t>(size_)), right.head(size_));
 }
 
 }  // namespace sinew::qp
