@@ -1,6 +1,6 @@
 /// @file
-/// What W of contact points on a face of a block costs, for docs/performance.md ("The cost of W"):
-/// operations, counted from the elimination tree, and processor times of one thread.
+/// Cost of W for contact points on a face of a block, for docs/performance.md ("The cost of W"):
+/// floating-point operations, counted from the elimination tree, and processor times of one thread.
 ///     compliance_cost [CELLS_ALONG_THE_FACE CELLS_ACROSS_IT]
 #include <algorithm>
 #include <cstdio>
@@ -33,7 +33,7 @@ TetrahedralMesh block(int along, int across) {
                                     [](const Vector3& p) { return Vector3(0.005 * p); });
 }
 
-// Nodes from `first` on, with the elements that join them.
+// Pattern of the nodes from `first` on and the elements that join them.
 BlockPattern pattern_of(const TetrahedralMesh& mesh, int first) {
   std::vector<std::int32_t> starts{0}, members;
   for (const auto& tet : mesh.tets) {
@@ -49,11 +49,11 @@ Elimination eliminate(const NodeGraph& graph, const std::vector<std::int32_t>& o
   return {graph, order, std::vector<std::vector<std::int32_t>>(at(graph.nodes()))};
 }
 
-// Entries of L below the diagonal in the three columns of a node with so many nodes below it.
+// Entries of L below the diagonal in column 0, 1 or 2 of a node with this number of nodes below it.
 double below(double nodes, int column) { return 3.0 * nodes + 2.0 - column; }
 
-// Of a column of L with m entries below the diagonal: m divisions, and a product of the lower
-// triangle.
+// A column of L with m entries below the diagonal takes m divisions and the lower triangle of an
+// outer product.
 double factor_operations(const Elimination& tree) {
   double sum = 0.0;
   for (const auto& rows : tree.rows) {
@@ -69,10 +69,10 @@ struct RowOperations {
   double substitution = 0.0, product = 0.0;
 };
 
-// L Y = H^T for the three rows of each of the first `points` nodes, each in the columns from its
-// node up to the root, and the lower triangle of Y^T Y.
+// Operations of L Y = H^T for the three rows of each of the first `points` nodes, which visit the
+// columns from their node to the root, and of the lower triangle of Y^T Y.
 RowOperations row_operations(const Elimination& tree, int points) {
-  std::vector<double> passing(tree.order.size(), 0.0);  // points at or under a column's node
+  std::vector<double> passing(tree.order.size(), 0.0);  // points at the node or under it
   for (std::size_t k = 0; k < tree.order.size(); ++k) {
     passing[k] += tree.order[k] < points ? 1.0 : 0.0;
     if (tree.parent[k] >= 0) passing[at(tree.parent[k])] += passing[k];
@@ -89,7 +89,7 @@ RowOperations row_operations(const Elimination& tree, int points) {
   return result;
 }
 
-// The order of the inner nodes, then the points.
+// Elimination order: a fill-reducing order of the other nodes, then the points.
 std::vector<std::int32_t> points_last(const TetrahedralMesh& mesh, int points, Ordering ordering) {
   std::vector<std::int32_t> order =
       fill_reducing_order(NodeGraph(pattern_of(mesh, points)), ordering);
@@ -119,7 +119,7 @@ void count(const TetrahedralMesh& mesh, int points) {
   line("inverse of the Schur complement, which is W", 2.0 / 3.0 * unknowns * unknowns * unknowns);
 }
 
-// Least processor time of some rounds, s.
+// Shortest processor time of kRounds runs, s.
 template <class Work>
 double least_time(Work&& work) {
   double least = kInfinity;
@@ -131,7 +131,8 @@ double least_time(Work&& work) {
   return least;
 }
 
-// Of the kernel that all of this works with, in place: rows x depth by depth x columns.
+// Speed of the kernel of products, on which all of this is based: rows x depth times depth x
+// columns, with `leading` numbers from column to column.
 void rate_product(int rows, int depth, int columns, int leading) {
   AlignedNumbers a, b, c;
   const std::size_t most = at(leading) * at(std::max(depth, columns)) + kOverrun;
@@ -150,7 +151,7 @@ void rate_product(int rows, int depth, int columns, int leading) {
               depth, columns, leading, 2.0 * rows * depth * columns * times / seconds / kBillion);
 }
 
-// A point's three rows are the coordinates of its node.
+// Factorises the block and computes W. The three rows of a point are the coordinates of its node.
 void time_block(const TetrahedralMesh& mesh, int points) {
   BlockSystem system = linalg::testing::elastic_system(mesh, 0, 0);
   for (int j = 0; j < system.pattern.nodes; ++j) system.add(j, j, Matrix3::Identity());  // mass

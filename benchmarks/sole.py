@@ -1,9 +1,10 @@
-"""Thousands of contact points: the published multigait robot lies on its sole of 2592 nodes, processor time of a step, in one thread.
+"""Thousands of contact points: processor time of the steps of the published multigait robot on its sole of 2592 nodes, one thread.
 
     PYTHONPATH=build/release/python /usr/bin/python3 benchmarks/sole.py ../shared/data [--steps 3] [--spacings 10 5 4 3] [--zones 10 20]
 
-The first steps of examples/crawl/multigait.py, from no forces: 15787 nodes, 20 ms, friction 0.7. Nodes of the sole so many mm apart
-can touch the floor, or all of them in zones of so many mm. A row of the table is a step.
+Takes the first steps of examples/crawl/multigait.py without initial contact forces: 15787 nodes, steps of 20 ms, friction 0.7. The
+candidates for contact are nodes of the sole at the given spacings, or all of its nodes in zones of the given sizes. Each row of the
+table is a step.
 """
 
 import argparse

@@ -302,7 +302,8 @@ TEST(Eliminate, LeavesTheSchurComplement) {
   }
 }
 
-// Sizes around the groups of columns, and rows that fill no whole vector; no diagonal to lean on.
+// Sizes next to multiples of the group of columns, and rows that leave an incomplete vector. The
+// matrices are not diagonally dominant, so rows are exchanged.
 TEST(Eliminate, SolvesWholeSystems) {
   Random random(11);
   for (const int size : {2, 47, 48, 49, 50, 96, 97, 145, 203, 301}) {

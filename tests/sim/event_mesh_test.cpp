@@ -199,8 +199,8 @@ TEST(EventMesh, CubesThatMeetKeepTheirMomentum) {
   }
 }
 
-// Without rebound they slide on each other, edge on turning edge, and round a corner: they land
-// once, and stay together until one edge has passed the other.
+// Without restitution, the cubes slide on each other, edge on turning edge, and around a corner.
+// They land once and stay in contact until one edge has passed the other.
 TEST(EventMesh, CubesThatDoNotReboundSlideOff) {
   const auto simulation = meeting(0.0, 2.0, 5.0, 0.3);
   const Vector3 linear = linear_momentum(*simulation, 0);
@@ -220,8 +220,8 @@ TEST(EventMesh, CubesThatDoNotReboundSlideOff) {
   EXPECT_LT((linear_momentum(*simulation, 0) - linear).norm(), 1e-6);
 }
 
-// No impact takes energy from cubes that slide without friction, and none comes from the forces
-// between them, in long steps or short ones: parts are as long as the turn allows.
+// Cubes that slide on each other without friction keep their energy after they have landed, in long
+// and in short steps: there are no further impacts, and the contact forces do no work.
 TEST(EventMesh, CubesThatSlideKeepTheirEnergy) {
   std::vector<Vector3> places;
   for (const double h : {10e-3, 5e-3, 2.5e-3}) {

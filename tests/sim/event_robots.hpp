@@ -99,10 +99,11 @@ inline const mechanics::HasPose& pose(const sim::Simulation& simulation, int bod
   return *mechanics::as<const mechanics::HasPose>(simulation.body(body));
 }
 
-/// A body that tumbles, body 0, comes to rest within 3 s, and its energy never grows beyond the
-/// error of the midpoint rule, by which it turns about its edge.
-/// @param fall J, m g h. @param height m, of its origin at rest. @param off m, that it may be off.
-/// @param rate of its velocities then, m/s and rad/s.
+/// Expects that body 0, which tumbles, comes to rest within 3 s, and that its energy never grows by
+/// more than the error of the midpoint rule while it turns about an edge.
+/// @param simulation with the body. @param fall J, m g h. @param height m, of its origin at rest.
+/// @param off m, tolerance of the height.
+/// @param rate upper bound of the sum of its linear (m/s) and angular (rad/s) speeds at rest.
 inline void expect_rest(sim::Simulation& simulation, double fall, double height, double off,
                         double rate) {
   double energy = simulation.energies().total();
@@ -117,9 +118,10 @@ inline void expect_rest(sim::Simulation& simulation, double fall, double height,
   EXPECT_LT(body.linear_velocity().norm() + body.angular_velocity().norm(), rate);
 }
 
-/// After each of these numbers of steps a simulation on other threads takes up the state, and goes
-/// on as the one that it came from: bit for bit, and once more after restore(). So does the run
-/// from reset() on. @param further steps, of both. @param threads of the other one.
+/// Expects that a run continues from a saved state bit for bit: in a clone, in a simulation with
+/// another number of threads, in both again after restore(), and from the start after reset().
+/// @param simulation is advanced. @param pauses numbers of steps to take before each saved state.
+/// @param further steps to compare. @param threads of the other simulation.
 inline void expect_same_run(sim::Simulation& simulation, std::span<const int> pauses, int further,
                             int threads) {
   const auto advance = [](sim::Simulation& one, std::int64_t steps) {

@@ -1,4 +1,4 @@
-// Bodies that land under BDF2: no step gains energy, at any moment within it.
+// Bodies that land with BDF2: no step gains energy, wherever within it the impact occurs.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -19,7 +19,7 @@ using Scene = void (*)(sim::ModelBuilder& builder, double friction);
 struct Landing {
   const char* name;
   Scene scene;
-  double end;  ///< s: of the landings, before bodies that slide or turn make errors of their own
+  double end;  ///< s: end of the test, before sliding and turning bodies add errors of their own
 };
 
 int add_block(sim::ModelBuilder& builder, const std::string& name, const Vector3& at,
@@ -35,19 +35,19 @@ int add_block(sim::ModelBuilder& builder, const std::string& name, const Vector3
   return builder.add_rigid_body(block);
 }
 
-// It slides on.
+// A block that lands flat and slides.
 void block(sim::ModelBuilder& builder, double friction) {
   const int body = add_block(builder, "block", {0.0, 0.0, 0.01 + kFall}, {0.3, 0.0, 0.0});
   add_floor(builder, body, Vector3::UnitZ(), friction);
 }
 
-// On an edge, about which it turns.
+// A block that lands on an edge and turns about it.
 void leaning_block(sim::ModelBuilder& builder, double friction) {
   const int body = add_block(builder, "block", {0.0, 0.0, 0.06}, {0.3, 0.0, 0.0}, 0.4);
   add_floor(builder, body, Vector3::UnitZ(), friction);
 }
 
-// One after the other, beside each other's centres, the highest one sliding.
+// Three blocks that land one after the other, off-centre; the highest one slides.
 void stack(sim::ModelBuilder& builder, double friction) {
   const int low = add_block(builder, "low", {0.0, 0.0, 0.01 + 0.5 * kFall});
   const int middle = add_block(builder, "middle", {0.01, 0.003, 0.04 + kFall});
@@ -57,7 +57,7 @@ void stack(sim::ModelBuilder& builder, double friction) {
   add_pair(builder, middle, high, friction);
 }
 
-// A ball falls on another one that falls, and rolls off.
+// A ball lands on another falling ball and rolls off it.
 void balls(sim::ModelBuilder& builder, double friction) {
   const Vector3 gravity(0.0, 0.0, -kGravity);
   const int low =

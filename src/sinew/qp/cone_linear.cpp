@@ -3,8 +3,8 @@
 // linearised laws are
 //   du_n = -u_n,   r_t = mu r_n e + g p,   g = -share/(1 - share) p.(r_t + du_t/w)
 // with r_t from before the step. The normal effort is its only unknown in the dense system. The
-// turns g of the directions solve (I - K) g = g_0 with K of the size of the shares, which takes a
-// few products with W.
+// turns g of the directions solve (I - K) g = g_0 with K of the size of the shares. GMRES takes a
+// few iterations, each with products with the three matrices of form_turns().
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -112,12 +112,13 @@ void ConeIsland::fill_dense(const ConePart& part, int symmetric, int count, doub
   for (int j = 0; j < rest; ++j) corner.col(j).array() *= rest_scale[j] * rest_scale;
 }
 
-// What turns of the cones that hold their directions do to the unknowns and to each other: with
-// v_i = W p_i, p_i normal to the direction of cone i, a column each of
-//   by_turn_:    the unknowns' rows of v_i, the motion by a turn
-//   of_answer_:  e_j.v_i, e_j the efforts of unknown j, the motion along p_i by an answer
-//   of_turns_:   p_k.v_i
-// Products with these read a sixth of what products with W do.
+// Forms the matrices that couple the turns of the cones in turning_ to the unknowns and to each
+// other. With p_i normal to the direction of cone i and v_i = W p_i, their columns i are
+//   by_turn_:    the rows of the unknowns in v_i: motion of the unknowns by a unit turn
+//   of_answer_:  e_j.v_i with the efforts e_j of unknown j: motion along p_i by unit unknowns
+//   of_turns_:   p_k.v_i: motion along p_k by a unit turn
+// The second one uses the symmetry of W. If all points slide, the three together have a third of
+// the entries of W, and an iteration reads each of them once, instead of W twice.
 void ConeIsland::form_turns(const ConePart& part, int count) {
   const auto turns = static_cast<Eigen::Index>(turning_.size());
   auto by_turn = by_turn_.shape(count, turns), of_answer = of_answer_.shape(count, turns),
@@ -141,8 +142,9 @@ void ConeIsland::form_turns(const ConePart& part, int count) {
   }
 }
 
-// The turns of the cones that hold their directions: x takes their efforts, and the right side
-// loses their motion. With the factors at hand.
+// Solves for the turns of the cones that hold their directions. Adds their efforts to x, and
+// subtracts the motion that they cause from the right-hand side. Needs the factors of the dense
+// system.
 void ConeIsland::turn_slips(const ConePart& part, int count) {
   if (turning_.empty()) return;
   form_turns(part, count);
@@ -155,7 +157,7 @@ void ConeIsland::turn_slips(const ConePart& part, int count) {
       act(i, static_cast<std::size_t>(turning_[static_cast<std::size_t>(i)]));
     }
   };
-  // The right side that the motion of turns g makes.
+  // Writes the right-hand side due to the motion of turns g to `answer`.
   const auto take_turns = [&](const Eigen::Ref<const VectorX>& g) {
     answer.noalias() = by_turn * g;
     answer = -answer;
@@ -165,7 +167,7 @@ void ConeIsland::turn_slips(const ConePart& part, int count) {
     }
     answer.array() *= row_scale_.head(count).array();
   };
-  // The motion of its answer.
+  // Solves for this right-hand side, and computes the motion of the solution along each p.
   const auto answer_them = [&] {
     factor_.solve(answer);
     answer.array() *= row_scale_.head(count).array();

@@ -13,8 +13,8 @@ namespace sinew::qp {
 namespace {
 
 constexpr int kPanel = 8;
-// Columns that stay in the cache while all that stands left of them acts on them, that much at a
-// time: whole panels, and whole nodes of the kernels of products.
+// Columns of a group, which stay in the cache while finished groups of the same size update them. A
+// multiple of the panel and of the three columns of a node in the kernels of products.
 constexpr int kNode = 3;
 constexpr int kGroup = 48;
 static_assert(kGroup % kPanel == 0 && kGroup % kNode == 0);
@@ -76,7 +76,7 @@ class LuElimination {
  private:
   int width(int first) const { return std::min(kPanel, pivots_ - first); }
 
-  // All swaps of a column before the next column, whose numbers are far from its own.
+  // Makes all swaps in a column before the next one, since columns are far apart in memory.
   void swap_rows(int first, int count, int begin, int end) {
     for (int j = begin; j < end; ++j) {
       double* const column = &a_(0, j);
@@ -87,8 +87,9 @@ class LuElimination {
     }
   }
 
-  // Swaps the rows of its group alone, from `begin` to `end`: the columns left of it are swapped
-  // when the group is finished, those right of it when they are reached.
+  // Factorises a panel. Swaps rows in the columns begin .. end - 1 of its group only: run() swaps
+  // them in the columns on the left when the group is finished, and in those on the right when they
+  // are reached.
   bool factor_panel(int first, int begin, int end) {
     for (int k = first; k < first + width(first); ++k) {
       Eigen::Index below = 0;
@@ -105,8 +106,8 @@ class LuElimination {
     return true;
   }
 
-  // Columns begin .. end - 1: the rows of U that a finished group of columns has, by its panels,
-  // and below them one product with all that it has there.
+  // Updates columns begin .. end - 1 with the finished group that starts at column `first`:
+  // computes its rows of U panel by panel, and subtracts one product from all rows below.
   void apply_group(int first, int begin, int end) {
     const int last = std::min(first + kGroup, pivots_);
     for (int k = first; k < last; k += kPanel) apply_panel(k, begin, end, last);
@@ -115,8 +116,8 @@ class LuElimination {
     for (int j = begin + whole; j < end; ++j) update<1>(first, last, j, size_);
   }
 
-  // The kernel may go on to the end of the last vector of rows, where the next column begins: the
-  // rows of the last one are multiplied apart.
+  // Subtracts L U from the rows below. The kernel writes whole vectors of rows; the last,
+  // incomplete one is multiplied in a separate array, because the next column begins within it.
   void subtract_product(int first, int last, int begin, int columns) {
     using linalg::kLanes;
     for (int k = first; k < last; ++k) {
@@ -139,8 +140,8 @@ class LuElimination {
     }
   }
 
-  // Columns begin .. end - 1: the rows of U, and the update of the panel's width in the rows below
-  // them up to row_end.
+  // Updates columns begin .. end - 1 with one panel: computes its rows of U, and subtracts its
+  // product from the rows below, up to row_end.
   void apply_panel(int first, int begin, int end, int row_end) {
     if (width(first) == kPanel) {
       solve_rows(first, begin, end);
@@ -199,8 +200,8 @@ class LuElimination {
   Eigen::Map<MatrixX> a_;
   std::span<int> pivot_;
   int size_, pivots_;
-  alignas(64) double turned_[kGroup * kGroup];         // U, transposed
-  alignas(64) double apart_[kGroup * linalg::kLanes];  // of the last rows
+  alignas(64) double turned_[kGroup * kGroup];         // rows of U, transposed
+  alignas(64) double apart_[kGroup * linalg::kLanes];  // product of the last, incomplete vector
 };
 
 }  // namespace

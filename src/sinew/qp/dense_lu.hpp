@@ -11,10 +11,10 @@ namespace sinew::qp {
 
 /// Eliminates the first `pivot.size()` rows and columns of a square matrix in place: P A = L U
 /// there (Golub & Van Loan 2013, algorithm 3.4.1), and in the rest A_22 - L_21 U_12. Pivots are
-/// taken by rows among the eliminated ones. Works by groups of columns from left to right: what
-/// stands left of a group acts on it by products, and within it panels act on each other. The
-/// bits depend on n and k alone. @param a (n, n). @param pivot (k,) out: the row that row i was
-/// swapped with. @return false where a pivot vanishes.
+/// chosen among the rows that are eliminated. Works by groups of columns from left to right:
+/// finished groups update a new group by matrix products, and panels update each other within it.
+/// The order of all operations depends on n and k alone. @param a (n, n). @param pivot (k,) out:
+/// the row that row i was swapped with. @return false if a pivot vanishes.
 bool eliminate(const Eigen::Map<MatrixX>& a, std::span<int> pivot);
 
 /// right <- A^-1 right, with the factors of a whole matrix.

@@ -167,8 +167,8 @@ void ContactRows::choose_active(std::span<const double> effort, double time_step
   judge_moving(effort, time_step);
 }
 
-// Under BDF2 a point that stays has the velocity 0 along its normal but for an error of second
-// order; one that moves there has landed before, or goes over an edge.
+// With BDF2, the normal velocity of a persistent contact point is zero up to an error of second
+// order. A point with a force and a normal velocity landed in the last step or passes an edge.
 void ContactRows::judge_moving(std::span<const double> effort, double time_step) {
   if (model_.step().integrator != mechanics::Integrator::bdf2) return;
   const double still = std::max(kStill * fastest_node(), kNoMotion * model_.size() / time_step);

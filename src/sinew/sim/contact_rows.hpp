@@ -105,8 +105,9 @@ class ContactRows {
 
   /// Whether a point has a force that had none at the start of the step. @param effort (rows,) N.
   bool gap_closed(std::span<const double> effort) const;
-  /// Whether a point has a force that had one when the step began, but moved along its normal then:
-  /// its velocity jumps. Asked under BDF2. @param effort (rows,) N.
+  /// Whether a point that had a force at the start of the step, but moved along its normal then,
+  /// still has one, so its velocity jumps. Only with BDF2; false with other integrators.
+  /// @param effort (rows,) N.
   bool stops_touching_point(std::span<const double> effort) const;
   /// Whether the step holds a point that moved when it began: an impact along the normal, or one
   /// that slid and sticks. Before bodies' velocities follow. @param effort (rows,) N.
@@ -179,7 +180,7 @@ class ContactRows {
   std::vector<char> touched_;            // (rows,) normal rows with a force when the step began
   bool has_kinetic_ = false;             // some contact has two coefficients
   double still_ = 0.0;                   // m/s: what is slower stays
-  std::vector<char> moved_;              // (rows,) the same, of points that moved along the normal
+  std::vector<char> moved_;              // (rows,) of touched_, those that moved along the normal
   std::vector<char> slides_;             // (rows,) normal rows whose friction is kinetic
   std::vector<Vector3> along_;  // (rows,) sliding directions, of any length; empty: no such contact
   bool events_ = false;

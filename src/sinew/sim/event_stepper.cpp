@@ -21,9 +21,9 @@ constexpr int kMaxTrials = 200;
 constexpr double kSmallest = 1.0 / 64.0;
 // Smaller motions in a part, relative to the robot's size, are zero.
 constexpr double kStill = 1e-9;
-// Of the kinetic energy: what the forces of points that slide on turning faces may do in a part.
+// Permitted spurious work of sliding contacts in a part (Midpoint), relative to the kinetic energy.
 constexpr double kFalseWork = 1e-6;
-// Of the step: what rounding leaves of it.
+// A smaller remainder of a step, relative to the step, is rounding.
 constexpr double kNoTime = 1e-12;
 
 bool stops(const step::ActuatorBlock& block) {
@@ -121,7 +121,8 @@ double EventStepper::advance(double time, double left) {
   give_up("the moment of an impact is not found");
 }
 
-// Points slide on what turns, by so much that the rule is off: its error goes with length^3.
+// Whether the spurious work of points that slide on turning surfaces is too large. It decreases
+// with the third power of the length of the part.
 bool EventStepper::turns_too_far() {
   const double work = midpoint_.false_work();
   return work > 0.0 && work > kFalseWork * run_.world.bodies().energies().kinetic;

@@ -17,7 +17,7 @@ namespace {
 constexpr double kHeld = 1e-12;
 // Each round reduces the error to about the square of the step's rotation.
 constexpr int kMaxRounds = 12;
-// Solutions after which the places of the middle are those of the one before, but for h^4.
+// Updates of the points at the midpoint. Another update would change them by terms of order h^4.
 constexpr int kTurns = 2;
 
 }  // namespace
@@ -48,8 +48,9 @@ void Midpoint::carry_on(Substep& substep, double half) {
   release();
 }
 
-// Where bodies are now; the step begins where it did. Also points without a force: a surface that
-// turns may press one that it would pass by. Whether there were any.
+// Updates closed points to the surface points and normals at the present positions of the bodies;
+// the start of the step is unchanged. Includes points without a force, since a turning surface may
+// come to press on them. Returns whether any point changed.
 bool Midpoint::turn_points() {
   ContactRows& contacts = run_.world.contacts();
   bool found = false;
@@ -123,7 +124,8 @@ double Midpoint::work_of_turned() const {
   return std::abs(work);
 }
 
-// m: of a point that turned between its surfaces, of others by their rows.
+// m: growth of a point's gap in the step. For turned points it is measured between the surfaces;
+// for the others it is the value of the row.
 double Midpoint::opening(const step::ContactBlock& block, double by_row) const {
   const ContactRows& contacts = run_.world.contacts();
   const int row = run_.world.numbering().model_row_of(block.row);

@@ -1,5 +1,5 @@
 /// @file
-/// A step of the midpoint rule, in halves.
+/// The two halves of a step of the midpoint rule.
 #pragma once
 
 #include <vector>
@@ -13,29 +13,34 @@ namespace sinew::sim {
 struct Run;
 class Substep;
 
-/// Repeats the motion of the first half; what moves by itself goes to where it is at the end.
-/// Forces of joints and closed points act in the directions that they have in the middle, but what
-/// they hold is held at the end of the step: the first half is solved again, with the motions held
-/// there off by half of what the end lacks, until it lacks nothing. Of constraints that are
-/// quadratic such forces do no work, and motion and energy do not drift (Gonzalez, Mechanical
-/// systems subject to holonomic constraints, Physica D 132 (1999) 165).
-/// A point slides on a surface that turns: its gap is g = n.(x_1 - x_2) at the places that touch at
-/// the time, whose gradient is n there, as x_1 - x_2 lies along n. So a closed point gets the
-/// places and the normal of the middle, found again after a first solution, and the gap at the end
-/// is measured between the surfaces. With the places and the normal of the start it would be off by
-/// v w h^2 for a slip v and a turn w, and the point would be struck again by v w h.
+/// Makes a step of the midpoint rule: solves the first half and repeats its motion. Bodies and
+/// surfaces with a prescribed motion are placed where they are at the end. Forces of joints and
+/// closed points act in the directions at the midpoint, but their constraints hold at the end of
+/// the step: the first half is solved repeatedly, each time with the constraints offset by half of
+/// the violation at the end, until it vanishes. For quadratic constraints, these forces do no work,
+/// so neither the constraints nor the energy drift (Gonzalez, Mechanical systems subject to
+/// holonomic constraints, Physica D 132 (1999) 165).
+///
+/// If a point slides on a surface that turns, its gap is g = n.(x_1 - x_2) at the surface points
+/// that touch at that time. Its gradient is n, since x_1 - x_2 is parallel to n. A closed point
+/// therefore gets the surface points and the normal at the midpoint, which are found after a first
+/// solution, and its gap at the end is measured between the surfaces. With the surface points and
+/// the normal at the start, the gap would be wrong by v w h^2 for a slip velocity v and an angular
+/// velocity w, and the point would strike again with the velocity v w h.
 class Midpoint {
  public:
   /// @param run must outlive it.
   explicit Midpoint(Run& run);
-  /// The first half. @param substep that has begun it. @param half s, its length.
+  /// Solves the first half. @param substep begun for this half. @param half s, its length.
   void solve(Substep& substep, double half);
-  /// The second one, after solve(). @param substep,half the same.
+  /// Makes the second half. Call after solve(), and Substep::end_as_midpoint() afterwards.
+  /// @param substep,half as in solve().
   void carry_on(Substep& substep, double half);
-  /// J, then: what the normal forces of points that turned did, |f.motion|. Their gaps are what
-  /// they were, so that it is an error, of third order.
+  /// J: magnitude of the work of the normal forces of turned points in the last carry_on(). Their
+  /// gaps did not change, so this work is spurious, an error of third order.
   double false_work() const { return false_work_; }
-  /// Points that turned have the normals of the end, along which velocities are held.
+  /// After carry_on(): if points turned at the midpoint, gives closed points the normals at the
+  /// end, along which their velocities are held.
   void turn_to_end();
 
  private:
@@ -48,8 +53,8 @@ class Midpoint {
   void release();
 
   Run& run_;
-  std::vector<double> widened_;  // (rows,) m, gaps of closed points
-  std::vector<char> turned_;     // (rows,) their normals
+  std::vector<double> widened_;  // (rows,) m, added to the gaps of closed points
+  std::vector<char> turned_;     // (rows,) normal rows of points that turn() updated
   double false_work_ = 0.0;      // J
 };
 

@@ -14,7 +14,7 @@ namespace sinew::sim {
 
 namespace {
 
-// Of the energy: gains that rounding makes.
+// Smaller gains of energy, relative to the energy, are rounding.
 constexpr double kRounding = 1e-12;
 
 }  // namespace
@@ -100,14 +100,15 @@ void Substep::solve_equation(double time_step, bool divisible) {
   run_.report.contact_sweeps = contacts.sweeps;
 }
 
-// By BDF2, v = (3 d - d_before)/(2 h), a point that stops within the step has the velocity
-// -d_before/(2 h), back to where it came from: a rebound with up to half its speed, how much
-// depends on the gap that was left. Several such points gain energy, as with several coefficients
-// of restitution (Kane's paradox). Backward Euler does not: with M (v - v_before) = h (p + H^T
-// lambda) and v = d/h the energy changes by
+// In BDF2, v = (3 d - d_before)/(2 h). A point that lands gets a velocity down to -d_before/(2 h),
+// depending on the gap that was left: it rebounds with up to half its speed. Several such points
+// can gain energy, as points with different coefficients of restitution do (Kane's paradox).
+// Backward Euler gains none: with M (v - v_before) = h (p + H^T lambda) and v = d/h, the energy
+// changes by
 //   lambda.H d - |v - v_before|^2_M/2 <= 0,   lambda.H d = -lambda_n.gap + lambda_t.slip <= 0,
-// for a convex potential and rows that do not turn. A landing that gains is made again so; others
-// stay, since bodies that roll land all the time.
+// with the gap at the start of the step, for a convex potential and rows that do not turn. A
+// landing that gains energy is therefore repeated with backward Euler. Other landings are kept,
+// since rolling bodies land in every step.
 double Substep::end(double time_step) {
   const double error = end_once(time_step);
   if (!lands_by_bdf2_ || !jumps() || !has_gained()) return error;
@@ -128,18 +129,18 @@ double Substep::end_once(double time_step) {
   return error;
 }
 
-// A gap that closes stops its point: in this step, or, as the gap is closed at the end of it alone,
-// in the next one. A multistep formula that reaches back over such a jump would have the point
-// rebound, and gain energy: it starts afresh behind it. So it does where friction falls from its
-// static limit to the kinetic one.
+// Whether the velocity or the friction of a point jumps, after which a multistep formula restarts:
+// a formula that reaches back over the jump would let the point rebound and gain energy. A point
+// that lands is stopped in this step or, since the gap is closed at the end of the step only, in
+// the next one. Friction jumps when it falls from its static to its kinetic limit.
 bool Substep::jumps() const {
   const ContactRows& contacts = run_.world.contacts();
   return stops_points_ || contacts.gap_closed(run_.effort) ||
          contacts.stops_touching_point(run_.effort) || contacts.breaks_loose(run_.effort);
 }
 
-// Beyond the work of actuators, loads and surfaces that move. A base that moves does work that
-// nobody counts: it may have gained then.
+// Whether the energy of the bodies has grown by more than the work of actuators, loads and moving
+// surfaces. Work of a moving base is not counted, so such a step may have gained energy.
 bool Substep::has_gained() const {
   Bodies& bodies = run_.world.bodies();
   if (std::ranges::any_of(bodies.ends(), &mechanics::StepEnd::moved_from_outside)) return true;

@@ -21,7 +21,9 @@ class Substep {
   /// @param time_step s, as for begin().
   /// @param divisible whether the caller can retry with smaller parts.
   void solve(double time_step, bool divisible = false);
-  /// Updates velocities, actuators and the energy ledger. @return error estimate, m.
+  /// Updates velocities, actuators and the energy ledger. If the velocity or the friction of a
+  /// point jumped in a BDF2 step and the energy grew, the step is first solved again with backward
+  /// Euler; this throws as solve() does. @return error estimate, m.
   double end(double time_step);
   /// The same after a part that was solved as the first half of a midpoint step, whose motion was
   /// then doubled. @param time_step s, of the whole step.
@@ -39,10 +41,10 @@ class Substep {
   void count();
 
   Run& run_;
-  bool stops_points_ = false;   // of contacts, which moved when the part began
+  bool stops_points_ = false;   // whether points that moved at the start of the part are stopped
   bool divisible_ = false;      // see solve()
-  bool lands_by_bdf2_ = false;  // a point that lands in the part, which reaches back by BDF2
-  double energy_before_ = 0.0;  // J, then: of the bodies when the part began
+  bool lands_by_bdf2_ = false;  // whether points may land in this part, a BDF2 step with history
+  double energy_before_ = 0.0;  // J, if lands_by_bdf2_: of the bodies at the start of the part
   bool held_before_ = false;    // a controller's choice, in earlier parts of the step
 };
 

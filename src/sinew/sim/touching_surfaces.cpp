@@ -20,10 +20,10 @@ constexpr double kSlack = 0.5, kEdgeSlack = 1e-9;
 // Overlaps up to this many separations, 1e-6 of the larger body, are left to the next step: where
 // flat meshes lie on each other, their edges cross and overlap at second order in the motion.
 constexpr double kOverlap = 10.0;
-// Cosine of the angle up to which a point's normal turns within a part: with the face that it
-// slides on, but not to the face beyond an edge.
+// Cosine of the largest angle by which a normal turns within a part. A normal that turns farther
+// belongs to the face beyond an edge.
 constexpr double kSameFace = 0.9;
-// Normals that differ by less are one.
+// Unit normals that differ by less are equal.
 constexpr double kSameNormal = 1e-9;
 constexpr std::size_t kKeyMemory = 3;
 
@@ -198,8 +198,9 @@ void TouchingSurfaces::look_at_overlaps() {
   find(contact_.separation());
 }
 
-// Of several pairs of the same name, as in a groove, that which looks the same way.
-// @param least cosine between their normals.
+// Pair of a point in the last search; null if there is none. Among several pairs with the same
+// name, as in a groove, the one whose normal is nearest to that of the point.
+// @param least the cosine between the normals must exceed it.
 const collision::ProximityPair* TouchingSurfaces::pair_there(std::size_t point,
                                                              double least) const {
   const Vector3& normal = rows_.direction[contact_.entry(point)];

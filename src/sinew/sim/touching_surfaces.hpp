@@ -65,12 +65,15 @@ class TouchingSurfaces {
   /// m: gap of a point after look_at_overlaps(); if its surfaces overlap, along their present
   /// normal.
   double gap_there(std::size_t point) const;
-  /// Of event-driven integration, where a part has led: looks as far as when it began.
+  /// In event-driven integration, at the present positions within a part: searches all pairs, with
+  /// the reach of begin_step().
   void look_around();
-  /// Then: gives a point the places and the normal that its pair has there; it begins where it did.
-  /// Whether they are others. Not beyond an edge, where the pair is gone or looks another way.
+  /// After look_around(): gives a point the surface points and the normal of its pair there. The
+  /// start of the step is unchanged. Does nothing if the point has passed an edge, where the pair
+  /// no longer exists or its normal has jumped. @return whether the normal changed.
   bool turn(std::size_t point);
-  /// m, then: how far the gap of a point has opened since the step began; nothing beyond an edge.
+  /// m: growth of a point's distance since begin_step(), as of look_around(); empty if the point
+  /// has passed an edge.
   std::optional<double> opening(std::size_t point) const;
   /// m: the least gap of all pairs, of points or not, that were found last.
   double deepest() const;
@@ -133,7 +136,8 @@ class TouchingSurfaces {
   collision::SurfaceTree first_, second_;  // the second one stands still within one surface
   std::vector<Named> found_;               // by name
   std::vector<Key> keys_;                  // of the points
-  // Of the points; of those that wait between_flat. Their distance is that of the step's begin.
+  // Of the points. between_flat: the point waits. The distance is that at the start of the step,
+  // also after turn().
   std::vector<collision::ProximityPair> pairs_;
   double reach_ = 0.0;                 // m, of the step
   std::vector<Force> before_;          // of the last step, by name
