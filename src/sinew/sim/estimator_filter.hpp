@@ -36,7 +36,8 @@ class EstimatorFilter {
   /// Whether each step is repeated about the estimate that was corrected with its samples.
   virtual bool iterates() const { return false; }
   /// Repeats the last step from its initial state with the present estimate of the unknowns, and
-  /// discards the corrections since advance(). @param run at its present time.
+  /// discards the corrections since advance(). If the robot fails, they are kept. @param run at its
+  /// present time.
   void repeat(const Run& run);
   /// Forgets what happened before, but for the distribution: what settle() begins from.
   virtual void begin_settling() = 0;
