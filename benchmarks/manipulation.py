@@ -1,4 +1,4 @@
-"""Two published trunks hold the published cup, soft with soft, and an inverse controller is to carry it along a circle, in one thread.
+"""Two published trunks hold the published soft cup, and an inverse controller tries to carry it along a circle, in one thread.
 
     PYTHONPATH=build/release/python /usr/bin/python3 benchmarks/manipulation.py ../shared/data [--radius 1] [--methods newton]
 
@@ -6,7 +6,7 @@ The scene of benchmarks/grasp.py with two trunks, the published eight cables in 
 of 0.05 s and a free cup (54 g). A fixture, nine held displacements, holds the cup until the trunks have squeezed it, and then lets
 go. 0.3 s later the controller takes all sixteen cables. It is asked for the place of the cup, the mean of its nodes, for its
 rotation, and for at least 0.8 N of normal force of each trunk. Backward Euler, 10 ms. Processor time from when the controller has
-held the cup; stages in wall time. A run ends with the first step that is not solved, see docs/performance.md. Coevoet et al.
+held the cup; stages in wall time. A run ends at the first step that cannot be solved, see docs/performance.md. Coevoet et al.
 (RoboSoft 2019) report 185 ms for one trunk with 81 contacts that stick.
 """
 
@@ -78,9 +78,9 @@ def hold(data, method):
 
 
 def carry(sim, radius):
-    """A row a step: ms, points in the law, with a force, sticking, iterations, mm off the path, degrees turned, N, ms of stages.
+    """One row per step: ms, points in the law, with a force, sticking, iterations, mm off the path, degrees turned, N, ms of stages.
 
-    Ends with the first step that is not solved.
+    Ends at the first step that cannot be solved.
     """
     cup, turn, grips = sim.effector("cup"), sim.effector("turn"), list(sim.contacts.values())
     start, rotation = cup.position.copy(), turn.value.copy()

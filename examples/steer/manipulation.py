@@ -3,10 +3,10 @@
 
     PYTHONPATH=build/release/python /usr/bin/python3 examples/steer/manipulation.py [--radius 5] [--out FOLDER]
 
-Each finger is a tapered body with four cables. A neck joins it to a pad that is hollow as the cup is round, and that turns with
-the wall of the cup. The fingers close on the standing cup and lift it. Then an inverse controller takes the cables. It is asked
-for the place and the rotation of the cup, and for at least 0.3 N of normal force of each finger. Nothing but contact, soft with
-soft, connects the cup with the fingers. FOLDER gets manipulation.png.
+Each finger is a tapered body with four cables. A neck joins it to a concave pad, which fits the wall of the cup and tilts with it.
+The fingers close on the standing cup and lift it. Then an inverse controller takes over the cables. Its targets are the position
+and the rotation of the cup, and a normal force of at least 0.3 N at each finger. Only contact between soft bodies connects the cup
+to the fingers. The picture is written to FOLDER/manipulation.png.
 """
 
 import argparse
@@ -22,24 +22,24 @@ FINGERS = 3
 FRICTION, LEAST = 0.9, 0.3  # coefficient; normal force of each finger, N
 PULL, LIFT = 9e-3, 30e-3  # m
 CLOSED, LIFTS, LIFTED, HELD, END = 0.8, 1.0, 1.5, 1.7, 3.9  # s
-TURNS = 2.0  # s: time of the circle
+TURNS = 2.0  # s: duration of the circle
 STEP = 0.01  # s
-TOLERANCE = 1e-2  # of the forces: one iteration a step, whose error the controller sees and corrects in the next
-ARM = 30e-3  # m: a rotation of 1 rad counts as much as a way of this length
-CUP_RADII, CUP_HEIGHT, CUP_WALL, CUP_FLOOR = (20e-3, 34e-3), 70e-3, 3e-3, 5e-3  # m; outer radii at the floor and at the rim
-QUARTER, LAYERS = 6, 6  # of the cup: cells along a quarter of its circle, layers from the floor to the rim
-APART, ABOVE, LENGTH, FIXED = 54e-3, 225e-3, 200e-3, 20e-3  # m: a finger's axis from the middle, its foot above the table
-WIDE, DEEP = (24e-3, 18e-3), (22e-3, 14e-3)  # m: a finger at its foot and at its tip
+TOLERANCE = 1e-2  # relative: one iteration per step; the controller corrects its error in the next step
+ARM = 30e-3  # m: a rotation of 1 rad weighs as much as this distance
+CUP_RADII, CUP_HEIGHT, CUP_WALL, CUP_FLOOR = (20e-3, 34e-3), 70e-3, 3e-3, 5e-3  # m; outer radii at floor and rim
+QUARTER, LAYERS = 6, 6  # cells of the cup along a quarter of its circumference, and layers between floor and rim
+APART, ABOVE, LENGTH, FIXED = 54e-3, 225e-3, 200e-3, 20e-3  # m: distance of a finger's axis from the middle, height of its foot above the table
+WIDE, DEEP = (24e-3, 18e-3), (22e-3, 14e-3)  # m: width and depth of a finger at its foot and tip
 PAD, NECK, SLIT = (36e-3, 24e-3, 5e-3), 8e-3, 6e-3  # m: height, width and thickness; the neck's height and length
 SOFT = {"density": "1070 kg/m^3", "material": {"model": "neo-hookean", "poisson_ratio": 0.45}}
 
 
 def finger():
-    """Nodes (m) and hexahedra of a finger whose axis is the line x = 0, y = 0, with the cup at negative x, and where it ends (m).
+    """Nodes (m) and hexahedra of a finger with the axis x = 0, y = 0 and the cup at negative x, and its length without the pad (m).
 
-    Across x there are four cells: the pad, the neck, and two of the finger.
+    There are four layers of cells along x: the pad, the neck, and two in the finger.
     """
-    middle = LENGTH - 0.5 * PAD[0]  # of the pad, below the foot; there the finger ends, with the neck
+    middle = LENGTH - 0.5 * PAD[0]  # of the pad, below the foot; the neck and the end of the finger are there
     upper, lower = np.linspace(LENGTH - PAD[0], middle - 0.5 * NECK, 3), np.linspace(middle + 0.5 * NECK, LENGTH, 3)
     below = np.concatenate([np.linspace(0.0, upper[0], 11), upper[1:], lower])
     cell = 0.5 * (below[1:] + below[:-1])
@@ -52,7 +52,7 @@ def finger():
     radius = np.interp(ABOVE - depth, [0.0, CUP_HEIGHT], CUP_RADII)
     back = -0.5 * np.interp(middle, [0.0, LENGTH], DEEP) - SLIT - (radius - np.sqrt(radius**2 - y**2))
     x = np.choose(layer, [back - PAD[2], back, -half_deep, np.zeros_like(y), half_deep])
-    # Depth is down: the layers of a hexahedron change places.
+    # Depth points down, so the bottom and top layers of a hexahedron are swapped.
     return np.column_stack([x, y, ABOVE - depth]), hexahedra_[:, [4, 5, 6, 7, 0, 1, 2, 3]], lower[0]
 
 
@@ -79,7 +79,7 @@ def soft(file, modulus):
 
 
 def scene(folder):
-    """The scene; its meshes are written to the folder, which must exist until it is loaded."""
+    """The scene. Its meshes are written to the folder, which must exist until the scene is loaded."""
     cup, cells = hexahedra.cup(QUARTER, LAYERS, CUP_RADII, CUP_HEIGHT, CUP_WALL, CUP_FLOOR)
     hexahedra.write(folder / "cup.vtk", cup, cells)
     bodies = {"cup": soft(folder / "cup.vtk", "500 kPa")}
@@ -114,7 +114,7 @@ def circle(time, radius):
 
 
 def hold():
-    """The simulation when the fingers have lifted the cup."""
+    """The simulation after the fingers have lifted the cup."""
     with tempfile.TemporaryDirectory() as folder:
         sim = sinew.load(scene(Path(folder)), threads=1)
     sim.step(round(HELD / STEP))
@@ -122,10 +122,10 @@ def hold():
 
 
 def carry(sim, radius):
-    """One row a step from when the controller takes over, the way of the cup (steps, 3) m.
+    """Lets the controller carry the cup. Returns one row per step, and the displacement of the cup, (steps, 3) m.
 
-    Columns: time (s), distance of the cup from its place (m), its rotation (rad), three normal forces (N), points that take part in
-    the law, that stick and that slip, smallest gap (m), seconds taken.
+    Columns: time (s), distance of the cup from its target (m), its rotation (rad), three normal forces (N), numbers of points in the
+    contact law, of sticking and of slipping ones, smallest gap (m), processor time (s).
     """
     cup, turn = sim.effector("cup"), sim.effector("turn")
     grips = [sim.contact(f"grip_{finger}") for finger in range(FINGERS)]

@@ -97,8 +97,8 @@ def test_late_samples_count_for_their_time():
 
 
 def test_slack_cables_count_on_the_side_on_which_they_pull():
-    """Two cables side by side, whose tensions are about zero: after some samples a column of the covariance raises the one and lowers
-    the other. The covariance is that of cables that are under tension, in a beam that is linear."""
+    """Two parallel cables have tensions near zero. After some samples, a column of the covariance raises one tension and lowers the
+    other. Since the beam is linear, the covariance equals that of cables under tension."""
     runs = []
     for tension in ("0 N", "10 mN"):
         tree = beam(loads={}, actuators={

@@ -1,4 +1,4 @@
-"""Estimators of scenes that look for the stiffness of a body, beside forces and alone."""
+"""Estimators of scenes that find the stiffness of a body, alone and together with forces."""
 import re
 
 import numpy as np
@@ -7,11 +7,11 @@ import scipy.stats
 
 import sinew
 
-PRIOR = 0.3  # of the logarithm
+PRIOR = 0.3  # standard deviation of the logarithm of the factor
 
 
 def beam(integrator="quasi-static", **changes):
-    """A soft beam that bends under its weight, seen by two markers."""
+    """A soft beam that bends under its own weight, measured by two markers."""
     return {
         "sinew": 1, "time_step": "10 ms", "integrator": integrator, "gravity": "0 0 -9.81 m/s^2",
         "bodies": {"beam": {"type": "fem", "mesh": {"shape": "block", "length": "60 mm", "width": "10 mm", "height": "10 mm",
@@ -26,7 +26,7 @@ def beam(integrator="quasi-static", **changes):
 
 
 def twin(tree, logarithm, seed):
-    """The scene with the body's moduli multiplied by exp(logarithm), of which its estimator does not know."""
+    """A simulation whose beam has its moduli multiplied by exp(logarithm), which the estimator does not know."""
     for k, sensor in enumerate(tree["sensors"].values()):
         sensor["seed"] = 100 * seed + k
     sim = sinew.load(tree)
@@ -35,7 +35,8 @@ def twin(tree, logarithm, seed):
 
 
 def check_ellipsoids(squares, size):
-    """Squared errors by the covariance: chi squared, its mean over many draws within 3.3 of its deviations."""
+    """Squared errors relative to the covariance follow chi squared: their mean lies within 3.3 of its standard deviations, and the number
+    of errors in the 90 % ellipsoids is likely."""
     count = len(squares)
     assert abs(np.mean(squares) - size) < 3.3 * np.sqrt(2.0 * size / count)
     inside = scipy.stats.binom(count, 0.9)
@@ -43,7 +44,7 @@ def check_ellipsoids(squares, size):
 
 
 def test_a_factor_is_another_modulus():
-    """In rubber that relaxes and softens, too: forces, energies and stresses of a motion."""
+    """A stiffness factor has the effect of a larger modulus on motion, forces, stiffness and energy, also with viscosity and softening."""
     material = {"model": "neo-hookean", "young_modulus": "100 kPa", "poisson_ratio": 0.45,
                 "viscosity": [{"relative_modulus": 0.3, "relaxation_time": "30 ms"}]}
     pair = []
@@ -85,7 +86,8 @@ def test_ellipsoids_of_stiffness_at_rest():
 
 
 def test_ellipsoids_of_stiffness_in_steps():
-    """The first step's linearisation about the scene's modulus is off by more than the deviation; steps are repeated."""
+    """The error of the first linearisation, about the modulus of the scene, exceeds the standard deviation, so the filter has to repeat
+    steps."""
     rng = np.random.default_rng(12)
     squares = []
     for draw in range(50):
@@ -99,7 +101,7 @@ def test_ellipsoids_of_stiffness_in_steps():
 
 
 def test_ellipsoids_of_stiffness_beside_a_force():
-    """A hand that lifts is not a stiffer beam: a load cell on a cable tells them apart, and the estimate says how well."""
+    """A force that lifts the beam looks like a stiffer beam; the covariance contains how well two markers and the weight separate them."""
     rng = np.random.default_rng(13)
     squares = []
     for draw in range(50):
@@ -116,7 +118,7 @@ def test_ellipsoids_of_stiffness_beside_a_force():
 
 
 def test_ellipsoids_of_stiffness_in_motion():
-    """Let go at rest without strain, the beam falls and swings about its equilibrium."""
+    """The beam is released without strain, falls, and swings about its equilibrium."""
     rng = np.random.default_rng(14)
     squares = []
     for draw in range(50):
@@ -153,7 +155,7 @@ def test_states_and_clones_go_on_bit_for_bit():
 
 
 def test_what_only_the_ratio_of_force_and_stiffness_tells_is_named():
-    """An unknown force on a beam without weight: markers see the ratio alone."""
+    """With an unknown force on a beam without weight, markers determine only the ratio of force and stiffness."""
     tree = beam(gravity="0 0 0 m/s^2")
     tree["loads"] = {"hand": {"type": "force", "body": "beam", "point": "60 0 0 mm", "force": "0 0 -3 mN"},
                      "weight": {"type": "force", "body": "beam", "point": "60 0 0 mm", "force": "0 0 -1e-9 N"}}

@@ -56,15 +56,15 @@ def test_fingers_carry_a_cup_along_a_circle_without_turning_it():
     assert np.median(rows[:, 1]) < 1e-6 and rows[:, 1].max() < 1e-5
     assert np.median(rows[:, 2]) < 1e-5 and rows[:, 2].max() < 1e-4
     assert rows[:, 3:6].min() > 0.99 * manipulation.LEAST
-    assert rows[:, 6].min() >= 81 and np.median(rows[:, 7] + rows[:, 8]) > 25  # those that Coevoet et al. (2019) have
-    assert rows[:, 7].min() > 0  # they hold the cup: some stick in every step
+    assert rows[:, 6].min() >= 81 and np.median(rows[:, 7] + rows[:, 8]) > 25  # at least as many points as Coevoet et al. (2019)
+    assert rows[:, 7].min() > 0  # some points stick in every step
     assert rows[:, 9].min() > -1e-8
     assert np.linalg.norm(way[-1]) > 7e-3  # halfway around the circle
 
 
 def test_one_linearisation_a_step_carries_the_cup_as_well(tmp_path):
-    # What a linearisation misses is there without the controller's choice. Steps that were damped for it lost the cup by
-    # millimetres.
+    # The linearisation error of a dynamic step does not come from the controller's choice. When the damping reacted to it, the
+    # cup was off its path by millimetres.
     manipulation = load("manipulation")
     manipulation.END = 2.7
     held = manipulation.hold()

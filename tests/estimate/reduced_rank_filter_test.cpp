@@ -167,8 +167,8 @@ TEST(ReducedRankFilter, AnEquilibriumIsLeastSquares) {
   EXPECT_LT((filter.state_deviation() - 3.0 * (mean - acted)).norm(), 1e-12);
 }
 
-// Two inputs whose difference is known leave a covariance of rank one, and its factor too: no part
-// of the columns, and none of a measurement's correction, goes along the difference.
+// If the difference of two inputs is known, their covariance and its factor have rank one: neither
+// the columns nor the correction by a measurement change the difference.
 TEST(ReducedRankFilter, AnEquilibriumBeginsFromASemidefiniteCovariance) {
   const VectorX prior{{1.0, 1.0}};
   const VectorX difference{{1.0, -1.0}};
@@ -192,7 +192,7 @@ TEST(ReducedRankFilter, AnEquilibriumBeginsFromASemidefiniteCovariance) {
   EXPECT_NEAR(filter.mean()[0], 0.25 + 0.3 * 0.5 / (0.5 + 1e-4), 1e-12);
 }
 
-// A mean that differs from the inputs only where something is uncertain.
+// The first input is known exactly, so only the deviation of the second moves readings and state.
 TEST(ReducedRankFilter, AnEquilibriumEndsWithASemidefiniteCovariance) {
   ReducedRankFilter filter(VectorX{{1.0, 2.0}}, VectorX::Zero(2), 1, 1, 0, 2);
   const auto rest = [&](double of_first, double of_second, const VectorX& inputs) {

@@ -86,8 +86,8 @@ TEST(Estimators, OfBothKindsAgreeAtRest) {
             1e-2 * still->estimator(0).deviation().norm());
 }
 
-// The robot cannot take a hundred kilonewtons: the columns of the hand, which come first, count as
-// little as the others, and the path stays where the covariance is of.
+// A column of the blow pushes with 100 kN, for which the robot's step fails. The columns of the
+// hand succeed before it, but are discarded too, and the robot stays where it was.
 TEST(Estimators, AStepOfWhichAColumnFailsIsNotMade) {
   const auto model = estimated("backward-euler",
                                ", blow: {force: {body: beam, point: 60 0 0 mm}, prior: 1000 kN}");
@@ -107,7 +107,7 @@ TEST(Estimators, AStepOfWhichAColumnFailsIsNotMade) {
   EXPECT_FALSE(whole.estimator(0).message().empty());
 }
 
-// One mesh and one tree of its elements for the robot of the scene and those of its estimators.
+// The robots of the scene and of its estimator share the mesh and its embedder.
 TEST(Estimators, ShareTheMeshOfTheScene) {
   const auto model = estimated("quasi-static");
   const auto settings = [](const sim::Model& of) -> const fem::FemBodySettings& {

@@ -69,9 +69,10 @@ void ReducedRankFilter::begin_step(double seconds) {
   mean_.segment(n, readings_).setZero();
 }
 
-// With L_x^T = Q R the covariance of the inputs is R^T R: a triangular factor that needs no
-// positive pivots, so a semidefinite covariance has one (Golub & Van Loan, Matrix Computations, 4th
-// ed. 2013, sec. 5.2). Its columns take Cholesky's signs.
+// With L_x^T = Q R, the covariance of the inputs is R^T R. Unlike a Cholesky factorisation, QR
+// needs no positive pivots, so it also gives the triangular factor of a semidefinite covariance
+// (Golub & Van Loan, Matrix Computations, 4th ed. 2013, sec. 5.2). As in Cholesky's factor, the
+// diagonal is made non-negative.
 void ReducedRankFilter::begin_rest() {
   const Eigen::Index n = size();
   const Eigen::HouseholderQR<MatrixX> qr(factor_.topRows(n).transpose());
@@ -92,8 +93,8 @@ void ReducedRankFilter::put_column(Eigen::Index column, const VectorX& reading,
 
 void ReducedRankFilter::end_step() { cut(); }
 
-// deviation = L c with L_x c = mean - inputs, c the shortest in the least squares' sense: what is
-// certain does not differ. Inputs count in their priors.
+// The deviation is L c, where c is the shortest least-squares solution of L_x c = mean - inputs,
+// with each input scaled by its prior. Inputs without variance contribute nothing.
 void ReducedRankFilter::end_rest(const VectorX& inputs) {
   const Eigen::Index n = size();
   const auto scale = prior_.cwiseInverse().asDiagonal();

@@ -39,7 +39,7 @@ struct AssemblyWeights {
   double mass = 0.0;
   /// Whether the Mullins effect of earlier strains softens the material.
   bool softened = true;
-  /// Factor of all moduli of the elements: of forces, energy and K; membranes have their own.
+  /// Factor of the forces, the energy and K of all elements. Does not scale membranes.
   double moduli = 1.0;
 
   bool operator==(const AssemblyWeights&) const = default;

@@ -37,7 +37,7 @@ struct InitialVelocity {
 struct FemBodySettings {
   std::string name;
   std::shared_ptr<const mesh::Mesh> mesh;
-  std::shared_ptr<const mesh::Embedder> embedder;  ///< of the mesh; null: the body makes one
+  std::shared_ptr<const mesh::Embedder> embedder;  ///< of `mesh`; null: the body makes its own
   FemModelSettings elements;                       ///< couplings are filled in by finish()
   Vector3 gravity = Vector3::Zero();               ///< m/s^2
   RayleighDamping damping;

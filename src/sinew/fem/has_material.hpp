@@ -23,8 +23,9 @@ class HasMaterial {
   virtual Points load_forces() const = 0;
   /// Strain history of its elements.
   virtual const ElementHistory& history() const = 0;
-  /// Multiplies all moduli of its elements, at a given strain all stresses, and with them stiffness
-  /// damping: an input, as forces are. Membranes keep theirs. 1 at the start.
+  /// Factor of the stresses of its elements at a given strain, and thus of their stiffness damping.
+  /// It does not scale membranes. Like external forces, it is an input and not part of the state;
+  /// it is 1 initially.
   virtual double stiffness_factor() const = 0;
   virtual void set_stiffness_factor(double factor) = 0;  ///< @param factor > 0.
   /// Adds the force that rows put on each free node, as of the last linearisation.

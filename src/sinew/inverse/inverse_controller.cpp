@@ -125,10 +125,10 @@ void InverseController::review_choice(const StepProblem& problem, const Response
 //   1/2 (W_ea d - W_ea' d)^T Q gap
 // less than foreseen. It is the second derivatives' part that least squares leave out, as J. E.
 // Dennis, D. M. Gay & R. E. Welsch, ACM Trans. Math. Software 7 (1981) 348-368, section 3, find it.
-// In motion most of what a linearisation misses is there without d, in the way that the robot goes
-// anyhow: a smaller d would miss as much, and the damping that makes it smaller would stay for
-// good. Of a dynamic step what d was to gain and what it gained by W_ea are compared alone, with
-// the gap that there would be without it. Where that is nothing, damping fades.
+// In a dynamic step, most of the linearisation error is in the motion that the robot makes without
+// d. A smaller d would not reduce it, so damping would grow and never decay. Only the predicted
+// gain of d and its gain by the trapezoidal rule are therefore compared, both relative to the gap
+// without d. If both are negligible, the damping decays.
 void InverseController::review(StepDamping& damping, const Response& response,
                                const VectorX& before) const {
   const bool dynamic = simulation_.model().step().dynamic();

@@ -109,7 +109,7 @@ class InverseController : public TargetController, public step::Controller {
   VectorX gap_linearised_;     // where it was linearised for that choice
   VectorX change_;             // (controlled,) of efforts by that choice
   VectorX expected_;           // (effector rows,) m, how the change was to move the effectors
-  mutable VectorX without_;    // (effector rows,) m, of review()
+  mutable VectorX without_;    // (effector rows,) gap without change_, in review()
   EffortProgram program_;
   VectorX efforts_;
   double predicted_error_ = std::numeric_limits<double>::quiet_NaN();

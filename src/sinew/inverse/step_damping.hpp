@@ -16,11 +16,13 @@ namespace sinew::inverse {
 /// 105-116, section 4; J. Nocedal and S. J. Wright, Numerical Optimization (2006), algorithm 4.1.
 class StepDamping {
  public:
-  /// @param before,foreseen,found objectives: before a step, after it by the linearisation, and
-  ///   after it in truth, all with the targets of that step.
-  /// @param negligible objective that is as good as zero. False: there was too little to judge by.
+  /// Adapts the damping to the outcome of a step.
+  /// @param before,foreseen,found objectives with the targets of that step: without the change of
+  ///   efforts, after it as predicted by the linearisation, and after it as it turned out.
+  /// @param negligible objective that counts as zero.
+  /// @return false if the objectives differ too little to judge; value() is then unchanged.
   bool review(double before, double foreseen, double found, double negligible);
-  /// Trusts the linearisation twice as far.
+  /// Halves the damping, down to 1.
   void relax();
   /// >= 1, no unit.
   double value() const { return value_; }

@@ -29,7 +29,7 @@ namespace {
 constexpr std::array kTypes = {"marker",   "orientation", "cable-length", "cable-tension",
                                "pressure", "volume",      "motor-current"};
 constexpr const char* kSwitch = "touch";
-// These say nothing of forces.
+// Types of sensors that do not measure forces.
 constexpr std::array kShapes = {"marker", "orientation", "cable-length", "volume"};
 // Of what the compliances of two rows allow: less is rounding.
 constexpr double kResponds = 1e-12;
@@ -197,8 +197,9 @@ void check_type(const SceneDescription& scene, const EstimatorDescription& estim
               sensor.type == "volume" ? "measure its pressure" : "measure its tension");
 }
 
-// Whether something acts on the robot by a force that the estimator knows or measures, or by its
-// inertia: if none does, every stiffness has the same shape.
+// Whether a force acts on the robot that the estimator knows or measures, including inertia.
+// Otherwise the shape does not depend on the stiffness. Anything that may exert such a force
+// counts.
 bool has_known_force(const SceneDescription& scene, const EstimatorDescription& estimator,
                      const SceneDescription& known) {
   const bool weighs = !scene.gravity.isZero(0.0);
@@ -217,7 +218,8 @@ bool has_known_force(const SceneDescription& scene, const EstimatorDescription& 
          !scene.contacts.empty() || !scene.joints.empty() || has_inertia(scene, estimator);
 }
 
-// Of a stiffness: the body has moduli, which no other unknown scales, and forces tell of them.
+// Checks unknown stiffnesses: the body has finite elements, its stiffness is unknown only once, and
+// a known or measured force makes it observable.
 void check_stiffness(const SceneDescription& scene, const EstimatorDescription& estimator,
                      const SceneDescription& known) {
   std::set<std::string> taken;
@@ -314,7 +316,8 @@ class RestResponse {
   sim::Linearisation at_rest_;
 };
 
-// At rest a stiffness moves nothing. What is on the body answers to it, or what is joined to it.
+// Whether a sensor may respond to a stiffness: it is on the body, on an actuator of the body, or
+// the scene has joints. W cannot show it, since a stiffness has no effect on the unloaded robot.
 bool may_tell(const SceneDescription& scene, const SensorDescription& sensor,
               const UnknownDescription& unknown) {
   if (!scene.joints.empty() || sensor.body == unknown.body) return true;

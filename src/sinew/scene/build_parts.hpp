@@ -83,21 +83,21 @@ std::vector<Notice> expand_urdf(SceneDescription& scene);
 /// @param surface of the solid. @param convex whether contacts use the convex hull.
 rigid::Solid make_solid(mesh::Surface surface, bool convex);
 
-/// The mesh of a body of finite elements as another model of the same body has it.
+/// The mesh of a finite-element body, shared with another model of the same body.
 struct SharedMesh {
   std::shared_ptr<const mesh::Mesh> mesh;
-  std::shared_ptr<const mesh::Embedder> embedder;  ///< of it
+  std::shared_ptr<const mesh::Embedder> embedder;  ///< of `mesh`
 };
-/// By the names of the bodies.
+/// Shared meshes by the names of their bodies.
 using SharedMeshes = std::map<std::string, SharedMesh>;
 
-/// build() of a scene whose meshes another model has already made and checked.
-/// @param description,shared the scene, without robots in files, and the meshes of its bodies of
-/// finite elements; those that are not there are made.
+/// Builds a scene, reusing meshes that another model has already made and checked.
+/// @param description the scene, with its URDF robots expanded (expand_urdf()).
+/// @param shared meshes of finite-element bodies; the others are made.
 Robot build(SceneDescription description, const SharedMeshes& shared);
 
-/// Adds a body that its scene describes. @param shared its mesh; null: it is made. @return what a
-/// user should know of it, once for each mesh that is made.
+/// Adds a body of a scene. @param builder,scene,body which. @param shared its mesh; null: makes the
+/// mesh. @return a notice about a mesh that was made, if the user should know something about it.
 std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
                                const BodyDescription& body, const SharedMesh* shared);
 

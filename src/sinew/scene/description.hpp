@@ -328,18 +328,19 @@ struct SensorDescription {
   std::shared_ptr<const sim::SensorRecord> record;  ///< samples from a file
 };
 
-/// A force from outside, the effort of an actuator or the stiffness of a body, to be found.
+/// An unknown of an estimator: an external force, the effort of an actuator, or the stiffness of a
+/// body.
 struct UnknownDescription {
   std::string name;
   Location place, where_place;
-  std::string body;                 ///< that the force acts on, or whose stiffness it is
+  std::string body;                 ///< on which the force acts, or whose stiffness it is
   Vector3 point = Vector3::Zero();  ///< m
   mesh::Outside outside = mesh::Outside::error;
   std::string actuator;       ///< whose effort it is
   std::string quantity;       ///< "pressure", "tension", "stiffness"; empty: a force
   bool command_known = true;  ///< see sim::Unknown
-  double prior = 0.0;         ///< N or Pa, > 0; of the logarithm of a stiffness
-  double walk = 0.0;          ///< over sqrt(s), >= 0
+  double prior = 0.0;         ///< N or Pa, > 0; of a stiffness, of the logarithm of its factor
+  double walk = 0.0;          ///< the unit of the prior over sqrt(s), >= 0
 
   bool is_force() const { return quantity.empty(); }
   bool is_stiffness() const { return quantity == "stiffness"; }

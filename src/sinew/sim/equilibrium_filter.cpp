@@ -52,7 +52,7 @@ void EquilibriumFilter::predict(const Run& run, double time_step) {
   take_up(run, filter_.mean(), false);
 }
 
-// Where the robot fails, what was known before stays.
+// If the robot fails, the results of the previous round are kept.
 void EquilibriumFilter::predict_again(const Run& run) {
   const Instant before = instants_.front();
   const State after = own_robot().state();

@@ -20,12 +20,13 @@ namespace sinew::sim {
 /// which it was taken. Step and sample agree to the step's tolerance, and S to the change of the
 /// tangent by the last Newton correction.
 ///
-/// A stiffness has no row of W. Its column is a difference of two steps from the same start,
-///   dh/du_k = (h(u + e_k e) - h(u))/e,   e = 0.01 of the logarithm.
-/// h bends with it as exp(-u), and it does not wander, so that an error of the first linearisation
-/// would last: with a stiffness among the unknowns a step is repeated about the estimate that its
-/// samples led to, until that moves by less than a tenth of its deviation (the iterated filter,
-/// ibid. sec. 13.3.1). Samples that come late keep the linearisation of their step.
+/// A stiffness has no row in W. Its column of S is the difference of two steps from the same state,
+///   dh/du_k = (h(u + e e_k) - h(u))/e,   with e = 0.01 in the logarithm u_k,
+/// accurate to the step's tolerance over e. h varies as exp(-u_k), and by default the stiffness is
+/// constant, so an error of the first linearisation would persist. If a stiffness is unknown, each
+/// step is therefore repeated about the corrected estimate until the estimate moves by less than a
+/// tenth of its standard deviation, at most ten times in all (iterated filter, ibid. sec. 13.3.1).
+/// Late samples use the linearisation of their own step.
 class EquilibriumFilter : public EstimatorFilter {
  public:
   /// See EstimatorFilter; the robot of the model is quasi-static.
@@ -68,9 +69,9 @@ class EquilibriumFilter : public EstimatorFilter {
   static void visit_memory(Self& self, Visitor&& visitor);
 
   estimate::RandomWalkFilter filter_, settled_from_, predicted_;
-  State start_;                     // of the last step's robot, where it iterates
-  std::vector<int> controlled_;     // actuators of components that have one
-  std::vector<Eigen::Index> with_;  // these components
+  State start_;                     // of the robot before the last step, if it iterates
+  std::vector<int> controlled_;     // actuators whose efforts are unknown
+  std::vector<Eigen::Index> with_;  // components of these efforts
   std::vector<Instant> instants_;   // (lags + 1,) from now back
 };
 

@@ -20,9 +20,9 @@ namespace sinew::sim {
 namespace {
 
 constexpr double kNever = -1.0;
-// The iterated filter ends when the estimate moves by less than this fraction of its deviation.
+// The iterated filter ends when the estimate moves by less than this fraction of its standard
+// deviation: in an equilibrium, and in a step.
 constexpr double kSettled = 1e-3;
-// In steps, whose unknowns wander.
 constexpr double kSettledStep = 0.1;
 constexpr int kMaxSettling = 10;
 // Components of a direction up to this size are omitted from its description.
@@ -138,7 +138,8 @@ void Estimator::observe() {
   observability_ = filter_->observability(variance);
 }
 
-// Predictor(round) of a path about the estimate as it is. Each round takes the samples anew.
+// Calls predictor(round) for a path about the present estimate, and corrects with all samples of
+// the step again, until the estimate has converged.
 template <class Predictor>
 void Estimator::iterate(const Run& run, int rounds, double settled, Predictor&& predictor) {
   const std::vector<double> used = used_;
@@ -146,7 +147,7 @@ void Estimator::iterate(const Run& run, int rounds, double settled, Predictor&& 
   for (int round = 0; round < rounds; ++round) {
     const VectorX before = filter_->mean();
     predictor(round);
-    if (round > 0 && filter_->failed()) break;  // what the samples led to before stays
+    if (round > 0 && filter_->failed()) break;  // the last estimate is kept
     used_ = used;
     dropped_ = dropped;
     correct(run);

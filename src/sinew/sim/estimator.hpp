@@ -1,5 +1,5 @@
 /// @file
-/// What a run concludes from its sensors: forces from outside, efforts of actuators, stiffness.
+/// Estimator of external forces, efforts of actuators and stiffnesses from the sensors of a run.
 #pragma once
 
 #include <memory>
@@ -33,8 +33,9 @@ std::string_view estimator_status_name(EstimatorStatus status);
 /// A sensor counts as silent after this many of its periods without a sample.
 inline constexpr double kSilentPeriods = 5.0;
 
-/// Estimates unknown loads from sensor samples, as a computer beside the robot would. It knows the
-/// robot, its commands and the scene's loads except those named as unknown.
+/// Estimates unknown forces, efforts and stiffnesses from sensor samples, as a computer beside the
+/// robot would. It knows the robot, its commands and the scene's loads except those named as
+/// unknown.
 ///
 /// It simulates a robot of its own under the estimated unknowns and compares the samples with that
 /// robot's readings: see EquilibriumFilter, and MotionFilter for a robot with inertia.
@@ -50,11 +51,11 @@ class Estimator {
   Estimator(Estimator&&) noexcept;
 
   const EstimatorModel& model() const { return model_; }
-  /// (n,) N or Pa, and of a stiffness the logarithm of its factor, see
-  /// EstimatorModel::component_names().
+  /// (n,) of the components, see EstimatorModel::component_names(): N, Pa, or the logarithm of the
+  /// factor of a stiffness.
   VectorX mean() const;
-  MatrixX covariance() const;  ///< (n, n) of them
-  VectorX deviation() const;   ///< (n,) of them
+  MatrixX covariance() const;  ///< (n, n) of the components
+  VectorX deviation() const;   ///< (n,) standard deviations of the components
   /// What sensors tell beyond the prior, see EstimatorFilter::observability(); zeros before the
   /// first step.
   const estimate::Observability& observability() const { return observability_; }

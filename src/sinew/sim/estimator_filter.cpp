@@ -83,7 +83,7 @@ void EstimatorFilter::visit_efforts(const Run& run, const VectorX& unknowns,
   }
 }
 
-// As it is where nothing bounds it.
+// Unknowns within their limits are returned exactly.
 VectorX EstimatorFilter::bounded(const Run& run, const VectorX& unknowns) const {
   VectorX acted = unknowns;
   visit_efforts(run, unknowns, [&](Eigen::Index k, int, double wanted, double effort) {
@@ -92,7 +92,8 @@ VectorX EstimatorFilter::bounded(const Run& run, const VectorX& unknowns) const 
   return acted;
 }
 
-// What scripts and hands do to the bodies is what is to be found.
+// The inputs of the run that the estimator knows, and the unknowns. Forces and stiffness factors
+// from scripts, and forces of a hand in the view, are not known to it.
 Inputs EstimatorFilter::inputs_of(const Run& run, const VectorX& unknowns) {
   Inputs inputs = run.inputs();
   const std::vector<ActuatorState>& states = run.actuation.states();

@@ -33,10 +33,11 @@ class EstimatorFilter {
   /// Predicts to the end of the run's last step. @param run at its present time.
   /// @param time_step s.
   void advance(const Run& run, double time_step);
-  /// Whether a step is repeated after its samples, about the estimate that they led to.
+  /// Whether each step is repeated about the estimate that was corrected with its samples.
   virtual bool iterates() const { return false; }
-  /// The last step once more from where it began, with the unknowns as estimated now, and without
-  /// what samples said since. @param run now.
+  /// Repeats the last step from its initial state with the present estimate of the unknowns, and
+  /// discards the corrections since advance(). If the robot fails, they are kept. @param run at its
+  /// present time.
   void repeat(const Run& run);
   /// Forgets what happened before, but for the distribution: what settle() begins from.
   virtual void begin_settling() = 0;
@@ -76,7 +77,7 @@ class EstimatorFilter {
   /// Resets the distribution to the prior.
   virtual void forget() = 0;
   virtual void predict(const Run& run, double time_step) = 0;
-  /// Where it iterates.
+  /// Implements repeat() if iterates().
   virtual void predict_again(const Run& /*run*/) {}
   virtual void predict_rest(const Run& run) = 0;
   virtual void save_own(std::vector<double>& memory) const = 0;
@@ -91,11 +92,11 @@ class EstimatorFilter {
   /// (n,) the unknowns as they acted in the last move, within the limits of their actuators: a
   /// cable cannot push.
   const VectorX& acted() const { return acted_; }
-  /// (n,) the unknowns as they would act.
+  /// (n,) the unknowns as they would act, see acted().
   VectorX bounded(const Run& run, const VectorX& unknowns) const;
   /// (m,) what the sensors say of the robot without errors.
   VectorX readings() const;
-  /// (m,) EstimatorModel::difference() of all sensors. @param to,from (m,).
+  /// (m,) EstimatorModel::difference() for all sensors. @param to,from (m,) readings.
   VectorX reading_difference(const VectorX& to, const VectorX& from) const;
 
  private:

@@ -18,8 +18,8 @@ struct Unknown {
   enum class Kind {
     force,   ///< a dead force on a point: components along x, y and z of the world
     effort,  ///< of an actuator: what is added to its commanded effort, see command_known
-    /// Of a body of finite elements: the logarithm of a factor of all its moduli. The factor is
-    /// lognormal before anything is measured, with the median 1, and stays positive.
+    /// The logarithm of a factor of all moduli of a finite-element body. The prior of the factor is
+    /// lognormal with the median 1, so the factor stays positive.
     stiffness,
   };
   std::string name;
@@ -71,12 +71,13 @@ struct EstimatorModel {
   /// R_from^T. @param sensor index in `sensors`.
   /// @param to,from (k,) readings.
   VectorX difference(std::size_t sensor, const VectorX& to, const VectorX& from) const;
-  /// (n,) of the estimator's robot, whose effort each component is part of; -1: a stiffness.
+  /// (n,) for each component, the actuator of `robot` on whose effort it acts; -1 for a stiffness.
   std::vector<int> actuators() const;
   /// Whether a stiffness is among the unknowns.
   bool has_stiffness() const;
-  /// Replaces the logarithms in a mean by factors, and the deviations of logarithms by those of
-  /// factors to the first order: std(exp(u)) = exp(u) std(u). @param mean,deviation (n,).
+  /// Converts the components of stiffnesses from logarithms to factors, and their standard
+  /// deviations to first order: std(exp(u)) = exp(u) std(u).
+  /// @param mean,deviation (n,), in and out.
   void take_exponentials(VectorX& mean, VectorX& deviation) const;
 };
 

@@ -54,7 +54,8 @@ void MotionFilter::begin_settling() {
   settled_from_ = filter_;
 }
 
-// A correction that the robot cannot take is dropped: every later step would begin there.
+// If the path fails from the corrected state, the correction of the state is dropped, since every
+// later step would start from there. If only a column fails, the correction is kept.
 void MotionFilter::predict(const Run& run, double time_step) {
   const State before = own_robot().state();
   const State from = moved(before, filter_.state_deviation());
@@ -106,10 +107,11 @@ MotionFilter::Outcome MotionFilter::move_all(const Run& run, const State& from, 
   return Outcome::moved;
 }
 
-// Where an unknown is at its bound, F has a derivative on one side only, and the column goes to
-// that side. With du = du_1 + du_2, du_1 free to the one side and du_2 to the other,
-//   F(s + e ds, u + e du_1) - F(s, u - e du_2) = e F_s ds + e F_u du,
-// to the first order in e, with the derivatives of the sides on which the unknowns are free.
+// At a bound of an unknown, F has only a one-sided derivative, so the difference is taken on the
+// side within the bound. If du moves some unknowns out of their bounds and -du others, it is split
+// into du = du_1 + du_2, where u + e du_1 and u - e du_2 are within the bounds. With the one-sided
+// derivatives and to first order in e,
+//   F(s + e ds, u + e du_1) - F(s, u - e du_2) = e F_s ds + e F_u du.
 bool MotionFilter::move_column(const Run& run, const Reached& reached, Eigen::Index k,
                                Eigen::Ref<VectorX> column) {
   const VectorX unknowns = filter_.mean(), all = filter_.input_column(k);

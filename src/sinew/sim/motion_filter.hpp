@@ -22,12 +22,13 @@ namespace sinew::sim {
 ///   (dy, ds') = (F(s + e ds, u + e du) - F(s, u)) / e,   e = 0.1,
 /// of the robot as it is, with its joints, contacts and drives: the derivative of the step to the
 /// first order in e, and to the step's tolerance over e. One step of the filter therefore takes as
-/// many steps of the robot as there are columns, and one more. A column in which unknowns at their
-/// bounds (cables without tension) are free on different sides takes two.
+/// many steps of the robot as there are columns, and one more. A column takes two steps if it moves
+/// unknowns at their bounds (slack cables) in different directions, so that no single sign of e
+/// keeps all of them within their bounds.
 ///
-/// A step that the robot fails to make, along its path or along one of the columns, is not made at
-/// all: the robot stands still, its covariance stays but for the walk of the unknowns, and samples
-/// of that instant tell nothing.
+/// If the robot fails along the path or along any column, the whole step is discarded: the robot
+/// stays where it is, only the random walk of the unknowns adds to the covariance, and samples of
+/// that instant are ignored.
 ///
 /// Neglected: truncated columns (see ReducedRankFilter), second derivatives, and the uncertainty of
 /// states outside the bodies, such as the gas in chambers and the friction memory of contacts.
@@ -57,8 +58,8 @@ class MotionFilter : public EstimatorFilter {
 
  private:
   enum class Outcome { moved, path_failed, column_failed };
-  // What the path's step led to, and where a column begins: the start of the step, or the
-  // equilibrium.
+  // The end of the path's step, and the state from which columns start: that at the start of the
+  // step, or the equilibrium.
   struct Reached {
     const State& start;
     VectorX numbers;
@@ -66,7 +67,7 @@ class MotionFilter : public EstimatorFilter {
   };
 
   Outcome move_all(const Run& run, const State& from, bool settles);
-  // Adds (dy, ds') to (m + states,). Returns whether the robot got there.
+  // Adds (dy, ds') to `column`, (m + states,). Returns false if the robot fails.
   bool move_column(const Run& run, const Reached& reached, Eigen::Index k,
                    Eigen::Ref<VectorX> column);
 

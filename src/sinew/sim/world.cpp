@@ -119,8 +119,9 @@ linalg::FactorStatus World::condense() {
 step::LawStatus World::solve_step(step::StepSolver& solver, step::Controller* controller,
                                   std::span<double> effort, StageClock& clock) {
   effort_before_.assign(effort.begin(), effort.end());
-  // Each choice of a controller takes several solutions of the law. Which points of surfaces take
-  // part shows almost as well at the efforts that it starts from, for one solution a round.
+  // Each choice of a controller takes several solutions of the law. Most of the points that become
+  // active between surfaces are also found at the efforts before the choice, with one solution per
+  // round. The controller therefore chooses only when no more points are found there.
   const bool looks = controller != nullptr && !contacts_.planes().surfaces().empty();
   step::Controller* chooses = looks ? nullptr : controller;
   step::LawStatus status = step::LawStatus::solved;
