@@ -3,9 +3,11 @@
 /// floating-point operations, counted from the elimination tree, and processor times of one thread.
 ///     compliance_cost [CELLS_ALONG_THE_FACE CELLS_ACROSS_IT]
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <utility>
 #include <vector>
 
 #include "sinew/core/thread_pool.hpp"

@@ -47,7 +47,7 @@ def main():
     parser.add_argument("--zones", type=float, nargs="*", default=[10.0, 20.0], help="mm, of zones of all nodes")
     given = parser.parse_args()
     warnings.simplefilter("ignore", sinew.SinewWarning)
-    print("| points | points | with a force | step | s | of it the law | iterations | substeps | aggregation | "
+    print("| contact points | number | with a force | step | s | of it the law | iterations | substeps | aggregation | "
           "overlap, um |\n" + "|---" * 10 + "|")  # fmt: skip
     for spacing in given.spacings:
         multigait.SPACING = spacing

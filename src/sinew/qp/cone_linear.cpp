@@ -159,8 +159,7 @@ void ConeIsland::turn_slips(const ConePart& part, int count) {
   };
   // Writes the right-hand side due to the motion of turns g to `answer`.
   const auto take_turns = [&](const Eigen::Ref<const VectorX>& g) {
-    answer.noalias() = by_turn * g;
-    answer = -answer;
+    answer.noalias() = (-by_turn) * g;
     for (std::size_t k = 0; k < part.problem.cones.size(); ++k) {
       if (cone_at_[k] < 0 || !branches_[k].slips || branches_[k].holds) continue;
       answer.segment<3>(cone_at_[k]) = branches_[k].act(answer.segment<3>(cone_at_[k]));
