@@ -171,7 +171,7 @@ void ContactRows::choose_active(std::span<const double> effort, double time_step
 // order. A point with a force and a normal velocity landed in the last step or passes an edge.
 void ContactRows::judge_moving(std::span<const double> effort, double time_step) {
   if (model_.step().integrator != mechanics::Integrator::bdf2) return;
-  const double still = std::max(kStill * fastest_node(), kNoMotion * model_.size() / time_step);
+  const double still = speed_at_rest(kStill, time_step);
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
     const auto row = static_cast<std::size_t>(contact.row(k));
     moved_[row] = 0;
@@ -222,9 +222,7 @@ double ContactRows::friction(const constraint::Contact& contact, std::size_t poi
 // quasi-statics, by force alone.
 void ContactRows::judge_sliding(std::span<const double> effort, double time_step) {
   if (!has_kinetic_) return;
-  still_ = std::isfinite(time_step)
-               ? std::max(kStays * fastest_node(), kNoMotion * model_.size() / time_step)
-               : kInfinity;
+  still_ = std::isfinite(time_step) ? speed_at_rest(kStays, time_step) : kInfinity;
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
     judge_sliding(contact, k, effort);
   });
@@ -437,7 +435,7 @@ bool ContactRows::stops_touching_point(std::span<const double> effort) const {
 }
 
 bool ContactRows::stops_points(std::span<const double> effort, double time_step) const {
-  const double still = std::max(kStill * fastest_node(), kNoMotion * model_.size() / time_step);
+  const double still = speed_at_rest(kStill, time_step);
   for (const constraint::Contact* contact : planes_.contacts()) {
     for (std::size_t k = 0; k < contact->size(); ++k) {
       const Eigen::Map<const Vector3> force(effort.data() + contact->row(k));
@@ -494,6 +492,11 @@ double ContactRows::fastest_node() const {
     }
   }
   return fastest;
+}
+
+// m/s: slower points are at rest.
+double ContactRows::speed_at_rest(double fraction, double time_step) const {
+  return std::max(fraction * fastest_node(), kNoMotion * model_.size() / time_step);
 }
 
 bool ContactRows::touches_softly(std::span<const double> effort) const {

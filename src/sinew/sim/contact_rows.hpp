@@ -158,6 +158,7 @@ class ContactRows {
   double arrival(const constraint::Contact& contact, std::size_t point, double time_step) const;
   bool has_zones() const;
   double fastest_node() const;
+  double speed_at_rest(double fraction, double time_step) const;
   void judge_sliding(std::span<const double> effort, double time_step);
   void judge_moving(std::span<const double> effort, double time_step);
   void judge_sliding(const constraint::Contact& contact, std::size_t point,
