@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include <Eigen/Geometry>
+
 #include "sinew/constraint/surface_contact.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/substep.hpp"
@@ -19,6 +21,15 @@ constexpr double kHeld = 1e-12;
 constexpr int kMaxRounds = 12;
 // Updates of the points at the midpoint. Another update would change them by terms of order h^4.
 constexpr int kTurns = 2;
+
+// Carries friction from one contact frame to another along the smallest rotation between their
+// normals. So its magnitude and its ratio to the normal force, which distinguishes sliding from
+// sticking, are unchanged.
+void carry_friction(const Matrix3& from, const Matrix3& to, Eigen::Ref<Eigen::Vector2d> friction) {
+  const auto turn = Eigen::Quaterniond::FromTwoVectors(from.col(0), to.col(0));
+  const Vector3 force = from.rightCols<2>() * friction;
+  friction = to.rightCols<2>().transpose() * (turn * force);
+}
 
 }  // namespace
 
@@ -50,7 +61,8 @@ void Midpoint::carry_on(Substep& substep, double half) {
 
 // Updates closed points to the surface points and normals at the present positions of the bodies;
 // the start of the step is unchanged. Includes points without a force, since a turning surface may
-// come to press on them. Returns whether any point changed.
+// come to press on them. Efforts refer to the frames of the points, so friction is carried along.
+// Returns whether any point changed.
 bool Midpoint::turn_points() {
   ContactRows& contacts = run_.world.contacts();
   bool found = false;
@@ -61,7 +73,10 @@ bool Midpoint::turn_points() {
       if (!contacts.is_closed(row)) continue;
       if (!looked) touching->look_around();
       looked = true;
+      const Matrix3 before = touching->contact().frame(k, run_.world.rows());
       if (!touching->turn(k)) continue;
+      carry_friction(before, touching->contact().frame(k, run_.world.rows()),
+                     Eigen::Map<Eigen::Vector2d>(&run_.effort[static_cast<std::size_t>(row) + 1]));
       contacts.planes().begin_point(row);
       contacts.planes().keep_gap(row);
       turned_[static_cast<std::size_t>(row)] = 1;
