@@ -17,11 +17,13 @@ namespace {
 constexpr int kMaxImpacts = 1000;
 constexpr int kMaxParts = 100000;
 constexpr int kMaxTrials = 200;
-// Smallest part, relative to the step, that is tried after a failure.
+// Smallest part, relative to the step, to which a part is shortened after a failure or because of
+// spurious work.
 constexpr double kSmallest = 1.0 / 64.0;
 // Smaller motions in a part, relative to the robot's size, are zero.
 constexpr double kStill = 1e-9;
-// Permitted spurious work of sliding contacts in a part (Midpoint), relative to the kinetic energy.
+// Permitted spurious work of sliding contacts in a part (Midpoint), relative to the kinetic energy,
+// in parts that may be halved.
 constexpr double kFalseWork = 1e-6;
 // A smaller remainder of a step, relative to the step, is rounding.
 constexpr double kNoTime = 1e-12;
@@ -100,7 +102,7 @@ double EventStepper::advance(double time, double left) {
       run_.restore(start_);
       continue;
     }
-    if (carried_on_ && turns_too_far()) {
+    if (carried_on_ && turns_too_far(length)) {
       longest_ = length = 0.5 * length;
       ++run_.report.retries;
       run_.restore(start_);
@@ -121,10 +123,12 @@ double EventStepper::advance(double time, double left) {
   give_up("the moment of an impact is not found");
 }
 
-// Whether the spurious work of points that slide on turning surfaces is too large. It decreases
-// with the third power of the length of the part.
-bool EventStepper::turns_too_far() {
-  const double work = midpoint_.false_work();
+// Whether a part should be halved because the spurious work of points that slide on turning
+// surfaces is too large. This work decreases with the third power of the length of the part, but
+// bodies that slide slowly may have hardly any kinetic energy.
+bool EventStepper::turns_too_far(double length) {
+  if (0.5 * length < kSmallest * run_.model->step().time_step) return false;
+  const double work = midpoint_.false_work() - midpoint_.false_work_rounding();
   return work > 0.0 && work > kFalseWork * run_.world.bodies().energies().kinetic;
 }
 
@@ -169,8 +173,19 @@ double EventStepper::move(double time, double length) {
     substep_.end_as_midpoint(length);
     return length;
   }
+  if (smooth && midpoint_.has_turned()) solve_unturned(time + solved, solved);
   substep_.end(solved);
   return solved;
+}
+
+// Solves a part again that ends where the midpoint would be. Its turned points have the material
+// points and normals of the end, and a gap of zero at the start between material points that do not
+// touch there. As a step of backward Euler, the part has those of its start.
+void EventStepper::solve_unturned(double end, double length) {
+  run_.go_back();
+  substep_.read_commands(end, length);
+  substep_.begin(length);
+  substep_.solve(length);
 }
 
 // Whether the first half of a part predicts the second. A limit or a taut cable that has just

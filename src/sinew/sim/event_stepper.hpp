@@ -47,7 +47,8 @@ class EventStepper {
   double move(double time, double length);
   bool is_smooth(double end, double length);
   bool stays_smooth() const;
-  bool turns_too_far();
+  void solve_unturned(double end, double length);
+  bool turns_too_far(double length);
   void rest(double time);
   void hold(double time);
   [[noreturn]] void give_up(const char* what);

@@ -55,7 +55,7 @@ void Midpoint::carry_on(Substep& substep, double half) {
     bodies.scale_motion(2.0);
     place(middle + half);
   }
-  false_work_ = work_of_turned();
+  measure_false_work();
   release();
 }
 
@@ -129,14 +129,16 @@ double Midpoint::correct() {
 
 bool Midpoint::has_turned() const { return std::ranges::find(turned_, 1) != turned_.end(); }
 
-double Midpoint::work_of_turned() const {
+void Midpoint::measure_false_work() {
   const VectorX& delta = run_.world.delta();
-  double work = 0.0;
+  double work = 0.0, force = 0.0;
   for (std::size_t row = 0; row < turned_.size(); ++row) {
     if (turned_[row] == 0) continue;
     work += run_.effort[row] * (delta[static_cast<Eigen::Index>(row)] - widened_[row]);
+    force += run_.effort[row];
   }
-  return std::abs(work);
+  false_work_ = std::abs(work);
+  false_work_rounding_ = kHeld * run_.model->size() * force;
 }
 
 // m: growth of a point's gap in the step. For turned points it is measured between the surfaces;

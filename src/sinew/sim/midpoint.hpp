@@ -39,23 +39,26 @@ class Midpoint {
   /// J: magnitude of the work of the normal forces of turned points in the last carry_on(). Their
   /// gaps did not change, so this work is spurious, an error of third order.
   double false_work() const { return false_work_; }
+  /// J: what rounding may contribute to this work, since gaps are held up to a tolerance.
+  double false_work_rounding() const { return false_work_rounding_; }
+  /// Whether any point turned in the last solve().
+  bool has_turned() const;
   /// After carry_on(): if points turned at the midpoint, gives closed points the normals at the
-  /// end, along which their velocities are held.
+  /// end, along which their velocities are held. Friction turns with the normals.
   void turn_to_end();
 
  private:
   void place(double time);
-  bool has_turned() const;
   bool turn_points();
   double correct();
   double opening(const step::ContactBlock& block, double by_row) const;
-  double work_of_turned() const;
+  void measure_false_work();
   void release();
 
   Run& run_;
   std::vector<double> widened_;  // (rows,) m, added to the gaps of closed points
   std::vector<char> turned_;     // (rows,) normal rows of points that turn() updated
-  double false_work_ = 0.0;      // J
+  double false_work_ = 0.0, false_work_rounding_ = 0.0;  // J
 };
 
 }  // namespace sinew::sim
