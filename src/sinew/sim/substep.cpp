@@ -30,6 +30,7 @@ void Substep::begin(double time_step) {
   lands_by_bdf2_ = run_.model->step().integrator == mechanics::Integrator::bdf2 &&
                    !run_.model->contacts().empty() && run_.last_step > 0.0;
   if (lands_by_bdf2_) energy_before_ = run_.world.bodies().energies().total();
+  if (reaches_back()) actuators_ = run_.world.problem().actuators;
   begin_world(time_step);
 }
 
@@ -70,13 +71,15 @@ bool Substep::stops_points(double time_step) const {
 // with backward Euler, v = d/h, and so is the next one, whose acceleration is the first that can be
 // used. A step of any multistep formula is also repeated if a point with kinetic friction comes to
 // rest: its velocity would reverse before static friction can hold it.
+//
+// The actuators get the blocks of the start again, since the commands of a part of a step are
+// interpolated (Stepper), and a controller's choice that did not settle has replaced its blocks.
 void Substep::solve_afresh(double time_step, bool divisible) {
   run_.go_back();
   run_.last_step = 0.0;
   lands_by_bdf2_ = false;
-  // Where the first solution held a controller's choice, its actuators were taken from it.
   run_.report.choice_held = held_before_;
-  run_.read_commands(run_.now, time_step);
+  run_.world.problem().actuators = actuators_;
   begin_world(time_step);
   solve_equation(time_step, divisible);
 }

@@ -2,6 +2,10 @@
 /// One solution of a step's equation, over the whole time step or a part of it.
 #pragma once
 
+#include <vector>
+
+#include "sinew/step/step_problem.hpp"
+
 namespace sinew::sim {
 
 struct Run;
@@ -46,6 +50,8 @@ class Substep {
   bool lands_by_bdf2_ = false;  // whether points may land in this part, a BDF2 step with history
   double energy_before_ = 0.0;  // J, if lands_by_bdf2_: of the bodies at the start of the part
   bool held_before_ = false;    // a controller's choice, in earlier parts of the step
+  // Of the part before it is solved, if its formula reaches back.
+  std::vector<step::ActuatorBlock> actuators_;
 };
 
 }  // namespace sinew::sim
