@@ -113,16 +113,19 @@ void Substep::solve_equation(double time_step, bool divisible) {
 // landing that gains energy is therefore repeated with backward Euler. Other landings are kept,
 // since rolling bodies land in every step.
 double Substep::end(double time_step) {
-  const double error = end_once(time_step);
-  if (!lands_by_bdf2_ || !jumps() || !has_gained()) return error;
-  try {
-    solve_afresh(time_step, divisible_);
-  } catch (...) {
-    run_.go_back();
-    throw;
+  double error = end_once(time_step);
+  if (lands_by_bdf2_ && lands() && has_gained()) {
+    try {
+      solve_afresh(time_step, divisible_);
+    } catch (...) {
+      run_.go_back();
+      throw;
+    }
+    stops_points_ = true;
+    error = end_once(time_step);
   }
-  stops_points_ = true;
-  return end_once(time_step);
+  end_zones();
+  return error;
 }
 
 double Substep::end_once(double time_step) {
@@ -132,14 +135,18 @@ double Substep::end_once(double time_step) {
   return error;
 }
 
-// Whether the velocity or the friction of a point jumps, after which a multistep formula restarts:
-// a formula that reaches back over the jump would let the point rebound and gain energy. A point
-// that lands is stopped in this step or, since the gap is closed at the end of the step only, in
-// the next one. Friction jumps when it falls from its static to its kinetic limit.
-bool Substep::jumps() const {
+// A point that lands is stopped in this step or, since the gap is closed at the end of the step
+// only, in the next one.
+bool Substep::lands() const {
   const ContactRows& contacts = run_.world.contacts();
-  return stops_points_ || contacts.gap_closed(run_.effort) ||
-         contacts.stops_touching_point(run_.effort) || contacts.breaks_loose(run_.effort);
+  return contacts.gap_closed(run_.effort) || contacts.stops_touching_point(run_.effort);
+}
+
+// Whether the velocity or the friction of a point jumps, after which a multistep formula restarts:
+// a formula that reaches back over the jump would let the point rebound and gain energy. Friction
+// jumps when it falls from its static to its kinetic limit.
+bool Substep::jumps() const {
+  return stops_points_ || lands() || run_.world.contacts().breaks_loose(run_.effort);
 }
 
 // Whether the energy of the bodies has grown by more than the work of actuators, loads and moving
@@ -158,11 +165,16 @@ void Substep::end_as_midpoint(double time_step) {
   run_.world.bodies().end_step(mechanics::midpoint_weights(time_step));
   run_.last_step = time_step;
   count();
+  end_zones();
+}
+
+// Adds up the friction history of zones, so it must not be called for a solution that is repeated.
+void Substep::end_zones() {
+  run_.report.contact_aggregation =
+      run_.world.contacts().end_zones(run_.world.problem(), run_.world.numbering(), run_.effort);
 }
 
 void Substep::count() {
-  run_.report.contact_aggregation =
-      run_.world.contacts().end_zones(run_.world.problem(), run_.world.numbering(), run_.effort);
   run_.finish_step();
   run_.actuation.advance_drives(run_.world.problem().actuators);
   run_.ledger.count(*run_.model, run_.world, run_.actuation, run_.effort);

@@ -25,9 +25,9 @@ class Substep {
   /// @param time_step s, as for begin().
   /// @param divisible whether the caller can retry with smaller parts.
   void solve(double time_step, bool divisible = false);
-  /// Updates velocities, actuators and the energy ledger. If the velocity or the friction of a
-  /// point jumped in a BDF2 step and the energy grew, the step is first solved again with backward
-  /// Euler; this throws as solve() does. @return error estimate, m.
+  /// Updates velocities, actuators and the energy ledger. If a point landed in a BDF2 step and the
+  /// energy grew, the step is first solved again with backward Euler; this throws as solve() does.
+  /// @return error estimate, m.
   double end(double time_step);
   /// The same after a part that was solved as the first half of a midpoint step, whose motion was
   /// then doubled. @param time_step s, of the whole step.
@@ -40,6 +40,8 @@ class Substep {
   bool reaches_back() const;
   bool stops_points(double time_step) const;
   double end_once(double time_step);
+  void end_zones();
+  bool lands() const;
   bool jumps() const;
   bool has_gained() const;
   void count();
