@@ -2,10 +2,17 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "sinew/sim/base_motion.hpp"
+#include "sinew/sim/run.hpp"
+#include "sinew/sim/stepper.hpp"
+#include "sinew/sim/substep.hpp"
+
 #include "event_robots.hpp"
+#include "robots.hpp"
 
 namespace sinew::testing {
 namespace {
@@ -102,6 +109,65 @@ INSTANTIATE_TEST_SUITE_P(Bdf2, Landings,
                                            Landing{"stack", stack, 0.3},
                                            Landing{"balls", balls, 0.3}),
                          [](const auto& one) { return std::string(one.param.name); });
+
+// A beam with a cable, and a block that falls beside it. A base moves, too, so a BDF2 step in which
+// the block lands counts as one that gains energy.
+std::shared_ptr<const sim::Model> block_beside_beam(mechanics::Integrator integrator, double h) {
+  sim::ModelBuilder builder({.time_step = h, .integrator = integrator});
+  const int block = add_block(builder, "block", {0.0, 0.0, 0.017}, {0.0, 0.0, -1.0});
+  add_floor(builder, block);
+  rigid::RigidSettings base;
+  base.name = "base";
+  base.shape = rigid::Box{kSize};
+  base.position = Vector3(0.0, -0.1, 0.05);
+  base.fixed = true;
+  sim::BaseMotion motion;
+  motion.body = builder.add_rigid_body(base);
+  motion.translation[0] = sim::Signal::ramp({0.0, 0.1, 0.0, 1.0});
+  builder.add_base_motion(motion, {});
+  fem::FemBodySettings beam;
+  beam.name = "beam";
+  const auto mesh = std::make_shared<const mesh::Mesh>(
+      mesh::block({.corner = {0.0, 0.09, 0.04}, .size = {0.1, 0.02, 0.02}, .cells = {10, 2, 2}}));
+  beam.mesh = mesh;
+  beam.elements.regions = {{{200e3, 0.4}, material::Law::corotational, 1070.0, {}}};
+  beam.elements.fixed_nodes = mesh->node_sets.at("x_min");
+  sim::CableSettings cable;
+  cable.name = "cable";
+  cable.body = builder.add_fem_body(std::move(beam));
+  cable.points.resize(2, 3);
+  cable.points << 0.0, 0.1, 0.056, 0.097, 0.1, 0.056;
+  cable.tension = {.min = 0.0};
+  builder.add_cable(cable);
+  return builder.build();
+}
+
+// In the first half of a divided step, a cable is to make half of its jump, also if the block lands
+// and this half is solved again with backward Euler.
+TEST(LandingsInParts, LeaveCommandsInProportion) {
+  using enum mechanics::Integrator;
+  const double h = 5e-3, jump = 2e-4;
+  for (const mechanics::Integrator integrator : {bdf2, generalized_alpha}) {
+    sim::Run run(block_beside_beam(integrator, h), 1);
+    const auto& block = *mechanics::as<const mechanics::HasPose>(*run.world.bodies().all()[0]);
+    sim::Stepper(run).step();
+    ASSERT_EQ(run.last_step, h) << "the block landed too early";
+    const double height = block.origin()[2];
+    run.actuation.command(0, pull(jump));
+    sim::Substep part(run);
+    part.read_commands(1.5 * h, 0.5 * h);
+    sim::blend(run.world.problem().actuators, run.actuation.states(), 0.5);
+    const double goal = run.world.problem().actuators[0].value;
+    ASSERT_NEAR(goal, 0.5 * jump, 0.1 * jump);
+    part.begin(0.5 * h);
+    part.solve(0.5 * h);
+    part.end(0.5 * h);
+    EXPECT_NEAR(block.origin()[2], 0.01, 1e-5) << "the block has not landed";
+    EXPECT_NEAR(block.linear_velocity()[2], (block.origin()[2] - height) / (0.5 * h), 1e-6)
+        << "this was no step of backward Euler";
+    EXPECT_EQ(run.actuation.states()[0].setpoint, goal);
+  }
+}
 
 }  // namespace
 }  // namespace sinew::testing
