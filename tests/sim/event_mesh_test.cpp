@@ -7,8 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/sim/base_motion.hpp"
 #include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/signal.hpp"
 #include "sinew/sim/step_report.hpp"
 
 #include "event_robots.hpp"
@@ -240,6 +242,50 @@ TEST(EventMesh, CubesThatSlideKeepTheirEnergy) {
   }
   EXPECT_LT((places[1] - places[0]).norm(), 1e-5);
   EXPECT_LT((places[2] - places[0]).norm(), 1e-5);
+}
+
+// A cube slides along the axis of a slab that turns. The upper side of the slab faces x, and its
+// normal passes the xy plane just before the end of the tenth step, so the tangents of the contact
+// frames are reversed there. Friction opposes the slip before and after that.
+TEST(EventMesh, FrictionOpposesTheSlipOnATurningFace) {
+  const double h = 5e-3, rate = 0.5, angle = -9.9 * h * rate;
+  const Matrix3 start = Eigen::AngleAxisd(angle, Vector3::UnitY()).toRotationMatrix();
+  const Vector3 spin = rate * Vector3::UnitY();
+  sim::ModelBuilder builder(events(h, 0.0));
+  rigid::RigidSettings body = cube(Kind::surface);
+  body.rotation = start;
+  body.position = start * Vector3(0.5 * kEdge + 1e-6, 0.0, 0.0);
+  body.velocity = Vector3(0.0, 1.0, 0.0) + spin.cross(body.position);
+  body.spin = spin;
+  body.gravity = Vector3(-kGravity, 0.0, 0.0);
+  const int sliding = builder.add_rigid_body(body);
+  rigid::RigidSettings slab;
+  slab.name = "slab";
+  slab.shape = triangles(rigid::Box{{0.1, 1.0, 1.0}});
+  slab.rotation = start;
+  slab.position = start * Vector3(-0.05, 0.0, 0.0);
+  slab.fixed = true;
+  sim::BaseMotion motion;
+  motion.body = builder.add_rigid_body(slab);
+  motion.axis = Vector3::UnitY();
+  motion.angle = sim::Signal::ramp({0.0, 10.0 * rate, 0.0, 10.0});
+  builder.add_base_motion(motion, {});
+  add_pair(builder, sliding, motion.body, 0.3);
+  sim::Simulation simulation(builder.build());
+  int pressed = 0;
+  for (int k = 0; k < 15; ++k) {
+    simulation.step();
+    const mechanics::HasPose& own = pose(simulation, sliding);
+    for (const sim::ContactPoint& point : simulation.contacts().points(0)) {
+      if (!(point.normal_force > 1e-3)) continue;
+      const Vector3 slip = own.linear_velocity() +
+                           own.angular_velocity().cross(point.position - own.centre_of_mass()) -
+                           spin.cross(point.position);
+      EXPECT_LT(point.friction_force.dot(slip), 0.0) << "at " << simulation.time();
+      ++pressed;
+    }
+  }
+  EXPECT_GT(pressed, 0);
 }
 
 TEST(EventMesh, TheOrderOfBodiesDoesNotMatter) {
