@@ -70,7 +70,8 @@ class TouchingSurfaces {
   void look_around();
   /// After look_around(): gives a point the surface points and the normal of its pair there. The
   /// start of the step is unchanged. Does nothing if the point has passed an edge, where the pair
-  /// no longer exists or its normal has jumped. @return whether the normal changed.
+  /// no longer exists or its normal has jumped. @return whether the normal changed; the efforts of
+  /// the point then still refer to its frame before.
   bool turn(std::size_t point);
   /// m: growth of a point's distance since begin_step(), as of look_around(); empty if the point
   /// has passed an edge.
