@@ -52,7 +52,7 @@ class MotionFilter : public EstimatorFilter {
  protected:
   void forget() override;
   void predict(const Run& run, double time_step) override;
-  void predict_rest(const Run& run) override;
+  bool predict_rest(const Run& run) override;
   void save_own(std::vector<double>& memory) const override;
   bool load_own(std::span<const double>& memory) override;
 
