@@ -155,8 +155,8 @@ void Run::set_inputs(const Inputs& inputs) {
     if (auto* standing = mechanics::as<mechanics::HasBase>(*bodies[i])) {
       standing->move_base(own.base);
     }
-    if (mechanics::as<fem::HasMaterial>(*bodies[i]) != nullptr) {
-      set_stiffness_factor(static_cast<int>(i), own.stiffness_factor);
+    if (auto* made = mechanics::as<fem::HasMaterial>(*bodies[i])) {
+      made->set_stiffness_factor(own.stiffness_factor);
     }
   }
 }

@@ -197,8 +197,8 @@ class Simulation {
   /// External inputs: commands, load factors, forces, tethers, prescribed displacements of bases
   /// and stiffness factors.
   Inputs inputs() const;
-  /// If a stiffness factor changes, this adds to the energy ledger: see set_stiffness_factor(). To
-  /// continue another run, set the inputs before restore().
+  /// The state stays the same, and so does its energy ledger: set_stiffness_factor() counts the
+  /// change of the strain energy, this does not.
   /// Throws Error: wrong-length for inputs of another model, out-of-range for a stiffness factor
   /// that is not above zero and finite. The simulation is then unchanged.
   void set_inputs(const Inputs& inputs);
