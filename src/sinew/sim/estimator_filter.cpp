@@ -132,11 +132,11 @@ Inputs EstimatorFilter::inputs_of(const Run& run, const VectorX& unknowns) {
 // A run continues if its estimator's robot fails. Energy is no criterion: corrections move the
 // robot, which changes its energy.
 bool EstimatorFilter::move(const Run& run, const VectorX& unknowns, bool settles) {
-  robot_->set_inputs(inputs_of(run, unknowns));
   acted_ = bounded(run, unknowns);
   failed_ = false;
   reason_.clear();
   try {
+    robot_->set_inputs(inputs_of(run, unknowns));  // refuses a stiffness that overflows
     if (settles) {
       robot_->solve_static();
     } else {
