@@ -115,6 +115,8 @@ def measure(data, method, radius):
     except sinew.RunError as error:
         print(f"{method}, before the circle: {error}", file=sys.stderr)
         return
+    if len(rows) == 0:  # carry() has told why
+        return
     taken, places, loaded, stick, iterations, off, turned, _, *stages = np.median(rows, axis=0)
     print(f"| {method} | {len(rows)} | {places:.0f} ({rows[:, 1].min():.0f} to {rows[:, 1].max():.0f}) | {loaded:.0f} | {stick:.0f} | "
           f"{iterations:.0f} | {off:.3f} | {np.percentile(rows[:, 5], 95):.3f} | {rows[:, 5].max():.3f} | {turned:.2f} | "

@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include <fmt/format.h>
 
 #include "sinew/core/rotation.hpp"
@@ -80,13 +78,8 @@ double stiffness_factor(const Body& self) {
 }
 
 void set_stiffness_factor(const Body& self, double factor) {
-  if (!(factor > 0.0) || !std::isfinite(factor)) {
-    throw Error(ErrorKind::out_of_range,
-                {.item = fmt::format("body('{}').stiffness_factor", name(self))},
-                fmt::format("it is {:g}", factor), "give a positive number");
-  }
   const Session::Use use(*self.session);
-  fem::of_elements<fem::HasMaterial>(body(self)).set_stiffness_factor(factor);
+  self.session->simulation().set_stiffness_factor(self.index, factor);
 }
 
 Points positions_from(const Body& self, const py::object& positions, const char* what) {
@@ -276,6 +269,7 @@ stay until changed; reset() sets them to zero. Forces on fixed nodes have no eff
 
 It multiplies the stresses at a given strain, and with them stiffness damping, of the material and of all
 parts; membranes keep theirs. It acts from the next step on and stays until changed; reset() sets it to 1.
+If the body is strained, its strain energy changes at once, which counts as outside work in the ledger.
 Raises Error: wrong-type for a body that is not of type fem, out-of-range.)");
 }
 

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "sinew/sim/estimator.hpp"
 #include "sinew/sim/estimator_model.hpp"
@@ -34,38 +35,33 @@ py::list sensor_names(const Estimator& self) {
   return names;
 }
 
-py::dict unknowns(const Estimator& self, sim::Unknown::Kind kind) {
+// The estimates of the unknowns of one kind, by name. @param get(components) converts one.
+template <class Get>
+py::dict unknowns(const Estimator& self, sim::Unknown::Kind kind, Get get) {
   const Session::Use use(*self.session);
   const VectorX mean = self.session->simulation().estimator(self.index).mean();
   py::dict all;
   Eigen::Index first = 0;
   for (const sim::Unknown& unknown : model(self).unknowns) {
-    if (unknown.kind == kind && kind == sim::Unknown::Kind::force) {
-      all[py::str(unknown.name)] = copy(Vector3(mean.segment<3>(first)));
-    } else if (unknown.kind == kind) {
-      all[py::str(unknown.name)] = mean[first];
-    }
-    first += unknown.size();
+    const Eigen::Index own = std::exchange(first, first + unknown.size());
+    if (unknown.kind == kind) all[py::str(unknown.name)] = get(mean.segment(own, unknown.size()));
   }
   return all;
+}
+
+py::dict forces(const Estimator& self) {
+  return unknowns(self, sim::Unknown::Kind::force,
+                  [](const VectorX& own) { return copy(Vector3(own)); });
+}
+
+py::dict efforts(const Estimator& self) {
+  return unknowns(self, sim::Unknown::Kind::effort, [](const VectorX& own) { return own[0]; });
 }
 
 py::dict stiffness_factors(const Estimator& self) {
-  const Session::Use use(*self.session);
-  const VectorX mean = self.session->simulation().estimator(self.index).mean();
-  py::dict all;
-  Eigen::Index k = 0;
-  for (const sim::Unknown& unknown : model(self).unknowns) {
-    if (unknown.kind == sim::Unknown::Kind::stiffness) {
-      all[py::str(unknown.name)] = std::exp(mean[k]);
-    }
-    k += unknown.size();
-  }
-  return all;
+  return unknowns(self, sim::Unknown::Kind::stiffness,
+                  [](const VectorX& own) { return std::exp(own[0]); });
 }
-
-py::dict forces(const Estimator& self) { return unknowns(self, sim::Unknown::Kind::force); }
-py::dict efforts(const Estimator& self) { return unknowns(self, sim::Unknown::Kind::effort); }
 
 py::list list_of(const std::vector<std::string>& texts) {
   py::list list;

@@ -43,14 +43,16 @@ def check_ellipsoids(squares, size):
     assert inside.ppf(1e-3) <= np.sum(np.array(squares) < scipy.stats.chi2.ppf(0.9, size)) <= inside.ppf(1.0 - 1e-3)
 
 
-def test_a_factor_is_another_modulus():
+@pytest.mark.parametrize("element", ["tet10", "hex8", "tet4-patch"])
+def test_a_factor_is_another_modulus(element):
     """A stiffness factor has the effect of a larger modulus on motion, forces, stiffness and energy, also with viscosity and softening."""
     material = {"model": "neo-hookean", "young_modulus": "100 kPa", "poisson_ratio": 0.45,
                 "viscosity": [{"relative_modulus": 0.3, "relaxation_time": "30 ms"}]}
     pair = []
     for modulus, peak, factor in (("100 kPa", "10 Pa", 1.7), ("170 kPa", "17 Pa", 1.0)):
         tree = beam("bdf2", estimators={}, probes={})
-        tree["bodies"]["beam"] |= {"element": "tet10", "material": {**material, "young_modulus": modulus, "softening": {"r": 2, "m": peak, "beta": 0.1}}}
+        tree["bodies"]["beam"] |= {"element": element, "material": {**material, "young_modulus": modulus,
+                                                             "softening": {"r": 2, "m": peak, "beta": 0.1}}}
         sim = sinew.load(tree)
         sim.body("beam").stiffness_factor = factor
         sim.step(10)
@@ -68,6 +70,46 @@ def test_a_factor_is_another_modulus():
     for wrong in (0.0, -1.0, np.nan, np.inf):
         with pytest.raises(sinew.Error, match="out-of-range"):
             one.stiffness_factor = wrong
+
+
+def test_a_change_of_stiffness_is_outside_work():
+    """In a bent beam, the strain energy jumps with the factor. The ledger counts this as outside work, not as a gain of the integrator."""
+    sim = sinew.load(beam("backward-euler", estimators={}))
+    sim.solve_static()
+    sim.step(2)
+    before = sim.ledger
+    sim.body("beam").stiffness_factor = 3.0
+    after = sim.ledger
+    strain = before["strain_energy"]
+    assert after["strain_energy"] == pytest.approx(3.0 * strain, rel=1e-9)
+    assert after["outside_work"] - before["outside_work"] == pytest.approx(2.0 * strain, rel=1e-9)
+    assert after["numerical_loss"] == pytest.approx(before["numerical_loss"], abs=1e-9 * strain)
+    for _ in range(5):
+        sim.step()
+        assert sim.report.status == "solved"
+
+
+@pytest.mark.parametrize("method", ["newton", "one-linearisation"])
+def test_a_factor_that_is_taken_back_has_no_effect(method):
+    """Energies that were read at another factor do not enter the next step."""
+    tree = beam("backward-euler", estimators={}, solver={"method": method})
+    del tree["bodies"]["beam"]["damping"]
+    sim = sinew.load(tree)
+    sim.step(5)
+    clone = sim.clone()
+    sim.body("beam").stiffness_factor = 2.0
+    assert sim.ledger["strain_energy"] == pytest.approx(2.0 * clone.ledger["strain_energy"], rel=1e-9)
+    sim.body("beam").stiffness_factor = 1.0
+    for one in (sim, clone):
+        one.step()
+    np.testing.assert_array_equal(sim.body("beam").positions, clone.body("beam").positions)
+
+
+def test_a_rigid_body_has_no_stiffness_factor():
+    sim = sinew.load({"sinew": 1, "integrator": "backward-euler",
+                      "bodies": {"ball": {"type": "rigid", "shape": {"sphere": {"radius": "5 mm"}}, "mass": "1 g"}}})
+    with pytest.raises(sinew.Error, match="wrong-type"):
+        sim.body("ball").stiffness_factor = 2.0
 
 
 def test_ellipsoids_of_stiffness_at_rest():
@@ -165,6 +207,17 @@ def test_what_only_the_ratio_of_force_and_stiffness_tells_is_named():
     watch = sim.estimator("watch")
     assert watch.status == "unobservable"
     assert "soft" in watch.message
+
+
+def test_a_cable_that_ties_two_bodies_tells_a_stiffness():
+    """A cable of given length bends both beams. Without weight, the shape of the beam with the known stiffness tells the tension."""
+    tree = beam(gravity="0 0 0 m/s^2")
+    tree["bodies"]["other"] = {**tree["bodies"]["beam"], "position": "0 50 0 mm"}
+    tree["actuators"] = {"tie": {"type": "cable", "body": "beam", "pull": "body", "command": {"displacement": "2 mm"},
+                                 "points": ["55 8 5 mm", {"body": "other", "point": "55 52 5 mm"}]}}
+    tree["sensors"]["far"] = {"type": "marker", "body": "other", "point": "60 60 10 mm", "noise": "0.1 mm"}
+    tree["estimators"]["watch"]["sensors"] = ["far"]
+    assert sinew.load(tree).estimator("watch").status == "not-started"
 
 
 def without_weight(tree):

@@ -1,6 +1,7 @@
 // Estimators of scenes in states of a run. Their results are tested in Python.
 #include "sinew/sim/estimator.hpp"
 
+#include <memory>
 #include <string>
 
 #include <fmt/format.h>
@@ -14,6 +15,8 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/scene.hpp"
+#include "sinew/sim/equilibrium_filter.hpp"
+#include "sinew/sim/estimator_filter.hpp"
 #include "sinew/sim/estimator_model.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/motion_filter.hpp"
@@ -105,6 +108,37 @@ TEST(Estimators, AStepOfWhichAColumnFailsIsNotMade) {
   whole.step();
   EXPECT_EQ(whole.estimator(0).status(), sim::EstimatorStatus::no_equilibrium);
   EXPECT_FALSE(whole.estimator(0).message().empty());
+}
+
+// A marker a thousand kilometres away asks for a force that no equilibrium of the beam bears. The
+// equilibrium before and the correction stand, and the filter has not failed.
+TEST(Estimators, AFailedRoundAtRestKeepsTheLastOne) {
+  for (const char* integrator : {"quasi-static", "backward-euler"}) {
+    const auto model = estimated(integrator);
+    const sim::EstimatorModel& own = model->estimators().front();
+    const sim::Run run(model, 1);
+    std::unique_ptr<sim::EstimatorFilter> filter;
+    if (integrator == std::string("quasi-static")) {
+      filter = std::make_unique<sim::EquilibriumFilter>(own, 1);
+    } else {
+      filter = std::make_unique<sim::MotionFilter>(own, 1);
+    }
+    filter->restart(run);
+    filter->begin_settling();
+    ASSERT_TRUE(filter->settle(run)) << integrator;
+    const VectorX path = filter->path(0);
+    const sim::State state = filter->robot().state();
+    filter->correct(0, 0, VectorX::Constant(3, 1e6), VectorX::Constant(3, 1e-6));
+    const VectorX mean = filter->mean();
+    EXPECT_GT(mean.norm(), 1e3) << integrator;
+    EXPECT_FALSE(filter->settle(run)) << integrator;
+    EXPECT_FALSE(filter->failed()) << integrator;
+    EXPECT_TRUE(filter->reason().empty()) << integrator;
+    EXPECT_TRUE(filter->knows(0)) << integrator;
+    EXPECT_EQ(filter->path(0), path) << integrator;
+    EXPECT_EQ(filter->mean(), mean) << integrator;
+    EXPECT_EQ(filter->robot().state().bodies, state.bodies) << integrator;
+  }
 }
 
 // The robots of the scene and of its estimator share the mesh and its embedder.

@@ -8,6 +8,7 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/inputs.hpp"
 #include "sinew/sim/state.hpp"
 #include "sinew/sim/world.hpp"
 
@@ -287,6 +288,19 @@ TEST(Simulation, NotANumberInAForceStopsTheRunAndKeepsTheState) {
               kind == ErrorKind::singular_matrix)
       << error_kind_name(kind);
   EXPECT_EQ(simulation.state().hash(), before);
+}
+
+TEST(Simulation, StiffnessFactorsAreAboveZero) {
+  Simulation simulation(beam());
+  const Inputs good = simulation.inputs();
+  for (const double wrong : {0.0, -1.0, static_cast<double>(NAN), kInfinity}) {
+    Inputs inputs = good;
+    inputs.bodies[0].stiffness_factor = wrong;
+    EXPECT_EQ(kind_of([&] { simulation.set_inputs(inputs); }), ErrorKind::out_of_range) << wrong;
+    EXPECT_EQ(kind_of([&] { simulation.set_stiffness_factor(0, wrong); }), ErrorKind::out_of_range)
+        << wrong;
+    EXPECT_EQ(simulation.inputs().bodies[0].stiffness_factor, 1.0);
+  }
 }
 
 TEST(Simulation, BadModelsAreErrors) {

@@ -117,6 +117,7 @@ double BodyElements::strain_energy() {
                        state_.element_history.empty();
   if (!present) {
     active_->assembly.evaluate(state_.positions, {Tangent::none, 1.0, 0.0, true, moduli});
+    active_->present.reset();  // the forces are those of this factor
   }
   return active_->assembly.strain_energy();
 }

@@ -80,7 +80,7 @@ void FemStep::form_right_side(const mechanics::StepWeights& weights) {
     internal += f.squaredNorm();
     outside += p.squaredNorm();
   }
-  force_scale_ = min_force_ + std::sqrt(internal) + std::sqrt(outside);
+  force_scale_ = state_.stiffness_factor * min_force_ + std::sqrt(internal) + std::sqrt(outside);
   if (state_.tether) force_scale_ += pull(*state_.tether, state_.positions, elements, right_);
   if (lessens_) right_ -= lessening_;
   if (weights.dynamic()) {

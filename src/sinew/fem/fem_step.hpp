@@ -82,7 +82,7 @@ class FemStep : public mechanics::StepSystem {
   VectorX lessening_;  // N
   bool lessens_ = false;
   double force_scale_ = 0.0;  // N
-  double min_force_ = 0.0;    // N
+  double min_force_ = 0.0;    // N, at the stiffness factor 1
   double blow_up_ = 0.0;      // m^2, sum of squared positions above which the state counts as lost
 };
 

@@ -197,9 +197,36 @@ void check_type(const SceneDescription& scene, const EstimatorDescription& estim
               sensor.type == "volume" ? "measure its pressure" : "measure its tension");
 }
 
+// The bodies on which an actuator acts.
+std::set<std::string> bodies_of(const ActuatorDescription& actuator) {
+  std::set<std::string> bodies;
+  if (!actuator.body.empty()) bodies.insert(actuator.body);
+  if (const auto* cable = std::get_if<CableDescription>(&actuator.own)) {
+    for (const std::string& name : cable->point_bodies) {
+      if (!name.empty()) bodies.insert(name);
+    }
+  }
+  return bodies;
+}
+
+// The bodies that cables tie to a body, and itself.
+std::set<std::string> tied_to(const SceneDescription& scene, const std::string& body) {
+  std::set<std::string> all = {body};
+  for (std::size_t before = 0; before < all.size();) {
+    before = all.size();
+    for (const ActuatorDescription& actuator : scene.actuators) {
+      const std::set<std::string> own = bodies_of(actuator);
+      const bool joins =
+          std::ranges::any_of(own, [&](const std::string& name) { return all.contains(name); });
+      if (joins) all.insert(own.begin(), own.end());
+    }
+  }
+  return all;
+}
+
 // Whether a force acts on the robot that the estimator knows or measures, including inertia.
 // Otherwise the shape does not depend on the stiffness. Anything that may exert such a force
-// counts.
+// counts: also another body on the same cable, whose shape tells the tension.
 bool has_known_force(const SceneDescription& scene, const EstimatorDescription& estimator,
                      const SceneDescription& known) {
   const bool weighs = !scene.gravity.isZero(0.0);
@@ -214,7 +241,9 @@ bool has_known_force(const SceneDescription& scene, const EstimatorDescription& 
     return !unknown && !is_unknown(estimator, one.name) &&
            (one.command.kind != sim::CommandKind::motion || is_driven(scene, one.name));
   });
-  return weighs || measures || pulled || !known.loads.empty() || !scene.membranes.empty() ||
+  const bool tied = std::ranges::any_of(
+      scene.actuators, [](const ActuatorDescription& one) { return bodies_of(one).size() > 1; });
+  return weighs || measures || pulled || tied || !known.loads.empty() || !scene.membranes.empty() ||
          !scene.contacts.empty() || !scene.joints.empty() || has_inertia(scene, estimator);
 }
 
@@ -316,17 +345,17 @@ class RestResponse {
   sim::Linearisation at_rest_;
 };
 
-// Whether a sensor may respond to a stiffness: it is on the body, on an actuator of the body, or
-// the scene has joints. W cannot show it, since a stiffness has no effect on the unloaded robot.
+// Whether a sensor may respond to a stiffness: it is on the body or on a body that cables tie to
+// it, on an actuator of such a body, or the scene has joints. W cannot show it, since a stiffness
+// has no effect on the unloaded robot.
 bool may_tell(const SceneDescription& scene, const SensorDescription& sensor,
               const UnknownDescription& unknown) {
-  if (!scene.joints.empty() || sensor.body == unknown.body) return true;
+  const std::set<std::string> tied = tied_to(scene, unknown.body);
+  if (!scene.joints.empty() || tied.contains(sensor.body)) return true;
   const auto on = std::ranges::find(scene.actuators, sensor.actuator, &ActuatorDescription::name);
-  if (on == scene.actuators.end()) return false;
-  if (on->body == unknown.body) return true;
-  const auto* cable = std::get_if<CableDescription>(&on->own);
-  return cable != nullptr &&
-         std::ranges::find(cable->point_bodies, unknown.body) != cable->point_bodies.end();
+  return on != scene.actuators.end() &&
+         std::ranges::any_of(bodies_of(*on),
+                             [&](const std::string& body) { return tied.contains(body); });
 }
 
 // Contacts pass on forces that they do not at rest, and motion forces that one step does not.

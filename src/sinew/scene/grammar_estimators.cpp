@@ -1,5 +1,6 @@
 // The tables of estimators.
 #include <string>
+#include <utility>
 
 #include "sinew/scene/grammar_forms.hpp"
 
@@ -47,9 +48,11 @@ std::shared_ptr<const KeyTable> effort_place_table() {
 }
 
 Form stiffness_form() {
+  Key of = body_key();
+  of.description = "The body, of type fem.";
   const auto body = make_table({.name = "body of an unknown stiffness",
                                 .description = "A body of type fem whose stiffness is unknown.",
-                                .keys = {body_key()}});
+                                .keys = {std::move(of)}});
   return table(
       make_table(
           {.name = "unknown: stiffness",
@@ -174,9 +177,10 @@ Form estimator_form() {
             .example = "false",
             .default_text = "true",
             .description = "In a dynamic scene: whether the estimator's own robot has inertia. If "
-                           "false, it is quasi-static, which costs one step of the robot instead "
-                           "of about 16, and inertia counts as a force. No effect in a "
-                           "quasi-static scene."},
+                           "false, it is quasi-static, and inertia counts as a force. A step of "
+                           "the estimator then makes one step of the robot instead of about 16; if "
+                           "stiffnesses are unknown, one more for each of them, repeated up to ten "
+                           "times. No effect in a quasi-static scene."},
            {.name = "rank",
             .forms = {integer(1, 1000)},
             .example = "20",
@@ -184,7 +188,7 @@ Form estimator_form() {
             .description = "Columns of the covariance of unknowns and state of a robot with "
                            "inertia, at least as many as there are unknown components. Each step "
                            "of the estimator makes this many steps of the robot, one more, and "
-                           "one for each component."}}});
+                           "one for each component whose `walk` is not 0."}}});
   return variants("type", {{.word = "filter", .description = "A Kalman filter.", .table = filter}});
 }
 

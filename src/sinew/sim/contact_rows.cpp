@@ -315,13 +315,29 @@ bool ContactRows::correct(const step::StepProblem& problem, const RowNumbering& 
   for (std::size_t i = 0; i < planes_.contacts().size(); ++i) {
     if (zones_[i]) {
       spread = correct_zones(*zones_[i], surfaces_[i], problem, numbering, effort) || spread;
-    } else if (surfaces_[i] != nullptr && !strikes(i)) {
+    } else if (is_searched(i)) {
       found = correct_surfaces(*surfaces_[i]) || found;
     }
   }
   if (spread) --zone_rounds_left_;
   if (has_kinetic_) found = hold_reversed(numbering, effort) || found;
   return found || spread;
+}
+
+bool ContactRows::find_points() {
+  if (rounds_left_ <= kMaxRounds / 2) return false;
+  bool found = false;
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    if (is_searched(i)) found = correct_surfaces(*surfaces_[i]) || found;
+  }
+  return found;
+}
+
+bool ContactRows::may_find_points() const {
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    if (is_searched(i)) return true;
+  }
+  return false;
 }
 
 // (3,) m: position after the proposed motion.

@@ -77,6 +77,11 @@ class ContactRows {
   /// @param problem,numbering of the step. @param effort (rows of the problem,) N, its solution.
   bool correct(const step::StepProblem& problem, const RowNumbering& numbering,
                const linalg::AlignedNumbers& effort);
+  /// Of correct(), only the points between surfaces without zones. Uses at most half of the step's
+  /// rounds. @return as correct().
+  bool find_points();
+  /// Whether there are such surfaces.
+  bool may_find_points() const;
   /// Whether correct() may have anything to correct.
   bool are_guessed() const {
     return left_out_ || has_kinetic_ || planes_.curved() || !planes_.surfaces().empty() ||
@@ -157,6 +162,9 @@ class ContactRows {
   int nearest(const constraint::Contact& contact, double time_step) const;
   double arrival(const constraint::Contact& contact, std::size_t point, double time_step) const;
   bool has_zones() const;
+  bool is_searched(std::size_t contact) const {
+    return surfaces_[contact] != nullptr && !zones_[contact] && !strikes(contact);
+  }
   double fastest_node() const;
   double speed_at_rest(double fraction, double time_step) const;
   void judge_sliding(std::span<const double> effort, double time_step);

@@ -53,36 +53,47 @@ void EquilibriumFilter::predict(const Run& run, double time_step) {
 }
 
 // If the robot fails, the results of the previous round are kept.
-void EquilibriumFilter::predict_again(const Run& run) {
+bool EquilibriumFilter::predict_again(const Run& run) {
   const Instant before = instants_.front();
   const State after = own_robot().state();
   const estimate::RandomWalkFilter corrected = std::exchange(filter_, predicted_);
   own_robot().restore(start_);
   take_up(run, corrected.mean(), false);
-  if (instants_.front().known) return;
+  if (instants_.front().known) return true;
   instants_.front() = before;
   filter_ = corrected;
   own_robot().restore(after);
+  return false;
 }
 
-void EquilibriumFilter::predict_rest(const Run& run) {
+// If the robot fails, the results of the previous round, if any, are kept.
+bool EquilibriumFilter::predict_rest(const Run& run) {
+  const Instant before = instants_.front();
+  const State from = own_robot().state();
   take_up(run, filter_.mean(), true);
-  if (instants_.front().known) filter_ = settled_from_;
+  if (instants_.front().known) {
+    filter_ = settled_from_;
+    return true;
+  }
+  if (before.known) {
+    instants_.front() = before;
+    own_robot().restore(from);
+  }
+  return false;
 }
 
 void EquilibriumFilter::take_up(const Run& run, const VectorX& unknowns, bool settles) {
   Instant& now = instants_.front();
-  State from;
-  if (model().has_stiffness()) from = own_robot().state();
   now.known = move(run, unknowns, settles);
   now.unknowns = acted();
   if (!now.known) return;
   now.readings = readings();
   now.sensitivity = sensitivity();
-  if (model().has_stiffness()) now.known = add_stiffness(run, from, settles);
+  if (model().has_stiffness()) now.known = add_stiffness(run, settles);
 }
 
-bool EquilibriumFilter::add_stiffness(const Run& run, const State& from, bool settles) {
+// Steps start where the robot started, equilibria from the one that was found.
+bool EquilibriumFilter::add_stiffness(const Run& run, bool settles) {
   constexpr double kDifference = 0.01;
   Instant& now = instants_.front();
   const State after = own_robot().state();
@@ -90,7 +101,7 @@ bool EquilibriumFilter::add_stiffness(const Run& run, const State& from, bool se
   bool good = true;
   for (Eigen::Index k = 0; k < filter_.size() && good; ++k) {
     if (actuators[static_cast<std::size_t>(k)] >= 0) continue;
-    own_robot().restore(settles ? after : from);
+    own_robot().restore(settles ? after : start_);
     good = move(run, now.unknowns + kDifference * VectorX::Unit(filter_.size(), k), settles);
     if (!good) break;
     now.sensitivity.col(k) = reading_difference(readings(), now.readings) / kDifference;

@@ -47,8 +47,8 @@ class EquilibriumFilter : public EstimatorFilter {
  protected:
   void forget() override;
   void predict(const Run& run, double time_step) override;
-  void predict_again(const Run& run) override;
-  void predict_rest(const Run& run) override;
+  bool predict_again(const Run& run) override;
+  bool predict_rest(const Run& run) override;
   void save_own(std::vector<double>& memory) const override;
   bool load_own(std::span<const double>& memory) override;
 
@@ -64,7 +64,7 @@ class EquilibriumFilter : public EstimatorFilter {
   const Instant& at(int lag) const { return instants_[static_cast<std::size_t>(lag)]; }
   void take_up(const Run& run, const VectorX& unknowns, bool settles);
   MatrixX sensitivity();
-  bool add_stiffness(const Run& run, const State& from, bool settles);
+  bool add_stiffness(const Run& run, bool settles);
   template <class Self, class Visitor>
   static void visit_memory(Self& self, Visitor&& visitor);
 

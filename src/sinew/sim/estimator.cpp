@@ -139,20 +139,21 @@ void Estimator::observe() {
 }
 
 // Calls predictor(round) for a path about the present estimate, and corrects with all samples of
-// the step again, until the estimate has converged.
+// the step again, until the estimate has converged. The predictor returns whether the robot
+// succeeded.
 template <class Predictor>
 void Estimator::iterate(const Run& run, int rounds, double settled, Predictor&& predictor) {
   const std::vector<double> used = used_;
   const double dropped = dropped_;
   for (int round = 0; round < rounds; ++round) {
     const VectorX before = filter_->mean();
-    predictor(round);
-    if (round > 0 && filter_->failed()) break;  // the last estimate is kept
+    const bool succeeded = predictor(round);
+    if (round > 0 && !succeeded) break;  // the last estimate is kept
     used_ = used;
     dropped_ = dropped;
     correct(run);
     const VectorX moved = filter_->mean() - before;
-    if (filter_->failed() || moved.cwiseQuotient(deviation()).cwiseAbs().maxCoeff() < settled) {
+    if (!succeeded || moved.cwiseQuotient(deviation()).cwiseAbs().maxCoeff() < settled) {
       break;
     }
   }
@@ -162,18 +163,16 @@ void Estimator::iterate(const Run& run, int rounds, double settled, Predictor&& 
 
 void Estimator::advance(const Run& run) {
   const auto predictor = [&](int round) {
-    if (round > 0) {
-      filter_->repeat(run);
-    } else {
-      filter_->advance(run, plant_.step().time_step);
-    }
+    if (round > 0) return filter_->repeat(run);
+    filter_->advance(run, plant_.step().time_step);
+    return !filter_->failed();
   };
   iterate(run, filter_->iterates() ? kMaxSettling : 1, kSettledStep, predictor);
 }
 
 void Estimator::settle(const Run& run) {
   filter_->begin_settling();
-  iterate(run, kMaxSettling, kSettled, [&](int) { filter_->settle(run); });
+  iterate(run, kMaxSettling, kSettled, [&](int) { return filter_->settle(run); });
 }
 
 EstimatorStatus Estimator::status() const {

@@ -35,14 +35,17 @@ void EstimatorFilter::advance(const Run& run, double time_step) {
   keep_time(run);
 }
 
-void EstimatorFilter::repeat(const Run& run) {
-  predict_again(run);
-  keep_time(run);
-}
+bool EstimatorFilter::repeat(const Run& run) { return end_round(run, predict_again(run)); }
+bool EstimatorFilter::settle(const Run& run) { return end_round(run, predict_rest(run)); }
 
-void EstimatorFilter::settle(const Run& run) {
-  predict_rest(run);
+// If a round fails after a successful one, the results of the latter stay valid.
+bool EstimatorFilter::end_round(const Run& run, bool succeeded) {
   keep_time(run);
+  if (!succeeded && knows(0)) {
+    failed_ = false;
+    reason_.clear();
+  }
+  return succeeded;
 }
 
 // The robot has the time of the run.
@@ -126,17 +129,18 @@ Inputs EstimatorFilter::inputs_of(const Run& run, const VectorX& unknowns) {
   return inputs;
 }
 
-// A run continues if its estimator's robot fails.
+// A run continues if its estimator's robot fails. Energy is no criterion: corrections move the
+// robot, which changes its energy.
 bool EstimatorFilter::move(const Run& run, const VectorX& unknowns, bool settles) {
-  robot_->set_inputs(inputs_of(run, unknowns));
   acted_ = bounded(run, unknowns);
   failed_ = false;
   reason_.clear();
   try {
+    robot_->set_inputs(inputs_of(run, unknowns));  // refuses a stiffness that overflows
     if (settles) {
       robot_->solve_static();
     } else {
-      failed_ = robot_->step().status == StepStatus::not_in_equilibrium;
+      failed_ = !robot_->step().balanced;
     }
   } catch (const Error& error) {
     failed_ = true;

@@ -36,14 +36,16 @@ class EstimatorFilter {
   /// Whether each step is repeated about the estimate that was corrected with its samples.
   virtual bool iterates() const { return false; }
   /// Repeats the last step from its initial state with the present estimate of the unknowns, and
-  /// discards the corrections since advance(). If the robot fails, they are kept. @param run at its
-  /// present time.
-  void repeat(const Run& run);
+  /// discards the corrections since advance(). If the robot fails, they are kept. Call it only if
+  /// advance() succeeded. @param run at its present time. @return whether the robot succeeded.
+  bool repeat(const Run& run);
   /// Forgets what happened before, but for the distribution: what settle() begins from.
   virtual void begin_settling() = 0;
   /// Predicts from there to an equilibrium under the run's inputs and the unknowns as estimated
-  /// now. Time does not advance. @param run at its present time.
-  void settle(const Run& run);
+  /// now. Time does not advance. If the robot fails after an earlier equilibrium since
+  /// begin_settling(), that one and the corrections are kept. @param run at its present time.
+  /// @return whether the robot succeeded.
+  bool settle(const Run& run);
 
   virtual VectorX mean() const = 0;        ///< (n,)
   virtual MatrixX covariance() const = 0;  ///< (n, n)
@@ -63,7 +65,8 @@ class EstimatorFilter {
   virtual estimate::Observability observability(const VectorX& variance) const = 0;
 
   const Simulation& robot() const { return *robot_; }
-  /// Whether the robot failed in the last step, and the reason if it is known.
+  /// Whether the last step or equilibrium has no result since the robot failed, and the reason if
+  /// it is known.
   bool failed() const { return failed_; }
   const std::string& reason() const { return reason_; }
 
@@ -78,8 +81,9 @@ class EstimatorFilter {
   virtual void forget() = 0;
   virtual void predict(const Run& run, double time_step) = 0;
   /// Implements repeat() if iterates().
-  virtual void predict_again(const Run& /*run*/) {}
-  virtual void predict_rest(const Run& run) = 0;
+  virtual bool predict_again(const Run& /*run*/) { return false; }
+  /// Implements settle().
+  virtual bool predict_rest(const Run& run) = 0;
   virtual void save_own(std::vector<double>& memory) const = 0;
   virtual bool load_own(std::span<const double>& memory) = 0;
 
@@ -105,6 +109,7 @@ class EstimatorFilter {
   template <class Visitor>
   void visit_efforts(const Run& run, const VectorX& unknowns, Visitor&& visitor) const;
   void keep_time(const Run& run);
+  bool end_round(const Run& run, bool succeeded);
 
   const EstimatorModel& model_;
   std::unique_ptr<Simulation> robot_;

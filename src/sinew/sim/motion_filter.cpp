@@ -71,26 +71,30 @@ void MotionFilter::predict(const Run& run, double time_step) {
   filter_.end_step();
 }
 
-void MotionFilter::predict_rest(const Run& run) {
+// If the robot fails, the results of the previous round, if any, are kept.
+bool MotionFilter::predict_rest(const Run& run) {
   const State from = own_robot().state();
+  const VectorX path = path_.front();
   const estimate::ReducedRankFilter before = filter_;
   filter_ = settled_from_;
   filter_.begin_rest();
   filter_.put_mean(before.mean());
-  const bool moved = move_all(run, from, true) == Outcome::moved;
-  known_.front() = moved ? 1.0 : 0.0;
-  if (!moved) {
+  if (move_all(run, from, true) != Outcome::moved) {
     filter_ = before;
+    path_.front() = path;
     own_robot().restore(from);
-    return;
+    return false;
   }
+  known_.front() = 1.0;
   const VectorX acted = filter_.mean();
   filter_.put_mean(settled_from_.mean());
   filter_.end_rest(acted);
+  return true;
 }
 
 MotionFilter::Outcome MotionFilter::move_all(const Run& run, const State& from, bool settles) {
   if (!move(run, filter_.mean(), settles)) return Outcome::path_failed;
+  const VectorX wanted = filter_.mean();
   filter_.put_mean(acted());
   path_.front() = readings();
   const State after = own_robot().state();
@@ -98,7 +102,9 @@ MotionFilter::Outcome MotionFilter::move_all(const Run& run, const State& from, 
   const Eigen::Index m = path_.front().size(), states = reached.numbers.size();
   MatrixX columns = MatrixX::Zero(m + states, filter_.columns());
   for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-    if (!move_column(run, reached, k, columns.col(k))) return Outcome::column_failed;
+    if (move_column(run, reached, k, columns.col(k))) continue;
+    filter_.put_mean(wanted);
+    return Outcome::column_failed;
   }
   for (Eigen::Index k = 0; k < columns.cols(); ++k) {
     filter_.put_column(k, columns.col(k).head(m), columns.col(k).tail(states));
@@ -116,6 +122,7 @@ bool MotionFilter::move_column(const Run& run, const Reached& reached, Eigen::In
                                Eigen::Ref<VectorX> column) {
   const VectorX unknowns = filter_.mean(), all = filter_.input_column(k);
   const VectorX state = filter_.state_column(k);
+  if (all.isZero(0.0) && state.isZero(0.0)) return true;  // a constant unknown adds such a column
   const auto free_part = [&](double part) -> VectorX {
     const VectorX wanted = unknowns + part * all;
     return (bounded(run, wanted).array() == wanted.array()).select(all, 0.0);

@@ -22,9 +22,9 @@ namespace sinew::sim {
 ///   (dy, ds') = (F(s + e ds, u + e du) - F(s, u)) / e,   e = 0.1,
 /// of the robot as it is, with its joints, contacts and drives: the derivative of the step to the
 /// first order in e, and to the step's tolerance over e. One step of the filter therefore takes as
-/// many steps of the robot as there are columns, and one more. A column takes two steps if it moves
-/// unknowns at their bounds (slack cables) in different directions, so that no single sign of e
-/// keeps all of them within their bounds.
+/// many steps of the robot as there are columns other than zero, and one more. A column takes two
+/// steps if it moves unknowns at their bounds (slack cables) in different directions, so that no
+/// single sign of e keeps all of them within their bounds.
 ///
 /// If the robot fails along the path or along any column, the whole step is discarded: the robot
 /// stays where it is, only the random walk of the unknowns adds to the covariance, and samples of
@@ -52,7 +52,7 @@ class MotionFilter : public EstimatorFilter {
  protected:
   void forget() override;
   void predict(const Run& run, double time_step) override;
-  void predict_rest(const Run& run) override;
+  bool predict_rest(const Run& run) override;
   void save_own(std::vector<double>& memory) const override;
   bool load_own(std::span<const double>& memory) override;
 

@@ -64,6 +64,8 @@ struct Run {
   void go_back();
   Inputs inputs() const;
   void set_inputs(const Inputs& inputs);
+  /// See Simulation::set_stiffness_factor().
+  void set_stiffness_factor(int body, double factor);
 
   std::size_t bytes() const;
 

@@ -1,11 +1,14 @@
 // State and inputs of a Run as values.
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/fem/has_material.hpp"
+#include "sinew/fem/of_elements.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/inputs.hpp"
 #include "sinew/sim/run.hpp"
@@ -37,6 +40,13 @@ void check_state(const Run& run, const State& state) {
   check_count("frames of the state", run.world.contacts().planes().frames_size(),
               state.frames.size());
   check_count("joints of the state", run.world.joints().values().size(), state.joints.size());
+}
+
+void check_stiffness_factor(const mechanics::Body& body, double factor) {
+  if (factor > 0.0 && std::isfinite(factor)) return;
+  throw Error(ErrorKind::out_of_range,
+              {.item = fmt::format("body('{}').stiffness_factor", body.model().name())},
+              fmt::format("it is {:g}", factor), "give a positive number");
 }
 
 }  // namespace
@@ -127,6 +137,9 @@ void Run::set_inputs(const Inputs& inputs) {
   check_count("load factors", surroundings.factors().size(), inputs.loads.size());
   check_count("bodies of the inputs", bodies.size(), inputs.bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (mechanics::as<fem::HasMaterial>(*bodies[i]) != nullptr) {
+      check_stiffness_factor(*bodies[i], inputs.bodies[i].stiffness_factor);
+    }
     if (mechanics::as<mechanics::TakesForces>(*bodies[i]) == nullptr) continue;
     check_count("nodes of external forces", static_cast<std::size_t>(bodies[i]->positions().rows()),
                 static_cast<std::size_t>(inputs.bodies[i].external_forces.rows()));
@@ -146,6 +159,18 @@ void Run::set_inputs(const Inputs& inputs) {
       made->set_stiffness_factor(own.stiffness_factor);
     }
   }
+}
+
+// The factor scales the stresses at the present strain, so the strain energy jumps by what this
+// change puts in.
+void Run::set_stiffness_factor(int body, double factor) {
+  mechanics::Body& own = *world.bodies().all()[static_cast<std::size_t>(body)];
+  auto& made = fem::of_elements<fem::HasMaterial>(own);
+  check_stiffness_factor(own, factor);
+  if (factor == made.stiffness_factor()) return;
+  const double strain = own.energies().strain;
+  made.set_stiffness_factor(factor);
+  ledger.count_outside(own.energies().strain - strain);
 }
 
 }  // namespace sinew::sim

@@ -109,6 +109,10 @@ void Simulation::set_load(int load, Signal factor) {
   run_->surroundings.set_factor(load, std::move(factor));
 }
 
+void Simulation::set_stiffness_factor(int body, double factor) {
+  run_->set_stiffness_factor(body, factor);
+}
+
 const Signal& Simulation::load_factor(int load) const {
   return run_->surroundings.factors()[static_cast<std::size_t>(load)];
 }

@@ -122,6 +122,11 @@ class Simulation {
   /// Sets the factor of a load from the next step on.
   void set_load(int load, Signal factor);
   const Signal& load_factor(int load) const;
+  /// Sets the factor of all moduli of a body's elements (fem::HasMaterial) from the next step on.
+  /// The strain energy of the deformed body changes at once; the change counts as outside work.
+  /// @param body index of Model::bodies(). @param factor > 0.
+  /// Throws Error: wrong-type (body without finite elements), out-of-range (also not finite).
+  void set_stiffness_factor(int body, double factor);
   /// Position (3,) m, or rotation vector (3,) rad, of an effector.
   Vector3 effector_value(int index) const;
   /// (components,) the present values of a probe, m and rad. @param index of Model::probes().
@@ -189,10 +194,13 @@ class Simulation {
   /// unchanged; also if the memory of the estimators is damaged, in which case the state is
   /// restored and the estimators start afresh.
   void restore(const State& state);
-  /// External inputs: commands, load factors, forces, tethers and prescribed displacements of
-  /// bases.
+  /// External inputs: commands, load factors, forces, tethers, prescribed displacements of bases
+  /// and stiffness factors.
   Inputs inputs() const;
-  /// Throws Error(wrong-length) for inputs of another model, which leaves the simulation unchanged.
+  /// The state stays the same, and so does its energy ledger: set_stiffness_factor() counts the
+  /// change of the strain energy, this does not.
+  /// Throws Error: wrong-length for inputs of another model, out-of-range for a stiffness factor
+  /// that is not above zero and finite. The simulation is then unchanged.
   void set_inputs(const Inputs& inputs);
   /// A new simulation of the same model with the same inputs and state. A controller is not copied:
   /// attach one to the copy, then restore() the state again to set its memory.

@@ -15,8 +15,8 @@ namespace sinew::sim {
 struct EnergyLedger {
   /// J: work of all actuators, the sum of effort times change of motion with the effort that acted
   /// through each step; likewise of loads, external forces and moving surfaces (gravity counts as
-  /// stored energy); energy dissipated by damping, drag, cable friction, contact friction and
-  /// impacts.
+  /// stored energy), and of changes of stiffness factors; energy dissipated by damping, drag, cable
+  /// friction, contact friction and impacts.
   double actuators = 0.0, outside = 0.0, dissipated = 0.0;
   double begun = 0.0;    ///< 1 once gains are monitored, see WorkLedger::open()
   double start = 0.0;    ///< J, stored energy less put_in() when monitoring began

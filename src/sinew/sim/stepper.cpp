@@ -207,7 +207,8 @@ void Stepper::judge() {
   if (report.law == LawStatus::limits_conflict) raise(StepStatus::limits_conflict);
   if (report.scale < 1.0) raise(StepStatus::cut_back);
   if (report.violation > kReached * run_.model->size()) raise(StepStatus::command_not_reached);
-  if (!is_balanced()) raise(StepStatus::not_in_equilibrium);
+  report.balanced = is_balanced();
+  if (!report.balanced) raise(StepStatus::not_in_equilibrium);
   if (run_.model->step().dynamic()) watch_energy();
 }
 

@@ -35,10 +35,12 @@ class WorkLedger {
     sums_.outside += outside;
   }
 
+  /// Adds work on the bodies from outside a step. @param work J.
+  void count_outside(double work) { sums_.outside += work; }
+
   /// Starts monitoring. Call before the first step, so that its gain counts, too.
   void open(const mechanics::Energies& now);
   bool is_open() const { return sums_.begun != 0.0; }
-  /// Watches anew, from the next step on.
   /// Restarts the monitoring with the next step.
   void restart() { sums_.restart(); }
   /// J: growth of the stored energy beyond the work done since open().

@@ -122,23 +122,20 @@ step::LawStatus World::solve_step(step::StepSolver& solver, step::Controller* co
   // Each choice of a controller takes several solutions of the law. Most of the points that become
   // active between surfaces are also found at the efforts before the choice, with one solution per
   // round. The controller therefore chooses only when no more points are found there.
-  const bool looks = controller != nullptr && !contacts_.planes().surfaces().empty();
-  step::Controller* chooses = looks ? nullptr : controller;
+  bool looks = controller != nullptr && contacts_.may_find_points();
   step::LawStatus status = step::LawStatus::solved;
-  bool mended = true;
-  while (mended) {
+  for (bool mended = true; mended;) {
     numbering_.gather_efforts(effort_before_, problem_.effort_before);
     numbering_.gather_efforts(effort, problem_effort_);
-    status = solver.solve(problem_, chooses, problem_effort_);
+    status = solver.solve(problem_, looks ? nullptr : controller, problem_effort_);
     clock.mark(Stage::law);
     if (status == step::LawStatus::failed) return status;
     numbering_.scatter_efforts(problem_effort_, effort);
     bodies_.solve_motion(effort);
-    mended = contacts_.are_guessed() && correct_contacts();
+    const bool found = correct_contacts(looks);
     clock.mark(Stage::correction);
-    if (mended || chooses == controller) continue;
-    chooses = controller;
-    mended = true;
+    mended = found || looks;
+    looks = looks && found;
   }
   for (const step::StiffnessBlock& block : problem_.stiffness) {
     effort[static_cast<std::size_t>(block.row)] = 0.0;  // part of no equilibrium
@@ -146,8 +143,12 @@ step::LawStatus World::solve_step(step::StepSolver& solver, step::Controller* co
   return status;
 }
 
-bool World::correct_contacts() {
-  if (!contacts_.correct(problem_, numbering_, problem_effort_)) return false;
+// All but the points between surfaces depends on the efforts that the controller will choose.
+bool World::correct_contacts(bool looks) {
+  const bool found =
+      looks ? contacts_.find_points()
+            : contacts_.are_guessed() && contacts_.correct(problem_, numbering_, problem_effort_);
+  if (!found) return false;
   number_rows();
   bodies_.retake_rows(rows_);
   form_compliance();

@@ -133,7 +133,7 @@ class World {
 
  private:
   void place_contacts(double from, double to);
-  bool correct_contacts();
+  bool correct_contacts(bool looks);
   void number_rows();
   void form_compliance();
 
