@@ -74,6 +74,13 @@ void add_controller(const inverse::TargetController& controller, const std::stri
                              fmt::format("no small change of efforts comes nearer than {:.3g} mm",
                                          1e3 * controller.error())));
       break;
+    case inverse::InverseStatus::held_back:
+      list.push_back(trouble(
+          "warning", "held-back", name,
+          fmt::format("the robot rests {:.3g} mm from the target because larger steps fail: it "
+                      "would buckle or be crushed",
+                      1e3 * controller.error())));
+      break;
     case inverse::InverseStatus::limits_conflict:
       list.push_back(trouble("error", "limits-conflict", name,
                              "limits contradict each other: " + controller.conflict()));

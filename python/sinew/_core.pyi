@@ -845,6 +845,7 @@ class InverseController:
         "limits-conflict",
         "at-limits",
         "holding",
+        "held-back",
     ]: ...
     @property
     def conflict(self) -> str: ...

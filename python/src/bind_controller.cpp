@@ -380,17 +380,19 @@ auto guarded(Get get) {
 }
 
 void bind_results(py::class_<Controller>& type) {
-  type.def_property_readonly("status", guarded([](const TargetController& law) {
-                               return std::string(inverse_status_name(law.status()));
-                             }),
-                             "str: status of the last step: 'not-started'; 'on-target', within the "
-                             "tolerance and as predicted; 'moving', on the way; 'rate-limited', on "
-                             "the way at rate limits; 'out-of-reach', at rest as near as limits "
-                             "allow; 'local-optimum', at rest where no small change of efforts "
-                             "reduces the error, although no limit is active; 'limits-conflict', "
-                             "see `conflict`. A closed loop judges 'on-target' by its samples, and "
-                             "is 'at-limits' if limits prevent motion, 'holding' while a sensor is "
-                             "silent.")
+  type.def_property_readonly(
+          "status", guarded([](const TargetController& law) {
+            return std::string(inverse_status_name(law.status()));
+          }),
+          "str: status of the last step: 'not-started'; 'on-target', within the "
+          "tolerance and as predicted; 'moving', on the way; 'rate-limited', on "
+          "the way at rate limits; 'out-of-reach', at rest as near as limits "
+          "allow; 'local-optimum', at rest where no small change of efforts "
+          "reduces the error, although no limit is active; 'held-back', at rest because "
+          "larger steps failed; 'limits-conflict', see `conflict`. A closed loop judges "
+          "'on-target' by its samples, and "
+          "is 'at-limits' if limits prevent motion, 'holding' while a sensor is "
+          "silent.")
       .def_property_readonly(
           "conflict", guarded([](const TargetController& law) { return law.conflict(); }),
           "str: with 'limits-conflict', which limits of which actuators contradict each other; "

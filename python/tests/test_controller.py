@@ -1,6 +1,7 @@
 """Inverse control from Python."""
 
 import gc
+import pathlib
 
 import numpy as np
 import pytest
@@ -272,6 +273,26 @@ def test_a_rotation_goes_as_far_in_a_step_whatever_the_robots_size(size):
     sinew.InverseController(sim, targets={"turn": [0.0, 0.0, 1.0]}, largest_step=0.03).step()
     # The regularisation reduces the motion by about 1e-3.
     assert sim.effector("turn").value[2] == pytest.approx(0.03, rel=2e-3)
+
+
+def test_a_step_that_fails_is_rejected():
+    """A trunk pressed against a wall is about to buckle: a step towards the target would turn elements inside out."""
+    folder = pathlib.Path(__file__).parents[2] / "examples" / "trunk"
+    tree = yaml.safe_load((folder / "trunk.yaml").read_text())
+    for actuator in tree["actuators"].values():
+        actuator["limits"] = {"tension": {"min": "0 N", "max": "20 N"}, "displacement": {"rate": "100 mm/s"}}
+        actuator["command"] = {"tension": 0.0}
+    tree["contacts"] = {"wall": {"body": "trunk", "surface": {"plane": {"point": "25 0 0 mm", "normal": "-1 0 0"}}}}
+    sim = sinew.load(tree, folder=str(folder))
+    ik = sinew.InverseController(sim, targets={"tip": (0.01936764, 0.07741671, 0.08498362)})
+    ik.step(90)
+    before = np.array(sim.effector("tip").position)
+    ik.step(30)
+    assert np.linalg.norm(sim.effector("tip").position - before) < 1e-6  # m
+    assert ik.status in ("held-back", "out-of-reach", "local-optimum") and 1e-3 < ik.error < 3e-3
+    ik.targets["tip"] = (0.0, 0.03, 0.18)
+    ik.step(80)
+    assert ik.status == "on-target"
 
 
 @pytest.mark.parametrize("solver", ["newton", "one-linearisation"])

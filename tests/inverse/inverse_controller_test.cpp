@@ -128,6 +128,10 @@ TEST(StepDamping, GrowsWhereTheLinearisationMisleadsAndShrinksWhereItHolds) {
   EXPECT_EQ(damping.value(), 8.0);
   damping.review(1.0, 1.0, 1.0, 1e-12);  // at rest: no information
   EXPECT_EQ(damping.value(), 8.0);
+  damping.reject();
+  EXPECT_EQ(damping.value(), 128.0);
+  for (int k = 0; k < 10; ++k) damping.reject();
+  EXPECT_EQ(damping.value(), 1e6);
   damping.set(1.0);
   EXPECT_EQ(damping.value(), 1.0);
 }

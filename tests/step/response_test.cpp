@@ -123,7 +123,7 @@ class Nearest : public Controller {
               std::span<const double>) override {
     accepted = motion;
   }
-  void begin_step() override {}
+  void begin_step(int) override {}
   VectorX accepted;
   int calls = 0;
 

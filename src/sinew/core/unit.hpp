@@ -28,8 +28,8 @@ Unit inverse(const Unit& unit);
 Unit power(const Unit& unit, int exponent);
 
 /// Parses a unit expression; empty text is the unit 1. Throws Error(unknown-unit) at `place`, for
-/// an unknown name with the nearest known one as the remedy. @param expected dimension of the
-/// quantity: the remedy for an unknown name that stands alone is a unit of this dimension.
+/// an unknown name with the nearest known one as the remedy. If `expected`, the dimension of the
+/// quantity, is given, the remedy for an unknown name that stands alone is a unit of it.
 Unit parse_unit_expression(std::string_view text, const Location& place,
                            std::optional<Dimension> expected = {});
 

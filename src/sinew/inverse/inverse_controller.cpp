@@ -29,6 +29,8 @@ constexpr double kActive = 1e-9;
 constexpr double kStill = 2e-4;
 // At rest, forces balance to this part of their size.
 constexpr double kBalanced = 1e-3;
+// A robot that rests only because its steps are damped this much is held back.
+constexpr double kDistrusted = 256.0;
 // Relative tolerance of a requested contact force.
 constexpr double kForceTolerance = 1e-2;
 
@@ -96,14 +98,26 @@ void InverseController::look_back(const StepProblem& problem, const Response& re
   tried_ = false;
   if (std::isfinite(time_)) {
     measure_gap(problem);
-    surprise_ = 0.0;
+    surprise_ = came_ = 0.0;
     for (Eigen::Index k = 0; k < gap_.size(); ++k) {
-      if (row_weights_[k] > 0.0) surprise_ = std::hypot(surprise_, gap_[k] - foreseen_[k]);
+      if (!(row_weights_[k] > 0.0)) continue;
+      surprise_ = std::hypot(surprise_, gap_[k] - foreseen_[k]);
+      came_ = std::hypot(came_, gap_[k] - gap_before_[k]);
     }
     review(damping_, response, gap_before_);
   }
   time_ = problem.time;
-  for (std::size_t t = 0; t < asked_.size(); ++t) asked_[t] = settings_.tasks[t].target.at(time_);
+  double farthest = 0.0;  // motion of a target
+  for (std::size_t t = 0; t < asked_.size(); ++t) {
+    const Vector3 target = settings_.tasks[t].target.at(time_);
+    farthest = std::max(farthest, (target - asked_[t]).norm());
+    asked_[t] = target;
+  }
+  // A robot that was held back may be free to move elsewhere.
+  if (status_ == InverseStatus::held_back && farthest > kStill * settings_.tolerance) {
+    damping_.set(std::min(damping_.value(), kDistrusted));
+  }
+  for (int k = 0; k < failures_; ++k) damping_.reject();
   measure_gap(problem);
   gap_before_ = gap_;
   gap_linearised_ = gap_;
@@ -293,11 +307,16 @@ InverseStatus InverseController::judge(const StepProblem& problem, const Respons
     return surprise_ <= settings_.tolerance ? InverseStatus::on_target : InverseStatus::moving;
   }
   if (rate_binds(problem, response, motion, effort)) return InverseStatus::rate_limited;
-  // Without damping, the step would have gone farther by this factor.
-  const bool still = moved * damping_.value() <= kStill * settings_.tolerance;
-  const bool rests = still && surprise_ <= settings_.tolerance &&
-                     simulation_.report().relative_residual <= kBalanced;
-  if (!rests) return InverseStatus::moving;
+  const double still = kStill * settings_.tolerance;
+  const bool sound =
+      surprise_ <= settings_.tolerance && simulation_.report().relative_residual <= kBalanced;
+  if (!sound) return InverseStatus::moving;
+  // Without damping, the step would have gone farther by this factor. Where the robot is about to
+  // buckle, the linearisation predicts motions that steps cannot make.
+  if (moved * damping_.value() > still) {
+    const bool held = damping_.value() >= kDistrusted && came_ <= still;
+    return held ? InverseStatus::held_back : InverseStatus::moving;
+  }
   return program_.limit_holds(foreseen_.norm()) ? InverseStatus::out_of_reach
                                                 : InverseStatus::local_optimum;
 }
@@ -318,6 +337,9 @@ bool InverseController::rate_binds(const StepProblem& problem, const Response& r
   return false;
 }
 
-void InverseController::begin_step() { program_.reset(); }
+void InverseController::begin_step(int failures) {
+  program_.reset();
+  failures_ = failures;
+}
 
 }  // namespace sinew::inverse

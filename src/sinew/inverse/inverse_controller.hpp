@@ -68,7 +68,7 @@ class InverseController : public TargetController, public step::Controller {
   void take_certificate(const step::Certificate& certificate) override {
     certificate_ = certificate;
   }
-  void begin_step() override;
+  void begin_step(int failures) override;
   std::size_t memory_size() const override;
   void save_memory(std::span<double> memory) const override;
   void load_memory(std::span<const double> memory) override;
@@ -106,6 +106,7 @@ class InverseController : public TargetController, public step::Controller {
   StepDamping inner_damping_;  // over the choices of one step
   VectorX last_choice_;        // (controlled,) efforts
   bool tried_ = false;         // whether the robot has followed it
+  int failures_ = 0;           // of this step with its choices
   VectorX gap_linearised_;     // where it was linearised for that choice
   VectorX change_;             // (controlled,) of efforts by that choice
   VectorX expected_;           // (effector rows,) m, how the change was to move the effectors
@@ -122,6 +123,7 @@ class InverseController : public TargetController, public step::Controller {
   VectorX for_later_;  // the part of it that the step leaves to the next ones
   VectorX foreseen_;   // gap after the step, by the linearisation
   double surprise_ = std::numeric_limits<double>::infinity();  // error of the last prediction, m
+  double came_ = std::numeric_limits<double>::infinity();      // motion in the last step, m
 };
 
 }  // namespace sinew::inverse

@@ -33,7 +33,7 @@ void InverseController::forget() {
   program_.forget();
   damping_.set(1.0);
   time_ = -std::numeric_limits<double>::infinity();
-  surprise_ = std::numeric_limits<double>::infinity();
+  surprise_ = came_ = std::numeric_limits<double>::infinity();
   predicted_error_ = std::numeric_limits<double>::quiet_NaN();
   status_ = InverseStatus::not_started;
   visit_memory(*this, [](double& number) { number = 0.0; });

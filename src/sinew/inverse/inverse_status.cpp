@@ -22,6 +22,8 @@ std::string_view inverse_status_name(InverseStatus status) {
       return "at-limits";
     case InverseStatus::holding:
       return "holding";
+    case InverseStatus::held_back:
+      return "held-back";
   }
   return "unknown";
 }

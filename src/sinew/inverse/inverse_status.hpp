@@ -19,10 +19,11 @@ enum class InverseStatus {
   limits_conflict,  ///< limits contradict each other in this step; they are violated least
   at_limits,        ///< closed loop: off target, and limits hold the effectors back
   holding,          ///< closed loop: a sensor is silent, and all commands are held
+  held_back,        ///< at rest: larger steps failed or missed their predictions, see StepDamping
 };
-inline constexpr int kInverseStatuses = 9;
+inline constexpr int kInverseStatuses = 10;
 /// "not-started", "on-target", "moving", "rate-limited", "out-of-reach", "local-optimum",
-/// "limits-conflict", "at-limits", "holding".
+/// "limits-conflict", "at-limits", "holding", "held-back".
 std::string_view inverse_status_name(InverseStatus status);
 
 }  // namespace sinew::inverse

@@ -10,6 +10,7 @@ namespace {
 constexpr double kMaxDamping = 1e6;
 constexpr double kGrowth = 4.0;
 constexpr double kDecay = 0.5;
+constexpr double kGrowthAfterFailure = 16.0;
 constexpr double kBad = 0.75;
 constexpr double kGood = 0.25;
 // Relative changes of the objective below this are too small to judge by.
@@ -29,6 +30,8 @@ bool StepDamping::review(double before, double foreseen, double found, double ne
   }
   return true;
 }
+
+void StepDamping::reject() { value_ = std::min(kMaxDamping, kGrowthAfterFailure * value_); }
 
 void StepDamping::relax() { value_ = std::max(1.0, kDecay * value_); }
 

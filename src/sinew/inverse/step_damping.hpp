@@ -22,6 +22,9 @@ class StepDamping {
   /// @param negligible objective that counts as zero.
   /// @return false if the objectives differ too little to judge; value() is then unchanged.
   bool review(double before, double foreseen, double found, double negligible);
+  /// Increases the damping sixteenfold after a step that failed: its outcome counts as infinitely
+  /// worse than predicted.
+  void reject();
   /// Halves the damping, down to 1.
   void relax();
   /// >= 1, no unit.

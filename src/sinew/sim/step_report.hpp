@@ -21,9 +21,11 @@ struct StepReport {
   double violation = 0.0;          ///< m, violation of the law by the motion at the end
   int iterations = 1;              ///< linear solutions in the last substep
   int substeps = 1;                ///< number of substeps
-  int retries = 0;                 ///< substeps that were undone and retried with a smaller size
-  int impacts = 0;                 ///< impact times solved by event-driven integration
-  double error = 0.0;              ///< m, largest error estimate of a substep in any coordinate
+  /// Substeps that were undone and retried, smaller or with a smaller change of the efforts that a
+  /// controller chooses.
+  int retries = 0;
+  int impacts = 0;     ///< impact times solved by event-driven integration
+  double error = 0.0;  ///< m, largest error estimate of a substep in any coordinate
   double scale = 1.0;  ///< factor of the motion; < 1 if reduced to keep elements from inverting
   double energy_gained = 0.0;  ///< J, energy since the start in excess of the work done, if > 0
   double smallest_volume_ratio = 1.0;  ///< min det F at the end of the step

@@ -27,8 +27,8 @@ constexpr bool is_flagged(StepStatus status) { return status > StepStatus::limit
 /// "gaining-energy".
 std::string_view step_status_name(StepStatus status);
 
-/// Suggests a remedy as a clause; empty for `solved`. @param step settings of the flagged step: the
-/// remedy does not name what is already chosen.
+/// Suggests a remedy as a clause; empty for `solved`. `step` has the settings of the flagged step:
+/// the remedy does not name what is already chosen.
 std::string step_status_remedy(StepStatus status, const StepSettings& step);
 
 }  // namespace sinew::sim

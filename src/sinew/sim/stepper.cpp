@@ -6,7 +6,6 @@
 #include "sinew/core/error.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/step_tolerances.hpp"
-#include "sinew/sim/substep.hpp"
 
 namespace sinew::sim {
 
@@ -184,12 +183,11 @@ void Stepper::step_adaptively() {
 
 // Solves the step's equation once. @return the error estimate, m.
 double Stepper::substep(double end, double time_step, bool divisible) {
-  Substep part(run_);
-  part.read_commands(end, time_step);
+  substep_.read_commands(end, time_step);
   if (part_) go_in_proportion();
-  part.begin(time_step);
-  part.solve(time_step, divisible);
-  return part.end(time_step);
+  substep_.begin(time_step);
+  substep_.solve(time_step, divisible);
+  return substep_.end(time_step);
 }
 
 // Newton's method decides; if it had few iterations or was not used, the residual decides.

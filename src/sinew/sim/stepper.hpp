@@ -9,6 +9,7 @@
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/event_stepper.hpp"
 #include "sinew/sim/state.hpp"
+#include "sinew/sim/substep.hpp"
 
 namespace sinew::sim {
 
@@ -19,7 +20,7 @@ struct Run;
 class Stepper {
  public:
   /// @param run must outlive it.
-  explicit Stepper(Run& run) : run_(run), events_(run) {}
+  explicit Stepper(Run& run) : run_(run), substep_(run), events_(run) {}
   /// Advances the run by one time step and fills its report. See Simulation::step().
   void step();
   std::size_t bytes() const { return sizeof(double) * start_.size() + events_.bytes(); }
@@ -48,6 +49,7 @@ class Stepper {
   State start_;           // of the whole step, if it is divided
   bool divided_ = false;  // whether the step is divided
   std::optional<Part> part_;
+  Substep substep_;
   EventStepper events_;
 };
 

@@ -16,6 +16,14 @@ namespace {
 
 // Smaller gains of energy, relative to the energy, are rounding.
 constexpr double kRounding = 1e-12;
+// A controller chooses at most this often again after its choice has failed.
+constexpr int kMostFailures = 5;
+
+// Whether a smaller motion may not fail.
+bool is_too_far(const Error& failure) {
+  return failure.kind() == ErrorKind::not_converged ||
+         failure.kind() == ErrorKind::inverted_in_run || failure.kind() == ErrorKind::diverged;
+}
 
 }  // namespace
 
@@ -27,30 +35,49 @@ void Substep::read_commands(double end, double time_step) {
 void Substep::begin(double time_step) {
   run_.keep(run_.before);
   held_before_ = run_.report.choice_held;
-  lands_by_bdf2_ = run_.model->step().integrator == mechanics::Integrator::bdf2 &&
-                   !run_.model->contacts().empty() && run_.last_step > 0.0;
-  if (lands_by_bdf2_) energy_before_ = run_.world.bodies().energies().total();
-  if (reaches_back()) actuators_ = run_.world.problem().actuators;
+  failures_ = 0;
+  stops_points_ = false;
+  if (reaches_back() || run_.controller != nullptr) actuators_ = run_.world.problem().actuators;
   begin_world(time_step);
+  if (lands_by_bdf2_) energy_before_ = run_.world.bodies().energies().total();
 }
 
 void Substep::begin_world(double time_step) {
+  lands_by_bdf2_ = run_.model->step().integrator == mechanics::Integrator::bdf2 &&
+                   !run_.model->contacts().empty() && run_.last_step > 0.0;
   run_.begin_world(time_step);
   run_.solver.begin_step();
-  if (run_.controller != nullptr) run_.controller->begin_step();
+  if (run_.controller != nullptr) run_.controller->begin_step(failures_);
 }
 
+// A controller may choose efforts that the robot cannot follow within a step, as where it buckles.
+// Like any step outside the region in which its linearisation can be trusted (J. Nocedal & S. J.
+// Wright, Numerical Optimization (2006), algorithm 4.1), the step is rejected, and the controller
+// chooses a smaller change of efforts.
 void Substep::solve(double time_step, bool divisible) {
   divisible_ = divisible;
-  try {
-    solve_equation(time_step, divisible);
-    if (!reaches_back()) return;
-    stops_points_ = stops_points(time_step);
-    if (stops_points_ && run_.last_step > 0.0) solve_afresh(time_step, divisible);
-  } catch (...) {  // failures have restored the state already; exceptions of a watcher have not
-    run_.go_back();
-    throw;
+  while (true) {
+    try {
+      return solve_once(time_step);
+    } catch (const Error& failure) {
+      run_.go_back();
+      const bool retry = !divisible && run_.controller != nullptr && failures_ < kMostFailures;
+      if (!retry || !is_too_far(failure)) throw;
+    } catch (...) {  // of a watcher
+      run_.go_back();
+      throw;
+    }
+    ++failures_;
+    ++run_.report.retries;
+    begin_again(time_step);
   }
+}
+
+void Substep::solve_once(double time_step) {
+  solve_equation(time_step, divisible_);
+  if (!reaches_back()) return;
+  stops_points_ = stops_points(time_step);
+  if (stops_points_ && run_.last_step > 0.0) solve_afresh(time_step);
 }
 
 bool Substep::reaches_back() const {
@@ -71,17 +98,19 @@ bool Substep::stops_points(double time_step) const {
 // with backward Euler, v = d/h, and so is the next one, whose acceleration is the first that can be
 // used. A step of any multistep formula is also repeated if a point with kinetic friction comes to
 // rest: its velocity would reverse before static friction can hold it.
-//
-// The actuators get the blocks of the start again, since the commands of a part of a step are
-// interpolated (Stepper), and a controller's choice that did not settle has replaced its blocks.
-void Substep::solve_afresh(double time_step, bool divisible) {
+void Substep::solve_afresh(double time_step) {
   run_.go_back();
   run_.last_step = 0.0;
-  lands_by_bdf2_ = false;
+  begin_again(time_step);
+  solve_equation(time_step, divisible_);
+}
+
+// The actuators get the blocks of the start again, since the commands of a part of a step are
+// interpolated (Stepper), and a controller's choice that did not settle has replaced its blocks.
+void Substep::begin_again(double time_step) {
   run_.report.choice_held = held_before_;
   run_.world.problem().actuators = actuators_;
   begin_world(time_step);
-  solve_equation(time_step, divisible);
 }
 
 void Substep::solve_equation(double time_step, bool divisible) {
@@ -116,7 +145,7 @@ double Substep::end(double time_step) {
   double error = end_once(time_step);
   if (lands_by_bdf2_ && lands() && has_gained()) {
     try {
-      solve_afresh(time_step, divisible_);
+      solve_afresh(time_step);
     } catch (...) {
       run_.go_back();
       throw;

@@ -20,8 +20,9 @@ class Substep {
   void read_commands(double end, double time_step);
   /// Stores the state in Run::before and begins the part. Call after read_commands().
   void begin(double time_step);
-  /// Solves the part. Throws Error, and what the watcher throws, after which the run is as before
-  /// begin().
+  /// Solves the part. If it fails with the choice of a controller and the caller cannot retry with
+  /// smaller parts, the controller chooses a smaller change of its efforts. Throws Error, and what
+  /// the watcher throws, after which the run is as before begin().
   /// @param time_step s, as for begin().
   /// @param divisible whether the caller can retry with smaller parts.
   void solve(double time_step, bool divisible = false);
@@ -36,7 +37,9 @@ class Substep {
  private:
   void begin_world(double time_step);
   void solve_equation(double time_step, bool divisible);
-  void solve_afresh(double time_step, bool divisible);
+  void solve_once(double time_step);
+  void solve_afresh(double time_step);
+  void begin_again(double time_step);
   bool reaches_back() const;
   bool stops_points(double time_step) const;
   double end_once(double time_step);
@@ -52,7 +55,8 @@ class Substep {
   bool lands_by_bdf2_ = false;  // whether points may land in this part, a BDF2 step with history
   double energy_before_ = 0.0;  // J, if lands_by_bdf2_: of the bodies at the start of the part
   bool held_before_ = false;    // a controller's choice, in earlier parts of the step
-  // Of the part before it is solved, if its formula reaches back.
+  int failures_ = 0;            // of this part with the choices of a controller
+  // Of the part before it is solved, if its formula reaches back or a controller chooses.
   std::vector<step::ActuatorBlock> actuators_;
 };
 

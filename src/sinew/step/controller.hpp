@@ -64,8 +64,9 @@ class Controller : public WithMemory {
   virtual void accept(const StepProblem& problem, const Response& response, const VectorX& motion,
                       std::span<const double> own, std::span<const double> effort) = 0;
   /// Called before each step. Discards all warm starts of the last step, so that a step is
-  /// determined by state and inputs alone.
-  virtual void begin_step() = 0;
+  /// determined by state and inputs alone. @param failures how often this step has failed with the
+  ///   controller's choices: each time, it must choose a smaller change of efforts.
+  virtual void begin_step(int failures) = 0;
 };
 
 }  // namespace sinew::step

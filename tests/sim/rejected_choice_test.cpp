@@ -1,0 +1,108 @@
+// A step that fails with the choice of a controller is rejected, and the controller chooses again.
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
+#include "sinew/step/controller.hpp"
+#include "sinew/step/response.hpp"
+#include "sinew/step/step_problem.hpp"
+
+#include "robots.hpp"
+#include "support/error_kind.hpp"
+
+namespace sinew::sim {
+namespace {
+
+using sinew::testing::beam;
+using sinew::testing::BeamOptions;
+
+// Its choices fail until the step has failed often enough; then it pulls the first cable with 1 N.
+class Reckless : public step::Controller {
+ public:
+  Reckless(Simulation& simulation, int patience) : simulation_(simulation), patience_(patience) {
+    const int first = 0;
+    simulation_.attach(*this, std::span(&first, 1));
+  }
+  ~Reckless() override { simulation_.detach(*this); }
+
+  void begin_choices(const step::StepProblem&, const step::Response&) override {}
+  step::LawStatus choose(const step::StepProblem&, const step::Response&, step::Guards,
+                         std::span<double> effort) override {
+    if (failures_ < patience_) throw Error(ErrorKind::not_converged, {}, "crushed", "pull less");
+    effort[0] = 1.0;
+    return step::LawStatus::solved;
+  }
+  double foreseen() const override { return 0.0; }
+  std::span<const double> guard_multipliers() const override { return {}; }
+  Merit merit(const step::StepProblem&, const VectorX&, std::span<const double>,
+              std::span<const double>) const override {
+    return {};
+  }
+  void accept(const step::StepProblem&, const step::Response&, const VectorX&,
+              std::span<const double>, std::span<const double>) override {}
+  void begin_step(int failures) override {
+    failures_ = failures;
+    most_ = std::max(most_, failures);
+  }
+  int most() const { return most_; }
+
+ private:
+  Simulation& simulation_;
+  int patience_;
+  int failures_ = 0, most_ = 0;
+};
+
+class RejectedChoice : public ::testing::TestWithParam<std::pair<mechanics::Integrator, Method>> {
+ protected:
+  static std::shared_ptr<const Model> robot() {
+    BeamOptions options;
+    options.step.integrator = GetParam().first;
+    options.step.method = GetParam().second;
+    return beam(options);
+  }
+};
+
+TEST_P(RejectedChoice, GivesWayToAnother) {
+  Simulation simulation(robot()), careful(robot());
+  Reckless controller(simulation, 3), other(careful, 0);
+  const StepReport& report = simulation.step();
+  EXPECT_EQ(controller.most(), 3);
+  EXPECT_GE(report.retries, 3);
+  EXPECT_EQ(simulation.actuator(0).effort, 1.0);
+  careful.step();
+  EXPECT_EQ(other.most(), 0);
+  // Newton's method divides dynamic steps into smaller ones before a choice is rejected.
+  const bool divides = GetParam().first != mechanics::Integrator::quasi_static &&
+                       GetParam().second == Method::newton;
+  if (!divides) {
+    EXPECT_EQ(simulation.state().bodies, careful.state().bodies);
+  }
+  EXPECT_EQ(report.substeps > 1, divides);
+}
+
+TEST_P(RejectedChoice, IsAnErrorAfterFiveTries) {
+  Simulation simulation(robot());
+  const State before = simulation.state();
+  Reckless controller(simulation, 100);
+  EXPECT_THROW(simulation.step(), Error);
+  EXPECT_EQ(controller.most(), 5);
+  EXPECT_EQ(simulation.steps(), 0);
+  EXPECT_EQ(simulation.state().bodies, before.bodies);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Steps, RejectedChoice,
+    ::testing::Values(std::pair{mechanics::Integrator::quasi_static, Method::newton},
+                      std::pair{mechanics::Integrator::quasi_static, Method::one_linearisation},
+                      std::pair{mechanics::Integrator::backward_euler, Method::newton},
+                      std::pair{mechanics::Integrator::backward_euler, Method::one_linearisation},
+                      std::pair{mechanics::Integrator::bdf2, Method::newton}));
+
+}  // namespace
+}  // namespace sinew::sim
