@@ -67,7 +67,10 @@ const narrow = matchMedia('(max-width: 900px)');
 function cover(): void {
   const side = (id: string) => byId(id).getBoundingClientRect();
   byId('side').style.top = `${side('top').bottom + 8}px`;
-  const right = side('panel').width, left = side('plots').width;
+  const signals = side('plots');
+  const right = side('panel').width, left = signals.width;
+  const floor = narrow.matches ? side('panel').top : signals.height > 0 ? signals.top : innerHeight;
+  byId('side').style.maxHeight = mode === 'gallery' ? '' : `${Math.max(120, floor - side('top').bottom - 16)}px`;
   if (mode === 'gallery') robot.cover(0, 0, 0, 0);
   else if (narrow.matches) robot.cover(0, 0, side('top').bottom, side('panel').height);
   else robot.cover(innerWidth - left - right > 150 ? left : 0, right, side('top').bottom, 0);
@@ -75,7 +78,7 @@ function cover(): void {
 const joints = new JointList(robot.joints);
 const panel = new Panel(byId('panel'), send, () => connection.client, joints);
 const plots = new Plots(byId('plots'));
-for (const id of ['panel', 'top']) new ResizeObserver(cover).observe(byId(id));
+for (const id of ['panel', 'top', 'plots']) new ResizeObserver(cover).observe(byId(id));
 byId('side').append(picked.element);
 
 // ------------------------------------------------------------------------------------------ top bar
