@@ -170,7 +170,7 @@ std::vector<Feature> list_features() {
       {"kinetic_friction", switched},
       {"force_task", {"none", "force", "limits", "reserve"}},
       {"feedback", switched},
-      {"estimator", {"none", "force", "effort"}},
+      {"estimator", {"none", "force", "effort", "stiffness"}},
   };
 }
 

@@ -724,15 +724,15 @@ class Drafter {
         fmt::format("{{type: {}, {}, delay: 15 ms, dropout: 20 %}}", kind, what));
   }
 
-  // An estimator of a force that may be absent, or of an effort besides the command. The first has
-  // a model with inertia, and the second a quasi-static one, which excludes flying or swinging
-  // bodies.
+  // An estimator of a force that may be absent, and perhaps of an effort besides the command or of
+  // the stiffness of a body. For efforts the model is quasi-static, which excludes flying or
+  // swinging bodies; otherwise it has inertia.
   void add_estimator() {
     if (!has("estimator")) return;
     const bool held = !flies_ && (!has("link") || of("link") == "weld");
     // It makes each step once per column, so only two integrators represent all dynamic ones.
     const bool dynamic = of("integrator") == "bdf2" || of("integrator") == "event-driven";
-    const bool moves = of("estimator") == "force" && dynamic;
+    const bool moves = of("estimator") != "effort" && dynamic;
     if (!moves && !held) return;
     const Body& on = bodies_.front();
     add("sensors", "seen",
@@ -744,6 +744,9 @@ class Drafter {
       unknown += ", slip: {tension: {actuator: <cable_0>}, prior: 0.2 N}";
     } else if (of("estimator") == "effort" && stands("actuators", "chamber")) {
       unknown += ", leak: {pressure: {actuator: <chamber>, command: unknown}, prior: 0.5 kPa}";
+    }
+    if (of("estimator") == "stiffness" && on.fem) {
+      unknown += fmt::format(", soft: {{stiffness: {{body: <{}>}}, prior: 20 %}}", on.id);
     }
     add("estimators", "guess",
         fmt::format("{{type: filter, sensors: [<seen>], {}, unknowns: {{{}}}}}",
