@@ -36,6 +36,11 @@ class TwoSurfaces {
     const auto found = proximity_.within(first, settings);
     return {found.begin(), found.end()};
   }
+  std::vector<ProximityPair> crossings(const std::vector<std::array<int, 2>>& edges,
+                                       const ProximitySettings& settings) {
+    const auto found = proximity_.crossings(first, second, edges, settings);
+    return {found.begin(), found.end()};
+  }
 
  private:
   ThreadPool pool_{2};
@@ -316,6 +321,72 @@ TEST(Proximity, SlackLetsMoreIn) {
   };
   for (const ProximityPair& pair : strict) EXPECT_TRUE(holds(loose, pair));
   for (const ProximityPair& pair : loose) EXPECT_TRUE(holds(all, pair));
+}
+
+// Only the half x >= 0.5 of a box is expected to reach the other one.
+TEST(Proximity, PairsReachAsFarAsTheirFeaturesMove) {
+  const TestSurface box = unit_box(4);
+  TwoSurfaces bodies(box, box);
+  bodies.place(placed(box.nodes, Matrix3::Identity(), {0.03, 0.04, 1.1}), box.nodes);
+  const ProximitySettings near{.distance = 0.05, .slack = 0.5}, far{.distance = 0.12, .slack = 0.5};
+  EXPECT_TRUE(bodies.pairs(near).empty());
+  const auto all = bodies.pairs(far);
+  VectorX motion = VectorX::Zero(box.nodes.rows());
+  for (Eigen::Index k = 0; k < motion.size(); ++k) motion[k] = box.nodes(k, 0) < 0.5 ? 0.0 : 0.06;
+  bodies.first.expect(motion);
+  bodies.second.expect(motion);
+  const auto found = bodies.pairs(near);
+  expect_once(found);
+  std::set<Name> names;
+  for (const ProximityPair& pair : found) {
+    names.insert(name_of(pair));
+    EXPECT_GT(pair.first.point[0], 0.25);
+    EXPECT_NEAR(pair.distance, 0.1, 1e-12);
+  }
+  int moving = 0;
+  for (const ProximityPair& pair : all) {
+    if (pair.first.point[0] < 0.79) continue;
+    EXPECT_TRUE(names.contains(name_of(pair)));
+    ++moving;
+  }
+  EXPECT_GT(moving, 5);
+}
+
+// Two spheres: the crossings near the nearest one are those that a slack lets in. Edges that cross
+// beyond their ends, or too far from each other, form no pair.
+TEST(Proximity, CrossingsOfGivenEdges) {
+  const TestSurface sphere = unit_sphere(8);
+  TwoSurfaces bodies(sphere, sphere);
+  bodies.place(placed(sphere.nodes, Matrix3::Identity(), {2.1, 0.04, 0.03}), sphere.nodes);
+  const ProximitySettings settings{.distance = 0.3, .slack = 0.5, .edge_slack = 1e-9};
+  const auto all = bodies.pairs({.distance = 0.3, .slack = 1.0});
+  std::vector<std::array<int, 2>> edges;
+  std::vector<ProximityPair> expected;
+  for (const ProximityPair& pair : all) {
+    if (pair.first.kind != kEdge || pair.second.kind != kEdge) continue;
+    expected.push_back(pair);
+    edges.push_back({pair.first.number, pair.second.number});
+  }
+  EXPECT_GT(expected.size(),
+            static_cast<std::size_t>(kinds(bodies.pairs(settings))[{kEdge, kEdge}]));
+  const auto found = bodies.crossings(edges, settings);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    EXPECT_EQ(name_of(found[k]), name_of(expected[k]));
+    EXPECT_LE((found[k].first.point - expected[k].first.point).norm(), 1e-14);
+    EXPECT_LE((found[k].normal - expected[k].normal).norm(), 1e-14);
+    EXPECT_NEAR(found[k].distance, expected[k].distance, 1e-14);
+    expect_consistent(found[k], bodies.first, bodies.second);
+  }
+  const double nearest = std::ranges::min(expected, {}, &ProximityPair::distance).distance;
+  EXPECT_TRUE(bodies.crossings(edges, {.distance = 0.9 * nearest}).empty());
+  std::vector<std::array<int, 2>> every;
+  const int count = static_cast<int>(bodies.first.topology().edges().size());
+  for (int e = 0; e < count; ++e) every.push_back({edges.front()[0], e});
+  for (const ProximityPair& pair : bodies.crossings(every, settings)) {
+    EXPECT_TRUE(std::ranges::any_of(
+        expected, [&](const ProximityPair& other) { return name_of(other) == name_of(pair); }));
+  }
 }
 
 TEST(Proximity, OfOneSurfaceWithItself) {

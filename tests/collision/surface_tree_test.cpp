@@ -1,6 +1,7 @@
 #include "sinew/collision/surface_tree.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <set>
@@ -107,6 +108,46 @@ TEST(TrianglePairs, AreThoseOfAllPairs) {
     EXPECT_EQ(sorted(finder.between(a, b, distance), false), all_pairs(a, b, distance, false));
     EXPECT_EQ(sorted(finder.within(b, distance), true), all_pairs(b, b, distance, true));
   }
+}
+
+TEST(TrianglePairs, ReachAsFarAsTheirTrianglesMove) {
+  Random random(23);
+  ThreadPool pool(2);
+  TrianglePairs finder(pool);
+  const TestSurface sphere = unit_sphere(6), ring = torus(1.0, 0.4, 18, 9);
+  SurfaceTree a(sphere.topology()), b(ring.topology());
+  const auto motions = [&](const TestSurface& surface) -> VectorX {
+    VectorX motion(surface.nodes.rows());
+    for (double& one : motion) one = std::pow(random.uniform(0.0, 0.8), 4);
+    return motion;
+  };
+  const auto of = [](const TestSurface& surface, int triangle, const VectorX& motion) {
+    double most = 0.0;
+    for (const NodeId node : surface.triangles[static_cast<std::size_t>(triangle)]) {
+      most = std::max(most, motion[node]);
+    }
+    return most;
+  };
+  constexpr double kDistance = 0.1, kAll = 1.0;
+  for (int trial = 0; trial < 8; ++trial) {
+    a.move(placed(sphere.nodes, random_rotation(random), random_point(random, 1.5)), pool);
+    b.move(shaken(ring.nodes, random, 0.1), pool);
+    const auto near = all_pairs(a, b, kDistance, false);
+    const VectorX first = motions(sphere), second = motions(ring);
+    std::vector<std::pair<int, int>> expected;
+    for (const auto& [i, j] : all_pairs(a, b, kAll, false)) {
+      const double far = std::max(kDistance, of(sphere, i, first) + of(ring, j, second));
+      if (!a.box(i).is_apart(b.box(j), far)) expected.emplace_back(i, j);
+    }
+    EXPECT_GT(expected.size(), near.size());
+    a.expect(first);
+    b.expect(second);
+    EXPECT_EQ(sorted(finder.between(a, b, kDistance), false), expected);
+    a.move(Points(a.positions()), pool);
+    b.move(Points(b.positions()), pool);
+    EXPECT_EQ(sorted(finder.between(a, b, kDistance), false), near);
+  }
+  EXPECT_EQ(kind_of([&] { a.expect(VectorX::Zero(3)); }), ErrorKind::wrong_shape);
 }
 
 TEST(TrianglePairs, DoNotDependOnThreads) {

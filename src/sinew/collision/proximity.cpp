@@ -26,6 +26,8 @@ constexpr double kSamePlace = 1e-6, kOpposite = 1e-6;
 constexpr double kTooFar = 1.001, kRounding2 = 1e-20;
 // Sine of the angle within which a line lies in a plane.
 constexpr double kParallel = 1e-6;
+// A slack that allows all neighbours, whatever the rounding of the sine.
+constexpr double kAnySlack = 2.0;
 
 SurfacePoint on_vertex(const SurfaceTree& surface, NodeId node) {
   return {FeatureKind::vertex, node, {node, -1, -1}, {1.0, 0.0, 0.0}, surface.at(node)};
@@ -105,11 +107,11 @@ class PairSearch {
         first_edges_(first, settings.edge_slack.value_or(settings.slack)),
         second_edges_(second, settings.edge_slack.value_or(settings.slack)),
         settings_(settings),
-        reach2_(reach(settings) * reach(settings)),
         same_(&first == &second),
         found_(found) {}
 
   void look_at(const TrianglePair& pair) {
+    set_distance(first_.surface().motion(pair.first) + second_.surface().motion(pair.second));
     from_vertices(first_, second_, pair.first, pair.second, false);
     from_vertices(second_, first_, pair.second, pair.first, true);
     for (const NodeId v : first_.surface().topology().own_nodes(pair.first)) {
@@ -125,7 +127,19 @@ class PairSearch {
     }
   }
 
+  void look_at_edges(int e, int f) {
+    set_distance(0.0);
+    edges(e, f);
+  }
+
  private:
+  // @param motion m, of both features.
+  void set_distance(double motion) {
+    distance_ = std::max(settings_.distance, motion);
+    reach_ = std::max(distance_, settings_.depth);
+    reach2_ = reach_ * reach_;
+  }
+
   // The triangle's own vertices over the other triangle and over its own edges.
   void from_vertices(const LocalMinimum& own, const LocalMinimum& other, int triangle,
                      int other_triangle, bool swapped) {
@@ -133,7 +147,7 @@ class PairSearch {
       const Vector3 x = own.surface().at(node);
       Box box;
       box.extend(x);
-      if (box.is_apart(other.surface().box(other_triangle), reach(settings_))) continue;
+      if (box.is_apart(other.surface().box(other_triangle), reach_)) continue;
       over_face(own, node, x, other, other_triangle, swapped);
       for (const int edge : other.surface().topology().own_edges(other_triangle)) {
         over_edge(own, node, x, other, edge, swapped);
@@ -264,8 +278,7 @@ class PairSearch {
 
   bool is_pair(const SurfacePoint& p, const SurfacePoint& q, const Vector3& normal) const {
     const double distance = distance_along(normal, p, q);
-    return distance <= settings_.distance && distance >= -settings_.depth &&
-           !(same_ && share_node(p, q));
+    return distance <= distance_ && distance >= -settings_.depth && !(same_ && share_node(p, q));
   }
 
   // Direction from one point to the other. For coinciding points, it is normal to the faces that
@@ -340,7 +353,7 @@ class PairSearch {
 
   LocalMinimum first_, second_, first_edges_, second_edges_;
   const ProximitySettings& settings_;
-  double reach2_;  // m^2
+  double distance_ = 0.0, reach_ = 0.0, reach2_ = 0.0;  // m, m, m^2; of the pair of triangles
   bool same_;
   std::vector<ProximityPair>& found_;
 };
@@ -358,6 +371,17 @@ std::span<const ProximityPair> Proximity::between(const SurfaceTree& first,
 std::span<const ProximityPair> Proximity::within(const SurfaceTree& surface,
                                                  const ProximitySettings& settings) {
   return collect(surface, surface, near_.within(surface, reach(settings)), settings);
+}
+
+std::span<const ProximityPair> Proximity::crossings(const SurfaceTree& first,
+                                                    const SurfaceTree& second,
+                                                    std::span<const std::array<int, 2>> edges,
+                                                    ProximitySettings settings) {
+  settings.slack = settings.edge_slack.emplace(kAnySlack);
+  crossings_.clear();
+  PairSearch search(first, second, settings, crossings_);
+  for (const auto& [e, f] : edges) search.look_at_edges(e, f);
+  return crossings_;
 }
 
 std::span<const ProximityPair> Proximity::collect(const SurfaceTree& first,

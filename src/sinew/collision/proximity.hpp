@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "sinew/collision/surface_tree.hpp"
 #include "sinew/collision/thread_lists.hpp"
@@ -37,7 +38,9 @@ struct ProximityPair {
 
 /// Criteria of the search.
 struct ProximitySettings {
-  double distance = 0.0;  ///< m, >= 0: the largest distance of a pair
+  /// m, >= 0: the largest distance of a pair. Triangles that are expected to move farther together
+  /// (SurfaceTree::expect()) form pairs up to the sum of their motions.
+  double distance = 0.0;
   /// m, >= 0: pairs that face each other are also found if they have passed each other by up to
   /// this depth. It must be less than the thickness of either body.
   double depth = 0.0;
@@ -74,6 +77,13 @@ class Proximity {
   /// @param surface at its last moved position. @param settings criteria.
   std::span<const ProximityPair> within(const SurfaceTree& surface,
                                         const ProximitySettings& settings);
+  /// Those of the given pairs of edges that cross within the distance and face each other, whether
+  /// or not a neighbour of the crossing is nearer. In the order of `edges`.
+  /// @param first,second at their last moved positions; one surface twice: pairs within it.
+  /// @param edges numbers of edges of the first and the second surface. @param settings criteria.
+  std::span<const ProximityPair> crossings(const SurfaceTree& first, const SurfaceTree& second,
+                                           std::span<const std::array<int, 2>> edges,
+                                           ProximitySettings settings);
 
  private:
   std::span<const ProximityPair> collect(const SurfaceTree& first, const SurfaceTree& second,
@@ -82,6 +92,7 @@ class Proximity {
 
   TrianglePairs near_;
   ThreadLists<ProximityPair> pairs_;
+  std::vector<ProximityPair> crossings_;
 };
 
 }  // namespace sinew::collision

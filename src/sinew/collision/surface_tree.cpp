@@ -33,6 +33,7 @@ void check_positions(const Points& positions, int nodes) {
 SurfaceTree::SurfaceTree(std::shared_ptr<const SurfaceTopology> topology)
     : topology_(std::move(topology)),
       boxes_(topology_->triangles().size()),
+      motion_(boxes_.size(), 0.0),
       order_(topology_->triangles().size()) {
   branches_.reserve(2 * order_.size());
 }
@@ -53,7 +54,40 @@ void SurfaceTree::sweep(const Points& start, const Points& end, ThreadPool& pool
   update(pool);
 }
 
+void SurfaceTree::expect(const VectorX& motion) {
+  if (motion.size() != topology_->node_count()) {
+    throw Error(
+        ErrorKind::wrong_shape, {.item = "motion"},
+        fmt::format("there are {} entries for {} nodes", motion.size(), topology_->node_count()));
+  }
+  for (std::size_t t = 0; t < motion_.size(); ++t) {
+    const Triangle& nodes = topology_->triangles()[t];
+    motion_[t] = std::max({motion[nodes[0]], motion[nodes[1]], motion[nodes[2]]});
+  }
+  for (std::size_t k = branches_.size(); k-- > 0;) {
+    Branch& branch = branches_[k];
+    branch.motion = 0.0;
+    if (branch.right < 0) {
+      for (int i = branch.begin; i < branch.end; ++i) {
+        branch.motion = std::max(branch.motion, this->motion(order_[static_cast<std::size_t>(i)]));
+      }
+    } else {
+      branch.motion = std::max(branches_[k + 1].motion,
+                               branches_[static_cast<std::size_t>(branch.right)].motion);
+    }
+  }
+  expects_ = true;
+}
+
+void SurfaceTree::forget_motion() {
+  if (!expects_) return;
+  std::ranges::fill(motion_, 0.0);
+  for (Branch& branch : branches_) branch.motion = 0.0;
+  expects_ = false;
+}
+
 void SurfaceTree::update(ThreadPool& pool) {
+  forget_motion();
   fit_triangles(pool);
   if (!branches_.empty()) refit();
   const bool is_kept = cost_ <= kGrown * cost_when_built_ && cost_ >= kFallen * cost_when_built_;

@@ -48,6 +48,7 @@ class SurfaceTree {
     Box box;
     int right = -1;  ///< -1: a leaf
     int begin = 0, end = 0;
+    double motion = 0.0;  ///< m, largest of its triangles
   };
 
   /// @param topology may be shared by all bodies of one kind.
@@ -59,6 +60,10 @@ class SurfaceTree {
   /// Sets a motion: every box encloses its triangle from start to end. @param start,end (n, 3) m.
   /// @param pool shares the work.
   void sweep(const Points& start, const Points& end, ThreadPool& pool);
+  /// Sets how far each node may move before the next search. The next move() or sweep() discards
+  /// it.
+  /// @param motion (n,) m, >= 0. Throws Error(wrong-shape).
+  void expect(const VectorX& motion);
 
   const SurfaceTopology& topology() const { return *topology_; }
   /// Positions of the last move(), or at the start of the last sweep(), (n, 3) m.
@@ -78,6 +83,8 @@ class SurfaceTree {
   const std::vector<int>& order() const { return order_; }
   /// Box of a triangle, m.
   const Box& box(int triangle) const { return boxes_[static_cast<std::size_t>(triangle)]; }
+  /// m: the largest motion that is expected of a triangle's nodes; 0 without expect().
+  double motion(int triangle) const { return motion_[static_cast<std::size_t>(triangle)]; }
   /// Sum of the areas of all boxes over that of the root: the expected number of boxes that a
   /// random line through the root meets (surface area heuristic, Goldsmith & Salmon 1987).
   double cost() const { return cost_; }
@@ -86,6 +93,7 @@ class SurfaceTree {
 
  private:
   void update(ThreadPool& pool);
+  void forget_motion();
   void fit_triangles(ThreadPool& pool);
   void refit();
   void build();
@@ -93,8 +101,9 @@ class SurfaceTree {
 
   std::shared_ptr<const SurfaceTopology> topology_;
   Points start_, end_;
-  bool swept_ = false;
+  bool swept_ = false, expects_ = false;
   std::vector<Box> boxes_;
+  std::vector<double> motion_;  // (triangles,) m
   std::vector<int> order_;
   std::vector<Branch> branches_;
   double cost_ = 0.0, cost_when_built_ = 0.0;

@@ -1,5 +1,6 @@
 #include "sinew/collision/triangle_pairs.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace sinew::collision {
@@ -80,9 +81,10 @@ void TrianglePairs::descend(const Search& search, const BranchPair& pair, const 
   const auto& a = first[static_cast<std::size_t>(pair.first)];
   const auto& b = second[static_cast<std::size_t>(pair.second)];
   const auto keep = [&](int left, int right) {
-    const Box& x = first[static_cast<std::size_t>(left)].box;
-    const Box& y = second[static_cast<std::size_t>(right)].box;
-    if (!x.is_apart(y, search.distance)) keep_pair(BranchPair{left, right});
+    const auto& x = first[static_cast<std::size_t>(left)];
+    const auto& y = second[static_cast<std::size_t>(right)];
+    const double far = std::max(search.distance, x.motion + y.motion);
+    if (!x.box.is_apart(y.box, far)) keep_pair(BranchPair{left, right});
   };
   if (search.same && pair.first == pair.second) {
     keep(pair.first + 1, pair.first + 1);
@@ -105,10 +107,12 @@ void TrianglePairs::compare(const Search& search, const BranchPair& leaf,
   for (int i = a.begin; i < a.end; ++i) {
     const int left = search.first.order()[static_cast<std::size_t>(i)];
     const Box& box = search.first.box(left);
-    if (box.is_apart(b.box, search.distance)) continue;
+    const double motion = search.first.motion(left);
+    if (box.is_apart(b.box, std::max(search.distance, motion + b.motion))) continue;
     for (int j = same ? i + 1 : b.begin; j < b.end; ++j) {
       const int right = search.second.order()[static_cast<std::size_t>(j)];
-      if (!box.is_apart(search.second.box(right), search.distance)) to.push_back({left, right});
+      const double far = std::max(search.distance, motion + search.second.motion(right));
+      if (!box.is_apart(search.second.box(right), far)) to.push_back({left, right});
     }
   }
 }

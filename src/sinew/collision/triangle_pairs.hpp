@@ -25,7 +25,8 @@ class TrianglePairs {
   /// @param pool must outlive this object.
   explicit TrianglePairs(ThreadPool& pool);
 
-  /// All pairs whose boxes are at most `distance` apart along every axis.
+  /// All pairs whose boxes are at most `distance` apart along every axis, or at most as far as both
+  /// triangles together are expected to move (SurfaceTree::expect()).
   /// @param first,second may be swept. @param distance m, >= 0.
   std::span<const TrianglePair> between(const SurfaceTree& first, const SurfaceTree& second,
                                         double distance);

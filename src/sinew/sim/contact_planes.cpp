@@ -114,16 +114,19 @@ Vector3 ContactPlanes::surface_velocity(const constraint::Contact& contact,
   return Vector3::Zero();
 }
 
-void ContactPlanes::find_points(double reach, std::span<double> effort) {
+void ContactPlanes::find_points(double reach, double ahead, std::span<double> effort) {
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     const bool again = events_ && strikes_[i] != 0;
-    surfaces_[i]->begin_step(again ? surfaces_[i]->reach() : reach, effort);
+    if (!again) surfaces_[i]->look_ahead(reach, ahead);
+    surfaces_[i]->begin_step(effort);
   }
 }
 
-void ContactPlanes::find_striking_points(double reach, std::span<double> effort) {
+void ContactPlanes::find_striking_points(double reach, double ahead, std::span<double> effort) {
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-    if (strikes_[i] != 0) surfaces_[i]->begin_step(reach, effort);
+    if (strikes_[i] == 0) continue;
+    surfaces_[i]->look_ahead(reach, ahead);
+    surfaces_[i]->begin_step(effort);
   }
 }
 

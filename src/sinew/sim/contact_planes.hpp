@@ -52,13 +52,14 @@ class ContactPlanes {
   /// @param from,to s, start and end of the step, which fix the positions of moving surfaces.
   void place(double from, double to);
   /// Finds the points of contacts between surfaces.
-  /// @param reach m: pairs that are nearer get points.
+  /// @param reach m: pairs that are nearer get points. @param ahead s: also pairs that may meet in
+  ///   this time, see TouchingSurfaces::look_ahead().
   /// @param effort (rows,) N of the last step, in and out: points keep their forces.
-  void find_points(double reach, std::span<double> effort);
+  void find_points(double reach, double ahead, std::span<double> effort);
   /// Finds the points of contacts that strike. find_points() then searches these contacts with the
   /// same reach, so a part of a step has the points that were found at its start.
-  /// @param reach,effort see find_points().
-  void find_striking_points(double reach, std::span<double> effort);
+  /// @param reach,ahead,effort see find_points().
+  void find_striking_points(double reach, double ahead, std::span<double> effort);
   /// Updates the planes to the end of a part of an event-driven step: surfaces of the world move to
   /// their positions at a time, with unchanged frames. A call with the time of place(), the middle
   /// of the part, undoes this. Call after a measurement of delta. @param time s.

@@ -24,7 +24,7 @@ namespace {
 constexpr double kNear = 0.01, kTaken = 0.002;
 // Distance, relative to the robot's size, from which a controller closes contacts between surfaces.
 constexpr double kWanted = 0.1;
-// Surfaces of bodies get points within this multiple of the fastest node's motion in a step.
+// Surfaces of bodies get points within this multiple of their motion in a step.
 constexpr double kAhead = 3.0;
 // A stopped point was moving if it was faster than this fraction of the fastest point, and than
 // this fraction of the robot's size per step.
@@ -115,16 +115,10 @@ void ContactRows::for_each_point(bool striking, Visit&& visit) const {
   }
 }
 
-double ContactRows::reach(double time_step, double reach) const {
-  double fastest = 0.0;
-  for (const auto& touching : planes_.surfaces()) {
-    for (const int body : {touching->contact().body(), touching->contact().other_body()}) {
-      const Points& rates = configuration_.surface_node_velocities(body);
-      fastest = std::max(fastest, rates.rowwise().squaredNorm().maxCoeff());
-    }
-  }
-  const double ahead = std::isfinite(time_step) ? kAhead * time_step * std::sqrt(fastest) : 0.0;
-  return std::max({kNear * model_.size(), reach, ahead});
+double ContactRows::reach(double reach) const { return std::max(kNear * model_.size(), reach); }
+
+double ContactRows::ahead(double time_step) {
+  return std::isfinite(time_step) ? kAhead * time_step : 0.0;
 }
 
 // Depends on the state alone, so a run continues from a saved state bit for bit.

@@ -35,9 +35,11 @@ class ContactRows {
               std::span<mechanics::StepSystem* const> systems, mechanics::RowValues& rows,
               ThreadPool& pool);
 
-  /// m: distance within which surfaces of bodies get points in a step. @param time_step s.
+  /// m: distance within which surfaces of bodies get points in a step, however slow they are.
   /// @param reach m, a lower bound.
-  double reach(double time_step, double reach) const;
+  double reach(double reach) const;
+  /// s: time in which they get points where they may meet. @param time_step s.
+  static double ahead(double time_step);
 
   bool empty() const { return planes_.contacts().empty(); }
   const ContactPlanes& planes() const { return planes_; }

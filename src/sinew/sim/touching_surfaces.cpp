@@ -65,7 +65,12 @@ void TouchingSurfaces::move_trees(const Points& first, const Points& second) {
 // The order does not depend on the history of the trees. Positions that are held on both surfaces
 // touch without a force. If there are more pairs than rows, keeps those that do not wait, and the
 // nearest.
-void TouchingSurfaces::find(double reach) {
+// @param ahead whether to search also as far as the nodes are expected to move.
+void TouchingSurfaces::find(double reach, bool ahead) {
+  if (ahead && first_ahead_.size() > 0) {
+    first_.expect(first_ahead_);
+    if (!contact_.is_within()) second_.expect(second_ahead_);
+  }
   const collision::ProximitySettings settings{
       .distance = reach, .depth = contact_.depth(), .slack = kSlack, .edge_slack = kEdgeSlack};
   const auto pairs = contact_.is_within() ? proximity_.within(first_, settings)
@@ -75,36 +80,84 @@ void TouchingSurfaces::find(double reach) {
     const bool held = contact_.first().holds(pair.first) && contact_.second().holds(pair.second);
     if (!held) found_.push_back({name(pair), pair});
   }
-  const auto order = [](const Named& a, const Named& b) {
-    if (a.key != b.key) return a.key < b.key;
-    if (a.pair.distance != b.pair.distance) return a.pair.distance < b.pair.distance;
-    return std::ranges::lexicographical_compare(a.pair.normal, b.pair.normal);
-  };
   if (found_.size() > contact_.size()) {
     const auto nearer = [&](const Named& a, const Named& b) {
       if (a.pair.between_flat != b.pair.between_flat) return b.pair.between_flat;
       if (a.pair.distance != b.pair.distance) return a.pair.distance < b.pair.distance;
-      return order(a, b);
+      return comes_before(a, b);
     };
     const auto end = found_.begin() + static_cast<std::ptrdiff_t>(contact_.size());
     std::ranges::nth_element(found_, end, nearer);
     found_.erase(end, found_.end());
   }
-  std::ranges::sort(found_, order);
+  std::ranges::sort(found_, comes_before);
 }
 
-void TouchingSurfaces::begin_step(double reach, std::span<double> effort) {
+bool TouchingSurfaces::comes_before(const Named& a, const Named& b) {
+  if (a.key != b.key) return a.key < b.key;
+  if (a.pair.distance != b.pair.distance) return a.pair.distance < b.pair.distance;
+  return std::ranges::lexicographical_compare(a.pair.normal, b.pair.normal);
+}
+
+// The points of a step serve two purposes.
+// 1. A point can be active from the start of a step only if it is found here: ContactRows takes
+//    pairs whose gap is small at the end of the step at their present relative velocity w. With the
+//    time step h, that is a distance of h |w| and a little more.
+// 2. Surfaces that move by more than the depth in which overlaps are found may pass through each
+//    other unnoticed by add_overlaps(). Points that were found at the start prevent it.
+// For both it suffices that two places are looked for as far as they may move towards each other:
+// with |w| <= |u| + |v| for the velocities u, v of both, relative to any common one, ahead (|u| +
+// |v|), where `ahead` is h times a factor for velocities that grow in the step. Nodes far away do
+// not matter. If velocities grow more, add_overlaps() or passed() finds what was missed.
+void TouchingSurfaces::look_ahead(double reach, double ahead) {
+  reach_ = reach;
+  const Points& first = configuration_.surface_node_velocities(contact_.body());
+  const Points& second = configuration_.surface_node_velocities(contact_.other_body());
+  const Vector3 common = 0.5 * (first.colwise().mean() + second.colwise().mean()).transpose();
+  const auto set = [&](const Points& rates, VectorX& motion) {
+    motion = ahead * (rates.rowwise() - common.transpose()).rowwise().norm();
+  };
+  set(first, first_ahead_);
+  set(second, second_ahead_);
+}
+
+void TouchingSurfaces::begin_step(std::span<double> effort) {
   first_start_ = configuration_.surface_nodes(contact_.body());
   second_start_ = configuration_.surface_nodes(contact_.other_body());
   move_trees(first_start_, second_start_);
-  find(reach);
+  find(reach_, true);
   keep_forces(effort);
-  reach_ = reach;
+  add_kept_edges();
   keys_.clear();
   pairs_.clear();
   for (const Named& one : found_) add_point(one);
   clear_rest();
   pass_forces_on(effort);
+}
+
+// Without them, the motion of the step would lead into each of these pairs again, and the law would
+// be solved again with their rows.
+void TouchingSurfaces::add_kept_edges() {
+  kept_edges_.clear();
+  const auto is_found = [&](const Key& key) {
+    return std::ranges::binary_search(
+        found_, key, [](const Key& a, const Key& b) { return a < b; }, &Named::key);
+  };
+  for (const auto& [key, point, force] : before_) {
+    if (key.kind != 2 || is_found(key)) continue;
+    // Within one surface, either edge may be the first.
+    if (contact_.is_within() && is_found({2, key.second, key.first})) continue;
+    kept_edges_.push_back({key.first, key.second});
+  }
+  if (kept_edges_.empty()) return;
+  const collision::SurfaceTree& second = contact_.is_within() ? first_ : second_;
+  const collision::ProximitySettings settings{.distance = reach_, .depth = contact_.depth()};
+  for (const auto& pair : proximity_.crossings(first_, second, kept_edges_, settings)) {
+    if (found_.size() == contact_.size()) break;
+    found_.push_back({name(pair), pair});
+    found_.back().pair.between_flat = false;
+  }
+  std::ranges::sort(found_, comes_before);
 }
 
 void TouchingSurfaces::add_point(const Named& one) {
@@ -225,7 +278,7 @@ double TouchingSurfaces::gap_there(std::size_t point) const {
 void TouchingSurfaces::look_around() {
   move_trees(configuration_.surface_nodes(contact_.body()),
              configuration_.surface_nodes(contact_.other_body()));
-  find(reach_);
+  find(reach_, true);
 }
 
 bool TouchingSurfaces::turn(std::size_t point) {

@@ -2,6 +2,7 @@
 /// Contact points between the surfaces of a SurfaceContact, in one simulation.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -45,9 +46,15 @@ class TouchingSurfaces {
                    ThreadPool& pool);
 
   const constraint::SurfaceContact& contact() const { return contact_; }
-  /// Makes the pairs nearer than `reach` the points of the step. Points that existed in the last
-  /// step keep their forces. @param reach m. @param effort (rows,) N, in and out.
-  void begin_step(double reach, std::span<double> effort);
+  /// Sets how far begin_step() and look_around() search: up to `reach`, and where nodes are faster,
+  /// up to the distance that the two parts of the surfaces travel in a time, relative to the mean
+  /// of both bodies, at their present velocities. @param reach m. @param ahead s.
+  void look_ahead(double reach, double ahead);
+  /// Makes the pairs found the points of the step. Points that existed in the last step keep their
+  /// forces. Crossing edges that had a force are points again, though the search does not name
+  /// them: in a contact that has become flat, neighbours of the crossing are as near.
+  /// @param effort (rows,) N, in and out.
+  void begin_step(std::span<double> effort);
   /// Computes the surfaces after a proposed motion. @param systems of the bodies.
   void propose(std::span<mechanics::StepSystem* const> systems);
   /// m: gap of a point's row after that motion.
@@ -58,8 +65,6 @@ class TouchingSurfaces {
   /// Whether parts of the surfaces have passed through each other since the step began. Overlaps
   /// that the next step can undo do not count.
   bool passed();
-  /// m: reach of the last begin_step().
-  double reach() const { return reach_; }
   /// In event-driven integration, at the end of a part: searches overlaps there.
   void look_at_overlaps();
   /// m: gap of a point after look_at_overlaps(); if its surfaces overlap, along their present
@@ -116,7 +121,9 @@ class TouchingSurfaces {
   };
   static Key name(const collision::ProximityPair& pair);
   const collision::ProximityPair* pair_there(std::size_t point, double least) const;
-  void find(double reach);
+  void find(double reach, bool ahead = false);
+  void add_kept_edges();
+  static bool comes_before(const Named& a, const Named& b);
   void add_point(const Named& one);
   void move_trees(const Points& first, const Points& second);
   double farthest_way() const;
@@ -140,10 +147,12 @@ class TouchingSurfaces {
   // Of the points. between_flat: the point waits. The distance is that at the start of the step,
   // also after turn().
   std::vector<collision::ProximityPair> pairs_;
-  double reach_ = 0.0;                 // m, of the step
-  std::vector<Force> before_;          // of the last step, by name
-  Points first_start_, second_start_;  // m, when the step began
-  Points first_end_, second_end_;      // m, where a motion leads
+  double reach_ = 0.0;                          // m, of the step: all nearer pairs are points
+  VectorX first_ahead_, second_ahead_;          // (nodes,) m: how far they are expected to move
+  std::vector<std::array<int, 2>> kept_edges_;  // that had a force and were not found
+  std::vector<Force> before_;                   // of the last step, by name
+  Points first_start_, second_start_;           // m, when the step began
+  Points first_end_, second_end_;               // m, where a motion leads
 };
 
 }  // namespace sinew::sim

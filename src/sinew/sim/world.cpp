@@ -23,7 +23,7 @@ World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
       contacts_(*model_, configuration_, bodies_.systems(), rows_, pool),
       stiffness_(*model_, configuration_, bodies_.systems(), problem_) {
   number_rows();
-  contacts_.planes().find_points(contacts_.reach(0.0, 0.0), {});
+  contacts_.planes().find_points(contacts_.reach(0.0), 0.0, {});
   place_contacts(0.0, 0.0);
 }
 
@@ -36,7 +36,7 @@ void World::place_contacts(double from, double to) {
 void World::begin_step(double from, double to, std::span<double> effort, double reach) {
   if (!contacts_.empty()) {
     const double far = std::max(reach, contacts_.wanted_reach(effort));
-    contacts_.planes().find_points(contacts_.reach(to - from, far), effort);
+    contacts_.planes().find_points(contacts_.reach(far), ContactRows::ahead(to - from), effort);
     place_contacts(from, to);
     contacts_.choose_active(effort, to - from, reach);
     number_rows();
@@ -62,7 +62,8 @@ void World::begin_query(double at) {
 }
 
 void World::begin_look(double at, std::span<double> effort) {
-  contacts_.planes().find_striking_points(contacts_.reach(model_->step().time_step, 0.0), effort);
+  const double ahead = ContactRows::ahead(model_->step().time_step);
+  contacts_.planes().find_striking_points(contacts_.reach(0.0), ahead, effort);
   begin_query(at);
 }
 
@@ -188,7 +189,7 @@ void World::restart() {
   bodies_.restart();
   contacts_.planes().forget_points();
   contacts_.forget_friction();
-  contacts_.planes().find_points(contacts_.reach(0.0, 0.0), {});
+  contacts_.planes().find_points(contacts_.reach(0.0), 0.0, {});
   place_contacts(0.0, 0.0);
 }
 
