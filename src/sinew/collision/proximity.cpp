@@ -26,6 +26,8 @@ constexpr double kSamePlace = 1e-6, kOpposite = 1e-6;
 constexpr double kTooFar = 1.001, kRounding2 = 1e-20;
 // Sine of the angle within which a line lies in a plane.
 constexpr double kParallel = 1e-6;
+// With a larger slack for edges, cones of normals exclude nothing.
+constexpr double kNegligibleSlack = 1e-6;
 // A slack that allows all neighbours, whatever the rounding of the sine.
 constexpr double kAnySlack = 2.0;
 
@@ -360,7 +362,7 @@ class PairSearch {
 
 }  // namespace
 
-Proximity::Proximity(ThreadPool& pool) : near_(pool), pairs_(pool) {}
+Proximity::Proximity(ThreadPool& pool) : pool_(pool), near_(pool), pairs_(pool) {}
 
 std::span<const ProximityPair> Proximity::between(const SurfaceTree& first,
                                                   const SurfaceTree& second,
@@ -370,7 +372,11 @@ std::span<const ProximityPair> Proximity::between(const SurfaceTree& first,
 
 std::span<const ProximityPair> Proximity::within(const SurfaceTree& surface,
                                                  const ProximitySettings& settings) {
-  return collect(surface, surface, near_.within(surface, reach(settings)), settings);
+  const bool excludes =
+      settings.facing && settings.edge_slack.value_or(settings.slack) <= kNegligibleSlack;
+  if (excludes) cones_.update(surface, pool_);
+  const auto near = near_.within(surface, reach(settings), excludes ? &cones_ : nullptr);
+  return collect(surface, surface, near, settings);
 }
 
 std::span<const ProximityPair> Proximity::crossings(const SurfaceTree& first,

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "sinew/collision/normal_cones.hpp"
 #include "sinew/collision/surface_tree.hpp"
 #include "sinew/collision/thread_lists.hpp"
 #include "sinew/collision/triangle_pairs.hpp"
@@ -90,7 +91,9 @@ class Proximity {
                                          std::span<const TrianglePair> near,
                                          const ProximitySettings& settings);
 
+  ThreadPool& pool_;
   TrianglePairs near_;
+  NormalCones cones_;
   ThreadLists<ProximityPair> pairs_;
   std::vector<ProximityPair> crossings_;
 };

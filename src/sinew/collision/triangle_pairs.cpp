@@ -24,11 +24,12 @@ TrianglePairs::TrianglePairs(ThreadPool& pool) : pairs_(pool) {}
 
 std::span<const TrianglePair> TrianglePairs::between(const SurfaceTree& first,
                                                      const SurfaceTree& second, double distance) {
-  return find({first, second, distance, false});
+  return find({first, second, distance, false, nullptr});
 }
 
-std::span<const TrianglePair> TrianglePairs::within(const SurfaceTree& surface, double distance) {
-  return find({surface, surface, distance, true});
+std::span<const TrianglePair> TrianglePairs::within(const SurfaceTree& surface, double distance,
+                                                    const NormalCones* cones) {
+  return find({surface, surface, distance, true, cones});
 }
 
 // Descends from the roots until there is work for all threads.
@@ -84,7 +85,9 @@ void TrianglePairs::descend(const Search& search, const BranchPair& pair, const 
     const auto& x = first[static_cast<std::size_t>(left)];
     const auto& y = second[static_cast<std::size_t>(right)];
     const double far = std::max(search.distance, x.motion + y.motion);
-    if (!x.box.is_apart(y.box, far)) keep_pair(BranchPair{left, right});
+    if (x.box.is_apart(y.box, far)) return;
+    if (search.cones != nullptr && search.cones->branches_are_averse(left, right)) return;
+    keep_pair(BranchPair{left, right});
   };
   if (search.same && pair.first == pair.second) {
     keep(pair.first + 1, pair.first + 1);
@@ -112,7 +115,9 @@ void TrianglePairs::compare(const Search& search, const BranchPair& leaf,
     for (int j = same ? i + 1 : b.begin; j < b.end; ++j) {
       const int right = search.second.order()[static_cast<std::size_t>(j)];
       const double far = std::max(search.distance, motion + search.second.motion(right));
-      if (!box.is_apart(search.second.box(right), far)) to.push_back({left, right});
+      if (box.is_apart(search.second.box(right), far)) continue;
+      if (search.cones != nullptr && search.cones->are_averse(left, right)) continue;
+      to.push_back({left, right});
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "sinew/collision/normal_cones.hpp"
 #include "sinew/collision/surface_tree.hpp"
 #include "sinew/collision/thread_lists.hpp"
 #include "sinew/core/thread_pool.hpp"
@@ -31,7 +32,10 @@ class TrianglePairs {
   std::span<const TrianglePair> between(const SurfaceTree& first, const SurfaceTree& second,
                                         double distance);
   /// The same within one surface: each pair of two triangles once, including neighbours.
-  std::span<const TrianglePair> within(const SurfaceTree& surface, double distance);
+  /// @param surface may be swept. @param distance m, >= 0. @param cones of the surface at its last
+  ///   positions; pairs that they exclude are left out. None: all pairs.
+  std::span<const TrianglePair> within(const SurfaceTree& surface, double distance,
+                                       const NormalCones* cones = nullptr);
 
  private:
   struct BranchPair {
@@ -42,6 +46,7 @@ class TrianglePairs {
     const SurfaceTree& second;
     double distance;
     bool same;
+    const NormalCones* cones;  // none: excludes nothing
   };
   std::span<const TrianglePair> find(const Search& search);
   static bool is_leaf(const Search& search, const BranchPair& pair);
