@@ -49,6 +49,9 @@ TEST(Contacts, PickNodesOfTheOutside) {
   EXPECT_EQ(points_of("{body: block, surface: {plane: {point: 0 0 -5 mm}}}"), 5u * 9u - 3u);
   EXPECT_EQ(points_of("{body: block, surface: {plane: {}}, nodes: {set: z_min}}"), 15u);
   EXPECT_EQ(points_of("{body: block, surface: {plane: {}}, nodes: {box: 0 0 0 10 20 0 mm}}"), 6u);
+  EXPECT_EQ(points_of("{body: block, surface: {plane: {}}, nodes: [{box: 0 0 0 10 20 0 mm}, "
+                      "{box: 0 0 0 20 10 0 mm}, {box: 40 0 0 40 20 0 mm}]}"),
+            11u);
   EXPECT_EQ(points_of("{body: block, surface: {plane: {}}, points: [5 5 0 mm, 6 5 0 mm]}"), 2u);
 }
 
@@ -85,6 +88,9 @@ TEST(Contacts, SayWhatIsWrong) {
                K::conflicting_keys, "points");
   expect_error("{body: block, surface: {plane: {}}, nodes: {box: 10 10 10 10 10 10 mm}}",
                K::empty_region, "inside");
+  expect_error("{body: block, surface: {plane: {}}, nodes: [{set: z_min}, {set: z_mim}]}",
+               K::unknown_set, "z_m");
+  expect_error("{body: block, surface: {plane: {}}, nodes: []}", K::empty_list, "set");
   expect_error("{body: block, surface: {plane: {}}, points: [0 0 -90 mm]}", K::point_outside_mesh,
                "point 0");
   expect_error("{body: block, surface: {plane: {point: 0 0 10 mm}}}", K::out_of_range, "inside");

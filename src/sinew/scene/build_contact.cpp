@@ -19,21 +19,26 @@ namespace {
 
 std::vector<NodeId> nodes_of(const ContactDescription& contact, const mesh::Mesh& mesh) {
   std::vector<NodeId> outer = mesh::outer_nodes(mesh);
-  if (!contact.nodes) return outer;
-  const std::vector<NodeId> picked = at_place(contact.nodes->place, [&] {
-    return mesh::select_nodes(mesh, region_of(*contact.nodes), contact.nodes->place.item);
-  });
+  if (contact.nodes.empty()) return outer;
   std::vector<NodeId> nodes;
-  std::ranges::set_intersection(picked, outer, std::back_inserter(nodes));
-  if (nodes.empty()) {
-    throw Error(ErrorKind::empty_region, contact.nodes->place,
-                "all nodes of the region lie inside the body", "name a part of its outside");
+  for (const FixedRegion& region : contact.nodes) {
+    const std::vector<NodeId> picked = at_place(region.place, [&] {
+      return mesh::select_nodes(mesh, region_of(region), region.place.item);
+    });
+    std::vector<NodeId> in_region, all;
+    std::ranges::set_intersection(picked, outer, std::back_inserter(in_region));
+    if (in_region.empty()) {
+      throw Error(ErrorKind::empty_region, region.place,
+                  "all nodes of the region lie inside the body", "name a part of its outside");
+    }
+    std::ranges::set_union(nodes, in_region, std::back_inserter(all));
+    nodes = std::move(all);
   }
   return nodes;
 }
 
 bool names_points(const ContactDescription& contact) {
-  return contact.nodes || contact.points.points.rows() > 0;
+  return !contact.nodes.empty() || contact.points.points.rows() > 0;
 }
 
 void refuse_points(const ContactDescription& contact) {
@@ -55,8 +60,8 @@ std::optional<Notice> coarse_notice(const ContactDescription& contact, const mes
   const double radius = radius_of(contact.surface);
   if (longest <= sim::kFineEdge * radius) return std::nullopt;
   return Notice{
-      contact.nodes ? NoticeLevel::remark : NoticeLevel::warning, NoticeKind::coarse_contact,
-      contact.place,
+      contact.nodes.empty() ? NoticeLevel::warning : NoticeLevel::remark,
+      NoticeKind::coarse_contact, contact.place,
       fmt::format("nodes of body '{}' up to {:.2g} mm apart touch a surface of radius {:.2g} mm, "
                   "which may pass between them",
                   contact.body, 1e3 * longest, 1e3 * radius),
@@ -91,7 +96,7 @@ std::optional<Notice> add_contact(sim::ModelBuilder& builder, const ContactDescr
   settings.restitution = contact.restitution;
   settings.aggregate = contact.aggregate;
   settings.motion = contact.motion;
-  const bool whole = is_rigid(touching) && !contact.nodes;
+  const bool whole = is_rigid(touching) && contact.nodes.empty();
   if (settings.points.rows() == 0 && !whole && !surfaces) {
     settings.nodes = nodes_of(contact, model->mesh());
   }

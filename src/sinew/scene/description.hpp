@@ -368,7 +368,7 @@ struct ContactDescription {
   bool all = false;  ///< between all pairs of bodies, except those of `except`
   std::vector<std::pair<std::string, std::string>> except;
   constraint::SmoothSurface surface;
-  std::optional<FixedRegion> nodes;  ///< outer nodes that may touch; none, and no points: all
+  std::vector<FixedRegion> nodes;  ///< outer nodes that may touch; none, and no points: all
   PointList points;
   mesh::Outside outside = mesh::Outside::error;
   double friction = 0.0;                   ///< Coulomb's coefficient, >= 0

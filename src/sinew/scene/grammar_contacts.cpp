@@ -109,11 +109,12 @@ Form contact_form() {
                           .description = "The surface, fixed in the world or moved by `motion`."});
   contact.keys.push_back(
       {.name = "nodes",
-       .forms = {table(nodes_table())},
+       .forms = {table(nodes_table()), list({table(nodes_table())})},
        .example = "{set: z_min}",
        .description =
-           "Surface nodes that may make contact. Default, if there are no `points` either: all "
-           "surface nodes that are not fixed; for a rigid body, its whole shape."});
+           "Surface nodes that may make contact: those of one region or of several. Default, if "
+           "there are no `points` either: all surface nodes that are not fixed; for a rigid body, "
+           "its whole shape."});
   contact.keys.push_back({.name = "points",
                           .forms = {table(point_file_table()), list({vector(length())})},
                           .example = "[0 0 195 mm]",

@@ -325,22 +325,26 @@ FixedRegion read_region(const Fields& fields) {
 
 namespace {
 
-FixedRegion read_fixed_region(const Fields& fields) {
-  FixedRegion region = read_region(fields);
-  read_axes(fields, region);
-  return region;
+// The tables of one region or of a list of them; empty without the key.
+std::vector<Fields> tables_of(const Fields& fields, std::string_view key) {
+  std::vector<Fields> tables;
+  const Node* written = fields.find(key);
+  if (written == nullptr) return tables;
+  const Form& form = fields.form(key);
+  if (form.shape == Shape::table) {
+    tables.emplace_back(*written, form);
+  } else {
+    for (const Node& item : written->items()) {
+      tables.emplace_back(item, select_form(item, form.items, {}));
+    }
+  }
+  return tables;
 }
 
 void read_fixed(const Fields& fields, BodyDescription& body) {
-  const Node* fixed = fields.find("fixed");
-  if (fixed == nullptr) return;
-  const Form& form = fields.form("fixed");
-  if (form.shape == Shape::table) {
-    body.fixed.push_back(read_fixed_region(Fields(*fixed, form)));
-    return;
-  }
-  for (const Node& item : fixed->items()) {
-    body.fixed.push_back(read_fixed_region(Fields(item, select_form(item, form.items, {}))));
+  for (const Fields& region : tables_of(fields, "fixed")) {
+    body.fixed.push_back(read_region(region));
+    read_axes(region, body.fixed.back());
   }
 }
 
@@ -358,6 +362,12 @@ void refuse_free(const Fields& fields) {
 }
 
 }  // namespace
+
+std::vector<FixedRegion> read_regions(const Fields& fields, std::string_view key) {
+  std::vector<FixedRegion> regions;
+  for (const Fields& region : tables_of(fields, key)) regions.push_back(read_region(region));
+  return regions;
+}
 
 sim::BaseMotion read_motion(const Fields& fields, const ReadContext& context) {
   sim::BaseMotion motion;

@@ -81,7 +81,7 @@ ContactDescription read_contact(const Node::Entry& entry, const ReadContext& con
     }
     contact.surface = read_solid(fields.below("surface"));
   }
-  if (fields.find("nodes") != nullptr) contact.nodes = read_region(fields.below("nodes"));
+  contact.nodes = read_regions(fields, "nodes");
   if (fields.find("points") != nullptr) contact.points = read_points(fields, "points", context);
   fields.read_choice("outside", contact.outside,
                      {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});

@@ -36,6 +36,9 @@ UrdfDescription read_urdf(const Fields& fields, const ReadContext& context);
 Matrix3 read_rotation(const Fields& pose);
 /// Reads a region from one of the keys box, sphere, plane and set.
 FixedRegion read_region(const Fields& fields);
+/// Reads one region or a list of them; empty without the key.
+/// @param fields that may have the key. @param key of the regions.
+std::vector<FixedRegion> read_regions(const Fields& fields, std::string_view key);
 ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& context);
 MassDescription read_hung_mass(const Node::Entry& entry);
 MembraneDescription read_membrane(const Node::Entry& entry, const ReadContext& context);
