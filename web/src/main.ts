@@ -194,7 +194,7 @@ function alerts(): void {
                button('Reset', 'Back to the start', () => panel.reset())]);
   }
   if (isFrozen()) list.push(mode === 'follow' ? ['info', 'The script has not stepped for two seconds.']
-                                             : ['error', 'No frames for two seconds.']);
+                                             : ['error', 'No frames for two seconds. A step takes longer, or the program does not respond.']);
   for (const [key, text] of notices) if (key !== 'connection') list.push(['warning', text]);
   for (const n of scene?.notices ?? []) {
     list.push([n.level === 'remark' ? 'info' : 'warning', `${n.subject}: ${n.text}${n.remedy ? `; ${n.remedy}` : ''}`,
