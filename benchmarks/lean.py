@@ -25,7 +25,7 @@ import sinew
 STEPS, FIRST = 200, 50
 HELD = 20e-3  # m, clamped length of the trunk
 SLOPE = 8.0 / 195.0  # slope of its flanks
-STAGES = ("assembly", "rows", "factorisation", "law", "correction")
+STAGES = ("detection", "assembly", "rows", "factorisation", "law", "correction")
 # Flanks, with the index of the long cable in them. The number of touching points differs.
 FLANKS = {"+y": 0, "+x": 3}
 SETTINGS = {
@@ -145,7 +145,7 @@ def main():
     warnings.simplefilter("ignore", sinew.SinewWarning)  # about residuals of one linearisation, which are printed
     mesh = meshio.read(given.data / "trunk" / "trunk.vtk")
     print("| flank | method | rows of the law | points with a force | iterations | residual | " + " | ".join(STAGES)
-          + " | a step, ms | 95th percentile |\n" + "|---" * 13 + "|")  # fmt: skip
+          + " | a step, ms | 95th percentile |\n" + "|---" * 14 + "|")  # fmt: skip
     for name in SETTINGS:
         measure(mesh, "+y", name, given.runs, plane=False)
         for flank in FLANKS:

@@ -28,7 +28,7 @@ SQUEEZED, FREE = 160, 30  # steps
 TURN_STEPS = 200  # of the circle
 STEP = 0.01  # s
 LEAST, ARM = 0.8, 30e-3  # N; m: a rotation of 1 rad counts as much as a way of this length
-STAGES = ("assembly", "rows", "factorisation", "law", "correction")
+STAGES = ("detection", "assembly", "rows", "factorisation", "law", "correction")
 
 
 def fixture(nodes):
@@ -132,7 +132,7 @@ def main():
     given = parser.parse_args()
     warnings.simplefilter("ignore", sinew.SinewWarning)
     print("| method | steps | points in the law | with a force | stick | iterations | off its path, mm | 95 % | most | turned, degrees | "
-          "least force, N | " + " | ".join(STAGES) + " | a step, ms | 95 % |\n" + "|---" * 18 + "|")  # fmt: skip
+          "least force, N | " + " | ".join(STAGES) + " | a step, ms | 95 % |\n" + "|---" * 19 + "|")  # fmt: skip
     for method in given.methods:
         measure(given.data, method, 1e-3 * given.radius)
 

@@ -79,8 +79,8 @@ void bind_step_report(py::module_& module) {
       .def_readonly("smallest_volume_ratio", &StepReport::smallest_volume_ratio,
                     "float: smallest det F of all elements at the end of the step.")
       .def_property_readonly("times", &times_of,
-                             "dict: seconds in 'assembly', 'rows', 'factorisation', 'law', "
-                             "'correction' and 'total'.")
+                             "dict: seconds in 'detection' (of contact), 'assembly', 'rows', "
+                             "'factorisation', 'law', 'correction' and 'total'.")
       .def("__repr__", [](const StepReport& self) {
         return fmt::format("<StepReport {}, residual {:.3g} N, {} iteration(s), {:.3g} ms>",
                            sim::step_status_name(self.status), self.residual, self.iterations,

@@ -406,7 +406,7 @@ def test_report(sim):
     report = sim.report
     assert report.status == "solved" and report.iterations == 1
     assert report.relative_residual < 1e-2 and report.scale == 1.0
-    stages = {"assembly", "rows", "factorisation", "law", "correction"}
+    stages = {"detection", "assembly", "rows", "factorisation", "law", "correction"}
     assert set(report.times) == stages | {"total"}
     assert sum(report.times[stage] for stage in stages) <= report.times["total"] * 1.001
 

@@ -149,7 +149,7 @@ def test_shells_complete(shell, scene):
         offered = {row.split("\t")[0] for row in answer.splitlines()}  # fish: word, tab, description
         assert some <= offered and not without & offered, (words, offered)
 
-STAGES = ["assembly", "rows", "factorisation", "law", "correction", "total"]
+STAGES = ["detection", "assembly", "rows", "factorisation", "law", "correction", "total"]
 
 
 def test_bench_writes_its_figures(scene, tmp_path):

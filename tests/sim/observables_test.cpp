@@ -120,6 +120,7 @@ TEST(Observables, HaveTheNamesUnitsAndShapesOfTheRobot) {
                                             "smallest_volume_ratio []",
                                             "status []",
                                             "time.step [s]",
+                                            "time.detection [s]",
                                             "time.assembly [s]",
                                             "time.rows [s]",
                                             "time.factorisation [s]",

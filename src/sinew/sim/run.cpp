@@ -55,7 +55,9 @@ void Run::read_commands(double time, double time_step) {
 void Run::begin_world(double time_step) {
   surroundings.move_bases(now);
   surroundings.apply(now);
+  clock.mark(Stage::assembly);
   world.begin_step(now - time_step, now, effort);
+  clock.mark(Stage::detection);
 }
 
 NewtonReport Run::newton(step::Controller* chooser, const NewtonSettings& settings) {

@@ -9,15 +9,16 @@ namespace sinew::sim {
 
 /// The stages of a step, in order.
 enum class Stage {
+  detection,      ///< search for points of contact; checks that nothing has passed
   assembly,       ///< forces and stiffness matrix of the elements
   rows,           ///< H and delta
   factorisation,  ///< factor of A bordered by H; W and the free motion
   law,            ///< solution of the laws for the efforts
   correction,     ///< application and check of the motion
 };
-inline constexpr std::size_t kStageCount = 5;
+inline constexpr std::size_t kStageCount = 6;
 inline constexpr std::array<const char*, kStageCount> kStageNames = {
-    "assembly", "rows", "factorisation", "law", "correction"};
+    "detection", "assembly", "rows", "factorisation", "law", "correction"};
 
 /// Time spent in each stage of one step, s.
 struct StageTimes {

@@ -120,7 +120,10 @@ void Substep::solve_equation(double time_step, bool divisible) {
     LinearStep(run_).solve(time_step);
   }
   if (run_.model->contacts().empty()) return;
-  if (run_.world.contacts().passed()) {
+  run_.clock.mark(Stage::correction);
+  const bool passed = run_.world.contacts().passed();
+  run_.clock.mark(Stage::detection);
+  if (passed) {
     fail(run_, ErrorKind::not_converged, "surfaces would pass through each other",
          "take a smaller time step");
   }

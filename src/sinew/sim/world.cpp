@@ -133,8 +133,8 @@ step::LawStatus World::solve_step(step::StepSolver& solver, step::Controller* co
     if (status == step::LawStatus::failed) return status;
     numbering_.scatter_efforts(problem_effort_, effort);
     bodies_.solve_motion(effort);
-    const bool found = correct_contacts(looks);
     clock.mark(Stage::correction);
+    const bool found = correct_contacts(looks, clock);
     mended = found || looks;
     looks = looks && found;
   }
@@ -145,14 +145,16 @@ step::LawStatus World::solve_step(step::StepSolver& solver, step::Controller* co
 }
 
 // All but the points between surfaces depends on the efforts that the controller will choose.
-bool World::correct_contacts(bool looks) {
+bool World::correct_contacts(bool looks, StageClock& clock) {
   const bool found =
       looks ? contacts_.find_points()
             : contacts_.are_guessed() && contacts_.correct(problem_, numbering_, problem_effort_);
+  clock.mark(Stage::detection);
   if (!found) return false;
   number_rows();
   bodies_.retake_rows(rows_);
   form_compliance();
+  clock.mark(Stage::factorisation);
   return true;
 }
 

@@ -68,7 +68,7 @@ class World {
   /// (see ContactRows::correct()), it is corrected and the problem solved again with the same
   /// factorisation.
   /// @param solver,controller see step::StepSolver. @param effort (rows,) N, in and out. @param
-  ///   clock records the time of the law and the correction.
+  ///   clock records the times of the stages from the law on.
   step::LawStatus solve_step(step::StepSolver& solver, step::Controller* controller,
                              std::span<double> effort, StageClock& clock);
 
@@ -133,7 +133,7 @@ class World {
 
  private:
   void place_contacts(double from, double to);
-  bool correct_contacts(bool looks);
+  bool correct_contacts(bool looks, StageClock& clock);
   void number_rows();
   void form_compliance();
 
