@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/shape_contact.hpp"
 #include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/model.hpp"
@@ -52,6 +53,31 @@ py::list states(const Contact& self) {
   py::list result;
   for (const sim::ContactPoint& point : points(self)) {
     result.append(qp::contact_state_name(point.state));
+  }
+  return result;
+}
+
+/// The surface of the world, in the words of scenes; None between bodies.
+py::object surface(const Contact& self) {
+  const constraint::Contact& contact = self.session->model().contact(self.index);
+  if (contact.other_body() >= 0) return py::none();
+  const collision::Shape& shape = dynamic_cast<const constraint::ShapeContact&>(contact).surface();
+  py::dict described, result;
+  if (const auto* plane = std::get_if<constraint::Plane>(&shape)) {
+    described["point"] = copy(plane->point);
+    described["normal"] = copy(plane->normal);
+    result["plane"] = described;
+  } else if (const auto* sphere = std::get_if<constraint::Sphere>(&shape)) {
+    described["centre"] = copy(sphere->centre);
+    described["radius"] = sphere->radius;
+    result["sphere"] = described;
+  } else {
+    const auto& capsule = std::get<constraint::Capsule>(shape);
+    Points ends(2, 3);
+    ends << capsule.from.transpose(), capsule.to.transpose();
+    described["ends"] = copy(ends);
+    described["radius"] = capsule.radius;
+    result["capsule"] = described;
   }
   return result;
 }
@@ -111,6 +137,13 @@ void bind_contact(py::module_& module) {
           },
           "list of str: the body on which `force` acts, and the body that it touches; a surface of "
           "the world has no name.")
+      .def_property_readonly(
+          "surface", &surface,
+          "dict or None: the surface of the world that the body touches, where it is in the scene: "
+          "{'plane': {'point': (3,), 'normal': (3,)}}, {'sphere': {'centre': (3,), 'radius': "
+          "float}} "
+          "or {'capsule': {'ends': (2, 3), 'radius': float}} (m). None if the contact is between "
+          "bodies.")
       .def_property_readonly(
           "friction",
           [](const Contact& self) {

@@ -154,3 +154,47 @@ def test_compliance_has_every_point(floor):
     assert np.diag(compliance).min() > 0.0
     far = block(floor=-0.05)
     assert compliance == pytest.approx(far.compliance(statics=False), abs=1e-6 * compliance.max())
+
+
+@pytest.mark.parametrize("integrator", ["backward-euler", "bdf2", "quasi-static"])
+def test_a_plane_is_a_body_that_all_others_touch(integrator, tmp_path):
+    # Both scenes have the same contacts: a tilted floor that rises, under a soft and a rigid block.
+    tilt = np.radians(5.0)
+    rises = {"z": {"ramp": {"to": "2 mm", "duration": "50 ms"}}}
+    soft = {"type": "fem", "mesh": {"shape": "block", "length": "30 mm", "width": "30 mm", "height": "15 mm", "element_size": "10 mm"},
+            "position": "0 0 0.2 mm", "material": "dragon-skin-30", "element": "hex8"}  # fmt: skip
+    if integrator == "quasi-static":
+        soft["fixed"] = {"box": "-1 -1 15 31 31 16 mm"}
+    bodies = {"soft": soft}
+    if integrator != "quasi-static":
+        bodies["hard"] = {"type": "rigid", "shape": {"box": "20 20 20 mm"}, "density": "900 kg/m^3", "pose": {"position": "60 10 12 mm"}}
+    ground = {"type": "rigid", "shape": {"plane": {}}, "motion": rises, "pose": {"rotation": {"axis": "0 1 0", "angle": "5 deg"}}}
+    world = {"sinew": 1, "gravity": "0 0 -9.81 m/s^2", "integrator": integrator, "time_step": "5 ms", "solver": {"tolerance": 1e-12}}
+    named = sinew.load({**world, "bodies": {"ground": ground, **bodies}, "contacts": {"all": {"between": "all", "friction": 0.4, "except": [["soft", "soft"], ["soft", "hard"]][: len(bodies)]}}})  # fmt: skip
+    surface = {"plane": {"normal": [np.sin(tilt), 0.0, np.cos(tilt)]}}
+    apart = sinew.load({**world, "bodies": bodies, "contacts": {name: {"body": name, "surface": surface, "motion": rises, "friction": 0.4} for name in bodies}})  # fmt: skip
+    assert set(named.bodies) == set(bodies) and list(named.contacts) == [f"all-{name}-ground" for name in bodies]
+    contact = named.contact("all-soft-ground")
+    assert contact.bodies == ["soft"] and set(contact.surface) == {"plane"}
+    assert contact.surface["plane"]["normal"] == pytest.approx(surface["plane"]["normal"], abs=1e-15)
+    largest = 0.0
+    for _ in range(30):
+        named.step()
+        apart.step()
+        largest = max(largest, contact.normal_force)
+    assert largest > 0.1
+    assert contact.force == pytest.approx(apart.contact("soft").force, rel=1e-9, abs=1e-9)
+    assert named.body("soft").positions == pytest.approx(apart.body("soft").positions, abs=1e-12)
+    if "hard" in bodies:
+        assert named.body("hard").position == pytest.approx(apart.body("hard").position, abs=1e-12)
+    # A clone and a saved state know the plane.
+    clone = named.clone()
+    named.save_state(tmp_path / "state")
+    named.step(5)
+    clone.step(5)
+    assert (clone.body("soft").positions == named.body("soft").positions).all()
+    (tmp_path / "scene.yaml").write_text(named.to_yaml())
+    again = sinew.load(tmp_path / "scene.yaml")
+    again.load_state(tmp_path / "state")
+    again.step(5)
+    assert (again.body("soft").positions == named.body("soft").positions).all()

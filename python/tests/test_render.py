@@ -16,6 +16,7 @@ import pytest
 import sinew
 from sinew.render import Camera, Recording, Renderer, colours
 from sinew.render.geometry import Skin, boundary_of
+from sinew.render.moment import moment_of
 from sinew.render.scene import outline_of
 
 pytest.importorskip("moderngl")
@@ -372,22 +373,32 @@ def test_spheres_and_capsules_that_move_are_drawn_where_they_are():
         assert not (pixel(picture, camera, [-0.04, -0.02, 0.02]) == BACKGROUND).all()
 
 
-def test_what_a_scene_says_of_surfaces():
-    outline = outline_of("""
-gravity: 0 3 -4 m/s^2
-actuators:
-  a: {type: cable, body: b, points: []}
-  b: {type: cable, body: b, points: [], pull: body}
-contacts:
-  p: {body: b, surface: {plane: {point: 1 2 3mm, normal: [0, 0, 2]}}}
-  c: {body: b, surface: {capsule: {ends: [0 0 0 mm, [0.1, 0, 0]], radius: 5 mm}}, motion: {x: 1 mm}}
-  o: {between: [b, b]}
-""")
-    assert np.allclose(outline.up, [0.0, -0.6, 0.8]) and set(outline.surfaces) == {"p", "c"} and outline.held == {"a"}
-    assert np.allclose(outline.surfaces["p"].points, [[1e-3, 2e-3, 3e-3]]) and np.allclose(outline.surfaces["p"].normal, [0, 0, 1])
-    assert np.allclose(outline.surfaces["c"].points, [[0, 0, 0], [0.1, 0, 0]]) and outline.surfaces["c"].radius == 5e-3
-    assert outline.surfaces["c"].moves and not outline.surfaces["p"].moves
-    assert np.allclose(outline_of("sinew: 1").up, [0, 0, 1])
+def test_what_a_picture_needs_of_a_scene():
+    block = {"type": "fem", "mesh": {"shape": "block", "length": "40 mm", "width": "20 mm", "height": "20 mm", "element_size": "10 mm"},
+             "material": {"young_modulus": "100 kPa", "poisson_ratio": 0.3}, "density": "1000 kg/m^3", "fixed": {"set": "x_min"}}  # fmt: skip
+    cable = {"type": "cable", "body": "b", "points": [[0.01, 0.01, 0.005], [0.03, 0.01, 0.005]]}
+    scene = {
+        "sinew": 1,
+        "gravity": "0 3 -4 m/s^2",
+        "bodies": {"b": block, "wall": {"type": "rigid", "shape": {"plane": {}}, "motion": {"x": "1 mm"},
+                                        "pose": {"position": "0.2 0 0 m", "rotation": {"axis": "0 1 0", "angle": "-90 deg"}}}},
+        "actuators": {"a": cable, "c": {**cable, "pull": "body"}},
+        "contacts": {
+            "p": {"body": "b", "surface": {"plane": {"point": "0 0 -3mm", "normal": [0, 0, 2]}}},
+            "k": {"body": "b", "surface": {"capsule": {"ends": ["0 0 -50 mm", [0.1, 0, -0.05]], "radius": "5 mm"}}, "motion": {"x": "1 mm"}},
+            "o": {"between": ["b", "b"]},
+            "w": {"between": ["wall", "b"]},
+        },
+    }  # fmt: skip
+    sim = sinew.load(scene)
+    outline = outline_of(sim)
+    assert np.allclose(outline.up, [0.0, -0.6, 0.8]) and set(outline.surfaces) == {"p", "k", "w"} and outline.held == {"a"}
+    assert np.allclose(outline.surfaces["p"].points, [[0, 0, -3e-3]]) and np.allclose(outline.surfaces["p"].normal, [0, 0, 1])
+    assert np.allclose(outline.surfaces["k"].points, [[0, 0, -0.05], [0.1, 0, -0.05]]) and outline.surfaces["k"].radius == 5e-3
+    assert np.allclose(outline.surfaces["w"].points, [[0.2, 0, 0]]) and np.allclose(outline.surfaces["w"].normal, [-1, 0, 0])
+    poses = moment_of(sim, outline).poses
+    assert np.allclose(poses["p"], np.eye(3, 4)) and all(np.allclose(poses[name][:, 3], [1e-3, 0, 0]) for name in "kw")
+    assert np.allclose(outline_of(sinew.load({**scene, "gravity": "0 0 0 m/s^2"})).up, [0, 0, 1])
 
 
 # Cameras

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/shape_contact.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/scene.hpp"
@@ -94,6 +95,75 @@ TEST(Contacts, SayWhatIsWrong) {
   expect_error("{body: block, surface: {plane: {}}, points: [0 0 -90 mm]}", K::point_outside_mesh,
                "point 0");
   expect_error("{body: block, surface: {plane: {point: 0 0 10 mm}}}", K::out_of_range, "inside");
+}
+
+const std::string kPlanes = R"(sinew: 1
+integrator: backward-euler
+time_step: 1 ms
+bodies:
+  wall: {type: rigid, shape: {plane: {}}, motion: {x: {ramp: {to: 4 mm, duration: 2 s}}}, pose: {position: -50 0 0 mm, rotation: {axis: 0 1 0, angle: 90 deg}}}
+  block:
+    type: fem
+    mesh: {shape: block, length: 40 mm, width: 20 mm, height: 20 mm, element_size: 10 mm}
+    material: {young_modulus: 100 kPa, poisson_ratio: 0.4}
+    density: 1000 kg/m^3
+  box: {type: rigid, shape: {box: 10 10 10 mm}, density: 1000 kg/m^3, pose: {position: 80 0 10 mm}}
+  base: {type: rigid, shape: {box: 10 10 10 mm}, fixed: true, pose: {position: 120 0 10 mm}}
+  floor: {type: rigid, shape: {plane: {}}, fixed: true}
+contacts:
+)";
+
+TEST(Contacts, TouchPlanesThatAreBodies) {
+  const auto scene = parse_scene_text(kPlanes +
+                                          "  all: {between: all, friction: 0.3, aggregate: 5 mm, "
+                                          "except: [[box, wall]]}\n",
+                                      "scene.yaml", {});
+  EXPECT_DOUBLE_EQ(scene.run_duration(), 2.0);
+  const Robot robot = build(scene);
+  EXPECT_EQ(robot.model->bodies().size(), 3u);
+  std::vector<std::string> names;
+  for (const sim::ContactModel& contact : robot.model->contacts()) names.push_back(contact.name);
+  EXPECT_THAT(names, testing::UnorderedElementsAre(
+                         "all-block-block", "all-block-box", "all-block-base", "all-box-base",
+                         "all-block-wall", "all-block-floor", "all-box-floor"));
+  const int wall = robot.model->contact_index("all-block-wall");
+  const auto& on_wall = dynamic_cast<const constraint::ShapeContact&>(robot.model->contact(wall));
+  const auto& plane = std::get<constraint::Plane>(on_wall.surface());
+  EXPECT_LT((plane.normal - Vector3::UnitX()).norm(), 1e-15);
+  EXPECT_LT((plane.point - Vector3(-0.05, 0.0, 0.0)).norm(), 1e-15);
+  const auto& model = robot.model->contacts()[static_cast<std::size_t>(wall)];
+  EXPECT_LT((model.pose(1.0).translation() - Vector3(0.002, 0.0, 0.0)).norm(), 1e-15);
+  EXPECT_GT(model.aggregate, 0.0);
+}
+
+TEST(Contacts, OfPlanesThatAreBodiesSayWhatIsWrong) {
+  const auto expect = [](const std::string& text, ErrorKind kind, const std::string& words) {
+    try {
+      build(parse_scene_text(text, "scene.yaml", {}));
+      ADD_FAILURE() << text << " was taken";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), kind) << error.what();
+      EXPECT_GT(error.place().line, 0) << error.what();
+      EXPECT_THAT(error.what(), testing::HasSubstr(words));
+    }
+  };
+  const std::string planes = kPlanes;
+  expect(planes + "  c: {between: [floor, wall]}\n", K::conflicting_keys, "both planes");
+  expect(planes + "  c: {between: [floor, box]}\n  d: {between: [box, floor]}\n",
+         K::conflicting_keys, "have a contact already");
+  expect(planes + "  c: {body: floor, surface: {plane: {}}}\n", K::wrong_type, "only contacts");
+  expect(planes + "  c: {between: [box, floor]}\njoints: {j: {type: weld, bodies: [box, wall]}}\n",
+         K::wrong_type, "only contacts");
+  const auto replaced = [&](const std::string& by) {
+    std::string text = planes + "  c: {between: [box, floor]}\n";
+    const std::string from = "floor: {type: rigid, shape: {plane: {}}, fixed: true}";
+    return text.replace(text.find(from), from.size(), by);
+  };
+  expect(replaced("floor: {type: rigid, shape: {plane: {}}}"), K::conflicting_keys, "freely");
+  expect(replaced("floor: {type: rigid, shape: {plane: {}}, fixed: true, mass: 1 kg}"),
+         K::conflicting_keys, "mass");
+  expect(replaced("floor: {type: rigid, shape: {plane: {normal: 0 0 1}}, fixed: true}"),
+         K::unknown_key, "normal");
 }
 
 TEST(Contacts, StandBesideControllers) {

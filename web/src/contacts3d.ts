@@ -127,6 +127,17 @@ class Drawn {
     if (this.patch) this.follow(middle);
   }
 
+  /** Whether this is a plane where another contact has the same one. */
+  repeats(other: Drawn): boolean {
+    const same = (a: ArrayLike<number>, b: ArrayLike<number>, n: number) =>
+      Array.from({length: n}, (_, k) => k).every((k) => Math.abs(a[k] - b[k]) <= SAME * (1 + Math.abs(b[k])));
+    const mine = this.contact.surface, its = other.contact.surface;
+    return mine.kind === 'plane' && its.kind === 'plane' && same(mine.point, its.point, 3) && same(mine.normal, its.normal, 3)
+      && same(this.latest, other.latest, STRIDE);
+  }
+
+  showSurface(on: boolean): void { this.pose.visible = on; }
+
   /** The force on the body at a position; null if no contact point is there. */
   force(at: Vector3): Vector3 | null {
     const point = new Vector3();
@@ -173,6 +184,8 @@ export class Contacts3d {
     }
     const scale = this.largest > 0 ? ARROW * this.size / this.largest : 0;
     for (const [index, values] of contacts) this.drawn[index]?.update(values, scale);
+    // Many bodies may touch one floor, which is drawn once.
+    this.drawn.forEach((one, k) => one.showSurface(!this.drawn.slice(0, k).some((earlier) => one.repeats(earlier))));
   }
 
   /** The sum of the contact forces on a node; null if it is a point of no contact. */

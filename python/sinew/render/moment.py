@@ -31,7 +31,7 @@ class Moment:
     slack : set of str
         Cables without tension.
     poses : dict of str to (3, 4) ndarray
-        Rotation and translation (m) of moving contact surfaces.
+        Rotation and translation (m) of contact surfaces from their positions in the scene.
     touching, forces : (m, 3) ndarrays
         Contact points, m, and the forces on the bodies there, N.
     effectors, goals : dict of str to (3,) ndarray
@@ -70,9 +70,8 @@ def moment_of(sim: Any, outline: Outline, field: Optional[str] = None) -> Moment
     values = {} if field is None else {name: v for name, body in sim.bodies.items() if (v := _values(body, field)) is not None}
     lines = {name: part for name, part in sim.actuators.items() if part.type in ("cable", "spring")}
     slack = {name for name, part in lines.items() if part.type == "cable" and not part.tension > 0.0}
-    moving = [name for name, surface in outline.surfaces.items() if surface.moves]
     # The poses are available as observables only: a run of zero steps reads them.
-    told = sim.run(0.0, record=[f"{name}.pose" for name in moving]) if moving else {}
+    told = sim.run(0.0, record=[f"{name}.pose" for name in outline.surfaces]) if outline.surfaces else {}
     contacts = list(sim.contacts.values())
     touching = [contact.positions for contact in contacts]
     forces = [contact.normal_forces[:, None] * contact.normals + contact.friction_forces for contact in contacts]
@@ -82,7 +81,7 @@ def moment_of(sim: Any, outline: Outline, field: Optional[str] = None) -> Moment
         values=values,
         cables={name: part.points for name, part in lines.items()},
         slack=slack,
-        poses={name: told[f"{name}.pose"][0] for name in moving},
+        poses={name: told[f"{name}.pose"][0] for name in outline.surfaces},
         touching=np.concatenate([np.zeros((0, 3)), *touching]),
         forces=np.concatenate([np.zeros((0, 3)), *forces]),
         effectors={name: part.position for name, part in sim.effectors.items() if part.unit == "m"},

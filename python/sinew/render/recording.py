@@ -69,7 +69,7 @@ class Recording:
         frames = min(len(series) for series in [self._file["time"], *self._file["positions"].values()])
         self.times = self._file["time"][:frames]
         self.sim = _core.load_recorded(self._file["scene"][()].decode("utf-8"))
-        self._outline = outline_of(self.sim.to_yaml())
+        self._outline = outline_of(self.sim)
         self._start = moment_of(self.sim, self._outline)
         missing = [name for name in self.sim.bodies if name not in self._file["positions"]]
         if missing or frames == 0:
@@ -119,12 +119,16 @@ class Recording:
             values=values,
             cables={name: thread.points(positions) for name, thread in self._threads.items()},
             slack={name for name in start.slack | set(start.cables) if self._is_slack(name, index)},
-            poses={name: file["contacts"][name]["pose"][index] for name in start.poses},
+            poses={name: self._pose(name, index) for name in start.poses},
             touching=np.concatenate(touching),
             forces=np.concatenate(forces),
             effectors={name: file["effectors"][name]["position"][index] for name in start.effectors},
             goals=self._goals(index),
         )
+
+    def _pose(self, contact: str, index: int) -> np.ndarray:
+        poses = self._file.get(f"contacts/{contact}/pose")
+        return self._start.poses[contact] if poses is None else poses[index]
 
     def close(self) -> None:
         """Closes the file. May be called repeatedly."""

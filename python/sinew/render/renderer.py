@@ -116,7 +116,7 @@ class Renderer:
         self._background = colours.parse(background, "background")
         self._floor, self._lit, self._edges = floor, lighting, edges
         self._cables, self._contacts, self._effectors = cables, contacts, effectors
-        self.outline = outline_of(sim.to_yaml())
+        self.outline = outline_of(sim)
         self._largest_force = 0.0
         self._context = context()
         self._build()
@@ -263,7 +263,7 @@ class Renderer:
 
     def _surfaces(self, moment: Moment) -> list[Surface]:
         found = self.outline.surfaces.items() if self._contacts else ()
-        return [surface.moved(moment.poses.get(name)) for name, surface in found]
+        return [surface.moved(moment.poses[name]) for name, surface in found]
 
     def _patches(self, surfaces: list[Surface]) -> list[Patch]:
         planes = [surface for surface in surfaces if surface.kind == "plane"]

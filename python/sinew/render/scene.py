@@ -1,10 +1,10 @@
-"""Parts of a scene's text that a picture needs: gravity, contact surfaces, and the ends of cables."""
+"""Parts of a scene that a picture needs: gravity, contact surfaces, and the ends of cables."""
 
 from __future__ import annotations
 
 import dataclasses
 import re
-from typing import Any, Optional
+from typing import Any
 
 import numpy as np
 
@@ -28,21 +28,17 @@ class Surface:
         Of a plane, unit.
     radius : float
         Of a sphere or a capsule, m.
-    moves : bool
     """
 
     kind: str
     points: np.ndarray
     normal: np.ndarray
     radius: float
-    moves: bool
 
-    def moved(self, pose: Optional[np.ndarray]) -> Surface:
-        """The surface after a rotation and translation (3, 4), m, from its position in the scene; None for none."""
-        if pose is None:
-            return self
+    def moved(self, pose: np.ndarray) -> Surface:
+        """The surface after a rotation and translation (3, 4), m, from its position in the scene."""
         turn, shift = pose[:, :3], pose[:, 3]
-        return Surface(self.kind, self.points @ turn.T + shift, turn @ self.normal, self.radius, self.moves)
+        return Surface(self.kind, self.points @ turn.T + shift, turn @ self.normal, self.radius)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -75,34 +71,24 @@ def parsed(text: str) -> dict[str, Any]:
     return yaml.load(text, Loader=yaml.BaseLoader)
 
 
-def outline_of(text: str) -> Outline:
-    """Reads the text of Simulation.to_yaml(). Raises tool-missing without PyYAML."""
-    tree = parsed(text)
+def outline_of(sim: Any) -> Outline:
+    """What a picture of a simulation needs. Raises tool-missing without PyYAML."""
+    tree = parsed(sim.to_yaml())
     gravity = _vector(tree.get("gravity", "0 0 0"))
     length = np.linalg.norm(gravity)
     up = -gravity / length if length > 0.0 else np.array([0.0, 0.0, 1.0])
-    surfaces = {}
-    for name, contact in (tree.get("contacts") or {}).items():
-        if contact.get("surface"):
-            surfaces[name] = _surface(contact["surface"], bool(contact.get("motion")))
+    surfaces = {name: _surface(contact.surface) for name, contact in sim.contacts.items() if contact.surface}
     cables = (tree.get("actuators") or {}).items()
     held = {name for name, cable in cables if cable["type"] == "cable" and cable.get("pull", "world") == "world"}
     return Outline(up, surfaces, held)
 
 
-def _surface(described: dict[str, Any], moves: bool) -> Surface:
+def _surface(described: dict[str, dict[str, Any]]) -> Surface:
     (kind, own), = described.items()
-    own = own or {}
     if kind == "plane":
-        normal = _direction(own.get("normal", "0 0 1"))
-        return Surface(kind, _vector(own.get("point", "0 0 0"))[None], normal, 0.0, moves)
-    points = [own["centre"]] if kind == "sphere" else own["ends"]
-    return Surface(kind, np.array([_vector(point) for point in points]), np.zeros(3), _core._quantity(own["radius"])[0], moves)
-
-
-def _direction(written: Any) -> np.ndarray:
-    vector = _vector(written)
-    return vector / np.linalg.norm(vector)
+        return Surface(kind, own["point"][None], own["normal"], 0.0)
+    points = own["centre"][None] if kind == "sphere" else own["ends"]
+    return Surface(kind, points, np.zeros(3), own["radius"])
 
 
 def _vector(written: Any) -> np.ndarray:

@@ -60,6 +60,7 @@ class Checker {
           return;
         }
         check_name(read_text(node), form.refers_to, node.place());
+        if (form.refers_to == "bodies" && !form.takes_planes) refuse_plane(node);
         return;
       case Shape::samples:
         read_samples(node, form);
@@ -166,6 +167,15 @@ class Checker {
     if (found->second.contains(name) || is_part_of_robot(name, section)) return;
     if (section == "contacts" && is_pair_of_all(name)) return;
     throw_unknown_name(name, section, names_under(scene_, section), place);
+  }
+
+  void refuse_plane(const Node& name) const {
+    const Node* body = scene_.find("bodies")->find(name.spelling());
+    const Node* shape = body != nullptr && body->is_map() ? body->find("shape") : nullptr;
+    if (shape == nullptr || !shape->is_map() || shape->find("plane") == nullptr) return;
+    throw Error(ErrorKind::wrong_type, name.place(),
+                fmt::format("{} is a plane, which only contacts can name", show(name.spelling())),
+                "name another body, or make it a box");
   }
 
   // Whether a name may be ROBOT.LINK or ROBOT.JOINT. expand_urdf() checks the second part.

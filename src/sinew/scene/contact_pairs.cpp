@@ -35,6 +35,36 @@ bool can_touch(const BodyDescription& one, const BodyDescription& other) {
   return !one.arm && !other.arm;
 }
 
+const PlaneDescription* plane_named(const SceneDescription& scene, const std::string& name) {
+  const auto found = std::ranges::find(scene.planes, name, &PlaneDescription::name);
+  return found != scene.planes.end() ? &*found : nullptr;
+}
+
+// Contact of one body with the surface of a plane.
+void touch_plane(ContactDescription& contact, const std::string& body,
+                 const PlaneDescription& plane) {
+  contact.body = body;
+  contact.other.clear();
+  contact.surface = plane.plane;
+  contact.motion = plane.motion;
+}
+
+// The contact of a pair that has an entry of its own.
+ContactDescription own_contact(const ContactDescription& written, const SceneDescription& scene) {
+  ContactDescription contact = written;
+  const PlaneDescription *first = plane_named(scene, written.body),
+                         *second = plane_named(scene, written.other);
+  if (first == nullptr && second == nullptr) return contact;
+  if (first != nullptr && second != nullptr) {
+    throw Error(ErrorKind::conflicting_keys, written.between_place,
+                fmt::format("'{}' and '{}' are both planes", written.body, written.other),
+                "name a plane and a body that can move");
+  }
+  touch_plane(contact, first != nullptr ? written.other : written.body,
+              first != nullptr ? *first : *second);
+  return contact;
+}
+
 bool is_fixed(const BodyDescription& body) { return body.rigid && body.rigid->fixed; }
 
 // Throws for pairs of a `between: all` whose contact is not in this version.
@@ -73,6 +103,21 @@ std::vector<SceneContact> pairs_of(const ContactDescription& contact, const Scen
       if (!one->rigid || !other->rigid) added.restitution.reset();  // of rigid pairs alone
       if (one->rigid && other->rigid) added.aggregate = 0.0;        // of deformable bodies
     }
+    if (is_fixed(*one)) continue;
+    for (const PlaneDescription& plane : scene.planes) {
+      const Pair pair = ordered(one->name, plane.name);
+      if (excepted.contains(pair) || !settled.insert(pair).second) continue;
+      if (one->arm) {
+        refused.emplace_back(one->name, plane.name);
+        continue;
+      }
+      ContactDescription& added =
+          contacts.emplace_back(SceneContact{contact, contact.name}).contact;
+      added.name = fmt::format("{}-{}-{}", contact.name, one->name, plane.name);
+      touch_plane(added, one->name, plane);
+      if (!one->rigid) added.restitution.reset();
+      if (one->rigid) added.aggregate = 0.0;
+    }
   }
   refuse_pairs(refused, contact.between_place);
   return contacts;
@@ -90,7 +135,7 @@ std::vector<SceneContact> contact_pairs(const SceneDescription& scene) {
     if (contact.all) {
       std::ranges::move(pairs_of(contact, scene, settled), std::back_inserter(contacts));
     } else {
-      contacts.push_back({contact, contact.name});
+      contacts.push_back({own_contact(contact, scene), contact.name});
     }
   }
   return contacts;

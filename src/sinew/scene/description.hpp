@@ -378,6 +378,14 @@ struct ContactDescription {
   std::optional<sim::BaseMotion> motion;   ///< of the surface
 };
 
+/// A body of type rigid whose shape is a plane. Only contacts can name it.
+struct PlaneDescription {
+  std::string name;
+  Location place;
+  constraint::Plane plane;                ///< at the start
+  std::optional<sim::BaseMotion> motion;  ///< none: fixed
+};
+
 /// A joint between two bodies, or between a body and the world.
 struct JointDescription {
   std::string name;
@@ -449,6 +457,7 @@ struct SceneDescription {
   SolverDescription solver;
   std::optional<double> duration;  ///< s
   std::vector<BodyDescription> bodies;
+  std::vector<PlaneDescription> planes;  ///< bodies in the scene, but not in the simulation
   std::vector<ActuatorDescription> actuators;
   std::vector<LoadDescription> loads;
   std::vector<MassDescription> masses;

@@ -61,6 +61,7 @@ struct Form {
   Range range;                  ///< of each number
   std::vector<Choice> choices;  ///< choice, variants; reference: words in place of a name
   std::string refers_to;        ///< reference, names: the top-level key that defines the names
+  bool takes_planes = false;    ///< reference to a body: it may be a plane
   /// table, variants: the key by which this form is recognised; choice: the key of the map form
   /// that a single word abbreviates
   std::string telltale;

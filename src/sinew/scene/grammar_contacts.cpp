@@ -89,7 +89,7 @@ Form contact_form() {
   contact.keys.front().required = false;
   contact.keys.push_back(
       {.name = "between",
-       .forms = {list({reference("bodies")}, 2, 2), choice({{"all", "All pairs of bodies."}})},
+       .forms = {list({touching_body()}, 2, 2), choice({{"all", "All pairs of bodies."}})},
        .example = "[finger, box]",
        .description =
            "Two bodies, in place of body and surface. Their surfaces touch. A body named twice "
@@ -97,9 +97,9 @@ Form contact_form() {
            "exact shapes. If you name nodes or points of a body with elements or of an arm, these "
            "touch a rigid body's shape or hull. `all`: every pair, except pairs that joints "
            "connect, pairs of fixed bodies, and pairs with an entry of their own; the contacts are "
-           "called NAME-FIRST-SECOND."});
+           "called NAME-FIRST-SECOND, where a plane is the second."});
   contact.keys.push_back({.name = "except",
-                          .forms = {list({list({reference("bodies")}, 2, 2)})},
+                          .forms = {list({list({touching_body()}, 2, 2)})},
                           .example = "[[palm, finger]]",
                           .description = "Pairs that may pass through each other. Only with "
                                          "`between: all`."});

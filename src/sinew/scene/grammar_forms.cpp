@@ -100,6 +100,12 @@ Form reference(const char* top_level_key, std::vector<Choice> words) {
   return form;
 }
 
+Form touching_body() {
+  Form form = reference("bodies");
+  form.takes_planes = true;
+  return form;
+}
+
 Form choice(std::vector<Choice> choices, const char* short_for) {
   Form form;
   form.shape = Shape::choice;

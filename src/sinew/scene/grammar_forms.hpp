@@ -77,6 +77,8 @@ Form reference(const char* top_level_key, std::vector<Choice> words = {});
 /// @param choices the words. @param short_for the key of the map form that a single word
 /// abbreviates.
 Form choice(std::vector<Choice> choices, const char* short_for = "");
+/// A reference to a body that is named in a contact: also to a plane.
+Form touching_body();
 Form list(std::vector<Form> items, int min_count = 1, int max_count = kAnyNumber);
 Form samples(const Measure& measure);
 Form table(std::shared_ptr<const KeyTable> table, const char* telltale = "");

@@ -34,8 +34,13 @@ std::shared_ptr<const KeyTable> shape_table() {
                      shape_length("length", "40 mm", "Length of the cylinder, without its ends.")}),
                 shape_form("cylinder", "{radius: 10 mm, height: 40 mm}", "A cylinder about z.",
                            {shape_length("radius", "10 mm", "Its radius."),
-                            shape_length("height", "40 mm", "Along z.")})},
-       .alternatives = {{{"box", "sphere", "capsule", "cylinder"}, true}}});
+                            shape_length("height", "40 mm", "Along z.")}),
+                shape_form("plane", "{}",
+                           "The half-space below the plane z = 0 of the body's axes: a floor or a "
+                           "wall. The body is `fixed` or has a `motion`. Only contacts can name "
+                           "it; it is not among the bodies of the simulation.",
+                           {})},
+       .alternatives = {{{"box", "sphere", "capsule", "cylinder", "plane"}, true}}});
 }
 
 std::shared_ptr<const KeyTable> solid_table() {

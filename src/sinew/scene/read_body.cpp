@@ -429,14 +429,17 @@ MeshDescription read_shape(const std::string& shape, const std::vector<std::stri
   return mesh;
 }
 
+void refuse_world(const Node::Entry& body) {
+  if (body.key != kWorldName) return;
+  throw Error(ErrorKind::bad_argument, body.key_place, "`world` is what joints call the world",
+              "give the body another name");
+}
+
 BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) {
   BodyDescription body;
   body.name = entry.key;
   body.place = entry.key_place;
-  if (body.name == kWorldName) {
-    throw Error(ErrorKind::bad_argument, body.place, "`world` is what joints call the world",
-                "give the body another name");
-  }
+  refuse_world(entry);
   const Form& form = form_of(grammar(), "bodies", Shape::names).items.front();
   const Fields fields(entry.value, form);
   if (read_text(*entry.value.find(form.telltale)) == "pcc") {

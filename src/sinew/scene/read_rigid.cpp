@@ -1,4 +1,7 @@
 // Reads bodies of type rigid.
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
 #include "sinew/core/rotation.hpp"
 #include "sinew/rigid/rigid_settings.hpp"
 #include "sinew/scene/readers.hpp"
@@ -45,6 +48,36 @@ Matrix3 read_rotation(const Fields& pose) {
   rotation.read("angle", angle);
   axis = read_axis(*rotation.find("axis"), rotation.table().find("axis")->forms);
   return rotation_matrix(angle * axis);
+}
+
+bool is_plane(const Node::Entry& body) {
+  const Node* shape = body.value.find("shape");
+  return shape != nullptr && shape->is_map() && shape->find("plane") != nullptr;
+}
+
+PlaneDescription read_plane(const Node::Entry& entry, const ReadContext& context) {
+  refuse_world(entry);
+  PlaneDescription plane{.name = entry.key, .place = entry.key_place, .plane = {}, .motion = {}};
+  const Fields fields(entry.value, form_of(grammar(), "bodies", Shape::names).items.front());
+  for (const char* key : {"density", "mass", "velocity"}) {
+    if (fields.find(key) == nullptr) continue;
+    throw Error(ErrorKind::conflicting_keys, fields.place(key),
+                fmt::format("'{}' is a plane, to which `{}` does not apply", plane.name, key),
+                "leave it out");
+  }
+  bool fixed = false;
+  fields.read("fixed", fixed);
+  if (fields.find("motion") != nullptr) {
+    plane.motion = read_motion(fields.below("motion"), context);
+  } else if (!fixed) {
+    throw Error(ErrorKind::conflicting_keys, plane.place,
+                fmt::format("'{}' is a plane, which cannot move freely", plane.name),
+                "add `fixed: true`, or a `motion`");
+  }
+  const Fields pose = fields.below("pose");
+  pose.read("position", plane.plane.point);
+  plane.plane.normal = read_rotation(pose).col(2);
+  return plane;
 }
 
 rigid::RigidSettings read_rigid(const Fields& fields, const std::string& name) {

@@ -30,6 +30,12 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context);
 pcc::ArmSettings read_arm(const Fields& fields, const std::string& name);
 /// Reads a body of type rigid. @param fields of the body. @param name of the body.
 rigid::RigidSettings read_rigid(const Fields& fields, const std::string& name);
+/// Throws Error(bad-argument) if a body has the name of the world.
+void refuse_world(const Node::Entry& body);
+/// Whether a body is of type rigid with a plane as its shape.
+bool is_plane(const Node::Entry& body);
+/// Reads such a body. Throws Error(conflicting-keys) if it has a mass or a velocity or is free.
+PlaneDescription read_plane(const Node::Entry& entry, const ReadContext& context);
 /// Reads a body of type urdf. @param fields of the body. @param context of the scene.
 UrdfDescription read_urdf(const Fields& fields, const ReadContext& context);
 /// Reads the rotation of a pose. @param pose fields of the pose.

@@ -215,6 +215,10 @@ class Page {
 
   void write_table(const KeyTable& table, std::map<std::string, const KeyTable*>& told) {
     text_ += fmt::format("## {}\n\n{}\n\n", table.name, table.description);
+    if (table.keys.empty()) {
+      text_ += "It has no keys: `{}`.\n\n";
+      return;
+    }
     text_ += "| key | value | default | meaning |\n|---|---|---|---|\n";
     std::string explained;
     for (const Key& key : table.keys) {

@@ -167,8 +167,13 @@ SceneDescription read_scene(const Node& tree, const ReadContext& context) {
   scene.place = tree.place();
   const Fields fields(tree, grammar());
   read_world(fields, scene);
-  for_entries(fields, "bodies",
-              [&](const auto& entry) { scene.bodies.push_back(read_body(entry, context)); });
+  for_entries(fields, "bodies", [&](const auto& entry) {
+    if (is_plane(entry)) {
+      scene.planes.push_back(read_plane(entry, context));
+    } else {
+      scene.bodies.push_back(read_body(entry, context));
+    }
+  });
   for_entries(fields, "actuators",
               [&](const auto& entry) { scene.actuators.push_back(read_actuator(entry, context)); });
   for_entries(fields, "loads",
@@ -213,6 +218,7 @@ double SceneDescription::run_duration() const {
     end = std::max(end, motion->angle.end_time());
   };
   for (const BodyDescription& body : bodies) include(body.base);
+  for (const PlaneDescription& plane : planes) include(plane.motion);
   for (const ContactDescription& contact : contacts) include(contact.motion);
   for (const LoadDescription& load : loads) end = std::max(end, load.factor.end_time());
   for (const ControllerDescription& controller : controllers) {
