@@ -23,7 +23,7 @@ demo="python3-matplotlib"
 render="python3-moderngl python3-pil python3-yaml python3-h5py libegl1 libgl1-mesa-dri fonts-dejavu-core"
 sweep="python3-distributed python3-pandas python3-h5py python3-scipy python3-matplotlib"
 wheel="python3-pip python3-venv python3-setuptools python3-wheel"
-test="libgtest-dev libgmock-dev gmsh chromium python3-pytest python3-pytest-xdist python3-scipy python3-meshio
+test="libgtest-dev libgmock-dev gmsh chromium ffmpeg python3-pytest python3-pytest-xdist python3-scipy python3-meshio
   python3-h5py python3-distributed python3-pandas python3-yaml python3-cvxopt python3-jsonschema doxygen
   zsh fish"
 validate="calculix-ccx gmsh python3-scipy python3-meshio"

@@ -143,16 +143,17 @@ std::vector<Feature> list_features() {
       {"torque", or_none(alternatives(map_of(torque, "command"), "torque"))},
       {"load", or_none(words(variants(items("loads"), "type")))},
       {"mass", switched},
-      // Contact with a fixed surface, a passing rigid or soft body, or the body itself.
-      {"contact",
-       or_none(with(alternatives(map_of(contact, "surface"), "plane"), {"body", "soft", "self"}))},
+      // Contact with a fixed surface, a passing rigid or soft body, the body itself, or a rigid
+      // body of shape plane.
+      {"contact", or_none(with(alternatives(map_of(contact, "surface"), "plane"),
+                               {"body", "soft", "self", "ground"}))},
       {"contact_friction", switched},
       {"contact_motion", switched},
       // A link on any body, held by its joint only. A weld holds a soft link, and its levels are
       // the kinds of weld; other joints hold a rigid link, and their levels are its shape and
       // motor.
       {"link", or_none(words(variants(items("joints"), "type")))},
-      {"link_shape", alternatives(map_of(rigid, "shape"), "box")},
+      {"link_shape", without(alternatives(map_of(rigid, "shape"), "box"), "plane")},
       {"motor", or_none(alternatives(map_of(motor, "command"), "angle"))},
       {"joint_limits", switched},
       {"joint_friction", switched},

@@ -593,17 +593,28 @@ class Drafter {
                                  vector_text(right))},
          {"body", ""},
          {"soft", ""},
-         {"self", ""}});
-    std::string text = surface.empty() ? touching(on, below, centre)
-                                       : fmt::format("body: <{}>, surface: {{{}}}", on.id, surface);
+         {"self", ""},
+         {"ground", ""}});
+    const auto motion = [&] {
+      return fmt::format(", motion: {{{}: {{ramp: {{to: {:.3g} mm, duration: 60 ms}}}}}}",
+                         "xyz"[below], gap + draw(0.5, 2.5));
+    };
+    if (of("contact") == "ground") {
+      // Rotates z to x, y or z.
+      const char* turns[] = {"0 90 0 deg", "-90 0 0 deg", "0 0 0 deg"};
+      add("bodies", "ground",
+          fmt::format(
+              "{{type: rigid, shape: {{plane: {{}}}}, pose: {{position: {}, rotation: {}}}{}}}",
+              vector_text(at), turns[below], has("contact_motion") ? motion() : ", fixed: true"));
+    }
+    std::string text = !surface.empty() ? fmt::format("body: <{}>, surface: {{{}}}", on.id, surface)
+                       : of("contact") == "ground" ? fmt::format("between: [<{}>, <ground>]", on.id)
+                                                   : touching(on, below, centre);
     if (!on.fem || (of("contact") != "soft" && of("contact") != "self")) text += tip_points(on);
     if (has("contact_friction")) text += ", friction: 0.5";
     if (has("contact_friction") && has("kinetic_friction")) text += ", kinetic_friction: 0.3";
     if (has("contact_zones") && on.fem) text += ", aggregate: 12 mm";
-    if (has("contact_motion") && !surface.empty()) {
-      text += fmt::format(", motion: {{{}: {{ramp: {{to: {:.3g} mm, duration: 60 ms}}}}}}",
-                          "xyz"[below], gap + draw(0.5, 2.5));
-    }
+    if (has("contact_motion") && !surface.empty()) text += motion();
     add("contacts", "floor", "{" + text + "}");
   }
 
