@@ -20,7 +20,7 @@ struct ArmStepSettings {
 };
 
 /// A simulation of one arm. Its steps are implicit, since lumped masses make H nearly singular: the
-/// rates of damping, b / lambda_min(H), are 1e4 to 1e5 1/s, and explicit steps of 1 ms diverge.
+/// rates of damping, b / lambda_min(H), are 2e3 to 6e6 1/s, and explicit steps of 1 ms diverge.
 class ArmSimulation {
  public:
   /// Starts at rest, with the arm straight. Throws Error: out-of-range (time step, spectral
