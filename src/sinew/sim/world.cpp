@@ -33,21 +33,26 @@ void World::place_contacts(double from, double to) {
   contacts_.planes().begin();
 }
 
+void World::begin_contacts(double from, double to, std::span<double> effort, double reach) {
+  if (contacts_.empty()) return;
+  const double far = std::max(reach, contacts_.wanted_reach(effort));
+  contacts_.planes().find_points(contacts_.reach(far), ContactRows::ahead(to - from), effort);
+  place_contacts(from, to);
+  contacts_.choose_active(effort, to - from, reach);
+  number_rows();
+  contacts_.spread_forces(effort);
+}
+
 void World::begin_step(double from, double to, std::span<double> effort, double reach) {
-  if (!contacts_.empty()) {
-    const double far = std::max(reach, contacts_.wanted_reach(effort));
-    contacts_.planes().find_points(contacts_.reach(far), ContactRows::ahead(to - from), effort);
-    place_contacts(from, to);
-    contacts_.choose_active(effort, to - from, reach);
-    number_rows();
-    contacts_.spread_forces(effort);
-  }
+  begin_contacts(from, to, effort, reach);
   bodies_.begin_step();
 }
 
+// The bases stay where they are. After restore(), their requested motions may be those of a later
+// time.
 void World::begin_query(double at, std::span<double> effort) {
   has_solved_ = false;
-  begin_step(at, at, effort);
+  begin_contacts(at, at, effort, 0.0);
   bodies_.begin_query();
 }
 

@@ -133,6 +133,7 @@ class World {
 
  private:
   void place_contacts(double from, double to);
+  void begin_contacts(double from, double to, std::span<double> effort, double reach);
   bool correct_contacts(bool looks, StageClock& clock);
   void number_rows();
   void form_compliance();
