@@ -96,8 +96,11 @@ class Tables {
       visit(key.forms, page);
       // Breadth first, so that a table is near those that link to it.
       for (std::size_t i = first; i < order_.size(); ++i) visit_keys(*order_[i], page);
-      for (std::size_t i = 0; i < again_.size(); ++i) visit_keys(*again_[i], page);
-      again_.clear();
+      while (!again_.empty()) {
+        const KeyTable& table = *again_.back();
+        again_.pop_back();
+        visit_keys(table, page);
+      }
     }
   }
 
