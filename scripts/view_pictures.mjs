@@ -24,9 +24,19 @@ const browser = await chromium.launch({executablePath: '/usr/bin/chromium', args
   '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run']});
 
 /** Saves a picture of the page of `sinew view SCENE`. @param act prepares the page. */
-async function draw(file, scene, {width = 1280, height = 800} = {}, act = async () => undefined) {
+async function draw(file, scene, size = {}, act = async () => undefined) {
+  await drawPage(file, () => spawn(program, ['view', ...scene, '--no-open', '--port', '0', '--paused']), size, act);
+}
+
+/** The same of the page of a Python script. */
+async function drawScript(file, script, act) {
+  const env = {...process.env, PYTHONPATH: join(root, 'build/release/python')};
+  await drawPage(file, () => spawn('/usr/bin/python3', ['-u', join(root, script[0]), ...script.slice(1)], {env}), {}, act);
+}
+
+async function drawPage(file, start, {width = 1280, height = 800}, act) {
   if (words.length > 0 && !words.some((word) => file.includes(word))) return;
-  const child = spawn(program, ['view', ...scene, '--no-open', '--port', '0', '--paused']);
+  const child = start();
   const url = await new Promise((resolve) => child.stdout.on('data', (data) => {
     const found = /http:\S+/.exec(String(data));
     if (found) resolve(found[0]);
@@ -57,6 +67,9 @@ async function colour(page, field) {
   await page.selectOption('[aria-label="Colour by"]', field);
 }
 
+await drawScript('docs/images/view_wall.png', ['examples/high_rate/wall.py', '--view'], async (page) => {
+  await page.waitForFunction(() => window.sinewView.state().time > 4 && window.sinewView.state().signals['felt.force'] > 7.5);
+});
 await draw('docs/images/view.png', [circle], {}, async (page) => {
   await colour(page, 'von_mises_stress');
   await step(page, 620);

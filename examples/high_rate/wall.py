@@ -4,6 +4,7 @@ the force on the hand as a number and an arrow, in a figure beside this script o
 
     wall.py [FOLDER]      on an ideal clock
     wall.py --live        ten seconds in a thread of its own: the arrow in the terminal, then the lateness of periods
+    wall.py --view        in the browser: a device and the point of contact that it pulls, until you close the page or press Ctrl-C
 """
 
 import sys
@@ -78,9 +79,46 @@ def live():
     print("periods began late by", ", ".join(f"{1e6 * late.quantile(part):.0f} us ({part:.1%})" for part in (0.5, 0.99, 0.999)))
 
 
+def shown():
+    """A device that enters the wall, and beside it a ball that the wall holds back, with the force that the hand feels.
+
+    The ball follows the device outside the wall. Inside, the force of the hand presses it against the wall (the god-object of
+    C. B. Zilles & J. K. Salisbury, IROS 1995, pp. 146-151), so the arrow of the contact is that force.
+    """
+    ball = {"type": "rigid", "shape": {"sphere": {"radius": "4 mm"}}, "mass": "50 g"}
+    guide = {"type": "slider", "bodies": ["world", "device"], "axis": "1 0 0"}
+    scene = {
+        "sinew": 1, "integrator": "backward-euler", "time_step": "10 ms",
+        "bodies": {"device": {**ball, "pose": {"position": "0 -8 0 mm"}}, "contact": {**ball, "pose": {"position": "0 8 0 mm"}},
+                   "wall": {"type": "rigid", "shape": {"plane": {}}, "fixed": True,
+                            "pose": {"position": "4 0 0 mm", "rotation": {"axis": "0 1 0", "angle": "-90 deg"}}}},
+        "joints": {"rail": {**guide, "point": "0 -8 0 mm"}, "guide": {**guide, "bodies": ["world", "contact"], "point": "0 8 0 mm"}},
+        "actuators": {"hand": {"type": "linear-motor", "joint": "rail", "limits": {"displacement": {"min": "-10 mm", "max": "10 mm"}},
+                               "command": {"displacement": {"sine": {"amplitude": "8 mm", "period": "2 s"}}}},
+                      "felt": {"type": "linear-motor", "joint": "guide", "command": {"displacement": "0 mm"}}},
+        "contacts": {"touch": {"between": ["contact", "wall"]}},
+    }  # fmt: skip
+    sim = sinew.load(scene)
+    place, felt = sim.actuator("hand"), sim.actuator("felt")
+    loop = sinew.HighRateLoop(None, hands=["hand"], rate=RATE)
+    with loop, sinew.view(sim, block=False, speed=1) as view:
+        print("Move the slider of `hand` to take it over. `felt` shows the force as a number, the arrow its size and direction.")
+        while view.update():
+            loop.publish(WALL)
+            loop.set_input(hands={"hand": place.displacement})
+            force = loop.output.hands["hand"]
+            if force > 0.0:
+                felt.force = force
+            else:
+                felt.displacement = min(place.displacement, 0.0)
+            sim.step()
+
+
 def main():
     if sys.argv[1:] == ["--live"]:
         return live()
+    if sys.argv[1:] == ["--view"]:
+        return shown()
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent
     times = np.arange(0.0, DURATION, 1.0 / RATE)
     places = hand(times)

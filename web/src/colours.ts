@@ -69,10 +69,13 @@ export function ticks(low: number, high: number, count: number, unit: string): s
     `${((high - (high - low) * k / (count - 1)) / scale).toFixed(decimals)} ${name}${unit.replace('^3', '\u00b3')}`.trim());
 }
 
+const ROUNDING = 1e-12;  // in the base unit: what is smaller, such as the displacement of a joint at its stop, is shown as zero
+
 /** Formats a number with its unit and an SI prefix: 0.0123 m is "12.3 mm". */
 export function told(value: number, unit: string, digits = 3): string {
   if (!Number.isFinite(value)) return '-';
   if (unit.startsWith('m^3')) return told(1e3 * value, unit.replace('m^3', 'l'), digits);  // a prefix of m^3 would be cubed
+  if (unit !== '' && Math.abs(value) < ROUNDING) value = 0;
   if (unit.startsWith('rad')) return `${Number((value * 180 / Math.PI).toPrecision(digits))}\u00b0${unit.slice(3)}`;
   if (unit === '' || value === 0) return `${Number(value.toPrecision(digits))}${unit ? ' ' + unit : ''}`;
   const [scale, name] = prefix(Math.abs(value));
