@@ -69,6 +69,7 @@ async function colour(page, field) {
 
 await drawScript('docs/images/view_wall.png', ['examples/high_rate/wall.py', '--view'], async (page) => {
   await page.waitForFunction(() => window.sinewView.state().time > 4 && window.sinewView.state().signals['felt.force'] > 7.5);
+  await ask(page, {type: 'pause'});
 });
 await draw('docs/images/view.png', [circle], {}, async (page) => {
   await colour(page, 'von_mises_stress');

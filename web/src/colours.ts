@@ -69,7 +69,7 @@ export function ticks(low: number, high: number, count: number, unit: string): s
     `${((high - (high - low) * k / (count - 1)) / scale).toFixed(decimals)} ${name}${unit.replace('^3', '\u00b3')}`.trim());
 }
 
-const ROUNDING = 1e-12;  // in the base unit: what is smaller, such as the displacement of a joint at its stop, is shown as zero
+export const ROUNDING = 1e-12;  // in the base unit: what is smaller, such as the displacement of a joint at its stop, is shown as zero
 
 /** Formats a number with its unit and an SI prefix: 0.0123 m is "12.3 mm". */
 export function told(value: number, unit: string, digits = 3): string {

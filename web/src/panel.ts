@@ -1,5 +1,5 @@
 // The panel: controls of the run, actuators, targets and the hand, and measured values.
-import {told} from './colours';
+import {ROUNDING, told} from './colours';
 import {STATES} from './contacts3d';
 import {button, make} from './dom';
 import type {JointList} from './joint_list';
@@ -303,7 +303,8 @@ export class Panel {
       const own = command.quantity === row.quantity.name && !command.owned;
       if (done === undefined && !own) return;
       const [scale] = SHOWN[row.quantity.unit] ?? [1];
-      const text = String(Number((scale * (own ? command.value : done)).toPrecision(4)));
+      const now = own ? command.value : done;
+      const text = String(Number((Math.abs(now) < ROUNDING ? 0 : scale * now).toPrecision(4)));
       if (row.number.value !== text) row.number.value = row.slider.value = text;
     });
   }
