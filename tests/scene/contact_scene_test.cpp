@@ -160,6 +160,8 @@ TEST(Contacts, OfPlanesThatAreBodiesSayWhatIsWrong) {
     return text.replace(text.find(from), from.size(), by);
   };
   expect(replaced("floor: {type: rigid, shape: {plane: {}}}"), K::conflicting_keys, "freely");
+  expect(replaced("floor: {type: rigid, shape: {plane: {}}, fixed: false, motion: {z: 1 mm}}"),
+         K::conflicting_keys, "free");
   expect(replaced("floor: {type: rigid, shape: {plane: {}}, fixed: true, mass: 1 kg}"),
          K::conflicting_keys, "mass");
   expect(replaced("floor: {type: rigid, shape: {plane: {normal: 0 0 1}}, fixed: true}"),

@@ -348,7 +348,8 @@ void read_fixed(const Fields& fields, BodyDescription& body) {
   }
 }
 
-// Refuses a rigid body that has a prescribed motion but is also free or has a velocity.
+}  // namespace
+
 void refuse_free(const Fields& fields) {
   bool fixed = true;
   fields.read("fixed", fixed);
@@ -360,8 +361,6 @@ void refuse_free(const Fields& fields) {
   throw Error(ErrorKind::conflicting_keys, fields.place("velocity"),
               "the body has a motion, which says how fast it is", "leave `velocity` out");
 }
-
-}  // namespace
 
 std::vector<FixedRegion> read_regions(const Fields& fields, std::string_view key) {
   std::vector<FixedRegion> regions;

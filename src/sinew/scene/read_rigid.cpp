@@ -68,6 +68,7 @@ PlaneDescription read_plane(const Node::Entry& entry, const ReadContext& context
   bool fixed = false;
   fields.read("fixed", fixed);
   if (fields.find("motion") != nullptr) {
+    refuse_free(fields);
     plane.motion = read_motion(fields.below("motion"), context);
   } else if (!fixed) {
     throw Error(ErrorKind::conflicting_keys, plane.place,

@@ -32,6 +32,10 @@ pcc::ArmSettings read_arm(const Fields& fields, const std::string& name);
 rigid::RigidSettings read_rigid(const Fields& fields, const std::string& name);
 /// Throws Error(bad-argument) if a body has the name of the world.
 void refuse_world(const Node::Entry& body);
+/// Throws Error(conflicting-keys) if a body with a prescribed motion is to be free or has a
+/// velocity.
+/// @param fields of a body of type rigid.
+void refuse_free(const Fields& fields);
 /// Whether a body is of type rigid with a plane as its shape.
 bool is_plane(const Node::Entry& body);
 /// Reads such a body. Throws Error(conflicting-keys) if it has a mass or a velocity or is free.
