@@ -101,7 +101,7 @@ struct TimelineFrame {
 struct Frame {
   std::uint64_t step = 0;
   double time = 0.0;            ///< s
-  std::uint64_t hash = 0;       ///< of the state; 0 in a replay
+  std::uint64_t hash = 0;       ///< of the state
   std::uint64_t shape = 0;      ///< frames with equal numbers differ only in signals
   bool inside = false;          ///< whether it has the interior of bodies
   std::vector<double> signals;  ///< as listed in the description, SI; NaN: no value
