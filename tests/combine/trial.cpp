@@ -159,6 +159,53 @@ bool same_bits(std::span<const double> one, std::span<const double> other) {
   });
 }
 
+// A run that is recorded, with the values that the record must contain.
+class Record {
+ public:
+  explicit Record(Run& run) : list(run.observables()), run_(run) {
+    record::RecordSettings settings;
+    settings.folder = folder_;
+    recorder_ = std::make_unique<record::RunRecorder>(run.observables(), settings);
+    look();
+  }
+  Record(const Record&) = delete;
+  Record& operator=(const Record&) = delete;
+  ~Record() { std::filesystem::remove_all(folder_); }
+
+  void advance(int steps) {
+    for (int k = 0; k < steps && run_.error().empty(); ++k) {
+      run_.advance(1);
+      if (!run_.error().empty()) return;
+      recorder_->after_step();
+      look();
+    }
+  }
+
+  // Ends the record, and returns its file.
+  std::filesystem::path close() {
+    recorder_.reset();
+    return folder_ / "run.h5";
+  }
+
+  sim::Observables list;
+  std::vector<std::vector<double>> seen;  // values by observable, for all frames in turn
+
+ private:
+  void look() {
+    list.refresh();
+    seen.resize(list.list().size());
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      const std::span<const double> numbers = list.read(k);
+      seen[k].insert(seen[k].end(), numbers.begin(), numbers.end());
+    }
+  }
+
+  Run& run_;
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / fmt::format("sinew_trial_{}", ::getpid());
+  std::unique_ptr<record::RunRecorder> recorder_;
+};
+
 class Trial {
  public:
   explicit Trial(const SceneDraft& draft) : draft_(draft) {}
@@ -172,14 +219,17 @@ class Trial {
     } catch (const Error& error) {
       return {Outcome::Kind::refused, error.what(), ""};
     }
-    first->advance(kHalf);
+    const sim::State start = first->simulation.state();
+    Record record(*first);
+    record.advance(kHalf);
     const std::string half = sim::format_state(first->simulation);
     std::unique_ptr<sim::Simulation> copy = first->simulation.clone();
     const sim::State state = first->simulation.state();
     const bool halfway = first->error().empty();
-    first->advance(kSteps - kHalf);
+    record.advance(kSteps - kHalf);
     reference_ = first->states;
     if (!is_finite(first->simulation.state())) fail("a state is not finite");
+    check_record(*robot, *first, record);
 
     Run threaded(*robot, 2);
     threaded.advance(kSteps);
@@ -194,19 +244,6 @@ class Trial {
       cloned.advance(kSteps - kHalf);
       compare("a clone", cloned.states, kHalf);
     }
-    {
-      Run again(*robot);
-      const sim::State start = again.simulation.state();
-      again.advance(kSteps);
-      again.forget();
-      again.simulation.reset();
-      if (again.simulation.state() != start) {
-        fail("reset() leaves another " + first_difference(again.simulation.state(), start));
-      }
-      again.advance(kSteps);
-      compare("reset()", again.states, 0);
-    }
-    check_records(*robot);
     {
       Run renamed(build(write_scene(draft_, {.renamed = true})));
       renamed.advance(kSteps);
@@ -232,8 +269,16 @@ class Trial {
       }
     }
     const std::string condition(sim::step_status_name(first->condition));
+    const std::string error = first->error();
+    first->forget();
+    first->simulation.reset();
+    if (first->simulation.state() != start) {
+      fail("reset() leaves another " + first_difference(first->simulation.state(), start));
+    }
+    first->advance(kSteps);
+    compare("reset()", first->states, 0);
     if (!wrong_.empty()) return {Outcome::Kind::wrong, wrong_, condition};
-    if (!first->error().empty()) return {Outcome::Kind::stopped, first->error(), condition};
+    if (!error.empty()) return {Outcome::Kind::stopped, error, condition};
     return {Outcome::Kind::ran, "", condition};
   }
 
@@ -246,57 +291,32 @@ class Trial {
   }
 
   // A record reads back bit for bit, and a copy of the simulation has the same observables.
-  void check_records(const scene::Robot& robot) {
-    const std::filesystem::path folder =
-        std::filesystem::temp_directory_path() / fmt::format("sinew_trial_{}", ::getpid());
-    Run run(robot);
-    std::vector<std::vector<double>> seen;  // values by observable, for all frames in turn
-    sim::Observables list = run.observables();
-    const auto look = [&] {
-      list.refresh();
-      seen.resize(list.list().size());
-      for (std::size_t k = 0; k < seen.size(); ++k) {
-        const std::span<const double> numbers = list.read(k);
-        seen[k].insert(seen[k].end(), numbers.begin(), numbers.end());
-      }
-    };
-    {
-      record::RecordSettings settings;
-      settings.folder = folder;
-      record::RunRecorder recorder(run.observables(), settings);
-      look();
-      for (int k = 0; k < kSteps; ++k) {
-        run.advance(1);
-        if (!run.error().empty()) break;
-        recorder.after_step();
-        look();
-      }
-    }
-    const record::RunFile file(folder / "run.h5");
-    for (std::size_t k = 0; k < seen.size(); ++k) {
-      const std::string dataset = record::dataset_of(list.list()[k]);
-      if (dataset.empty() || same_bits(file.series(dataset), seen[k])) continue;
+  void check_record(const scene::Robot& robot, Run& run, Record& record) {
+    const std::vector<sim::Observable>& observables = record.list.list();
+    const record::RunFile file(record.close());
+    for (std::size_t k = 0; k < observables.size(); ++k) {
+      const std::string dataset = record::dataset_of(observables[k]);
+      if (dataset.empty() || same_bits(file.series(dataset), record.seen[k])) continue;
       fail(fmt::format("{} is not recorded as it was", dataset));
     }
-    std::filesystem::remove_all(folder);
     if (!run.error().empty()) return;
     Run copy(robot, run.simulation.clone());
     copy.simulation.restore(run.simulation.state());
     sim::Observables theirs = copy.observables();
-    for (std::size_t k = 0; k < seen.size(); ++k) {
-      const sim::Observable& one = list.list()[k];
+    for (std::size_t k = 0; k < observables.size(); ++k) {
+      const sim::Observable& one = observables[k];
       // Work since the first read, and the report of the last step, are not part of a state.
       if (one.kind >= sim::ObservableKind::ledger) {
         continue;
       }
       // A step sums energies in another order than their evaluation over elements.
       const bool same = one.kind == sim::ObservableKind::energy
-                            ? std::abs(list.number(k) - theirs.number(k)) <=
-                                  kEnergyTolerance * std::abs(list.number(k)) + kNoEnergy
-                            : same_bits(list.read(k), theirs.read(k));
+                            ? std::abs(record.list.number(k) - theirs.number(k)) <=
+                                  kEnergyTolerance * std::abs(record.list.number(k)) + kNoEnergy
+                            : same_bits(record.list.read(k), theirs.read(k));
       if (same) continue;
       fail(fmt::format("a copy shows another {} ({} for {})", one.name, theirs.number(k),
-                       list.number(k)));
+                       record.list.number(k)));
     }
   }
 
