@@ -74,10 +74,10 @@ void bind_balance(SimulationType& type) {
           "ledger", &ledger,
           "dict: energies in J, as in run.csv. Present sums over all bodies: `strain_energy`, "
           "`kinetic_energy` and `gravity_energy` (relative to rest). Since the start: "
-          "`actuator_work`; `outside_work` of loads and external forces; `dissipation` by damping, "
-          "drag, and the friction of cables and contacts; `numerical_loss`, work minus dissipation "
-          "minus energy gain: the loss of the integrator, and what solve_static(), follow_path() "
-          "and a moved base put in.")
+          "`actuator_work`; `outside_work` of loads, external forces, moving bases and surfaces; "
+          "`dissipation` by damping, drag, and the friction of cables and contacts; "
+          "`numerical_loss`, work minus dissipation minus energy gain: the loss of the integrator, "
+          "and what solve_static() and follow_path() put in.")
       .def_property_readonly(
           "memory", guarded([](const sim::Simulation& s) { return s.bytes(); }),
           "int: memory of this simulation without the shared model, bytes. Only simulations in a "

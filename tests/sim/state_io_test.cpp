@@ -151,7 +151,7 @@ TEST(StateIo, AHeaderTellsOfAState) {
   EXPECT_TRUE(is_state(bytes));
   EXPECT_FALSE(is_state("SINEWS"));
   const StateHeader header = read_state_header(bytes, "test.state");
-  EXPECT_EQ(header.version, kVersionWithoutSensors);
+  EXPECT_EQ(header.version, kStateVersion);
   EXPECT_EQ(header.fingerprint, simulation.model().fingerprint());
   EXPECT_EQ(header.steps, 3);
   EXPECT_EQ(header.count, simulation.state().size());

@@ -97,6 +97,25 @@ const std::optional<mechanics::AffineField>& FemBody::base_input() const {
   return state_->base.asked();
 }
 
+bool FemBody::base_moved() const { return state_->base.moved(); }
+
+mechanics::HasBase::Carried FemBody::carried(int site, const mechanics::Patch* patch) const {
+  Carried sum;
+  const auto free = state_->model.elements().free_index();
+  const auto add = [&](NodeId node, double weight) {
+    if (node < 0 || free[static_cast<std::size_t>(node)] >= 0) return;
+    sum.motion += weight * (state_->positions.row(node) - state_->start_positions.row(node));
+    sum.velocity += weight * state_->velocities.row(node);
+  };
+  if (patch != nullptr) {
+    for (std::size_t k = 0; k < patch->nodes.size(); ++k) add(patch->nodes[k], patch->weights[k]);
+    return sum;
+  }
+  const Attachment& at = state_->model.attachment(site);
+  for (std::size_t k = 0; k < at.nodes.size(); ++k) add(at.nodes[k], at.weights[k]);
+  return sum;
+}
+
 void FemBody::set_load_factor(int load, double factor) {
   state_->load_factors[static_cast<std::size_t>(load)] = factor;
 }

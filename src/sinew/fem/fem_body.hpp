@@ -58,6 +58,9 @@ class FemBody : public mechanics::Body,
   void move_base(const std::optional<mechanics::AffineField>& displacement) override;
   const std::optional<mechanics::AffineField>& base_input() const override;
 
+  bool base_moved() const override;
+  Carried carried(int site, const mechanics::Patch* patch) const override;
+
   void set_load_factor(int load, double factor) override;
   Points load_forces() const override;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/fem/base_work.hpp"
 #include "sinew/fem/rounding_floor.hpp"
 #include "sinew/fem/tether_force.hpp"
 
@@ -238,10 +239,21 @@ mechanics::MotionReport FemStep::apply_motion(double scale) {
 mechanics::StepEnd FemStep::end_step(const mechanics::StepWeights& weights) {
   mechanics::StepEnd end;
   count_work(weights, end);
+  end.moved_from_outside = state_.tether.has_value() || state_.base.moves();
+  const bool carries = state_.base.moves();
+  if (carries) carried_force(weights);
+  if (carries && weights.dynamic()) count_base_inertia(state_, weights, end);
   elements_.end_step(weights.time_step);
   end.error = state_.end_step(weights);
-  end.moved_from_outside = state_.tether.has_value() || state_.base.moves();
+  if (carries) count_base_force(state_, inertia_.base(), span_of(imbalance_), end);
   return end;
+}
+
+// Internal and damping forces of the last linearisation into imbalance_.
+void FemStep::carried_force(const mechanics::StepWeights& weights) {
+  const auto forces = elements_.active().assembly.forces();
+  std::copy_n(forces.data(), imbalance_.size(), imbalance_.data());
+  if (weights.dynamic()) inertia_.add_stiffness_damping(weights, elements_.active(), imbalance_);
 }
 
 bool FemStep::can_carry_on() const {
@@ -267,14 +279,32 @@ void FemStep::add_velocity(std::span<const double> change) {
 void FemStep::count_work(const mechanics::StepWeights& weights, mechanics::StepEnd& end) {
   const RayleighDamping& damping = state_.model.settings().damping;
   if (weights.dynamic() && (damping.mass > 0.0 || damping.stiffness > 0.0)) {
-    end.damped = inertia_.damped_work(weights, elements_.active());
+    inertia_.count_damping(weights, elements_.active(), end);
   }
+  if (state_.tether) count_tether(weights, end);
   loads_.end_step(weights);
   for (const NodeId node : state_.model.elements().free_nodes()) {
     const Vector3 d = (state_.positions.row(node) - state_.start_positions.row(node)).transpose();
-    end.outside +=
-        (state_.external_forces.row(node) + loads_.forces().row(node)).dot(d.transpose());
-    end.damped -= loads_.drag().row(node).dot(d.transpose());
+    const Vector3 outside =
+        (state_.external_forces.row(node) + loads_.forces().row(node)).transpose();
+    const Vector3 drag = loads_.drag().row(node).transpose();
+    end.outside += outside.dot(d);
+    end.damped -= drag.dot(d);
+    if (!weights.dynamic()) continue;
+    const Vector3 v = state_.combined(weights.velocity, node);
+    end.power += outside.dot(v);
+    end.damping -= drag.dot(v);
+  }
+}
+
+void FemStep::count_tether(const mechanics::StepWeights& weights, mechanics::StepEnd& end) {
+  const mechanics::Tether& tether = *state_.tether;
+  const Vector3 now = tether_point(tether, state_.positions);
+  const Vector3 force = tether.stiffness * (tether.anchor - now);
+  end.outside += force.dot(now - tether_point(tether, state_.start_positions));
+  if (!weights.dynamic()) return;
+  for (std::size_t k = 0; k < 3; ++k) {
+    end.power += tether.weights[k] * force.dot(state_.combined(weights.velocity, tether.nodes[k]));
   }
 }
 

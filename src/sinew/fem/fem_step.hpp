@@ -65,6 +65,8 @@ class FemStep : public mechanics::StepSystem {
   void find_imbalance(std::span<const double> effort);
   void keep_positions();
   void leave_from_here();
+  void count_tether(const mechanics::StepWeights& weights, mechanics::StepEnd& end);
+  void carried_force(const mechanics::StepWeights& weights);
   void count_work(const mechanics::StepWeights& weights, mechanics::StepEnd& end);
 
   FemState& state_;

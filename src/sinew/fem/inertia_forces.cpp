@@ -35,17 +35,29 @@ double InertiaForces::add(const mechanics::StepWeights& weights, const SystemWor
   const double size = force_.norm();
   if (!workspace.damped) return size;
   if (first) base_.find_velocity(weights);
-  state_.combine(weights.velocity, motion_);
-  base_.subtract_velocity(motion_);
-  multiply_by_stiffness(workspace);
+  damp(weights, workspace);
   right -= damping.stiffness * force_;
   return size;
 }
 
+// K u into force_, with the velocities relative to the base in motion_.
+void InertiaForces::damp(const mechanics::StepWeights& weights, const SystemWorkspace& workspace) {
+  state_.combine(weights.velocity, motion_);
+  base_.subtract_velocity(motion_);
+  multiply_by_stiffness(workspace);
+}
+
+void InertiaForces::add_stiffness_damping(const mechanics::StepWeights& weights,
+                                          const SystemWorkspace& workspace, VectorX& force) {
+  if (!workspace.damped) return;
+  damp(weights, workspace);
+  force += state_.model.settings().damping.stiffness * force_;
+}
+
 // (C v) . d with C = alpha M + beta K of the step. K acts on velocities relative to the base, and
 // dissipates in the motion relative to the base; the rest of its work is done by the base.
-double InertiaForces::damped_work(const mechanics::StepWeights& weights,
-                                  const SystemWorkspace& workspace) {
+void InertiaForces::count_damping(const mechanics::StepWeights& weights,
+                                  const SystemWorkspace& workspace, mechanics::StepEnd& end) {
   const RayleighDamping& damping = state_.model.settings().damping;
   const auto nodes = state_.model.elements().free_nodes();
   const auto moved = [&](std::int32_t i) -> Vector3 {
@@ -60,18 +72,17 @@ double InertiaForces::damped_work(const mechanics::StepWeights& weights,
     }
     return sum;
   };
-  double work = 0.0;
   if (damping.mass > 0.0) {
     state_.combine(weights.velocity, motion_);
     multiply_by_mass(*workspace.system.elements);
     base_.add_momentum(weights.velocity, force_);
-    work += damping.mass * along(moved);
+    end.damped += damping.mass * along(moved);
+    end.damping += damping.mass * force_.dot(motion_);
   }
-  if (!workspace.damped) return work;
-  state_.combine(weights.velocity, motion_);
-  base_.subtract_velocity(motion_);
-  multiply_by_stiffness(workspace);
-  return work + damping.stiffness * along(strayed);
+  if (!workspace.damped) return;
+  damp(weights, workspace);
+  end.damped += damping.stiffness * along(strayed);
+  end.damping += damping.stiffness * force_.dot(motion_);
 }
 
 double InertiaForces::kinetic_energy() {

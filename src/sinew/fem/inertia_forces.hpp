@@ -24,9 +24,15 @@ class InertiaForces {
   /// @return the norm of the part from masses, M (a + alpha v), N.
   double add(const mechanics::StepWeights& weights, const SystemWorkspace& workspace, bool first,
              VectorX& right);
-  /// Energy dissipated by damping, J; call it at the end of the step. @param weights of the step.
-  /// @param workspace of its last linearisation.
-  double damped_work(const mechanics::StepWeights& weights, const SystemWorkspace& workspace);
+  /// Adds the energy dissipated by damping, and its power, to `end`; call it at the end of the
+  /// step.
+  /// @param weights of the step. @param workspace of its last linearisation. @param end added to.
+  void count_damping(const mechanics::StepWeights& weights, const SystemWorkspace& workspace,
+                     mechanics::StepEnd& end);
+  /// Adds beta K u, the damping force by velocities relative to the base. @param weights,workspace
+  /// as before. @param force (3 free,) N, added to.
+  void add_stiffness_damping(const mechanics::StepWeights& weights,
+                             const SystemWorkspace& workspace, VectorX& force);
   double kinetic_energy();  ///< J, of the current state
 
   std::size_t bytes() const {
@@ -37,6 +43,7 @@ class InertiaForces {
  private:
   void multiply_by_mass(const FemModel& elements);
   void multiply_by_stiffness(const SystemWorkspace& workspace);
+  void damp(const mechanics::StepWeights& weights, const SystemWorkspace& workspace);
 
   FemState& state_;
   BaseCarry base_;

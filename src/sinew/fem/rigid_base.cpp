@@ -17,6 +17,7 @@ AffineField RigidBase::combine(const mechanics::Combination& weights) const {
 }
 
 void RigidBase::end_step(const mechanics::StepWeights& weights) {
+  moved_ = moves();
   const bool dynamic = weights.dynamic();
   const AffineField none = AffineField::Zero();
   const AffineField velocity = dynamic ? combine(weights.velocity) : none;
@@ -35,6 +36,7 @@ void RigidBase::restart() {
   start_.setZero();
   velocity_.setZero();
   for (AffineField& kept : history_) kept.setZero();
+  moved_ = false;
 }
 
 bool RigidBase::moves() const {
@@ -64,6 +66,7 @@ void RigidBase::load_state(std::span<const double> state) {
   take(velocity_);
   for (AffineField& kept : history_) take(kept);
   start_ = displacement_;
+  moved_ = false;
 }
 
 }  // namespace sinew::fem

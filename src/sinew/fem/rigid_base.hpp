@@ -38,6 +38,8 @@ class RigidBase {
 
   /// Whether the base moves in this step, or its velocity or history is not zero.
   bool moves() const;
+  /// Whether it moved in the last step.
+  bool moved() const { return moved_; }
   /// A combination of its motion in this step, its start velocity and its history.
   AffineField combine(const mechanics::Combination& weights) const;
   /// Velocity at the start of the step.
@@ -62,6 +64,7 @@ class RigidBase {
   AffineField start_;         // at the start of the step
   AffineField velocity_;
   std::vector<AffineField> history_;
+  bool moved_ = false;
 };
 
 }  // namespace sinew::fem

@@ -25,6 +25,7 @@ enum class Outside;
 namespace sinew::mechanics {
 
 class SurfaceTrace;
+struct Patch;
 
 /// A capability of a Body or BodyModel; null if it lacks the capability.
 template <class Capability, class Owner>
@@ -69,6 +70,17 @@ class HasBase {
   /// stays. An input.
   virtual void move_base(const std::optional<AffineField>& displacement) = 0;
   virtual const std::optional<AffineField>& base_input() const = 0;
+
+  /// The part of a site that is fixed to the base: its motion in the last step, m or rad, and its
+  /// velocity at the end, m/s or rad/s, both (3,). Of a mean of several nodes, the share of the
+  /// fixed ones.
+  struct Carried {
+    Vector3 motion = Vector3::Zero(), velocity = Vector3::Zero();
+  };
+  /// Whether the base moved in the last step.
+  virtual bool base_moved() const = 0;
+  /// @param site number on the body. @param patch of a SurfaceSite; null for other sites.
+  virtual Carried carried(int site, const Patch* patch) const = 0;
 };
 
 /// A body model that may have a base.

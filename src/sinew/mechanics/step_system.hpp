@@ -57,9 +57,13 @@ struct MotionReport {
 
 /// Result of the step of a body. Work, in J, is that of the forces of the last linearisation.
 struct StepEnd {
-  double error = 0.0;    ///< m, an estimate of the largest error in any coordinate
-  double outside = 0.0;  ///< work of loads and external forces, without gravity
+  double error = 0.0;  ///< m, an estimate of the largest error in any coordinate
+  /// Work of loads, external forces and tethers, and of the base on the body, without gravity. The
+  /// work of rows on what is fixed to the base is not included (HasBase::carried()).
+  double outside = 0.0;
   double damped = 0.0;   ///< energy dissipated by damping and drag
+  double power = 0.0;    ///< W, that of `outside` at the end of the step
+  double damping = 0.0;  ///< W, dissipated by damping and drag at the end of the step
   /// The body was moved by something that the energy ledger does not count: its base, or a tether.
   bool moved_from_outside = false;
 };

@@ -96,7 +96,9 @@ mechanics::StepEnd ArmStep::end_step(const mechanics::StepWeights& weights) {
     return end;
   }
   state_.combine(weights.velocity, new_rate_);
-  end.damped = model_.arm().damping().cwiseProduct(new_rate_).dot(state_.q - state_.start);
+  const auto moment = model_.arm().damping().cwiseProduct(new_rate_);
+  end.damped = moment.dot(state_.q - state_.start);
+  end.damping = moment.dot(new_rate_);
   end.error = weights.error_jump * keep_motion(weights) * model_.arm().length();
   return end;
 }

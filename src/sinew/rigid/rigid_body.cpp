@@ -33,7 +33,9 @@ const Points& RigidBody::velocities() const { return skin_->velocities(); }
 const Points& RigidBody::surface_nodes() const { return surface_->positions(); }
 const Points& RigidBody::surface_node_velocities() const { return surface_->velocities(); }
 
+// What moves a fixed body also provides its energy.
 mechanics::Energies RigidBody::energies() {
+  if (model_.has_base()) return {};
   const Matrix3 turn = state_->pose.rotation.toRotationMatrix();
   const Vector3 spin = turn.transpose() * angular_velocity();
   const Vector3 fallen = state_->pose.centre - model_.centre();
@@ -62,6 +64,24 @@ void RigidBody::move_base(const std::optional<mechanics::AffineField>& displacem
 }
 
 const std::optional<mechanics::AffineField>& RigidBody::base_input() const { return state_->asked; }
+
+bool RigidBody::base_moved() const {
+  return model_.has_base() && !(state_->motion().isZero(0.0) && state_->rate.isZero(0.0));
+}
+
+mechanics::HasBase::Carried RigidBody::carried(int site, const mechanics::Patch* patch) const {
+  const auto& at = model_.attachment(site);
+  if (patch == nullptr && at.kind == RigidBodyModel::Attachment::Kind::orientation) {
+    return {state_->motion().tail<3>() / model_.turning_radius(), angular_velocity()};
+  }
+  const Vector3 arm = patch == nullptr
+                          ? at.arm
+                          : Vector3(patch->mean(model_.rest_surface_nodes()) - model_.centre());
+  const RigidPose &now = state_->pose, &start = state_->start;
+  const Vector3 lever = now.rotation * arm;
+  return {now.centre + lever - start.centre - start.rotation * arm,
+          linear_velocity() + angular_velocity().cross(lever)};
+}
 
 void RigidBody::follow_base() { state_->follow_base(); }
 

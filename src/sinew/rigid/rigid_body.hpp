@@ -48,6 +48,8 @@ class RigidBody : public mechanics::Body,
   bool base_can_move() const override;
   void move_base(const std::optional<mechanics::AffineField>& displacement) override;
   const std::optional<mechanics::AffineField>& base_input() const override;
+  bool base_moved() const override;
+  Carried carried(int site, const mechanics::Patch* patch) const override;
   void follow_base() override;
   void set_base_rate(const Vector3& linear, const Vector3& angular) override;
 

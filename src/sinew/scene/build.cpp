@@ -50,6 +50,7 @@ SceneController controller_of(const ControllerDescription& description, const si
 
 sim::StepSettings step_settings(const SceneDescription& scene) {
   sim::StepSettings step;
+  step.place = scene.integrator_place;
   step.time_step = scene.time_step;
   step.integrator = scene.integrator;
   step.spectral_radius = scene.spectral_radius;

@@ -452,6 +452,7 @@ struct SceneDescription {
   Location gravity_place;
   double time_step = 0.01;  ///< s
   Integrator integrator = Integrator::quasi_static;
+  Location integrator_place;
   double spectral_radius = 0.8;  ///< of generalized-alpha
   double restitution = 0.0;      ///< of event-driven integration
   SolverDescription solver;

@@ -53,7 +53,9 @@ std::shared_ptr<const KeyTable> integrator_table() {
             .default_text = "0.8",
             .description =
                 "Generalized-alpha: spectral radius at infinite frequency, by which a step "
-                "multiplies the fastest motions. 1 conserves energy, 0 damps most."},
+                "multiplies the fastest motions: 0 damps most, 1 does not damp. Robots with a "
+                "held motion (a joint, a motor, a cable of commanded length, a weld) need "
+                "0.95 or less."},
            {.name = "restitution",
             .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
             .example = "0.6",

@@ -15,6 +15,7 @@ namespace {
 
 void read_integrator(const Fields& fields, SceneDescription& scene) {
   std::string word = "quasi-static";
+  scene.integrator_place = fields.place("integrator");
   if (fields.find("integrator") == nullptr) return;
   if (fields.form("integrator").shape == Shape::choice) {
     fields.read_word("integrator", word);

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "sinew/core/error.hpp"
+#include "sinew/sim/held_rows.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/state.hpp"
 #include "sinew/step/step_problem.hpp"
@@ -99,10 +102,18 @@ void Actuation::command(int actuator, Command command, const void* by) {
                 {.item = model_.actuators()[static_cast<std::size_t>(actuator)].name},
                 "a controller owns this actuator", "detach the controller first");
   }
+  check_held(actuator, command);
   state.command = std::move(command);
 }
 
+void Actuation::check_held(int actuator, const Command& command) const {
+  const ActuatorModel& model = model_.actuators()[static_cast<std::size_t>(actuator)];
+  if (!keeps_effort_errors(model_.step()) || !model.holds_motion(command.kind)) return;
+  check_held_radius(model_.step(), fmt::format("the command of '{}' holds", model.name));
+}
+
 void Actuation::set_commands(const std::vector<Command>& commands) {
+  for (std::size_t i = 0; i < states_.size(); ++i) check_held(static_cast<int>(i), commands[i]);
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const bool told = states_[i].owner != nullptr && !states_[i].chosen;
     if (!told) states_[i].command = commands[i];

@@ -63,6 +63,7 @@ class Actuation {
 
  private:
   std::span<double> numbers_of(std::size_t actuator);
+  void check_held(int actuator, const Command& command) const;
 
   const Model& model_;
   std::vector<ActuatorState> states_;

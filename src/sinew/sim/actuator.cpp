@@ -56,6 +56,11 @@ const std::vector<std::string_view>& command_quantities() {
   return names;
 }
 
+bool ActuatorModel::holds_motion(CommandKind kind) const {
+  if (kind == CommandKind::input) return joint >= 0;
+  return kind == CommandKind::motion && (drive == nullptr || !drive->acts_on(kind));
+}
+
 QuantityName ActuatorModel::input_name() const {
   if (drive != nullptr) return drive->input();
   return joint >= 0 ? words().inputs[0] : QuantityName{};

@@ -69,6 +69,8 @@ struct ActuatorModel {
   QuantityName quantity(CommandKind kind) const;
   /// The kind of command for this quantity; none if the actuator does not accept it.
   std::optional<CommandKind> kind_of(std::string_view quantity) const;
+  /// Whether a command of this kind prescribes the motion, and any effort that it takes.
+  bool holds_motion(CommandKind kind) const;
   /// Whether a controller may choose its effort: true without a drive.
   bool controllable() const { return drive == nullptr || drive->controllable(); }
 };

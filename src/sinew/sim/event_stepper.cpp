@@ -54,7 +54,6 @@ void EventStepper::step(double begin, double time_step) {
   report.substeps = 0;
   report.error = 0.0;
   longest_ = time_step;
-  moved_bases_ = false;
   const Events events(run_.world.contacts());
   make_parts(begin, time_step);
 }
@@ -135,8 +134,6 @@ bool EventStepper::turns_too_far(double length) {
 // What the midpoint rule leaves of velocities along rows that are held; and backward Euler, where
 // bodies are held on what moves by itself: it gives them the mean velocity of that.
 void EventStepper::hold(double time) {
-  using mechanics::StepEnd;
-  moved_bases_ |= std::ranges::any_of(run_.world.bodies().ends(), &StepEnd::moved_from_outside);
   const bool joins = carried_on_ && !run_.world.problem().bilaterals.empty();
   const bool moves = !run_.model->base_motions().empty() || run_.world.contacts().planes().moves();
   if (moves) {

@@ -36,8 +36,6 @@ class EventStepper {
   /// Advances the run by a time step.
   /// @param begin,time_step s. Throws Error, after which the run is at some time within the step.
   void step(double begin, double time_step);
-  /// Whether a base has moved in the step.
-  bool moved_bases() const { return moved_bases_; }
   std::size_t bytes() const { return sizeof(double) * (start_.size() + struck_.size()); }
 
  private:
@@ -62,7 +60,6 @@ class EventStepper {
   int strikes_ = 0;                    // impacts since struck_
   double longest_ = 0.0;               // s, longest part of this step that has not failed
   bool carried_on_ = false;            // whether the last part followed the midpoint rule
-  bool moved_bases_ = false;           // whether a base moved in any part
   std::vector<double> effort_before_;  // (rows,) N
 };
 

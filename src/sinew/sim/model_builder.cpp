@@ -11,6 +11,7 @@
 #include "sinew/rigid/rigid_settings.hpp"
 #include "sinew/sim/add_parts.hpp"
 #include "sinew/sim/body_holding.hpp"
+#include "sinew/sim/held_rows.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/stiffness_pairs.hpp"
 
@@ -124,6 +125,7 @@ int ModelBuilder::add_estimator(const EstimatorSettings& settings) {
 }
 
 std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSettings& settings) {
+  check_held_radius(data_);
   hold_bodies(data_, places_);
   add_couplings(data_);
   // Transient rows come after all others, which keep their numbers in a step's problem.

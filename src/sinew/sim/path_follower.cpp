@@ -131,7 +131,7 @@ std::vector<PathPoint> PathFollower::follow(const std::function<void()>& visit) 
     length = std::min(longest, length * std::clamp(kWantedIterations / iterations, 0.5, 2.0));
   }
   run_.last_step = 0.0;
-  run_.ledger.restart();
+  run_.ledger.rest();
   return path;
 }
 

@@ -39,6 +39,12 @@ mechanics::StepWeights Run::step_weights(double time_step) const {
                                  settings.spectral_radius);
 }
 
+Quadrature Run::quadrature() const {
+  const StepSettings& settings = model->step();
+  const bool back = mechanics::history_count(settings.integrator) > 0 && last_step > 0.0;
+  return back || !settings.dynamic() ? Quadrature::trapezoid : Quadrature::one_force;
+}
+
 mechanics::LinearisationRequest Run::request(double time_step) const {
   return {step_weights(time_step), model->step().tangent,
           model->geometric_stiffness().extends_pattern, true};

@@ -38,6 +38,8 @@ struct Run {
   double time() const { return static_cast<double>(steps) * model->step().time_step; }  ///< s
   /// Integrator weights of the next step. @param time_step s.
   mechanics::StepWeights step_weights(double time_step) const;
+  /// How the work of the next step is computed.
+  Quadrature quadrature() const;
   mechanics::LinearisationRequest request(double time_step) const;
   /// Writes limits and commands of the actuators into the step's problem. @param time s, the end of
   /// the step. @param time_step s; infinity removes the rate limits.

@@ -7,6 +7,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/sim/commander.hpp"
 #include "sinew/sim/contact_reader.hpp"
+#include "sinew/sim/held_rows.hpp"
 #include "sinew/sim/inputs.hpp"
 #include "sinew/sim/path_follower.hpp"
 #include "sinew/sim/run.hpp"
@@ -164,6 +165,7 @@ void Simulation::attach(step::Controller& controller, std::span<const int> actua
                 "choose backward-euler or bdf2 for a robot with a controller");
   }
   require_free(&controller);
+  check_held_radius(model().step(), "a controller holds");
   run_->controller = &controller;
   run_->actuation.own(&controller, actuators);
   run_->world.contacts().want(contacts);

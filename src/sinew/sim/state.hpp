@@ -13,18 +13,23 @@ namespace sinew::sim {
 /// The work done on the bodies of a run and the energy dissipated, J, with reference values to
 /// detect spurious gains of energy.
 struct EnergyLedger {
-  /// J: work of all actuators, the sum of effort times change of motion with the effort that acted
-  /// through each step; likewise of loads, external forces and moving surfaces (gravity counts as
-  /// stored energy), and of changes of stiffness factors; energy dissipated by damping, drag, cable
-  /// friction, contact friction and impacts.
+  /// J: work of all actuators, by the quadrature of the integrator (Quadrature); likewise of loads,
+  /// external forces and moving surfaces (gravity counts as stored energy), and of changes of
+  /// stiffness factors; energy dissipated by damping, drag, cable friction, contact friction and
+  /// impacts.
   double actuators = 0.0, outside = 0.0, dissipated = 0.0;
+  double power = 0.0;    ///< W, of loads and external forces at the end of the last step
+  double damping = 0.0;  ///< W, dissipated by damping and drag at the end of the last step
   double begun = 0.0;    ///< 1 once gains are monitored, see WorkLedger::open()
   double start = 0.0;    ///< J, stored energy less put_in() when monitoring began
-  double largest = 0.0;  ///< J, largest strain plus kinetic energy, or |put_in()|, since then
+  double largest = 0.0;  ///< J, largest strain plus kinetic energy since then
+  double through = 0.0;  ///< J, sum of the sizes of all work in the present window
+  double settled = 0.0;  ///< J, what was gained before the present window
+  double gained = 0.0;   ///< J, excess of gain over what the integrator may cause, one step ago
 
   double put_in() const { return actuators + outside - dissipated; }
   /// Restarts the monitoring with the next step.
-  void restart() { begun = start = largest = 0.0; }
+  void restart() { begun = start = largest = through = settled = gained = 0.0; }
   bool operator==(const EnergyLedger&) const = default;
 };
 
@@ -70,9 +75,14 @@ struct State {
     visitor("actuators' work", state.ledger.actuators);
     visitor("outside work", state.ledger.outside);
     visitor("dissipation", state.ledger.dissipated);
+    visitor("outside power", state.ledger.power);
+    visitor("damping power", state.ledger.damping);
     visitor("watched", state.ledger.begun);
     visitor("energy at the start", state.ledger.start);
     visitor("largest energy", state.ledger.largest);
+    visitor("energy through", state.ledger.through);
+    visitor("energy settled", state.ledger.settled);
+    visitor("energy gained", state.ledger.gained);
     visitor("volume ratio", state.volume_ratio);
     visitor("residual", state.residual);
     visitor("last step", state.last_step);

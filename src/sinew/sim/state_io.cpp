@@ -1,5 +1,7 @@
 #include "sinew/sim/state_io.hpp"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -25,7 +27,25 @@ static_assert(std::endian::native == std::endian::little,
 
 constexpr std::string_view kMagic = "SINEWST\n";
 constexpr std::size_t kWord = 8;
-constexpr std::uint32_t kFirstWithJoints = 7, kFirstWithPoints = 8;
+
+// What older versions lack, and the first version with it.
+constexpr std::array<std::pair<std::string_view, std::uint32_t>, 9> kIntroduced = {
+    {{"joints", 7},
+     {"points", 8},
+     {"sensors", 9},
+     {"estimators", 10},
+     {"outside power", 11},
+     {"damping power", 11},
+     {"energy through", 11},
+     {"energy settled", 11},
+     {"energy gained", 11}}};
+
+bool lacks(std::uint32_t version, std::string_view part) {
+  return std::ranges::any_of(kIntroduced, [&](const auto& introduced) {
+    return introduced.first == part && version < introduced.second;
+  });
+}
+
 constexpr std::size_t kPreamble = 2 * kWord;  // magic and version
 
 [[noreturn]] void corrupt(const std::string& name, const std::string& what) {
@@ -154,13 +174,7 @@ SavedState read(std::string_view bytes, const std::string& name) {
   state.steps = saved.header.steps;
   state.bodies.resize(reader.count());
   State::visit(state, [&](std::string_view part, auto& numbers) {
-    // Older versions had no moving joints, no contacts between surfaces, no sensors and no
-    // estimators.
-    const bool lacks = (part == "joints" && saved.header.version < kFirstWithJoints) ||
-                       (part == "points" && saved.header.version < kFirstWithPoints) ||
-                       (part == "sensors" && saved.header.version <= kVersionWithoutSensors) ||
-                       (part == "estimators" && saved.header.version <= kVersionWithoutEstimators);
-    if (!lacks) reader.number(numbers);
+    if (!lacks(saved.header.version, part)) reader.number(numbers);
   });
   if (!reader.done()) corrupt(name, "something follows the last number");
   saved.header.count = state.size();
@@ -176,11 +190,7 @@ std::string format_state(const Simulation& simulation) {
 std::string format_state(const State& state, const Model& model) {
   Writer writer;
   writer.append(kMagic.data(), kMagic.size());
-  const bool concludes = !state.estimators.empty(), senses = !state.sensors.empty() || concludes;
-  const std::uint32_t version[2] = {concludes ? kStateVersion
-                                    : senses  ? kVersionWithoutEstimators
-                                              : kVersionWithoutSensors,
-                                    0};
+  const std::uint32_t version[2] = {kStateVersion, 0};
   writer.append(version, sizeof version);
   writer.word(model.fingerprint());
   writer.word(static_cast<std::uint64_t>(state.steps));
@@ -190,10 +200,7 @@ std::string format_state(const State& state, const Model& model) {
     writer.text(part.name);
   }
   writer.word(state.bodies.size());
-  State::visit(state, [&](std::string_view part, const auto& numbers) {
-    const bool lacks = (part == "sensors" && !senses) || (part == "estimators" && !concludes);
-    if (!lacks) writer.number(numbers);
-  });
+  State::visit(state, [&](std::string_view, const auto& numbers) { writer.number(numbers); });
   return writer.finish();
 }
 

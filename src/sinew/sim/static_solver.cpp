@@ -62,7 +62,7 @@ StaticReport StaticSolver::run() {
   search_.begin();
   run_.world.bodies().end_step({});
   run_.last_step = 0.0;
-  run_.ledger.restart();
+  run_.ledger.rest();
   run_.finish_step();
   run_.actuation.advance_drives(run_.world.problem().actuators);
   return report_;

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "sinew/core/error.hpp"
 #include "sinew/mechanics/integrator.hpp"
 #include "sinew/mechanics/tangent.hpp"
 
@@ -30,10 +31,12 @@ inline constexpr double kLastingTolerance = 1e-8;
 
 /// How each step is solved.
 struct StepSettings {
+  Location place;           ///< where the scene names the integrator, for messages
   double time_step = 0.01;  ///< s, > 0
   mechanics::Integrator integrator = mechanics::Integrator::quasi_static;
-  double spectral_radius = 0.8;  ///< of generalized-alpha at infinite frequency, 0 to 1
-  double restitution = 0.0;      ///< of event-driven integration, 0 to 1: default of the contacts
+  /// Of generalized-alpha at infinite frequency, 0 to 1; see check_held_radius().
+  double spectral_radius = 0.8;
+  double restitution = 0.0;  ///< of event-driven integration, 0 to 1: default of the contacts
   std::optional<AdaptiveStep> adaptive;
   Method method = Method::newton;
   /// The exact tangent includes the geometric stiffness of all cables; without it, the tangent of a

@@ -210,15 +210,8 @@ void Stepper::judge() {
   if (run_.model->step().dynamic()) watch_energy();
 }
 
-// Restarts the monitoring if a moving base or an external force outside the ledger supplied energy.
 void Stepper::watch_energy() {
   const Bodies& bodies = run_.world.bodies();
-  const bool events = run_.model->step().event_driven();
-  if (events ? events_.moved_bases()
-             : std::ranges::any_of(bodies.ends(), &mechanics::StepEnd::moved_from_outside)) {
-    run_.ledger.restart();
-    return;
-  }
   run_.report.energy_gained = run_.ledger.gained(run_.world.bodies().energies());
   const double nothing = kNoEnergy * bodies.force_scale() * run_.model->size();
   if (run_.ledger.is_excessive(run_.report.energy_gained, nothing)) {

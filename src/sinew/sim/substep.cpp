@@ -161,9 +161,10 @@ double Substep::end(double time_step) {
 }
 
 double Substep::end_once(double time_step) {
+  const Quadrature quadrature = run_.quadrature();
   const double error = run_.world.bodies().end_step(run_.step_weights(time_step));
   run_.last_step = jumps() ? 0.0 : time_step;
-  count();
+  count(quadrature, time_step);
   return error;
 }
 
@@ -196,7 +197,7 @@ bool Substep::has_gained() const {
 void Substep::end_as_midpoint(double time_step) {
   run_.world.bodies().end_step(mechanics::midpoint_weights(time_step));
   run_.last_step = time_step;
-  count();
+  count(Quadrature::one_force, time_step);
   end_zones();
 }
 
@@ -206,10 +207,26 @@ void Substep::end_zones() {
       run_.world.contacts().end_zones(run_.world.problem(), run_.world.numbering(), run_.effort);
 }
 
-void Substep::count() {
+void Substep::count(Quadrature quadrature, double time_step) {
   run_.finish_step();
   run_.actuation.advance_drives(run_.world.problem().actuators);
-  run_.ledger.count(*run_.model, run_.world, run_.actuation, run_.effort);
+  run_.ledger.count(*run_.model, run_.world, run_.actuation,
+                    {.effort_before = run_.before.efforts,
+                     .effort = run_.effort,
+                     .quadrature = quadrature,
+                     .length = time_step,
+                     .dynamic = run_.model->step().dynamic()});
+  if (lands_by_bdf2_ && run_.last_step == 0.0) limit_dissipation();
+}
+
+// In a BDF2 step that stops a point, the force at its end times the motion in it can be more than
+// the energy that the impact dissipates, which is known: what the bodies lost and was put in.
+void Substep::limit_dissipation() {
+  const EnergyLedger &before = run_.before.ledger, &now = run_.ledger.sums();
+  const double dissipated = now.dissipated - before.dissipated;
+  const double put_in = now.put_in() - before.put_in();
+  const double gain = run_.world.bodies().energies().total() - energy_before_ - put_in;
+  run_.ledger.count_less_dissipation(std::clamp(gain, 0.0, std::max(dissipated, 0.0)));
 }
 
 }  // namespace sinew::sim

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "sinew/sim/work_ledger.hpp"
 #include "sinew/step/step_problem.hpp"
 
 namespace sinew::sim {
@@ -47,7 +48,8 @@ class Substep {
   bool lands() const;
   bool jumps() const;
   bool has_gained() const;
-  void count();
+  void limit_dissipation();
+  void count(Quadrature quadrature, double time_step);
 
   Run& run_;
   bool stops_points_ = false;   // whether points that moved at the start of the part are stopped

@@ -1,0 +1,129 @@
+"""The watch of the energy of dynamic runs."""
+
+import math
+
+import numpy as np
+import sinew
+
+TITLE = "Energy: right runs are not flagged, runs that gain energy are"
+SETUP = """Random robots of six families: a mass on a slider with a periodic motor force; a pendulum with a motor torque or a motor
+that follows a periodic angle; a soft block that a periodic force shakes; a soft block on a base that shakes it; a soft block that
+cables or a chamber-like pressure load pull; a rigid box and a ball that fall on a plane and slide. Integrators, periods, loads and
+steps are random; steps divide the period by 12 to 120. A run counts as right if its motion agrees with that of a quarter of the
+step within 5 % of its amplitude. None of its steps should say `gaining-energy`; 1 % may.
+
+Runs that gain energy are soft beams that swing with one corotated linearisation in each step, whose error puts energy in, and
+robots whose velocities a script multiplies between steps. Each should be flagged."""
+SOURCES = {"ledger": "work of the integrator's own quadrature, sim/work_ledger.hpp",
+           "Hairer": "E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), sections VI.4, IX"}
+COST = 200
+G = 9.81
+
+
+def sine(quantity, amplitude, period, phase=0.0):
+    return {quantity: {"sine": {"amplitude": amplitude, "period": period, "phase": phase}}}
+
+
+def integrator_of(random):
+    kind = random.choice(["bdf2", "generalized-alpha", "backward-euler", "bdf2", "generalized-alpha"])
+    if kind != "generalized-alpha":
+        return str(kind)
+    return {"type": "generalized-alpha", "spectral_radius": float(random.choice([0.0, 0.5, 0.8, 0.95]))}
+
+
+def block(random, **more):
+    modulus = float(10 ** random.uniform(4.5, 6.0))
+    return {"type": "fem", "mesh": {"shape": "block", "length": 0.02, "width": 0.02, "height": 0.08, "element_size": 0.02},
+            "element": "hex8", "material": {"model": "neo-hookean", "young_modulus": modulus, "poisson_ratio": 0.4}, "density": 1000.0,
+            "damping": {"stiffness": float(random.choice([0.0, 1e-4, 2e-3]))}, "fixed": [{"set": "z_min"}], **more}
+
+
+def slider(random, period):
+    return {"bodies": {"b": {"type": "rigid", "shape": {"box": [0.02] * 3}, "mass": 0.2}},
+            "joints": {"j": {"type": "slider", "bodies": ["world", "b"], "point": [0, 0, 0], "axis": "x"}},
+            "actuators": {"m": {"type": "linear-motor", "joint": "j",
+                                "command": sine("force", float(random.uniform(0.1, 3)), period, float(random.uniform(0, 6)))}}}
+
+
+def pendulum(random, period):
+    length = float(random.uniform(0.1, 0.4))
+    angle = random.random() < 0.4
+    command = (sine("angle", float(random.uniform(0.1, 0.9)), period) if angle
+               else sine("torque", float(random.uniform(0.01, 0.12)), period))
+    return {"gravity": [0, 0, -G],
+            "bodies": {"b": {"type": "rigid", "shape": {"box": [0.02, 0.02, length]}, "mass": 0.2, "pose": {"position": [0, 0, -length / 2]}}},
+            "joints": {"j": {"type": "hinge", "bodies": ["world", "b"], "point": [0, 0, 0], "axis": "y",
+                             **({"friction": 0.005} if random.random() < 0.3 else {})}},
+            "actuators": {"m": {"type": "motor", "joint": "j", "command": command}}}
+
+
+def shaken(random, period):
+    return {"gravity": [0, 0, float(random.choice([0.0, -G]))], "bodies": {"b": block(random)},
+            "actuators": {"f": {"type": "force", "body": "b", "point": [0.01, 0.01, 0.08], "direction": [1, 0, 0],
+                                "command": sine("force", float(random.uniform(0.005, 0.05)), period)}}}
+
+
+def carried(random, period):
+    base = {"x": {"sine": {"amplitude": float(random.uniform(0.001, 0.01)), "period": period}}}
+    return {"gravity": [0, 0, float(random.choice([0.0, -G]))], "bodies": {"b": block(random, base=base)}}
+
+
+def pulled(random, period):
+    points = [[0.017, 0.01, z] for z in (0.0, 0.04, 0.08)]
+    size = float(random.uniform(0.05, 0.4))
+    cable = {"type": "cable", "body": "b", "points": points,
+             "command": {"tension": {"sine": {"amplitude": size, "period": period, "mean": size}}}}
+    loads = {"p": {"type": "pressure", "body": "b", "faces": {"set": "x_min"},
+                   "pressure": {"sine": {"amplitude": float(random.uniform(5, 60)), "period": 0.7 * period}}}}
+    return {"bodies": {"b": block(random)}, "actuators": {"c": cable}, "loads": loads}
+
+
+def falling(random, period):
+    ball = random.random() < 0.5
+    shape = {"sphere": {"radius": 0.02}} if ball else {"box": [0.04, 0.03, 0.02]}
+    return {"gravity": [0, 0, -G],
+            "bodies": {"b": {"type": "rigid", "shape": shape, "mass": 0.1, "pose": {"position": [0, 0, 0.02 + float(random.uniform(0.01, 0.1))]},
+                             "velocity": {"linear": [float(random.uniform(0, 1)), 0, 0]}}},
+            "contacts": {"floor": {"body": "b", "friction": float(random.choice([0.0, 0.3, 0.8])), "surface": {"plane": {}}}}}
+
+
+FAMILIES = (slider, pendulum, shaken, carried, pulled, falling)
+
+
+def scene_of(seed):
+    random = np.random.default_rng(seed)
+    family = FAMILIES[seed % len(FAMILIES)]
+    period = float(random.uniform(0.2, 1.0))
+    scene = {"sinew": 1, "integrator": integrator_of(random), **family(random, period)}
+    scene["time_step"] = period / int(10 ** random.uniform(math.log10(12), math.log10(120)))
+    return scene, 4.0 * period
+
+
+def motion(scene, duration, divide=1):
+    """Positions of the body at the steps of the undivided run, the number of flagged steps, and the ledger's imbalance."""
+    step = scene["time_step"] / divide
+    sim = sinew.load({**scene, "time_step": step})
+    body = sim.body("b")
+    path, flagged = [], 0
+    for k in range(1, divide * round(duration / scene["time_step"]) + 1):
+        sim.step(keep_going=True) if False else sim.step()
+        flagged += sim.report.status == "gaining-energy"
+        if k % divide == 0:
+            path.append(np.array(body.positions if body.positions.size else body.position).ravel())
+    return np.array(path), flagged, dict(sim.ledger)
+
+
+def study(seeds):
+    """(flagged right runs, right runs, largest loss) of these seeds."""
+    wrong, right, found = [], 0, []
+    for seed in seeds:
+        scene, duration = scene_of(seed)
+        path, flagged, ledger = motion(scene, duration)
+        fine, _, _ = motion(scene, duration, 4)
+        amplitude = np.abs(fine - fine[0]).max()
+        agrees = np.abs(path - fine).max() <= 0.05 * amplitude
+        right += bool(agrees)
+        found.append((seed, bool(agrees), flagged, ledger))
+        if agrees and flagged:
+            wrong.append(seed)
+    return wrong, right, found
