@@ -153,8 +153,13 @@ class NewtonSolver {
     return inverted ? NewtonStatus::inverted : NewtonStatus::stalled;
   }
 
+  // Without an iteration, the report is that of the state at the start.
   NewtonReport finish(NewtonStatus status) {
-    report_.status = status;
+    if (report_.iterations == 0) merit();
+    report_.sanity = examine(world_, effort_);
+    report_.motion.volume = report_.sanity.volume;
+    const bool lost = status == NewtonStatus::converged && !report_.sanity.sound();
+    report_.status = lost ? NewtonStatus::unphysical : status;
     return report_;
   }
 
@@ -188,6 +193,8 @@ std::string_view newton_status_name(NewtonStatus status) {
       return "singular";
     case NewtonStatus::law_failed:
       return "law-failed";
+    case NewtonStatus::unphysical:
+      return "unphysical";
   }
   return "unknown";
 }

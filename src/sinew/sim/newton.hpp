@@ -7,6 +7,7 @@
 
 #include "sinew/mechanics/step_system.hpp"
 #include "sinew/sim/newton_status.hpp"
+#include "sinew/sim/sanity.hpp"
 #include "sinew/step/law_status.hpp"
 
 namespace sinew::step {
@@ -50,6 +51,7 @@ struct NewtonReport {
   int tangent_fallbacks = 0;  ///< iterations in which the exact tangent was indefinite
   step::LawStatus law = step::LawStatus::solved;
   mechanics::MotionReport motion;
+  Sanity sanity;  ///< of the state at the end
 };
 
 /// Runs Newton's method from the world's present state. On return, the bodies are linearised at the

@@ -42,15 +42,23 @@ long Simulation::work_done(int thread) const { return run_->pool.parts_done(thre
 double Simulation::time() const { return run_->time(); }
 std::int64_t Simulation::steps() const { return run_->steps; }
 
-const StepReport& Simulation::step() {
-  if (run_->commander != nullptr) {
-    step_by_command();
-  } else {
-    stepper_->step();
+const StepReport& Simulation::step(OnFailure on_failure) {
+  run_->keeps_going = on_failure == OnFailure::keep_going;
+  try {
+    make_step();
+  } catch (...) {
+    run_->keeps_going = false;
+    throw;
   }
+  run_->keeps_going = false;
   run_->sensors.advance(*run_);
   run_->estimators.advance(*run_);
   return run_->report;
+}
+
+void Simulation::make_step() {
+  if (run_->commander != nullptr) return step_by_command();
+  stepper_->step();
 }
 
 // A failed step restores the commander, too.

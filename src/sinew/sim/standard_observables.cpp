@@ -429,7 +429,7 @@ void add_report(Observables& list) {
   if (zones) parts.push_back(number(ObservableKind::report, "contact_aggregation"));
   parts.push_back(number(ObservableKind::status, "status"));
   parts.back().words = {{kStart, "start"}};
-  for (int code = 0; code <= static_cast<int>(StepStatus::gaining_energy); ++code) {
+  for (int code = 0; code <= static_cast<int>(kLastStepStatus); ++code) {
     parts.back().words.push_back({code, step_status_name(static_cast<StepStatus>(code))});
   }
   list.add(std::move(parts), [&simulation, touches, zones](std::span<double> all) {

@@ -16,6 +16,7 @@ struct StepReport {
   StepStatus status = StepStatus::solved;
   LawStatus law = LawStatus::solved;
   bool balanced = true;   ///< whether forces balance at the end; more severe statuses hide this
+  bool physical = true;   ///< whether a robot can have this state, see Sanity
   double residual = 0.0;  ///< N, |p - f - ... + H^T lambda| at the end of the step
   double relative_residual = 0.0;  ///< relative to the sum of the forces' norms
   double violation = 0.0;          ///< m, violation of the law by the motion at the end

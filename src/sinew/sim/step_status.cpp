@@ -16,6 +16,10 @@ std::string_view step_status_name(StepStatus status) {
       return "not-in-equilibrium";
     case StepStatus::gaining_energy:
       return "gaining-energy";
+    case StepStatus::after_failure:
+      return "after-failure";
+    case StepStatus::unphysical:
+      return "unphysical";
   }
   return "unknown";
 }
@@ -37,6 +41,12 @@ std::string step_status_remedy(StepStatus status, const StepSettings& step) {
       return "take a smaller time step, change commands more slowly, or refine the mesh";
     case StepStatus::not_in_equilibrium:
       return "take a smaller time step, or change commands more slowly" + use;
+    case StepStatus::after_failure:
+      return "go back to the last solved state: the way here led through a step that failed";
+    case StepStatus::unphysical:
+      return "command a motion (a volume_growth, a displacement) in place of an effort, or use "
+             "dynamics with a small time step" +
+             use;
     case StepStatus::gaining_energy:
       return "take a smaller time step" + use;
   }

@@ -5,7 +5,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/sim/run.hpp"
-#include "sinew/sim/step_tolerances.hpp"
+#include "sinew/sim/step_verdict.hpp"
 
 namespace sinew::sim {
 
@@ -34,6 +34,7 @@ void Stepper::step() {
   report.impacts = 0;
   report.choice_held = false;
   report.status = StepStatus::solved;
+  report.physical = true;
   report.energy_gained = 0.0;
   const bool opens = run_.model->step().dynamic() && !run_.ledger.is_open();
   if (opens) run_.ledger.open(run_.world.bodies().energies());
@@ -46,10 +47,12 @@ void Stepper::step() {
     } else {
       step_in_parts();
     }
-  } catch (...) {
-    if (divided_) run_.restore(start_);
-    if (opens) run_.ledger.restart();
-    part_.reset();
+  } catch (const Error& failure) {
+    if (failure.is_run_failure()) report.status = failure_status(run_);
+    undo(opens);
+    throw;
+  } catch (...) {  // of a watcher
+    undo(opens);
     throw;
   }
   ++run_.steps;
@@ -57,6 +60,12 @@ void Stepper::step() {
   run_.clock.mark(Stage::correction);
   run_.clock.stop();
   report.times = run_.clock.times();
+}
+
+void Stepper::undo(bool opened_ledger) {
+  if (divided_) run_.restore(start_);
+  if (opened_ledger) run_.ledger.restart();
+  part_.reset();
 }
 
 // Makes the whole step or, if Newton's method fails, halves of it, and halves of those: jumps of
@@ -190,14 +199,6 @@ double Stepper::substep(double end, double time_step, bool divisible) {
   return substep_.end(time_step);
 }
 
-// Newton's method decides; if it had few iterations or was not used, the residual decides.
-bool Stepper::is_balanced() const {
-  const bool newton = run_.model->step().method == Method::newton;
-  if (newton && run_.report.newton == NewtonStatus::converged) return true;
-  const bool searched = newton && run_.controller == nullptr;
-  return run_.report.relative_residual <= (searched ? kSearched : kBalanced);
-}
-
 // Determines the status of the step.
 void Stepper::judge() {
   StepReport& report = run_.report;
@@ -205,9 +206,11 @@ void Stepper::judge() {
   if (report.law == LawStatus::limits_conflict) raise(StepStatus::limits_conflict);
   if (report.scale < 1.0) raise(StepStatus::cut_back);
   if (report.violation > kReached * run_.model->size()) raise(StepStatus::command_not_reached);
-  report.balanced = is_balanced();
-  if (!report.balanced) raise(StepStatus::not_in_equilibrium);
+  report.balanced = is_balanced(run_);
+  if (!report.balanced) raise(failure_status(run_));
+  if (run_.failed) raise(StepStatus::after_failure);
   if (run_.model->step().dynamic()) watch_energy();
+  run_.failed = run_.failed || is_failure(report.status);
 }
 
 // Restarts the monitoring if a moving base or an external force outside the ledger supplied energy.

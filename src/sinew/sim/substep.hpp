@@ -6,6 +6,10 @@
 
 #include "sinew/step/step_problem.hpp"
 
+namespace sinew {
+class Error;
+}
+
 namespace sinew::sim {
 
 struct Run;
@@ -36,6 +40,7 @@ class Substep {
 
  private:
   void begin_world(double time_step);
+  void hold_back(double time_step, const Error& failure);
   void solve_equation(double time_step, bool divisible);
   void solve_once(double time_step);
   void solve_afresh(double time_step);
