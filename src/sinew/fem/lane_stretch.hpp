@@ -8,9 +8,9 @@
 
 namespace sinew::fem {
 
-/// The largest principal stretch in each lane, or |F|, an upper bound of it, where all |F| are sane:
-/// |F|^2 is the sum of the squared principal stretches. The principal stretches cost ten times as
-/// much as the bound, which nearly always suffices. @param f F of one point.
+/// The largest principal stretch in each lane, or |F|, an upper bound of it, where all |F| are
+/// sane: |F|^2 is the sum of the squared principal stretches. The principal stretches cost ten
+/// times as much as the bound, which nearly always suffices. @param f F of one point.
 SINEW_INLINE material::Lanes largest_stretch(const material::Lanes3x3& f) {
   material::Lanes square = material::lanes(0.0);
   for (int r = 0; r < 3; ++r) {

@@ -49,6 +49,8 @@ struct NewtonReport {
   double violation = 0.0;          ///< m, of the law
   int factorisations = 0;
   int tangent_fallbacks = 0;  ///< iterations in which the exact tangent was indefinite
+  double first_move = 0.0;    ///< m, largest change of a coordinate in a full first iteration
+  double whole_move = 0.0;    ///< m, the sum of those of all iterations
   step::LawStatus law = step::LawStatus::solved;
   mechanics::MotionReport motion;
   Sanity sanity;  ///< of the state at the end

@@ -10,8 +10,8 @@
 #include "sinew/sim/load_steps.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/step_failure.hpp"
-#include "sinew/sim/step_verdict.hpp"
 #include "sinew/sim/step_tolerances.hpp"
+#include "sinew/sim/step_verdict.hpp"
 #include "sinew/step/controller.hpp"
 
 namespace sinew::sim {
@@ -42,6 +42,9 @@ constexpr int kIterationsBeforeHalving = 16;
 // if the contradiction, which the joints involved share, is at least the second fraction of it.
 constexpr double kAtRest = 0.1;
 constexpr double kShare = 0.01;
+// A step that passes unstable states and moves this many times as far as its first iteration has
+// left its branch.
+constexpr double kSnap = 5.0;
 
 bool converged(const NewtonReport& result) { return result.status == NewtonStatus::converged; }
 
@@ -81,21 +84,22 @@ void NewtonStep::solve(double time_step) {
   const JointConflict conflict = find_conflict(result, time_step);
   const bool usable = !conflict.opens && is_usable(result);
   if (usable && (run_.keeps_going || is_balanced(run_))) return;
-  if (searches_on(result) && !approached_ && goes_on(result)) {
-    const NewtonReport way = approach(time_step);
-    if (converged(way)) return take_report(way);
-  }
   if (!conflict.text.empty()) fail_joints(run_, conflict);
   if (result.status == NewtonStatus::law_failed) fail_law(run_);
+  const std::string text = describe(result, settings(time_step));
   const std::string folded =
       describe_folded_cable(*run_.model, run_.world.configuration(), run_.effort);
-  const std::string text = describe(result, settings(time_step));
   if (!folded.empty()) {
     fail(run_, ErrorKind::not_converged, text + folded,
          "lessen its tension, or place its points so that they stay apart");
   }
-  if (run_.model->step().dynamic() || run_.controller != nullptr) {
+  if (!searches_on(result)) {
     fail(run_, kind_of(result), text + describe_choice(), remedy(result.status));
+  }
+  if (!approached_) {
+    descended_ = false;
+    const NewtonReport way = approach(time_step);
+    if (converged(way)) return take_report(way);
   }
   fail_to_find(result, text, time_step);
 }
@@ -104,7 +108,6 @@ void NewtonStep::solve(double time_step) {
 void NewtonStep::fail_to_find(const NewtonReport& result, const std::string& text,
                               double time_step) {
   const std::vector<step::ActuatorBlock> goal = run_.world.problem().actuators;
-  if (!approached_) fail(run_, kind_of(result), text, remedy(result.status));
   run_.restore(sound_);
   run_.begin_world(time_step);
   run_.world.linearise({{}, mechanics::Tangent::exact, true, true});
@@ -113,11 +116,14 @@ void NewtonStep::fail_to_find(const NewtonReport& result, const std::string& tex
   const std::string limit = singular ? "" : describe_limit_point(run_, goal);
   if (!limit.empty()) fail(run_, kind_of(result), limit, kLimitPointRemedy);
   const bool buckles = tried_fallbacks_ > 0;
-  std::string end = fmt::format("; the last equilibrium on the way is at {:.3g} % of this step's "
-                                "changes{}", 100.0 * reached_, describe_efforts(goal));
+  std::string end = fmt::format(
+      "; the last equilibrium on the way is at {:.3g} % of this step's "
+      "changes{}",
+      100.0 * reached_, describe_efforts(goal));
   if (buckles) {
-    end += ", and beyond it the exact tangent is indefinite: the robot buckles, collapses or snaps "
-           "there";
+    end +=
+        ", and beyond it the exact tangent is indefinite: the robot buckles, collapses or snaps "
+        "there";
   }
   fail(run_, kind_of(result), text + end,
        buckles ? "command a motion (a volume_growth, a displacement) in place of an effort, use "
@@ -125,7 +131,8 @@ void NewtonStep::fail_to_find(const NewtonReport& result, const std::string& tex
                : remedy(result.status));
 }
 
-// The commanded efforts that the last equilibrium has not reached: ", with 'air' at 11.9 of 12 kPa".
+// The commanded efforts that the last equilibrium has not reached: ", with 'air' at 11.9 of 12
+// kPa".
 std::string NewtonStep::describe_efforts(std::span<const step::ActuatorBlock> goal) const {
   std::string text;
   for (std::size_t i = 0; i < run_.model->actuators().size(); ++i) {
@@ -146,8 +153,8 @@ std::string NewtonStep::describe_choice() const {
     if (!run_.actuation.states()[i].chosen) continue;
     const ActuatorModel& model = run_.model->actuators()[i];
     text += fmt::format("{}{:.4g} {} for '{}'", text.empty() ? "; its controller chose " : ", ",
-                        run_.effort[static_cast<std::size_t>(model.row)],
-                        model.words().effort.unit, model.name);
+                        run_.effort[static_cast<std::size_t>(model.row)], model.words().effort.unit,
+                        model.name);
   }
   return text;
 }
@@ -262,6 +269,7 @@ NewtonReport NewtonStep::hold_choice(const NewtonReport& chosen, double time_ste
 // The controller keeps the memory of its prediction, and trusts its next choice less (see
 // inverse::StepDamping).
 NewtonReport NewtonStep::stay(double time_step) {
+  descended_ = part_snapped_ = false;
   run_.watch.enter(SearchStage::last_efforts);
   std::vector<double> memory(run_.controller->memory_size());
   run_.controller->save_memory(memory);
@@ -313,6 +321,7 @@ NewtonReport NewtonStep::approach(double time_step) {
   const std::vector<ActuatorState> start = run_.actuation.states();
   NewtonSettings part = settings_of_part(time_step);
   approached_ = true;
+  part_snapped_ = false;
   sound_ = run_.before;
   const auto go_back = [&] {
     run_.restore(sound_);
@@ -333,6 +342,7 @@ NewtonReport NewtonStep::approach(double time_step) {
     result = run_.newton(nullptr, part);
     iterations += result.iterations;
     tried_fallbacks_ += result.tangent_fallbacks;
+    part_snapped_ = part_snapped_ || snaps(result);
     return converged(result);
   };
   const double left = take_load_steps(
@@ -350,6 +360,7 @@ NewtonReport NewtonStep::approach(double time_step) {
 // method completes the slow end of this descent.
 NewtonReport NewtonStep::descend(double time_step, int iterations) {
   run_.watch.enter(SearchStage::downhill);
+  descended_ = true;
   NewtonSettings downhill = settings(time_step);
   downhill.request.tangent = mechanics::Tangent::projected;
   // A majorant requires the stiffness of all cables, even of those that the scene leaves out.
@@ -364,9 +375,15 @@ NewtonReport NewtonStep::descend(double time_step, int iterations) {
   return result;
 }
 
+// A continuous step moves about as far as its first iteration, whose tangent is stable, predicts.
+bool NewtonStep::snaps(const NewtonReport& result) const {
+  if (run_.model->step().dynamic() || !converged(result)) return false;
+  if (descended_ || part_snapped_) return true;
+  return result.tangent_fallbacks > 0 && result.whole_move > kSnap * result.first_move;
+}
+
 ErrorKind NewtonStep::kind_of(const NewtonReport& result) {
-  return result.status == NewtonStatus::unphysical ? ErrorKind::diverged
-                                                   : ErrorKind::not_converged;
+  return result.status == NewtonStatus::unphysical ? ErrorKind::diverged : ErrorKind::not_converged;
 }
 
 // Whether a result that is not converged is a solution nevertheless, see is_balanced().
@@ -405,6 +422,7 @@ void NewtonStep::take_report(const NewtonReport& result) {
   report.iterations = result.iterations;
   report.newton = result.status;
   report.scale = 1.0;
+  report.snapped = snaps(result);
   report.physical = result.sanity.sound();
   run_.volume_ratio = report.smallest_volume_ratio = result.sanity.volume.ratio;
 }

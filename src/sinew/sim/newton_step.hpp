@@ -46,6 +46,7 @@ class NewtonStep {
   NewtonReport descend(double time_step, int iterations);
   bool is_usable(const NewtonReport& result) const;
   bool solves(const NewtonReport& result);
+  bool snaps(const NewtonReport& result) const;
   static ErrorKind kind_of(const NewtonReport& result);
   [[noreturn]] void fail_to_find(const NewtonReport& result, const std::string& text,
                                  double time_step);
@@ -56,10 +57,12 @@ class NewtonStep {
 
   Run& run_;
   bool divisible_;
-  bool approached_ = false;  // whether approach() has run, which sets the next two
-  State sound_;              // the last equilibrium on the way
-  double reached_ = 0.0;     // fraction of the step's changes there
-  int tried_fallbacks_ = 0;  // iterations in which the exact tangent was indefinite
+  bool approached_ = false;    // whether approach() has run, which sets the next two
+  State sound_;                // the last equilibrium on the way
+  double reached_ = 0.0;       // fraction of the step's changes there
+  bool part_snapped_ = false;  // whether a part of approach() left its branch
+  bool descended_ = false;     // whether the result is that of descend()
+  int tried_fallbacks_ = 0;    // iterations in which the exact tangent was indefinite
 };
 
 }  // namespace sinew::sim

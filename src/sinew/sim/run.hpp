@@ -88,7 +88,7 @@ struct Run {
   /// Whether the state descends from a failed step (is_failure()).
   bool failed = false;
   bool keeps_going = false;  ///< whether steps that fail are kept, see Simulation::step()
-  State before;      ///< state before the current substep or search
+  State before;              ///< state before the current substep or search
   StepReport report;
   Sensors sensors;
   Estimators estimators;

@@ -61,7 +61,8 @@ void Simulation::make_step() {
   stepper_->step();
 }
 
-// A failed step restores the commander, too.
+// If no step can be made with the commands of the commander, its last ones are kept; if that fails,
+// too, the first error is reported. A failed step restores the commander.
 void Simulation::step_by_command() {
   Commander& commander = *run_->commander;
   std::vector<double> memory(commander.memory_size());
@@ -69,10 +70,26 @@ void Simulation::step_by_command() {
   try {
     commander.command();
     stepper_->step();
+  } catch (const Error& failure) {
+    commander.load_memory(memory);
+    if (!failure.is_run_failure() || !make_same_step()) throw;
+    commander.hold_back();
   } catch (...) {
     commander.load_memory(memory);
     throw;
   }
+}
+
+bool Simulation::make_same_step() {
+  try {
+    stepper_->step();
+  } catch (const Error& failure) {
+    if (!failure.is_run_failure()) throw;
+    return false;
+  }
+  ++run_->report.retries;
+  run_->report.choice_held = true;
+  return true;
 }
 
 const StepReport& Simulation::report() const { return run_->report; }

@@ -220,6 +220,7 @@ class Simulation {
  private:
   void make_step();
   void step_by_command();
+  bool make_same_step();
   void require_free(const step::WithMemory* newcomer) const;
 
   std::unique_ptr<Run> run_;

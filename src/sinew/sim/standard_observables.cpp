@@ -414,8 +414,8 @@ constexpr int kStart = -1;  // the status before any step
 void add_report(Observables& list) {
   const Simulation& simulation = list.simulation();
   std::vector<Observable> parts = {number(ObservableKind::report, "residual", "N")};
-  for (const char* name :
-       {"relative_residual", "iterations", "substeps", "scale", "smallest_volume_ratio"}) {
+  for (const char* name : {"relative_residual", "iterations", "substeps", "scale",
+                           "smallest_volume_ratio", "snapped"}) {
     parts.push_back(number(ObservableKind::report, name));
   }
   const bool touches = !simulation.model().contacts().empty();
@@ -441,6 +441,7 @@ void add_report(Observables& list) {
     to.put(report.substeps);
     to.put(report.scale);
     to.put(report.smallest_volume_ratio);
+    to.put(report.snapped ? 1.0 : 0.0);
     if (touches) {
       to.put(report.contact_residual);
       to.put(report.contact_signorini);

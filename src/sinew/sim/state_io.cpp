@@ -156,12 +156,12 @@ SavedState read(std::string_view bytes, const std::string& name) {
   State::visit(state, [&](std::string_view part, auto& numbers) {
     // Older versions had no moving joints, no contacts between surfaces, no sensors, no estimators
     // and no failed steps.
-    const bool lacks = (part == "joints" && saved.header.version < kFirstWithJoints) ||
-                       (part == "points" && saved.header.version < kFirstWithPoints) ||
-                       (part == "sensors" && saved.header.version <= kVersionWithoutSensors) ||
-                       (part == "estimators" &&
-                        saved.header.version <= kVersionWithoutEstimators) ||
-                       (part == "failure" && saved.header.version <= kVersionWithoutFailure);
+    const bool lacks =
+        (part == "joints" && saved.header.version < kFirstWithJoints) ||
+        (part == "points" && saved.header.version < kFirstWithPoints) ||
+        (part == "sensors" && saved.header.version <= kVersionWithoutSensors) ||
+        (part == "estimators" && saved.header.version <= kVersionWithoutEstimators) ||
+        (part == "failure" && saved.header.version <= kVersionWithoutFailure);
     if (!lacks) reader.number(numbers);
   });
   if (!reader.done()) corrupt(name, "something follows the last number");

@@ -41,6 +41,10 @@ struct StepReport {
   /// Whether a controller's choice did not settle and was frozen. With different rounding, another
   /// choice of about the same quality may have been found.
   bool choice_held = false;
+  /// Whether a quasi-static step left the branch of equilibria on which it began, as where an arch
+  /// snaps through or a column buckles: its solution needed the descent with the projected tangent,
+  /// or Newton's method went far beyond its first motion through unstable states. No flag.
+  bool snapped = false;
   int contact_sweeps = 0;  ///< Gauss-Seidel sweeps in the last solution of the law
   NewtonStatus newton = NewtonStatus::converged;
   StageTimes times;

@@ -10,6 +10,8 @@ std::string_view step_status_name(StepStatus status) {
       return "limits-conflict";
     case StepStatus::command_not_reached:
       return "command-not-reached";
+    case StepStatus::cavitates:
+      return "cavitates";
     case StepStatus::cut_back:
       return "cut-back";
     case StepStatus::not_in_equilibrium:
@@ -37,6 +39,9 @@ std::string step_status_remedy(StepStatus status, const StepSettings& step) {
       return "loosen the limits that contradict each other";
     case StepStatus::command_not_reached:
       return "change the command more slowly" + use;
+    case StepStatus::cavitates:
+      return "draw less volume out of the chamber, command its pressure, or correct its "
+             "`ambient_pressure`";
     case StepStatus::cut_back:
       return "take a smaller time step, change commands more slowly, or refine the mesh";
     case StepStatus::not_in_equilibrium:

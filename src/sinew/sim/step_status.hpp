@@ -14,6 +14,7 @@ enum class StepStatus {
   solved,               ///< the equation of motion holds to the tolerance
   limits_conflict,      ///< limits contradict each other; the violation was minimised
   command_not_reached,  ///< a commanded motion was not reached, though no limit prevents it
+  cavitates,            ///< a chamber would need a pressure below vacuum for its volume
   cut_back,             ///< part of the motion was made: the whole would have inverted elements
   gaining_energy,       ///< the energy grew by more than the work done: results are unphysical
   after_failure,        ///< the step started from a state that descends from a failed step
@@ -30,7 +31,7 @@ constexpr bool is_flagged(StepStatus status) { return status > StepStatus::limit
 /// caller asks for that (Simulation::step()).
 constexpr bool is_failure(StepStatus status) { return status >= StepStatus::not_in_equilibrium; }
 
-/// "solved", "limits-conflict", "command-not-reached", "cut-back", "gaining-energy",
+/// "solved", "limits-conflict", "command-not-reached", "cavitates", "cut-back", "gaining-energy",
 /// "after-failure", "not-in-equilibrium", "unphysical".
 std::string_view step_status_name(StepStatus status);
 

@@ -22,6 +22,8 @@ constexpr double kReached = 1e-3;
 // Smaller gains of energy, relative to the sum of forces times the robot's size, are rounding, as
 // for a robot at rest.
 constexpr double kNoEnergy = 1e-10;
+// Relative rounding of a pressure at vacuum.
+constexpr double kVacuumRounding = 1e-9;
 
 }  // namespace
 
@@ -35,6 +37,7 @@ void Stepper::step() {
   report.choice_held = false;
   report.status = StepStatus::solved;
   report.physical = true;
+  report.snapped = false;
   report.energy_gained = 0.0;
   const bool opens = run_.model->step().dynamic() && !run_.ledger.is_open();
   if (opens) run_.ledger.open(run_.world.bodies().energies());
@@ -199,11 +202,23 @@ double Stepper::substep(double end, double time_step, bool divisible) {
   return substep_.end(time_step);
 }
 
+// Whether a chamber needs an absolute pressure below zero: a commanded volume, or a liquid of which
+// some was taken out, holds at any pressure, but no fluid pulls.
+bool Stepper::cavitates() const {
+  const auto& models = run_.model->actuators();
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const double least = (1.0 + kVacuumRounding) * models[i].vacuum.value_or(-kInfinity);
+    if (run_.actuation.states()[i].effort < least) return true;
+  }
+  return false;
+}
+
 // Determines the status of the step.
 void Stepper::judge() {
   StepReport& report = run_.report;
   const auto raise = [&](StepStatus status) { report.status = std::max(report.status, status); };
   if (report.law == LawStatus::limits_conflict) raise(StepStatus::limits_conflict);
+  if (cavitates()) raise(StepStatus::cavitates);
   if (report.scale < 1.0) raise(StepStatus::cut_back);
   if (report.violation > kReached * run_.model->size()) raise(StepStatus::command_not_reached);
   report.balanced = is_balanced(run_);

@@ -42,6 +42,7 @@ class Stepper {
   void step_adaptively();
   void step_by_events();
   double substep(double end, double time_step, bool divisible);
+  bool cavitates() const;
   void judge();
   void watch_energy();
 
