@@ -100,7 +100,8 @@ Json quantities_json(const sim::Model& model, int index) {
     const auto [low, high] = motion_ends(model, index);
     quantities.push_back(quantity_json(actuator.words().motion, actuator.motion, low, high));
     const auto [least, most] = effort_ends(actuator);
-    quantities.push_back(quantity_json(actuator.words().effort, actuator.effort, least, most));
+    quantities.push_back(quantity_json(
+        actuator.words().effort, actuator.effort_limits(sim::CommandKind::motion), least, most));
     if (actuator.command.kind == sim::CommandKind::effort) {
       std::swap(quantities[0], quantities[1]);
     }

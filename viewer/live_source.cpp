@@ -73,8 +73,9 @@ void LiveSource::go_back(std::int64_t number) {
 
 void LiveSource::require_ready() const {
   if (!state_.stopped()) return;
-  throw Error(ErrorKind::diverged, {}, "the run has stopped: " + state_.stopped()->message,
-              "reset it first");
+  throw Error(
+      ErrorKind::diverged, {}, "the run has stopped: " + state_.stopped()->message,
+      "the robot is in its last solved state: change a command and go on, or go back in time");
 }
 
 void LiveSource::record() {

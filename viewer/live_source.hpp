@@ -55,6 +55,7 @@ class LiveSource : public SourceThread {
   bool advance() override;
   void handle(const Request& request) override;
   void require_ready() const override;
+  void try_again() override { state_.try_again(); }
   void begin() override { timeline_.keep(state_.moment()); }
   std::shared_ptr<const Frame> frame(const FrameWishes& wishes, double real_time_factor) override;
   std::string status_members() const override;

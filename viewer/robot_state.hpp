@@ -52,6 +52,9 @@ class RobotState {
   const sim::Simulation& simulation() const { return *simulation_; }
   double time_step() const { return simulation_->model().step().time_step; }
   const std::optional<StoppedRun>& stopped() const { return stopped_; }
+  /// Forgets why the run stopped. The robot is in its last solved state, from which the next step
+  /// begins.
+  void try_again() { stopped_.reset(); }
   /// The observables of the simulation, the controller and the real-time factor. In a replay they
   /// have the recorded values.
   sim::Observables& observables() { return observables_; }

@@ -153,6 +153,7 @@ void SourceThread::carry_out(const Request& request, const std::function<void(Ou
 
 void SourceThread::do_request(const Request& request) {
   if (std::holds_alternative<Play>(request)) {
+    try_again();
     require_ready();
     playing_ = true;
     awaits_page_ = false;
@@ -162,6 +163,7 @@ void SourceThread::do_request(const Request& request) {
   } else if (std::holds_alternative<Pause>(request)) {
     playing_ = false;
   } else if (const auto* step = std::get_if<Step>(&request)) {
+    try_again();
     require_ready();
     playing_ = false;
     for (std::int64_t k = 0; k < step->count && !stopping() && advance(); ++k) {

@@ -42,6 +42,9 @@ class SourceThread : public Source {
   virtual void handle(const Request& request) = 0;
   /// Throws Error if play and step are to be refused.
   virtual void require_ready() const {}
+  /// Called before play and step requests: a live robot whose step failed tries again from its last
+  /// solved state.
+  virtual void try_again() {}
   /// Makes a frame. @param wishes parts besides positions. @param real_time_factor NaN: not
   /// measured.
   virtual std::shared_ptr<const Frame> frame(const FrameWishes& wishes,

@@ -77,6 +77,7 @@ struct Tally {
   std::int64_t steps = 0;
   double wall = 0.0;  ///< s
   double min_volume_ratio = 1.0;
+  std::int64_t snapped = 0;
   struct Flagged {
     std::int64_t steps = 0;
     double first = 0.0;  ///< s
@@ -92,6 +93,7 @@ void count(Tally& tally, Session& session) {
   const sim::StepReport& report = session.simulation().report();
   ++tally.steps;
   tally.min_volume_ratio = std::min(tally.min_volume_ratio, report.smallest_volume_ratio);
+  tally.snapped += report.snapped ? 1 : 0;
   if (sim::is_flagged(report.status)) {
     Tally::Flagged& flagged = tally.flagged[report.status];
     if (flagged.steps++ == 0) flagged.first = session.simulation().time();
@@ -154,6 +156,9 @@ std::vector<std::vector<std::string>> summary(const Tally& tally, Session& sessi
   for (const auto& [status, times] : tally.statuses) {
     rows.push_back({"steps " + status, fmt::format("{}", times)});
   }
+  if (tally.snapped > 0) {
+    rows.push_back({"steps that snapped to another branch", fmt::format("{}", tally.snapped)});
+  }
   rows.push_back({"smallest volume ratio", fmt::format("{:.3f}", tally.min_volume_ratio)});
   return rows;
 }
@@ -178,13 +183,14 @@ struct Records {
   }
 };
 
-void advance(Session& session, Records& records, std::int64_t steps, bool quiet, Tally& tally) {
+void advance(Session& session, Records& records, std::int64_t steps, const RunOptions& options,
+             Tally& tally) {
   const Interrupt interrupt;
-  ProgressBar bar(steps, !quiet);
+  ProgressBar bar(steps, !options.quiet);
   const sim::Watched watched = watch_steps(session.simulation(), bar, tally.steps);
   while (tally.steps < steps) {
     Interrupt::check();
-    session.step();
+    session.step(options.keep_going);
     records.after_step();
     count(tally, session);
     if (!bar.due()) continue;
@@ -274,10 +280,11 @@ int run(const RunOptions& options) {
     if (records.motion) write_file(options.glb, records.motion->glb());
   };
   try {
-    advance(session, records, steps, options.quiet, tally);
+    advance(session, records, steps, options, tally);
   } catch (const Interrupted&) {  // reported below
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::recording_failed) finish();
+    warn(tally, session.simulation().model().step());
     try {
       write_motion();
     } catch (const Error&) {  // the error that ended the run is reported
@@ -323,9 +330,10 @@ void add_run(CommandLine& line) {
           "--glb", options->glb,
           "Also write the motion of surfaces and cables as glTF, e.g. for Blender: NAME.glb")
       .type_name("FILE");
-  command.add_flag("--keep-going", options->keep_going,
-                   "Exit with 0 even if steps were flagged as unreliable: not in equilibrium, "
-                   "gaining energy, cut back, or command not reached");
+  command.add_flag(
+      "--keep-going", options->keep_going,
+      "Go on after steps that fail (not in equilibrium, unphysical), and mark all later "
+      "ones; exit with 0 even if steps were flagged as unreliable");
   command.add_flag("--check", options->check,
                    "Load and check the scene without running it; write nothing");
   command.add_flag("--quiet", options->quiet, "Suppress the progress bar and the summary");

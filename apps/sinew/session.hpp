@@ -49,7 +49,10 @@ class Session {
   /// The controller; null if there is none.
   const inverse::TargetController* controller() const { return controller_.get(); }
   const std::string& controller_name() const { return controller_name_; }
-  void step() { simulation_->step(); }
+  /// @param keeps_going whether a step that fails is kept, see sim::Simulation::step().
+  void step(bool keeps_going = false) {
+    simulation_->step(keeps_going ? sim::OnFailure::keep_going : sim::OnFailure::stop);
+  }
 
   /// Time at which all targets have completed their first turn, s; 0 if none moves.
   double first_turn() const;

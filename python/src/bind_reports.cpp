@@ -28,7 +28,15 @@ void bind_step_report(py::module_& module) {
           "status", [](const StepReport& self) { return sim::step_status_name(self.status); },
           "str: 'solved'; 'limits-conflict' if limits contradict each other (the step takes the "
           "smallest violation); or a flag, for which step() and run() issue a warning: "
-          "'command-not-reached', 'cut-back', 'not-in-equilibrium', 'gaining-energy'.")
+          "'command-not-reached', 'cavitates', 'cut-back', 'gaining-energy', 'after-failure'; or a "
+          "failure, for which they raise RunError unless told to keep going: 'not-in-equilibrium', "
+          "'unphysical'.")
+      .def_property_readonly(
+          "failed", [](const StepReport& self) { return sim::is_failure(self.status); },
+          "bool: whether the status is a failure: the state of the step solves nothing.")
+      .def_readonly("snapped", &StepReport::snapped,
+                    "bool: whether a quasi-static step left the branch of equilibria on which it "
+                    "began, as where an arch snaps through. No flag.")
       .def_property_readonly(
           "flagged", [](const StepReport& self) { return sim::is_flagged(self.status); },
           "bool: whether the status is a flag: the results of the step are not reliable.")

@@ -70,11 +70,18 @@ py::dict follow_path(Session& self, double first_step, double largest_step, doub
   return path_table(path, effectors, values);
 }
 
+sim::OnFailure on_failure(bool keep_going) {
+  return keep_going ? sim::OnFailure::keep_going : sim::OnFailure::stop;
+}
+
 void bind_step(SimulationType& type) {
   type.def(
-      "step", [](Session& self, const py::object& n) { self.advance(to_count(n, "step(n)")); },
-      py::arg("n") = 1,
-      R"(step($self, n=1)
+      "step",
+      [](Session& self, const py::object& n, bool keep_going) {
+        self.advance(to_count(n, "step(n)"), on_failure(keep_going));
+      },
+      py::arg("n") = 1, py::kw_only(), py::arg("keep_going") = false,
+      R"(step($self, n=1, *, keep_going=False)
 --
 
 Advances the simulation by n time steps. Releases the GIL; Ctrl-C interrupts between steps.
@@ -83,12 +90,17 @@ Parameters
 ----------
 n : int
     >= 0.
+keep_going : bool
+    Whether to keep steps that end 'not-in-equilibrium' or 'unphysical', where their state can be
+    evaluated, instead of raising. No later step is then 'solved' until reset() or restore(): it is
+    at least 'after-failure'.
 
 Raises
 ------
 RunError
     diverged, inverted-in-run, singular-matrix or not-converged, with the step, the body and the
-    likely cause. The simulation keeps the state before the failed step.
+    likely cause. The simulation keeps the last solved state, from which it can go on: with another
+    command, for example. `report.status` is that of the failed step.
 )");
 }
 
@@ -174,7 +186,8 @@ RunError
 void bind_run(SimulationType& type) {
   type.def("run", &run, py::arg("duration") = py::none(), py::kw_only(),
            py::arg("record") = py::none(), py::arg("every") = 1, py::arg("progress") = py::none(),
-           R"(run($self, duration=None, *, record=None, every=1, progress=None)
+           py::arg("keep_going") = false,
+           R"(run($self, duration=None, *, record=None, every=1, progress=None, keep_going=False)
 --
 
 Simulates for a time and returns the recorded quantities, including the initial state.
@@ -190,6 +203,8 @@ every : int
 progress : callable, optional
     Called with (steps done, all steps) about ten times per second. It may read and command the
     simulation.
+keep_going : bool
+    As for step().
 
 Returns
 -------

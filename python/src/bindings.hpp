@@ -93,7 +93,8 @@ struct Controller {
 
 /// Runs and records a simulation; see Simulation.run in bind_simulation_stepping.cpp.
 py::dict run(const std::shared_ptr<Session>& session, const py::object& duration,
-             const py::object& record, const py::object& every, const py::object& progress);
+             const py::object& record, const py::object& every, const py::object& progress,
+             bool keep_going);
 
 /// Converts a Target object or three numbers to a target. Throws Error(wrong-type | wrong-shape |
 /// not-finite).

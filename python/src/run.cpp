@@ -130,14 +130,15 @@ std::int64_t count_steps(const Session& session, const py::object& duration) {
 }
 
 void advance_and_record(Session& session, std::int64_t steps, std::int64_t every,
-                        const py::object& progress, Recording& recording) {
+                        const py::object& progress, sim::OnFailure on_failure,
+                        Recording& recording) {
   using Clock = std::chrono::steady_clock;
   constexpr auto kPause = std::chrono::milliseconds(100);
   auto told = Clock::now();
   write_moment(session, recording);
   for (std::int64_t done = 0; done < steps;) {
     const std::int64_t part = std::min(every, steps - done);
-    session.advance(part);
+    session.advance(part, on_failure);
     done += part;
     write_moment(session, recording);
     if (!progress.is_none() && (done == steps || Clock::now() - told > kPause)) {
@@ -150,7 +151,8 @@ void advance_and_record(Session& session, std::int64_t steps, std::int64_t every
 }  // namespace
 
 py::dict run(const std::shared_ptr<Session>& session, const py::object& duration,
-             const py::object& record, const py::object& every, const py::object& progress) {
+             const py::object& record, const py::object& every, const py::object& progress,
+             bool keep_going) {
   const std::int64_t pace = to_count(every, "run(every)");
   if (pace < 1) {
     throw Error(ErrorKind::out_of_range, {.item = "run(every)"}, fmt::format("every is {}", pace),
@@ -168,7 +170,8 @@ py::dict run(const std::shared_ptr<Session>& session, const py::object& duration
     return Recording{std::move(observables), std::move(columns)};
   }();
   try {
-    advance_and_record(*session, steps, pace, progress, recording);
+    const auto on_failure = keep_going ? sim::OnFailure::keep_going : sim::OnFailure::stop;
+    advance_and_record(*session, steps, pace, progress, on_failure, recording);
   } catch (const Error& error) {
     const py::object exception = to_python(error);
     exception.attr("recorded") = to_arrays(recording);

@@ -98,7 +98,7 @@ void Session::check_loads() const {
   }
 }
 
-void Session::advance(std::int64_t count) {
+void Session::advance(std::int64_t count, sim::OnFailure on_failure) {
   if (count < 0) {
     throw Error(ErrorKind::out_of_range, {.item = "step(n)"}, fmt::format("n is {}", count),
                 "give zero or more steps; reset() goes back to the start");
@@ -111,7 +111,7 @@ void Session::advance(std::int64_t count) {
       const pybind11::gil_scoped_release release;
       const auto pause = Clock::now() + kSignalInterval;
       do {
-        simulation_.step();
+        simulation_.step(on_failure);
         note_status();
         steps_.store(simulation_.steps(), std::memory_order_relaxed);
         ++done;

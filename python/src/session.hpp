@@ -102,7 +102,7 @@ class Session {
   /// Ctrl-C, also within a step; the state is then that of the last complete step. It warns
   /// (sinew.SinewWarning) of flagged steps, once per status until the next reset. Throws what
   /// sim::Simulation::step() throws, and Error(not-finite) for external forces.
-  void advance(std::int64_t count);
+  void advance(std::int64_t count, sim::OnFailure on_failure = sim::OnFailure::stop);
   /// Advances from a thread that does not hold the GIL, without checking for Ctrl-C or warning.
   /// @param count maximum number of steps. @param ended called after each step; true ends the run.
   void advance_unlocked(std::int64_t count, const std::function<bool()>& ended);

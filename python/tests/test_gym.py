@@ -255,7 +255,7 @@ def test_a_mask_in_the_midst_of_episodes():
     assert same(observations[0], by_hand(1, None, [None, a[1, 0], a[2, 0]])[2][0])
 
 
-def test_a_run_that_cannot_go_on_terminates(monkeypatch):
+def test_a_run_that_cannot_go_on_is_truncated(monkeypatch):
     envs = sinew.gym.make_vec("trunk-reach", 2, time_limit=SHORT)
     before, _ = envs.reset(seed=0)
 
@@ -272,7 +272,7 @@ def test_a_run_that_cannot_go_on_terminates(monkeypatch):
     robot = envs.episodes[1].robot
     monkeypatch.setattr(robot, "sim", Stuck(robot.sim))
     observations, rewards, terminations, truncations, infos = envs.step(np.zeros((2, 8)))
-    assert terminations.tolist() == [False, True] and not truncations.any() and rewards[1] == -100.0
+    assert truncations.tolist() == [False, True] and not terminations.any() and rewards[1] == -100.0
     assert "does not converge" in infos["failure"][1] and infos["_failure"].tolist() == [False, True]
     assert same(observations[1], before[1])
 
@@ -323,7 +323,7 @@ def test_one_call_for_all_tells_which_failed(mode):
         assert same(one, other)
         if step == 0:
             infos = one[4] if mode == "NEXT_STEP" else one[4]["final_info"]
-            assert one[2].tolist() == [False, True, False] and one[1][1] == -100.0 and "Newton" in infos["failure"][1]
+            assert one[3].tolist() == [False, True, False] and not one[2].any() and one[1][1] == -100.0 and "Newton" in infos["failure"][1]
 
 
 # Tasks

@@ -32,14 +32,18 @@ def test_default_steps_are_solved():
 def test_flagged_steps_warn_once():
     sim = sinew.load(TRUNK, set=ROUGH)
     with pytest.warns(sinew.SinewWarning, match="not-in-equilibrium; take a smaller time step"):
-        sim.step(200)
+        sim.step(200, keep_going=True)
     assert sim.report.flagged
     with warnings.catch_warnings():
         warnings.simplefilter("error", sinew.SinewWarning)
-        sim.step(5)
+        sim.step(5, keep_going=True)
     sim.reset()
     with pytest.warns(sinew.SinewWarning):
+        sim.step(200, keep_going=True)
+    sim.reset()
+    with pytest.raises(sinew.RunError, match="one linearisation leaves .* % of the forces out of balance"):
         sim.step(200)
+    assert sim.report.failed and sim.steps < 200
 
 
 def test_a_swing_reports_the_energy_that_it_gained():

@@ -46,13 +46,54 @@ def test_flagged_steps_end_with_one_unless_told_to_keep_going(tmp_path):
     solved = sinew("run", trunk, *pull, "--out", "solved", cwd=tmp_path)
     assert solved.returncode == DONE and solved.stderr == "", solved.stderr
     assert {row["status"] for row in rows_of(tmp_path / "solved" / "run.csv")} == {"start", "solved"}
-    flagged = sinew("run", trunk, *pull, *rough, "--out", "rough", cwd=tmp_path)
-    assert flagged.returncode == FAILED
-    assert "steps are not-in-equilibrium, the first at t = " in flagged.stderr
-    assert "solver: newton" in flagged.stderr
-    assert "not-in-equilibrium" in {row["status"] for row in rows_of(tmp_path / "rough" / "run.csv")}
+    failed = sinew("run", trunk, *pull, *rough, "--out", "rough", cwd=tmp_path)
+    assert failed.returncode == FAILED
+    assert "one linearisation leaves" in failed.stderr and "solver: newton" in failed.stderr
+    rows = rows_of(tmp_path / "rough" / "run.csv")
+    assert {row["status"] for row in rows} == {"start", "solved"} and len(rows) < 151
     told = sinew("run", trunk, *pull, *rough, "--keep-going", "--out", "rough", cwd=tmp_path)
-    assert told.returncode == DONE and "not-in-equilibrium" in told.stderr
+    assert told.returncode == DONE
+    assert "steps are not-in-equilibrium, the first at t = " in told.stderr
+    rows = rows_of(tmp_path / "rough" / "run.csv")
+    assert len(rows) == 151
+    first = [row["status"] for row in rows].index("not-in-equilibrium")
+    assert not {"solved", "start"} & {row["status"] for row in rows[first:]}, "what descends from a failed step is not solved"
+
+
+BALLOON = """
+sinew: 1
+time_step: 50 ms
+bodies:
+  tube:
+    type: fem
+    mesh: {shape: hollow-cylinder, inner_radius: 10 mm, outer_radius: 13 mm, height: 30 mm, element_size: 5 mm}
+    element: hex8
+    material: {model: neo-hookean, young_modulus: 90 kPa, poisson_ratio: 0.45}
+    fixed: [{set: bottom}, {set: top}]
+actuators:
+  air:
+    type: chamber
+    body: tube
+    surface: {set: inner}
+    cap: true
+    command: {pressure: {ramp: {to: 60 kPa, duration: 1 s}}}
+"""
+
+
+def test_a_step_that_fails_ends_the_run_and_its_record(tmp_path):
+    (tmp_path / "balloon.yaml").write_text(BALLOON)
+    stopped = sinew("run", "balloon.yaml", "--out", "out", cwd=tmp_path)
+    assert stopped.returncode == FAILED
+    assert "limit point" in stopped.stderr and "volume_growth" in stopped.stderr
+    rows = rows_of(tmp_path / "out" / "run.csv")
+    assert {row["status"] for row in rows} == {"start", "solved"} and 1 < len(rows) < 21
+    for row in rows:
+        assert abs(float(row["air.pressure [Pa]"]) - 60e3 * float(row["time [s]"])) < 1.0
+        assert float(row["air.volume_growth [m^3]"]) < 1e-3
+    with h5py.File(tmp_path / "out" / "run.h5") as file:
+        assert len(file["time"]) == len(rows)
+    below = sinew("run", "balloon.yaml", "--set", "actuators.air.command.pressure.ramp.to=-150kPa", cwd=tmp_path)
+    assert below.returncode == WRONG and "below vacuum" in below.stderr
 
 
 @pytest.mark.parametrize("step_ms", [4, 2])

@@ -425,7 +425,7 @@ class Drafter {
         on->id, closed ? "{inside: 4 0 30 mm}" : "{set: inner}, cap: true");
     text += look_up("medium", medium,
                     {{"none", ""},
-                     {"gas", ", gas: {dead_volume: 1 ml}"},
+                     {"gas", ", ambient_pressure: 95 kPa, gas: {dead_volume: 1 ml}"},
                      {"liquid", ", liquid: {bulk_modulus: 1 MPa, dead_volume: 1 ml}"}});
     text += look_up(
         "chamber", told,

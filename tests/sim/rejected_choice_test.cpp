@@ -50,12 +50,14 @@ class Reckless : public step::Controller {
     failures_ = failures;
     most_ = std::max(most_, failures);
   }
+  void hold_back(int failures) override { held_back_ = failures; }
   int most() const { return most_; }
+  int held_back() const { return held_back_; }
 
  private:
   Simulation& simulation_;
   int patience_;
-  int failures_ = 0, most_ = 0;
+  int failures_ = 0, most_ = 0, held_back_ = 0;
 };
 
 class RejectedChoice : public ::testing::TestWithParam<std::pair<mechanics::Integrator, Method>> {
@@ -86,14 +88,21 @@ TEST_P(RejectedChoice, GivesWayToAnother) {
   EXPECT_EQ(report.substeps > 1, divides);
 }
 
-TEST_P(RejectedChoice, IsAnErrorAfterFiveTries) {
+// After six choices, the actuators keep the efforts of the last step.
+TEST_P(RejectedChoice, HoldsTheLastEffortsInTheEnd) {
   Simulation simulation(robot());
-  const State before = simulation.state();
+  {
+    Reckless controller(simulation, 0);
+    simulation.step();
+    ASSERT_EQ(simulation.actuator(0).effort, 1.0);
+  }
   Reckless controller(simulation, 100);
-  EXPECT_THROW(simulation.step(), Error);
+  const StepReport& report = simulation.step();
   EXPECT_EQ(controller.most(), 5);
-  EXPECT_EQ(simulation.steps(), 0);
-  EXPECT_EQ(simulation.state().bodies, before.bodies);
+  EXPECT_EQ(controller.held_back(), 6);
+  EXPECT_TRUE(report.choice_held);
+  EXPECT_EQ(simulation.steps(), 2);
+  EXPECT_EQ(simulation.actuator(0).effort, 1.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(

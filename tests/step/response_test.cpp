@@ -124,6 +124,7 @@ class Nearest : public Controller {
     accepted = motion;
   }
   void begin_step(int) override {}
+  void hold_back(int) override {}
   VectorX accepted;
   int calls = 0;
 

@@ -190,7 +190,8 @@ function alerts(): void {
   if (!connection.open) list.push(['error', notices.get('connection') || 'The program is not there; trying again.']);
   if (source?.stopped) {
     const {step, message, remedy} = source.stopped;
-    list.push(['error', `The run stopped at step ${step}: ${message}${remedy && !message.includes(remedy) ? `; ${remedy}` : ''}`,
+    list.push(['error', `The run stopped at step ${step}: ${message}${remedy && !message.includes(remedy) ? `; ${remedy}` : ''}. `
+               + 'The robot shows its last solved state: change a command and play on, or go back in time.',
                button('Reset', 'Back to the start', () => panel.reset())]);
   }
   if (isFrozen()) list.push(mode === 'follow' ? ['info', 'The script has not stepped for two seconds.']

@@ -9,14 +9,14 @@ from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence, Union
 import numpy as np
 
 from .. import _core
-from ..errors import Error
+from ..errors import Error, RunError
 from .estimator import JacobianEstimator
 from .program import Choice, Standing
 from .robot import Answer, Robot
 
 __all__ = ["Loop", "Memory"]
 
-_TRACKED, _HOLDING, _OPEN = "tracked", "holding", "open-loop"
+_TRACKED, _HOLDING, _OPEN, _HELD_BACK = "tracked", "holding", "open-loop", "held-back"
 _JACOBIANS = ("estimate", "model")
 _TINY = np.finfo(float).tiny
 
@@ -113,6 +113,7 @@ class Loop:
         - 'moving': the errors are above the tolerance, and no limit is active
         - 'at-limits': the errors are above the tolerance, and a limit of an actuator is active
         - 'limits-conflict': efforts are beyond their limits, and motion limits prevent their return
+        - 'held-back': the model cannot follow the chosen commands; those of the step before stay
         - 'condition-violated': no limit is active, and the symmetric part of J_real J_model^+ is not positive definite
           (`least_eigenvalue` is at most 0, by more than twice its standard deviation if it is estimated)
         - 'holding': a measurement is missing; all commands are held
@@ -528,4 +529,10 @@ class Loop:
             # Only whole windows are removed, which keeps their phase.
             del self._memory[:keep // self._window * self._window]
         self._robot.send(self.model, self.commands)
-        self.model.step()
+        try:
+            self.model.step()
+        except RunError:  # the model cannot follow: the last commands stay, or the error of these is raised
+            self._commands = before
+            self._robot.send(self.model, self.commands)
+            self.model.step()
+            self._status = _HELD_BACK

@@ -111,9 +111,9 @@ class Env(EnvBase):
         observation : (size,) float32
         reward : float
         terminated : bool
-            Whether the task has ended or the simulation has failed; info["failure"] then gives the reason.
+            Whether the task has ended.
         truncated : bool
-            Whether the time limit is reached.
+            Whether the time limit is reached, or the simulation has failed; info["failure"] then gives the reason.
         info : dict
 
         Raises

@@ -92,7 +92,7 @@ class Episode:
         try:
             robot.sim.step(task.substeps)
         except RunError as error:
-            return task.failure_reward, True, False, {"failure": str(error)}
+            return task.failure_reward, False, True, {"failure": str(error)}
         reward, over, info = task.reward(self)
         report = robot.sim.report
         if report.flagged:

@@ -64,7 +64,7 @@ class Together:
         infos: dict[str, Any] = {}
         failed = [i for i in acting if failures[i] is not None]
         if failed:
-            rewards[failed], terminations[failed] = task.failure_reward, True
+            rewards[failed], truncations[failed] = task.failure_reward, True
             self._tell(infos, "failure", failed, [str(failures[i]) for i in failed], object)
         done = [i for i in acting if failures[i] is None]
         if done:

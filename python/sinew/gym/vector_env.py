@@ -146,9 +146,10 @@ class VectorEnv(VectorEnvBase):
         observations : (num_envs, size) float32
         rewards : (num_envs,) float64
         terminations : (num_envs,) bool
-            Whether the task has ended or the simulation has failed; infos["failure"] then gives the reason.
+            Whether the task has ended.
         truncations : (num_envs,) bool
-            Whether the time limit is reached.
+            Whether the time limit is reached, or the simulation has failed; infos["failure"] then gives the reason, and the
+            observation is the previous one.
         infos : dict of arrays
             infos["x"][i] belongs to environment i where infos["_x"][i] is true.
 

@@ -257,6 +257,33 @@ VolumeMeasure Assembly::measure_volume(const Points& positions) {
   return {minimum_volume_ratio(), worst_element()};
 }
 
+StretchMeasure Assembly::measure_stretch(const Points& positions) {
+  Workspace& work = *work_;
+  load_positions(positions);
+  const SmallestRatio none{std::numeric_limits<double>::infinity(), -1};
+  std::ranges::fill(work.thread_ratios, none);
+  const ElementBatches& elements = model_->elements();
+  if (elements.batches() > 0) {
+    pool_->for_range(elements.batches(), 1, [&](int begin, int end, int thread) {
+      work.thread_ratios[static_cast<std::size_t>(thread)] =
+          measure_batch_stretch(elements, begin, end, work.points.data());
+    });
+  }
+  SmallestRatio* ratios = work.thread_ratios.data();
+  for (const SolidGroup& group : model_->solids()) {
+    ratios += pool_->size();
+    pool_->for_range(group.batches(), 1, [&](int begin, int end, int thread) {
+      ratios[thread] = measure_solid_stretch(group, begin, end, work.points.data());
+    });
+  }
+  SmallestRatio found = none;
+  for (const SmallestRatio& ratio : work.thread_ratios) {
+    if (ratio.value < found.value) found = ratio;
+  }
+  if (found.slot < 0) return {};
+  return {-found.value, element_of(found.slot)};
+}
+
 void Assembly::gather(const AssemblyWeights& weights, const Records& records) {
   Workspace& work = *work_;
   const FemModel& model = *model_;
@@ -303,8 +330,9 @@ void Assembly::hold() {
 double Assembly::strain_energy() const { return work_->energy; }
 double Assembly::minimum_volume_ratio() const { return work_->smallest.value; }
 
-int Assembly::worst_element() const {
-  const std::int32_t slot = work_->smallest.slot;
+int Assembly::worst_element() const { return element_of(work_->smallest.slot); }
+
+int Assembly::element_of(std::int32_t slot) const {
   if (slot < 0) return -1;
   const auto& tetrahedra = model_->elements().tetrahedron;
   if (static_cast<std::size_t>(slot) < tetrahedra.size()) {

@@ -51,6 +51,12 @@ struct VolumeMeasure {
   int element = -1;             ///< its number in ElementList: tetrahedra, then hexahedra
 };
 
+/// See Assembly::measure_stretch().
+struct StretchMeasure {
+  double largest = 1.0;
+  int element = -1;  ///< as in VolumeMeasure
+};
+
 /// Evaluates the internal forces and the tangent stiffness of one body in one simulation. Results
 /// are the same bit for bit for any number of threads. After construction, memory is allocated only
 /// by the first linearise_from() and by the first evaluate() on a thread, for the records of the
@@ -90,6 +96,9 @@ class Assembly {
   /// it is accepted.
   /// @param positions (n, 3) m, as for evaluate().
   VolumeMeasure measure_volume(const Points& positions);
+  /// Computes the largest stretch (largest_stretch()), at about the same cost; leaves the results
+  /// of evaluate() as they are. @param positions (n, 3) m, as for evaluate().
+  StretchMeasure measure_stretch(const Points& positions);
 
   /// (3 free,) N: f(q) = dU/dq, the internal force on the left of M a + f = p.
   std::span<const double> forces() const;
@@ -118,6 +127,7 @@ class Assembly {
   void load_positions(const Points& positions);
   void pad(const Points& positions, double* to);
   void find_smallest();
+  int element_of(std::int32_t slot) const;
   void evaluate_elements(const Points& positions, Tangent tangent, bool softened,
                          const Records& records);
   void average_patches(const SolidGroup& group, const Records& records);

@@ -129,6 +129,11 @@ mechanics::SmallestVolume BodyElements::smallest_volume() {
   return {volume.smallest_ratio, volume.element};
 }
 
+mechanics::LargestStretch BodyElements::largest_stretch() {
+  const auto [stretch, element] = active_->assembly.measure_stretch(state_.positions);
+  return {stretch, element};
+}
+
 std::size_t BodyElements::bytes() const {
   std::size_t total = sizeof(double) * static_cast<std::size_t>(ahead_.size());
   for (const SystemWorkspace* n : {plain_.get(), curved_.get()}) {

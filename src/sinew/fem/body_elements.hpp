@@ -49,6 +49,7 @@ class BodyElements {
 
   double strain_energy();  ///< J, at the current positions
   mechanics::SmallestVolume smallest_volume();
+  mechanics::LargestStretch largest_stretch();
   std::size_t bytes() const;
 
  private:

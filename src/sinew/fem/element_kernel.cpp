@@ -1,6 +1,7 @@
 #include "sinew/fem/element_kernel.hpp"
 
 #include "sinew/fem/lane_minimum.hpp"
+#include "sinew/fem/lane_stretch.hpp"
 #include "sinew/fem/transpose.hpp"
 #include "sinew/material/response.hpp"
 
@@ -188,6 +189,17 @@ SmallestRatio measure_batches(const ElementBatches& elements, int begin, int end
     const std::int32_t* nodes = elements.nodes.data() + 4 * kLanes * b;
     const Lanes3x3 f = deformation_gradient(batch, nodes, points);
     minimum.see(material::determinant(f, material::cofactor(f)), b);
+  }
+  return smallest(minimum, elements.tetrahedron, 0);
+}
+
+SmallestRatio measure_batch_stretch(const ElementBatches& elements, int begin, int end,
+                                    const double* points) {
+  LaneMinimum minimum;
+  for (std::int64_t b = begin; b < end; ++b) {
+    const BatchConstants& batch = elements.constants[static_cast<std::size_t>(b)];
+    const std::int32_t* nodes = elements.nodes.data() + 4 * kLanes * b;
+    minimum.see(-largest_stretch(deformation_gradient(batch, nodes, points)), b);
   }
   return smallest(minimum, elements.tetrahedron, 0);
 }

@@ -58,4 +58,9 @@ SmallestRatio evaluate_batches(const ElementBatches& elements, int begin, int en
 SmallestRatio measure_batches(const ElementBatches& elements, int begin, int end,
                               const double* points);
 
+/// Computes the largest stretch (largest_stretch()) of batches begin .. end-1. Its negative is the
+/// smallest value of the result.
+SmallestRatio measure_batch_stretch(const ElementBatches& elements, int begin, int end,
+                                    const double* points);
+
 }  // namespace sinew::fem

@@ -43,6 +43,7 @@ class FemStep : public mechanics::StepSystem {
   void add_proposed_motion(Points& nodes) const override;
   mechanics::MotionReport apply_motion(double scale) override;
   mechanics::SmallestVolume smallest_volume() override { return elements_.smallest_volume(); }
+  mechanics::LargestStretch largest_stretch() override { return elements_.largest_stretch(); }
   mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;
   void release() override { elements_.release(); }
   bool can_carry_on() const override;

@@ -45,6 +45,11 @@ SmallestRatio evaluate_solids(const SolidGroup& group, int begin, int end, const
 /// Computes only the smallest det F.
 SmallestRatio measure_solids(const SolidGroup& group, int begin, int end, const double* points);
 
+/// Computes only the largest stretch (largest_stretch()), whose negative is the smallest value of
+/// the result.
+SmallestRatio measure_solid_stretch(const SolidGroup& group, int begin, int end,
+                                    const double* points);
+
 /// det F of batches begin .. end-1 of linear tetrahedra.
 /// @param group,begin,end which. @param points as for evaluate_solids(). @param ratios (slots,).
 void volume_ratios(const SolidGroup& group, int begin, int end, const double* points,

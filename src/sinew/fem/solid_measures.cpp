@@ -1,5 +1,6 @@
 // Evaluations of hyperelastic elements without forces: volume ratios, states and strain history.
 #include "sinew/fem/lane_minimum.hpp"
+#include "sinew/fem/lane_stretch.hpp"
 #include "sinew/fem/solid_batch.hpp"
 #include "sinew/fem/solid_kernel.hpp"
 
@@ -21,6 +22,15 @@ void measure(const SolidGroup& group, int begin, int end, const double* points,
       const Lanes3x3 f = batch.deformation(q);
       minimum.see(material::determinant(f, material::cofactor(f)), b);
     }
+  }
+}
+
+template <int N, int Q>
+void measure_stretch(const SolidGroup& group, int begin, int end, const double* points,
+                     LaneMinimum& minimum) {
+  for (std::int64_t b = begin; b < end; ++b) {
+    const Batch<N, Q> batch(group, b, points);
+    for (int q = 0; q < Q; ++q) minimum.see(-largest_stretch(batch.deformation(q)), b);
   }
 }
 
@@ -130,6 +140,19 @@ SmallestRatio measure_solids(const SolidGroup& group, int begin, int end, const 
     measure<10, 4>(group, begin, end, points, minimum);
   } else {
     measure<8, 8>(group, begin, end, points, minimum);
+  }
+  return smallest(minimum, group.element, group.first_slot);
+}
+
+SmallestRatio measure_solid_stretch(const SolidGroup& group, int begin, int end,
+                                    const double* points) {
+  LaneMinimum minimum;
+  if (group.nodes == 4) {
+    measure_stretch<4, 1>(group, begin, end, points, minimum);
+  } else if (group.nodes == 10) {
+    measure_stretch<10, 4>(group, begin, end, points, minimum);
+  } else {
+    measure_stretch<8, 8>(group, begin, end, points, minimum);
   }
   return smallest(minimum, group.element, group.first_slot);
 }

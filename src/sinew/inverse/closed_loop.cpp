@@ -260,6 +260,12 @@ void ClosedLoop::command() {
   status_ = judge(choice, wanted, moved);
 }
 
+// Its commands did not change, so it foresees no motion.
+void ClosedLoop::hold_back() {
+  foreseen_.col((simulation_.steps() - 1) % foreseen_.cols()).setZero();
+  status_ = InverseStatus::held_back;
+}
+
 void ClosedLoop::tell(const VectorX& change, const MatrixX& w_aa) {
   const VectorX motion = w_aa * change;
   for (Eigen::Index k = 0; k < commands_.size(); ++k) {

@@ -51,6 +51,7 @@ class ClosedLoop : public TargetController, public sim::Commander {
   std::string conflict() const override;
 
   void command() override;
+  void hold_back() override;
   std::size_t memory_size() const override;
   void save_memory(std::span<double> memory) const override;
   void load_memory(std::span<const double> memory) override;

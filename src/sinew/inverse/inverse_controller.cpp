@@ -337,6 +337,14 @@ bool InverseController::rate_binds(const StepProblem& problem, const Response& r
   return false;
 }
 
+void InverseController::hold_back(int failures) {
+  for (int k = 0; k < failures; ++k) damping_.reject();
+  status_ = InverseStatus::held_back;
+  for (std::size_t k = 0; k < settings_.actuators.size(); ++k) {
+    efforts_[static_cast<Eigen::Index>(k)] = simulation_.actuator(settings_.actuators[k]).effort;
+  }
+}
+
 void InverseController::begin_step(int failures) {
   program_.reset();
   failures_ = failures;

@@ -69,6 +69,7 @@ class InverseController : public TargetController, public step::Controller {
     certificate_ = certificate;
   }
   void begin_step(int failures) override;
+  void hold_back(int failures) override;
   std::size_t memory_size() const override;
   void save_memory(std::span<double> memory) const override;
   void load_memory(std::span<const double> memory) override;

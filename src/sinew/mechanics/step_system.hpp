@@ -48,6 +48,14 @@ struct SmallestVolume {
   int element = -1;    ///< the element with this ratio
 };
 
+/// The largest principal stretch of any element: length by length at rest.
+struct LargestStretch {
+  double value = 1.0;
+  int element = -1;  ///< the element with this stretch
+};
+/// A larger stretch is no state of a robot: rubbers tear at 5 to 12.
+inline constexpr double kSaneStretch = 50.0;
+
 /// Result of a proposed motion.
 struct MotionReport {
   bool finite = true;         ///< no NaN or infinity in the new state
@@ -132,6 +140,9 @@ class StepSystem {
   /// Smallest volume ratio of the current state, which must be finite; costs nothing if it is
   /// linearised.
   virtual SmallestVolume smallest_volume() { return {}; }
+  /// The largest stretch in the current state, or an upper bound of it that is at most
+  /// kSaneStretch.
+  virtual LargestStretch largest_stretch() { return {}; }
   virtual StepEnd end_step(const StepWeights& weights) = 0;
   /// Called when the last condensation is no longer needed; other simulations may then use its
   /// memory.

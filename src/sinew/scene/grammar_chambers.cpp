@@ -67,22 +67,23 @@ std::shared_ptr<const KeyTable> gas_table() {
       {.name = "gas of a chamber",
        .description = "A compressible filling: for a given amount of gas, absolute pressure times "
                       "volume to the power of the exponent is constant.",
-       .keys = {{.name = "ambient_pressure",
-                 .forms = {quantity(stress(), positive())},
-                 .example = "101.325 kPa",
-                 .default_text = "101.325 kPa",
-                 .description = "Absolute ambient pressure, also the filling pressure at rest."},
-                {.name = "polytropic_exponent",
-                 .forms = {quantity(plain_number(), {.min = 1.0})},
-                 .example = "1.4",
-                 .default_text = "1",
-                 .description = "1: slow, isothermal. 1.4: fast, adiabatic air."},
-                dead_volume_key(),
-                {.name = "supply",
-                 .forms = {table(supply_table(true))},
-                 .example = "{conductance: 2e-9 m^3/(s Pa), critical_ratio: 0.3}",
-                 .description =
-                     "Supply through a valve. Default: a commanded pressure acts at once."}}});
+       .keys = {
+           {.name = "ambient_pressure",
+            .forms = {quantity(stress(), positive())},
+            .example = "101.325 kPa",
+            .description = "Absolute ambient pressure, also the filling pressure at rest. Default: "
+                           "the `ambient_pressure` of the chamber."},
+           {.name = "polytropic_exponent",
+            .forms = {quantity(plain_number(), {.min = 1.0})},
+            .example = "1.4",
+            .default_text = "1",
+            .description = "1: slow, isothermal. 1.4: fast, adiabatic air."},
+           dead_volume_key(),
+           {.name = "supply",
+            .forms = {table(supply_table(true))},
+            .example = "{conductance: 2e-9 m^3/(s Pa), critical_ratio: 0.3}",
+            .description =
+                "Supply through a valve. Default: a commanded pressure acts at once."}}});
 }
 
 std::shared_ptr<const KeyTable> liquid_table() {
@@ -212,35 +213,45 @@ std::shared_ptr<const KeyTable> chamber_table() {
       .name = "actuator: type chamber",
       .description =
           "A chamber: uniform pressure on a closed surface of a body, as a follower load.",
-      .keys = {body_key(),
-               {.name = "surface",
-                .forms = {table(surface_table())},
-                .example = "{inside: 0 0 30 mm}",
-                .description = "Surface on which the pressure acts.",
-                .required = true},
-               {.name = "cap",
-                .forms = {boolean()},
-                .example = "true",
-                .default_text = "false",
-                .description =
-                    "Closes openings of the surface with lids of zero stiffness that transfer "
-                    "their force to the rim. If false, an open surface is an error."},
-               {.name = "load_stiffness",
-                .forms = {boolean()},
-                .example = "false",
-                .default_text = "true",
-                .description = "Adds the stiffness of the loaded surface to every step; static "
-                               "solutions always have it."},
-               {.name = "gas",
-                .forms = {table(gas_table())},
-                .example = "{dead_volume: 5 ml}",
-                .description = "Gas in the chamber. Without gas or liquid, the pressure or volume "
-                               "follows its command directly."},
-               {.name = "liquid",
-                .forms = {table(liquid_table())},
-                .example = "{bulk_modulus: 2.2 GPa}",
-                .description = "Liquid in the chamber."},
-               outside_key()},
+      .keys =
+          {body_key(),
+           {.name = "surface",
+            .forms = {table(surface_table())},
+            .example = "{inside: 0 0 30 mm}",
+            .description = "Surface on which the pressure acts.",
+            .required = true},
+           {.name = "cap",
+            .forms = {boolean()},
+            .example = "true",
+            .default_text = "false",
+            .description =
+                "Closes openings of the surface with lids of zero stiffness that transfer "
+                "their force to the rim. If false, an open surface is an error."},
+           {.name = "load_stiffness",
+            .forms = {boolean()},
+            .example = "false",
+            .default_text = "true",
+            .description = "Adds the stiffness of the loaded surface to every step; static "
+                           "solutions always have it."},
+           {.name = "ambient_pressure",
+            .forms = {quantity(stress(), positive())},
+            .example = "101.325 kPa",
+            .default_text = "101.325 kPa",
+            .description =
+                "Absolute pressure at zero `pressure`. Pressures down to minus this, vacuum, are "
+                "possible: commands below are refused, and controllers stay above. In water "
+                "with a `level`, pressures count from that at the surface; without, from that "
+                "around the body, so add the water's head."},
+           {.name = "gas",
+            .forms = {table(gas_table())},
+            .example = "{dead_volume: 5 ml}",
+            .description = "Gas in the chamber. Without gas or liquid, the pressure or volume "
+                           "follows its command directly."},
+           {.name = "liquid",
+            .forms = {table(liquid_table())},
+            .example = "{bulk_modulus: 2.2 GPa}",
+            .description = "Liquid in the chamber."},
+           outside_key()},
       .alternatives = {{{"gas", "liquid"}, false}}};
   DriveWords words{.kind = "chamber", .type = sim::ActuatorType::chamber};
   words.effort_measure = stress();

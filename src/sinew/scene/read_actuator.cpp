@@ -121,6 +121,20 @@ std::optional<sim::Supply> read_supply(const Fields& fields) {
   return supply;
 }
 
+void read_ambient(const Fields& fields, const Fields& gas, sim::ChamberSettings& chamber) {
+  double own = 0.0, of_gas = 0.0;
+  const bool given = fields.read("ambient_pressure", own);
+  const bool gas_given = fields.find("gas") != nullptr && gas.read("ambient_pressure", of_gas);
+  if (given && gas_given && own != of_gas) {
+    throw Error(
+        ErrorKind::conflicting_keys, gas.place("ambient_pressure"),
+        fmt::format("the gas has an ambient pressure of {:g} Pa, its chamber one of {:g} Pa",
+                    of_gas, own),
+        "give it once, in the chamber");
+  }
+  if (given) chamber.ambient_pressure = own;
+}
+
 void read_filling(const Fields& fields, sim::ChamberSettings& chamber) {
   if (fields.find("gas") != nullptr) {
     const Fields values = fields.below("gas");
@@ -149,6 +163,7 @@ ChamberDescription read_chamber(const Fields& fields, const ReadContext& context
   fields.read("load_stiffness", settings.load_stiffness);
   read_outside(fields, settings.outside);
   read_filling(fields, settings);
+  read_ambient(fields, fields.below("gas"), settings);
   read_limits(fields, sim::ActuatorType::chamber, settings.pressure, settings.volume_growth);
   return chamber;
 }

@@ -27,7 +27,8 @@ double setpoint(const ActuatorModel& model, const ActuatorState& state) {
 step::ActuatorBlock actuator_block(const ActuatorModel& model, const ActuatorState& state,
                                    std::span<const double> drive_state, double time,
                                    double time_step) {
-  const Interval effort = reachable(model.effort, state.effort, time_step);
+  const CommandKind chosen = state.chosen ? CommandKind::effort : state.command.kind;
+  const Interval effort = reachable(model.effort_limits(chosen), state.effort, time_step);
   const Interval motion = reachable(model.motion, state.setpoint, time_step);
   step::ActuatorBlock block;
   block.row = model.row;
@@ -103,6 +104,7 @@ void Actuation::command(int actuator, Command command, const void* by) {
                 "a controller owns this actuator", "detach the controller first");
   }
   check_held(actuator, command);
+  model_.actuators()[static_cast<std::size_t>(actuator)].check_command(command);
   state.command = std::move(command);
 }
 

@@ -1,7 +1,11 @@
 #include "sinew/sim/actuator.hpp"
 
 #include <algorithm>
+#include <limits>
 
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
 #include "sinew/sim/fluid_drive.hpp"
 #include "sinew/sim/spring_drive.hpp"
 
@@ -71,6 +75,26 @@ QuantityName ActuatorModel::quantity(CommandKind kind) const {
   if (kind == CommandKind::motion) return words().motion;
   const QuantityName input = input_name();
   return *input.name == '\0' ? words().motion : input;
+}
+
+Limits ActuatorModel::effort_limits(CommandKind kind) const {
+  Limits limits = effort;
+  if (kind == CommandKind::motion && vacuum && limits.min == *vacuum) {
+    limits.min = -std::numeric_limits<double>::infinity();
+  }
+  return limits;
+}
+
+void ActuatorModel::check_command(const Command& told) const {
+  if (!vacuum || told.kind != CommandKind::effort) return;
+  const double lowest = told.signal.lowest();
+  if (lowest >= *vacuum) return;
+  throw Error(
+      ErrorKind::out_of_range, {.item = fmt::format("actuator '{}'", name)},
+      fmt::format("a pressure of {:.6g} kPa is below vacuum: the ambient pressure is {:.6g} "
+                  "kPa",
+                  1e-3 * lowest, -1e-3 * *vacuum),
+      fmt::format("give {:.6g} kPa or more, or the chamber's `ambient_pressure`", 1e-3 * *vacuum));
 }
 
 std::optional<CommandKind> ActuatorModel::kind_of(std::string_view quantity) const {

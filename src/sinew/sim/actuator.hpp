@@ -61,6 +61,9 @@ struct ActuatorModel {
   int first_state = 0;        ///< index of its first state variable among those of all drives
   double motion_scale = 1.0;  ///< m per unit of motion: 1; for a chamber 1/m^2, one over its area
   int joint = -1;             ///< index in Model::joints() of the joint it moves; -1: none
+  /// Pa, of a chamber: its pressure where the absolute pressure is zero, minus the ambient one. The
+  /// limit effort.min is never below this. No liquid and no gas transmits less.
+  std::optional<double> vacuum = {};
 
   const ActuatorWords& words() const { return actuator_words(type); }
   /// Name of the drive's input, or "velocity" of a motor, rad/s or m/s; otherwise empty.
@@ -71,9 +74,18 @@ struct ActuatorModel {
   std::optional<CommandKind> kind_of(std::string_view quantity) const;
   /// Whether a command of this kind prescribes the motion, and any effort that it takes.
   bool holds_motion(CommandKind kind) const;
+  /// Limits of the effort for commands of a kind. A commanded volume holds whatever pressure that
+  /// takes, unless the scene limits it; the step says if it would take less than vacuum.
+  Limits effort_limits(CommandKind kind) const;
+  /// Throws Error(out-of-range) for a commanded effort below vacuum at any time. @param told any
+  /// command.
+  void check_command(const Command& told) const;
   /// Whether a controller may choose its effort: true without a drive.
   bool controllable() const { return drive == nullptr || drive->controllable(); }
 };
+
+/// Pa, absolute: the standard atmosphere (ISO 2533:1975), the ambient pressure if none is given.
+inline constexpr double kAtmosphere = 101325.0;
 
 /// The state of an actuator in a simulation.
 struct ActuatorState {

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -15,6 +17,7 @@
 #include "sinew/sim/fluid_drive.hpp"
 #include "sinew/sim/hydrostatic.hpp"
 #include "sinew/sim/model_data.hpp"
+#include "sinew/sim/require.hpp"
 
 namespace sinew::sim {
 
@@ -33,8 +36,20 @@ std::unique_ptr<constraint::Chamber> attach_surface(ModelData& data,
                                                rest_positions(data, surface.points()));
 }
 
+double ambient_pressure(const ChamberSettings& settings) {
+  const double own = settings.gas ? settings.gas->ambient_pressure : kAtmosphere;
+  const double ambient = settings.ambient_pressure.value_or(own);
+  require(ambient > 0.0 && std::isfinite(ambient), "ambient_pressure", ambient,
+          "give an absolute pressure, 101325 Pa at sea level");
+  return ambient;
+}
+
 std::shared_ptr<const Drive> drive_of(const ChamberSettings& settings, double rest_volume) {
-  if (settings.gas) return std::make_shared<const GasDrive>(*settings.gas, rest_volume);
+  if (settings.gas) {
+    GasSettings gas = *settings.gas;
+    gas.ambient_pressure = ambient_pressure(settings);
+    return std::make_shared<const GasDrive>(gas, rest_volume);
+  }
   if (settings.liquid) return std::make_shared<const LiquidDrive>(*settings.liquid, rest_volume);
   return nullptr;
 }
@@ -66,6 +81,9 @@ int add_chamber(ModelData& data, const ChamberSettings& settings) {
                            settings.volume_growth, settings.command};
     actuator.motion_scale = 1.0 / chamber->rest_area();
     actuator.drive = drive_of(settings, chamber->rest_volume());
+    actuator.vacuum = -ambient_pressure(settings);
+    actuator.effort.min = std::max(actuator.effort.min, *actuator.vacuum);
+    actuator.check_command(actuator.command);
     const int index = add_actuator(data, std::move(actuator), std::move(chamber), settings.place);
     if (settings.liquid && settings.liquid->density > 0.0) add_liquid_weight(data, settings);
     if (settings.load_stiffness)

@@ -160,6 +160,18 @@ mechanics::SmallestVolume Bodies::smallest_volume() {
   return smallest;
 }
 
+mechanics::LargestStretch Bodies::largest_stretch(int& body) {
+  mechanics::LargestStretch largest;
+  body = -1;
+  for (std::size_t i = 0; i < systems_.size(); ++i) {
+    const auto stretch = systems_[i]->largest_stretch();
+    if (stretch.value <= largest.value) continue;
+    largest = stretch;
+    body = static_cast<int>(i);
+  }
+  return largest;
+}
+
 bool Bodies::can_carry_on() const {
   return std::ranges::all_of(systems_, &mechanics::StepSystem::can_carry_on);
 }

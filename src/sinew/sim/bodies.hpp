@@ -65,6 +65,8 @@ class Bodies {
   void drift(double time_step);
   mechanics::MotionReport apply_motion(double scale);
   mechanics::SmallestVolume smallest_volume();
+  /// @param body out: the body that has it; -1: none is stretched.
+  mechanics::LargestStretch largest_stretch(int& body);
   /// See mechanics::StepSystem; `change` has the shape (all bodies' size(),), m/s.
   bool can_carry_on() const;
   void scale_motion(double factor);

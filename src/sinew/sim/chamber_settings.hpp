@@ -26,6 +26,9 @@ struct ChamberSettings {
   mesh::Outside outside = mesh::Outside::error;  ///< for a surface's vertices
   bool cap = false;  ///< close openings by lids without stiffness, which load the rim
   bool load_stiffness = true;
+  /// Pa, absolute, at zero `pressure`, where the absolute pressure in the chamber is this one.
+  /// None: that of `gas`, or kAtmosphere.
+  std::optional<double> ambient_pressure;
   Limits pressure;       ///< Pa, above ambient
   Limits volume_growth;  ///< m^3
   Command command;

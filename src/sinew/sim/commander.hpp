@@ -13,6 +13,9 @@ class Commander : public step::WithMemory {
   /// Called before each step to call Simulation::command(). An exception propagates, and the step
   /// is not made.
   virtual void command() = 0;
+  /// Called after a step that could not be solved with its commands, and that was made with those
+  /// of the last step.
+  virtual void hold_back() = 0;
 };
 
 }  // namespace sinew::sim

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "sinew/sim/run.hpp"
+#include "sinew/sim/sanity.hpp"
 #include "sinew/sim/step_failure.hpp"
+#include "sinew/sim/step_verdict.hpp"
 
 namespace sinew::sim {
 
@@ -99,6 +101,24 @@ void LinearStep::look_back(mechanics::LinearisationRequest request) {
   report.residual = run_.world.bodies().residual(run_.effort);
   report.relative_residual = report.residual / (run_.world.bodies().force_scale() + 1e-300);
   report.violation = run_.world.violation(run_.effort, report.law);
+  require_solution();
+}
+
+void LinearStep::require_solution() {
+  StepReport& report = run_.report;
+  const Sanity sanity = examine(run_.world, run_.effort);
+  report.physical = sanity.sound();
+  run_.volume_ratio = report.smallest_volume_ratio = sanity.volume.ratio;
+  if (run_.keeps_going || is_balanced(run_)) return;
+  if (!report.physical) {
+    fail(run_, ErrorKind::diverged,
+         "the step ends in a state that is not physical: " + describe(sanity, *run_.model),
+         "use `solver: newton`, or take a smaller time step");
+  }
+  fail(run_, ErrorKind::not_converged,
+       fmt::format("one linearisation leaves {:.2g} % of the forces out of balance",
+                   100.0 * report.relative_residual),
+       step_status_remedy(StepStatus::not_in_equilibrium, run_.model->step()));
 }
 
 }  // namespace sinew::sim

@@ -27,6 +27,7 @@ class LinearStep {
   void move_soundly();
   void require_outside();
   void look_back(mechanics::LinearisationRequest request);
+  void require_solution();
 
   Run& run_;
 };

@@ -44,8 +44,9 @@ std::uint64_t actuator_hash(const ModelData& data, std::size_t index) {
   const ActuatorModel& actuator = data.actuators[index];
   ValueHash hash;
   hash.add(actuator.type, actuator.motion_scale, actuator.drive != nullptr);
-  add_limits(hash, actuator.effort);
+  add_limits(hash, actuator.effort_limits(CommandKind::motion));
   add_limits(hash, actuator.motion);
+  if (actuator.vacuum && *actuator.vacuum != -kAtmosphere) hash.add(*actuator.vacuum);
   if (actuator.drive != nullptr) actuator.drive->add_to(hash);
   add_constraint(hash, data, actuator.constraint);
   for (const GuideModel& guide : data.guides) {

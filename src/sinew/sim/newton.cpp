@@ -47,6 +47,7 @@ class NewtonSolver {
       if (report_.law == step::LawStatus::failed) return finish(NewtonStatus::law_failed);
       const NewtonStatus moved = move();
       ++report_.iterations;
+      report_.whole_move += report_.motion.largest_move;
       watch_.count(report_.relative_residual);
       if (moved != NewtonStatus::converged) return finish(moved);
       if (is_only_descending()) break;
@@ -145,6 +146,7 @@ class NewtonSolver {
       inverted = !(report_.motion.volume.ratio > 0.0);
       if (inverted) continue;
       const double after = merit();
+      if (report_.iterations == 0) report_.first_move = report_.motion.largest_move / scale;
       full_step_ = halving == 0;
       stagnant_ = full_step_ && report_.residual > kLessened * residual_before;
       converged_ = converged();
@@ -153,8 +155,13 @@ class NewtonSolver {
     return inverted ? NewtonStatus::inverted : NewtonStatus::stalled;
   }
 
+  // Without an iteration, the report is that of the state at the start.
   NewtonReport finish(NewtonStatus status) {
-    report_.status = status;
+    if (report_.iterations == 0) merit();
+    report_.sanity = examine(world_, effort_);
+    report_.motion.volume = report_.sanity.volume;
+    const bool lost = status == NewtonStatus::converged && !report_.sanity.sound();
+    report_.status = lost ? NewtonStatus::unphysical : status;
     return report_;
   }
 
@@ -188,6 +195,8 @@ std::string_view newton_status_name(NewtonStatus status) {
       return "singular";
     case NewtonStatus::law_failed:
       return "law-failed";
+    case NewtonStatus::unphysical:
+      return "unphysical";
   }
   return "unknown";
 }

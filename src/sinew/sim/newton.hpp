@@ -7,6 +7,7 @@
 
 #include "sinew/mechanics/step_system.hpp"
 #include "sinew/sim/newton_status.hpp"
+#include "sinew/sim/sanity.hpp"
 #include "sinew/step/law_status.hpp"
 
 namespace sinew::step {
@@ -48,8 +49,11 @@ struct NewtonReport {
   double violation = 0.0;          ///< m, of the law
   int factorisations = 0;
   int tangent_fallbacks = 0;  ///< iterations in which the exact tangent was indefinite
+  double first_move = 0.0;    ///< m, largest change of a coordinate in a full first iteration
+  double whole_move = 0.0;    ///< m, the sum of those of all iterations
   step::LawStatus law = step::LawStatus::solved;
   mechanics::MotionReport motion;
+  Sanity sanity;  ///< of the state at the end
 };
 
 /// Runs Newton's method from the world's present state. On return, the bodies are linearised at the

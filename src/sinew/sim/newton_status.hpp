@@ -13,6 +13,7 @@ enum class NewtonStatus {
   inverted,         ///< even a short step would invert an element
   singular,         ///< A cannot be factorised
   law_failed,       ///< the law has no solution for the efforts
+  unphysical,       ///< it converged, but no robot has such a state, see Sanity
 };
 /// "converged", "iteration-limit", ...
 std::string_view newton_status_name(NewtonStatus status);

@@ -6,10 +6,12 @@
 #include <fmt/format.h>
 
 #include "sinew/sim/folded_cable.hpp"
+#include "sinew/sim/limit_point.hpp"
 #include "sinew/sim/load_steps.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/step_failure.hpp"
 #include "sinew/sim/step_tolerances.hpp"
+#include "sinew/sim/step_verdict.hpp"
 #include "sinew/step/controller.hpp"
 
 namespace sinew::sim {
@@ -40,6 +42,9 @@ constexpr int kIterationsBeforeHalving = 16;
 // if the contradiction, which the joints involved share, is at least the second fraction of it.
 constexpr double kAtRest = 0.1;
 constexpr double kShare = 0.01;
+// A step that passes unstable states and moves this many times as far as its first iteration has
+// left its branch.
+constexpr double kSnap = 5.0;
 
 bool converged(const NewtonReport& result) { return result.status == NewtonStatus::converged; }
 
@@ -71,22 +76,94 @@ NewtonSettings NewtonStep::settings_of_part(double time_step) const {
   return part;
 }
 
+// A state that is no solution is kept only if the caller asks for it (Run::keeps_going).
 void NewtonStep::solve(double time_step) {
   const NewtonReport result = search(time_step);
   take_report(result);
   if (converged(result)) return;
   const JointConflict conflict = find_conflict(result, time_step);
-  if (!run_.model->step().dynamic() && is_usable(result) && !conflict.opens) return;
+  const bool usable = !conflict.opens && is_usable(result);
+  if (usable && (run_.keeps_going || is_balanced(run_))) return;
   if (!conflict.text.empty()) fail_joints(run_, conflict);
   if (result.status == NewtonStatus::law_failed) fail_law(run_);
+  const std::string text = describe(result, settings(time_step));
   const std::string folded =
       describe_folded_cable(*run_.model, run_.world.configuration(), run_.effort);
-  fail(run_, ErrorKind::not_converged, describe(result, settings(time_step)) + folded,
-       folded.empty() ? remedy(result.status)
-                      : "lessen its tension, or place its points so that they stay apart");
+  if (!folded.empty()) {
+    fail(run_, ErrorKind::not_converged, text + folded,
+         "lessen its tension, or place its points so that they stay apart");
+  }
+  if (!searches_on(result)) {
+    fail(run_, kind_of(result), text + describe_choice(), remedy(result.status));
+  }
+  if (!approached_) {
+    descended_ = false;
+    const NewtonReport way = approach(time_step);
+    if (converged(way)) return take_report(way);
+  }
+  fail_to_find(result, text, time_step);
+}
+
+// Says where the equilibria of a quasi-static step end.
+void NewtonStep::fail_to_find(const NewtonReport& result, const std::string& text,
+                              double time_step) {
+  const std::vector<step::ActuatorBlock> goal = run_.world.problem().actuators;
+  run_.restore(sound_);
+  run_.begin_world(time_step);
+  run_.world.linearise({{}, mechanics::Tangent::exact, true, true});
+  run_.world.form_rows(run_.effort, run_.model->geometric_stiffness().all);
+  const bool singular = run_.world.condense() == linalg::FactorStatus::singular;
+  const std::string limit = singular ? "" : describe_limit_point(run_, goal);
+  if (!limit.empty()) fail(run_, kind_of(result), limit, kLimitPointRemedy);
+  const bool buckles = tried_fallbacks_ > 0;
+  std::string end = fmt::format(
+      "; the last equilibrium on the way is at {:.3g} % of this step's "
+      "changes{}",
+      100.0 * reached_, describe_efforts(goal));
+  if (buckles) {
+    end +=
+        ", and beyond it the exact tangent is indefinite: the robot buckles, collapses or snaps "
+        "there";
+  }
+  fail(run_, kind_of(result), text + end,
+       buckles ? "command a motion (a volume_growth, a displacement) in place of an effort, use "
+                 "dynamics (`integrator: backward-euler`), or take smaller commands or loads"
+               : remedy(result.status));
+}
+
+// The commanded efforts that the last equilibrium has not reached: ", with 'air' at 11.9 of 12
+// kPa".
+std::string NewtonStep::describe_efforts(std::span<const step::ActuatorBlock> goal) const {
+  std::string text;
+  for (std::size_t i = 0; i < run_.model->actuators().size(); ++i) {
+    const ActuatorModel& model = run_.model->actuators()[i];
+    if (goal[i].kind != CommandKind::effort || goal[i].owned || goal[i].drive != nullptr) continue;
+    const double reached = run_.effort[static_cast<std::size_t>(model.row)];
+    if (reached == goal[i].value) continue;
+    text += fmt::format("{}'{}' at {:.4g} of {:.4g} {}", text.empty() ? ", with " : ", ",
+                        model.name, reached, goal[i].value, model.words().effort.unit);
+  }
+  return text;
+}
+
+// What a controller chose in vain.
+std::string NewtonStep::describe_choice() const {
+  std::string text;
+  for (std::size_t i = 0; i < run_.model->actuators().size(); ++i) {
+    if (!run_.actuation.states()[i].chosen) continue;
+    const ActuatorModel& model = run_.model->actuators()[i];
+    text += fmt::format("{}{:.4g} {} for '{}'", text.empty() ? "; its controller chose " : ", ",
+                        run_.effort[static_cast<std::size_t>(model.row)], model.words().effort.unit,
+                        model.name);
+  }
+  return text;
 }
 
 std::string NewtonStep::describe(const NewtonReport& result, const NewtonSettings& how) const {
+  if (result.status == NewtonStatus::unphysical || !result.sanity.finite) {
+    return "the step ends in a state that is not physical: " +
+           sim::describe(result.sanity, *run_.model);
+  }
   std::string text = fmt::format(
       "Newton ended as '{}' after {} iterations, relative residual {:.3g} (tolerance {:.3g})",
       newton_status_name(result.status), result.iterations, result.relative_residual,
@@ -121,10 +198,9 @@ NewtonReport NewtonStep::search(double time_step) {
   }
   NewtonReport result = run_.newton(run_.controller, whole);
   if (steered && goes_on(result)) return hold_choice(result, time_step);
-  if (run_.model->step().dynamic() || converged(result)) return result;
-  // If all methods failed in the last step, they fail from there in this step, too.
-  if (run_.before.residual > kLag.residual) return result;
+  if (!searches_on(result)) return result;
   int tried = result.iterations;
+  tried_fallbacks_ += result.tangent_fallbacks;
   if (result.iterations > 0 && result.tangent_fallbacks == result.iterations) {
     // A step that is unstable from its start is unstable in parts, too.
     run_.restore(run_.before);
@@ -139,6 +215,13 @@ NewtonReport NewtonStep::search(double time_step) {
   }
   result.iterations = tried;
   return result;
+}
+
+// Whether a failed iteration is followed by others. If all methods failed in the last step, they
+// fail from there in this step, too.
+bool NewtonStep::searches_on(const NewtonReport& result) const {
+  if (run_.model->step().dynamic() || run_.controller != nullptr || converged(result)) return false;
+  return !(run_.before.residual > kLag.residual);
 }
 
 // See lift_motor_limits(). None: it found no equilibrium within the limits.
@@ -173,7 +256,7 @@ NewtonReport NewtonStep::hold_choice(const NewtonReport& chosen, double time_ste
     result = descend(time_step, few);
     tried += result.iterations;
   }
-  if (!dynamic && goes_on(result) && !is_usable(result)) {
+  if (!dynamic && goes_on(result) && !solves(result)) {
     result = stay(time_step);
     tried += result.iterations;
   }
@@ -186,6 +269,7 @@ NewtonReport NewtonStep::hold_choice(const NewtonReport& chosen, double time_ste
 // The controller keeps the memory of its prediction, and trusts its next choice less (see
 // inverse::StepDamping).
 NewtonReport NewtonStep::stay(double time_step) {
+  descended_ = part_snapped_ = false;
   run_.watch.enter(SearchStage::last_efforts);
   std::vector<double> memory(run_.controller->memory_size());
   run_.controller->save_memory(memory);
@@ -199,8 +283,9 @@ NewtonReport NewtonStep::stay(double time_step) {
   NewtonReport result = run_.newton(nullptr, settings(time_step));
   if (!converged(result)) result = approach(time_step);
   if (!converged(result)) result = descend(time_step, kMaxDescents);
-  if (goes_on(result) && !is_usable(result)) result = remain(time_step, result);
+  if (goes_on(result) && !solves(result)) result = remain(time_step, result);
   run_.controller->load_memory(memory);
+  run_.controller->hold_back(0);
   return result;
 }
 
@@ -220,7 +305,8 @@ NewtonReport NewtonStep::remain(double time_step, const NewtonReport& failed) {
   result.relative_residual = result.residual / (world.bodies().force_scale() + 1e-300);
   result.violation = world.violation(run_.effort, result.law);
   result.motion.finite = true;
-  result.motion.volume.ratio = run_.volume_ratio;
+  result.sanity = examine(world, run_.effort);
+  result.motion.volume = result.sanity.volume;
   if (!(result.relative_residual <= kBalanced)) return failed;
   return result;
 }
@@ -234,9 +320,11 @@ NewtonReport NewtonStep::approach(double time_step) {
   const std::vector<step::ActuatorBlock> goal = commands;
   const std::vector<ActuatorState> start = run_.actuation.states();
   NewtonSettings part = settings_of_part(time_step);
-  State sound = run_.before;
+  approached_ = true;
+  part_snapped_ = false;
+  sound_ = run_.before;
   const auto go_back = [&] {
-    run_.restore(sound);
+    run_.restore(sound_);
     run_.begin_world(time_step);
   };
   go_back();
@@ -253,11 +341,14 @@ NewtonReport NewtonStep::approach(double time_step) {
     world.homotopy().set_fraction(fraction);
     result = run_.newton(nullptr, part);
     iterations += result.iterations;
+    tried_fallbacks_ += result.tangent_fallbacks;
+    part_snapped_ = part_snapped_ || snaps(result);
     return converged(result);
   };
-  take_load_steps(
+  const double left = take_load_steps(
       {.first = 0.5, .min = kMinPart, .min_at_first = kMinFirstPart}, solve,
-      [&] { run_.keep(sound); }, go_back);
+      [&] { run_.keep(sound_); }, go_back);
+  reached_ = 1.0 - left;
   world.homotopy().set_fraction(0.0);
   commands = goal;
   result.iterations = iterations;
@@ -269,6 +360,7 @@ NewtonReport NewtonStep::approach(double time_step) {
 // method completes the slow end of this descent.
 NewtonReport NewtonStep::descend(double time_step, int iterations) {
   run_.watch.enter(SearchStage::downhill);
+  descended_ = true;
   NewtonSettings downhill = settings(time_step);
   downhill.request.tangent = mechanics::Tangent::projected;
   // A majorant requires the stiffness of all cables, even of those that the scene leaves out.
@@ -283,12 +375,30 @@ NewtonReport NewtonStep::descend(double time_step, int iterations) {
   return result;
 }
 
-// Whether a quasi-static step may end in this state, with a flag. Contacts admit no approximate
-// solution, since a point would be inside a surface; with contacts, the residual is limited as for
-// the steps of a controller.
+// A continuous step moves about as far as its first iteration, whose tangent is stable, predicts.
+bool NewtonStep::snaps(const NewtonReport& result) const {
+  if (run_.model->step().dynamic() || !converged(result)) return false;
+  if (descended_ || part_snapped_) return true;
+  return result.tangent_fallbacks > 0 && result.whole_move > kSnap * result.first_move;
+}
+
+ErrorKind NewtonStep::kind_of(const NewtonReport& result) {
+  return result.status == NewtonStatus::unphysical ? ErrorKind::diverged : ErrorKind::not_converged;
+}
+
+// Whether a result that is not converged is a solution nevertheless, see is_balanced().
+bool NewtonStep::solves(const NewtonReport& result) {
+  take_report(result);
+  return is_usable(result) && is_balanced(run_);
+}
+
+// Whether a step may end in this state, with a flag. Contacts admit no approximate solution, since
+// a point would be inside a surface; with contacts, the residual is limited as for the steps of a
+// controller. In dynamics the impulse of a residual would remain, and only solutions count.
 bool NewtonStep::is_usable(const NewtonReport& result) const {
   if (!result.motion.finite || !(result.motion.volume.ratio > 0.0)) return false;
-  if (result.law == LawStatus::failed) return false;
+  if (result.law == LawStatus::failed || !result.sanity.finite) return false;
+  if (run_.model->step().dynamic()) return result.status == NewtonStatus::unphysical && !divisible_;
   if (run_.model->contacts().empty()) return true;
   return result.relative_residual <= (run_.controller == nullptr ? kSearched : kBalanced) &&
          result.violation <= kMotionTolerance * run_.model->size();
@@ -312,7 +422,9 @@ void NewtonStep::take_report(const NewtonReport& result) {
   report.iterations = result.iterations;
   report.newton = result.status;
   report.scale = 1.0;
-  run_.volume_ratio = report.smallest_volume_ratio = result.motion.volume.ratio;
+  report.snapped = snaps(result);
+  report.physical = result.sanity.sound();
+  run_.volume_ratio = report.smallest_volume_ratio = result.sanity.volume.ratio;
 }
 
 }  // namespace sinew::sim

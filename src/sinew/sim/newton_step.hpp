@@ -3,10 +3,17 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
+#include "sinew/core/error.hpp"
 #include "sinew/sim/joint_conflict.hpp"
 #include "sinew/sim/newton.hpp"
+#include "sinew/sim/state.hpp"
+
+namespace sinew::step {
+struct ActuatorBlock;
+}
 
 namespace sinew::sim {
 
@@ -30,6 +37,7 @@ class NewtonStep {
   std::string describe(const NewtonReport& result, const NewtonSettings& how) const;
   std::string remedy(NewtonStatus status) const;
   NewtonReport search(double time_step);
+  bool searches_on(const NewtonReport& result) const;
   std::optional<NewtonReport> hold_motors(double time_step);
   NewtonReport hold_choice(const NewtonReport& chosen, double time_step);
   NewtonReport stay(double time_step);
@@ -37,11 +45,24 @@ class NewtonStep {
   NewtonReport approach(double time_step);
   NewtonReport descend(double time_step, int iterations);
   bool is_usable(const NewtonReport& result) const;
+  bool solves(const NewtonReport& result);
+  bool snaps(const NewtonReport& result) const;
+  static ErrorKind kind_of(const NewtonReport& result);
+  [[noreturn]] void fail_to_find(const NewtonReport& result, const std::string& text,
+                                 double time_step);
+  std::string describe_efforts(std::span<const step::ActuatorBlock> goal) const;
+  std::string describe_choice() const;
   JointConflict find_conflict(const NewtonReport& result, double time_step) const;
   void take_report(const NewtonReport& result);
 
   Run& run_;
   bool divisible_;
+  bool approached_ = false;    // whether approach() has run, which sets the next two
+  State sound_;                // the last equilibrium on the way
+  double reached_ = 0.0;       // fraction of the step's changes there
+  bool part_snapped_ = false;  // whether a part of approach() left its branch
+  bool descended_ = false;     // whether the result is that of descend()
+  int tried_fallbacks_ = 0;    // iterations in which the exact tangent was indefinite
 };
 
 }  // namespace sinew::sim

@@ -87,6 +87,7 @@ void Run::restart() {
   std::ranges::fill(effort, 0.0);
   std::ranges::fill(world.problem().actuators, step::ActuatorBlock{});
   volume_ratio = 1.0;
+  failed = false;
   ledger = {};
   last_step = next_step = 0.0;
   steps = 0;

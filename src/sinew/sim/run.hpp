@@ -87,7 +87,10 @@ struct Run {
   double next_step = 0.0;  ///< s, length to try for the next substep; 0: the whole step
   double volume_ratio = 1.0;
   double now = 0.0;  ///< s, end of the current substep
-  State before;      ///< state before the current substep or search
+  /// Whether the state descends from a failed step (is_failure()).
+  bool failed = false;
+  bool keeps_going = false;  ///< whether steps that fail are kept, see Simulation::step()
+  State before;              ///< state before the current substep or search
   StepReport report;
   Sensors sensors;
   Estimators estimators;

@@ -69,6 +69,7 @@ void Run::keep(State& state) const {
   if (remembering != nullptr) remembering->save_memory(state.controller);
   state.ledger = ledger.sums();
   state.volume_ratio = volume_ratio;
+  state.failed = failed ? 1.0 : 0.0;
   state.residual = report.relative_residual;
   state.last_step = last_step;
   state.next_step = next_step;
@@ -90,6 +91,7 @@ void Run::restore(const State& state) {
   world.joints().values() = state.joints;
   ledger.set(state.ledger);
   volume_ratio = state.volume_ratio;
+  failed = state.failed != 0.0;
   report.relative_residual = state.residual;
   last_step = state.last_step;
   next_step = state.next_step;

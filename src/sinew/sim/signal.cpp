@@ -120,6 +120,13 @@ double Signal::value(double time) const {
   return std::get<Table>(form_).value(time);
 }
 
+double Signal::lowest() const {
+  if (const auto* constant = std::get_if<Constant>(&form_)) return constant->value;
+  if (const auto* ramp = std::get_if<Ramp>(&form_)) return std::min(ramp->from, ramp->to);
+  if (const auto* sine = std::get_if<Sine>(&form_)) return sine->mean - std::abs(sine->amplitude);
+  return std::ranges::min(std::get<Table>(form_).values);
+}
+
 // Slope of the segment that contains a time.
 double Signal::Table::slope(double time) const {
   const auto after = std::upper_bound(times.begin(), times.end(), time);

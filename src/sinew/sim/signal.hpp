@@ -61,6 +61,8 @@ class Signal {
   double rate(double time, Side side) const;
   /// s: the next corner or jump more than a nanosecond after `time` (s); infinity if there is none.
   double next_corner(double time) const;
+  /// The lowest value at any time.
+  double lowest() const;
   /// Whether the value ever jumps.
   bool jumps() const;
 

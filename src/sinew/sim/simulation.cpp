@@ -43,18 +43,27 @@ long Simulation::work_done(int thread) const { return run_->pool.parts_done(thre
 double Simulation::time() const { return run_->time(); }
 std::int64_t Simulation::steps() const { return run_->steps; }
 
-const StepReport& Simulation::step() {
-  if (run_->commander != nullptr) {
-    step_by_command();
-  } else {
-    stepper_->step();
+const StepReport& Simulation::step(OnFailure on_failure) {
+  run_->keeps_going = on_failure == OnFailure::keep_going;
+  try {
+    make_step();
+  } catch (...) {
+    run_->keeps_going = false;
+    throw;
   }
+  run_->keeps_going = false;
   run_->sensors.advance(*run_);
   run_->estimators.advance(*run_);
   return run_->report;
 }
 
-// A failed step restores the commander, too.
+void Simulation::make_step() {
+  if (run_->commander != nullptr) return step_by_command();
+  stepper_->step();
+}
+
+// If no step can be made with the commands of the commander, its last ones are kept; if that fails,
+// too, the first error is reported. A failed step restores the commander.
 void Simulation::step_by_command() {
   Commander& commander = *run_->commander;
   std::vector<double> memory(commander.memory_size());
@@ -62,10 +71,26 @@ void Simulation::step_by_command() {
   try {
     commander.command();
     stepper_->step();
+  } catch (const Error& failure) {
+    commander.load_memory(memory);
+    if (!failure.is_run_failure() || !make_same_step()) throw;
+    commander.hold_back();
   } catch (...) {
     commander.load_memory(memory);
     throw;
   }
+}
+
+bool Simulation::make_same_step() {
+  try {
+    stepper_->step();
+  } catch (const Error& failure) {
+    if (!failure.is_run_failure()) throw;
+    return false;
+  }
+  ++run_->report.retries;
+  run_->report.choice_held = true;
+  return true;
 }
 
 const StepReport& Simulation::report() const { return run_->report; }

@@ -45,6 +45,12 @@ struct State;
 class Stepper;
 class World;
 
+/// What a step that fails does.
+enum class OnFailure {
+  stop,        ///< throws, and restores the state before it
+  keep_going,  ///< keeps its state where that can be evaluated, flagged
+};
+
 /// One run of a model: its state, inputs and time steps. An instance is not thread-safe; different
 /// simulations may run in parallel threads.
 class Simulation {
@@ -66,8 +72,11 @@ class Simulation {
 
   /// Advances the run by one time step. Throws Error(diverged | inverted-in-run | singular-matrix |
   /// not-converged), whose text names the step, the body and the likely cause. The state is then
-  /// restored to that before the step.
-  const StepReport& step();
+  /// restored to that before the step, and the report has the status of the failure.
+  /// @param on_failure whether a step that ends not in equilibrium or unphysical throws
+  ///   (is_failure()), or is kept where its state can be evaluated; no state that descends from it
+  ///   is then `solved` until reset() or restore().
+  const StepReport& step(OnFailure on_failure = OnFailure::stop);
   const StepReport& report() const;
   /// Sets a callback to which step(), solve_static() and follow_path() report their progress, from
   /// the next call on. An exception thrown by the watcher ends the call and propagates; the state
@@ -209,7 +218,9 @@ class Simulation {
   std::size_t bytes() const;
 
  private:
+  void make_step();
   void step_by_command();
+  bool make_same_step();
   void require_free(const step::WithMemory* newcomer) const;
 
   std::unique_ptr<Run> run_;

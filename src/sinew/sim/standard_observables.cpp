@@ -414,8 +414,8 @@ constexpr int kStart = -1;  // the status before any step
 void add_report(Observables& list) {
   const Simulation& simulation = list.simulation();
   std::vector<Observable> parts = {number(ObservableKind::report, "residual", "N")};
-  for (const char* name :
-       {"relative_residual", "iterations", "substeps", "scale", "smallest_volume_ratio"}) {
+  for (const char* name : {"relative_residual", "iterations", "substeps", "scale",
+                           "smallest_volume_ratio", "snapped"}) {
     parts.push_back(number(ObservableKind::report, name));
   }
   const bool touches = !simulation.model().contacts().empty();
@@ -429,7 +429,7 @@ void add_report(Observables& list) {
   if (zones) parts.push_back(number(ObservableKind::report, "contact_aggregation"));
   parts.push_back(number(ObservableKind::status, "status"));
   parts.back().words = {{kStart, "start"}};
-  for (int code = 0; code <= static_cast<int>(StepStatus::gaining_energy); ++code) {
+  for (int code = 0; code <= static_cast<int>(kLastStepStatus); ++code) {
     parts.back().words.push_back({code, step_status_name(static_cast<StepStatus>(code))});
   }
   list.add(std::move(parts), [&simulation, touches, zones](std::span<double> all) {
@@ -441,6 +441,7 @@ void add_report(Observables& list) {
     to.put(report.substeps);
     to.put(report.scale);
     to.put(report.smallest_volume_ratio);
+    to.put(report.snapped ? 1.0 : 0.0);
     if (touches) {
       to.put(report.contact_residual);
       to.put(report.contact_signorini);

@@ -50,6 +50,7 @@ struct State {
   std::vector<double> estimators;  ///< memory of the estimators, see Estimators; empty without
   EnergyLedger ledger;
   double volume_ratio = 1.0;  ///< min det F
+  double failed = 0.0;        ///< 1 if it descends from a failed step, see is_failure()
   double residual = 0.0;      ///< relative residual of the last step; controllers detect rest by it
   double last_step = 0.0;     ///< s, length of the last substep; 0: the integrator starts afresh
   double next_step = 0.0;     ///< s, length to try for the next substep; 0: the whole step
@@ -89,6 +90,7 @@ struct State {
     visitor("next step", state.next_step);
     visitor("sensors", state.sensors);
     visitor("estimators", state.estimators);
+    visitor("failure", state.failed);
   }
 
   /// Hash of the bits of all numbers and the count of steps: equal states have equal hashes.

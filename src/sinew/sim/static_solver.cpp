@@ -7,6 +7,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
+#include "sinew/sim/limit_point.hpp"
 #include "sinew/sim/load_steps.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/stability.hpp"
@@ -15,10 +16,6 @@
 namespace sinew::sim {
 
 namespace {
-
-// A chamber is near its limit point if its pressure increases per volume by less than the inverse
-// of this, relative to its mean increase so far.
-constexpr double kFlat = 5.0;
 
 // Tolerance on the gaps of touching points, relative to the robot's size.
 constexpr double kSurfaceTolerance = 1e-9;
@@ -160,7 +157,8 @@ std::string StaticSolver::describe(double fraction) {
   if (run_.world.condense() == linalg::FactorStatus::singular) {
     return "the exact tangent of the last equilibrium on the way is singular";
   }
-  std::string limit = describe_limit_point();
+  std::string limit = describe_limit_point(run_, goal_);
+  limit_point_ = !limit.empty();
   if (!limit.empty() || fraction == 1.0) return limit;
   const int negative = Stability(run_.world, run_.effort).negative_pivots();
   const double percent = 100.0 * (1.0 - fraction);
@@ -174,32 +172,9 @@ std::string StaticSolver::describe(double fraction) {
       percent, negative, negative == 1 ? "" : "s");
 }
 
-// Describes a chamber whose pressure hardly increases with its volume any more, compared with its
-// mean increase so far, in the condensed equilibrium.
-std::string StaticSolver::describe_limit_point() {
-  for (std::size_t i = 0; i < start_.size(); ++i) {
-    const ActuatorModel& model = run_.model->actuators()[i];
-    const step::ActuatorBlock& goal = goal_[i];
-    if (model.type != ActuatorType::chamber || goal.kind != CommandKind::effort) continue;
-    const double reached = run_.effort[static_cast<std::size_t>(model.row)];
-    const double grown = run_.world.delta()[model.row];
-    const double compliance = run_.world.problem().compliance(model.row, model.row);
-    const bool flat = compliance < 0.0 || compliance * reached > kFlat * grown;
-    const bool short_of = std::abs(reached) < std::abs(goal.value);
-    if (!(reached * grown > 0.0) || !flat || !short_of) continue;
-    limit_point_ = true;
-    return fmt::format(
-        "chamber '{}' has no equilibrium at {:.4g} kPa: about {:.4g} kPa its "
-        "pressure reaches a peak (limit point), where it has grown by {:.4g} ml",
-        model.name, 1e-3 * goal.value, 1e-3 * reached, 1e6 * grown);
-  }
-  return {};
-}
-
 void StaticSolver::fail_to_find(const std::string& known) {
   if (limit_point_) {
-    fail(run_, ErrorKind::not_converged, known,
-         "command its volume_growth, which passes the peak, or follow_path()");
+    fail(run_, ErrorKind::not_converged, known, kLimitPointRemedy);
   }
   fail(run_, ErrorKind::not_converged,
        fmt::format("no static equilibrium was found in load steps down to 1/{} and {} steps of "

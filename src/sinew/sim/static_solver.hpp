@@ -42,7 +42,6 @@ class StaticSolver {
   double step_load();
   void blend(double fraction);
   std::string describe(double fraction);
-  std::string describe_limit_point();
   [[noreturn]] void fail_to_find(const std::string& known);
   void follow_surfaces();
   void settle();

@@ -16,6 +16,7 @@ struct StepReport {
   StepStatus status = StepStatus::solved;
   LawStatus law = LawStatus::solved;
   bool balanced = true;   ///< whether forces balance at the end; more severe statuses hide this
+  bool physical = true;   ///< whether a robot can have this state, see Sanity
   double residual = 0.0;  ///< N, |p - f - ... + H^T lambda| at the end of the step
   double relative_residual = 0.0;  ///< relative to the sum of the forces' norms
   double violation = 0.0;          ///< m, violation of the law by the motion at the end
@@ -40,6 +41,10 @@ struct StepReport {
   /// Whether a controller's choice did not settle and was frozen. With different rounding, another
   /// choice of about the same quality may have been found.
   bool choice_held = false;
+  /// Whether a quasi-static step left the branch of equilibria on which it began, as where an arch
+  /// snaps through or a column buckles: its solution needed the descent with the projected tangent,
+  /// or Newton's method went far beyond its first motion through unstable states. No flag.
+  bool snapped = false;
   int contact_sweeps = 0;  ///< Gauss-Seidel sweeps in the last solution of the law
   NewtonStatus newton = NewtonStatus::converged;
   StageTimes times;

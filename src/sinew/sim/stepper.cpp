@@ -5,7 +5,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/sim/run.hpp"
-#include "sinew/sim/step_tolerances.hpp"
+#include "sinew/sim/step_verdict.hpp"
 
 namespace sinew::sim {
 
@@ -22,6 +22,8 @@ constexpr double kReached = 1e-3;
 // Smaller gains of energy, relative to the sum of forces times the robot's size, are rounding, as
 // for a robot at rest.
 constexpr double kNoEnergy = 1e-10;
+// Relative rounding of a pressure at vacuum.
+constexpr double kVacuumRounding = 1e-9;
 
 }  // namespace
 
@@ -34,6 +36,8 @@ void Stepper::step() {
   report.impacts = 0;
   report.choice_held = false;
   report.status = StepStatus::solved;
+  report.physical = true;
+  report.snapped = false;
   report.energy_gained = 0.0;
   const bool opens = run_.model->step().dynamic() && !run_.ledger.is_open();
   if (opens) run_.ledger.open(run_.world.bodies().energies());
@@ -46,10 +50,12 @@ void Stepper::step() {
     } else {
       step_in_parts();
     }
-  } catch (...) {
-    if (divided_) run_.restore(start_);
-    if (opens) run_.ledger.restart();
-    part_.reset();
+  } catch (const Error& failure) {
+    if (failure.is_run_failure()) report.status = failure_status(run_);
+    undo(opens);
+    throw;
+  } catch (...) {  // of a watcher
+    undo(opens);
     throw;
   }
   ++run_.steps;
@@ -57,6 +63,12 @@ void Stepper::step() {
   run_.clock.mark(Stage::correction);
   run_.clock.stop();
   report.times = run_.clock.times();
+}
+
+void Stepper::undo(bool opened_ledger) {
+  if (divided_) run_.restore(start_);
+  if (opened_ledger) run_.ledger.restart();
+  part_.reset();
 }
 
 // Makes the whole step or, if Newton's method fails, halves of it, and halves of those: jumps of
@@ -190,12 +202,15 @@ double Stepper::substep(double end, double time_step, bool divisible) {
   return substep_.end(time_step);
 }
 
-// Newton's method decides; if it had few iterations or was not used, the residual decides.
-bool Stepper::is_balanced() const {
-  const bool newton = run_.model->step().method == Method::newton;
-  if (newton && run_.report.newton == NewtonStatus::converged) return true;
-  const bool searched = newton && run_.controller == nullptr;
-  return run_.report.relative_residual <= (searched ? kSearched : kBalanced);
+// Whether a chamber needs an absolute pressure below zero: a commanded volume, or a liquid of which
+// some was taken out, holds at any pressure, but no fluid pulls.
+bool Stepper::cavitates() const {
+  const auto& models = run_.model->actuators();
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const double least = (1.0 + kVacuumRounding) * models[i].vacuum.value_or(-kInfinity);
+    if (run_.actuation.states()[i].effort < least) return true;
+  }
+  return false;
 }
 
 // Determines the status of the step.
@@ -203,11 +218,14 @@ void Stepper::judge() {
   StepReport& report = run_.report;
   const auto raise = [&](StepStatus status) { report.status = std::max(report.status, status); };
   if (report.law == LawStatus::limits_conflict) raise(StepStatus::limits_conflict);
+  if (cavitates()) raise(StepStatus::cavitates);
   if (report.scale < 1.0) raise(StepStatus::cut_back);
   if (report.violation > kReached * run_.model->size()) raise(StepStatus::command_not_reached);
-  report.balanced = is_balanced();
-  if (!report.balanced) raise(StepStatus::not_in_equilibrium);
+  report.balanced = is_balanced(run_);
+  if (!report.balanced) raise(failure_status(run_));
+  if (run_.failed) raise(StepStatus::after_failure);
   if (run_.model->step().dynamic()) watch_energy();
+  run_.failed = run_.failed || is_failure(report.status);
 }
 
 void Stepper::watch_energy() {

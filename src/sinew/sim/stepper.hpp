@@ -33,6 +33,7 @@ class Stepper {
     std::vector<double> goal;          // (actuators,) commands at its end
   };
 
+  void undo(bool opened_ledger);
   void step_in_parts();
   double first_part() const;
   void go_on_in_parts(double length, double next);
@@ -41,7 +42,7 @@ class Stepper {
   void step_adaptively();
   void step_by_events();
   double substep(double end, double time_step, bool divisible);
-  bool is_balanced() const;
+  bool cavitates() const;
   void judge();
   void watch_energy();
 

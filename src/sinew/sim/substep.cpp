@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sinew/core/error.hpp"
 #include "sinew/sim/linear_step.hpp"
@@ -61,8 +62,8 @@ void Substep::solve(double time_step, bool divisible) {
       return solve_once(time_step);
     } catch (const Error& failure) {
       run_.go_back();
-      const bool retry = !divisible && run_.controller != nullptr && failures_ < kMostFailures;
-      if (!retry || !is_too_far(failure)) throw;
+      if (divisible || run_.controller == nullptr || !is_too_far(failure)) throw;
+      if (failures_ == kMostFailures) return hold_back(time_step, failure);
     } catch (...) {  // of a watcher
       run_.go_back();
       throw;
@@ -71,6 +72,35 @@ void Substep::solve(double time_step, bool divisible) {
     ++run_.report.retries;
     begin_again(time_step);
   }
+}
+
+// No change of efforts that the controller chose can be followed: its actuators keep the efforts of
+// the last step. @param failure of its last choice.
+void Substep::hold_back(double time_step, const Error& failure) {
+  run_.watch.enter(SearchStage::last_efforts);
+  const std::vector<ActuatorState>& states = run_.actuation.states();
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (states[i].chosen) actuators_[i].hold_effort(states[i].effort);
+  }
+  begin_again(time_step);
+  step::Controller* const controller = std::exchange(run_.controller, nullptr);
+  try {
+    solve_once(time_step);
+  } catch (const Error& other) {
+    run_.controller = controller;
+    run_.go_back();
+    if (!other.is_run_failure()) throw;
+    throw Error(failure.kind(), failure.place(),
+                failure.message() + "; the efforts of the last step do not solve it either",
+                failure.remedy());
+  } catch (...) {  // of a watcher
+    run_.controller = controller;
+    run_.go_back();
+    throw;
+  }
+  run_.controller = controller;
+  run_.report.choice_held = true;
+  controller->hold_back(failures_ + 1);
 }
 
 void Substep::solve_once(double time_step) {

@@ -7,6 +7,10 @@
 #include "sinew/sim/work_ledger.hpp"
 #include "sinew/step/step_problem.hpp"
 
+namespace sinew {
+class Error;
+}
+
 namespace sinew::sim {
 
 struct Run;
@@ -37,6 +41,7 @@ class Substep {
 
  private:
   void begin_world(double time_step);
+  void hold_back(double time_step, const Error& failure);
   void solve_equation(double time_step, bool divisible);
   void solve_once(double time_step);
   void solve_afresh(double time_step);

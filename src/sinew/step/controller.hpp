@@ -67,6 +67,10 @@ class Controller : public WithMemory {
   /// determined by state and inputs alone. @param failures how often this step has failed with the
   ///   controller's choices: each time, it must choose a smaller change of efforts.
   virtual void begin_step(int failures) = 0;
+  /// Called after a step that could not be solved with its choice, and for which its actuators kept
+  /// the efforts of the last step. @param failures how often its choices failed without a
+  ///   begin_choices() that followed, each of which makes it trust its linearisation less.
+  virtual void hold_back(int failures) = 0;
 };
 
 }  // namespace sinew::step

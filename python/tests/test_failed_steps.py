@@ -1,0 +1,151 @@
+"""Steps that end without a solution: pressure beyond a peak, vacuum, controllers; and the limit of vacuum."""
+
+import warnings
+
+import numpy as np
+import pytest
+import sinew
+import sinew.sweep
+
+
+def tube(command=None, **more):
+    """A tube of silicone closed by lids, whose pressure has a peak."""
+    air = {"type": "chamber", "body": "tube", "surface": {"set": "inner"}, "cap": True}
+    return {
+        "sinew": 1,
+        "time_step": 0.05,
+        "duration": 1.0,
+        "bodies": {"tube": {
+            "type": "fem",
+            "mesh": {"shape": "hollow-cylinder", "inner_radius": 0.01, "outer_radius": 0.013, "height": 0.03, "element_size": 0.005},
+            "element": "hex8", "material": {"model": "neo-hookean", "young_modulus": 90e3, "poisson_ratio": 0.45}, "density": 1000.0,
+            "fixed": [{"set": "bottom"}, {"set": "top"}]}},
+        "actuators": {"air": {**air, **({"command": command} if command else {})}},
+        "effectors": {"wall": {"body": "tube", "point": [0.013, 0, 0.015], "outside": "nearest"}},
+        **more,
+    }
+
+
+TOO_MUCH = {"pressure": {"ramp": {"to": "60 kPa", "duration": "1 s"}}}
+
+
+def test_a_pressure_beyond_its_peak_stops_at_the_last_solved_state():
+    sim = sinew.load(tube(TOO_MUCH))
+    air = sim.actuator("air")
+    rest = air.volume
+    with pytest.raises(sinew.RunError, match="chamber 'air' has no equilibrium.*limit point.*volume_growth") as caught:
+        sim.run()
+    recorded = caught.value.recorded
+    assert set(recorded["status"]) == {"start", "solved"}
+    assert sim.report.failed and sim.report.status in ("not-in-equilibrium", "unphysical")
+    # The state is that of the last record, with its command reached.
+    assert sim.time == recorded["time"][-1] and 0 < sim.steps < 20
+    assert air.pressure == pytest.approx(60e3 * sim.time, rel=1e-9)
+    assert rest < air.volume < 100 * rest
+    # It goes on with a smaller command; so do a clone and a saved state.
+    state = sim.state()
+    twin = sim.clone()
+    ends = []
+    for one in (sim, twin):
+        one.restore(state)
+        one.actuator("air").pressure = 3e3
+        one.step(3)
+        assert one.report.status == "solved"
+        ends.append(one.actuator("air").volume)
+    assert ends[0] == ends[1]
+    sim.reset()
+    sim.actuator("air").pressure = 3e3
+    sim.solve_static()
+    assert ends[0] == pytest.approx(sim.actuator("air").volume, rel=1e-3)
+
+
+def test_keep_going_marks_what_follows(tmp_path):
+    sim = sinew.load(tube(TOO_MUCH))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", sinew.SinewWarning)
+        try:
+            status = list(sim.run(keep_going=True)["status"])
+        except sinew.RunError as error:  # a state that cannot be evaluated stops even so
+            status = list(error.recorded["status"])
+        first = next(k for k, one in enumerate(status) if one in ("not-in-equilibrium", "unphysical"))
+        assert "solved" in status[:first] and "solved" not in status[first:]
+        sim.save_state(tmp_path / "failed.state")
+        other = sinew.load(tube(TOO_MUCH))
+        other.load_state(tmp_path / "failed.state")
+        assert other.state() == sim.state()
+        other.reset()
+        other.actuator("air").pressure = 1e3
+        other.step()
+        assert other.report.status == "solved"
+
+
+def test_a_sample_of_a_sweep_fails(tmp_path):
+    table = sinew.sweep.run(tube({"pressure": 0.0}), vary={"actuators.air.command.pressure": [2e3, 60e3]}, measure=["air.volume_growth"],
+                            duration=0.2, out=tmp_path, workers=1)
+    assert list(table["status"]) == ["done", "failed"]
+    assert "limit point" in table["error"][1]
+
+
+def test_an_absurd_state_is_no_solution_in_dynamics_either():
+    scene = tube({"pressure": "60 kPa"}, integrator="backward-euler", time_step=0.01)
+    sim = sinew.load(scene)
+    air = sim.actuator("air")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", sinew.SinewWarning)
+        try:
+            sim.step(100)
+        except sinew.RunError:
+            pass
+    assert air.volume > 0 and sim.body("tube").element_field("max_stretch").max() < 50
+
+
+def test_no_pressure_is_below_vacuum():
+    with pytest.raises(sinew.Error, match="below vacuum") as caught:
+        sinew.load(tube({"pressure": "-150 kPa"}))
+    assert caught.value.kind == "out-of-range"
+    with pytest.raises(sinew.Error, match="below vacuum"):
+        sinew.load(tube({"pressure": {"sine": {"amplitude": "150 kPa", "period": "1 s"}}}))
+    sim = sinew.load(tube())
+    air = sim.actuator("air")
+    for command in (-150e3, sinew.Ramp(0.0, -102e3, duration=1.0), [[0.0, 0.0], [1.0, -102e3]]):
+        with pytest.raises(sinew.Error, match="below vacuum"):
+            air.pressure = command
+    assert air.limits["pressure"].min == -101325.0
+    scene = tube({"pressure": "-150 kPa"})
+    scene["actuators"]["air"]["ambient_pressure"] = "2 bar"
+    assert sinew.load(scene).actuator("air").limits["pressure"].min == -2e5
+    scene["actuators"]["air"]["gas"] = {"ambient_pressure": "1 bar"}
+    with pytest.raises(sinew.Error) as caught:
+        sinew.load(scene)
+    assert caught.value.kind == "conflicting-keys"
+
+
+def module(integrator):
+    """The chambered module: one chamber beside the axis."""
+    return sinew.load({
+        "sinew": 1, "time_step": "5 ms", "integrator": integrator,
+        "bodies": {"b": {"type": "fem", "mesh": {
+            "shape": "chambered-cylinder", "radius": "12.5 mm", "height": "50 mm", "chamber_radius": "4 mm", "chamber_offset": "5 mm",
+            "chamber_bottom": "8 mm", "chamber_top": "42 mm", "element_size": "7 mm"},
+            "element": "hex8", "material": {"model": "neo-hookean", "young_modulus": "200 kPa", "poisson_ratio": 0.45},
+            "density": "1070 kg/m^3", "fixed": [{"set": "bottom"}]}},
+        "actuators": {"p": {"type": "chamber", "body": "b", "surface": {"set": "chamber"}}},
+        "effectors": {"t": {"body": "b", "point": "0 0 50 mm"}}})
+
+
+@pytest.mark.parametrize("integrator", ["quasi-static", "backward-euler", "bdf2"])
+@pytest.mark.parametrize("target", [[-2e-3, 1e-3, 52e-3], [2e-3, 0.0, 50e-3], [0.0, 0.0, 46e-3]])
+def test_a_controller_stays_sane(target, integrator):
+    sim = module(integrator)
+    ik = sinew.InverseController(sim, {"t": target})
+    rest = sim.actuator("p").volume
+    start = np.linalg.norm(sim.effector("t").position - target)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", sinew.SinewWarning)
+        for _ in range(12):
+            ik.step()
+            assert sim.actuator("p").pressure >= -101325.0
+            assert sim.actuator("p").volume > 0.05 * rest
+            assert sim.body("b").element_field("max_stretch").max() < 3
+            assert sim.report.smallest_volume_ratio == pytest.approx(sim.body("b").element_field("volume_ratio").min(), abs=0.2)
+    assert ik.error < 1.2 * start
