@@ -366,7 +366,6 @@ void bind_mesh_of(py::class_<Body>& type) {
 auto energy(double mechanics::Energies::*part) {
   return [part](const Body& self) {
     const Session::Use use(*self.session);
-    model(self);  // throws for bodies without elements
     return body(self).energies().*part;
   };
 }
@@ -375,7 +374,7 @@ void bind_mechanics(py::class_<Body>& type) {
   type.def_property_readonly(
           "strain_energy", energy(&mechanics::Energies::strain),
           "float: present strain energy (J), without the relaxing branches of viscoelastic "
-          "materials and with the energy dissipated by softening.")
+          "materials and with the energy dissipated by softening; 0 for rigid bodies.")
       .def_property_readonly("kinetic_energy", energy(&mechanics::Energies::kinetic),
                              "float: present kinetic energy (J).")
       .def_property_readonly("gravity_energy", energy(&mechanics::Energies::gravity),

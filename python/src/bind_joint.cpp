@@ -28,11 +28,25 @@ std::string type_name(const Joint& self) {
   return joint == nullptr ? "weld" : constraint::joint_type_name(joint->type());
 }
 
+void require_motion(const Joint& self, std::size_t which, const char* name) {
+  if (model(self).motions[which] >= 0) return;
+  throw py::attribute_error(
+      fmt::format("joint '{}' is a {} and has no {}", model(self).name, type_name(self), name));
+}
+
+double limit_effort(const Joint& self, std::size_t which, const char* name) {
+  require_motion(self, which, name);
+  const Session::Use use(*self.session);
+  return sim::joint_limit_effort(self.session->simulation(), self.index, which);
+}
+
+double friction_effort(const Joint& self) {
+  const Session::Use use(*self.session);
+  return sim::joint_friction_effort(self.session->simulation(), self.index);
+}
+
 double motion(const Joint& self, std::size_t which, const char* name) {
-  if (model(self).motions[which] < 0) {
-    throw py::attribute_error(
-        fmt::format("joint '{}' is a {} and has no {}", model(self).name, type_name(self), name));
-  }
+  require_motion(self, which, name);
   const Session::Use use(*self.session);
   return sim::joint_motion(self.session->simulation(), self.index, which);
 }
@@ -77,6 +91,21 @@ void bind_joint(py::module_& module) {
       .def_property_readonly(
           "moment", [](const Joint& self) { return copy(load(self).moment); },
           "(3,) ndarray: constraint moment about `centre` on the second body (N m).")
+      .def_property_readonly(
+          "limit_torque", [](const Joint& self) { return limit_effort(self, 0, "limit_torque"); },
+          "float: torque of the limits of the angle on the second body in the last step (N m), "
+          "positive in the direction of a growing angle; 0 away from the limits. Raises "
+          "AttributeError for joints without an angle.")
+      .def_property_readonly(
+          "limit_force", [](const Joint& self) { return limit_effort(self, 1, "limit_force"); },
+          "float: force of the limits of the displacement on the second body in the last step (N), "
+          "positive in the direction of a growing displacement; 0 away from the limits. Raises "
+          "AttributeError for joints without a displacement.")
+      .def_property_readonly(
+          "friction_effort", friction_effort,
+          "float: torque (hinge, N m) or force (slider, N) of the joint's friction on the second "
+          "body in the last step, positive in the direction of a growing angle or displacement; it "
+          "opposes the motion. 0 without friction.")
       .def_property_readonly(
           "centre", [](const Joint& self) { return copy(load(self).centre); },
           "(3,) ndarray: present position of the joint on its second body, for a weld the mean of "

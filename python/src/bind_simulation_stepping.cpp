@@ -1,4 +1,6 @@
 // Binds steps, static equilibria, equilibrium paths and runs of a simulation.
+#include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -6,6 +8,7 @@
 
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 
 #include "arrays.hpp"
 #include "simulation_type.hpp"
@@ -35,39 +38,63 @@ sim::StaticReport solve_static(Session& self, double tolerance, int max_iteratio
                             stability_choice(stability)});
 }
 
-// The result of follow_path(). @param values of every effector at every point.
-py::dict path_table(const std::vector<sim::PathPoint>& path,
-                    const std::vector<sim::EffectorModel>& effectors,
-                    const std::vector<std::vector<Vector3>>& values) {
-  VectorX load_fraction(static_cast<Eigen::Index>(path.size())), unstable(load_fraction.size());
-  for (Eigen::Index k = 0; k < load_fraction.size(); ++k) {
-    load_fraction[k] = path[static_cast<std::size_t>(k)].load_fraction;
-    unstable[k] = path[static_cast<std::size_t>(k)].negative_pivots;
+// What follow_path() collects at every point.
+struct Visits {
+  std::vector<std::vector<Vector3>> values;  // of every effector
+  std::vector<SavedState> states;
+};
+
+py::dict path_table(const sim::Path& path, const std::vector<sim::EffectorModel>& effectors,
+                    const Visits& visits) {
+  const auto count = static_cast<Eigen::Index>(path.points.size());
+  VectorX load_fraction(count), unstable(count);
+  py::list events;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const sim::PathPoint& point = path.points[static_cast<std::size_t>(k)];
+    load_fraction[k] = point.load_fraction;
+    unstable[k] = point.negative_pivots;
+    events.append(std::string(sim::path_event_name(point.event)));
   }
   py::dict result;
   result["load_fraction"] = copy(load_fraction);
   result["negative_pivots"] = copy(unstable);
+  result["event"] = py::module_::import("numpy").attr("array")(events, "U");
+  result["limit_load"] = path.limit_load.value_or(std::numeric_limits<double>::quiet_NaN());
+  result["status"] = std::string(sim::path_end_name(path.end));
+  result["reason"] = path.reason;
+  result["states"] = py::cast(visits.states);
   for (std::size_t i = 0; i < effectors.size(); ++i) {
-    Points points(load_fraction.size(), 3);
-    for (Eigen::Index k = 0; k < load_fraction.size(); ++k) {
-      points.row(k) = values[i][static_cast<std::size_t>(k)].transpose();
+    Points points(count, 3);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      points.row(k) = visits.values[i][static_cast<std::size_t>(k)].transpose();
     }
     result[py::str(effectors[i].name)] = copy(points);
   }
   return result;
 }
 
+void warn_of_early_end(const sim::Path& path) {
+  if (path.end != sim::PathEnd::no_equilibrium) return;
+  const py::object kind = py::module_::import("sinew.errors").attr("SinewWarning");
+  const std::string text = "follow_path() ended early: " + path.reason;
+  if (PyErr_WarnEx(kind.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
 py::dict follow_path(Session& self, double first_step, double largest_step, double tolerance,
-                     int max_points) {
+                     int max_points, bool states) {
   sim::Simulation& simulation = self.simulation();
   const auto& effectors = simulation.model().effectors();
-  std::vector<std::vector<Vector3>> values(effectors.size());
+  Visits visits{std::vector<std::vector<Vector3>>(effectors.size()), {}};
   const auto path = self.follow_path({first_step, largest_step, tolerance, max_points}, [&] {
     for (std::size_t i = 0; i < effectors.size(); ++i) {
-      values[i].push_back(simulation.effector_value(static_cast<int>(i)));
+      visits.values[i].push_back(simulation.effector_value(static_cast<int>(i)));
     }
+    if (!states) return;
+    visits.states.emplace_back(std::make_shared<const sim::State>(simulation.state()),
+                               simulation.shared_model());
   });
-  return path_table(path, effectors, values);
+  warn_of_early_end(path);
+  return path_table(path, effectors, visits);
 }
 
 sim::OnFailure on_failure(bool keep_going) {
@@ -151,13 +178,19 @@ void bind_follow_path(SimulationType& type) {
   type.def(
       "follow_path", &follow_path, py::kw_only(), py::arg("first_step") = 0.01,
       py::arg("largest_step") = 0.05, py::arg("tolerance") = 1e-9, py::arg("max_points") = 500,
-      R"(follow_path($self, *, first_step=0.01, largest_step=0.05, tolerance=1e-09, max_points=500)
+      py::arg("states") = true,
+      R"(follow_path($self, *, first_step=0.01, largest_step=0.05, tolerance=1e-09, max_points=500, states=True)
 --
 
 Follows the path of equilibria while loads and commanded efforts grow in proportion, from the last
 ones (none at the start) to the present commands. Arc-length continuation passes limit points, where
-solve_static() would jump or fail. The last point is at the full load or slightly beyond it. Contact
-friction acts as in a slow motion from point to point.
+solve_static() would jump or fail. No step changes the load by more than 10 % of the full one. The
+last point is at the full load or at most 10 % beyond it. Where unstable directions appear without a
+limit point (a column buckles), the load there is found to 1 %, and the path continues along the same
+branch. Contact friction acts as in a slow motion from point to point.
+
+A path that ends early returns the points that it found, with a SinewWarning; the simulation stays at
+the last one.
 
 Parameters
 ----------
@@ -166,12 +199,17 @@ first_step, largest_step : float
 tolerance : float
     Residual relative to the loads.
 max_points : int
+states : bool
+    Whether to keep the state of every point.
 
 Returns
 -------
 dict
-    'load_fraction' (k,); 'negative_pivots' (k,): number of unstable directions at the point; and the
-    value (k, 3) of every effector by name.
+    'load_fraction' (k,); 'negative_pivots' (k,): number of unstable directions at the point; 'event'
+    (k,) of str, what the path passed since the point before: 'none', 'limit-point' (the load turned
+    back) or 'bifurcation'; 'limit_load': load fraction at the first maximum of the load, NaN without
+    one; 'status': 'full-load', 'max-points' or 'no-equilibrium'; 'reason' of an early end; 'states':
+    list of SavedState of the points, for restore(); and the value (k, 3) of every effector by name.
 
 Raises
 ------
@@ -179,7 +217,7 @@ Error
     bad-argument if an actuator is commanded in motion or has a drive, or a cable has friction;
     not-in-this-version for curved surfaces with friction, and if contacts alone hold a body.
 RunError
-    not-converged; the state is then that of the start.
+    not-converged if the path has no point at all; the state is then that of the start.
 )");
 }
 

@@ -25,6 +25,7 @@ namespace {
 struct Column {
   std::size_t observable;  // index in the list
   std::vector<double> values;
+  std::string name;  // as asked for
 };
 
 // The recorded observables and their values.
@@ -63,7 +64,7 @@ std::vector<Column> choose_columns(const sim::Observables& observables, const py
   std::vector<Column> chosen;
   if (record.is_none()) {
     for (std::size_t k = 0; k < list.size(); ++k) {
-      if (is_default(list[k])) chosen.push_back({k, {}});
+      if (is_default(list[k])) chosen.push_back({k, {}, list[k].name});
     }
     return chosen;
   }
@@ -72,10 +73,11 @@ std::vector<Column> choose_columns(const sim::Observables& observables, const py
                 fmt::format("{} is not a list of names", std::string(py::repr(record))),
                 "give a list such as ['tip.position']");
   }
-  chosen.push_back({observables.find("time"), {}});
+  chosen.push_back({observables.find("time"), {}, "time"});
   for (const auto& item : record) {
     const std::string name = py::str(item);
-    if (name != "time") chosen.push_back({observables.find(name, {.item = "run(record)"}), {}});
+    if (name == "time") continue;
+    chosen.push_back({observables.find(name, {.item = "run(record)"}), {}, name});
   }
   return chosen;
 }
@@ -104,7 +106,7 @@ py::dict to_arrays(const Recording& recording) {
   py::dict result;
   for (const Column& column : recording.columns) {
     const sim::Observable& observable = recording.observables.list()[column.observable];
-    result[observable.name.c_str()] = to_array(observable, column.values);
+    result[column.name.c_str()] = to_array(observable, column.values);
   }
   return result;
 }

@@ -163,8 +163,8 @@ sim::StaticReport Session::solve_static(const sim::StaticSettings& settings) {
   return report;
 }
 
-std::vector<sim::PathPoint> Session::follow_path(const sim::PathSettings& settings,
-                                                 const std::function<void()>& visit) {
+sim::Path Session::follow_path(const sim::PathSettings& settings,
+                               const std::function<void()>& visit) {
   const Use use(*this);
   const sim::Watched watched = look_for_signals(simulation_);
   const pybind11::gil_scoped_release release;

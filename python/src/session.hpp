@@ -110,8 +110,7 @@ class Session {
   void warn();
   sim::StaticReport solve_static(const sim::StaticSettings& settings);
   /// @param visit called without the GIL.
-  std::vector<sim::PathPoint> follow_path(const sim::PathSettings& settings,
-                                          const std::function<void()>& visit);
+  sim::Path follow_path(const sim::PathSettings& settings, const std::function<void()>& visit);
   /// Calls Simulation::reset(), and sets external forces to zero.
   void reset();
   SavedState state() const;

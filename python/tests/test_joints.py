@@ -145,3 +145,29 @@ def test_a_light_bracket_under_great_forces_takes_few_iterations():
         assert not sim.report.flagged
         assert sim.report.substeps == 1
         assert sim.report.iterations <= 8
+
+
+@pytest.mark.parametrize("integrator", ["backward-euler", "bdf2", "generalized-alpha"])
+def test_efforts_of_limits_and_of_friction(integrator):
+    """A bar rests on the stop of its hinge; a slider sticks by friction, and slides against it."""
+    weight, arm = 0.2 * 9.81, 0.05
+    sim = sinew.load({
+        "sinew": 1, "gravity": [0, 0, -9.81], "integrator": integrator, "time_step": "1 ms",
+        "bodies": {"bar": {"type": "rigid", "shape": {"box": "100 10 10 mm"}, "mass": "200 g", "pose": {"position": [arm, 0, 0]}},
+                   "cart": {"type": "rigid", "shape": {"box": "10 10 10 mm"}, "mass": "100 g", "pose": {"position": [0, 1, 0]}}},
+        "joints": {"stop": {"type": "hinge", "bodies": ["world", "bar"], "point": [0, 0, 0], "axis": "y", "limits": {"angle": {"max": 0}}},
+                   "rail": {"type": "slider", "bodies": ["world", "cart"], "point": [0, 1, 0], "axis": "x", "friction": "0.7 N"}},
+        "actuators": {"push": {"type": "linear-motor", "joint": "rail", "command": {"force": 0.5}}}})
+    sim.run(0.05)
+    stop, rail = sim.joint("stop"), sim.joint("rail")
+    assert stop.limit_torque == pytest.approx(-weight * arm, rel=1e-6)  # gravity turns it towards a larger angle about y
+    assert stop.friction_effort == 0.0 and rail.limit_force == 0.0
+    assert rail.friction_effort == pytest.approx(-0.5, rel=1e-6)
+    sim.actuator("push").force = 2.0
+    sim.run(0.05)
+    assert rail.friction_effort == pytest.approx(-0.7, rel=1e-9) and rail.displacement > 0.005
+    with pytest.raises(AttributeError, match="hinge and has no limit_force"):
+        stop.limit_force
+    speed = 0.05 * (2.0 - 0.7) / 0.1
+    assert sim.body("cart").kinetic_energy == pytest.approx(0.5 * 0.1 * speed**2, rel=5e-2)
+    assert sim.body("cart").kinetic_energy == pytest.approx(sim.ledger["kinetic_energy"], rel=1e-9)

@@ -160,7 +160,13 @@ def test_fixed_links_weld_or_are_part_of_their_parent(tmp_path):
              joint("grip", "fixed", "tcp", "hand", "0.02 0 0", "0 0 0.5")]
     sim = make(urdf(tmp_path, *parts), effectors={"tip": {"body": "robot.tcp", "point": "0.25 0 1 m", "outside": "nearest"}})
     assert list(sim.bodies) == ["robot.base", "robot.arm", "robot.hand"]
-    sim.run(duration=0.2)
+    run = sim.run(duration=0.2, record=["robot.tool.position", "robot.arm.position"])
+    np.testing.assert_array_equal(run["robot.tool.position"], run["robot.arm.position"])
+    for name in ("robot.tool", "robot.tcp"):  # links without inertia are names of the body that they are part of
+        np.testing.assert_array_equal(sim.body(name).position, sim.body("robot.arm").position)
+    with pytest.raises(sinew.Error, match="part of the world") as error:
+        sim.body("robot.world")
+    assert error.value.kind == "unknown-name"
     np.testing.assert_array_equal(sim.body("robot.base").position, [0, 0, 1])
     arm, hand = sim.body("robot.arm"), sim.body("robot.hand")
     turn = Rotation.from_quat(np.roll(arm.rotation, -1))

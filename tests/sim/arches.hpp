@@ -27,13 +27,15 @@ struct ArchOptions {
   bool by_load = true;  ///< by a load of 0.02 N, else by a force actuator at the same point
   /// Whether it is cut into three bodies that are welded together; only welds hold the middle one.
   bool cut = false;
+  bool sways = false;  ///< whether the crown may move sideways; the symmetric path then bifurcates
   std::optional<double> floor;            ///< m: z of a plane under the crown
   double friction = 0.0;                  ///< of the plane
   std::optional<collision::Shape> below;  ///< surface in place of the plane
 };
 
 // The part of the arch between two values of x.
-inline fem::FemBodySettings arch_part(const char* name, double from, double to) {
+inline fem::FemBodySettings arch_part(const char* name, double from, double to,
+                                      bool sways = false) {
   fem::FemBodySettings body;
   body.name = name;
   mesh::Mesh made =
@@ -56,7 +58,7 @@ inline fem::FemBodySettings arch_part(const char* name, double from, double to) 
     const double x = mesh->nodes(node, 0);
     if (std::abs(x) > kHalfSpan - 1e-9) body.elements.fixed_nodes.push_back(node);
     // The crown stays in the middle and one side in its plane, since sway would add branches.
-    if (std::abs(x) < 1e-9) body.elements.held_axes.push_back({node, 0});
+    if (std::abs(x) < 1e-9 && !sways) body.elements.held_axes.push_back({node, 0});
     if (mesh->nodes(node, 1) == 0.0) body.elements.held_axes.push_back({node, 1});
   }
   return body;
@@ -90,7 +92,7 @@ inline std::shared_ptr<const sim::Model> arch(const ArchOptions& options) {
     builder.add_weld(
         {.name = "second", .first = middle, .second = right, .nodes = seams.at("x_max")});
   } else {
-    builder.add_fem_body(arch_part("arch", -kHalfSpan, kHalfSpan));
+    builder.add_fem_body(arch_part("arch", -kHalfSpan, kHalfSpan, options.sways));
   }
   const Vector3 crown(0.0, 0.002, 0.009);
   if (options.by_load) {

@@ -59,11 +59,16 @@ struct Followed {
 Followed follow(Simulation& simulation, const PathSettings& settings) {
   Followed result;
   const double top = simulation.effector_value(0).z();
-  result.path = simulation.follow_path(settings, [&] {
-    result.visits.push_back(
-        {top - simulation.effector_value(0).z(), simulation.contacts().resultant(0).normal_force,
-         simulation.body(0).positions(), simulation.contacts().points(0), simulation.state()});
-  });
+  result.path = simulation
+                    .follow_path(settings,
+                                 [&] {
+                                   result.visits.push_back(
+                                       {top - simulation.effector_value(0).z(),
+                                        simulation.contacts().resultant(0).normal_force,
+                                        simulation.body(0).positions(),
+                                        simulation.contacts().points(0), simulation.state()});
+                                 })
+                    .points;
   return result;
 }
 
@@ -339,7 +344,7 @@ TEST(PathContact, ABallLetsGoOfWhatIsPressedOnIt) {
   for (const double factor : {0.05, 0.1, 0.15, 0.3, 0.6, 1.0}) {
     path.set_load(0, Signal::constant(factor));
     path.set_load(1, Signal::constant(0.0));
-    const auto points = path.follow_path({.first_step = 1e-4, .largest_step = 2e-3});
+    const auto points = path.follow_path({.first_step = 1e-4, .largest_step = 2e-3}).points;
     Simulation pushed(model);
     pushed.restore(path.state());
     pushed.set_load(0, Signal::constant(factor));
@@ -388,7 +393,7 @@ TEST(PathContact, BeginsWithTheWeightOnTheFloor) {
   const auto model = beam(options);
   Simulation path(model), fresh(model);
   path.command(0, tension(2.0));
-  const auto points = path.follow_path({});
+  const auto points = path.follow_path({}).points;
   fresh.command(0, tension(2.0 * points.back().load_fraction));
   fresh.solve_static();
   EXPECT_LT((fresh.body(0).positions() - path.body(0).positions()).cwiseAbs().maxCoeff(),

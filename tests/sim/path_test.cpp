@@ -1,10 +1,14 @@
 #include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "arches.hpp"
@@ -20,9 +24,10 @@ TEST(Path, SnapThroughAgreesWithControlByMotion) {
   Simulation loaded(arch({})), moved(arch({.by_load = false}));
   std::vector<double> depth, load_fraction;
   const double top = loaded.effector_value(0).z();
-  const auto path = loaded.follow_path({.first_step = 2e-3, .largest_step = 5e-3}, [&] {
-    depth.push_back(top - loaded.effector_value(0).z());
-  });
+  const auto path = loaded
+                        .follow_path({.first_step = 2e-3, .largest_step = 5e-3},
+                                     [&] { depth.push_back(top - loaded.effector_value(0).z()); })
+                        .points;
   ASSERT_EQ(path.size(), depth.size());
   ASSERT_GT(path.size(), 10u);
   EXPECT_GE(path.back().load_fraction, 1.0);
@@ -51,7 +56,8 @@ TEST(Path, OfAnArchThatIsCutAndWelded) {
   std::vector<double> depth;
   const double top = cut.effector_value(0).z();
   const auto path = cut.follow_path({.first_step = 5e-3, .largest_step = 1.5e-2},
-                                    [&] { depth.push_back(top - cut.effector_value(0).z()); });
+                                    [&] { depth.push_back(top - cut.effector_value(0).z()); })
+                        .points;
   ASSERT_GT(path.size(), 10u);
   EXPECT_GE(path.back().load_fraction, 1.0);
   int turned = 0;
@@ -67,6 +73,67 @@ TEST(Path, OfAnArchThatIsCutAndWelded) {
   EXPECT_EQ(path.back().negative_pivots, 0);
 }
 
+// Unstable directions of the symmetric equilibrium at a load, from a search of its own.
+int unstable_directions(const std::shared_ptr<const Model>& model, double load) {
+  Simulation simulation(model);
+  simulation.set_load(0, Signal::constant(load));
+  return simulation.solve_static({.stability = StabilityChoice::any}).negative_pivots;
+}
+
+// An arch that may sway loses its stability before its limit point. The path finds the bifurcation
+// and stays symmetric: it passes the points of the arch whose crown is guided.
+TEST(Path, AnArchThatSwaysBifurcatesBeforeItsLimitPoint) {
+  for (const double first_step : {1e-4, 0.01, 0.2}) {
+    const auto model = arch({.sways = true});
+    Simulation loaded(model), guided(arch({.by_load = false}));
+    loaded.set_load(0, Signal::constant(1.5));
+    const double top = loaded.effector_value(0).z();
+    std::vector<Vector3> crown;
+    const Path path = loaded.follow_path({.first_step = first_step, .largest_step = 0.02},
+                                         [&] { crown.push_back(loaded.effector_value(0)); });
+    EXPECT_EQ(path.end, PathEnd::full_load);
+    std::vector<PathEvent> events;
+    double before = 0.0;
+    for (std::size_t k = 0; k < path.points.size(); ++k) {
+      const PathPoint& point = path.points[k];
+      EXPECT_LE(std::abs(point.load_fraction - before), 0.1) << k;
+      EXPECT_LE(point.load_fraction, 1.1) << k;
+      if (point.event != PathEvent::none) events.push_back(point.event);
+      if (point.event == PathEvent::bifurcation && events.size() == 1) {
+        EXPECT_EQ(unstable_directions(model, 1.5 * 0.99 * point.load_fraction), 0);
+        EXPECT_EQ(unstable_directions(model, 1.5 * 1.01 * point.load_fraction), 1);
+      }
+      before = point.load_fraction;
+      EXPECT_LT(std::abs(crown[k].x()), 1e-6) << k;
+      if (k % 4 != 0) continue;
+      guided.command(0, sinew::testing::pull(top - crown[k].z()));
+      guided.solve_static({.stability = StabilityChoice::any});
+      EXPECT_NEAR(guided.actuator(0).effort, 0.03 * point.load_fraction, 1e-6 * 0.03) << k;
+    }
+    ASSERT_GE(events.size(), 2u);
+    EXPECT_EQ(events[0], PathEvent::bifurcation);
+    EXPECT_EQ(events[1], PathEvent::limit_point);
+    double largest = 0.0;
+    for (const PathPoint& point : path.points) {
+      if (point.event == PathEvent::limit_point) break;
+      largest = std::max(largest, point.load_fraction);
+    }
+    ASSERT_TRUE(path.limit_load.has_value());
+    EXPECT_GE(*path.limit_load, largest);
+    EXPECT_LT(*path.limit_load, 1.02 * largest);
+  }
+}
+
+// A path that ends early returns its points, and where it ended.
+TEST(Path, EndsEarlyWithWhatItFound) {
+  Simulation loaded(arch({}));
+  const Path path = loaded.follow_path({.first_step = 2e-3, .largest_step = 5e-3, .max_points = 4});
+  EXPECT_EQ(path.end, PathEnd::max_points);
+  ASSERT_EQ(path.points.size(), 4u);
+  EXPECT_NE(path.reason.find("max_points"), std::string::npos);
+  EXPECT_FALSE(path.limit_load.has_value());
+}
+
 // The equilibrium at the full load is close to the end of the path.
 TEST(Path, EndsNextToTheEquilibriumOfTheFullLoad) {
   Simulation loaded(arch({}));
@@ -80,7 +147,7 @@ TEST(Path, EndsNextToTheEquilibriumOfTheFullLoad) {
 TEST(Path, EffortsGrowAlongIt) {
   Simulation pressed(arch({.by_load = false}));
   pressed.command(0, sinew::testing::tension(0.002));
-  const auto path = pressed.follow_path({.first_step = 1e-3, .largest_step = 1e-3});
+  const auto path = pressed.follow_path({.first_step = 1e-3, .largest_step = 1e-3}).points;
   EXPECT_NEAR(pressed.actuator(0).effort, 0.002 * path.back().load_fraction, 1e-15);
   EXPECT_LT(pressed.effector_value(0).z(), 0.009 - 1e-4);
 }

@@ -91,8 +91,8 @@ int FemBodyModel::attach_surface() {
   if (surface_site_ >= 0) return surface_site_;
   const std::vector<mesh::Face> faces = mesh::boundary_faces(mesh());
   const int nodes = static_cast<int>(mesh().nodes.rows());
-  surface_ = std::make_shared<const collision::SurfaceTopology>(
-      mesh::triangles_of(mesh().nodes, faces), nodes);
+  surface_ =
+      std::make_shared<const collision::SurfaceTopology>(mesh::triangles_of(mesh(), faces), nodes);
   surface_trace_ = std::make_shared<const mechanics::SurfaceTrace>(faces, nodes);
   surface_site_ = attach_nodes({}, {});
   return surface_site_;

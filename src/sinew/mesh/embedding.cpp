@@ -52,6 +52,7 @@ struct Branch {
 
 struct Embedder::Tree {
   std::string name;
+  Matrix3 axes;  // see Mesh::axes: samples of a ball turn with the mesh
   // Of the tetrahedra, then of six for each hexahedron.
   std::vector<Corners> corners;
   std::vector<Tetrahedron> nodes;
@@ -88,6 +89,7 @@ struct Embedder::Tree {
 
 Embedder::Tree::Tree(const Mesh& mesh)
     : name(mesh.name),
+      axes(mesh.axes),
       nodes(mesh.tetrahedra),
       quadratic(mesh.quadratic),
       tetrahedra(mesh.tetrahedra.size()),
@@ -278,7 +280,7 @@ EmbeddedPoint Embedder::spread(const Vector3& centre, double radius, Outside out
     for (int j = -kBallSteps; j <= kBallSteps; ++j) {
       for (int k = -kBallSteps; k <= kBallSteps; ++k) {
         if (i * i + j * j + k * k > kBallSteps * kBallSteps) continue;
-        const Vector3 offset = radius / kBallSteps * Vector3(i, j, k);
+        const Vector3 offset = radius / kBallSteps * (tree_->axes * Vector3(i, j, k));
         if (tree_->find_inside(centre + offset) < 0) continue;
         samples.push_back(locate(centre + offset, Outside::error, what));
         offsets.push_back(offset);

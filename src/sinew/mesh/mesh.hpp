@@ -34,6 +34,9 @@ struct LoadNotes {
 struct Mesh {
   std::string name;  ///< file or generator, for messages
   Points nodes;      ///< (n, 3) m
+  /// Columns: the axes of the file or generator in the frame of `nodes`, a rotation. What a mesh
+  /// leaves open (the diagonal of a square face) is chosen by them, so it turns with the mesh.
+  Matrix3 axes = Matrix3::Identity();
   std::vector<Tetrahedron> tetrahedra;
   /// Tetrahedra with middle nodes, in the order of `tetrahedra`, which are then their corners.
   /// Empty if the tetrahedra are linear; a mesh has only one of the two kinds.

@@ -86,7 +86,7 @@ OuterSurface outer_surface(const Mesh& mesh) {
   Numbering number(mesh, result.nodes);
   for (const Face& face : boundary_faces(mesh)) {
     const std::int32_t element = owners.of(face);
-    for (const Triangle& triangle : triangles_of(mesh.nodes, {&face, 1})) {
+    for (const Triangle& triangle : triangles_of(mesh, {&face, 1})) {
       for (const NodeId node : triangle) result.triangles.push_back(number(node));
       result.elements.push_back(element);
     }
@@ -122,7 +122,7 @@ Interior interior(const Mesh& mesh, const OuterSurface& surface) {
   for (std::size_t h = 0; h < mesh.hexahedra.size(); ++h) {
     for (const auto& face : faces_of(mesh.hexahedra[h])) {
       const Face outward{.node = face};
-      for (const Triangle& triangle : triangles_of(mesh.nodes, {&outward, 1})) {
+      for (const Triangle& triangle : triangles_of(mesh, {&outward, 1})) {
         result.tetrahedra.push_back(static_cast<std::uint32_t>(middles + h));
         for (const NodeId node : triangle) result.tetrahedra.push_back(number(node));
         result.elements.push_back(static_cast<std::int32_t>(mesh.tetrahedra.size() + h));

@@ -160,29 +160,31 @@ namespace {
 // Lengths and coordinates that differ by less than this fraction of a face count as equal.
 constexpr double kAlike = 1e-9;
 
-bool lies_before(const Vector3& one, const Vector3& other, double alike) {
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    if (std::abs(one[axis] - other[axis]) > alike) return one[axis] < other[axis];
+// Whether a corner comes first. @param from the other one to this one, along the mesh's axes.
+bool lies_before(const Vector3& from, double alike) {
+  for (const double difference : from) {
+    if (std::abs(difference) > alike) return difference < 0.0;
   }
   return false;
 }
 
 // One end of the diagonal along which a quadrilateral is split, see triangles_of().
-std::size_t first_corner(const Points& nodes, const Face& face) {
+std::size_t first_corner(const Points& nodes, const Matrix3& axes, const Face& face) {
   const auto at = [&](std::size_t k) -> Vector3 { return nodes.row(face.node[k]).transpose(); };
   const double even = (at(2) - at(0)).norm(), odd = (at(3) - at(1)).norm();
   const double alike = kAlike * std::max(even, odd);
   if (std::abs(even - odd) > alike) return even < odd ? 0 : 1;
   std::size_t first = 0;
   for (std::size_t k = 1; k < 4; ++k) {
-    if (lies_before(at(k), at(first), alike)) first = k;
+    if (lies_before(axes.transpose() * (at(k) - at(first)), alike)) first = k;
   }
   return first;
 }
 
 }  // namespace
 
-std::vector<Triangle> triangles_of(const Points& nodes, std::span<const Face> faces) {
+std::vector<Triangle> triangles_of(const Points& nodes, const Matrix3& axes,
+                                   std::span<const Face> faces) {
   std::vector<Triangle> triangles;
   for (const Face& face : faces) {
     if (face.is_quadratic()) {
@@ -191,7 +193,7 @@ std::vector<Triangle> triangles_of(const Points& nodes, std::span<const Face> fa
     }
     auto n = face.node;
     if (face.corners() == 4) {
-      const auto first = static_cast<std::ptrdiff_t>(first_corner(nodes, face));
+      const auto first = static_cast<std::ptrdiff_t>(first_corner(nodes, axes, face));
       std::rotate(n.begin(), n.begin() + first, n.end());
       triangles.push_back({n[0], n[2], n[3]});
     }
@@ -200,10 +202,14 @@ std::vector<Triangle> triangles_of(const Points& nodes, std::span<const Face> fa
   return triangles;
 }
 
+std::vector<Triangle> triangles_of(const Mesh& mesh, std::span<const Face> faces) {
+  return triangles_of(mesh.nodes, mesh.axes, faces);
+}
+
 Surface boundary_surface(const Mesh& mesh) {
   return {.name = mesh.name,
           .nodes = mesh.nodes,
-          .triangles = triangles_of(mesh.nodes, boundary_faces(mesh))};
+          .triangles = triangles_of(mesh, boundary_faces(mesh))};
 }
 
 double longest_edge(const Surface& surface) {

@@ -53,9 +53,13 @@ std::vector<NodeId> outer_nodes(const Mesh& mesh);
 
 /// Splits faces into triangles: quadratic triangles by quarters(), quadrilaterals along the shorter
 /// diagonal. If both diagonals are equal, the one with the corner of the smallest x is used, then
-/// y, then z. The result does not depend on node and element numbers.
-/// @param nodes (n, 3) m. @param faces of these nodes.
-std::vector<Triangle> triangles_of(const Points& nodes, std::span<const Face> faces);
+/// y, then z, along the given axes. The result does not depend on node and element numbers and,
+/// with the axes of the mesh, not on its position and rotation.
+/// @param nodes (n, 3) m. @param axes see Mesh::axes. @param faces of these nodes.
+std::vector<Triangle> triangles_of(const Points& nodes, const Matrix3& axes,
+                                   std::span<const Face> faces);
+/// The same for faces of a mesh.
+std::vector<Triangle> triangles_of(const Mesh& mesh, std::span<const Face> faces);
 
 /// The surface of the volume elements: triangles_of() the boundary_faces(). It has all nodes of the
 /// mesh, in the same numbering, including unused ones.

@@ -134,6 +134,9 @@ Robot build(SceneDescription description, const SharedMeshes& shared) {
     const int number = static_cast<int>(found - description.bodies.begin());
     return {number, &builder.added_body(number)};
   };
+  for (const auto& [link, body] : description.link_bodies) {
+    if (link != body) builder.name_body(link, body_of(body).number);
+  }
   // Welds are added last, to match the order of rows in saved states. Motors need the other joints
   // first.
   std::map<std::string, int> joints;

@@ -108,6 +108,7 @@ mesh::Mesh make_own_mesh(const BodyDescription& body) {
 mesh::Mesh make_body_mesh(const BodyDescription& body) {
   mesh::Mesh mesh = make_own_mesh(body);
   place_in_world(body, mesh.nodes);
+  mesh.axes = rotation_matrix(body.rotation) * mesh.axes;
   return mesh;
 }
 

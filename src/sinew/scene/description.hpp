@@ -458,6 +458,8 @@ struct SceneDescription {
   SolverDescription solver;
   std::optional<double> duration;  ///< s
   std::vector<BodyDescription> bodies;
+  /// Links ROBOT.LINK of URDF robots, and the body that each is part of; see expand_urdf().
+  std::map<std::string, std::string> link_bodies;
   std::vector<PlaneDescription> planes;  ///< bodies in the scene, but not in the simulation
   std::vector<ActuatorDescription> actuators;
   std::vector<LoadDescription> loads;

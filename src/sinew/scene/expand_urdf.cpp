@@ -179,6 +179,7 @@ std::vector<Notice> expand_urdf(SceneDescription& scene) {
   if (robots.empty()) return notices;
   resolve_bodies(scene, names, robots);
   resolve_joints(scene, names);
+  scene.link_bodies = std::move(names.bodies);
   scene.joints.insert(scene.joints.end(), added.begin(), added.end());
   return notices;
 }

@@ -26,9 +26,11 @@ void add_masses(ModelData& data, const fem::FemBodyModel& body) {
   }
 }
 
-// m, diagonal of the axis-aligned bounding box.
-double box_diagonal(const Points& nodes) {
-  const Vector3 extent = nodes.colwise().maxCoeff() - nodes.colwise().minCoeff();
+// m, diagonal of the bounding box along the body's own axes, so that the size does not depend on
+// how the scene is turned. @param axes columns.
+double box_diagonal(const Points& nodes, const Matrix3& axes) {
+  const Points own = nodes * axes;
+  const Vector3 extent = own.colwise().maxCoeff() - own.colwise().minCoeff();
   return extent.norm();
 }
 
@@ -49,13 +51,14 @@ int add_fem_body(ModelData& data, fem::FemBodySettings settings) {
                 "give `mass` or `density`");
   }
   add_masses(data, *body);
-  data.size = std::max(data.size, box_diagonal(body->mesh().nodes));
+  data.size = std::max(data.size, box_diagonal(body->mesh().nodes, body->mesh().axes));
   return add_body(data, std::move(body));
 }
 
 int add_rigid_body(ModelData& data, rigid::RigidSettings settings) {
   auto body = std::make_unique<rigid::RigidBodyModel>(std::move(settings));
-  data.size = std::max(data.size, box_diagonal(body->mesh().nodes));
+  const Matrix3 axes = body->settings().rotation;
+  data.size = std::max(data.size, box_diagonal(body->mesh().nodes, axes));
   return add_body(data, std::move(body));
 }
 

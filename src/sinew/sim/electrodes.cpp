@@ -37,11 +37,12 @@ Opposite find_opposite(const Vector3& middle, const Points& nodes,
 std::vector<constraint::ElectrodeTriangle> attach_electrode(
     Attacher& attacher, const SensorCapacitance::Electrode& own,
     const SensorCapacitance::Electrode& other, const Location& place) {
-  const Points& here = attacher.on(own.body).mesh().nodes;
+  const mesh::Mesh& mesh = attacher.on(own.body).mesh();
+  const Points& here = mesh.nodes;
   mechanics::BodyModel& across = attacher.on(other.body);
-  const std::vector<mesh::Triangle> others = mesh::triangles_of(across.mesh().nodes, other.faces);
+  const std::vector<mesh::Triangle> others = mesh::triangles_of(across.mesh(), other.faces);
   std::vector<constraint::ElectrodeTriangle> result;
-  for (const mesh::Triangle& triangle : mesh::triangles_of(here, own.faces)) {
+  for (const mesh::Triangle& triangle : mesh::triangles_of(mesh, own.faces)) {
     Vector3 middle = Vector3::Zero();
     for (const NodeId node : triangle) middle += corner(here, node) / 3.0;
     const Opposite opposite = find_opposite(middle, across.mesh().nodes, others);

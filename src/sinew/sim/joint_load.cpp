@@ -37,6 +37,13 @@ JointLoad load_of(const Simulation& simulation, const constraint::Joint& joint) 
   return {frames.origin[1], own.force, own.moment, joint.gap(configuration)};
 }
 
+// 0 without a constraint.
+double effort_of(const Simulation& simulation, int constraint) {
+  if (constraint < 0) return 0.0;
+  const int row = simulation.model().constraint(constraint).first_row();
+  return simulation.efforts()[static_cast<std::size_t>(row)];
+}
+
 }  // namespace
 
 JointLoad joint_load(const Simulation& simulation, int joint) {
@@ -47,6 +54,15 @@ JointLoad joint_load(const Simulation& simulation, int joint) {
 
 double joint_motion(const Simulation& simulation, int joint, std::size_t motion) {
   return simulation.world().joints().value(joint, motion);
+}
+
+double joint_limit_effort(const Simulation& simulation, int joint, std::size_t motion) {
+  const JointModel& model = simulation.model().joints()[static_cast<std::size_t>(joint)];
+  return effort_of(simulation, model.motions.at(motion));
+}
+
+double joint_friction_effort(const Simulation& simulation, int joint) {
+  return effort_of(simulation, simulation.model().joints()[static_cast<std::size_t>(joint)].brake);
 }
 
 }  // namespace sinew::sim

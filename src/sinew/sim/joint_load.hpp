@@ -26,4 +26,13 @@ JointLoad joint_load(const Simulation& simulation, int joint);
 /// @return rad or m.
 double joint_motion(const Simulation& simulation, int joint, std::size_t motion);
 
+/// Effort of the limits of a motion in the last step, on the second body and in the direction of a
+/// growing motion: negative at an upper limit. Zero without limits, and between them.
+/// @param simulation,joint,motion as for joint_motion(). @return N m or N.
+double joint_limit_effort(const Simulation& simulation, int joint, std::size_t motion);
+
+/// Effort of the joint's friction in the last step, with the same sign; it opposes the motion. Zero
+/// without friction. @param simulation,joint as for joint_load(). @return N m or N.
+double joint_friction_effort(const Simulation& simulation, int joint);
+
 }  // namespace sinew::sim

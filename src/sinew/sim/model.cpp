@@ -60,6 +60,12 @@ Model::Model(ModelData data)
       fingerprint_(fingerprint_of(parts_)) {}
 
 int Model::body_index(std::string_view name) const {
+  if (const auto other = data_.body_names.find(name); other != data_.body_names.end()) {
+    if (other->second != kWorld) return other->second;
+    throw Error(ErrorKind::unknown_name, {.item = std::string(name)},
+                "this link is fixed and without geometry, so it is part of the world and no body",
+                "ask for a link with geometry or inertia, or add an effector where the link is");
+  }
   return find_by_name(data_.bodies, name, "body", [](const auto& b) { return b->name(); });
 }
 

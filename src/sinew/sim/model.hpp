@@ -3,6 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -55,7 +58,8 @@ class Model {
   const std::vector<MassModel>& masses() const { return data_.masses; }
   const GeometricStiffnessModel& geometric_stiffness() const { return data_.geometric_stiffness; }
 
-  /// Indices in the lists above. Throw Error(unknown-name) with a suggestion.
+  /// Indices in the lists above. Throw Error(unknown-name) with a suggestion. The name of a link
+  /// that is part of a body is a name of this body.
   int body_index(std::string_view name) const;
   int actuator_index(std::string_view name) const;
   int effector_index(std::string_view name) const;
@@ -66,6 +70,9 @@ class Model {
   int probe_index(std::string_view name) const;
   int sensor_index(std::string_view name) const;
   int estimator_index(std::string_view name) const;
+
+  /// Further names of bodies: links that are part of them, with the index of the body, or kWorld.
+  const std::map<std::string, int, std::less<>>& body_names() const { return data_.body_names; }
 
   /// Parts by index.
   const mechanics::BodyModel& body(int index) const;

@@ -68,6 +68,8 @@ int ModelBuilder::add_rigid_body(rigid::RigidSettings settings, const Location& 
   return index;
 }
 
+void ModelBuilder::name_body(const std::string& name, int body) { data_.body_names[name] = body; }
+
 void ModelBuilder::add_base_motion(const BaseMotion& motion, const Location& place) {
   sim::add_base_motion(data_, motion, place);
 }

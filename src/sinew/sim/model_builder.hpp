@@ -62,6 +62,9 @@ class ModelBuilder {
   /// Throws Error: surface-not-closed, zero-volume, point-outside-mesh, contradictory-limits,
   /// out-of-range, conflicting-keys (gas and liquid).
   int add_chamber(const ChamberSettings& settings);
+  /// Gives a body another name: that of a link which is part of it.
+  /// @param name the other name. @param body index, or kWorld.
+  void name_body(const std::string& name, int body);
   /// Prescribes the motion of a body's fixed nodes. Throws Error: nothing-fixed, out-of-range (axis
   /// without length), wrong-type.
   void add_base_motion(const BaseMotion& motion, const Location& place);

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -129,6 +131,7 @@ struct ModelData {
   }
 
   std::vector<std::unique_ptr<mechanics::BodyModel>> bodies;
+  std::map<std::string, int, std::less<>> body_names;  ///< further names of bodies; kWorld: none
   std::vector<std::unique_ptr<constraint::Constraint>> constraints;
   std::vector<ActuatorModel> actuators;
   std::vector<GuideModel> guides;

@@ -24,6 +24,8 @@ constexpr double kRounding = 1e-11;
 constexpr double kRoundedResidual = 1e-7;
 // An iteration that leaves more than this fraction of the residual no longer converges.
 constexpr double kLessened = 0.5;
+// An iteration makes progress if it lowers the merit below this fraction of the lowest so far.
+constexpr double kProgress = 0.9;
 
 class NewtonSolver {
  public:
@@ -50,12 +52,19 @@ class NewtonSolver {
       report_.whole_move += report_.motion.largest_move;
       watch_.count(report_.relative_residual);
       if (moved != NewtonStatus::converged) return finish(moved);
-      if (is_only_descending()) break;
+      if (is_only_descending() || is_idle()) break;
     }
     return finish(converged_ ? NewtonStatus::converged : NewtonStatus::iteration_limit);
   }
 
  private:
+  bool is_idle() {
+    const double left = report_.relative_residual + report_.violation / world_.problem().size;
+    idle_ = left < kProgress * lowest_ ? 0 : idle_ + 1;
+    lowest_ = std::min(lowest_, left);
+    return settings_.max_idle > 0 && idle_ >= settings_.max_idle;
+  }
+
   bool is_only_descending() const {
     return settings_.max_indefinite > 0 && report_.iterations >= settings_.max_indefinite &&
            report_.tangent_fallbacks == report_.iterations;
@@ -173,10 +182,12 @@ class NewtonSolver {
   StageClock& clock_;
   StepWatch& watch_;
   NewtonReport report_;
-  bool converged_ = false;   // after the last motion
-  bool full_step_ = false;   // whether that motion was a full step
-  bool derivative_ = false;  // whether the condensed matrix was the derivative
-  bool stagnant_ = false;    // the last full step did not lessen the residual
+  bool converged_ = false;     // after the last motion
+  bool full_step_ = false;     // whether that motion was a full step
+  bool derivative_ = false;    // whether the condensed matrix was the derivative
+  int idle_ = 0;               // iterations in succession without progress
+  double lowest_ = kInfinity;  // merit
+  bool stagnant_ = false;      // the last full step did not lessen the residual
 };
 
 }  // namespace

@@ -39,6 +39,9 @@ struct NewtonSettings {
   /// The search ends after this many iterations if each of them found the exact tangent indefinite;
   /// 0: no limit.
   int max_indefinite = 0;
+  /// The search ends after this many iterations in succession none of which lowered the residual,
+  /// or the violation, below the lowest so far; 0: no limit.
+  int max_idle = 0;
 };
 
 struct NewtonReport {

@@ -9,6 +9,7 @@
 #include "sinew/sim/limit_point.hpp"
 #include "sinew/sim/load_steps.hpp"
 #include "sinew/sim/run.hpp"
+#include "sinew/sim/static_search.hpp"
 #include "sinew/sim/step_failure.hpp"
 #include "sinew/sim/step_tolerances.hpp"
 #include "sinew/sim/step_verdict.hpp"
@@ -73,6 +74,7 @@ NewtonSettings NewtonStep::settings(double time_step) const {
 NewtonSettings NewtonStep::settings_of_part(double time_step) const {
   NewtonSettings part = settings(time_step);
   part.max_iterations = std::min(part.max_iterations, kIterationsOfPart);
+  part.max_idle = max_idle(*run_.model);
   return part;
 }
 
@@ -192,6 +194,7 @@ NewtonReport NewtonStep::search(double time_step) {
   NewtonSettings whole = settings(time_step);
   const bool steered = run_.controller != nullptr;
   if (!run_.model->step().dynamic()) whole.max_indefinite = kIndefinite;
+  if (!run_.model->step().dynamic() && !steered) whole.max_idle = max_idle(*run_.model);
   if (steered) whole.max_iterations = std::min(whole.max_iterations, kSteeredIterations);
   if (!run_.model->step().dynamic() && !steered) {
     if (const auto held = hold_motors(time_step)) return *held;

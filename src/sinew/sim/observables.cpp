@@ -8,7 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "sinew/mechanics/body_model.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::sim {
@@ -75,7 +77,17 @@ void Observables::add_view(std::vector<Observable> parts, Read read) {
   }
 }
 
-std::size_t Observables::find(std::string_view name, const Location& asked) const {
+// The name with a link that is part of a body replaced by the body.
+std::string Observables::with_body(std::string_view name) const {
+  for (const auto& [link, body] : simulation_->model().body_names()) {
+    if (body == kWorld || !name.starts_with(link + ".")) continue;
+    return simulation_->model().body(body).name() + std::string(name.substr(link.size()));
+  }
+  return std::string(name);
+}
+
+std::size_t Observables::find(std::string_view asked_name, const Location& asked) const {
+  const std::string name = with_body(asked_name);
   const auto found = std::ranges::find(list_, name, &Observable::name);
   if (found != list_.end()) return static_cast<std::size_t>(found - list_.begin());
   std::vector<std::string> known;

@@ -124,8 +124,9 @@ class Observables {
   /// @param read returns the stored values.
   void add_view(std::vector<Observable> parts, Read read);
 
-  /// Index of an observable in list(); if an actuator and a contact share a name, the first one.
-  /// Throws Error(unknown-name) with a suggestion.
+  /// Index of an observable in list(); if an actuator and a contact share a name, the first one. A
+  /// link that is part of a body (Model::body_names()) stands for the body. Throws
+  /// Error(unknown-name) with a suggestion.
   /// @param name of an observable. @param asked source location of the request, for errors.
   std::size_t find(std::string_view name, const Location& asked = {}) const;
 
@@ -156,6 +157,7 @@ class Observables {
   };
 
   void sort();
+  std::string with_body(std::string_view name) const;
 
   Simulation* simulation_;
   bool gathering_ = false;  // whether the list is sorted later

@@ -1,13 +1,13 @@
 #include "sinew/sim/path_follower.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <string>
 
 #include <fmt/format.h>
 
-#include "sinew/constraint/shape_contact.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/sim/path_loads.hpp"
+#include "sinew/sim/path_obstacle.hpp"
 #include "sinew/sim/path_step.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/static_search.hpp"
@@ -19,45 +19,14 @@ namespace {
 
 constexpr double kWantedIterations = 6.0;  // of a step of suitable length
 constexpr int kMaxPathHalvings = 14;
+constexpr int kMaxBisections = 40;  // of a step that passes a bifurcation
 
 }  // namespace
 
-void PathFollower::check() const {
-  const ContactPlanes& planes = run_.world.contacts().planes();
-  for (std::size_t i = 0; i < planes.contacts().size(); ++i) {
-    const constraint::ShapeContact* contact = planes.shape(i);
-    if (contact == nullptr || !contact->curved() || contact->friction().sticking == 0.0) continue;
-    throw Error(ErrorKind::not_in_this_version,
-                {.item = fmt::format("contact '{}'", contact->name())},
-                "paths along curved surfaces with friction are not followed yet",
-                "step through the load in time");
-  }
-  for (const ContactModel& contact : run_.model->contacts()) {
-    if (contact.aggregate == 0.0) continue;
-    throw Error(ErrorKind::not_in_this_version, {.item = fmt::format("contact '{}'", contact.name)},
-                "paths with aggregated contact are not followed yet",
-                "leave `aggregate` out, or step through the load in time");
-  }
-  for (std::size_t i = 0; i < run_.model->contacts().size(); ++i) {
-    const constraint::Contact& contact = run_.model->contact(static_cast<int>(i));
-    if (contact.other_body() < 0 && !contact.is_found_anew()) continue;
-    throw Error(ErrorKind::not_in_this_version, {.item = "follow_path"},
-                "paths on which bodies touch each other are not followed yet",
-                "step through the load in time");
-  }
-  if (run_.world.joints().block_count() > 0) {
-    throw Error(ErrorKind::bad_argument, {.item = "follow_path"},
-                "paths do not pass limits and friction of joints", "step through the load in time");
-  }
-  if (!run_.model->guides().empty()) {
-    throw Error(ErrorKind::bad_argument, {.item = "follow_path"},
-                "cables with friction have no path of their own", "step through the load in time");
-  }
-}
-
-// With contacts, a path must begin at an equilibrium, which determines the touching points.
+// A path begins at an equilibrium, which with contacts determines the touching points. Without, the
+// first step also finds one from a start that Newton's method leaves.
 void PathFollower::settle(PathLoads& loads) {
-  if (run_.world.contacts().empty()) return;
+  const bool touches = !run_.world.contacts().empty();
   loads.set_fraction(0.0);
   std::vector<step::ActuatorBlock>& blocks = run_.world.problem().actuators;
   const std::vector<step::ActuatorBlock> goal = blocks;
@@ -69,6 +38,7 @@ void PathFollower::settle(PathLoads& loads) {
   run_.solver.begin_step();
   const bool found = search.equilibrate(0.0);
   blocks = goal;
+  if (!found && !touches) return run_.restore(run_.before);
   run_.world.bodies().end_step({});
   if (found) return;
   if (search.last().status == NewtonStatus::singular) {
@@ -87,13 +57,55 @@ void PathFollower::rest() {
   run_.finish_step();
 }
 
-std::vector<PathPoint> PathFollower::follow(const std::function<void()>& visit) {
+// Makes a step of at most this length, halved until it succeeds.
+// @param length m; overwritten by the last length that was tried.
+// @return the number of iterations; 0 if it failed.
+int PathFollower::take(PathStep& step, double& length) {
+  for (int halving = 0; halving <= kMaxPathHalvings; ++halving) {
+    const int iterations = step.take(length);
+    if (iterations > 0) return iterations;
+    length = 0.5 * std::min(length, step.length());
+  }
+  return 0;
+}
+
+// The next point. A step that passes a bifurcation is undone and halved until the load at it is
+// known; the point behind it is then on the same branch as the one before.
+// @param length m, of this step; overwritten by that of the next one.
+// @return whether there is one.
+bool PathFollower::advance(PathStep& step, double& length) {
+  const double longest = settings_.largest_step * run_.model->size();
+  for (int halving = 0;; ++halving) {
+    const int iterations = take(step, length);
+    if (iterations == 0) return false;
+    const bool passes = step.change().bifurcates();
+    if (!passes || step.change().is_narrow() || halving == kMaxBisections) {
+      bisects_ = bisects_ && !passes;
+      const double next = step.length() * std::clamp(kWantedIterations / iterations, 0.5, 2.0);
+      length = std::min(bisects_ ? step.length() : longest, next);
+      return true;
+    }
+    step.undo();
+    bisects_ = true;
+    length = 0.5 * step.length();
+  }
+}
+
+void PathFollower::add_point(const PathStep& step, Path& path) {
+  const PathPoint point = step.point();
+  if (point.event == PathEvent::limit_point && !path.limit_load && step.change().from.slope > 0.0) {
+    path.limit_load = step.change().peak();
+  }
+  path.points.push_back(point);
+}
+
+Path PathFollower::follow(const std::function<void()>& visit) {
   State start;
   run_.keep(start);
   run_.watch.begin();
   run_.now = run_.time();
   run_.surroundings.move_bases(run_.now);
-  check();
+  if (const auto obstacle = find_path_obstacle(run_)) throw Error(*obstacle);
   PathLoads loads(run_);
   run_.keep(run_.before);
   // An exception of the watcher leaves the state of the last point.
@@ -106,33 +118,43 @@ std::vector<PathPoint> PathFollower::follow(const std::function<void()>& visit) 
     }
   };
   from_before([&] { settle(loads); });
-  PathStep step(run_, settings_, loads);
-  std::vector<PathPoint> path;
+  PathStep step(run_, settings_.tolerance, [&](double part) { loads.set_fraction(part); });
+  Path path{.points = {}, .end = PathEnd::full_load, .limit_load = {}, .reason = {}};
   double length = settings_.first_step * run_.model->size();
-  const double longest = settings_.largest_step * run_.model->size();
-  while (step.point().load_fraction < 1.0 && static_cast<int>(path.size()) < settings_.max_points) {
-    int iterations = from_before([&] { return step.take(length); });
-    for (int halving = 0; iterations == 0; ++halving) {
-      if (halving == kMaxPathHalvings) {
-        run_.restore(start);
-        throw Error(
-            ErrorKind::not_converged, {.item = "path"},
-            fmt::format("after {} points, at {:.4g} of the load, even a step of {:.2g} m "
-                        "finds no equilibrium",
-                        path.size(), step.point().load_fraction, length),
-            "begin with a smaller first_step, or disturb the symmetry before a bifurcation");
-      }
-      length *= 0.5;
-      iterations = from_before([&] { return step.take(length); });
+  bisects_ = false;
+  while (step.point().load_fraction < 1.0) {
+    if (static_cast<int>(path.points.size()) >= settings_.max_points) {
+      path.end = PathEnd::max_points;
+      path.reason = fmt::format("{} points end at {:.4g} of the load; allow more max_points",
+                                path.points.size(), step.point().load_fraction);
+      break;
     }
-    path.push_back(step.point());
+    if (!from_before([&] { return advance(step, length); })) {
+      path.end = PathEnd::no_equilibrium;
+      end_early(path, step, length, start);
+      break;
+    }
+    add_point(step, path);
     rest();
     if (visit) visit();
-    length = std::min(longest, length * std::clamp(kWantedIterations / iterations, 0.5, 2.0));
   }
   run_.last_step = 0.0;
   run_.ledger.rest();
   return path;
+}
+
+// Without any point, nothing has been found: throws, with the state of the start.
+void PathFollower::end_early(Path& path, const PathStep& step, double length, const State& start) {
+  const std::string where = fmt::format(
+      "after {} points, at {:.4g} of the load, even a step of {:.2g} m finds no "
+      "equilibrium",
+      path.points.size(), step.point().load_fraction, length);
+  const std::string remedy =
+      "begin with a smaller first_step, or disturb the symmetry before a bifurcation";
+  path.reason = where + "; " + remedy;
+  if (!path.points.empty()) return;
+  run_.restore(start);
+  throw Error(ErrorKind::not_converged, {.item = "path"}, where, remedy);
 }
 
 }  // namespace sinew::sim

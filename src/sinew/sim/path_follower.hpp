@@ -4,30 +4,38 @@
 #pragma once
 
 #include <functional>
-#include <vector>
 
 #include "sinew/sim/path_settings.hpp"
 
 namespace sinew::sim {
 
 class PathLoads;
+class PathStep;
 struct Run;
+struct State;
 
-/// Follows the path from the present equilibrium in steps (PathStep) of adaptive length.
+/// Follows the path from the present equilibrium in steps (PathStep) of adaptive length. Where
+/// unstable directions appear or vanish without a limit point (PathChange), it finds the load of
+/// the bifurcation to 1 % by bisection and continues along the branch on which it came, in the
+/// direction of the tangent.
 class PathFollower {
  public:
   /// @param run is moved. @param settings step lengths and tolerance.
   PathFollower(Run& run, const PathSettings& settings) : run_(run), settings_(settings) {}
   /// See Simulation::follow_path(). @param visit called at every point, unless empty.
-  std::vector<PathPoint> follow(const std::function<void()>& visit);
+  Path follow(const std::function<void()>& visit);
 
  private:
-  void check() const;
   void settle(PathLoads& loads);
   void rest();
+  int take(PathStep& step, double& length);
+  bool advance(PathStep& step, double& length);
+  void add_point(const PathStep& step, Path& path);
+  void end_early(Path& path, const PathStep& step, double length, const State& start);
 
   Run& run_;
   const PathSettings& settings_;
+  bool bisects_ = false;  // whether a step ahead passes a bifurcation
 };
 
 }  // namespace sinew::sim

@@ -76,28 +76,44 @@ HeldAnswer PathPredictor::answer_along(const qp::ComplementaryPath& path,
   return result;
 }
 
-bool PathPredictor::predict(const HeldAnswer& by_rest, const HeldAnswer& by_load,
-                            const VectorX& before, double length, double max_load_fraction,
-                            std::span<const double> effort, PathPrediction& result) {
-  list(effort);
-  qp::ComplementaryPath path = begin(by_load);
+// The first edge, in the direction in which the path came.
+HeldAnswer PathPredictor::begin_edge(qp::ComplementaryPath& path, const HeldAnswer& by_load,
+                                     const VectorX& before) {
   HeldAnswer edge = answer_along(path, by_load);
   if (before.size() > 0 && before.dot(edge.motion) < 0.0) {
     path.reverse();
     edge = answer_along(path, by_load);
   }
+  return edge;
+}
+
+double PathPredictor::slope(const HeldAnswer& by_load, const VectorX& before,
+                            std::span<const double> effort) {
+  list(effort);
+  qp::ComplementaryPath path = begin(by_load);
+  const double length = begin_edge(path, by_load, before).motion.norm();
+  return length > 0.0 ? path.direction() / length : 0.0;
+}
+
+bool PathPredictor::predict(const HeldAnswer& by_rest, const HeldAnswer& by_load,
+                            const VectorX& before, const PathBounds& bounds,
+                            std::span<const double> effort, PathPrediction& result) {
+  list(effort);
+  qp::ComplementaryPath path = begin(by_load);
+  HeldAnswer edge = begin_edge(path, by_load, before);
   VectorX moved = VectorX::Zero(edge.motion.size());
   result = {.answer = by_rest};
   for (std::size_t corners = 0; corners <= kMaxCorners * held_.size(); ++corners) {
     const double left = path.look_ahead();
-    const double full =
-        path.direction() > 0.0 ? max_load_fraction - result.load_fraction : kInfinity;
-    const double by = std::min({left, full, way_until(moved, edge.motion, length)});
-    if (!(by < kInfinity)) return false;
-    const double whole = length / edge.motion.cwiseAbs().maxCoeff();
-    result.origin = moved - (whole - by) * edge.motion;
+    const double full = path.direction() > 0.0 ? bounds.load_rise - result.load_fraction
+                                               : bounds.load_fall + result.load_fraction;
+    const double by = std::min({left, full, way_until(moved, edge.motion, bounds.length)});
+    const double largest = edge.motion.cwiseAbs().maxCoeff();
+    if (!(by < kInfinity) || !(largest > 0.0)) return false;
     path.advance(by);
     moved += by * edge.motion;
+    result.length = moved.cwiseAbs().maxCoeff();
+    result.origin = moved - result.length / largest * edge.motion;
     result.load_fraction += by * path.direction();
     result.answer.motion += by * edge.motion;
     result.answer.efforts += by * edge.efforts;

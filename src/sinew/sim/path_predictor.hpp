@@ -16,6 +16,14 @@ struct PathPrediction {
   HeldAnswer answer;           ///< motion, and efforts of the held rows
   VectorX origin;              ///< start of a straight step with this end, direction and length
   double load_fraction = 0.0;  ///< increment of the load fraction
+  double length = 0.0;         ///< m, largest motion in any coordinate by the load
+};
+
+/// Bounds of a prediction; it ends at the first that it reaches.
+struct PathBounds {
+  double length = 0.0;     ///< m, largest motion in any coordinate
+  double load_rise = 0.0;  ///< of the load fraction
+  double load_fall = 0.0;  ///< likewise, > 0
 };
 
 /// Linearised, with the inverse T of the robot with its joints (HeldMotions), the robot responds to
@@ -31,7 +39,6 @@ struct PathPrediction {
 /// like those of a joint, a slipping point keeps its direction with constant lambda_t/lambda_n,
 /// which makes W unsymmetric, and a point that begins to touch has no friction. The correction then
 /// solves the friction law (PathContacts).
-/// that begins to touch has none. What comes of it the correction decides (PathContacts).
 class PathPredictor {
  public:
   /// Both must outlive it. @param world linearised, with rows formed, and condensed.
@@ -41,13 +48,13 @@ class PathPredictor {
   /// @param by_rest,by_load T r and T dr/ds.
   /// @param before motion of the last step, which fixes the direction of the path; empty: the path
   ///   begins with a growing load.
-  /// @param length m, largest motion in any coordinate, at which the step ends.
-  /// @param max_load_fraction increment of the load fraction at which the step ends.
-  /// @param effort (rows,) N. @param result overwritten.
+  /// @param bounds of the step. @param effort (rows,) N. @param result overwritten.
   /// @return false if the path does not continue; `result` is then unusable.
   bool predict(const HeldAnswer& by_rest, const HeldAnswer& by_load, const VectorX& before,
-               double length, double max_load_fraction, std::span<const double> effort,
-               PathPrediction& result);
+               const PathBounds& bounds, std::span<const double> effort, PathPrediction& result);
+  /// The slope of the load along the path, see PathPlace::slope; zero if the load moves nothing.
+  /// Call predict() or this only once. @param by_load,before,effort see predict().
+  double slope(const HeldAnswer& by_load, const VectorX& before, std::span<const double> effort);
   /// The blocks of the points that touch at the end of the prediction; writes their forces, and
   /// zero for the other points. @param effort (rows,) N, already updated by the prediction.
   std::vector<step::ContactBlock> touch(std::span<double> effort) const;
@@ -55,6 +62,8 @@ class PathPredictor {
  private:
   void list(std::span<const double> effort);
   qp::ComplementaryPath begin(const HeldAnswer& by_load);
+  HeldAnswer begin_edge(qp::ComplementaryPath& path, const HeldAnswer& by_load,
+                        const VectorX& before);
   HeldAnswer answer_along(const qp::ComplementaryPath& path, const HeldAnswer& by_load);
   void end(const qp::ComplementaryPath& path);
 

@@ -6,7 +6,6 @@
 
 #include "sinew/qp/friction_cone.hpp"
 #include "sinew/sim/path_contacts.hpp"
-#include "sinew/sim/path_loads.hpp"
 #include "sinew/sim/path_predictor.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/stability.hpp"
@@ -17,17 +16,27 @@ namespace {
 
 constexpr int kMaxIterations = 25;
 constexpr double kFarthest = 5.0;  // bound of the total motion, relative to the step's length
-// Loads grow fast where points touch: with contacts, no prediction exceeds the full load by more
-// than the first fraction, and no step by more than the second.
+// No prediction exceeds the full load by more than the first fraction, and no step by more than the
+// second.
 constexpr double kBeyond = 1e-2;
 constexpr double kFarBeyond = 0.1;
+// Bounds of the change of the load fraction, of a prediction and of a step.
+constexpr double kPredictedLoad = 0.08;
+constexpr double kLargestLoad = 0.1;
+// Bound of the correction, relative to the prediction.
+constexpr double kLargestCorrection = 0.5;
 constexpr double kDiagonal = 1.75;  // > sqrt(3), bound of a 3D motion over its largest coordinate
 
 }  // namespace
 
+PathBounds PathStep::bounds(double length) const {
+  const double left = std::max(1.0 + kBeyond - load_fraction_, kBeyond);
+  return {length, std::min(kPredictedLoad, left), kPredictedLoad};
+}
+
 // r at a load fraction; the bodies stay linearised there.
 void PathStep::imbalance_at(double load_fraction, VectorX& imbalance) {
-  loads_.set_fraction(load_fraction);
+  set_load_(load_fraction);
   run_.world.linearise({{}, mechanics::Tangent::exact, true, true});
   run_.world.form_rows(run_.effort, run_.model->geometric_stiffness().all);
   run_.world.bodies().imbalance(run_.effort, imbalance);
@@ -87,19 +96,19 @@ std::vector<step::HeldRow> PathStep::joints_and_sticking() const {
 bool PathStep::predict(const VectorX& here, const VectorX& ahead, double length) {
   if (run_.world.condense() == linalg::FactorStatus::singular) return false;
   HeldMotions motions(run_.world, joints_and_sticking());
-  negative_pivots_ = motions.negative_pivots();
   const VectorX still = VectorX::Zero(static_cast<Eigen::Index>(motions.rows().size()));
   HeldAnswer by_rest, by_load;
   motions.solve(here, motions.gaps(), by_rest);
   motions.solve(ahead - here, still, by_load);
   PathPrediction prediction;
   PathPredictor predictor(run_.world, motions);
-  const double most = run_.world.contacts().empty() ? kInfinity : 1.0 + kBeyond - load_fraction_;
-  if (!predictor.predict(by_rest, by_load, direction_, length, most, run_.effort, prediction)) {
+  if (!predictor.predict(by_rest, by_load, direction_, bounds(length), run_.effort, prediction)) {
     return false;
   }
   moved_.setZero(by_load.motion.size());
   origin_ = prediction.origin;
+  length_ = prediction.length;
+  predicted_ = prediction.answer.motion;
   move(prediction.answer.motion, prediction.load_fraction);
   push(motions.rows(), prediction.answer.efforts);
   touching_ = predictor.touch(run_.effort);
@@ -109,7 +118,6 @@ bool PathStep::predict(const VectorX& here, const VectorX& ahead, double length)
 bool PathStep::correct(const VectorX& here, const VectorX& ahead) {
   if (run_.world.condense() == linalg::FactorStatus::singular) return false;
   HeldMotions motions(run_.world, joints(touching_));
-  negative_pivots_ = motions.negative_pivots();
   PathContacts contacts(run_.world, motions, touching_, run_.effort);
   if (contacts.is_singular()) return false;
   HeldAnswer answer, by_load;
@@ -142,25 +150,35 @@ void PathStep::push(std::span<const step::HeldRow> held, const VectorX& efforts)
 }
 
 // Applies the motion. @return whether it is acceptable.
-bool PathStep::is_sound(double length) {
+bool PathStep::is_sound() {
   Bodies& bodies = run_.world.bodies();
   const auto motion = bodies.apply_motion(1.0);
   const auto volume = motion.finite ? bodies.smallest_volume() : mechanics::SmallestVolume{};
   if (!motion.finite || !(volume.ratio > 0.0) ||
-      !(moved_.cwiseAbs().maxCoeff() < kFarthest * length)) {
+      !(moved_.cwiseAbs().maxCoeff() < kFarthest * length_)) {
     return false;
   }
   run_.volume_ratio = volume.ratio;
   return true;
 }
 
-// Whether touching points have compressive forces, all others are outside, and the load is not far
-// beyond its end. Removes tensile forces within rounding.
+// Whether the correction was small and the load neither changed much nor is far beyond its end.
+// Where points rub, a correction need not decrease faster than the step.
+bool PathStep::stays_on_path() const {
+  const double change = std::abs(load_fraction_ - change_.from.load_fraction);
+  if (change > kLargestLoad || load_fraction_ > 1.0 + kFarBeyond) return false;
+  if (std::ranges::any_of(touching_, [](const auto& block) { return block.friction > 0.0; })) {
+    return true;
+  }
+  return (moved_ - predicted_).norm() <= kLargestCorrection * predicted_.norm();
+}
+
+// Whether touching points have compressive forces, and all others are outside. Removes tensile
+// forces within rounding.
 bool PathStep::is_path_point() {
   const step::StepProblem& problem = run_.world.problem();
-  const double nothing = settings_.tolerance * run_.model->size();
-  if (!run_.world.contacts().empty() && load_fraction_ > 1.0 + kFarBeyond) return false;
-  const double slack = settings_.tolerance * run_.world.bodies().force_scale();
+  const double nothing = tolerance_ * run_.model->size();
+  const double slack = tolerance_ * run_.world.bodies().force_scale();
   bool obeyed = run_.world.contacts().max_penetration_left_out() <= nothing;
   for (const step::ContactBlock& block : problem.contacts) {
     const int row = run_.world.numbering().model_row_of(block.row);
@@ -171,16 +189,32 @@ bool PathStep::is_path_point() {
   return obeyed;
 }
 
-// With contacts, the number of unstable directions changes between iterations: it is counted at the
-// solution, not before the last iteration.
-void PathStep::count() {
-  if (run_.world.contacts().empty()) return;
-  if (run_.world.condense() == linalg::FactorStatus::singular) return;
+// Without contacts, the motions hold all rows that count; else the normal rows of touching points
+// are missing.
+int PathStep::count(const HeldMotions& motions, std::span<const step::ContactBlock> touching) {
+  if (run_.world.contacts().empty()) return motions.negative_pivots();
   linalg::AlignedNumbers effort;
   run_.world.numbering().gather_efforts(run_.effort, effort);
-  std::vector<step::HeldRow> held = joints(pressed());
+  std::vector<step::HeldRow> held = joints(touching);
   append_touching(run_.world.problem(), effort, held);
-  negative_pivots_ = HeldMotions(run_.world, std::move(held)).negative_pivots();
+  return HeldMotions(run_.world, std::move(held)).negative_pivots();
+}
+
+// Unstable directions and slope of the load at the present equilibrium, which is linearised.
+// @return false if the tangent is singular there.
+bool PathStep::see(const VectorX& here, const VectorX& ahead, PathPlace& place) {
+  if (run_.world.condense() == linalg::FactorStatus::singular) return false;
+  HeldMotions motions(run_.world, joints_and_sticking());
+  const VectorX still = VectorX::Zero(static_cast<Eigen::Index>(motions.rows().size()));
+  HeldAnswer by_load;
+  motions.solve(ahead - here, still, by_load);
+  const std::vector<step::ContactBlock> touching = pressed();
+  const auto rubs = [](const step::ContactBlock& block) { return block.friction > 0.0; };
+  place = {load_fraction_, count(motions, touching), 0.0, std::ranges::any_of(touching, rubs),
+           !touching.empty()};
+  const VectorX direction = moved_.size() > 0 ? VectorX(moved_ - origin_) : VectorX();
+  place.slope = PathPredictor(run_.world, motions).slope(by_load, direction, run_.effort);
+  return true;
 }
 
 // @return the number of iterations; 0 if the step failed.
@@ -194,15 +228,18 @@ int PathStep::try_length(double length) {
     imbalance_at(load_fraction_, here);
     run_.report.relative_residual = here.norm() / (run_.world.bodies().force_scale() + 1e-300);
     if (iteration > 0) run_.watch.count(run_.report.relative_residual);
-    const bool arrived = run_.report.relative_residual <= settings_.tolerance &&
-                         gap() <= settings_.tolerance * run_.model->size();
+    const bool arrived =
+        run_.report.relative_residual <= tolerance_ && gap() <= tolerance_ * run_.model->size();
     if (iteration > 0 && arrived) {
-      if (!is_path_point()) return 0;
-      count();
-      return iteration;
+      return is_path_point() && stays_on_path() && see(here, ahead, change_.to) ? iteration : 0;
+    }
+    const bool begins = direction_.size() == 0;
+    if (iteration == 0 && begins) {
+      if (!see(here, ahead, change_.from)) return 0;
+      imbalance_at(load_fraction_, here);  // a linearisation can be condensed once
     }
     const bool found = iteration == 0 ? predict(here, ahead, length) : correct(here, ahead);
-    if (!found || !is_sound(length)) return 0;
+    if (!found || !is_sound()) return 0;
   }
   return 0;
 }
@@ -210,15 +247,29 @@ int PathStep::try_length(double length) {
 // The same, with the run restored after a failure.
 int PathStep::take(double length) {
   run_.keep(run_.before);
-  const double load_fraction_before = load_fraction_;
+  const PathChange last = change_;
+  change_.from = last.to;
+  moved_.resize(0);
+  length_ = length;
   const int iterations = try_length(length);
   if (iterations > 0) {
-    direction_ = moved_ - origin_;
+    change_.length = moved_.norm();
+    earlier_ = last.from;
+    direction_before_ = std::exchange(direction_, moved_ - origin_);
   } else {
     run_.restore(run_.before);
-    load_fraction_ = load_fraction_before;
+    load_fraction_ = last.to.load_fraction;
+    change_ = last;
   }
   return iterations;
+}
+
+void PathStep::undo() {
+  run_.restore(run_.before);
+  change_.to = change_.from;
+  change_.from = earlier_;
+  load_fraction_ = change_.to.load_fraction;
+  direction_ = direction_before_;
 }
 
 }  // namespace sinew::sim

@@ -106,9 +106,8 @@ StaticReport Simulation::solve_static(const StaticSettings& settings) {
 }
 
 // On the path, loads and commands act partially, which an estimator does not know.
-std::vector<PathPoint> Simulation::follow_path(const PathSettings& settings,
-                                               const std::function<void()>& visit) {
-  std::vector<PathPoint> path = PathFollower(*run_, settings).follow([&] {
+Path Simulation::follow_path(const PathSettings& settings, const std::function<void()>& visit) {
+  Path path = PathFollower(*run_, settings).follow([&] {
     run_->sensors.settle(*run_);
     if (visit) visit();
   });

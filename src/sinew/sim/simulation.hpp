@@ -99,17 +99,18 @@ class Simulation {
   /// Follows the path of equilibria from the present one as loads and commanded efforts grow in
   /// proportion from their last applied values (zero at the start) to their present ones, through
   /// limit points, stable or not; see PathFollower. Velocities become zero; time does not advance.
-  /// The last point lies at the full load or just beyond it; solve_static() finds the equilibrium
-  /// at exactly the full load from there. Contact friction acts as in one slow motion from each
-  /// point to the next.
+  /// No step changes the load by more than 10 % of the full one. The last point lies at the full
+  /// load or at most 10 % beyond it; solve_static() finds the equilibrium at exactly the full load
+  /// from there. Contact friction acts as in one slow motion from each point to the next. A path
+  /// that ends early (Path::end) leaves the simulation at its last point.
   /// @param settings step lengths, tolerance and number of points. @param visit called at every
   ///   point.
   /// Throws Error(bad-argument) if an actuator has a drive or a commanded motion, or if cables have
   /// friction or joints have limits or friction; Error(not-in-this-version) for curved surfaces
   /// with friction, aggregated contacts, contacts between bodies, and bodies held by contacts
-  /// alone; Error(not-converged), after which the state is that at the start.
-  std::vector<PathPoint> follow_path(const PathSettings& settings,
-                                     const std::function<void()>& visit = {});
+  /// alone; Error(not-converged) if it has no point at all, after which the state is that at the
+  /// start.
+  Path follow_path(const PathSettings& settings, const std::function<void()>& visit = {});
 
   /// Returns to the start, bit for bit: state, time and the model's commands. Controllers stay
   /// attached.

@@ -7,7 +7,12 @@
 
 namespace sinew::sim {
 
+class Model;
 struct Run;
+
+/// Iterations without progress after which a search is given up that has others to fall back on
+/// (see NewtonSettings::max_idle): a load that is too large for one step is then divided soon.
+int max_idle(const Model& model);
 
 /// Runs Newton's method with the exact tangent and the geometric stiffness of all constraints.
 /// Counts iterations in its report.
@@ -30,9 +35,10 @@ class StaticSearch {
   /// @return whether Newton's method converged.
   bool equilibrate(double fraction);
   /// Solves an overdamped step. @param weights of inertia.
-  /// @param tolerance of residual and violation. @param max_iterations of Newton's method.
+  /// @param tolerance of residual and violation. @param max_iterations,max_idle see NewtonSettings.
   /// @return whether it converged.
-  bool step(const mechanics::StepWeights& weights, double tolerance, int max_iterations);
+  bool step(const mechanics::StepWeights& weights, double tolerance, int max_iterations,
+            int max_idle = 0);
 
  private:
   Run& run_;

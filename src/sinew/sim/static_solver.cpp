@@ -7,6 +7,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
+#include "sinew/sim/homotopy_path.hpp"
 #include "sinew/sim/limit_point.hpp"
 #include "sinew/sim/load_steps.hpp"
 #include "sinew/sim/run.hpp"
@@ -16,6 +17,11 @@
 namespace sinew::sim {
 
 namespace {
+
+// Load steps are halved to this fraction, after which arc length takes over where it can.
+constexpr double kSmallestBeforePath = 1.0 / 16.0;
+// Tolerance of the equilibria on the way, relative to the loads.
+constexpr double kPathTolerance = 1e-9;
 
 // Tolerance on the gaps of touching points, relative to the robot's size.
 constexpr double kSurfaceTolerance = 1e-9;
@@ -110,10 +116,13 @@ void StaticSolver::blend(double fraction) {
   sim::blend(run_.world.problem().actuators, start_, 1.0 - fraction);
 }
 
-// Applies load steps, then overdamped motion.
+// Applies load steps, then follows the path by arc length, then applies overdamped motion.
 void StaticSolver::approach() {
-  const double fraction = step_load();
-  if (fraction == 0.0) return;
+  HomotopyPath path(run_, start_, goal_, std::max(settings_.tolerance, kPathTolerance));
+  const double smallest = 1.0 / settings_.max_load_steps;
+  const bool follows = path.is_possible();
+  double fraction = step_load(follows ? std::max(smallest, kSmallestBeforePath) : smallest);
+  if (fraction == 0.0 || (follows && follow_path(path, fraction))) return;
   const std::string known = describe(fraction);
   blend(0.0);
   run_.world.homotopy().set_fraction(0.0);
@@ -129,8 +138,22 @@ JointConflict StaticSolver::find_conflict() const {
   return find_joint_conflict(run_.world, kSurfaceTolerance * run_.model->size());
 }
 
-// @return the remaining fraction of the residual.
-double StaticSolver::step_load() {
+// @param fraction of the residual in the present equilibrium, overwritten by that in the last one.
+// @return whether it found the one under the full load.
+bool StaticSolver::follow_path(HomotopyPath& path, double& fraction) {
+  const HomotopyPath::End end = path.follow(fraction);
+  turned_ = end == HomotopyPath::End::turned;
+  if (end != HomotopyPath::End::full_load) return false;
+  State last;
+  run_.keep(last);
+  blend(0.0);
+  if (search_.equilibrate(0.0)) return true;
+  run_.restore(last);
+  return false;
+}
+
+// @param smallest load step. @return the remaining fraction of the residual.
+double StaticSolver::step_load(double smallest) {
   run_.watch.enter(SearchStage::parts);
   run_.restore(run_.before);
   search_.linearise({});
@@ -145,8 +168,7 @@ double StaticSolver::step_load() {
     ++report_.load_steps;
     run_.keep(sound);
   };
-  return take_load_steps({.min = 1.0 / settings_.max_load_steps}, solve, keep,
-                         [&] { run_.restore(sound); });
+  return take_load_steps({.min = smallest}, solve, keep, [&] { run_.restore(sound); });
 }
 
 // Describes the last equilibrium of the path, which is the world's present state.
@@ -160,8 +182,11 @@ std::string StaticSolver::describe(double fraction) {
   std::string limit = describe_limit_point(run_, goal_);
   limit_point_ = !limit.empty();
   if (!limit.empty() || fraction == 1.0) return limit;
-  const int negative = Stability(run_.world, run_.effort).negative_pivots();
   const double percent = 100.0 * (1.0 - fraction);
+  if (turned_) {
+    return fmt::format("at {:.3g} % of it the load reaches a peak (limit point)", percent);
+  }
+  const int negative = Stability(run_.world, run_.effort).negative_pivots();
   if (negative == 0) {
     return fmt::format("the last equilibrium on the way, at {:.3g} % of the load, is stable",
                        percent);

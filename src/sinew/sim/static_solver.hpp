@@ -13,12 +13,14 @@
 
 namespace sinew::sim {
 
+class HomotopyPath;
 struct Run;
 
 /// Searches an equilibrium in three stages. First, Newton's method with the exact tangent and the
 /// geometric stiffness of all constraints. If it fails, along the path r(q, lambda) = (1 - s)
 /// r_start, s from 0 to 1, which removes the residual of the start gradually (a convex homotopy;
-/// Allgower & Georg 1990, 1.3). If the path ends, OverdampedMotion under the full load from the
+/// Allgower & Georg 1990, 1.3), in load steps and, where these become short, by arc length
+/// (HomotopyPath). If the path ends or turns back, OverdampedMotion under the full load from the
 /// last equilibrium on the path.
 ///
 /// From an equilibrium with negative pivots (Stability), the overdamped motion starts in the
@@ -39,7 +41,8 @@ class StaticSolver {
   void read_goal();
   void approach();
   JointConflict find_conflict() const;
-  double step_load();
+  double step_load(double smallest);
+  bool follow_path(HomotopyPath& path, double& fraction);
   void blend(double fraction);
   std::string describe(double fraction);
   [[noreturn]] void fail_to_find(const std::string& known);
@@ -52,6 +55,7 @@ class StaticSolver {
   OverdampedMotion motion_;
   StaticReport& report_;  // of search_
   bool limit_point_ = false;
+  bool turned_ = false;  // whether the load turns back beyond the last equilibrium on the way
   std::vector<ActuatorState> start_;
   std::vector<step::ActuatorBlock> goal_;
 };
