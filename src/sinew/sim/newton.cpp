@@ -42,9 +42,9 @@ class NewtonSolver {
     linearise(settings_.request.tangent);
     for (report_.iterations = 0; report_.iterations < settings_.max_iterations;) {
       if (converged_) return finish(NewtonStatus::converged);
-      if (!condense()) return finish(NewtonStatus::singular);
+      if (!condense()) return stop(NewtonStatus::singular);
       report_.law = world_.solve_step(solver_, controller_, effort_, clock_);
-      if (report_.law == step::LawStatus::failed) return finish(NewtonStatus::law_failed);
+      if (report_.law == step::LawStatus::failed) return stop(NewtonStatus::law_failed);
       const NewtonStatus moved = move();
       ++report_.iterations;
       watch_.count(report_.relative_residual);
@@ -151,6 +151,13 @@ class NewtonSolver {
       if (converged_ || after < kMeritGrowth * before) return NewtonStatus::converged;
     }
     return inverted ? NewtonStatus::inverted : NewtonStatus::stalled;
+  }
+
+  // Ends without a motion: the residual is that of the present state, which no iteration has
+  // measured if this is the first one.
+  NewtonReport stop(NewtonStatus status) {
+    merit();
+    return finish(status);
   }
 
   NewtonReport finish(NewtonStatus status) {

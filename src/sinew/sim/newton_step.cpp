@@ -7,6 +7,7 @@
 
 #include "sinew/sim/folded_cable.hpp"
 #include "sinew/sim/load_steps.hpp"
+#include "sinew/sim/rest_search.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/step_failure.hpp"
 #include "sinew/sim/step_tolerances.hpp"
@@ -72,12 +73,15 @@ NewtonSettings NewtonStep::settings_of_part(double time_step) const {
 }
 
 void NewtonStep::solve(double time_step) {
-  const NewtonReport result = search(time_step);
+  NewtonReport result = search(time_step);
+  if (must_settle() && converged(result))
+    RestSearch(run_, time_step).settle(settings(time_step), result);
   take_report(result);
   if (converged(result)) return;
   const JointConflict conflict = find_conflict(result, time_step);
   if (!run_.model->step().dynamic() && is_usable(result) && !conflict.opens) return;
   if (!conflict.text.empty()) fail_joints(run_, conflict);
+  if (!run_.model->step().dynamic()) fail_if_free(run_, result.status, time_step);
   if (result.status == NewtonStatus::law_failed) fail_law(run_);
   const std::string folded =
       describe_folded_cable(*run_.model, run_.world.configuration(), run_.effort);
@@ -122,6 +126,7 @@ NewtonReport NewtonStep::search(double time_step) {
   NewtonReport result = run_.newton(run_.controller, whole);
   if (steered && goes_on(result)) return hold_choice(result, time_step);
   if (run_.model->step().dynamic() || converged(result)) return result;
+  if (must_settle()) return RestSearch(run_, time_step).relax(result);
   // If all methods failed in the last step, they fail from there in this step, too.
   if (run_.before.residual > kLag.residual) return result;
   int tried = result.iterations;
@@ -138,7 +143,8 @@ NewtonReport NewtonStep::search(double time_step) {
     tried += result.iterations;
   }
   result.iterations = tried;
-  return result;
+  return result.status == NewtonStatus::singular ? RestSearch(run_, time_step).relax(result)
+                                                 : result;
 }
 
 // See lift_motor_limits(). None: it found no equilibrium within the limits.
@@ -283,12 +289,19 @@ NewtonReport NewtonStep::descend(double time_step, int iterations) {
   return result;
 }
 
+// Whether weight, cables or contacts must hold what joints leave free: Newton's method may then
+// find an equilibrium that is unstable, a standing pendulum, or one that a touch moves away.
+bool NewtonStep::must_settle() const {
+  return run_.model->is_loose() && !run_.model->step().dynamic() && run_.controller == nullptr;
+}
+
 // Whether a quasi-static step may end in this state, with a flag. Contacts admit no approximate
 // solution, since a point would be inside a surface; with contacts, the residual is limited as for
 // the steps of a controller.
 bool NewtonStep::is_usable(const NewtonReport& result) const {
   if (!result.motion.finite || !(result.motion.volume.ratio > 0.0)) return false;
-  if (result.law == LawStatus::failed) return false;
+  if (result.law == LawStatus::failed || result.status == NewtonStatus::singular) return false;
+  if (must_settle()) return false;
   if (run_.model->contacts().empty()) return true;
   return result.relative_residual <= (run_.controller == nullptr ? kSearched : kBalanced) &&
          result.violation <= kMotionTolerance * run_.model->size();

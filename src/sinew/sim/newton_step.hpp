@@ -36,6 +36,7 @@ class NewtonStep {
   NewtonReport remain(double time_step, const NewtonReport& failed);
   NewtonReport approach(double time_step);
   NewtonReport descend(double time_step, int iterations);
+  bool must_settle() const;
   bool is_usable(const NewtonReport& result) const;
   JointConflict find_conflict(const NewtonReport& result, double time_step) const;
   void take_report(const NewtonReport& result);

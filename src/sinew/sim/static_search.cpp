@@ -1,10 +1,14 @@
 #include "sinew/sim/static_search.hpp"
 
+#include <algorithm>
+
 #include "sinew/sim/run.hpp"
 
 namespace sinew::sim {
 
 namespace {
+
+constexpr double kTestMotion = 1e-6;  // of the robot's size: test motion for measurements
 
 mechanics::LinearisationRequest request(const mechanics::StepWeights& weights) {
   return {weights, mechanics::Tangent::exact, true, true};
@@ -12,7 +16,13 @@ mechanics::LinearisationRequest request(const mechanics::StepWeights& weights) {
 
 }  // namespace
 
-void StaticSearch::begin() { run_.world.begin_step(run_.time(), run_.time(), run_.effort); }
+void StaticSearch::begin() { run_.world.begin_step(run_.now, run_.now, run_.effort); }
+
+mechanics::StepWeights StaticSearch::overdamped(double sigma) const {
+  mechanics::StepWeights weights = rest_;
+  weights.acceleration.motion = sigma;
+  return weights;
+}
 
 void StaticSearch::linearise(const mechanics::StepWeights& weights) {
   run_.world.linearise(request(weights));
@@ -21,7 +31,7 @@ void StaticSearch::linearise(const mechanics::StepWeights& weights) {
 
 bool StaticSearch::equilibrate(double fraction) {
   run_.world.homotopy().set_fraction(fraction);
-  return step({}, settings_.tolerance, settings_.max_iterations);
+  return step(rest_, settings_.tolerance, settings_.max_iterations);
 }
 
 bool StaticSearch::step(const mechanics::StepWeights& weights, double tolerance,
@@ -31,6 +41,46 @@ bool StaticSearch::step(const mechanics::StepWeights& weights, double tolerance,
                                 run_.model->geometric_stiffness().all});
   report_.iterations += last_.iterations;
   return last_.status == NewtonStatus::converged;
+}
+
+bool StaticSearch::rests() {
+  World& world = run_.world;
+  begin();
+  linearise();
+  const double residual = world.bodies().residual(run_.effort);
+  const double relative = residual / (world.bodies().force_scale() + 1e-300);
+  const double violation = world.violation(run_.effort, step::LawStatus::solved);
+  const double size = run_.model->size();
+  if (!(relative <= settings_.tolerance && violation <= settings_.tolerance * size)) return false;
+  last_.status = NewtonStatus::converged;
+  last_.residual = residual;
+  last_.relative_residual = relative;
+  last_.violation = violation;
+  last_.motion.volume = world.bodies().smallest_volume();
+  return true;
+}
+
+double StaticSearch::mass_along(const VectorX& direction) {
+  Bodies& bodies = run_.world.bodies();
+  begin();
+  const double scale = kTestMotion * run_.model->size() / direction.cwiseAbs().maxCoeff();
+  bodies.propose_motion(direction);
+  bodies.apply_motion(scale);
+  VectorX still, moving;
+  linearise();
+  bodies.imbalance(run_.effort, still);
+  double sigma = 1.0;
+  double mass = 0.0;
+  for (int round = 0; round < 2; ++round) {  // the second with inertia well above rounding
+    linearise(overdamped(sigma));
+    bodies.imbalance(run_.effort, moving);
+    mass = direction.dot(still - moving) / (sigma * scale);
+    const double inertia = (still - moving).norm();
+    if (!(inertia > 0.0)) sigma *= 1e12;
+    if (inertia > 0.0) sigma *= std::max(1.0, still.norm() / inertia);
+  }
+  bodies.apply_motion(0.0);
+  return mass;
 }
 
 }  // namespace sinew::sim

@@ -190,6 +190,21 @@ double Stepper::substep(double end, double time_step, bool divisible) {
   return substep_.end(time_step);
 }
 
+// Whether the reactions of what is fixed balance the loads, contacts and joints, in force and
+// moment. This takes no search at its word: the resultant is summed from the forces themselves, and
+// only a residual that was reported excuses it, |sum r| <= sqrt(3 n) |r|.
+bool Stepper::reactions_balance() const {
+  Bodies& bodies = run_.world.bodies();
+  Vector3 about = Vector3::Zero();  // near the robot, or rounding of the force would be a moment
+  for (const auto& body : bodies.all()) {
+    if (body->positions().rows() > 0) about = body->positions().row(0).transpose();
+  }
+  const mechanics::Wrench left = bodies.unbalanced(run_.effort, about);
+  const double largest = std::max(left.force.norm(), left.moment.norm() / run_.model->size());
+  const double told = std::sqrt(static_cast<double>(bodies.size())) * run_.report.residual;
+  return largest <= kBalanced * bodies.force_scale() + told;
+}
+
 // Newton's method decides; if it had few iterations or was not used, the residual decides.
 bool Stepper::is_balanced() const {
   const bool newton = run_.model->step().method == Method::newton;
@@ -205,7 +220,7 @@ void Stepper::judge() {
   if (report.law == LawStatus::limits_conflict) raise(StepStatus::limits_conflict);
   if (report.scale < 1.0) raise(StepStatus::cut_back);
   if (report.violation > kReached * run_.model->size()) raise(StepStatus::command_not_reached);
-  report.balanced = is_balanced();
+  report.balanced = is_balanced() && (run_.model->step().dynamic() || reactions_balance());
   if (!report.balanced) raise(StepStatus::not_in_equilibrium);
   if (run_.model->step().dynamic()) watch_energy();
 }

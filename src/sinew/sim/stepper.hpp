@@ -42,6 +42,7 @@ class Stepper {
   void step_by_events();
   double substep(double end, double time_step, bool divisible);
   bool is_balanced() const;
+  bool reactions_balance() const;
   void judge();
   void watch_energy();
 
