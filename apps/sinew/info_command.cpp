@@ -81,6 +81,14 @@ ordered_json mesh_json(const mesh::MeshReport& report) {
                        {"volume_m3", report.volume},
                        {"surface_area_m2", report.surface_area},
                        {"components", report.components.element_count.size()}};
+  json["loose_parts"] = ordered_json::array();
+  for (std::size_t k = 0; k < report.loose.size(); ++k) {
+    json["loose_parts"].push_back({{"elements", report.loose[k].elements},
+                                   {"centre_m", triple(report.loose[k].centre)},
+                                   {"shared_nodes", report.loose[k].shared},
+                                   {"motions", report.loose[k].motions},
+                                   {"text", report.loose_text[k]}});
+  }
   if (report.tetrahedra > 0) {
     json["edge_m"] = {{"shortest", report.shortest_edge},
                       {"mean", report.mean_edge},

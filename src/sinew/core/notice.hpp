@@ -16,6 +16,7 @@ enum class NoticeKind {
   unused_element,   ///< a file contains something that this version does not use
   coarse_contact,   ///< a round surface is smaller than the faces between the nodes that touch it
   other_tangent,    ///< the materials of the scene do not have the requested tangent
+  loose_part,       ///< elements of a mesh are joined to the others by a node or an edge only
 };
 
 /// Where a notice is shown.

@@ -103,6 +103,21 @@ int FemBodyModel::add_load(Load load) {
   return static_cast<int>(added_loads_.size()) - 1;
 }
 
+std::optional<std::vector<mesh::HeldAxis>> FemBodyModel::held_nodes() const {
+  std::vector<mesh::HeldAxis> held = settings_.elements.held_axes;
+  for (const NodeId node : settings_.elements.fixed_nodes) {
+    for (int axis = 0; axis < 3; ++axis) held.push_back({node, axis});
+  }
+  return held;
+}
+
+std::vector<NodeId> FemBodyModel::nodes_of(int point) const {
+  const bool known = point >= 0 && static_cast<std::size_t>(point) < attachments_.size();
+  return known ? attachment(point).nodes : std::vector<NodeId>();
+}
+
+bool FemBodyModel::is_loaded() const { return settings_.gravity.norm() > 0.0 || !added_loads_.empty(); }
+
 Vector3 FemBodyModel::rest_position(int point) const {
   Vector3 position = Vector3::Zero();
   const Attachment& a = attachment(point);

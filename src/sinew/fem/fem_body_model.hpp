@@ -61,6 +61,9 @@ class FemBodyModel final : public mechanics::BodyModel,
     return elements().free_index()[static_cast<std::size_t>(node)] < 0;
   }
   Vector3 rest_position(int point) const override;
+  std::optional<std::vector<mesh::HeldAxis>> held_nodes() const override;
+  std::vector<NodeId> nodes_of(int point) const override;
+  bool is_loaded() const override;
   mesh::EmbeddedPoint locate(const Vector3& rest_position, mesh::Outside outside,
                              const std::string& what) const override;
   int add_load(Load load) override;

@@ -15,6 +15,7 @@
 #include "sinew/material/elastic_constants.hpp"
 #include "sinew/material/hyperelastic.hpp"
 #include "sinew/mesh/mesh.hpp"
+#include "sinew/mesh/rigid_parts.hpp"
 
 namespace sinew::fem {
 
@@ -41,10 +42,7 @@ struct MaterialRegion {
 };
 
 /// A coordinate that is held while the others of its node are free: a roller.
-struct HeldAxis {
-  NodeId node = 0;
-  int axis = 0;  ///< 0, 1, 2: x, y, z
-};
+using HeldAxis = mesh::HeldAxis;
 
 /// A mass at a point x = sum weights x_node of the body, with nodes of one element: M += m N^T N,
 /// where N are the weights. It has no rotary inertia.

@@ -143,6 +143,17 @@ double FemStep::residual(std::span<const double> effort, std::span<double> imbal
   return imbalance_.norm();
 }
 
+mechanics::Wrench FemStep::unbalanced(std::span<const double> effort, const Vector3& about) {
+  find_imbalance(effort);
+  mechanics::Wrench sum;
+  const auto nodes = state_.model.elements().free_nodes();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const Vector3 force = imbalance_.segment<3>(3 * static_cast<Eigen::Index>(i));
+    sum += {force, (state_.positions.row(nodes[i]).transpose() - about).cross(force)};
+  }
+  return sum;
+}
+
 double FemStep::rounding_floor() const {
   const SystemWorkspace& workspace = elements_.active();
   return fem::rounding_floor(workspace.system.elements->pattern(), workspace.assembly.matrix(),

@@ -31,6 +31,7 @@ class FemStep : public mechanics::StepSystem {
 
   std::size_t size() const override { return static_cast<std::size_t>(motion_.size()); }
   double residual(std::span<const double> effort, std::span<double> imbalance) override;
+  mechanics::Wrench unbalanced(std::span<const double> effort, const Vector3& about) override;
   double force_scale() const override { return force_scale_; }
   double rounding_floor() const override;
   void lessen(std::span<const double> force) override;

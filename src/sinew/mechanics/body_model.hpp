@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "sinew/core/named_hash.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/mechanics/rows.hpp"
+#include "sinew/mesh/rigid_parts.hpp"
 
 namespace sinew {
 class ThreadPool;
@@ -65,6 +67,14 @@ class BodyModel {
 
   /// Whether leaving out inactive transient rows saves work (see RowValues::active).
   virtual bool leaves_rows_out() const { return false; }
+
+  /// Coordinates of nodes of mesh() that do not move, if the motion of the body is that of these
+  /// nodes; repeats are allowed. None: it is not (a rigid body, an arm).
+  virtual std::optional<std::vector<mesh::HeldAxis>> held_nodes() const { return {}; }
+  /// Nodes of mesh() that carry an attached point; empty for bodies without held_nodes().
+  virtual std::vector<NodeId> nodes_of(int) const { return {}; }
+  /// Whether weight or loads of the body act on it.
+  virtual bool is_loaded() const { return true; }
 
   /// Whether the body is free to make all rigid motions. Always false for finite-element bodies,
   /// whose fixed nodes tell.

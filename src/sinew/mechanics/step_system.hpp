@@ -76,6 +76,18 @@ struct StepEnd {
   bool moved_from_outside = false;
 };
 
+/// Resultant of forces: their sum, and the sum of their moments about a point.
+struct Wrench {
+  Vector3 force = Vector3::Zero();   ///< N
+  Vector3 moment = Vector3::Zero();  ///< N m
+
+  Wrench& operator+=(const Wrench& other) {
+    force += other.force;
+    moment += other.moment;
+    return *this;
+  }
+};
+
 /// The equations of one body in a step. A step does not allocate memory, unless it needs more than
 /// any step before.
 class StepSystem {
@@ -108,6 +120,11 @@ class StepSystem {
   /// Residual |b + H^T effort| of the equation of the step at the current state, N.
   /// @param effort (all rows,) N. @param imbalance (size(),) N, b + H^T effort; or empty.
   virtual double residual(std::span<const double> effort, std::span<double> imbalance) = 0;
+  /// Resultant of the residual b + H^T effort. Internal forces cancel in it, so at rest it is what
+  /// the reactions of fixed nodes lack to balance all loads, contacts and joints. Zero for bodies
+  /// whose coordinates are not displacements, which are held as a whole. @param effort (all rows,)
+  /// N. @param about (3,) m, the point of the moment.
+  virtual Wrench unbalanced(std::span<const double>, const Vector3&) { return {}; }
   /// Scale of the residual of the last linearisation, N: the sum of the norms of internal and
   /// external forces, plus the force of a negligible strain, so that it is not zero at rest.
   virtual double force_scale() const = 0;

@@ -147,6 +147,16 @@ void print_sets(const MeshReport& report, std::string& text) {
   }
 }
 
+void print_loose(const MeshReport& report, std::string& text) {
+  constexpr std::size_t kShown = 8;
+  for (std::size_t k = 0; k < std::min(kShown, report.loose_text.size()); ++k) {
+    text += fmt::format("loose        {}\n", report.loose_text[k]);
+  }
+  if (report.loose.size() > kShown) {
+    text += fmt::format("             and {} more\n", report.loose.size() - kShown);
+  }
+}
+
 void print_findings(const MeshReport& report, std::string& text) {
   const auto& parts = report.components.element_count;
   text += fmt::format("components   {}", parts.size());
@@ -157,6 +167,7 @@ void print_findings(const MeshReport& report, std::string& text) {
                         parts.size() > 8 ? ", ..." : "");
   }
   text += '\n';
+  print_loose(report, text);
   if (report.notes.reordered_elements > 0) {
     text += fmt::format("reordered    {} elements of the opposite node ordering are turned round\n",
                         report.notes.reordered_elements);
@@ -194,6 +205,8 @@ MeshReport describe(const Mesh& mesh, const CheckOptions& options) {
       });
   if (!measurable) return report;
   report.components = components(mesh);
+  report.loose = loose_joints(mesh);
+  for (const LooseJoint& loose : report.loose) report.loose_text.push_back(describe(loose, mesh));
   describe_size(mesh, report);
   describe_edges(mesh, report);
   describe_quality(mesh, report);

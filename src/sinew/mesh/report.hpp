@@ -7,6 +7,7 @@
 
 #include "sinew/mesh/check.hpp"
 #include "sinew/mesh/mesh.hpp"
+#include "sinew/mesh/rigid_parts.hpp"
 #include "sinew/mesh/topology.hpp"
 
 namespace sinew::mesh {
@@ -46,6 +47,8 @@ struct MeshReport {
 
   std::vector<SetSummary> sets;
   Components components;
+  std::vector<LooseJoint> loose;        ///< result of loose_joints()
+  std::vector<std::string> loose_text;  ///< each of them in words
   std::vector<Defect> defects;  ///< result of find_defects()
 };
 

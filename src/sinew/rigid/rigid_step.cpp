@@ -133,6 +133,15 @@ void RigidStep::add_proposed_motion(Points& nodes) const {
               from_.moved(motion().head<3>(), turn), nodes);
 }
 
+mechanics::Wrench RigidStep::unbalanced(std::span<const double> effort, const Vector3& about) {
+  if (size() == 0) return {};
+  Vector6 left;
+  residual(effort, {left.data(), 6});
+  const Vector3 force = left.head<3>();
+  return {force, left.tail<3>() * state_.model.turning_radius() +
+                     (state_.pose.centre - about).cross(force)};
+}
+
 // Positions are accurate to eps |x|, and rotations to eps.
 double RigidStep::rounding_floor() const {
   if (size() == 0) return 0.0;

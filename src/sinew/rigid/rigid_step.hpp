@@ -22,6 +22,7 @@ class RigidStep : public mechanics::DenseStep {
   void begin_step() override;
   void begin_query() override;
   void add_proposed_motion(Points& nodes) const override;
+  mechanics::Wrench unbalanced(std::span<const double> effort, const Vector3& about) override;
   double rounding_floor() const override;
   mechanics::MotionReport apply_motion(double scale) override;
   mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;

@@ -127,6 +127,10 @@ Robot build(SceneDescription description, const SharedMeshes& shared) {
             add_body(builder, description, body, made == shared.end() ? nullptr : &made->second)) {
       robot.notices.push_back(std::move(*notice));
     }
+    const int number = static_cast<int>(&body - description.bodies.data());
+    if (auto notice = loose_part_notice(body.place, builder.added_body(number))) {
+      robot.notices.push_back(std::move(*notice));
+    }
   }
   const BodyOf body_of = [&](const std::string& name) -> BuiltBody {
     const auto found = std::ranges::find(description.bodies, name, &BodyDescription::name);

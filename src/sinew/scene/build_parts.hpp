@@ -59,6 +59,11 @@ void check_element(const BodyDescription& body, const mesh::Mesh& mesh);
 /// asks for them, else a warning. @param body,mesh the body, and its make_body_mesh().
 std::optional<Notice> locking_notice(const BodyDescription& body, const mesh::Mesh& mesh);
 
+/// Warning about parts of a mesh that can move without deforming, see mesh::loose_joints(). With
+/// inertia, they swing; without, the step decides whether something else holds them.
+/// @param place of the body in the scene. @param body with a mesh.
+std::optional<Notice> loose_part_notice(const Location& place, const mechanics::BodyModel& body);
+
 /// Notice about a cable whose point forces dent quadratic elements by a hundredth of the body's
 /// size or more: a remark if the scene gives a guide radius of 0, else a warning.
 /// @param actuator of type cable. @param body that it runs through.

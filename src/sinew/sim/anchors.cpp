@@ -52,10 +52,15 @@ double anchor_stiffness(const mechanics::BodyModel& body) {
 
 }  // namespace
 
-void add_anchors(ModelData& data, int body) {
+void add_anchors(ModelData& data, int body, std::span<const NodeId> nodes) {
   mechanics::BodyModel& on = data.body(body);
   const double stiffness = anchor_stiffness(on);
-  for (const NodeId node : spread_nodes(on.mesh().nodes)) {
+  const Points& all = on.mesh().nodes;
+  std::array<NodeId, 3> chosen = spread_nodes(nodes.empty() ? all : Points(all(nodes, Eigen::all)));
+  for (NodeId& node : chosen) {
+    if (!nodes.empty()) node = nodes[static_cast<std::size_t>(node)];
+  }
+  for (const NodeId node : chosen) {
     const int constraint = data.declare(std::make_unique<constraint::PointEffector>(
         "anchor", mechanics::MaterialPoint{body, attach_node(on, node)}));
     data.anchors.push_back({body, constraint, stiffness});

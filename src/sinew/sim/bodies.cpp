@@ -88,6 +88,12 @@ double Bodies::residual(std::span<const double> effort) {
   return std::sqrt(sum);
 }
 
+mechanics::Wrench Bodies::unbalanced(std::span<const double> effort, const Vector3& about) {
+  mechanics::Wrench sum;
+  for (auto* system : systems_) sum += system->unbalanced(effort, about);
+  return sum;
+}
+
 double Bodies::force_scale() const {
   double scale = 0.0;
   for (const auto* system : systems_) scale += system->force_scale();

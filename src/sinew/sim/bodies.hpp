@@ -47,6 +47,8 @@ class Bodies {
 
   /// |b + H^T effort|, N. @param effort (rows,) N.
   double residual(std::span<const double> effort);
+  /// See mechanics::StepSystem.
+  mechanics::Wrench unbalanced(std::span<const double> effort, const Vector3& about);
   /// For |b + H^T effort|, N: the scale by which to judge it, and a bound on its rounding error.
   double force_scale() const;
   double rounding_floor() const;

@@ -1,26 +1,25 @@
 #include "sinew/sim/body_holding.hpp"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
+#include <optional>
+#include <set>
+#include <utility>
 
-#include <Eigen/Geometry>
+#include <fmt/format.h>
 
+#include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/joint.hpp"
 #include "sinew/constraint/tie.hpp"
-#include "sinew/fem/fem_body_settings.hpp"
-#include "sinew/fem/has_elements.hpp"
-#include "sinew/linalg/dense.hpp"
 #include "sinew/mechanics/body_model.hpp"
-#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/anchors.hpp"
 #include "sinew/sim/model_data.hpp"
+#include "sinew/sim/rigid_motions.hpp"
 
 namespace sinew::sim {
 
 namespace {
-
-// Smaller singular values, relative to the largest, belong to free rigid motions.
-constexpr double kFree = 1e-6;
 
 // Group of each body; bodies that joints connect have the same.
 std::vector<int> groups_of(const ModelData& data) {
@@ -35,138 +34,146 @@ std::vector<int> groups_of(const ModelData& data) {
   return group;
 }
 
-// Normal matrix of the rows d(delta)/d(translation, rotation) of some bodies.
-class RigidMotions {
- public:
-  RigidMotions(const ModelData& data, const std::vector<int>& bodies)
-      : data_(data), column_(data.bodies.size(), -1) {
-    for (const int body : bodies) {
-      column_[static_cast<std::size_t>(body)] = columns_;
-      columns_ += 6;
-    }
-    normal_.setZero(columns_, columns_);
-  }
-
-  // Adds the fixed nodes and held axes of a body; bodies without elements are free or fixed as a
-  // whole.
-  void hold_own(int body) {
-    if (data_.body(body).is_free()) return;
-    const auto* material = mechanics::as<const fem::HasElements>(data_.body(body));
-    if (material == nullptr) {
-      normal_.diagonal().segment<6>(column_[static_cast<std::size_t>(body)]).array() += 1.0;
-      return;
-    }
-    const fem::FemModelSettings& own = material->settings().elements;
-    const Points& nodes = data_.body(body).mesh().nodes;
-    const auto add = [&](NodeId node, int axis) {
-      begin_row();
-      fill(body, nodes.row(node).transpose(), Vector3::Unit(axis), 1.0);
-      end_row();
-    };
-    for (const NodeId node : own.fixed_nodes) {
-      for (int axis = 0; axis < 3; ++axis) add(node, axis);
-    }
-    for (const fem::HeldAxis& held : own.held_axes) add(held.node, held.axis);
-  }
-  void hold(const constraint::Tie::Pair& pair) {
-    for (int axis = 0; axis < 3; ++axis) {
-      begin_row();
-      fill(pair.first.body, rest_of(pair.first), Vector3::Unit(axis), -1.0);
-      fill(pair.second.body, rest_of(pair.second), Vector3::Unit(axis), 1.0);
-      end_row();
-    }
-  }
-  void hold(const constraint::Joint& joint) {
-    const std::vector<Vector3> directions = joint.rest_directions();
-    for (std::size_t k = 0; k < directions.size(); ++k) {
-      add_row(joint, directions[k], static_cast<int>(k) >= joint.displacements());
-    }
-  }
-  // Adds the free motion of a hinge or slider, which a motor or friction holds.
-  void hold_rest(const constraint::Joint& joint) {
-    add_row(joint, joint.place().axes().col(2), constraint::turns_about_axis(joint.type()));
-  }
-  // Whether no rigid motion is free.
-  bool all_held() const {
-    const VectorX values = linalg::symmetric_eigenvalues(normal_);
-    return values[0] > kFree * kFree * values[columns_ - 1];
-  }
-
- private:
-  Vector3 rest_of(const mechanics::MaterialPoint& point) const {
-    return data_.body(point.body).rest_position(point.number);
-  }
-  void begin_row() { row_.setZero(columns_); }
-  int column_of(int body) const { return body < 0 ? -1 : column_[static_cast<std::size_t>(body)]; }
-  // Motion along a direction of a point at x on a body that translates and rotates: d.(s + w x x),
-  // with rotations scaled by the robot's size.
-  void fill(int body, const Vector3& at, const Vector3& direction, double sign) {
-    const int column = column_of(body);
-    if (column < 0) return;
-    row_.segment<3>(column) += sign * direction;
-    row_.segment<3>(column + 3) += sign * (at / data_.size).cross(direction);
-  }
-  void turn(int body, const Vector3& axis, double sign) {
-    const int column = column_of(body);
-    if (column >= 0) row_.segment<3>(column + 3) += sign * axis;
-  }
-  // Row of the second side's motion relative to the first: a rotation about a direction, or a
-  // displacement along it.
-  void add_row(const constraint::Joint& joint, const Vector3& direction, bool is_turn) {
-    begin_row();
-    double sign = -1.0;
-    for (const constraint::JointSide& side : joint.place().sides()) {
-      if (is_turn) {
-        turn(side.orientation.body, direction, sign);
-      } else {
-        fill(side.point.body, side.rest, direction, sign);
-      }
-      sign = 1.0;
-    }
-    end_row();
-  }
-  void end_row() { normal_.noalias() += row_ * row_.transpose(); }
-
-  const ModelData& data_;
-  std::vector<int> column_;  // of each body; -1: not among the bodies
-  int columns_ = 0;
-  VectorX row_;
-  MatrixX normal_;
-};
-
-bool is_held_alone(const ModelData& data, int body) {
-  RigidMotions motions(data, {body});
-  motions.hold_own(body);
-  return motions.all_held();
-}
-
 bool has_motor(const ModelData& data, const JointModel& joint) {
   return std::ranges::any_of(data.actuators, [&](const ActuatorModel& actuator) {
     return actuator.joint >= 0 && &data.joints[static_cast<std::size_t>(actuator.joint)] == &joint;
   });
 }
 
-// Whether joints prevent every rigid motion of the bodies that are not held.
-// @param bodies one group.
-bool joints_hold(const ModelData& data, const std::vector<int>& bodies,
-                 const std::vector<char>& held) {
-  std::vector<int> loose;
-  for (const int body : bodies) {
-    if (held[static_cast<std::size_t>(body)] == 0) loose.push_back(body);
-  }
-  RigidMotions motions(data, loose);
-  for (const int body : loose) motions.hold_own(body);
-  for (const JointModel& link : data.joints) {
-    const constraint::Constraint& rows = data.constraint(link.constraint);
-    if (const auto* tie = dynamic_cast<const constraint::Tie*>(&rows)) {
-      for (const constraint::Tie::Pair& pair : tie->pairs()) motions.hold(pair);
-    } else if (const auto* joint = dynamic_cast<const constraint::Joint*>(&rows)) {
-      motions.hold(*joint);
-      if (link.friction > 0.0 || has_motor(data, link)) motions.hold_rest(*joint);
+// What fixed nodes and joints leave free.
+class Holding {
+ public:
+  explicit Holding(const ModelData& data) : data_(data), group_(groups_of(data)) {
+    const int count = static_cast<int>(data.bodies.size());
+    for (int body = 0; body < count; ++body) parts_.emplace_back(data, body);
+    for (int body = 0; body < count; ++body) {
+      RigidMotions motions(data, parts_, {body});
+      motions.hold_own(body);
+      alone_.push_back(motions.free_motions().cols() == 0 ? 1 : 0);
     }
   }
-  return motions.all_held();
-}
+
+  bool held_alone(std::size_t body) const { return alone_[body] != 0; }
+  const BodyParts& parts(std::size_t body) const { return parts_[body]; }
+
+  // (parts,) whether fixed nodes, held axes and joints leave each part of a body free.
+  std::vector<char> free_parts(std::size_t body) {
+    const auto [found, added] = groups_.try_emplace(group_[body]);
+    if (added) found->second.emplace(motions_of(body));
+    const auto& [motions, free] = *found->second;
+    return motions.moving_parts(static_cast<int>(body), free);
+  }
+
+  // Whether something else may hold the free parts of a body: cables and springs that act on them,
+  // contacts, or weight and loads on a mechanism of joints. Whether they do depends on the forces,
+  // so a step decides.
+  bool may_be_held(std::size_t body, const std::vector<char>& free) const {
+    const BodyParts& parts = parts_[body];
+    for (std::size_t part = 0; part < parts.count(); ++part) {
+      if (free[part] != 0 && !is_touched(body, parts.several() ? static_cast<int>(part) : -1)) {
+        return !parts.several() && group_is_touched(body);
+      }
+    }
+    return true;
+  }
+
+ private:
+  struct Group {
+    RigidMotions motions;
+    MatrixX free;
+  };
+
+  Group motions_of(std::size_t body) const {
+    std::vector<int> loose;
+    for (std::size_t other = 0; other < group_.size(); ++other) {
+      if (group_[other] == group_[body] && !held_alone(other)) {
+        loose.push_back(static_cast<int>(other));
+      }
+    }
+    RigidMotions motions(data_, parts_, loose);
+    for (const int other : loose) motions.hold_own(other);
+    for (const JointModel& link : data_.joints) add(link, motions);
+    const MatrixX free = motions.free_motions();
+    return {std::move(motions), free};
+  }
+
+  void add(const JointModel& link, RigidMotions& motions) const {
+    const constraint::Constraint& rows = data_.constraint(link.constraint);
+    if (const auto* tie = dynamic_cast<const constraint::Tie*>(&rows)) {
+      for (const constraint::Tie::Pair& pair : tie->pairs()) motions.hold(pair.first, pair.second);
+    } else if (const auto* joint = dynamic_cast<const constraint::Joint*>(&rows)) {
+      motions.hold(*joint);
+      if (link.friction > 0.0 || has_motor(data_, link)) motions.hold_rest(*joint);
+    }
+  }
+
+  // Whether a cable, a spring or a contact acts on a part of a body. @param part -1: on any.
+  bool is_touched(std::size_t body, int part) const {
+    for (const ContactModel& model : data_.contacts) {
+      const auto& contact =
+          static_cast<const constraint::Contact&>(data_.constraint(model.constraint));
+      if (contact.body() == contact.other_body()) continue;
+      const int index = static_cast<int>(body);
+      if (contact.body() == index || contact.other_body() == index) return true;
+    }
+    return std::ranges::any_of(data_.actuators, [&](const ActuatorModel& actuator) {
+      const bool line =
+          actuator.type == ActuatorType::cable || actuator.type == ActuatorType::spring;
+      return line && acts_on(data_.constraint(actuator.constraint), body, part);
+    });
+  }
+
+  // A body without joints hangs on ropes that end on it. A line along it is its own tendon, which
+  // bends it; a body whose fixed region was forgotten has such lines.
+  bool acts_on(const constraint::Constraint& line, std::size_t body, int part) const {
+    std::set<std::int32_t> points;
+    for (int k = 0; k < line.row_count(); ++k) {
+      const auto row = static_cast<std::size_t>(line.first_row() + k);
+      for (auto e = data_.rows.row_start[row]; e < data_.rows.row_start[row + 1]; ++e) {
+        const mechanics::Site& site = data_.rows.site[static_cast<std::size_t>(e)];
+        if (site.body != static_cast<std::int32_t>(body)) continue;
+        if (part < 0 || lies_on(site, part)) points.insert(site.number);
+      }
+    }
+    return part < 0 && !is_jointed(body) ? points.size() == 1 : !points.empty();
+  }
+
+  bool lies_on(const mechanics::Site& point, int part) const {
+    const std::vector<NodeId> nodes = data_.body(point.body).nodes_of(point.number);
+    return std::ranges::any_of(nodes, [&](NodeId node) {
+      const auto& own = parts_[static_cast<std::size_t>(point.body)].of_node(node);
+      return std::ranges::find(own, part) != own.end();
+    });
+  }
+
+  // Whether a joint acts on a body, in contrast to welded points.
+  bool is_jointed(std::size_t body) const {
+    return std::ranges::any_of(data_.joints, [&](const JointModel& link) {
+      const bool own =
+          link.first == static_cast<int>(body) || link.second == static_cast<int>(body);
+      return own && dynamic_cast<const constraint::Joint*>(&data_.constraint(link.constraint));
+    });
+  }
+
+  // Whether something acts on a body that joints connect with this one, or weight or loads act on
+  // a mechanism of joints. Welded points alone are no mechanism that anyone intends.
+  bool group_is_touched(std::size_t body) const {
+    bool touched = false, loaded = false, jointed = false;
+    for (std::size_t other = 0; other < group_.size(); ++other) {
+      if (group_[other] != group_[body]) continue;
+      touched = touched || is_touched(other, -1);
+      loaded = loaded || data_.body(static_cast<int>(other)).is_loaded();
+      jointed = jointed || is_jointed(other);
+    }
+    return touched || (loaded && jointed);
+  }
+
+  const ModelData& data_;
+  std::vector<int> group_;
+  std::vector<BodyParts> parts_;
+  std::vector<char> alone_;
+  std::map<int, std::optional<Group>> groups_;  // by number, when first needed
+};
 
 bool is_joined(const ModelData& data, int body) {
   return std::ranges::any_of(data.joints, [&](const JointModel& joint) {
@@ -174,42 +181,62 @@ bool is_joined(const ModelData& data, int body) {
   });
 }
 
+// Parts of a mesh that hang on the others by a node or an edge.
+[[noreturn]] void throw_loose_part(const ModelData& data, std::size_t body,
+                                   const std::vector<char>& free, Location place) {
+  const mesh::Mesh& mesh = data.bodies[body]->mesh();
+  const std::vector<mesh::LooseJoint> loose =
+      mesh::loose_joints(mesh, *data.bodies[body]->held_nodes());
+  std::string named;
+  if (!loose.empty()) named = ": " + mesh::describe(loose.back(), mesh);
+  if (loose.size() > 1) named += fmt::format(" ({} such parts in all)", loose.size());
+  throw Error(
+      ErrorKind::nothing_fixed, place,
+      fmt::format("{} of the {} parts of its mesh can move without deforming, so it has no "
+                  "static equilibrium{}",
+                  std::ranges::count(free, 1), free.size(), named),
+      "remove the loose elements or join them by whole faces, fix them, or choose a dynamic "
+      "integrator");
+}
+
 [[noreturn]] void throw_loose(const ModelData& data, std::size_t body, Location place,
                               bool joined) {
-  if (place.item.empty()) place.item = "body '" + data.bodies[body]->name() + "'";
-  const auto* material = mechanics::as<const fem::HasElements>(*data.bodies[body]);
-  const bool bare = material == nullptr || (material->settings().elements.fixed_nodes.empty() &&
-                                            material->settings().elements.held_axes.empty());
+  const auto held = data.bodies[body]->held_nodes();
   if (joined) {
     throw Error(ErrorKind::nothing_fixed, place,
-                "its joints leave it free to move, so it has no static equilibrium",
+                "its joints leave it free to move, and neither weight nor a cable, spring or "
+                "contact could hold it, so it has no static equilibrium",
                 "fix a region of one of the joined bodies, weld three points that are not on one "
                 "line, give a hinge or slider a motor, or choose a dynamic integrator");
   }
   throw Error(ErrorKind::nothing_fixed, place,
-              bare ? "nothing holds this body, so it has no static equilibrium"
-                   : "what is fixed leaves it free to move, so it has no static equilibrium",
+              !held || held->empty()
+                  ? "nothing holds this body, so it has no static equilibrium"
+                  : "what is fixed leaves it free to move, so it has no static equilibrium",
               "fix a region of it, weld it to a body that is held, or choose a dynamic integrator");
 }
 
 }  // namespace
 
 void hold_bodies(ModelData& data, const std::vector<Location>& places) {
-  const std::vector<int> group = groups_of(data);
-  std::vector<char> held;
+  Holding holding(data);
+  std::vector<int> anchored;
   for (std::size_t b = 0; b < data.bodies.size(); ++b) {
-    held.push_back(is_held_alone(data, static_cast<int>(b)) ? 1 : 0);
+    if (holding.held_alone(b)) continue;
+    const std::vector<char> free = holding.free_parts(b);
+    const bool held = std::ranges::count(free, 0) == std::ssize(free);
+    if (held || !data.step.dynamic()) anchored.push_back(static_cast<int>(b));
+    if (held) continue;
+    data.loose = true;
+    if (data.step.dynamic() || holding.may_be_held(b, free)) continue;
+    Location place = places[b];
+    if (place.item.empty()) place.item = "body '" + data.bodies[b]->name() + "'";
+    if (holding.parts(b).several()) throw_loose_part(data, b, free, place);
+    throw_loose(data, b, place, is_joined(data, static_cast<int>(b)));
   }
-  for (std::size_t b = 0; b < held.size(); ++b) {
-    if (held[b] != 0) continue;
-    std::vector<int> connected;
-    for (std::size_t other = 0; other < group.size(); ++other) {
-      if (group[other] == group[b]) connected.push_back(static_cast<int>(other));
-    }
-    if (joints_hold(data, connected, held)) {
-      add_anchors(data, static_cast<int>(b));
-    } else if (!data.step.dynamic()) {
-      throw_loose(data, b, places[b], is_joined(data, static_cast<int>(b)));
+  for (const int body : anchored) {
+    for (const mesh::RigidPart& part : holding.parts(static_cast<std::size_t>(body)).all()) {
+      add_anchors(data, body, part.nodes);
     }
   }
 }

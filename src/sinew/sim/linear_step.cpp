@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/sim/rest_search.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/sanity.hpp"
 #include "sinew/sim/step_failure.hpp"
@@ -52,6 +53,9 @@ void LinearStep::condense(mechanics::LinearisationRequest& request) {
   }
   run_.clock.mark(Stage::factorisation);
   if (status == linalg::FactorStatus::singular) {
+    if (!run_.model->step().dynamic()) {
+      fail_if_free(run_, NewtonStatus::singular, run_.model->step().time_step);
+    }
     fail(run_, ErrorKind::singular_matrix, "the stiffness matrix is singular",
          "fix a region of every body, or look for loose or crushed elements");
   }

@@ -41,6 +41,9 @@ class Model {
   const std::vector<ContactModel>& contacts() const { return data_.contacts; }
   const std::vector<JointModel>& joints() const { return data_.joints; }
   const std::vector<AnchorModel>& anchors() const { return data_.anchors; }
+  /// Whether fixed nodes and joints leave a body free to move, which weight, cables, springs or
+  /// contacts must then hold.
+  bool is_loose() const { return data_.loose; }
   const std::vector<CouplingModel>& couplings() const { return data_.couplings; }
   PartList<constraint::Probe> probes() const { return PartList(data_.probes); }
   const std::vector<SensorModel>& sensors() const { return data_.sensors; }

@@ -150,7 +150,8 @@ struct ModelData {
   std::vector<mechanics::StiffnessPair> stiffness_pairs;
   GeometricStiffnessModel geometric_stiffness;
   int drive_states = 0;
-  double size = 0.0;  ///< m
+  double size = 0.0;   ///< m
+  bool loose = false;  ///< see Model::is_loose()
   StepSettings step;
 };
 

@@ -8,6 +8,7 @@
 #include "sinew/sim/folded_cable.hpp"
 #include "sinew/sim/limit_point.hpp"
 #include "sinew/sim/load_steps.hpp"
+#include "sinew/sim/rest_search.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/static_search.hpp"
 #include "sinew/sim/step_failure.hpp"
@@ -80,13 +81,16 @@ NewtonSettings NewtonStep::settings_of_part(double time_step) const {
 
 // A state that is no solution is kept only if the caller asks for it (Run::keeps_going).
 void NewtonStep::solve(double time_step) {
-  const NewtonReport result = search(time_step);
+  NewtonReport result = search(time_step);
+  if (must_settle() && converged(result))
+    RestSearch(run_, time_step).settle(settings(time_step), result);
   take_report(result);
   if (converged(result)) return;
   const JointConflict conflict = find_conflict(result, time_step);
   const bool usable = !conflict.opens && is_usable(result);
   if (usable && (run_.keeps_going || is_balanced(run_))) return;
   if (!conflict.text.empty()) fail_joints(run_, conflict);
+  if (!run_.model->step().dynamic()) fail_if_free(run_, result.status, time_step);
   if (result.status == NewtonStatus::law_failed) fail_law(run_);
   const std::string text = describe(result, settings(time_step));
   const std::string folded =
@@ -201,6 +205,7 @@ NewtonReport NewtonStep::search(double time_step) {
   }
   NewtonReport result = run_.newton(run_.controller, whole);
   if (steered && goes_on(result)) return hold_choice(result, time_step);
+  if (must_settle() && !converged(result)) return RestSearch(run_, time_step).relax(result);
   if (!searches_on(result)) return result;
   int tried = result.iterations;
   tried_fallbacks_ += result.tangent_fallbacks;
@@ -217,7 +222,8 @@ NewtonReport NewtonStep::search(double time_step) {
     tried += result.iterations;
   }
   result.iterations = tried;
-  return result;
+  return result.status == NewtonStatus::singular ? RestSearch(run_, time_step).relax(result)
+                                                 : result;
 }
 
 // Whether a failed iteration is followed by others. If all methods failed in the last step, they
@@ -395,6 +401,12 @@ bool NewtonStep::solves(const NewtonReport& result) {
   return is_usable(result) && is_balanced(run_);
 }
 
+// Whether weight, cables or contacts must hold what joints leave free: Newton's method may then
+// find an equilibrium that is unstable, a standing pendulum, or one that a touch moves away.
+bool NewtonStep::must_settle() const {
+  return run_.model->is_loose() && !run_.model->step().dynamic() && run_.controller == nullptr;
+}
+
 // Whether a step may end in this state, with a flag. Contacts admit no approximate solution, since
 // a point would be inside a surface; with contacts, the residual is limited as for the steps of a
 // controller. In dynamics the impulse of a residual would remain, and only solutions count.
@@ -402,6 +414,7 @@ bool NewtonStep::is_usable(const NewtonReport& result) const {
   if (!result.motion.finite || !(result.motion.volume.ratio > 0.0)) return false;
   if (result.law == LawStatus::failed || !result.sanity.finite) return false;
   if (run_.model->step().dynamic()) return result.status == NewtonStatus::unphysical && !divisible_;
+  if (result.status == NewtonStatus::singular || must_settle()) return false;
   if (run_.model->contacts().empty()) return true;
   return result.relative_residual <= (run_.controller == nullptr ? kSearched : kBalanced) &&
          result.violation <= kMotionTolerance * run_.model->size();

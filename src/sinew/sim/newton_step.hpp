@@ -44,6 +44,7 @@ class NewtonStep {
   NewtonReport remain(double time_step, const NewtonReport& failed);
   NewtonReport approach(double time_step);
   NewtonReport descend(double time_step, int iterations);
+  bool must_settle() const;
   bool is_usable(const NewtonReport& result) const;
   bool solves(const NewtonReport& result);
   bool snaps(const NewtonReport& result) const;

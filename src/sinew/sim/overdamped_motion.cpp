@@ -18,6 +18,8 @@ constexpr int kFewIterations = 4;
 constexpr int kManyIterations = 8;
 constexpr double kLighter = 0.25;  // factor of sigma after an easy step
 constexpr double kHeavier = 2.0;   // after a hard one
+// Smallest sigma relative to the first, at which all but neutral motions have come to rest.
+constexpr double kLightest = 1e-10;
 constexpr double kHeaviest = 8.0;  // after a failed one
 constexpr int kMaxFailures = 8;    // in a row
 // A decreasing motion below this fraction of the robot's size per step is settling.
@@ -27,14 +29,10 @@ constexpr double kLater = 0.25;
 // returned.
 constexpr double kBack = 0.1;
 constexpr double kSmall = 1e-6;  // of the robot's size: test motion for measurements
+// First motion along the forces where no tangent tells how far they reach, of the robot's size.
+constexpr double kFirstMove = 0.02;
 // Initial inertia relative to that at which the softest direction would be neutral.
 constexpr double kFirstInertia = 2.0;
-
-mechanics::StepWeights overdamped(double sigma) {
-  mechanics::StepWeights weights;
-  weights.acceleration.motion = sigma;
-  return weights;
-}
 
 }  // namespace
 
@@ -55,36 +53,12 @@ double OverdampedMotion::moved_since(const std::vector<Points>& before) const {
   return worst;
 }
 
-// d^T M d, from the change of the residual by inertia in a small motion along d; kg m^2 or similar.
-double OverdampedMotion::mass_along(const VectorX& direction) {
-  Bodies& bodies = run_.world.bodies();
-  search_.begin();
-  const double scale = kSmall * run_.model->size() / direction.cwiseAbs().maxCoeff();
-  bodies.propose_motion(direction);
-  bodies.apply_motion(scale);
-  VectorX still, moving;
-  search_.linearise({});
-  bodies.imbalance(run_.effort, still);
-  double sigma = 1.0;
-  double mass = 0.0;
-  for (int round = 0; round < 2; ++round) {  // the second with inertia well above rounding
-    search_.linearise(overdamped(sigma));
-    bodies.imbalance(run_.effort, moving);
-    mass = direction.dot(still - moving) / (sigma * scale);
-    const double inertia = (still - moving).norm();
-    if (!(inertia > 0.0)) sigma *= 1e12;
-    if (inertia > 0.0) sigma *= std::max(1.0, still.norm() / inertia);
-  }
-  bodies.apply_motion(0.0);
-  return mass;
-}
-
 OverdampedMotion::End OverdampedMotion::leave(const Stability& stability, double disturbance) {
   const VectorX& mode = stability.mode();
   const double curvature = stability.curvature();
   if (mode.size() == 0) return End::failed;
   Bodies& bodies = run_.world.bodies();
-  const double mass = mass_along(mode);
+  const double mass = search_.mass_along(mode);
   if (!(mass > 0.0)) return End::failed;
   left_ = positions();
   bodies.propose_motion(mode);
@@ -101,27 +75,58 @@ OverdampedMotion::End OverdampedMotion::leave(const Stability& stability, double
   return relax(kFirstInertia * std::abs(curvature) / mass, kBack * disturbance);
 }
 
-// Starts at the last equilibrium of the path, in the Newton direction.
 bool OverdampedMotion::relax_from_here() {
+  const double sigma = first_sigma();
+  if (!(sigma > 0.0)) return false;
+  left_.clear();
+  return relax(sigma, 0.0) == End::arrived;
+}
+
+// In the Newton direction, the inertia exceeds the curvature. A singular tangent has no such
+// direction, and that of a loose robot may be the one of its anchors: along the forces, the first
+// step then moves by a small part of the robot's size.
+double OverdampedMotion::first_sigma() {
   World& world = run_.world;
   Bodies& bodies = world.bodies();
   search_.begin();
-  search_.linearise({});
-  if (world.condense() == linalg::FactorStatus::singular) return false;
+  search_.linearise();
   const std::vector<double> before = run_.effort;
-  if (world.solve_step(run_.solver, nullptr, run_.effort, run_.clock) == LawStatus::failed) {
+  const bool singular = world.condense() == linalg::FactorStatus::singular;
+  if (!singular &&
+      world.solve_step(run_.solver, nullptr, run_.effort, run_.clock) == LawStatus::failed) {
     run_.effort = before;
   }
   VectorX imbalance, direction;
   bodies.imbalance(run_.effort, imbalance);
-  bodies.solve(imbalance, direction);
-  if (!(direction.norm() > 0.0)) return false;
-  const double curvature = std::abs(direction.dot(imbalance));
   run_.effort = before;
-  const double mass = mass_along(direction);
-  if (!(mass > 0.0)) return false;
-  left_.clear();
-  return relax(kFirstInertia * curvature / mass, 0.0) == End::arrived;
+  if (!(imbalance.norm() > 0.0)) return 0.0;
+  double along_forces = kInfinity;
+  if (singular || run_.model->is_loose()) {
+    if (!singular) bodies.solve(imbalance, direction);
+    const double far = kFirstMove * run_.model->size() / imbalance.cwiseAbs().maxCoeff();
+    along_forces = imbalance.squaredNorm() / (far * search_.mass_along(imbalance));
+    if (singular || !(direction.norm() > 0.0)) return along_forces;
+  } else {
+    bodies.solve(imbalance, direction);
+  }
+  const double mass = direction.norm() > 0.0 ? search_.mass_along(direction) : 0.0;
+  if (!(mass > 0.0)) return 0.0;
+  const double curved = kFirstInertia * std::abs(direction.dot(imbalance)) / mass;
+  return std::min(curved, along_forces);
+}
+
+// Whether the displacements since `before` are against those of the step before, which they
+// replace.
+bool OverdampedMotion::turns_back(const std::vector<Points>& before,
+                                  std::vector<Points>& last) const {
+  double along = 0.0;
+  last.resize(before.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const Points now = run_.world.bodies().all()[i]->positions() - before[i];
+    if (last[i].rows() == now.rows()) along += now.cwiseProduct(last[i]).sum();
+    last[i] = now;
+  }
+  return along < 0.0;
 }
 
 // @param sigma of the first step, 1/s^2. @param near m: distance to left_ that counts as a return.
@@ -129,14 +134,17 @@ OverdampedMotion::End OverdampedMotion::relax(double sigma, double near) {
   run_.watch.enter(SearchStage::overdamped);
   run_.world.homotopy().set_fraction(0.0);
   int& steps = search_.report().relaxation_steps;
+  const double least = kLightest * sigma;
   double settled = kSettling * run_.model->size();
+  double tolerance = kRelaxationTolerance;
   double moved_before = 0.0;
   int failures = 0;
+  std::vector<Points> last;  // displacements of the last step
   while (steps < search_.settings().max_relaxation_steps) {
     ++steps;
     run_.keep(sound_);
     const std::vector<Points> before = positions();
-    if (!search_.step(overdamped(sigma), kRelaxationTolerance, kMaxIterationsOfStep)) {
+    if (!search_.step(search_.overdamped(sigma), tolerance, kMaxIterationsOfStep)) {
       run_.restore(sound_);
       if (++failures == kMaxFailures) break;
       sigma *= kHeaviest;
@@ -145,6 +153,7 @@ OverdampedMotion::End OverdampedMotion::relax(double sigma, double near) {
     failures = 0;
     const int iterations = search_.last().iterations;
     const double moved = moved_since(before);
+    const bool turned = turns_back(before, last);
     if (!left_.empty() && moved_since(left_) < near) {
       return search_.equilibrate(0.0) ? End::returned : End::failed;
     }
@@ -152,18 +161,23 @@ OverdampedMotion::End OverdampedMotion::relax(double sigma, double near) {
     if (slows && moved < settled) {
       if (arrives()) return End::arrived;
       settled = kLater * moved;
+      tolerance = search_.settings().tolerance;  // the motion must find the rest by itself
     }
     moved_before = moved;
     // While the robot moves away from left_, less inertia could let a step overshoot.
-    if (slows && iterations <= kFewIterations) sigma *= kLighter;
+    // A tangent without the curvature of what touches overshoots once sigma is below it.
+    if (turned && !slows) sigma *= kHeavier;
+    if (slows && !turned && iterations <= kFewIterations) sigma = std::max(least, kLighter * sigma);
     if (iterations > kManyIterations) sigma *= kHeavier;
   }
   return End::failed;
 }
 
-// Whether Newton's method finds an equilibrium from here; if not, the state is restored.
+// Whether this is an equilibrium or Newton's method finds one from here; if not, the state is
+// restored. Bodies that nothing but contact holds have no tangent for Newton's method.
 bool OverdampedMotion::arrives() {
   run_.keep(sound_);
+  if (search_.rests()) return true;
   if (search_.equilibrate(0.0)) return true;
   run_.restore(sound_);
   return false;

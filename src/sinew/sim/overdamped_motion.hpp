@@ -23,19 +23,22 @@ class OverdampedMotion {
 
   /// @param search must outlive it.
   explicit OverdampedMotion(StaticSearch& search);
-  /// Relaxes from the present state, starting in the Newton direction.
+  /// Relaxes from the present state.
   /// @return whether it reached an equilibrium.
   bool relax_from_here();
   /// Leaves an unstable equilibrium along the direction of its lowest curvature.
   /// @param stability of the equilibrium. @param disturbance relative to the robot's size.
   End leave(const Stability& stability, double disturbance);
 
+  /// Positions of the nodes of each body, and the largest change of any coordinate since, m.
+  std::vector<Points> positions() const;
+  double moved_since(const std::vector<Points>& before) const;
+
  private:
   End relax(double sigma, double near);
   bool arrives();
-  double mass_along(const VectorX& direction);
-  std::vector<Points> positions() const;
-  double moved_since(const std::vector<Points>& before) const;
+  double first_sigma();
+  bool turns_back(const std::vector<Points>& before, std::vector<Points>& last) const;
 
   StaticSearch& search_;
   Run& run_;

@@ -34,14 +34,9 @@ bool holds(const step::ActuatorBlock& range, double effort) {
   return !at_lower && !at_upper;
 }
 
-linalg::AlignedNumbers gathered(const RowNumbering& numbering, std::span<const double> effort) {
-  linalg::AlignedNumbers result;
-  numbering.gather_efforts(effort, result);
-  return result;
-}
+}  // namespace
 
-// Pseudo-random numbers in [-1, 1) (Steele, Lea, Flood, OOPSLA 2014: SplitMix64): a starting vector
-// without symmetry, which contains all modes.
+// Steele, Lea, Flood, OOPSLA 2014: SplitMix64.
 VectorX scattered(Eigen::Index size) {
   VectorX result(size);
   std::uint64_t state = 0;
@@ -54,8 +49,6 @@ VectorX scattered(Eigen::Index size) {
   }
   return result;
 }
-
-}  // namespace
 
 void append_touching(const step::StepProblem& problem, std::span<const double> effort,
                      std::vector<step::HeldRow>& held) {
@@ -86,9 +79,15 @@ std::vector<step::HeldRow> held_rows(const step::StepProblem& problem,
   return held;
 }
 
+std::vector<step::HeldRow> held_rows(const World& world, std::span<const double> effort) {
+  linalg::AlignedNumbers gathered;
+  world.numbering().gather_efforts(effort, gathered);
+  return held_rows(world.problem(), gathered);
+}
+
 Stability::Stability(World& world, std::span<const double> effort)
     : world_(world),
-      motions_(world, held_rows(world.problem(), gathered(world.numbering(), effort))),
+      motions_(world, held_rows(world, effort)),
       negative_(motions_.negative_pivots()) {
   if (negative_ == 0) return;
   const VectorX direction = find_mode();

@@ -20,6 +20,12 @@ class World;
 /// @param problem,effort of the equilibrium.
 std::vector<step::HeldRow> held_rows(const step::StepProblem& problem,
                                      std::span<const double> effort);
+/// The same of a world's problem. @param effort (rows,) N, of all rows of the world.
+std::vector<step::HeldRow> held_rows(const World& world, std::span<const double> effort);
+
+/// (size,) pseudo-random numbers in [-1, 1), always the same: a vector without symmetry, which
+/// contains all modes. Starts the search of an eigenvector.
+VectorX scattered(Eigen::Index size);
 
 /// Appends the held rows of contacts only.
 void append_touching(const step::StepProblem& problem, std::span<const double> effort,

@@ -1,5 +1,7 @@
 #include "sinew/sim/static_search.hpp"
 
+#include <algorithm>
+
 #include "sinew/sim/run.hpp"
 
 namespace sinew::sim {
@@ -9,6 +11,7 @@ namespace {
 constexpr int kIdle = 6;
 // Stick and slip, and points that open and close, settle after some iterations without progress.
 constexpr int kIdleInContact = 20;
+constexpr double kTestMotion = 1e-6;  // of the robot's size: test motion for measurements
 
 mechanics::LinearisationRequest request(const mechanics::StepWeights& weights) {
   return {weights, mechanics::Tangent::exact, true, true};
@@ -21,7 +24,13 @@ int max_idle(const Model& model) {
   return sticks ? kIdleInContact : kIdle;
 }
 
-void StaticSearch::begin() { run_.world.begin_step(run_.time(), run_.time(), run_.effort); }
+void StaticSearch::begin() { run_.world.begin_step(run_.now, run_.now, run_.effort); }
+
+mechanics::StepWeights StaticSearch::overdamped(double sigma) const {
+  mechanics::StepWeights weights = rest_;
+  weights.acceleration.motion = sigma;
+  return weights;
+}
 
 void StaticSearch::linearise(const mechanics::StepWeights& weights) {
   run_.world.linearise(request(weights));
@@ -30,7 +39,7 @@ void StaticSearch::linearise(const mechanics::StepWeights& weights) {
 
 bool StaticSearch::equilibrate(double fraction) {
   run_.world.homotopy().set_fraction(fraction);
-  return step({}, settings_.tolerance, settings_.max_iterations, max_idle(*run_.model));
+  return step(rest_, settings_.tolerance, settings_.max_iterations, max_idle(*run_.model));
 }
 
 bool StaticSearch::step(const mechanics::StepWeights& weights, double tolerance, int max_iterations,
@@ -46,6 +55,46 @@ bool StaticSearch::step(const mechanics::StepWeights& weights, double tolerance,
                                 max_idle});
   report_.iterations += last_.iterations;
   return last_.status == NewtonStatus::converged;
+}
+
+bool StaticSearch::rests() {
+  World& world = run_.world;
+  begin();
+  linearise();
+  const double residual = world.bodies().residual(run_.effort);
+  const double relative = residual / (world.bodies().force_scale() + 1e-300);
+  const double violation = world.violation(run_.effort, step::LawStatus::solved);
+  const double size = run_.model->size();
+  if (!(relative <= settings_.tolerance && violation <= settings_.tolerance * size)) return false;
+  last_.status = NewtonStatus::converged;
+  last_.residual = residual;
+  last_.relative_residual = relative;
+  last_.violation = violation;
+  last_.motion.volume = world.bodies().smallest_volume();
+  return true;
+}
+
+double StaticSearch::mass_along(const VectorX& direction) {
+  Bodies& bodies = run_.world.bodies();
+  begin();
+  const double scale = kTestMotion * run_.model->size() / direction.cwiseAbs().maxCoeff();
+  bodies.propose_motion(direction);
+  bodies.apply_motion(scale);
+  VectorX still, moving;
+  linearise();
+  bodies.imbalance(run_.effort, still);
+  double sigma = 1.0;
+  double mass = 0.0;
+  for (int round = 0; round < 2; ++round) {  // the second with inertia well above rounding
+    linearise(overdamped(sigma));
+    bodies.imbalance(run_.effort, moving);
+    mass = direction.dot(still - moving) / (sigma * scale);
+    const double inertia = (still - moving).norm();
+    if (!(inertia > 0.0)) sigma *= 1e12;
+    if (inertia > 0.0) sigma *= std::max(1.0, still.norm() / inertia);
+  }
+  bodies.apply_motion(0.0);
+  return mass;
 }
 
 }  // namespace sinew::sim

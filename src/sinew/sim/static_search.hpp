@@ -2,6 +2,7 @@
 /// Newton search for an equilibrium, or for a step of overdamped motion.
 #pragma once
 
+#include "sinew/core/types.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/static_settings.hpp"
 
@@ -27,8 +28,16 @@ class StaticSearch {
   /// Report of the last search.
   const NewtonReport& last() const { return last_; }
 
+  /// Takes the weights of the state at rest from a time step, whose length materials with memory
+  /// need. @param weights without inertia.
+  void set_rest(const mechanics::StepWeights& weights) { rest_ = weights; }
+  /// Weights of overdamped motion, see OverdampedMotion. @param sigma 1/s^2.
+  mechanics::StepWeights overdamped(double sigma) const;
+
   /// Begins a slow motion from the present state.
   void begin();
+  /// Linearises at the present state, at rest.
+  void linearise() { linearise(rest_); }
   /// Linearises at the present state. @param weights of inertia; none at rest.
   void linearise(const mechanics::StepWeights& weights);
   /// Searches an equilibrium. @param fraction of the homotopy residual that still acts.
@@ -39,12 +48,19 @@ class StaticSearch {
   /// @return whether it converged.
   bool step(const mechanics::StepWeights& weights, double tolerance, int max_iterations,
             int max_idle = 0);
+  /// Whether the present state is an equilibrium to the settings' tolerance, by its residual and
+  /// its violation of the laws. If so, last() says so.
+  bool rests();
+  /// d^T M d from the change of the residual by inertia in a small motion along d; kg m^2 or
+  /// similar. Begins a motion. @param direction (all bodies' size(),).
+  double mass_along(const VectorX& direction);
 
  private:
   Run& run_;
   const StaticSettings& settings_;
   StaticReport report_;
   NewtonReport last_;
+  mechanics::StepWeights rest_;
 };
 
 }  // namespace sinew::sim

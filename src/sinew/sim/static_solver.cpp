@@ -23,15 +23,11 @@ constexpr double kSmallestBeforePath = 1.0 / 16.0;
 // Tolerance of the equilibria on the way, relative to the loads.
 constexpr double kPathTolerance = 1e-9;
 
-// Tolerance on the gaps of touching points, relative to the robot's size.
-constexpr double kSurfaceTolerance = 1e-9;
-constexpr int kMaxSurfaceRounds = 60;
+constexpr const char* kNoEquilibrium =
+    "no static equilibrium was found, since nothing holds a part";
 
-// Maximum number of unstable equilibria that are left in succession, and the disturbances, relative
-// to the robot's size, which increase each time.
-constexpr int kMaxDepartures = 6;
-constexpr double kDisturbance = 1e-2;
-constexpr double kLargerDisturbance = 2.0;
+// Tolerance on the gaps of joints, relative to the robot's size.
+constexpr double kJointTolerance = 1e-9;
 
 }  // namespace
 
@@ -40,6 +36,7 @@ StaticSolver::StaticSolver(Run& run, const StaticSettings& settings)
       settings_(settings),
       search_(run, settings),
       motion_(search_),
+      settling_(search_, motion_),
       report_(search_.report()) {}
 
 StaticReport StaticSolver::run() {
@@ -98,8 +95,9 @@ bool StaticSolver::find_without_limits() {
 
 void StaticSolver::find() {
   if (!search_.equilibrate(0.0)) approach();
-  follow_surfaces();
-  settle();
+  settling_.follow_surfaces();
+  settling_.settle();
+  if (run_.model->is_loose()) settling_.require_held();
 }
 
 void StaticSolver::read_goal() {
@@ -129,13 +127,14 @@ void StaticSolver::approach() {
   const JointConflict conflict = find_conflict();
   if (!limit_point_ && motion_.relax_from_here()) return;
   if (!limit_point_ && !conflict.text.empty()) fail_joints(run_, conflict);
+  if (!limit_point_) fail_if_free(search_, kNoEquilibrium);
   fail_to_find(known);
 }
 
 // Uses the last equilibrium of the path, as condensed by describe(), with the full commands.
 JointConflict StaticSolver::find_conflict() const {
   if (run_.world.inertia().status == linalg::FactorStatus::singular) return {};
-  return find_joint_conflict(run_.world, kSurfaceTolerance * run_.model->size());
+  return find_joint_conflict(run_.world, kJointTolerance * run_.model->size());
 }
 
 // @param fraction of the residual in the present equilibrium, overwritten by that in the last one.
@@ -156,7 +155,7 @@ bool StaticSolver::follow_path(HomotopyPath& path, double& fraction) {
 double StaticSolver::step_load(double smallest) {
   run_.watch.enter(SearchStage::parts);
   run_.restore(run_.before);
-  search_.linearise({});
+  search_.linearise();
   run_.world.homotopy().keep_residual(run_.effort);
   State sound = run_.before;  // of the last equilibrium
   report_.load_steps = 0;
@@ -175,7 +174,7 @@ double StaticSolver::step_load(double smallest) {
 std::string StaticSolver::describe(double fraction) {
   search_.begin();
   run_.world.homotopy().set_fraction(fraction);
-  search_.linearise({});
+  search_.linearise();
   if (run_.world.condense() == linalg::FactorStatus::singular) {
     return "the exact tangent of the last equilibrium on the way is singular";
   }
@@ -209,58 +208,6 @@ void StaticSolver::fail_to_find(const std::string& known) {
                    newton_status_name(search_.last().status), search_.last().relative_residual,
                    known.empty() ? "" : "; ", known),
        "approach the load through time steps, which show where the robot goes");
-}
-
-// Each solution replaces surfaces by their tangent planes: repeats it with updated planes until the
-// plane of no touching point changes.
-void StaticSolver::follow_surfaces() {
-  const double tolerance = std::max(settings_.tolerance, kSurfaceTolerance) * run_.model->size();
-  ContactPlanes& planes = run_.world.contacts().planes();
-  const auto off = [&] { return planes.drift(run_.effort, run_.time()) > tolerance; };
-  for (int round = 0; round < kMaxSurfaceRounds; ++round) {
-    if (!off()) return;
-    if (!search_.equilibrate(0.0)) break;
-  }
-  if (off() || search_.last().status != NewtonStatus::converged) {
-    fail(run_, ErrorKind::not_converged, "points keep moving along a curved surface",
-         "approach the load through time steps");
-  }
-}
-
-// Moves from the present linearised equilibrium to a stable one.
-void StaticSolver::settle() {
-  double disturbance = kDisturbance;
-  for (int departures = 0;; ++departures) {
-    // Needs the tangent at this state, not at the last iterate.
-    search_.begin();
-    search_.linearise({});
-    report_.stable = true;
-    report_.negative_pivots = 0;
-    if (run_.world.condense() == linalg::FactorStatus::singular) return;  // neutral
-    const bool unsymmetric = run_.world.inertia().unsymmetric;
-    const Stability stability(run_.world, run_.effort);
-    report_.negative_pivots = stability.negative_pivots();
-    report_.stable = report_.negative_pivots == 0;
-    if (report_.stable || settings_.stability == StabilityChoice::any) return;
-    const auto ended = departures < kMaxDepartures ? motion_.leave(stability, disturbance)
-                                                   : OverdampedMotion::End::failed;
-    if (ended == OverdampedMotion::End::failed) {
-      fail(run_, ErrorKind::not_converged,
-           fmt::format("the equilibrium is unstable in {} direction{} (negative pivots of the "
-                       "exact tangent), and none that is stable was found from it in {} steps "
-                       "of overdamped motion",
-                       report_.negative_pivots, report_.negative_pivots == 1 ? "" : "s",
-                       report_.relaxation_steps),
-           "approach the load through time steps, or ask for any equilibrium, stable or not");
-    }
-    // With a potential, the motion cannot return by itself: a step was too long.
-    if (ended == OverdampedMotion::End::returned && unsymmetric) {
-      report_.stable = true;
-      return;
-    }
-    if (ended == OverdampedMotion::End::arrived) follow_surfaces();
-    disturbance *= kLargerDisturbance;
-  }
 }
 
 }  // namespace sinew::sim

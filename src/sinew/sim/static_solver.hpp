@@ -8,6 +8,7 @@
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/joint_conflict.hpp"
 #include "sinew/sim/overdamped_motion.hpp"
+#include "sinew/sim/settling.hpp"
 #include "sinew/sim/static_search.hpp"
 #include "sinew/step/step_problem.hpp"
 
@@ -23,10 +24,7 @@ struct Run;
 /// (HomotopyPath). If the path ends or turns back, OverdampedMotion under the full load from the
 /// last equilibrium on the path.
 ///
-/// From an equilibrium with negative pivots (Stability), the overdamped motion starts in the
-/// direction of its lowest curvature. If there is a potential, this motion descends it and ends in
-/// another equilibrium. If the motion returns, the equilibrium is stable after all, which is
-/// possible only without a potential.
+/// Settling then leaves an unstable equilibrium for a stable one.
 class StaticSolver {
  public:
   /// @param run is moved. @param settings tolerances and limits.
@@ -46,13 +44,12 @@ class StaticSolver {
   void blend(double fraction);
   std::string describe(double fraction);
   [[noreturn]] void fail_to_find(const std::string& known);
-  void follow_surfaces();
-  void settle();
 
   Run& run_;
   const StaticSettings& settings_;
   StaticSearch search_;
   OverdampedMotion motion_;
+  Settling settling_;
   StaticReport& report_;  // of search_
   bool limit_point_ = false;
   bool turned_ = false;  // whether the load turns back beyond the last equilibrium on the way

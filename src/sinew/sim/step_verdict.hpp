@@ -11,6 +11,10 @@ struct Run;
 /// Whether forces balance at the end of the step that the report of a run describes: Newton's
 /// method decides; if it had few iterations or was not used, the residual decides.
 bool is_balanced(const Run& run);
+/// Whether the reactions of what is fixed balance the loads, contacts and joints in a quasi-static
+/// step, in force and moment. This takes no search at its word: the resultant is summed from the
+/// forces themselves, and only a residual that was reported excuses it, |sum r| <= sqrt(3 n) |r|.
+bool reactions_balance(Run& run);
 /// unphysical or not-in-equilibrium for a step that failed; see is_failure().
 StepStatus failure_status(const Run& run);
 

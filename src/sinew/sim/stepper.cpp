@@ -221,7 +221,8 @@ void Stepper::judge() {
   if (cavitates()) raise(StepStatus::cavitates);
   if (report.scale < 1.0) raise(StepStatus::cut_back);
   if (report.violation > kReached * run_.model->size()) raise(StepStatus::command_not_reached);
-  report.balanced = is_balanced(run_);
+  report.balanced =
+      is_balanced(run_) && (run_.model->step().dynamic() || reactions_balance(run_));
   if (!report.balanced) raise(failure_status(run_));
   if (run_.failed) raise(StepStatus::after_failure);
   if (run_.model->step().dynamic()) watch_energy();

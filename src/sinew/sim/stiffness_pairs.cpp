@@ -23,6 +23,10 @@ void list_geometric_stiffness(ModelData& data) {
     if (data.constraints[i]->stiffness_pair_count() == 0) continue;
     data.geometric_stiffness.all.push_back(static_cast<int>(i));
   }
+  // Bodies that hang on cables have no other stiffness against swinging.
+  if (data.loose && !data.step.dynamic()) {
+    data.geometric_stiffness.in_steps = data.geometric_stiffness.all;
+  }
   for (const int index : data.geometric_stiffness.in_steps) {
     const constraint::Constraint& constraint = data.constraint(index);
     for (int k = 0; k < constraint.stiffness_pair_count(); ++k) {

@@ -9,6 +9,7 @@
 #include "sinew/sim/newton_step.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/step_failure.hpp"
+#include "sinew/sim/step_verdict.hpp"
 #include "sinew/step/controller.hpp"
 
 namespace sinew::sim {
@@ -148,6 +149,12 @@ void Substep::solve_equation(double time_step, bool divisible) {
     NewtonStep(run_, divisible).solve(time_step);
   } else {
     LinearStep(run_).solve(time_step);
+  }
+  const bool statics = !run_.model->step().dynamic();
+  if (statics && !run_.keeps_going && is_balanced(run_) && !reactions_balance(run_)) {
+    fail(run_, ErrorKind::not_converged,
+         "the reactions of what is fixed do not balance the loads, although no residual is left",
+         "look for parts of the robot that nothing holds");
   }
   if (run_.model->contacts().empty()) return;
   run_.clock.mark(Stage::correction);

@@ -1,0 +1,134 @@
+#include "sinew/sim/free_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/held_motions.hpp"
+#include "sinew/sim/rigid_fit.hpp"
+#include "sinew/sim/run.hpp"
+#include "sinew/sim/stability.hpp"
+#include "sinew/sim/static_search.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// sigma M relative to the stiffness of the elements: above rounding, and below the softest bending
+// of slender bodies, (h/L)^4 of it.
+constexpr double kShift = 1e-11;
+// A sigma that is lost in rounding makes the shifted matrix singular, too.
+constexpr double kLargerShift = 100.0;
+constexpr int kShiftTries = 4;
+constexpr int kPowers = 6;
+// Of the largest motion: nodes and bodies that move less are not named.
+constexpr double kMoves = 0.02;
+// Of the largest motion: centres of mass that move less are at rest.
+constexpr double kUnmoved = 1e-4;
+constexpr std::size_t kMostNames = 4;
+
+// The mean of the nodes stands for the centre of a body that is not rigid: both move alike unless
+// it deforms, and then nodes move.
+Vector3 centre_of(const mechanics::Body& body) {
+  if (const auto* pose = mechanics::as<const mechanics::HasPose>(body)) {
+    return pose->centre_of_mass();
+  }
+  if (body.positions().rows() == 0) return Vector3::Zero();
+  return body.positions().colwise().mean().transpose();
+}
+
+// A part of the nodes of a body, and their displacements.
+std::string describe_part(const std::string& name, const Points& at, const Points& moved,
+                          double least) {
+  std::vector<Eigen::Index> nodes;
+  for (Eigen::Index i = 0; i < at.rows(); ++i) {
+    if (moved.row(i).norm() > least) nodes.push_back(i);
+  }
+  const RigidFit fit(at(nodes, Eigen::all), moved(nodes, Eigen::all));
+  const std::string how = fit.text();
+  if (std::ssize(nodes) == at.rows()) return fmt::format("body '{}' {}", name, how);
+  const double size = (at.colwise().maxCoeff() - at.colwise().minCoeff()).norm();
+  return fmt::format("the part of body '{}' with {} of its {} nodes, around {} m, {}", name,
+                     nodes.size(), at.rows(), place_text(fit.centre, size), how);
+}
+
+}  // namespace
+
+FreeMotion::FreeMotion(StaticSearch& search) {
+  motion_ = find(search);
+  if (motion_.size() > 0) describe(search, motion_);
+}
+
+VectorX FreeMotion::find(StaticSearch& search) {
+  Run& run = search.run();
+  World& world = run.world;
+  Bodies& bodies = world.bodies();
+  const auto size = static_cast<Eigen::Index>(bodies.size());
+  if (size == 0) return {};
+  VectorX y = scattered(size);
+  const double mass = search.mass_along(y) / y.squaredNorm();
+  search.begin();
+  search.linearise();
+  const double stiffness = std::max(bodies.rounding_floor() / kEpsilon, bodies.force_scale()) /
+                           (run.model->size() * std::sqrt(static_cast<double>(size)));
+  if (!(mass > 0.0) || !(stiffness > 0.0)) return {};
+  double sigma = kShift * stiffness / mass;
+  for (int tries = 0; tries < kShiftTries; ++tries, sigma *= kLargerShift) {
+    search.begin();
+    search.linearise(search.overdamped(sigma));
+    if (world.condense() != linalg::FactorStatus::singular) break;
+    if (tries + 1 == kShiftTries) return {};
+  }
+  HeldMotions motions(world, held_rows(world, run.effort));
+  double curvature = 0.0;  // y^T (K + sigma M) y / y^T y, since T x = y satisfies H y = 0
+  for (int k = 0; k < kPowers; ++k) {
+    const VectorX x = y.normalized();
+    motions.solve(x, y);
+    if (!y.allFinite() || !(y.norm() > 0.0)) return {};
+    curvature = x.dot(y) / y.squaredNorm();
+  }
+  y /= y.cwiseAbs().maxCoeff();
+  const double inertia = sigma * search.mass_along(y) / y.squaredNorm();
+  exists_ = std::abs(curvature) <= 2.0 * inertia;
+  return exists_ ? y : VectorX();
+}
+
+// The displacements of the nodes in a small motion.
+void FreeMotion::describe(StaticSearch& search, const VectorX& motion) {
+  constexpr double kSmall = 1e-7;
+  Run& run = search.run();
+  Bodies& bodies = run.world.bodies();
+  const double scale = kSmall * run.model->size();
+  std::vector<Points> before, moved;
+  std::vector<Vector3> centres;
+  for (const auto& body : bodies.all()) {
+    before.push_back(body->positions());
+    centres.push_back(centre_of(*body));
+  }
+  search.begin();
+  bodies.propose_motion(motion);
+  bodies.apply_motion(scale);
+  double most = 0.0, drift = 0.0;
+  for (std::size_t b = 0; b < before.size(); ++b) {
+    const auto& body = *bodies.all()[b];
+    moved.push_back((body.positions() - before[b]) / scale);
+    if (moved[b].rows() > 0) most = std::max(most, moved[b].rowwise().norm().maxCoeff());
+    drift = std::max(drift, (centre_of(body) - centres[b]).norm() / scale);
+  }
+  bodies.apply_motion(0.0);
+  moves_centres_ = drift > kUnmoved * most;
+  std::size_t named = 0;
+  for (std::size_t b = 0; b < before.size(); ++b) {
+    if (moved[b].rows() == 0 || !(moved[b].rowwise().norm().maxCoeff() > kMoves * most)) continue;
+    if (named++ == kMostNames) break;
+    text_ += (text_.empty() ? "" : "; ") +
+             describe_part(bodies.all()[b]->model().name(), before[b], moved[b], kMoves * most);
+  }
+  if (named > kMostNames) text_ += "; ...";
+}
+
+}  // namespace sinew::sim
