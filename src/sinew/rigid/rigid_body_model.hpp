@@ -51,6 +51,7 @@ class RigidBodyModel final : public mechanics::BodyModel,
               const linalg::FactorisationSettings& settings) override;
   bool couples(int, int) const override { return true; }
   bool is_free() const override { return !settings_.fixed; }
+  bool has_few_coordinates() const override { return true; }
   bool has_base() const override { return settings_.fixed; }
   std::vector<NamedHash> parts() const override;
   std::uint64_t site_hash(int site) const override;
