@@ -104,7 +104,8 @@ TEST(Indeterminate, ATowerStandsOnItsCornersAlikeInAnyOrder) {
       EXPECT_NEAR(force[3 * static_cast<Eigen::Index>(k)], expected, 1e-10 * kWeight);
     }
     for (std::size_t k = order.size(); k > 1; --k) {
-      std::swap(order[k - 1], order[static_cast<std::size_t>(random.integer(0, k - 1))]);
+      std::swap(order[k - 1],
+                order[static_cast<std::size_t>(random.integer(0, static_cast<int>(k) - 1))]);
     }
   }
 }

@@ -44,12 +44,13 @@ bool ForceChoice::find(const ConeProblem& problem, const ForceScales& scales) {
 }
 
 bool ForceChoice::any_moves() const {
-  return std::ranges::any_of(parts_.parts(), [](const ForcePart& part) { return !part.rests; });
+  return std::ranges::any_of(parts_.parts(),
+                             [](const ForcePart& part) { return !part.rests && !part.large; });
 }
 
 bool ForceChoice::any_moves_alone() const {
   return std::ranges::any_of(parts_.parts(),
-                             [](const ForcePart& part) { return !part.rests && !part.mixed; });
+                             [](const ForcePart& part) { return part.moves_alone(); });
 }
 
 double ForceChoice::motion(const Eigen::Ref<const VectorX>& offset, std::span<const double> x,
@@ -87,7 +88,7 @@ ForceChoice::Role ForceChoice::role(const Eigen::Ref<const VectorX>& offset,
 
 void ForceChoice::rest(Eigen::Ref<VectorX> offset, std::span<double> x, bool solved) {
   for (ForcePart& part : parts_.parts()) {
-    if (part.rests || part.mixed) continue;
+    if (part.rests || part.mixed || (solved && part.large)) continue;
     bool differs = !solved;
     for (const int block : parts_.blocks(part)) {
       Role& own = role_[at(block)];
@@ -194,7 +195,7 @@ Eigen::Map<const MatrixX> ForceChoice::regularised() {
   auto matrix = matrix_.shape(count, count);
   matrix = problem_->matrix;
   for (const ForcePart& part : parts_.parts()) {
-    if (part.rests || part.mixed) continue;
+    if (!part.moves_alone()) continue;
     double sum = 0.0;
     const auto each = [&](auto&& visit) {
       for (const int block : parts_.blocks(part)) {
@@ -211,7 +212,7 @@ Eigen::Map<const MatrixX> ForceChoice::regularised() {
 
 void ForceChoice::align(Eigen::Ref<VectorX> offset, std::span<const double> x) {
   for (const ForcePart& part : parts_.parts()) {
-    if (part.rests || part.mixed) continue;
+    if (!part.moves_alone()) continue;
     rows_.clear();
     for (const int block : parts_.blocks(part)) {
       if (role(offset, x, block) != Role::closed) continue;
@@ -262,7 +263,7 @@ EffortSet ForceChoice::set_of(const Eigen::Ref<const VectorX>& offset, std::span
 
 void ForceChoice::lessen(const Eigen::Ref<const VectorX>& offset, std::span<double> x) {
   for (const ForcePart& part : parts_.parts()) {
-    if (part.rests) continue;
+    if (part.rests || part.large) continue;
     double largest = 0.0;
     for (const int block : parts_.blocks(part)) {
       const int row = rows_of(*problem_, block).row;
@@ -275,17 +276,22 @@ void ForceChoice::lessen(const Eigen::Ref<const VectorX>& offset, std::span<doub
     }
     if (rows_.rows.empty()) continue;
     rows_.gather(*problem_, *scales_);
-    if (!solver_.factorise(rows_.matrix.view(), rows_.own)) continue;
     const auto count = std::ssize(rows_.rows);
+    if (!solver_.factorise(rows_.matrix.view(), rows_.own) || solver_.rank() == count) continue;
     auto effort = effort_.shape(count, 1).col(0), fitted = fitted_.shape(count, 1).col(0);
     for (Eigen::Index k = 0; k < count; ++k) {
       const int row = rows_.rows[at(k)];
       effort[k] = x[at(row)] / scales_->unit[at(row)];
     }
-    fitted.setZero();
-    for (Eigen::Index k = 0; k < count; ++k) fitted += effort[k] * rows_.matrix.view().col(k);
+    auto before = goal_.shape(count, 1).col(0);
+    before.setZero();
+    for (Eigen::Index k = 0; k < count; ++k) before += effort[k] * rows_.matrix.view().col(k);
+    fitted = before;
     solver_.fit(fitted);
     if (!solver_.find(rows_.sets, effort)) continue;
+    // What was left out of W as rounding may be the motion of a body that is nearly held.
+    for (Eigen::Index k = 0; k < count; ++k) before -= effort[k] * rows_.matrix.view().col(k);
+    if (before.cwiseAbs().maxCoeff() > scales_->rounding) continue;
     for (Eigen::Index k = 0; k < count; ++k) {
       const int row = rows_.rows[at(k)];
       x[at(row)] = scales_->unit[at(row)] * effort[k];

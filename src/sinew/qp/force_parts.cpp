@@ -123,6 +123,8 @@ void ForceParts::find(const ConeProblem& problem, const ForceScales& scales, Lea
       blocks_.resize(at(part.first));
       continue;
     }
+    const auto rank = static_cast<double>(solver.rank());
+    part.large = part.rows * rank * rank > kMaxWork;
     part.mixed = is_mixed(problem, scales, part);
     parts_.push_back(part);
   }

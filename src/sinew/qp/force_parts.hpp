@@ -24,9 +24,12 @@ struct ForceScales {
 struct ForcePart {
   int first = 0, count = 0;  ///< of ForceParts::blocks()
   int rows = 0;
-  bool mixed =
-      false;  ///< it also couples with points of deformable bodies, which are no part of it
+  bool mixed = false;  ///< coupled with points of deformable bodies, which are no part of it
+  bool large = false;  ///< above ForceParts::kMaxWork
   bool rests = false;
+
+  /// Whether its law is solved with a small compliance first.
+  bool moves_alone() const { return !rests && !mixed && !large; }
 };
 
 /// Rows of some blocks of a part: W between them, in newtons and metres, and the sets of their
@@ -47,8 +50,11 @@ struct ForceRows {
 /// Finds the indeterminate parts: boxes and rigid cones whose W has a rank below its rows.
 class ForceParts {
  public:
-  /// Up to this many rows a part is treated; the cost grows with rows times rank squared.
-  static constexpr int kMaxRows = 600;
+  /// Rows of a part up to which it is treated.
+  static constexpr int kMaxRows = 400;
+  /// Rows times rank squared up to which forces are also chosen where the part moves. Beyond it
+  /// that would cost more than the law.
+  static constexpr double kMaxWork = 1.5e6;
 
   /// @param problem,scales of the step. @param solver,rows for its own use.
   void find(const ConeProblem& problem, const ForceScales& scales, LeastForces& solver,

@@ -10,15 +10,22 @@ namespace sinew::qp {
 
 namespace {
 
-constexpr int kMaxDualSteps = 60, kMaxDualHalvings = 30;
+// Large problems get fewer steps: where the law would be solved faster, a search that takes long
+// does not pay.
+constexpr double kWorth = 4e6;  // steps times rows times rank squared
+constexpr int kMostDualSteps = 60, kFewDualSteps = 12, kMaxDualHalvings = 30;
 // Of |c|: the gradient of the solution, and the largest that rounding may leave.
 constexpr double kDualSolved = 1e-14, kDualUsable = 1e-12;
-// Efforts larger than those without limits by this factor are none.
-constexpr double kFarEfforts = 1e4;
+// Efforts larger than those without sets by this factor are none.
+constexpr double kFarEfforts = 100.0;
 // Of the diagonal: a W that is more negative is indefinite.
 constexpr double kIndefinite = 1e-8;
 // Of the unit efforts: a smaller self-stress is rounding.
 constexpr double kNoStress = 1e-6;
+// Of the largest diagonal: what is added to it, in proportion to |gradient|/|c| (Levenberg and
+// Marquardt), since few efforts inside their sets leave the matrix singular. Where no forces cause
+// the motion, a small term lets y grow fast.
+constexpr double kShift = 1e-6, kLeastShift = 1e-14, kMoreShift = 100.0, kMostShift = 1e-3;
 constexpr double kSufficientGain = 1e-4;  // decrease, of that along the tangent
 
 using linalg::at;
@@ -201,19 +208,32 @@ bool LeastForces::form_step(std::span<const EffortSet> sets, double shift) {
   return step.allFinite();
 }
 
+// Any z in K with B^T z = c has c.y = z.B y <= z.P_K(B y), hence |z| >= c.y/|P_K(B y)|.
+bool LeastForces::needs_more(double size) const {
+  const double work = goal_.view().col(0).dot(trial_.view().col(0));
+  return work > size * effort_.view().norm();
+}
+
 bool LeastForces::newton(std::span<const EffortSet> sets) {
   const double size = goal_.view().norm() + shift_.view().norm();
   trial_.shape(rank_, 1) = dual_.view();
   double value = evaluate(sets);
-  const double bound = kFarEfforts * (aim_.view().norm() + size);
+  const double most = kFarEfforts * (aim_.view().norm() + shift_.view().norm());
   double miss = gradient_.view().norm();
-  for (steps_ = 0; miss > kDualSolved * size && steps_ < kMaxDualSteps; ++steps_) {
-    if (!form_step(sets, std::clamp(1e-2 * miss / size, 1e-14, 1e-3))) break;
+  const auto rank = static_cast<double>(rank_);
+  const double affordable = kWorth / (static_cast<double>(rows_) * rank * rank);
+  const int steps =
+      static_cast<int>(std::clamp(affordable, double{kFewDualSteps}, double{kMostDualSteps}));
+  for (steps_ = 0; miss > kDualSolved * size && steps_ < steps; ++steps_) {
+    if (needs_more(most)) return false;
+    double shift = std::clamp(kShift * miss / size, kLeastShift, kShift);
+    while (shift < kMostShift && !form_step(sets, shift)) shift *= kMoreShift;
+    if (!(shift < kMostShift)) break;
     const double along = step_.view().col(0).dot(gradient_.view().col(0));
     double share = 1.0;
-    int halving = 0;
+    const double before = miss;
     bool gains = false;
-    for (; halving < kMaxDualHalvings && !gains; ++halving, share *= 0.5) {
+    for (int halving = 0; halving < kMaxDualHalvings && !gains; ++halving, share *= 0.5) {
       trial_.view() = dual_.view() + share * step_.view();
       const double next = evaluate(sets), left = gradient_.view().norm();
       // Near the solution the difference of two values is rounding.
@@ -222,14 +242,12 @@ bool LeastForces::newton(std::span<const EffortSet> sets) {
       value = next;
       miss = left;
     }
-    if (!gains) {
-      trial_.view() = dual_.view();
-      evaluate(sets);
-      break;
-    }
+    if (!gains) break;
     dual_.view() = trial_.view();
-    if (aim_.view().norm() > bound) return false;
+    if (miss <= kDualUsable * size && miss > 0.5 * before) break;  // rounding
   }
+  trial_.view() = dual_.view();
+  evaluate(sets);
   return miss <= kDualUsable * size;
 }
 

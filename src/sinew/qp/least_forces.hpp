@@ -66,6 +66,7 @@ class LeastForces {
  private:
   double project(std::span<const EffortSet> sets);
   bool newton(std::span<const EffortSet> sets);
+  bool needs_more(double size) const;
   bool form_step(std::span<const EffortSet> sets, double shift);
   double evaluate(std::span<const EffortSet> sets);
   void start();
