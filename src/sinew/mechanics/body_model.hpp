@@ -80,6 +80,10 @@ class BodyModel {
   /// whose fixed nodes tell.
   virtual bool is_free() const { return false; }
 
+  /// Whether the body has few coordinates, as rigid bodies and arms: several contact points on it
+  /// may then be redundant. Nodes of a mesh never are.
+  virtual bool has_few_coordinates() const { return false; }
+
   /// Hashes of everything that its motion depends on, except sites, by names such as "material".
   virtual std::vector<NamedHash> parts() const = 0;
   /// Hash of the location of a site in the body.

@@ -49,6 +49,7 @@ class ArmBodyModel final : public mechanics::BodyModel,
               std::span<const mechanics::StiffnessPair> stiffness_pairs,
               const linalg::FactorisationSettings& settings) override;
   bool couples(int, int) const override { return true; }
+  bool has_few_coordinates() const override { return true; }
   std::vector<NamedHash> parts() const override;
   std::uint64_t site_hash(int site) const override;
   std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_geometric_stiffness,

@@ -23,8 +23,8 @@ constexpr double kSlow = 0.5;  // stop if an iteration leaves more of the residu
 
 bool ConeIsland::alternate(const ConePart& part) {
   const ConeProblem& problem = part.problem;
+  if (judge(part) <= settings_.tolerance) return true;
   if (!factorise_proximal(part, kPenalty)) return false;
-  judge(part);
   std::copy_n(x_.data(), x_.size(), best_.data());
   for (std::size_t k = 0; k < problem.cones.size(); ++k) {
     if (!usable(k)) continue;

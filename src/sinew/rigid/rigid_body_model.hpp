@@ -52,6 +52,7 @@ class RigidBodyModel final : public mechanics::BodyModel,
   bool couples(int, int) const override { return true; }
   bool is_free() const override { return !settings_.fixed; }
   bool is_loaded() const override { return mass() > 0.0 && settings_.gravity.norm() > 0.0; }
+  bool has_few_coordinates() const override { return true; }
   bool has_base() const override { return settings_.fixed; }
   std::vector<NamedHash> parts() const override;
   std::uint64_t site_hash(int site) const override;

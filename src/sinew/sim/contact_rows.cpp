@@ -44,6 +44,11 @@ Vector3 free_motion(const step::StepProblem& problem, const linalg::AlignedNumbe
          problem.compliance.block<3, 3>(problem_row, problem_row) * lambda.segment<3>(problem_row);
 }
 
+bool is_rigid(const Model& model, const constraint::Contact& contact) {
+  const auto rigid = [&](int body) { return body < 0 || model.body(body).has_few_coordinates(); };
+  return rigid(contact.body()) && rigid(contact.other_body());
+}
+
 }  // namespace
 
 ContactRows::ContactRows(const Model& model, const constraint::Configuration& configuration,
@@ -63,6 +68,7 @@ ContactRows::ContactRows(const Model& model, const constraint::Configuration& co
     const ContactModel& contact = model.contacts()[i];
     strikes_.push_back(contact.strikes ? 1 : 0);
     wanted_.push_back(0);
+    rigid_.push_back(is_rigid(model, *planes_.contacts()[i]) ? 1 : 0);
     const constraint::Friction& friction = planes_.contacts()[i]->friction();
     has_kinetic_ |= friction.sliding < friction.sticking;
     surfaces_.push_back(planes_.shape(i) == nullptr ? (touching++)->get() : nullptr);
@@ -291,8 +297,8 @@ void ContactRows::list(const RowNumbering& numbering,
     for (std::size_t k = 0; k < contact.size(); ++k) {
       const int row = contact.row(k), problem_row = numbering.problem_row_of(row);
       if (problem_row < 0 || !rows_.groups.leads(row)) continue;
-      blocks.push_back(
-          {problem_row, friction(contact, k), static_cast<int>(i), contact.frame(k, rows_)});
+      blocks.push_back({problem_row, friction(contact, k), static_cast<int>(i),
+                        contact.frame(k, rows_), rigid_[i] != 0});
     }
   }
 }

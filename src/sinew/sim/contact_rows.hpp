@@ -196,6 +196,7 @@ class ContactRows {
   std::vector<Vector3> along_;  // (rows,) sliding directions, of any length; empty: no such contact
   bool events_ = false;
   std::vector<char> strikes_;  // (contacts,)
+  std::vector<char> rigid_;    // (contacts,) see step::ContactBlock
   std::vector<char> wanted_;   // (contacts,)
   std::vector<char> closed_;   // (rows,) normal rows of contacts that strike
 };

@@ -15,6 +15,8 @@ constexpr double kRedundancy = 1e-12;
 constexpr double kCancelled = 1e-14;
 // Tolerance of motions, m.
 constexpr double kMotionTolerance = 1e-12;
+// Relative to the robot's size: motions that are rounding of positions.
+constexpr double kRoundingOfMotion = 1e-12;
 // Residual up to which a contact solution is used although it misses the tolerance by rounding or
 // slow convergence.
 constexpr double kUsableResidual = 1e-6;
@@ -79,6 +81,22 @@ void DirectSolver::sort(const StepProblem& problem, std::span<double> effort) {
     cones_.push_back({static_cast<int>(unknown_.size()), block.friction});
     for (int c = 0; c < 3; ++c) unknown_.push_back(block.row + c);
   }
+  list_scales(problem);
+}
+
+// What the choice among indeterminate efforts needs to know of the unknowns.
+void DirectSolver::list_scales(const StepProblem& problem) {
+  unit_.assign(unknown_.size(), 1.0);
+  alone_.clear();
+  rigid_.clear();
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    const int actuator = boxes_[i].actuator;
+    if (actuator < 0) continue;
+    unit_[i] = problem.actuators[static_cast<std::size_t>(actuator)].motion_scale;
+  }
+  for (const int row : unknown_) alone_.push_back(std::abs(problem.compliance(row, row)));
+  for (const ContactBlock& block : problem.contacts) rigid_.push_back(block.rigid ? 1 : 0);
+  scales_ = {unit_, alone_, rigid_, kRoundingOfMotion * problem.size};
 }
 
 void DirectSolver::sort_actuator(const StepProblem& problem, int index, std::span<double> effort) {
@@ -272,7 +290,28 @@ LawStatus DirectSolver::solve_boxes(const Eigen::Map<const MatrixX>& compliance)
       settled = settled && box.waits;
     }
   }
+  lessen_boxes(compliance);
   return LawStatus::solved;
+}
+
+// Redundant ropes: of the tensions that cause the same motion, those of least norm. The term that
+// makes the program definite is as small as rounding of the ropes' lengths, so it does not choose.
+void DirectSolver::lessen_boxes(const Eigen::Map<const MatrixX>& compliance) {
+  if (boxes_.size() < 2) return;
+  list_boxes();
+  const qp::ConeProblem problem{compliance, std::as_const(motion_).view().col(0), cone_boxes_, {}};
+  if (choice_.find(problem, scales_)) choice_.lessen(problem.offset, x_);
+}
+
+// A given effort is a box without room.
+void DirectSolver::list_boxes() {
+  cone_boxes_.clear();
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    const Box& box = boxes_[i];
+    double lower = box.lower, upper = box.upper;
+    if (box.waits) (box.stop < 0 ? upper : lower) = box.stop < 0 ? box.lower : box.upper;
+    cone_boxes_.push_back({static_cast<int>(i), lower, upper, box.motion});
+  }
 }
 
 // Given efforts go to the right-hand side: the compliance of their rows, which may be that of a
@@ -344,15 +383,27 @@ void DirectSolver::solve_rounded_program() {
   qp_solver_.solve(program_);
 }
 
+// Where rigid bodies make the forces indeterminate, they are chosen before or after the solution,
+// see qp::ForceChoice. A solution from chosen forces costs little more than its check.
 LawStatus DirectSolver::solve_cones(const Eigen::Map<const MatrixX>& compliance) {
-  cone_boxes_.clear();
-  for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    const Box& box = boxes_[i];
-    cone_boxes_.push_back({static_cast<int>(i), box.lower, box.upper, box.motion});
+  list_boxes();
+  auto offset = motion_.view().col(0);
+  const qp::ConeProblem problem{compliance, offset, cone_boxes_, cones_};
+  if (!choice_.find(problem, scales_)) return solve_cones(problem);
+  choice_.rest(offset, x_, false);
+  if (choice_.any_moves_alone()) {
+    cone_solver_.solve({choice_.regularised(), offset, cone_boxes_, cones_}, x_);
+    choice_.rest(offset, x_, true);
+    choice_.align(offset, x_);
   }
-  const auto motion = motion_.view();
-  const qp::ConeResult& result =
-      cone_solver_.solve({compliance, motion.col(0), cone_boxes_, cones_}, x_);
+  const LawStatus status = solve_cones(problem);
+  if (status == LawStatus::failed || !choice_.any_moves()) return status;
+  choice_.lessen(offset, x_);
+  return solve_cones(problem);
+}
+
+LawStatus DirectSolver::solve_cones(const qp::ConeProblem& problem) {
+  const qp::ConeResult& result = cone_solver_.solve(problem, x_);
   const bool usable =
       result.status == qp::ConeStatus::solved ||
       (result.status == qp::ConeStatus::iteration_limit && result.residual <= kUsableResidual);

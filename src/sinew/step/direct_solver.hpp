@@ -9,6 +9,7 @@
 
 #include "sinew/linalg/scratch.hpp"
 #include "sinew/qp/cone_solver.hpp"
+#include "sinew/qp/force_choice.hpp"
 #include "sinew/qp/quadratic_program.hpp"
 #include "sinew/step/contact_problem.hpp"
 #include "sinew/step/followers.hpp"
@@ -88,6 +89,10 @@ class DirectSolver {
   LawStatus solve_program(const Eigen::Map<const MatrixX>& compliance);
   void solve_rounded_program();
   LawStatus solve_cones(const Eigen::Map<const MatrixX>& compliance);
+  LawStatus solve_cones(const qp::ConeProblem& problem);
+  void lessen_boxes(const Eigen::Map<const MatrixX>& compliance);
+  void list_boxes();
+  void list_scales(const StepProblem& problem);
   bool switch_branches(const StepProblem& problem, const Eigen::Map<const MatrixX>& compliance);
 
   Followers followers_;
@@ -108,6 +113,10 @@ class DirectSolver {
   VectorX scale_;  // (boxes,)
   std::vector<qp::BoxBlock> cone_boxes_;
   qp::ConeSolver cone_solver_;
+  qp::ForceChoice choice_;
+  qp::ForceScales scales_;
+  std::vector<double> unit_, alone_;  // (unknowns,) see qp::ForceScales
+  std::vector<char> rigid_;           // (cones,)
 };
 
 }  // namespace sinew::step

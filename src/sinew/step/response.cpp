@@ -16,6 +16,15 @@ namespace {
 constexpr double kSlides = 1e-7;
 // Number of planes around a cone. They lie outside it by up to 8 %; the law decides where it slips.
 constexpr int kPlanes = 8;
+// Of the motion that the force causes at a point: less is rounding.
+constexpr double kNoSlip = 1e-9;
+
+// Friction chosen among many forces that hold a body may be at its limit without a slip.
+bool is_rounding(const StepProblem& problem, const ContactBlock& block, const Vector3& force,
+                 const Eigen::Vector2d& slip) {
+  const double own = problem.compliance.diagonal().segment<3>(block.row).sum() / 3.0;
+  return block.rigid && slip.norm() <= kNoSlip * own * force.norm();
+}
 
 }  // namespace
 
@@ -253,6 +262,7 @@ void Response::collect_contact(const StepProblem& problem, const ContactBlock& b
   Eigen::Vector2d slip = Eigen::Vector2d::Zero();
   const bool may_slip = keeps_ || (force[0] > 0.0 && qp::slides(force, block.friction));
   if (may_slip) slip = {motion_of(problem, row + 1), motion_of(problem, row + 2)};
+  if (is_rounding(problem, block, force, slip)) slip.setZero();
   if (force[0] > 0.0) {
     const bool slipping = block.friction == 0.0 || (may_slip && slip.squaredNorm() > 0.0);
     read = slipping ? slips : sticks;
@@ -451,6 +461,39 @@ void Response::form_equations(const StepProblem& problem) {
   }
 }
 
+// Newtons per effort, as DirectSolver chooses efforts: those of held rows follow from the others.
+void Response::weigh_efforts(const StepProblem& problem) {
+  weight_.setZero(free_.size());
+  for (const ActuatorBlock& block : problem.actuators) {
+    if (block.row < 0 || block.owned || block.drive != nullptr || block.holds_motion()) continue;
+    weight_[block.row] = 1.0 / block.motion_scale;
+  }
+  for (const CapstanBlock& block : problem.capstans) weight_[block.row] = 1.0;
+  for (const ContactBlock& block : problem.contacts) {
+    weight_.segment<3>(block.row).setConstant(1.0);
+  }
+}
+
+// With N the null space of the system, s = s_0 + N t solves it for all t. The t of least norm of
+// the weighted efforts is taken, and among those, as the efforts of held rows, the least s.
+void Response::solve_redundant(const StepProblem& problem) {
+  solved_ = linalg::pseudo_inverse(system_) * right_;
+  const linalg::Svd svd = linalg::svd(system_, linalg::SingularVectors::full_v);
+  const Eigen::Index count = system_.cols();
+  Eigen::Index rank = 0;
+  while (rank < count && svd.values[rank] > kCoupled * svd.values[0]) ++rank;
+  if (rank == count) return;
+  weigh_efforts(problem);
+  MatrixX null_space = svd.v.rightCols(count - rank), weighted = null_space, efforts = solved_;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const int row = equations_[static_cast<std::size_t>(i)].unknown;
+    weighted.row(i) *= scale_[i] * weight_[row];
+    efforts.row(i) *= scale_[i] * weight_[row];
+  }
+  if (!(weighted.cwiseAbs().maxCoeff() > 0.0)) return;
+  solved_ -= null_space * (linalg::pseudo_inverse(weighted) * efforts);
+}
+
 // For redundant rows, takes the efforts of least norm.
 void Response::solve(const StepProblem& problem) {
   form_equations(problem);
@@ -458,7 +501,7 @@ void Response::solve(const StepProblem& problem) {
   const Eigen::Index count = system_.rows(), inputs = right_.cols() - 1;
   factor_.compute(system_);
   if (factor_.is_singular()) {
-    solved_ = linalg::pseudo_inverse(system_) * right_;
+    solve_redundant(problem);
   } else {
     solved_.resize(count, 1 + inputs);
     factor_.solve_columns(right_, solved_);

@@ -142,6 +142,8 @@ class Response {
   void form_guards();
   void form_equations(const StepProblem& problem);
   void solve(const StepProblem& problem);
+  void solve_redundant(const StepProblem& problem);
+  void weigh_efforts(const StepProblem& problem);
   void clear_rounding(const StepProblem& problem);
 
   std::vector<int> controlled_;
@@ -164,6 +166,7 @@ class Response {
   bool release_ = false, decided_ = false;
   MatrixX compliance_, system_, right_, solved_;
   VectorX free_, scale_, row_scale_;
+  VectorX weight_;  // (rows,) newtons per effort in the norm of redundant ones; 0: held rows
   linalg::LuFactor factor_;
 };
 

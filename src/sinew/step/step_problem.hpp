@@ -77,6 +77,9 @@ struct ContactBlock {
   double friction = 0.0;                ///< Coulomb's coefficient, >= 0
   int contact = -1;                     ///< the contact of the robot that has the point
   Matrix3 frame = Matrix3::Identity();  ///< columns: normal and tangents, in world axes
+  /// Whether each side is a body with few coordinates or a surface of the world: with other such
+  /// points it may be redundant.
+  bool rigid = false;
 };
 
 /// A row that holds its motion with whatever effort that takes: part of a joint or a tie.
