@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import errno
 import json
 import math
 import os
@@ -417,6 +418,11 @@ def main(words: list[str]) -> int:
     except ImportError as missing:
         print(f"sinew: error: plots need matplotlib: {missing}; apt-get install python3-matplotlib", file=sys.stderr)
         return 2
+    except OSError as problem:
+        if problem.errno not in (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EFBIG):
+            raise
+        print(f"sinew: error: {words[2]}: {problem.strerror}; check that the disk is not full [recording-failed]", file=sys.stderr)
+        return 1
     print(f"drew {path}")
     return 0
 
