@@ -7,8 +7,9 @@
 namespace sinew {
 
 std::string_view notice_kind_name(NoticeKind kind) {
-  constexpr std::array<std::string_view, 5> kNames = {
-      "locking-element", "bare-points", "unused-element", "coarse-contact", "other-tangent"};
+  constexpr std::array<std::string_view, 6> kNames = {"locking-element", "bare-points",
+                                                      "unused-element",  "coarse-contact",
+                                                      "other-tangent",   "suspicious-unit"};
   return kNames.at(static_cast<std::size_t>(kind));
 }
 

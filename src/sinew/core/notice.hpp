@@ -16,6 +16,7 @@ enum class NoticeKind {
   unused_element,   ///< a file contains something that this version does not use
   coarse_contact,   ///< a round surface is smaller than the faces between the nodes that touch it
   other_tangent,    ///< the materials of the scene do not have the requested tangent
+  suspicious_unit,  ///< a number without a unit is far from those of robots
 };
 
 /// Where a notice is shown.
