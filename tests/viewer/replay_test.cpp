@@ -230,7 +230,8 @@ TEST_F(Recorded, RunsAreShownWithWhatWasRecorded) {
     EXPECT_NEAR(time, 0.01 * static_cast<double>(k), 1e-12);
     EXPECT_NEAR(in_history("up.displacement_command", k),
                 0.002 * std::min(0.01 * static_cast<double>(k) / 0.05, 1.0), 1e-9);
-    if (k > 0) EXPECT_EQ(in_history("strain_energy", k), static_cast<float>(energy[k - 1]));
+    if (k == 0) continue;
+    EXPECT_EQ(in_history("strain_energy", k), static_cast<float>(energy[k - 1]));
   }
   source.stop();
 }
