@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/whole.hpp"
 #include "sinew/sim/actuator.hpp"
 
 #include "limits.hpp"
@@ -102,7 +103,7 @@ class Fields {
     if (value != std::floor(value)) {
       fail(ErrorKind::wrong_type, key, fmt::format("{} is not a whole number", value));
     }
-    return static_cast<std::int64_t>(value);
+    return sinew::whole<std::int64_t>(value);
   }
   Vector3 vector(const char* key, double most = kFarthest) {
     const Json value = take(key);
@@ -158,7 +159,7 @@ Pull read_pull(Fields& fields) {
     if (vertices[k] < 0 || vertices[k] != std::floor(vertices[k])) {
       fail(ErrorKind::wrong_type, "vertices", "these are not vertex numbers");
     }
-    pull.vertices[static_cast<std::size_t>(k)] = static_cast<int>(vertices[k]);
+    pull.vertices[static_cast<std::size_t>(k)] = sinew::whole<int>(vertices[k], 0);
   }
   pull.weights = fields.vector("weights", 1.0);
   if (pull.weights.minCoeff() < 0.0 || std::abs(pull.weights.sum() - 1.0) > 1e-6) {

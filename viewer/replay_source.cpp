@@ -1,13 +1,17 @@
 #include "replay_source.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "sinew/core/whole.hpp"
 #include "sinew/record/run_layout.hpp"
 #include "sinew/scene/scene.hpp"
 
@@ -141,7 +145,7 @@ void ReplaySource::show() {
     }
     recorded.values.push_back(std::move(value));
   }
-  recorded.step = std::llround(time() / state_.time_step());
+  recorded.step = whole<std::int64_t>(std::round(time() / state_.time_step()));
   state_.show(recorded);
 }
 
@@ -168,8 +172,47 @@ std::string ReplaySource::motion() {
   return recording.glb();
 }
 
-// Provides the table of the run or its motion, but no other file of its folder.
+// The signals of all frames, or of every k-th one of a long run; the format is in
+// docs/view_protocol.md. A signal that was not recorded is NaN.
+std::string ReplaySource::history() {
+  constexpr std::size_t kMostNumbers = 4'000'000;
+  const auto frames = static_cast<std::size_t>(file_.frames());
+  const std::size_t signals = description_.signals.size();
+  const std::size_t stride = 1 + frames * signals / kMostNumbers;
+  std::vector<double> times;
+  for (std::size_t k = 0; k < frames; k += stride) times.push_back(file_.times()[k]);
+  std::vector<float> numbers(times.size() * signals, std::numeric_limits<float>::quiet_NaN());
+  std::size_t first = 0;  // signal of the observable
+  const std::vector<sim::Observable>& list = state_.observables().list();
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    if (!is_signal(list[k])) continue;
+    const std::size_t size = list[k].size();
+    const auto series = std::ranges::find(series_, k, &Series::observable);
+    const bool known = series != series_.end() && series->small.size() == frames * size;
+    for (std::size_t c = 0; known && c < size; ++c) {
+      for (std::size_t i = 0; i < times.size(); ++i) {
+        numbers[(first + c) * times.size() + i] =
+            static_cast<float>(series->small[i * stride * size + c]);
+      }
+    }
+    first += size;
+  }
+  const std::array<std::uint32_t, 2> head = {static_cast<std::uint32_t>(times.size()),
+                                             static_cast<std::uint32_t>(signals)};
+  std::string bytes;
+  const auto append = [&bytes](const auto& numbers_of) {
+    bytes.append(reinterpret_cast<const char*>(numbers_of.data()),
+                 numbers_of.size() * sizeof(numbers_of[0]));
+  };
+  append(head);
+  append(times);
+  append(numbers);
+  return bytes;
+}
+
+// Provides the table of the run, its signals or its motion, but no other file of its folder.
 std::optional<Download> ReplaySource::download(std::string_view name) {
+  if (name == "history.bin") return Download{"history.bin", "application/octet-stream", history()};
   if (name == "motion.glb") return Download{"motion.glb", "model/gltf-binary", motion()};
   if (name != "run.csv") return std::nullopt;
   std::ifstream file(folder_ / "run.csv", std::ios::binary);

@@ -39,6 +39,7 @@ class ReplaySource final : public SourceThread {
 
  private:
   void open_series();
+  std::string history();
   void show();
   std::string motion();
 

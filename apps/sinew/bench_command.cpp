@@ -14,6 +14,7 @@
 
 #include "sinew/core/build_info.hpp"
 #include "sinew/core/file.hpp"
+#include "sinew/core/whole.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/tangent.hpp"
 #include "sinew/sim/actuator.hpp"
@@ -80,7 +81,7 @@ void read_active_set(const sim::Simulation& simulation, std::vector<int>& active
 int warm_up_steps(const BenchOptions& options, const Session& session) {
   if (options.warm_up) return *options.warm_up;
   const double turn = session.first_turn() / session.robot().model->step().time_step;
-  return std::max(kWarmUp, static_cast<int>(std::min(turn, 1e5)));
+  return std::max(kWarmUp, whole<int>(turn, 0, 100000));
 }
 
 void measure_steps(const BenchOptions& options, Session& session, int warm_up, Samples& samples) {
@@ -117,8 +118,8 @@ Samples measure(const BenchOptions& options, Session& session, int warm_up) {
   }
   if (!options.compare_eigen || samples.stages.back().empty()) return samples;
   const double once = eigen_factorisation_times(session.simulation(), 1).front();
-  samples.eigen = eigen_factorisation_times(
-      session.simulation(), std::clamp(static_cast<int>(kEigenBudget / once), 3, 100));
+  samples.eigen =
+      eigen_factorisation_times(session.simulation(), whole<int>(kEigenBudget / once, 3, 100));
   return samples;
 }
 

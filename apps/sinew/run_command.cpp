@@ -13,6 +13,7 @@
 
 #include "sinew/constraint/effector.hpp"
 #include "sinew/core/file.hpp"
+#include "sinew/core/whole.hpp"
 #include "sinew/fem/element_count.hpp"
 #include "sinew/fem/fem_model.hpp"
 #include "sinew/fem/has_elements.hpp"
@@ -27,6 +28,7 @@
 #include "arguments.hpp"
 #include "commands.hpp"
 #include "python_tool.hpp"
+#include "run_extremes.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 
@@ -110,12 +112,12 @@ void count(Tally& tally, Session& session) {
 
 std::int64_t step_count(double duration, double time_step) {
   const double steps = std::round(duration / time_step);
-  if (steps > kMaxSteps) {
+  if (!(steps <= kMaxSteps)) {
     throw Error(ErrorKind::out_of_range, {.item = "duration"},
                 fmt::format("{:g} s is {:g} steps of {:g} s", duration, steps, time_step),
                 "shorten the duration or increase the time step");
   }
-  return std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
+  return whole<std::int64_t>(steps, 1);
 }
 
 double run_duration(const scene::Robot& robot) {
@@ -176,10 +178,12 @@ void warn(const Tally& tally, const sim::StepSettings& step) {
 struct Records {
   std::optional<record::RunRecorder> run;
   std::optional<record::RunMotion> motion;
+  std::optional<RunExtremes> extremes;
 
   void after_step() {
     run->after_step();
     if (motion) motion->after_step();
+    if (extremes) extremes->after_step();
   }
 };
 
@@ -264,6 +268,7 @@ int run(const RunOptions& options) {
   const bool replaces = std::filesystem::exists(settings.folder / "run.csv");
   Records records;
   records.run.emplace(std::move(observables), settings);
+  if (!options.quiet) records.extremes.emplace(session);
   if (!options.glb.empty()) records.motion.emplace(session.simulation(), description.name);
 
   const auto begin = std::chrono::steady_clock::now();
@@ -272,6 +277,8 @@ int run(const RunOptions& options) {
     records.run->finish();
     if (options.quiet) return;
     auto rows = summary(tally, session);
+    const auto extremes = records.extremes->rows();
+    rows.insert(rows.end(), extremes.begin(), extremes.end());
     rows.push_back({"recorded in",
                     settings.folder.string() + (replaces ? " (an earlier run was replaced)" : "")});
     fmt::print("{}", format_table(rows));

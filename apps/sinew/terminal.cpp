@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "sinew/core/whole.hpp"
+
 namespace sinew::cli {
 
 namespace {
@@ -73,7 +75,7 @@ void ProgressBar::update(std::int64_t done, const std::string& note) {
   last_ = std::chrono::steady_clock::now();
   drawn_ = true;
   const double share = static_cast<double>(done) / static_cast<double>(total_);
-  const int filled = std::clamp(static_cast<int>(share * kBarWidth), 0, kBarWidth);
+  const int filled = whole<int>(share * kBarWidth, 0, kBarWidth);
   fmt::print(stderr, "\r\033[K[{:#<{}}{:.<{}}] {:3.0f} %  {}", "", filled, "", kBarWidth - filled,
              100.0 * share, note);
   std::fflush(stderr);

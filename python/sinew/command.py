@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import Optional
 
 from . import _core
+from ._whole_files import is_full, unwritable
 from .errors import Error, RunError
 
 __all__ = ["FAILED", "exit_code", "parser", "quantity", "seconds"]
@@ -85,7 +86,7 @@ def exit_code(command: Callable[[], int], interrupted: str = "") -> int:
     Returns
     -------
     int
-        The value returned by `command`; 1 for RunError, 2 for any other Error, 130 after SIGINT and 143 after SIGTERM.
+        The value returned by `command`; 1 for RunError and a full disk, 2 for any other Error, 130 after SIGINT and 143 after SIGTERM.
     """
     before = {number: signal.signal(number, _interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
     show = warnings.showwarning
@@ -95,6 +96,11 @@ def exit_code(command: Callable[[], int], interrupted: str = "") -> int:
     except Error as error:
         print(f"sinew: error: {error}", file=sys.stderr)
         return FAILED if isinstance(error, RunError) else INVALID_INPUT
+    except OSError as problem:
+        if not is_full(problem):
+            raise
+        print(f"sinew: error: {unwritable(problem.filename or 'a file', problem)}", file=sys.stderr)
+        return FAILED
     except KeyboardInterrupt as stop:
         if interrupted:
             print(f"sinew: {interrupted}", file=sys.stderr)

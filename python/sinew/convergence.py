@@ -25,6 +25,7 @@ from typing import Any, Optional, Union
 import numpy as np
 
 from . import command, mesh, scene
+from ._whole_files import draft
 from .errors import Error
 from .sweep.worker import measure as measure_now
 
@@ -372,7 +373,8 @@ def _converge(options: argparse.Namespace) -> int:
                   duration=command.seconds("--duration", options.duration), set=options.set, progress=True)
     print(_table(found))
     if options.json:
-        pathlib.Path(options.json).write_text(_written(found))
+        with draft(options.json) as beside:
+            beside.write_text(_written(found))
     return 0
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import csv
+import errno
 import json
 import math
+import os
 import pathlib
 import re
 import sys
@@ -26,6 +28,17 @@ def _pyplot():
                          "axes.spines.right": False, "legend.frameon": False,
                          "figure.constrained_layout.use": True, "legend.fontsize": 8})
     return plt
+
+
+def save(figure, path) -> None:
+    """Writes a figure beside the file that it then replaces: what was there stays whole until then."""
+    path = pathlib.Path(path)
+    draft = path.with_name(f"{path.name}.{os.getpid()}.tmp")
+    try:
+        figure.savefig(draft, dpi=110, format=path.suffix.lstrip(".") or "png")
+        os.replace(draft, path)
+    finally:
+        draft.unlink(missing_ok=True)
 
 
 # Displayed unit of each SI unit, and the conversion factor.
@@ -172,7 +185,7 @@ def run(folder, out) -> pathlib.Path:
         labels = axis.get_legend_handles_labels()[1]
         axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02), ncol=1 + (len(labels) - 1) // LEGEND_ROWS)
     axes[-1, 0].set_xlabel("time (s)")
-    figure.savefig(out, dpi=110)
+    save(figure, out)
     plt.close(figure)
     return pathlib.Path(out)
 
@@ -203,7 +216,7 @@ def fit(data, out) -> pathlib.Path:
         top.set(title=f"{test['name']} ({test['mode']})", ylabel="nominal stress (kPa)")
         low.set(xlabel="stretch", ylabel="fit - measured (kPa)")
         top.legend()
-    figure.savefig(out, dpi=110)
+    save(figure, out)
     plt.close(figure)
     return pathlib.Path(out)
 
@@ -237,7 +250,7 @@ def reach(data, out) -> pathlib.Path:
                       color=colour)
     axis.set(xlabel=f"{'xy'[aside]} (cm)", ylabel="z (cm)", aspect="equal")
     axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02))
-    figure.savefig(out, dpi=110)
+    save(figure, out)
     plt.close(figure)
     return pathlib.Path(out)
 
@@ -273,7 +286,7 @@ def plan(data, out) -> pathlib.Path:
     end.set(xlabel="time (s)", title=f"at the end {100 * content['tip_error_m']:.2g} cm, "
                                      f"{100 * content['tip_speed_m_s']:.2g} cm/s")
     end.legend()
-    figure.savefig(out, dpi=110)
+    save(figure, out)
     plt.close(figure)
     return pathlib.Path(out)
 
@@ -328,7 +341,7 @@ def brace(data, out) -> pathlib.Path:
                        label=key.replace("_", " "))
     error.set(xlabel="time disturbed (s)", ylabel="tip from goal (mm)")
     error.legend()
-    figure.savefig(out, dpi=110)
+    save(figure, out)
     plt.close(figure)
     return pathlib.Path(out)
 
@@ -366,7 +379,7 @@ def identify(data, out) -> pathlib.Path:
         upper.set(title=f"{record['name']} ({kind}): NRMSE {100 * record['nrmse']:.2g} %", ylabel="x (cm): dots seen")
         lower.set(xlabel="time (s)", ylabel="distance of prediction (mm)")
     axes[1, 0].legend()
-    figure.savefig(out, dpi=110)
+    save(figure, out)
     plt.close(figure)
     return pathlib.Path(out)
 
@@ -405,6 +418,11 @@ def main(words: list[str]) -> int:
     except ImportError as missing:
         print(f"sinew: error: plots need matplotlib: {missing}; apt-get install python3-matplotlib", file=sys.stderr)
         return 2
+    except OSError as problem:
+        if problem.errno not in (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EFBIG):
+            raise
+        print(f"sinew: error: {words[2]}: {problem.strerror}; check that the disk is not full [recording-failed]", file=sys.stderr)
+        return 1
     print(f"drew {path}")
     return 0
 

@@ -70,15 +70,26 @@ Array copy(const VectorX& vector);
 Array copy(const MatrixX& matrix);
 Array copy(const Points& points);
 
+/// The same array, which raises ValueError when it is written to.
+template <typename Numbers>
+Numbers read_only(Numbers array) {
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
+
+/// Copies the present value of an attribute, such as a position. Writing to it changes nothing in
+/// the simulation and hence raises ValueError.
+template <typename Matrix>
+Array reading(const Matrix& matrix) {
+  return read_only(copy(matrix));
+}
+
 /// A NumPy view of (rows, columns) numbers. It keeps `owner`, to which the numbers belong, alive.
 template <typename Scalar>
 py::array view(const Scalar* data, py::ssize_t rows, py::ssize_t columns, const py::object& owner,
                bool writable = false) {
   py::array_t<Scalar> array({rows, columns}, data, owner);
-  if (!writable) {
-    py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
-  }
-  return array;
+  return writable ? array : read_only(array);
 }
 
 }  // namespace sinew::python

@@ -71,6 +71,9 @@ void tell(const Actuator& self, const char* what, const py::object& value) {
                 fmt::format("a tension of {:g} N would push", signal.value(0.0)),
                 "give zero or more; a cable can only pull");
   }
+  if (std::string_view(model(self).quantity(*kind).unit) == "Pa") {
+    self.session->note_pressure(place(self, what), signal);
+  }
   const Session::Use use(*self.session);
   self.session->simulation().command(self.index, {*kind, signal});
 }
@@ -265,14 +268,14 @@ void bind_measures(py::class_<Actuator>& type) {
             const constraint::Cable& found = cable(self, "tensions");
             const Session::Use use(*self.session);
             const auto values = found.tensions(self.session->simulation().efforts());
-            return Array(static_cast<py::ssize_t>(values.size()), values.data());
+            return read_only(Array(static_cast<py::ssize_t>(values.size()), values.data()));
           },
           "(n - 1,) ndarray: tension of every segment of a cable, starting at the pull point (N). "
           "They differ by the friction at the points between; the last one acts on the fixed end.")
       .def_property_readonly(
           "points",
           of_cable("points",
-                   [](const Cable& c, const Configuration& now) { return copy(c.points(now)); }),
+                   [](const Cable& c, const Configuration& now) { return reading(c.points(now)); }),
           "(n, 3) ndarray: present points of a cable, the pull point first (m).")
       .def_property_readonly("limits", &limits,
                              "dict: Limits of the effort ('tension', 'force' or 'pressure') and of "

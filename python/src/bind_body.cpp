@@ -62,7 +62,7 @@ py::array points_view(const Body& self, const Points& points, bool writable = fa
   // view.
   const bool few = mechanics::as<const mechanics::HasCoordinates>(body(self)) != nullptr ||
                    mechanics::as<const mechanics::HasPose>(body(self)) != nullptr;
-  if (few) return copy(points);
+  if (few) return reading(points);
   return view(points.data(), points.rows(), 3, py::cast(self.session), writable);
 }
 
@@ -103,7 +103,7 @@ Array internal_forces(const Body& self, const py::object& positions) {
       forces(nodes[i], c) = assembly.forces()[3 * i + static_cast<std::size_t>(c)];
     }
   }
-  return copy(forces);
+  return reading(forces);
 }
 
 // Converts the stored lower blocks to a full matrix in scipy's block compressed row format.
@@ -233,14 +233,14 @@ while another thread steps. Copy it to keep a moment: `body.positions.copy()`.)"
           "coordinates",
           [](const Body& self) {
             const Session::Use use(*self.session);
-            return copy(arm(self).coordinates());
+            return reading(arm(self).coordinates());
           },
           "(coordinates,) ndarray: angles of a constant-curvature arm (rad; extensions m).")
       .def_property_readonly(
           "rates",
           [](const Body& self) {
             const Session::Use use(*self.session);
-            return copy(arm(self).rates());
+            return reading(arm(self).rates());
           },
           "(coordinates,) ndarray: rates of the coordinates (rad/s).")
       .def_property_readonly(
@@ -295,7 +295,7 @@ such as the dent around a point load.
           "load_forces",
           [](const Body& self) {
             const Session::Use use(*self.session);
-            return copy(fem::of_elements<mechanics::TakesLoads>(body(self)).load_forces());
+            return reading(fem::of_elements<mechanics::TakesLoads>(body(self)).load_forces());
           },
           "(n, 3) ndarray: forces of the scene's loads on all nodes (N) in the last step.");
 }
@@ -356,7 +356,7 @@ void bind_mesh_of(py::class_<Body>& type) {
           },
           "float: total mass (kg).")
       .def_property_readonly(
-          "node_masses", [](const Body& self) { return copy(elements(self).lumped_mass()); },
+          "node_masses", [](const Body& self) { return reading(elements(self).lumped_mass()); },
           "(n,) ndarray: mass lumped at every node (kg).")
       .def_property_readonly(
           "volume", [](const Body& self) { return elements(self).volume(); },
@@ -435,7 +435,7 @@ void bind_pose(py::class_<Body>& type) {
           "position",
           [](const Body& self) {
             const Session::Use use(*self.session);
-            return copy(rigid(self, "position").origin());
+            return reading(rigid(self, "position").origin());
           },
           "(3,) ndarray: position of a rigid body's frame (m). Raises Error(wrong-type) for "
           "deformable bodies.")
@@ -443,7 +443,7 @@ void bind_pose(py::class_<Body>& type) {
           "rotation",
           [](const Body& self) {
             const Session::Use use(*self.session);
-            return copy(VectorX(unit_quaternion(rigid(self, "rotation").axes())));
+            return reading(VectorX(unit_quaternion(rigid(self, "rotation").axes())));
           },
           "(4,) ndarray: rotation of its frame, a unit quaternion w, x, y, z with w >= 0. Raises "
           "as `position`.")
@@ -454,7 +454,7 @@ void bind_pose(py::class_<Body>& type) {
             const mechanics::HasPose& own = rigid(self, "velocity");
             VectorX both(6);
             both << own.linear_velocity(), own.angular_velocity();
-            return copy(both);
+            return reading(both);
           },
           "(6,) ndarray: velocity of its centre of mass (m/s), then angular velocity in world axes "
           "(rad/s). Raises as `position`.")
@@ -462,14 +462,14 @@ void bind_pose(py::class_<Body>& type) {
           "centre_of_mass",
           [](const Body& self) {
             const Session::Use use(*self.session);
-            return copy(rigid(self, "centre_of_mass").centre_of_mass());
+            return reading(rigid(self, "centre_of_mass").centre_of_mass());
           },
           "(3,) ndarray: position of its centre of mass (m). Raises as `position`.")
       .def_property_readonly(
           "inertia",
           [](const Body& self) {
             rigid(self, "inertia");
-            return copy(Points(shape(self)->own_inertia()));
+            return reading(Points(shape(self)->own_inertia()));
           },
           "(3, 3) ndarray: inertia about the centre of mass, in the axes of its frame (kg m^2). "
           "Raises as `position`.");

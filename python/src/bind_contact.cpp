@@ -36,7 +36,7 @@ Array vectors(const Contact& self, Vector3 sim::ContactPoint::*member) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     result.row(static_cast<Eigen::Index>(k)) = (all[k].*member).transpose();
   }
-  return copy(result);
+  return reading(result);
 }
 
 /// An array (n,) with one number of every point.
@@ -46,7 +46,7 @@ Array numbers(const Contact& self, double sim::ContactPoint::*member) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     result[static_cast<Eigen::Index>(k)] = all[k].*member;
   }
-  return copy(result);
+  return reading(result);
 }
 
 py::list states(const Contact& self) {
@@ -64,18 +64,18 @@ py::object surface(const Contact& self) {
   const collision::Shape& shape = dynamic_cast<const constraint::ShapeContact&>(contact).surface();
   py::dict described, result;
   if (const auto* plane = std::get_if<constraint::Plane>(&shape)) {
-    described["point"] = copy(plane->point);
-    described["normal"] = copy(plane->normal);
+    described["point"] = reading(plane->point);
+    described["normal"] = reading(plane->normal);
     result["plane"] = described;
   } else if (const auto* sphere = std::get_if<constraint::Sphere>(&shape)) {
-    described["centre"] = copy(sphere->centre);
+    described["centre"] = reading(sphere->centre);
     described["radius"] = sphere->radius;
     result["sphere"] = described;
   } else {
     const auto& capsule = std::get<constraint::Capsule>(shape);
     Points ends(2, 3);
     ends << capsule.from.transpose(), capsule.to.transpose();
-    described["ends"] = copy(ends);
+    described["ends"] = reading(ends);
     described["radius"] = capsule.radius;
     result["capsule"] = described;
   }
@@ -84,7 +84,7 @@ py::object surface(const Contact& self) {
 
 void bind_sums(py::class_<Contact>& type) {
   type.def_property_readonly(
-          "force", [](const Contact& self) { return copy(resultant(self).force); },
+          "force", [](const Contact& self) { return reading(resultant(self).force); },
           "(3,) ndarray: force on the body in the last step, summed over all points (N).")
       .def_property_readonly(
           "normal_force", [](const Contact& self) { return resultant(self).normal_force; },

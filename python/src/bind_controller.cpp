@@ -196,7 +196,7 @@ Controller make(const std::shared_ptr<Session>& session, const py::object& targe
 py::object get_target(const Targets& self, const std::string& name) {
   const int task = task_of(self.controller, name);
   const auto& target = law(self.controller).settings().tasks[static_cast<std::size_t>(task)].target;
-  if (target.end_time() == 0.0) return copy(target.at(0.0));
+  if (target.end_time() == 0.0) return reading(target.at(0.0));
   return py::cast(target);
 }
 
@@ -398,7 +398,7 @@ void bind_results(py::class_<Controller>& type) {
           "str: with 'limits-conflict', which limits of which actuators contradict each other; "
           "with 'holding', which sensors are silent; else empty.")
       .def_property_readonly(
-          "efforts", guarded([](const TargetController& law) { return copy(law.efforts()); }),
+          "efforts", guarded([](const TargetController& law) { return reading(law.efforts()); }),
           "(k,) ndarray: latest efforts (N), for a closed loop the present ones, in the order of "
           "`actuators`. A copy.")
       .def_property_readonly("actuators", &actuator_names,

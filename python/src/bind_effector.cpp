@@ -24,7 +24,7 @@ bool is_orientation(const Effector& self) {
 
 Array value(const Effector& self) {
   const Session::Use use(*self.session);
-  return copy(self.session->simulation().effector_value(self.index));
+  return reading(self.session->simulation().effector_value(self.index));
 }
 
 Array value_of(const Effector& self, bool orientation) {
@@ -43,7 +43,7 @@ Array velocity(const Effector& self) {
   const Session::Use use(*self.session);
   const sim::Simulation& simulation = self.session->simulation();
   if (const auto* point = dynamic_cast<const constraint::PointEffector*>(&model(self))) {
-    return copy(simulation.configuration().velocity(point->point()));
+    return reading(simulation.configuration().velocity(point->point()));
   }
   const auto& pattern = self.session->model().rows();
   Vector3 turn = Vector3::Zero();
@@ -55,7 +55,7 @@ Array velocity(const Effector& self) {
           simulation.configuration().velocity(pattern.site[entry]));
     }
   }
-  return copy(turn);
+  return reading(turn);
 }
 
 Array directions(const Effector& self) {
@@ -64,7 +64,7 @@ Array directions(const Effector& self) {
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
     points.row(i) = rows[static_cast<std::size_t>(i)].transpose();
   }
-  return copy(points);
+  return reading(points);
 }
 
 }  // namespace
@@ -77,11 +77,12 @@ void bind_effector(py::module_& module) {
           "str: name in the scene.")
       .def_property_readonly(
           "position", [](const Effector& self) { return value_of(self, false); },
-          "(3,) ndarray: present position of the point, or of the mean of the points (m). A copy.")
+          "(3,) ndarray: present position of the point, or of the mean of the points (m). A "
+          "read-only copy.")
       .def_property_readonly(
           "rotation", [](const Effector& self) { return value_of(self, true); },
           "(3,) ndarray: rotation vector of an orientation effector relative to rest (rad). A "
-          "copy.")
+          "read-only copy.")
       .def_property_readonly("velocity", &velocity,
                              "(3,) ndarray: velocity (m/s), or angular velocity of an orientation "
                              "effector (rad/s); zero in quasi-static runs.")

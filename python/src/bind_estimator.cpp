@@ -51,7 +51,7 @@ py::dict unknowns(const Estimator& self, sim::Unknown::Kind kind, Get get) {
 
 py::dict forces(const Estimator& self) {
   return unknowns(self, sim::Unknown::Kind::force,
-                  [](const VectorX& own) { return copy(Vector3(own)); });
+                  [](const VectorX& own) { return reading(Vector3(own)); });
 }
 
 py::dict efforts(const Estimator& self) {
@@ -94,19 +94,19 @@ void bind_estimator(py::module_& module) {
                              "dict of float: the estimate of each unknown stiffness, as a factor "
                              "of the body's moduli in the scene.")
       .def_property_readonly(
-          "mean", of_estimator([](const sim::Estimator& one) { return copy(one.mean()); }),
+          "mean", of_estimator([](const sim::Estimator& one) { return reading(one.mean()); }),
           "(n,) ndarray: the estimate of all components (N or Pa; of a stiffness, the logarithm of "
           "the factor).")
       .def_property_readonly(
-          "std", of_estimator([](const sim::Estimator& one) { return copy(one.deviation()); }),
+          "std", of_estimator([](const sim::Estimator& one) { return reading(one.deviation()); }),
           "(n,) ndarray: standard deviations of the components (N or Pa; of a stiffness, of the "
           "logarithm, about the relative standard deviation of the factor).")
       .def_property_readonly(
           "covariance",
-          of_estimator([](const sim::Estimator& one) { return copy(one.covariance()); }),
+          of_estimator([](const sim::Estimator& one) { return reading(one.covariance()); }),
           "(n, n) ndarray: covariance of the components, in products of their units.")
       .def_property_readonly("singular_values", of_estimator([](const sim::Estimator& one) {
-                               return copy(one.observability().singular_values);
+                               return reading(one.observability().singular_values);
                              }),
                              "(n,) ndarray, descending: information of one sample of each sensor "
                              "along n directions, relative to the prior; for a robot with inertia, "

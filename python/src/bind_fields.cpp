@@ -1,4 +1,6 @@
 // Binds tensors, fields and reactions of elements and nodes.
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "sinew/fem/element_fields.hpp"
@@ -9,6 +11,7 @@
 #include "sinew/fem/solid_elements.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 #include "sinew/sim/world.hpp"
 
 #include "arrays.hpp"
@@ -60,6 +63,24 @@ Array nodal_field(const Body& self, const std::string& field) {
   return numbers(mean(fem::element_field(body(self), fem::element_field_of(field))));
 }
 
+// A field of a recorded moment: at given positions, at rest, as the view computes it.
+Array nodal_field_at(const Body& self, const std::string& field, const py::object& positions) {
+  const Points at =
+      to_points(positions, "nodal_field_at(positions)", "m", body(self).positions().rows());
+  const Session::Use use(*self.session);
+  sim::Simulation& simulation = self.session->simulation();
+  const sim::State before = simulation.state();
+  sim::State shown = before;
+  std::vector<double>& own = shown.bodies[static_cast<std::size_t>(self.index)];
+  std::ranges::fill(own, 0.0);
+  std::copy_n(at.data(), at.size(), own.begin());
+  simulation.restore(shown);
+  const fem::NodalMean mean(elements(self));
+  const Array result = numbers(mean(fem::element_field(body(self), fem::element_field_of(field))));
+  simulation.restore(before);
+  return result;
+}
+
 // Averages element values (m, ...) to node values (n, ...).
 py::array nodal_means(const Body& self, const py::array_t<double, py::array::c_style>& values) {
   const auto count = fem::ElementList(elements(self).mesh()).count();
@@ -95,6 +116,7 @@ void bind_fields(py::module_& module, py::class_<Body>& type) {
     }
     return all;
   });
+  type.def("_nodal_field_at", &nodal_field_at, py::arg("field"), py::arg("positions"));
   type.def_property_readonly(
           "deformation_gradients",
           of_elements([](const fem::ElementStates& s) { return tensors(s.deformation); }),

@@ -6,6 +6,7 @@
 #include "sinew/control/high_rate_loop.hpp"
 #include "sinew/control/snapshot.hpp"
 #include "sinew/control/udp_device.hpp"
+#include "sinew/core/whole.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -57,11 +58,11 @@ HighRateSettings to_settings(const py::dict& given) {
     return HandRow{at(0), at(1)};
   });
   settings.sensors = to_rows<SensorRow>(table("sensors"), [](const auto& at) {
-    return SensorRow{static_cast<int>(at(0)), at(1)};
+    return SensorRow{whole<int>(at(0)), at(1)};
   });
   settings.tasks = to_rows<TaskRow>(table("tasks"), [](const auto& at) {
-    return TaskRow{static_cast<int>(at(0)), at(1) != 0.0 ? TaskKind::effort : TaskKind::motion,
-                   at(2), at(3) != 0.0};
+    return TaskRow{whole<int>(at(0)), at(1) != 0.0 ? TaskKind::effort : TaskKind::motion, at(2),
+                   at(3) != 0.0};
   });
   settings.observed = given["observed"].cast<int>();
   settings.max_contacts = given["max_contacts"].cast<int>();

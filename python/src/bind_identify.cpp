@@ -1,5 +1,13 @@
 // Binds the identification of parameters of any simulation, of drive cylinders and of actuators.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "sinew/identify/actuator_fit.hpp"
 #include "sinew/identify/cylinder_fit.hpp"
@@ -33,9 +41,85 @@ Parameter to_parameter(const std::string& name, const py::handle& value) {
   return parameter;
 }
 
+// Refuses measurements that are missing: they would drop out of the fit without a word.
+void require_measured(const VectorX& data) {
+  const Eigen::Index missing = data.array().isNaN().count();
+  if (missing == 0) return;
+  Eigen::Index first = 0;
+  while (!std::isnan(data[first])) ++first;
+  throw Error(
+      ErrorKind::not_finite, {.item = "fit(measured)"},
+      fmt::format("{} of {} measurements are nan, the first is number {}, row by row from 0",
+                  missing, data.size(), first),
+      "leave them out, or give allow_missing=True to fit the others");
+}
+
+// Prints the progress of a fit, and ends it at a time limit.
+class FitWatch {
+ public:
+  FitWatch(const py::object& limit, const py::object& progress,
+           const std::vector<Parameter>& parameters)
+      : parameters_(parameters) {
+    if (!limit.is_none()) {
+      limit_ = to_number(limit, "fit(time_limit)", "s");
+      if (!(limit_ > 0.0)) {
+        throw Error(ErrorKind::out_of_range, {.item = "fit(time_limit)"},
+                    fmt::format("the limit is {:g} s", limit_), "give a time above 0 s");
+      }
+    }
+    if (py::isinstance<py::function>(progress)) {
+      call_ = progress;
+    } else {
+      prints_ = progress.is_none() ? isatty(STDERR_FILENO) != 0 : py::cast<bool>(progress);
+    }
+  }
+  ~FitWatch() {
+    if (printed_) fmt::print(stderr, "\n");
+  }
+  FitWatch(const FitWatch&) = delete;
+  FitWatch& operator=(const FitWatch&) = delete;
+
+  bool proceed(const FitProgress& now) {
+    const auto time = std::chrono::steady_clock::now();
+    if (call_) (*call_)(now.evaluations, now.cost, by_name(now.values));
+    if (prints_ && time - last_ >= std::chrono::seconds(1)) {
+      last_ = time;
+      printed_ = true;
+      fmt::print(stderr, "\r\033[Kfit: {} evaluations, lowest cost {:.4g} at {}", now.evaluations,
+                 now.cost, text(now.values));
+      std::fflush(stderr);
+    }
+    return std::chrono::duration<double>(time - begin_).count() < limit_;
+  }
+
+ private:
+  py::dict by_name(const VectorX& values) const {
+    py::dict result;
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+      result[parameters_[static_cast<std::size_t>(k)].name.c_str()] = values[k];
+    }
+    return result;
+  }
+  std::string text(const VectorX& values) const {
+    std::string result;
+    for (Eigen::Index k = 0; k < std::min<Eigen::Index>(values.size(), 4); ++k) {
+      result += fmt::format("{}{} {:.4g}", k == 0 ? "" : ", ",
+                            parameters_[static_cast<std::size_t>(k)].name, values[k]);
+    }
+    return result;
+  }
+
+  const std::vector<Parameter>& parameters_;
+  double limit_ = std::numeric_limits<double>::infinity();
+  std::optional<py::object> call_;
+  bool prints_ = false, printed_ = false;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now(), last_ = begin_;
+};
+
 ParameterFit fit(const py::function& predict, const py::object& measured, const py::dict& given,
                  const std::vector<std::string>& fixed, int starts, std::uint64_t seed,
-                 double confidence, double step, int max_iterations) {
+                 double confidence, double step, int max_iterations, const py::object& time_limit,
+                 const py::object& progress, bool allow_missing) {
   std::vector<Parameter> parameters;
   for (const auto& [key, value] : given) {
     parameters.push_back(to_parameter(py::cast<std::string>(key), value));
@@ -53,6 +137,7 @@ ParameterFit fit(const py::function& predict, const py::object& measured, const 
     return VectorX(Eigen::Map<const VectorX>(by_row.data(), by_row.size()));
   };
   const VectorX data = flat(to_gappy_matrix(measured, "fit(measured)", "(n,) or (n, m)"));
+  if (!allow_missing) require_measured(data);
   VectorX scales(static_cast<Eigen::Index>(parameters.size()));
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const Parameter& p = parameters[k];
@@ -76,8 +161,13 @@ ParameterFit fit(const py::function& predict, const py::object& measured, const 
       throw Error(ErrorKind::diverged, {.item = "fit(predict)"}, "the run failed");
     }
   };
+  FitWatch watch(time_limit, progress, parameters);
   const ParameterFitSettings settings{
-      .starts = starts, .seed = seed, .confidence = confidence, .max_iterations = max_iterations};
+      .starts = starts,
+      .seed = seed,
+      .confidence = confidence,
+      .max_iterations = max_iterations,
+      .proceed = [&](const FitProgress& now) { return watch.proceed(now); }};
   return fit_parameters(with_differences(data.size(), call, scales, step), data, parameters,
                         settings);
 }
@@ -218,13 +308,17 @@ void bind_identify(py::module_& module) {
       .def_readonly("degrees_of_freedom", &ParameterFit::degrees_of_freedom, "int.")
       .def_readonly("iterations", &ParameterFit::iterations, "int: iterations of the best start.")
       .def_readonly("converged", &ParameterFit::converged, "bool.")
+      .def_readonly("stopped", &ParameterFit::stopped,
+                    "bool: whether the time limit ended the fit, at the best parameters so far.")
       .def("__str__", [](const ParameterFit& self) { return fit_table(self); });
 
   module.def(
       "fit", &fit, py::arg("predict"), py::arg("measured"), py::arg("parameters"), py::kw_only(),
       py::arg("fixed") = std::vector<std::string>{}, py::arg("starts") = 1, py::arg("seed") = 1,
       py::arg("confidence") = 0.95, py::arg("step") = 1e-5, py::arg("max_iterations") = 100,
-      R"(fit(predict, measured, parameters, *, fixed=(), starts=1, seed=1, confidence=0.95, step=1e-5, max_iterations=100)
+      py::arg("time_limit") = py::none(), py::arg("progress") = py::none(),
+      py::arg("allow_missing") = false,
+      R"(fit(predict, measured, parameters, *, fixed=(), starts=1, seed=1, confidence=0.95, step=1e-5, max_iterations=100, time_limit=None, progress=None, allow_missing=False)
 --
 
 Fits named parameters of any simulation by bounded least squares, with derivatives by central differences.
@@ -235,7 +329,7 @@ predict : callable
     Takes a dict of parameters by name and returns an array of the shape of `measured`. A
     sinew.RunError rejects these parameters; any other exception ends the fit.
 measured : (n,) or (n, m)
-    nan for missing values.
+    Missing values are nan, with `allow_missing`.
 parameters : dict
     By name: (start, lower, upper), or a start without bounds.
 fixed : list of str
@@ -248,6 +342,14 @@ confidence : float
 step : float
     Step of the differences relative to the start of each parameter. Choose it larger for noisy simulations.
 max_iterations : int
+time_limit : float, optional
+    s. The fit ends after the prediction that exceeds it, at the best parameters so far; `stopped` is then true. The
+    intervals need two more predictions for each parameter.
+progress : bool or callable, optional
+    Whether to print the lowest cost and its parameters every second; by default if standard error is a terminal. A
+    callable gets the number of evaluations, the lowest cost, and its parameters by name after each evaluation.
+allow_missing : bool
+    Whether measurements may be nan, which are left out of the fit.
 
 Returns
 -------
@@ -256,7 +358,8 @@ ParameterFit
 Raises
 ------
 Error
-    contradictory-limits, out-of-range, wrong-length, too-few-points, not-converged.)");
+    contradictory-limits, out-of-range, wrong-length, too-few-points, not-converged; not-finite: a
+    measurement is nan.)");
   module.def(
       "nrmse",
       [](const py::object& predicted, const py::object& measured) {

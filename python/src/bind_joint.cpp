@@ -85,11 +85,11 @@ void bind_joint(py::module_& module) {
           "float: displacement of a slider or cylindrical joint: the second body relative to the "
           "first along the axis (m). 0 at the start. Raises AttributeError for other joints.")
       .def_property_readonly(
-          "force", [](const Joint& self) { return copy(load(self).force); },
+          "force", [](const Joint& self) { return reading(load(self).force); },
           "(3,) ndarray: constraint force on the second body in the last step (N), without motors, "
           "limits and friction.")
       .def_property_readonly(
-          "moment", [](const Joint& self) { return copy(load(self).moment); },
+          "moment", [](const Joint& self) { return reading(load(self).moment); },
           "(3,) ndarray: constraint moment about `centre` on the second body (N m).")
       .def_property_readonly(
           "limit_torque", [](const Joint& self) { return limit_effort(self, 0, "limit_torque"); },
@@ -107,7 +107,7 @@ void bind_joint(py::module_& module) {
           "body in the last step, positive in the direction of a growing angle or displacement; it "
           "opposes the motion. 0 without friction.")
       .def_property_readonly(
-          "centre", [](const Joint& self) { return copy(load(self).centre); },
+          "centre", [](const Joint& self) { return reading(load(self).centre); },
           "(3,) ndarray: present position of the joint on its second body, for a weld the mean of "
           "its points (m).")
       .def_property_readonly(

@@ -38,14 +38,14 @@ void bind_mass(py::module_& module) {
           "position",
           [](const PointMass& self) {
             const Session::Use use(*self.session);
-            return copy(carrier(self).position(model(self).point));
+            return reading(carrier(self).position(model(self).point));
           },
           "(3,) ndarray: present position (m). A copy.")
       .def_property_readonly(
           "velocity",
           [](const PointMass& self) {
             const Session::Use use(*self.session);
-            return copy(carrier(self).velocity(model(self).point));
+            return reading(carrier(self).velocity(model(self).point));
           },
           "(3,) ndarray: present velocity (m/s). A copy.")
       .def("__repr__", [](const PointMass& self) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/quantity.hpp"
+#include "sinew/core/whole.hpp"
 #include "sinew/mesh/quality.hpp"
 #include "sinew/mesh/read.hpp"
 #include "sinew/mesh/refine.hpp"
@@ -59,7 +60,7 @@ std::array<int, 3> to_cells(const py::handle& value) {
       throw Error(ErrorKind::out_of_range, {.item = "block(cells)"},
                   fmt::format("{:g} is not a number of cells", count), "give whole numbers from 1");
     }
-    counts[i] = static_cast<int>(count);
+    counts[i] = whole<int>(count);
   }
   return counts;
 }

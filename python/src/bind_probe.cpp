@@ -26,12 +26,12 @@ py::object value(const Probe& self) {
   const std::vector<double> values = self.session->simulation().probe_values(self.index);
   if (values.size() == 1 || is_line(self)) return py::float_(values.front());
   const auto count = static_cast<Eigen::Index>(values.size());
-  return copy(VectorX(Eigen::Map<const VectorX>(values.data(), count)));
+  return reading(VectorX(Eigen::Map<const VectorX>(values.data(), count)));
 }
 
 Array positions(const Probe& self) {
   const Session::Use use(*self.session);
-  return copy(model(self).marks(self.session->simulation().configuration()));
+  return reading(model(self).marks(self.session->simulation().configuration()));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/core/heading.hpp"
 #include "sinew/core/quantity.hpp"
 
 #include "bindings.hpp"
@@ -38,6 +39,17 @@ py::tuple quantity(const std::string& text) {
 }  // namespace
 
 void bind_quantity(py::module_& module) {
+  module.def(
+      "_heading",
+      [](const std::string& text) {
+        const Heading heading = parse_heading(text);
+        return py::make_tuple(heading.name, heading.unit);
+      },
+      py::arg("text"), R"(_heading(text)
+--
+
+Name and unit of the heading of a table, 'x [mm]' or 'x (mm)': ('x', 'mm'); None without a unit.
+)");
   module.def("_quantity", &quantity, py::arg("text"),
              R"(_quantity(text)
 --

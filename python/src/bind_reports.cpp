@@ -154,17 +154,17 @@ void bind_linearisation(py::module_& module) {
       "`rows`.")
       .def_readonly("rows", &sim::Linearisation::rows, "list of str: name of every row.")
       .def_property_readonly(
-          "W", [](const sim::Linearisation& self) { return copy(self.compliance); },
+          "W", [](const sim::Linearisation& self) { return reading(self.compliance); },
           "(rows, rows) ndarray: compliance, m/N (rad/N in rows of orientations). Symmetric.")
       .def_property_readonly(
-          "delta", [](const sim::Linearisation& self) { return copy(self.delta); },
+          "delta", [](const sim::Linearisation& self) { return reading(self.delta); },
           "(rows,) ndarray: present motions of the rows: pull of a cable, coordinate of an "
           "effector (m).")
       .def_property_readonly(
-          "delta_free", [](const sim::Linearisation& self) { return copy(self.delta_free); },
+          "delta_free", [](const sim::Linearisation& self) { return reading(self.delta_free); },
           "(rows,) ndarray: motions without efforts in the linearisation (m).")
       .def_property_readonly(
-          "effort", [](const sim::Linearisation& self) { return copy(self.effort); },
+          "effort", [](const sim::Linearisation& self) { return reading(self.effort); },
           "(rows,) ndarray: present efforts (N); 0 for effectors.")
       .def_readonly("residual", &sim::Linearisation::residual,
                     "float: norm of the unbalanced forces at this state (N).")

@@ -29,7 +29,7 @@ const sim::SensorModel& model(const Sensor& self) {
 py::object to_python(std::span<const double> values) {
   if (values.size() == 1) return py::float_(values.front());
   const auto count = static_cast<Eigen::Index>(values.size());
-  return copy(VectorX(Eigen::Map<const VectorX>(values.data(), count)));
+  return reading(VectorX(Eigen::Map<const VectorX>(values.data(), count)));
 }
 
 // Converts a number or an array (size,), which may be NaN.

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/core/whole.hpp"
 #include "sinew/inverse/controller_observables.hpp"
 #include "sinew/sim/observables.hpp"
 
@@ -124,11 +125,11 @@ std::int64_t count_steps(const Session& session, const py::object& duration) {
                 fmt::format("the duration is {:g} s", seconds), "give zero or more");
   }
   const double steps = std::round(seconds / session.model().step().time_step);
-  if (steps > 1e9) {
+  if (!(steps <= 1e9)) {
     throw Error(ErrorKind::out_of_range, {.item = "run(duration)"},
                 fmt::format("{:g} s are {:g} steps", seconds, steps), "give a shorter duration");
   }
-  return static_cast<std::int64_t>(steps);
+  return whole<std::int64_t>(steps);
 }
 
 void advance_and_record(Session& session, std::int64_t steps, std::int64_t every,
@@ -148,6 +149,7 @@ void advance_and_record(Session& session, std::int64_t steps, std::int64_t every
       told = Clock::now();
     }
   }
+  if (steps > 1) session.warn_units();
 }
 
 }  // namespace

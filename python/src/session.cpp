@@ -1,11 +1,14 @@
 #include "session.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 #include <pybind11/pybind11.h>
 
+#include "sinew/core/usual_range.hpp"
 #include "sinew/fem/has_material.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
@@ -121,6 +124,8 @@ void Session::advance(std::int64_t count, sim::OnFailure on_failure) {
   }
   lend_factors(simulation_);
   warn();
+  constexpr std::int64_t kMany = 10;
+  if (count >= kMany) warn_units();
 }
 
 void Session::advance_unlocked(std::int64_t count, const std::function<bool()>& ended) {
@@ -153,7 +158,27 @@ void Session::warn() {
   }
 }
 
+void Session::note_pressure(const std::string& what, const sim::Signal& signal) {
+  constexpr int kSamples = 64;
+  double& largest = pressures_[what].largest;
+  for (int k = 0; k <= kSamples; ++k) {
+    largest = std::max(largest, std::abs(signal.value(signal.end_time() * k / kSamples)));
+  }
+}
+
+void Session::warn_units() {
+  const UsualRange& range = *usual_range(dimension::kPressure);
+  for (auto& [what, told] : pressures_) {
+    if (told.warned || !is_unusual(range, told.largest)) continue;
+    told.warned = true;
+    const std::string message = unusual_notice(range, told.largest, {}, {.item = what}).text();
+    const pybind11::object kind = pybind11::module_::import("sinew.errors").attr("SinewWarning");
+    if (PyErr_WarnEx(kind.ptr(), message.c_str(), 1) != 0) throw pybind11::error_already_set();
+  }
+}
+
 sim::StaticReport Session::solve_static(const sim::StaticSettings& settings) {
+  warn_units();
   const Use use(*this);
   check_loads();
   const sim::Watched watched = look_for_signals(simulation_);

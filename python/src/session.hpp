@@ -108,6 +108,14 @@ class Session {
   void advance_unlocked(std::int64_t count, const std::function<bool()>& ended);
   /// Warns of flagged steps, see advance().
   void warn();
+  /// Keeps a pressure that Python commands, for warn_units(). @param what
+  /// "actuator('air').pressure".
+  /// @param signal Pa.
+  void note_pressure(const std::string& what, const sim::Signal& signal);
+  /// Issues a SinewWarning for each pressure of which all commands so far were far below those of
+  /// robots, such as 30 for 30 kPa. A loop that raises a pressure step by step passes small ones,
+  /// so this is for calls whose result is final: many steps, and equilibria.
+  void warn_units();
   sim::StaticReport solve_static(const sim::StaticSettings& settings);
   /// @param visit called without the GIL.
   sim::Path follow_path(const sim::PathSettings& settings, const std::function<void()>& visit);
@@ -155,6 +163,11 @@ class Session {
     bool warned = false;
   };
   std::map<sim::StepStatus, Flagged> flagged_;  // since the last reset
+  struct Told {
+    double largest = 0.0;  // Pa
+    bool warned = false;
+  };
+  std::map<std::string, Told> pressures_;  // by attribute
   std::atomic<std::int64_t> steps_{0};
   mutable std::atomic<bool> busy_{false};
 };

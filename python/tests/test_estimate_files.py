@@ -33,6 +33,9 @@ def test_units_missing_readings_and_gaps(tmp_path):
     assert record.missing == {"tip.x": 2, "east.tension": 1}
     assert record.gaps == [(0.2, 1.2)]
     assert record.at(1) == {"east.tension": 3.0}
+    record = files.read_readings(write(tmp_path, "time (ms),tip.x (cm),own [furlong]\n0,1,1\n500,2,1\n"), wanted=["tip.x"])
+    np.testing.assert_allclose(record.time, [0.0, 0.5])
+    np.testing.assert_allclose(record.columns["tip.x"], [0.01, 0.02])
 
 
 @pytest.mark.parametrize(("text", "kind", "line"), [
@@ -43,6 +46,9 @@ def test_units_missing_readings_and_gaps(tmp_path):
     ("time,tip.x\n0,1\n,2\n", "not-finite", 3),
     ("time,tip.x\n0,inf\n1,2\n", "not-finite", 2),
     ("time,tip.x [furlongs]\n0,1\n1,2\n", "unknown-unit", 1),
+    ("time [mm],tip.x\n0,1\n1,2\n", "wrong-dimension", 1),
+    ("time,tip.x (kPa)\n0,1\n1,2\n", "wrong-dimension", 1),
+    ("time,air.pressure [mm]\n0,1\n1,2\n", "wrong-dimension", 1),
 ])
 def test_files_that_are_wrong_name_the_line(tmp_path, text, kind, line):
     with pytest.raises(sinew.Error) as caught:

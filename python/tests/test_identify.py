@@ -1,5 +1,7 @@
 """Identification from Python."""
 
+import time
+
 import numpy as np
 import pytest
 import sinew
@@ -93,6 +95,50 @@ def test_errors_of_the_callback_come_through():
     with pytest.raises(sinew.Error) as raised:
         identify.fit(lambda p: [p["a"]] * 2, [1.0, 2.0], {"a": (1.0, 3.0, 2.0)})
     assert raised.value.kind == "contradictory-limits"
+
+
+def test_missing_measurements_are_refused_unless_they_are_meant():
+    def predict(p):
+        return [p["a"], 2 * p["a"], 3 * p["a"]]
+
+    with pytest.raises(sinew.Error) as raised:
+        identify.fit(predict, [1.0, np.nan, 3.0], {"a": 2.0})
+    assert raised.value.kind == "not-finite" and "1 of 3" in str(raised.value) and "number 1" in str(raised.value)
+    fit = identify.fit(predict, [1.0, np.nan, 3.0], {"a": 2.0}, allow_missing=True)
+    assert fit.values["a"] == pytest.approx(1.0) and np.isnan(fit.residual[1]) and not fit.stopped
+
+
+def test_a_time_limit_keeps_the_best_parameters():
+    seen = []
+
+    def predict(p):
+        seen.append(p["a"])
+        time.sleep(0.02)
+        return np.exp(p["a"] * np.linspace(0.0, 2.0, 20))
+
+    measured, told = np.exp(np.linspace(0.0, 2.0, 20)), []
+    fit = identify.fit(predict, measured, {"a": (2.5, 0.0, 5.0)}, time_limit=0.25, progress=lambda *now: told.append(now))
+    assert fit.stopped and not fit.converged
+    assert len(seen) < 25  # about 12 in the time, and two for the intervals
+    assert fit.cost < fit.start_cost
+    assert fit.cost <= min(cost for _, cost, _ in told) * (1 + 1e-12) and fit.values["a"] == told[-1][2]["a"]
+    assert [n for n, _, _ in told] == list(range(1, len(told) + 1))
+    costs = [cost for _, cost, _ in told]
+    assert costs == sorted(costs, reverse=True)
+    with pytest.raises(sinew.Error) as raised:
+        identify.fit(predict, measured, {"a": 1.0}, time_limit=0.0)
+    assert raised.value.kind == "out-of-range"
+
+
+def test_a_fit_prints_its_progress(capfd):
+    def predict(p):
+        time.sleep(0.3)
+        return [p["a"], p["a"] ** 2]
+
+    identify.fit(predict, [2.0, 4.0], {"a": 1.0}, progress=True, time_limit=2.0)
+    assert "lowest cost" in capfd.readouterr().err
+    identify.fit(predict, [2.0, 4.0], {"a": 1.0}, progress=False, time_limit=1.2)
+    assert capfd.readouterr().err == ""
 
 
 def test_cylinder_and_actuator():

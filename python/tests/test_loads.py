@@ -41,7 +41,7 @@ def test_pressure_follows_its_faces():
     sim = scene({"wind": {"type": "pressure", "body": "beam", "surface": {"set": "z_max"}, "pressure": "100 Pa"}})
     sim.step()
     assert total(sim)[2] == pytest.approx(-100 * 0.1 * 0.02, rel=1e-2)  # the beam has bent slightly
-    sim.load("wind").factor = 300.0
+    sim.load("wind").pressure = 300.0
     sim.solve_static()
     # The beam bends down and its top turns forwards, so the pressure pushes backwards with p width (drop of the end).
     positions = np.array(sim.body("beam").positions)
@@ -124,3 +124,35 @@ def test_bad_loads_are_told_with_their_place():
     with pytest.raises(sinew.Error) as caught:
         scene({}).load("sea")
     assert caught.value.kind == "unknown-name"
+
+
+def test_loads_have_their_own_quantities():
+    sim = scene({"wind": {"type": "pressure", "body": "beam", "surface": {"set": "z_max"}, "pressure": "100 Pa"},
+                 "gust": {"type": "pressure", "body": "beam", "surface": {"set": "z_max"},
+                          "pressure": {"ramp": {"to": "2 kPa", "duration": "1 s"}}},
+                 "point": {"type": "force", "body": "beam", "point": "100 10 10 mm", "force": "0 0.1 0 N"},
+                 "shaker": {"type": "acceleration", "body": "beam", "acceleration": "0 3 0 m/s^2"}})
+    wind, gust, point, shaker = (sim.load(name) for name in ("wind", "gust", "point", "shaker"))
+    assert wind.pressure == 100.0 and wind.factor == 1.0
+    wind.factor = 2
+    assert wind.pressure == 200.0 and wind.factor == 2.0
+    wind.pressure = 50.0
+    assert wind.factor == 0.5
+    gust.pressure = 1e3
+    np.testing.assert_array_equal(point.force, [0, 0.1, 0])
+    point.force = [0, -0.3, 0]
+    np.testing.assert_allclose(point.factor, -3.0, rtol=1e-15)
+    shaker.acceleration = [0, 6.0, 0]
+    np.testing.assert_allclose(shaker.factor, 2.0, rtol=1e-15)
+    sim.step()
+    expected = [0, -0.3 + 6 * 1000 * 0.1 * 0.02 * 0.02, 0]
+    np.testing.assert_allclose(total(sim)[1], expected[1], rtol=1e-6)
+    for act, kind in ((lambda: gust.factor, "wrong-type"), (lambda: setattr(gust, "factor", 2.0), "wrong-type"),
+                      (lambda: point.pressure, "wrong-type"), (lambda: wind.force, "wrong-type"),
+                      (lambda: setattr(point, "force", [0.1, 0, 0]), "out-of-range")):
+        with pytest.raises(sinew.Error) as raised:
+            act()
+        assert raised.value.kind == kind
+    for array in (point.force, shaker.acceleration, sim.body("beam").positions):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1.0

@@ -625,7 +625,7 @@ def test_the_program_draws_runs_and_scenes(pulled, tmp_path):
 @pytest.mark.parametrize("words,kind", [(["none", "--video", "a.webp"], "file-not-found"), (["--video", "a.webp"], "bad-argument"),
                                         (["run", "--video", "a.avi"], "unknown-format"),
                                         (["run", "--video", "a.webp", "--size", "9"], "bad-argument"),
-                                        (["run", "--video", "a.webp", "--field", "pressure"], "not-in-this-version"),
+                                        (["run", "--video", "a.webp", "--field", "presure"], "unknown-name"),
                                         (["--check", "--video", "a.avi"], "unknown-format")], ids=str)
 def test_the_program_says_what_is_wrong(pulled, tmp_path, monkeypatch, capsys, words, kind):
     from sinew.render.__main__ import main

@@ -115,8 +115,13 @@ TEST(DriveRecord, ReadsItsHeader) {
   EXPECT_DOUBLE_EQ(record.input[2], 3.0);
   EXPECT_DOUBLE_EQ(record.output[1], 3e-6);
   const auto parse = [](const char* text) { parse_drive_record(text, "x"); };
+  EXPECT_DOUBLE_EQ(
+      parse_drive_record("time [s],command [mV],volume [ml]\n0,1,2\n1,2,2\n2,3,2\n", "x").input[1],
+      2e-3);
   EXPECT_EQ(kind_of([&] { parse("time [s],command,volume [m]\n0,1,2\n1,1,2\n2,1,2\n"); }),
-            ErrorKind::wrong_columns);
+            ErrorKind::wrong_dimension);
+  EXPECT_EQ(kind_of([&] { parse("time [s],command [units],volume [ml]\n0,1,2\n1,1,2\n2,1,2\n"); }),
+            ErrorKind::unknown_unit);
   EXPECT_EQ(kind_of([&] { parse("time [s],volume [ml]\n0,1\n1,1\n2,1\n"); }),
             ErrorKind::wrong_columns);
   EXPECT_EQ(kind_of([&] { parse("time [s],command,volume [ml]\n0,1,2\n1,1,2\n1,1,2\n2,1,2\n"); }),

@@ -221,7 +221,11 @@ TEST(RubberTest, RefusesWhatItCannotRead) {
   EXPECT_EQ(kind_of([] { parse_rubber_test("stretch,stress\n1,2\n1,2\n1,2\n", "x"); }),
             ErrorKind::wrong_columns);
   EXPECT_EQ(kind_of([] { parse_rubber_test("stretch,stress [m]\n1,2\n1,2\n1,2\n", "x"); }),
-            ErrorKind::wrong_columns);
+            ErrorKind::wrong_dimension);
+  EXPECT_EQ(kind_of([] { parse_rubber_test("strain [mm],stress [Pa]\n1,2\n1,2\n1,2\n", "x"); }),
+            ErrorKind::wrong_dimension);
+  EXPECT_EQ(kind_of([] { parse_rubber_test("strain,stress [mpa]\n1,2\n1,2\n1,2\n", "x"); }),
+            ErrorKind::unknown_unit);
   EXPECT_EQ(kind_of([] { parse_rubber_test("stretch,stress [Pa]\n1,2\n2,2\n", "x"); }),
             ErrorKind::too_few_points);
   EXPECT_EQ(kind_of([] { parse_rubber_test("stretch,stress [Pa]\n0,2\n2,2\n3,3\n", "x"); }),

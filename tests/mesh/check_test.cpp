@@ -255,6 +255,28 @@ TEST(Report, TellsWhatAUserWantsToKnow) {
                           HasSubstr("1000 cm^3"), HasSubstr("defects      none")));
 }
 
+// Products of such lengths overflow, and qualities become nan.
+TEST(Report, NamesNodesThatAreTooFarAway) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double far : {1e13, 1e39, 1e103, 1e155, 1e308, -1e308, kInfinity, -kInfinity,
+                           std::numeric_limits<double>::quiet_NaN()}) {
+    Mesh mesh = one_tetrahedron();
+    mesh.nodes(1, 0) = far;
+    const MeshReport report = describe(mesh, {.unit_given = true});
+    ASSERT_EQ(report.defects.size(), 1U) << far;
+    EXPECT_EQ(report.defects.front().kind, ErrorKind::non_finite_node) << far;
+    EXPECT_THAT(report.defects.front().message, HasSubstr("node 1")) << far;
+    EXPECT_NO_THROW(format_report(report));
+  }
+  for (const double size : {1e-320, 1e-200, 1e-100, 1e-30, 1e3, 1e11}) {
+    Mesh mesh = one_tetrahedron();
+    mesh.nodes *= size;
+    const MeshReport report = describe(mesh, {.unit_given = true});
+    EXPECT_FALSE(std::isnan(report.mean_radius_ratio)) << size;
+    EXPECT_FALSE(format_report(report).empty());
+  }
+}
+
 TEST(Report, DescribesDefectiveMeshesWithoutThrowing) {
   Mesh mesh = two_tetrahedra();
   mesh.nodes(0, 0) = std::numeric_limits<double>::quiet_NaN();

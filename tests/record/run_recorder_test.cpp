@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -494,6 +495,117 @@ TEST_F(RunRecorderTest, AKilledRunIsReadable) {
   ASSERT_GE(run.frames(), 31);
   EXPECT_NEAR(run.times()[30], 0.3, 1e-12);
   EXPECT_EQ(run.positions("beam", 30).rows(), run.rest_mesh("beam").nodes.rows());
+}
+
+TEST_F(RunRecorderTest, ASecondRunIntoTheFolderIsRefused) {
+  sim::Simulation first(beam()), second(beam());
+  const fs::path run = folder_ / "run";
+  {
+    RunRecorder recorder(sim::Observables(first), settings());
+    for (int i = 0; i < 4; ++i) {
+      first.step();
+      recorder.after_step();
+      RecordSettings other = settings();
+      other.scene = "sinew: 2\n";
+      other.vtk = true;
+      EXPECT_EQ(kind_of([&] { RunRecorder(sim::Observables(second), other); }),
+                ErrorKind::file_unwritable);
+    }
+    recorder.finish();
+  }
+  EXPECT_EQ(RunFile(run / "run.h5").frames(), 5);
+  EXPECT_EQ(RunFile(run / "run.h5").scene(), "sinew: 1\n");
+  EXPECT_EQ(lines(run / "run.csv").size(), 6u) << "heading, start, 4 steps";
+  EXPECT_EQ(text(run / "scene.yaml"), "sinew: 1\n");
+  EXPECT_FALSE(fs::exists(run / "run.pvd"));
+  RunRecorder(sim::Observables(second), settings());  // the folder is free again
+  EXPECT_EQ(RunFile(run / "run.h5").frames(), 1);
+}
+
+// The names of all files in a folder.
+std::vector<std::string> files_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+TEST_F(RunRecorderTest, NothingIsLeftBesideTheRecord) {
+  sim::Simulation simulation(beam());
+  const fs::path run = folder_ / "run";
+  fs::create_directories(run / ".sinew-new");  // as after a kill before the first frame
+  std::ofstream(run / ".sinew-new" / "run.h5") << "torn";
+  std::ofstream(run / ".sinew-lock") << "1";
+  std::ofstream(run / "notes.txt") << "mine";
+  record_pull(simulation, settings(), 2);
+  EXPECT_EQ(files_in(run),
+            (std::vector<std::string>{"notes.txt", "run.csv", "run.h5", "scene.yaml"}));
+}
+
+// Runs `action` in a process whose files cannot grow beyond `bytes`, as on a disk that fills up.
+// @return its exit status, of waitpid().
+template <typename Action>
+int with_small_files(rlim_t bytes, const Action& action) {
+  const pid_t child = fork();
+  if (child == 0) {
+    signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{bytes, bytes};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    std::exit(action());  // NOLINT(concurrency-mt-unsafe): HDF5 closes its files at the exit
+  }
+  int status = -1;
+  waitpid(child, &status, 0);
+  return status;
+}
+
+TEST_F(RunRecorderTest, AFullDiskEndsTheRunAndKeepsTheRecord) {
+  sim::Simulation simulation(beam());
+  record_pull(simulation, settings(), 3);
+  const std::string before = text(folder_ / "run" / "run.h5");
+  std::vector<rlim_t> sizes = {0, 100, 2000, 4096, 10000};
+  for (rlim_t size = before.size() / 8; size < 3 * before.size(); size += before.size() / 8) {
+    sizes.push_back(size);
+  }
+  for (const bool vtk : {false, true}) {
+    for (const rlim_t size : sizes) {
+      simulation.reset();
+      record_pull(simulation, settings(), 3);
+      const int status = with_small_files(size, [&] {
+        RecordSettings wanted = settings();
+        wanted.vtk = vtk;
+        return kind_of([&] { record_pull(simulation, wanted, 400); }) == ErrorKind::recording_failed
+                   ? 0
+                   : 1;
+      });
+      EXPECT_TRUE(WIFEXITED(status)) << size << " bytes: signal " << WTERMSIG(status);
+      EXPECT_EQ(WEXITSTATUS(status), 0) << size << " bytes";
+      const RunFile run(folder_ / "run" / "run.h5");
+      EXPECT_GE(run.frames(), 1) << size << " bytes";
+      EXPECT_EQ(run.positions("beam", run.frames() - 1).rows(), run.rest_mesh("beam").nodes.rows());
+      if (size < before.size() / 2) {
+        EXPECT_EQ(run.frames(), 4) << "the older record";
+      }
+    }
+  }
+}
+
+TEST_F(RunRecorderTest, ARunThatIsKilledAtAnyMomentLeavesARecord) {
+  sim::Simulation simulation(beam());
+  record_pull(simulation, settings(), 3);
+  for (int delay = 0; delay < 40; ++delay) {
+    const pid_t child = fork();
+    if (child == 0) {
+      for (;;) RunRecorder(sim::Observables(simulation), settings());
+    }
+    usleep(static_cast<useconds_t>(700 * delay));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    const RunFile run(folder_ / "run" / "run.h5");
+    EXPECT_TRUE(run.frames() == 4 || run.frames() == 1) << run.frames();
+    EXPECT_EQ(run.positions("beam", 0).rows(), run.rest_mesh("beam").nodes.rows());
+  }
 }
 
 TEST_F(RunRecorderTest, OtherFilesAreRefused) {

@@ -188,6 +188,30 @@ TEST(Scene, SignalsTakeAColumnByItsHeading) {
   EXPECT_DOUBLE_EQ(at_half("column: third"), 1.0);
 }
 
+// With or without `column`, and in every spelling, a table means the same.
+TEST(Scene, TablesHaveUnitsInTheirHeadings) {
+  const SceneFolder folder;
+  folder.write("trunk.vtk", "x");
+  folder.write("long_0.csv", "x [mm] y [mm] z [cm]\n0 10 0\n0 10 2.1\n");
+  folder.write("path.csv", "# t [ms],x [mm],y [m],z [cm]\n0,0,0,19\n2000,10,0,19\n");
+  for (const char* pull :
+       {"time [ms],pull [mm]\n0,0\n1000,10\n", "time (s),pull (cm)\n0,0\n1,1\n",
+        "time_ms,pull_mm\n0,0\n1000,10\n", "t [min],pull\n0,0\n1,0.6\n", "0,0\n1,0.01\n"}) {
+    folder.write("pull.csv", pull);
+    const std::string text =
+        edited({{"{displacement: 0 mm}", "{displacement: {file: pull.csv}}"},
+                {"{file: long_0.csv, unit: mm}", "{file: long_0.csv}"},
+                {"{circle: {centre: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}",
+                 "{file: path.csv}"}});
+    const SceneDescription scene = parse_scene_text(text, "s.yaml", folder.path());
+    EXPECT_DOUBLE_EQ(scene.actuators[0].command.signal.value(0.5), 0.005) << pull;
+    EXPECT_LT((scene.controllers[0].tasks[0].target.at(1.0) - Vector3(0.005, 0, 0.19)).norm(),
+              1e-15);
+    const auto& cable = std::get<CableDescription>(scene.actuators[0].own);
+    EXPECT_LT((cable.settings.points.row(1) - Eigen::RowVector3d(0, 0.01, 0.021)).norm(), 1e-15);
+  }
+}
+
 TEST(Scene, PolylinesTakeASpeedOrAPeriod) {
   const SceneDescription scene = parse_edited(
       {{"{circle: {centre: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}",

@@ -1,8 +1,11 @@
 // Recorded states are shown as they were: angles of arms, drives, integrators with history.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <future>
 #include <string>
@@ -202,6 +205,34 @@ TEST_F(Recorded, RunsAreShownWithWhatWasRecorded) {
   };
   EXPECT_DOUBLE_EQ(number("up.displacement_command"), 0.002 * 0.03 / 0.05);
   EXPECT_EQ(number("strain_energy"), energy[2]);
+
+  // The curves of all frames, whichever were shown.
+  std::promise<std::string> bytes;
+  source.fetch("history.bin",
+               [&](std::optional<Download> file) { bytes.set_value(file ? file->bytes : ""); });
+  const std::string history = bytes.get_future().get();
+  std::array<std::uint32_t, 2> head{};
+  ASSERT_GE(history.size(), sizeof(head));
+  std::memcpy(head.data(), history.data(), sizeof(head));
+  ASSERT_EQ(head[0], 11u) << "the start and ten steps";
+  ASSERT_EQ(head[1], signals.size());
+  ASSERT_EQ(history.size(), 8 + 11 * (8 + 4 * signals.size()));
+  const auto in_history = [&](std::string_view key, std::size_t frame_number) {
+    const auto k = static_cast<std::size_t>(std::ranges::find(signals, key, &SignalInfo::key) -
+                                            signals.begin());
+    float value = 0.0F;
+    std::memcpy(&value, history.data() + 8 + 11 * 8 + 4 * (11 * k + frame_number), sizeof(value));
+    return value;
+  };
+  for (std::size_t k = 0; k < 11; ++k) {
+    double time = -1.0;
+    std::memcpy(&time, history.data() + 8 + 8 * k, sizeof(time));
+    EXPECT_NEAR(time, 0.01 * static_cast<double>(k), 1e-12);
+    EXPECT_NEAR(in_history("up.displacement_command", k),
+                0.002 * std::min(0.01 * static_cast<double>(k) / 0.05, 1.0), 1e-9);
+    if (k == 0) continue;
+    EXPECT_EQ(in_history("strain_energy", k), static_cast<float>(energy[k - 1]));
+  }
   source.stop();
 }
 

@@ -8,7 +8,7 @@ import {button, make} from './dom';
 import {JointList} from './joint_list';
 import {Panel} from './panel';
 import {middle, Picked} from './picked';
-import {Plots} from './plots';
+import {decodeHistory, Plots} from './plots';
 import type {Frame, Scene, Status} from './protocol';
 import {Robot3d} from './robot3d';
 import {Viewbar} from './viewbar';
@@ -102,7 +102,7 @@ function setTheme(dark: boolean): void {
   document.documentElement.dataset.theme = dark ? 'dark' : 'light';
   theme.classList.toggle('on', dark);
   robot.theme();
-  if (scene) plots.setScene(scene);
+  if (scene) plots.setScene(scene, mode === 'replay');
 }
 
 function chooseField(name: string | null): void {
@@ -263,6 +263,19 @@ addEventListener('keydown', (event) => {
 
 // --------------------------------------------------------------------------------------- connection
 
+/** Draws the curves of a recorded run. */
+async function fetchHistory(of: typeof scene): Promise<void> {
+  try {
+    const answer = await fetch(`download/history.bin${location.search}`);
+    if (!answer.ok) throw new Error(`${answer.status}`);
+    const recorded = decodeHistory(await answer.arrayBuffer());
+    if (scene === of) plots.take(recorded);
+  } catch (error) {
+    notices.set('history', `The recorded curves cannot be read: ${error}`);
+    alerts();
+  }
+}
+
 const connection = new Connection({
   scene: (next, what) => {
     scene = next;
@@ -285,7 +298,8 @@ const connection = new Connection({
     panel.scene(next, what);
     cover();
     byId('scale').textContent = what === 'gallery' ? '' : `grid ${byId('stage').dataset.cell}`;
-    plots.setScene(next);
+    plots.setScene(next, what === 'replay');
+    if (what === 'replay') void fetchHistory(next);
     if (field !== null) chooseField(field);
   },
   surface: (surface) => robot.bodies.surface(surface),

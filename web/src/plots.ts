@@ -36,24 +36,56 @@ export function equalCurves(columns: number[][]): number[][] {
   return groups;
 }
 
-/** The history of all signals over the last seconds, plotted or not. */
-class History {
-  times: number[] = [];         // s
-  rows: Float64Array[] = [];    // signals at these times
-  marker = NaN;                 // s, the moment to which the run was set back; NaN: none
+/** The signals of all frames of a recorded run; of a long one, of every k-th frame. */
+export interface Recorded {times: Float64Array; columns: Float32Array[]}
 
-  clear(): void {
+/** Decodes the history of a recorded run, see docs/view_protocol.md. */
+export function decodeHistory(buffer: ArrayBuffer): Recorded {
+  const [frames, signals] = new Uint32Array(buffer, 0, 2), begin = 8 + 8 * frames;
+  return {times: new Float64Array(buffer, 8, frames),
+          columns: Array.from({length: signals}, (_, k) => new Float32Array(buffer, begin + 4 * frames * k, frames))};
+}
+
+/** The signals of a run, plotted or not: over the last seconds of a live run, over all of a recorded one. */
+class History {
+  times: ArrayLike<number> = [];            // s
+  private rows: Float64Array[] = [];        // signals at these times, of a live run
+  private columns: Float32Array[] | null = null;  // each signal at these times, of a recorded run
+  marker = NaN;                             // s, the moment that is shown, if it is not the last one; NaN: none
+  recorded = false;                         // whether the run is a recorded one
+  version = 0;                              // changes with the samples
+
+  clear(recorded: boolean): void {
     this.times = [];
     this.rows = [];
+    this.columns = null;
     this.marker = NaN;
+    this.recorded = recorded;
+    ++this.version;
+  }
+
+  /** Takes all of a recorded run at once. */
+  take({times, columns}: Recorded): void {
+    this.times = times;
+    this.columns = columns;
+    ++this.version;
+  }
+
+  /** A signal at all times. */
+  column(signal: number, scale: number): ArrayLike<number> {
+    if (!this.columns) return this.rows.map((signals) => scale * signals[signal]);
+    const values = this.columns[signal] ?? new Float32Array(this.times.length).fill(NaN);
+    return scale === 1 ? values : values.map((x) => scale * x);
   }
 
   // When a run continues from an earlier moment, the samples after that moment are dropped.
   add(frame: Frame): void {
     const past = frame.timeline !== undefined && frame.timeline.shown < frame.timeline.latest;
-    this.marker = past ? frame.time : NaN;
-    const {times, rows} = this;
-    if (past) return;
+    this.marker = past || this.recorded ? frame.time : NaN;
+    // The frames of a recorded run that were visited are no curve: it comes as a whole.
+    if (past || this.recorded) return;
+    const times = this.times as number[], rows = this.rows;
+    ++this.version;
     while (times[times.length - 1] >= frame.time) times.length = rows.length = times.length - 1;
     times.push(frame.time);
     rows.push(frame.signals.slice());
@@ -76,6 +108,7 @@ class Plot {
   private box = make('div', {className: 'plot'});
   private scene: Scene | null = null;
   private equal: number[][] = [];
+  private drawn = {version: -1, marker: NaN};  // what the canvas shows
 
   constructor(private history: History, ...buttons: HTMLElement[]) {
     this.select.onchange = () => this.choose(this.select.value);
@@ -95,6 +128,7 @@ class Plot {
     this.columns = [];
     this.scene?.signals.forEach((s, k) => { if (s.group === group) this.columns.push(k); });
     this.plot?.destroy();
+    this.drawn.version = -1;
     const signals = this.columns.map((k) => this.scene!.signals[k]);
     this.unit = signals[0]?.unit ?? '';
     this.scale = this.unit === 'rad' ? 180 / Math.PI : 1;
@@ -120,8 +154,7 @@ class Plot {
   private ownDash(k: number): number[] | undefined { return k >= COLOURS.length ? [5, 4] : undefined; }
 
   private data(): uPlot.AlignedData {
-    const {times, rows} = this.history;
-    return [times, ...this.columns.map((k) => rows.map((signals) => this.scale * signals[k]))];
+    return [this.history.times, ...this.columns.map((k) => this.history.column(k, this.scale))] as uPlot.AlignedData;
   }
 
   private drawMarker(plot: uPlot, ink: string): void {
@@ -141,8 +174,12 @@ class Plot {
   /** Draws the curves. Those that look equal alternate: the dashes of each lie in the gaps of the others. */
   draw(): void {
     if (!this.plot) return;
-    const data = this.data();
-    this.equal = equalCurves(data.slice(1) as number[][]);
+    const {version, marker} = this.history, {drawn} = this;
+    if (drawn.version === version && Object.is(drawn.marker, marker)) return;
+    this.drawn = {version, marker};
+    if (drawn.version === version) return this.plot.redraw(false);
+    const data = this.data(), stride = Math.ceil(this.history.times.length / SAMPLES);
+    this.equal = equalCurves(data.slice(1).map((values) => Array.from(values as ArrayLike<number>).filter((_, k) => k % stride === 0)));
     this.columns.forEach((_, k) => { this.plot!.series[k + 1].dash = this.ownDash(k); });
     for (const group of this.equal) {
       group.forEach((k, turn) => {
@@ -174,8 +211,9 @@ export class Plots {
     new ResizeObserver(() => this.resize()).observe(section);
   }
 
-  setScene(scene: Scene): void {
-    if (scene !== this.scene) this.history.clear();
+  /** @param recorded whether the scene is that of a recorded run, whose history will come as a whole. */
+  setScene(scene: Scene, recorded: boolean): void {
+    if (scene !== this.scene) this.history.clear(recorded);
     this.scene = scene;
     for (const plot of this.plots) plot.setScene(scene, plot.group);
     this.resize();
@@ -202,6 +240,9 @@ export class Plots {
   told() { return this.plots.map((plot) => plot.told()); }
 
   add(frame: Frame): void { this.history.add(frame); }
+
+  /** Takes the history of a recorded run. */
+  take(recorded: Recorded): void { this.history.take(recorded); }
 
   draw(now: number): void {
     if (now - this.drawn < 100) return;  // ten times a second suffice for the eye

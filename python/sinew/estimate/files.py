@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import math
 import pathlib
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Optional
@@ -13,11 +12,15 @@ from typing import Any, Optional
 import numpy as np
 
 from .. import _core
+from .._whole_files import draft
 from ..errors import Error, Location
 
 __all__ = ["Record", "read_readings", "write_table"]
 
-_HEADING = re.compile(r"^\s*(?P<name>[^\[\]]+?)\s*(\[(?P<unit>[^\]]*)\])?\s*$")
+# SI units of the quantities that names end with; others have any.
+_UNITS = {"time": "s", "sample_time": "s", **dict.fromkeys(("x", "y", "z", "displacement", "length"), "m"),
+          **dict.fromkeys(("rx", "ry", "rz", "angle"), "rad"), **dict.fromkeys(("tension", "force"), "N"),
+          "pressure": "Pa", "torque": "N m", "volume_growth": "m^3"}
 
 
 @dataclass(frozen=True)
@@ -56,20 +59,25 @@ class Record:
         return [(float(self.time[k]), float(self.time[k + 1])) for k in np.flatnonzero(steps > 3.0 * np.median(steps))]
 
 
-def _factor(unit: Optional[str], place: Location) -> float:
+def _factor(name: str, unit: Optional[str], place: Location) -> float:
+    """SI value of the unit of a column."""
     if not unit:
         return 1.0
+    si = _UNITS.get(name.rpartition(".")[2])
     try:
-        return float(_core._quantity(f"1 {unit}")[0])
+        factor, dimension = _core._quantity(f"1 {unit}")
     except Error as error:
-        raise Error(error.kind, place, f"'{unit}' is not a unit", "write one such as mm, N, kPa or rad") from error
+        raise Error(error.kind, place, f"'{unit}' is not a unit", f"write one such as {si or 'mm, N, kPa or rad'}") from error
+    if si is not None and dimension != _core._quantity(f"1 {si}")[1]:
+        raise Error("wrong-dimension", place, f"'{unit}' is no unit of {name}", f"write one such as {si}")
+    return float(factor)
 
 
 def read_readings(path: Any, *, wanted: Optional[Sequence[str]] = None) -> Record:
     """Reads measurements from a CSV file with headings such as "time [s]", "tip.x [mm]", "long_0.tension [N]".
 
-    The names are the same as in run.csv: a recorded run can be read as measurements. Units in brackets are converted; values
-    without a unit are SI. An empty cell, "nan" and "-" mean a missing reading. Text columns are ignored.
+    The names are the same as in run.csv: a recorded run can be read as measurements. Units in brackets or parentheses are
+    converted; values without a unit are SI. An empty cell, "nan" and "-" mean a missing reading. Text columns are ignored.
 
     Parameters
     ----------
@@ -81,7 +89,7 @@ def read_readings(path: Any, *, wanted: Optional[Sequence[str]] = None) -> Recor
     ------
     Error
         file-not-found, malformed-file (ragged rows, no time, nothing to read), wrong-type (a word among numbers),
-        non-monotonic-time, unknown-name, unknown-unit.
+        non-monotonic-time, unknown-name; unknown-unit, wrong-dimension at the heading.
     """
     path = pathlib.Path(path)
     try:
@@ -91,8 +99,8 @@ def read_readings(path: Any, *, wanted: Optional[Sequence[str]] = None) -> Recor
         raise Error("file-not-found", Location(str(path)), error.strerror or "cannot be read", "check the path") from None
     if len(rows) < 2:
         raise Error("malformed-file", Location(str(path)), "there are no readings", "give a heading and a row for each instant")
-    headings = [_HEADING.match(text) for text in rows[0]]
-    names = [match["name"] if match else text.strip() for match, text in zip(headings, rows[0])]
+    headings = [_core._heading(text) for text in rows[0]]
+    names = [name for name, _ in headings]
     if "time" not in names:
         raise Error("malformed-file", Location(str(path), 1), f"no column is 'time': {', '.join(names[:6])}", "add 'time [s]'")
     for name in wanted or ():
@@ -108,7 +116,7 @@ def read_readings(path: Any, *, wanted: Optional[Sequence[str]] = None) -> Recor
         for k in kept:
             columns[names[k]][number] = _number(row[k], names[k], wanted, words, Location(str(path), number + 2, k + 1, names[k]))
     for k in kept:
-        columns[names[k]] *= _factor(headings[k]["unit"] if headings[k] else None, Location(str(path), 1, k + 1, names[k]))
+        columns[names[k]] *= _factor(*headings[k], Location(str(path), 1, k + 1, names[k]))
     time = columns.pop("time")
     _check_time(time, path)
     return Record(time, {name: values for name, values in columns.items() if name not in words}, str(path))
@@ -142,12 +150,9 @@ def _check_time(time: np.ndarray, path: pathlib.Path) -> None:
 
 
 def write_table(path: Any, columns: Mapping[str, np.ndarray]) -> None:
-    """Writes columns with headings such as "time [s]" as CSV. Raises Error (file-unwritable)."""
-    try:
-        with open(path, "w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(columns)
-            cells = [[v if isinstance(v, str) else repr(float(v)) for v in values] for values in columns.values()]
-            writer.writerows(zip(*cells))
-    except OSError as error:
-        raise Error("file-unwritable", Location(str(path)), error.strerror or "cannot be written", "name another place") from None
+    """Writes columns with headings such as "time [s]" as CSV. Raises Error (file-unwritable, recording-failed)."""
+    with draft(path) as beside, open(beside, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
+        cells = [[v if isinstance(v, str) else repr(float(v)) for v in values] for values in columns.values()]
+        writer.writerows(zip(*cells))

@@ -8,6 +8,7 @@ import sys
 from typing import Any
 
 from .. import load
+from .._whole_files import draft
 from ..command import exit_code, seconds
 from ..errors import Error
 from . import Recording, Renderer, png, video
@@ -71,10 +72,8 @@ def _picture(options: argparse.Namespace, drawn: dict[str, Any]) -> None:
         with Renderer(sim, **drawn) as renderer:
             picture = renderer.frame()
     path = pathlib.Path(options.picture)
-    try:
-        path.write_bytes(png(picture))
-    except OSError as problem:
-        raise Error("file-unwritable", (str(path), 0, 0, ""), str(problem.strerror), "name a folder that you may write to") from None
+    with draft(path) as beside:
+        beside.write_bytes(png(picture))
     print(f"drew {path}")
 
 

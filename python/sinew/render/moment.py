@@ -91,11 +91,25 @@ def moment_of(sim: Any, outline: Outline, field: Optional[str] = None) -> Moment
 
 def _values(body: Any, field: str) -> Optional[np.ndarray]:
     """(n,): a field at a body's nodes; None if the body does not have the field."""
+    return values_at(body, field, None)
+
+
+def values_at(body: Any, field: str, positions: Optional[np.ndarray]) -> Optional[np.ndarray]:
+    """(n,): a field at a body's nodes; None if the body does not have the field.
+
+    Parameters
+    ----------
+    body : Body
+    field : str
+        "displacement", or a name in sinew.fields.FIELDS; Error (unknown-name) for others.
+    positions : (n, 3) array_like or None
+        m, for which the body is at rest; None: the present ones, with the history of the material.
+    """
     if field == "displacement":
-        return np.linalg.norm(np.asarray(body.positions) - np.asarray(body.rest_positions), axis=1)
+        return np.linalg.norm(np.asarray(body.positions if positions is None else positions) - np.asarray(body.rest_positions), axis=1)
     unit_of(field)  # raises unknown-name
     try:
-        return np.nan_to_num(body.nodal_field(field))
+        return np.nan_to_num(body.nodal_field(field) if positions is None else body._nodal_field_at(field, positions))
     except Error as error:
         if error.kind != "wrong-type":  # rigid bodies and arms have no elements
             raise

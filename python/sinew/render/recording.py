@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error
-from .moment import Moment, between, moment_of
+from .moment import Moment, between, moment_of, values_at
 from .scene import outline_of
 
 __all__ = ["Recording", "need_h5py"]
@@ -89,7 +89,7 @@ class Recording:
         time : float
             s; times outside the recording give its first or last moment.
         field : str, optional
-            None or "displacement".
+            "displacement", or a name in sinew.fields.FIELDS, which is computed from the recorded positions.
         """
         after = int(np.clip(np.searchsorted(self.times, time), 0, len(self) - 1))
         second = self.moment(after, field)
@@ -99,14 +99,11 @@ class Recording:
         return between(first, second, (time - first.time) / (second.time - first.time))
 
     def moment(self, index: int, field: Optional[str] = None) -> Moment:
-        """A recorded moment. Raises not-in-this-version for other fields than "displacement"."""
-        if field not in (None, "displacement"):
-            raise Error("not-in-this-version", "field", f"{field} is not recorded",
-                        f"draw the scene anew: python3 -m sinew.render {self.path.parent / 'scene.yaml'} --field {field} ...")
+        """A recorded moment. Fields of elements are computed from the recorded positions. Raises Error (unknown-name)."""
         file, start = self._file, self._start
         positions = {name: file["positions"][name][index] for name in start.positions}
         values = {} if field is None else {
-            name: np.linalg.norm(now - self.sim.body(name).rest_positions, axis=1) for name, now in positions.items()
+            name: found for name, now in positions.items() if (found := values_at(self.sim.body(name), field, now)) is not None
         }  # fmt: skip
         touching, forces = [np.zeros((0, 3))], [np.zeros((0, 3))]
         for contact in file.get("contacts", {}).values():

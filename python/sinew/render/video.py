@@ -15,6 +15,7 @@ from typing import Any, Optional, Union
 import numpy as np
 
 from .._core import Simulation
+from .._whole_files import draft
 from ..errors import Error
 from .recording import Recording
 from .renderer import Renderer
@@ -195,18 +196,26 @@ def _write_animated(path: pathlib.Path, frames: Iterator[np.ndarray], fps: float
     path.parent.mkdir(parents=True, exist_ok=True)
     # GIF stores durations in hundredths of a second.
     first, *rest = [image.fromarray(frame) for frame in frames]
-    first.save(path, save_all=True, append_images=rest, duration=round(1000.0 / fps), loop=0,
-               **({"quality": 88, "method": 3} if path.suffix == ".webp" else {"optimize": False}))  # fmt: skip
+    with draft(path) as beside:
+        first.save(beside, save_all=True, append_images=rest, duration=round(1000.0 / fps), loop=0,
+                   **({"quality": 88, "method": 3} if path.suffix == ".webp" else {"optimize": False}))  # fmt: skip
     return path
 
 
 def _write_mp4(path: pathlib.Path, frames: Iterator[np.ndarray], fps: float) -> pathlib.Path:
     path.parent.mkdir(parents=True, exist_ok=True)
+    with draft(path) as beside:
+        _run_ffmpeg(beside, path, frames, fps)
+    return path
+
+
+def _run_ffmpeg(out: pathlib.Path, path: pathlib.Path, frames: Iterator[np.ndarray], fps: float) -> None:
+    """Writes a video to `out`; `path` names it in errors."""
     first = next(frames)
     height, width = first.shape[:2]
     # Most players need even sizes and 4:2:0 chroma subsampling.
     command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", f"{fps:g}",
-               "-i", "-", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", "-movflags", "+faststart", str(path)]  # fmt: skip
+               "-i", "-", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", "-movflags", "+faststart", str(out)]  # fmt: skip
     with tempfile.TemporaryFile() as complaints:
         process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=complaints)
         try:
@@ -225,4 +234,3 @@ def _write_mp4(path: pathlib.Path, frames: Iterator[np.ndarray], fps: float) -> 
             told = complaints.read().decode("utf-8", "replace").strip().splitlines()
             raise Error("recording-failed", (str(path), 0, 0, ""), f"ffmpeg failed: {told[-1] if told else 'it says nothing'}",
                         "name a file .webp, or a folder for a series of PNG")
-    return path

@@ -6,6 +6,7 @@
 #include "sinew/collision/principal_frame.hpp"
 #include "sinew/collision/surface_topology.hpp"
 #include "sinew/constraint/configuration.hpp"
+#include "sinew/core/whole.hpp"
 #include "sinew/mechanics/surface_trace.hpp"
 
 namespace sinew::constraint {
@@ -175,7 +176,7 @@ collision::ProximityPair SurfaceContact::load(std::size_t point, const double* f
   from += 9;
   collision::ProximityPair pair;
   for (collision::SurfacePoint* place : {&pair.first, &pair.second}) {
-    for (NodeId& node : place->nodes) node = static_cast<NodeId>(*from++);
+    for (NodeId& node : place->nodes) node = whole<NodeId>(*from++, 0);
     place->weights = Eigen::Map<const Vector3>(from);
     from += 3;
   }

@@ -9,6 +9,8 @@
 #include <pthread.h>
 #include <sched.h>
 
+#include "sinew/core/whole.hpp"
+
 namespace sinew::control {
 
 namespace {
@@ -26,8 +28,8 @@ double MonotonicClock::now() {
 
 void MonotonicClock::sleep_until(double time) {
   const double seconds = std::floor(time);
-  const timespec until{static_cast<std::time_t>(seconds),
-                       static_cast<long>((time - seconds) / kNano)};
+  const timespec until{whole<std::time_t>(seconds),
+                       whole<long>((time - seconds) / kNano, 0, 999'999'999)};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
   }
 }

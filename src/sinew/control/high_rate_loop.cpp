@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/whole.hpp"
 
 namespace sinew::control {
 
@@ -136,7 +137,7 @@ void HighRateLoop::loop(Clock& clock, std::int64_t periods, const void* timeline
     note(due, begin, end);
     // Missed periods are skipped; the next one begins at its regular time.
     const double passed = std::floor((end - due) / settings().period);
-    if (passed >= 1.0) count(missed_, static_cast<std::int64_t>(passed));
+    if (passed >= 1.0) count(missed_, whole<std::int64_t>(passed));
     due += settings().period * std::max(passed + 1.0, 1.0);
     clock.sleep_until(due);
   }

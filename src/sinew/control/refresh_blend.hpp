@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sinew/core/types.hpp"
+#include "sinew/core/whole.hpp"
 
 namespace sinew::control {
 
@@ -17,7 +18,8 @@ class RefreshBlend {
  public:
   /// @param size of an answer. @param blend,period s.
   RefreshBlend(Eigen::Index size, double blend, double period)
-      : offset_(VectorX::Zero(size)), periods_(static_cast<int>(blend / period + 1e-9) + 1) {}
+      : offset_(VectorX::Zero(size)),
+        periods_(whole<int>(blend / period + 1e-9, 0, 1'000'000) + 1) {}
 
   int periods() const { return periods_; }  ///< n
   /// Starts a transfer. @param difference (size,) old answer, including its offset, minus the new

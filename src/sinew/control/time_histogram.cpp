@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/core/whole.hpp"
+
 namespace sinew::control {
 
 void TimeHistogram::add(double seconds) {
-  const double microseconds = std::clamp(std::floor(seconds * 1e6), 0.0, double{kBins});
-  std::atomic<std::int64_t>& bin = counts_[static_cast<std::size_t>(microseconds)];
+  std::atomic<std::int64_t>& bin = counts_[whole<std::size_t>(seconds * 1e6, 0, kBins)];
   bin.store(bin.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   if (seconds > longest()) longest_.store(seconds, std::memory_order_relaxed);
 }

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/whole.hpp"
 
 namespace sinew::control {
 
@@ -50,7 +51,7 @@ sockaddr_in to_address(const std::string& address, int port) {
 
 UdpDevice::UdpDevice(const HighRateSettings& settings, const std::string& address, int port)
     : read_(HighRateInput::none(settings)),
-      restarts_after_(static_cast<int>(std::ceil(kRestart / settings.period))) {
+      restarts_after_(whole<int>(std::ceil(kRestart / settings.period))) {
   require_size(measurement_size(settings), "measurement");
   require_size(command_size(settings), "command");
   sockaddr_in place = to_address(address, port);

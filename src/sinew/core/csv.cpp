@@ -5,11 +5,15 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "sinew/core/heading.hpp"
 #include "sinew/core/text.hpp"
+#include "sinew/core/unit.hpp"
 
 namespace sinew {
 
@@ -43,6 +47,18 @@ CellKind read_number(std::string_view cell, double* value) {
   return error == std::errc{} ? CellKind::number : CellKind::text;
 }
 
+/// Whether a heading has a unit in brackets.
+bool has_unit(std::string_view heading) {
+  const std::optional<std::string> unit = parse_heading(heading).unit;
+  if (!unit || unit->empty()) return false;
+  try {
+    parse_unit_expression(*unit, {});
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 /// Splits text into lines and cells and fills a table.
 class TableReader {
  public:
@@ -54,10 +70,12 @@ class TableReader {
   Table read() {
     check_encoding();
     while (next_line()) {
-      if (cells_.empty()) continue;
-      if (columns_ == 0 && is_header()) {
+      if (cells_.empty()) {
+        if (columns_ == 0) keep_comment();
+      } else if (columns_ == 0 && is_header()) {
         take_header();
       } else {
+        if (columns_ == 0) take_comment();
         take_row();
       }
     }
@@ -100,13 +118,17 @@ class TableReader {
 
   void split() {
     cells_.clear();
-    std::string_view content = line_.substr(0, comment_start());
+    const std::string_view content = line_.substr(0, comment_start());
     if (trimmed(content).empty()) return;
     if (separator_ == '\0') {
       separator_ = content.find(';') != std::string_view::npos   ? ';'
                    : content.find(',') != std::string_view::npos ? ','
                                                                  : ' ';
     }
+    split(content);
+  }
+
+  void split(std::string_view content) {
     std::size_t start = 0;
     bool in_quotes = false;
     if (separator_ == ' ') content = trimmed(content);
@@ -149,9 +171,54 @@ class TableReader {
   }
 
   void take_header() {
-    for (const std::string_view cell : cells_) table_.names.emplace_back(unquoted(cell));
+    join_units();
+    for (const std::string_view cell : cells_) {
+      table_.names.emplace_back(unquoted(cell));
+      table_.heading_columns.push_back(static_cast<int>(column_of(cell)));
+    }
+    table_.heading_line = place_.line;
     check_columns();
     columns_ = cells_.size();
+  }
+
+  /// Between blanks, "x [mm]" is two cells but one name.
+  void join_units() {
+    if (separator_ != ' ') return;
+    std::vector<std::string_view> joined;
+    for (const std::string_view cell : cells_) {
+      if (!joined.empty() && (cell.front() == '[' || cell.front() == '(')) {
+        const char* begin = joined.back().data();
+        const auto size = static_cast<std::size_t>(cell.data() + cell.size() - begin);
+        joined.back() = std::string_view(begin, size);
+      } else {
+        joined.push_back(cell);
+      }
+    }
+    cells_ = std::move(joined);
+  }
+
+  void keep_comment() {
+    const std::size_t begin = comment_start();
+    if (begin == line_.size()) return;
+    comment_ = line_;
+    comment_line_ = place_.line;
+  }
+
+  /// Takes the last comment as the header of the first row, if it is one with units.
+  void take_comment() {
+    if (std::ranges::count(comment_, '"') % 2 != 0 || comment_.empty()) return;
+    const std::vector<std::string_view> row = cells_;
+    const std::string_view line = std::exchange(line_, comment_);
+    const int number = std::exchange(place_.line, comment_line_);
+    cells_.clear();
+    split(line_.substr(std::min(line_.find_first_not_of("# \t"), line_.size())));
+    join_units();
+    if (cells_.size() == row.size() && is_header() && std::ranges::any_of(cells_, has_unit)) {
+      take_header();
+    }
+    line_ = line;
+    place_.line = number;
+    cells_ = row;
   }
 
   void check_columns() {
@@ -205,6 +272,8 @@ class TableReader {
   Location place_;
   Table table_;
   std::string_view line_;
+  std::string_view comment_;  // the last line before the first row that is only a comment
+  int comment_line_ = 0;
   std::vector<std::string_view> cells_;
   std::vector<double> numbers_;
   std::size_t position_ = 0;

@@ -26,10 +26,12 @@ struct CsvSettings {
 
 /// A table of numbers, with the names of the header if there was one.
 struct Table {
-  std::vector<std::string> names;  ///< (columns,) or empty
-  MatrixX values;                  ///< (rows, columns)
-  Location place;                  ///< the file, for errors about its content
-  std::vector<int> lines;          ///< (rows,) line of each row in the file, from 1
+  std::vector<std::string> names;    ///< (columns,) or empty
+  MatrixX values;                    ///< (rows, columns)
+  Location place;                    ///< the file, for errors about its content
+  std::vector<int> lines;            ///< (rows,) line of each row in the file, from 1
+  int heading_line = 0;              ///< line of the header in the file, from 1; 0: none
+  std::vector<int> heading_columns;  ///< (columns,) where each name begins in it, from 1
 
   /// Index of the column with this name. Throws Error(wrong-columns) with a list of the columns.
   Eigen::Index column(std::string_view name) const;
@@ -38,8 +40,9 @@ struct Table {
 /// Reads a table of numbers. Cells are separated by semicolons, commas, or blanks and tabs: the
 /// first of these that the first row uses. Blanks around cells and quotes around names are removed,
 /// `#` starts a comment, and empty lines are skipped. Line ends may be LF or CRLF, and a UTF-8 byte
-/// order mark is allowed. A first row without numbers is the header. Numbers use a decimal point in
-/// any locale.
+/// order mark is allowed. A first row without numbers is the header; in a table that has none, so
+/// is the last comment before the rows if it names every column, and a unit of one ("# time [ms],
+/// x [mm]", as NumPy writes it). Numbers use a decimal point in any locale.
 /// Throws Error with file:line:column: malformed-table (a cell that is empty or not a number; no
 /// rows), wrong-columns (rows of different lengths, or other than settings.columns), not-finite,
 /// bad-encoding (UTF-16, binary), size-limit, file-not-found, file-unreadable.
@@ -58,7 +61,7 @@ void append_csv_row(std::string& text, std::span<const double> values);
 /// shortest text that reads back bit for bit.
 class CsvWriter {
  public:
-  /// Creates or replaces the file and writes the header. Throws Error(file-unwritable).
+  /// Creates or replaces the file and writes the header. Throws what throw_unwritable() throws.
   /// `names` has one entry per column, at least one; names with separators or blanks are quoted.
   CsvWriter(const std::filesystem::path& path, std::span<const std::string> names);
 
@@ -72,6 +75,10 @@ class CsvWriter {
 
   /// Number of columns.
   int columns() const { return columns_; }
+
+  /// Renames the file, which replaces another one. Throws what throw_unwritable() throws.
+  /// @param path its new name, on the same disk.
+  void rename(const std::filesystem::path& path);
 
  private:
   struct CloseFile {

@@ -1,9 +1,11 @@
 #include <array>
+#include <cerrno>
 #include <charconv>
 
 #include <fmt/format.h>
 
 #include "sinew/core/csv.hpp"
+#include "sinew/core/file.hpp"
 
 namespace sinew {
 
@@ -48,10 +50,10 @@ CsvWriter::CsvWriter(const std::filesystem::path& path, std::span<const std::str
     : path_(path.string()),
       file_(std::fopen(path_.c_str(), "wb")),
       columns_(static_cast<int>(names.size())) {
-  if (!file_ || names.empty()) {
-    throw Error(ErrorKind::file_unwritable, {.file = path_},
-                names.empty() ? "the table has no columns" : "the file cannot be created",
-                "check that its folder exists and is writable");
+  if (!file_) throw_unwritable(path, errno);
+  if (names.empty()) {
+    throw Error(ErrorKind::file_unwritable, {.file = path_}, "the table has no columns",
+                "give it one");
   }
   append_names(line_, names);
   flush_line();
@@ -71,6 +73,11 @@ void CsvWriter::write_row(std::span<const double> values, std::span<const std::s
     line_ += word;
   }
   flush_line();
+}
+
+void CsvWriter::rename(const std::filesystem::path& path) {
+  replace_file(path_, path);
+  path_ = path.string();
 }
 
 void CsvWriter::flush_line() {

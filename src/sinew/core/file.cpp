@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -33,25 +34,44 @@ std::string read_file(const std::filesystem::path& path) {
   return bytes;
 }
 
-void write_file(const std::filesystem::path& path, std::string_view bytes) {
+void throw_unwritable(const std::filesystem::path& path, int reason) {
+  const bool disk = reason == ENOSPC || reason == EDQUOT || reason == EIO || reason == EFBIG;
+  throw Error(disk ? ErrorKind::recording_failed : ErrorKind::file_unwritable,
+              {.file = path.string()},
+              fmt::format("this cannot be written: {}", std::generic_category().message(reason)),
+              disk ? "check that the disk is not full, or choose another one"
+                   : "check that its folder exists and may be written to, or choose another one");
+}
+
+std::filesystem::path draft_beside(const std::filesystem::path& path) {
   static std::atomic<unsigned> counter{0};  // two threads may write the same file at a time
   std::filesystem::path draft = path;
   draft += fmt::format(".{}-{}.tmp", getpid(), counter++);
+  return draft;
+}
+
+void replace_file(const std::filesystem::path& from, const std::filesystem::path& to) {
   std::error_code problem;
-  errno = 0;
+  std::filesystem::rename(from, to, problem);
+  if (problem) throw_unwritable(to, problem.value());
+}
+
+void write_file(const std::filesystem::path& path, std::string_view bytes) {
+  const std::filesystem::path draft = draft_beside(path);
+  int reason = 0;
   {
+    errno = 0;
     std::ofstream stream(draft, std::ios::binary);
     stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     stream.close();
-    if (!stream) problem = std::error_code(errno != 0 ? errno : EIO, std::generic_category());
+    if (!stream) reason = errno != 0 ? errno : EIO;
   }
-  if (!problem) std::filesystem::rename(draft, path, problem);
-  if (!problem) return;
-  std::error_code ignored;
-  std::filesystem::remove(draft, ignored);
-  throw Error(ErrorKind::file_unwritable, {.file = path.string()},
-              fmt::format("the file cannot be written: {}", problem.message()),
-              "check that its folder exists, may be written to and has space");
+  std::error_code problem;
+  if (reason == 0) std::filesystem::rename(draft, path, problem);
+  if (problem) reason = problem.value();
+  if (reason == 0) return;
+  std::filesystem::remove(draft, problem);
+  throw_unwritable(path, reason);
 }
 
 }  // namespace sinew

@@ -7,9 +7,10 @@
 namespace sinew {
 
 std::string_view notice_kind_name(NoticeKind kind) {
-  constexpr std::array<std::string_view, 6> kNames = {"locking-element", "bare-points",
+  constexpr std::array<std::string_view, 7> kNames = {"locking-element", "bare-points",
                                                       "unused-element",  "coarse-contact",
-                                                      "other-tangent",   "loose-part"};
+                                                      "other-tangent",   "loose-part",
+                                                      "suspicious-unit"};
   return kNames.at(static_cast<std::size_t>(kind));
 }
 

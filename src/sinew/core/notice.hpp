@@ -17,6 +17,7 @@ enum class NoticeKind {
   coarse_contact,   ///< a round surface is smaller than the faces between the nodes that touch it
   other_tangent,    ///< the materials of the scene do not have the requested tangent
   loose_part,       ///< elements of a mesh are joined to the others by a node or an edge only
+  suspicious_unit,  ///< a number without a unit is far from those of robots
 };
 
 /// Where a notice is shown.

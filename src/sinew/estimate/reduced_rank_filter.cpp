@@ -8,6 +8,8 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
+#include "sinew/core/whole.hpp"
+
 namespace sinew::estimate {
 
 namespace {
@@ -150,7 +152,7 @@ bool ReducedRankFilter::load(std::span<const double>& memory) {
       !(memory.front() <= static_cast<double>(memory.size()))) {
     return false;
   }
-  const auto count = static_cast<std::size_t>(memory.front());
+  const auto count = whole<std::size_t>(memory.front());
   if (memory.size() < 1 + all * (1 + count)) return false;
   std::ranges::copy(memory.subspan(1, all), mean_.data());
   factor_.resize(rows(), static_cast<Eigen::Index>(count));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "sinew/core/whole.hpp"
+
 namespace sinew::fem {
 
 namespace {
@@ -27,7 +29,7 @@ std::vector<std::int32_t> spatial_ranks(const Points& nodes) {
   for (std::size_t i = 0; i < count; ++i) {
     for (int c = 0; c < 3; ++c) {
       const double place = (nodes(static_cast<Eigen::Index>(i), c) - low[c]) * scale;
-      key[i] |= spread(static_cast<std::uint64_t>(place)) << c;
+      key[i] |= spread(whole<std::uint64_t>(place, 0, (1U << kBits) - 1)) << c;
     }
   }
   std::vector<std::int32_t> order(count);

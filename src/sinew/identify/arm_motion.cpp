@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/whole.hpp"
 #include "sinew/linalg/dense.hpp"
 #include "sinew/pcc/arm_sensitivity.hpp"
 
@@ -98,7 +99,8 @@ MatrixX predict_motion(const ArmModel& model, const MotionRecord& record, const 
   RecordedDrive drive(model, record);
   const double begin = record.time[0], duration = record.time[record.samples() - 1] - begin;
   const auto steps =
-      static_cast<Eigen::Index>(std::max(1.0, std::ceil(duration / settings.time_step - 1e-9)));
+      whole_count<Eigen::Index>(std::max(1.0, std::ceil(duration / settings.time_step - 1e-9)), 1e9,
+                                "time steps of a recorded motion", "increase the time step");
   pcc::ArmStepSettings even = settings;
   even.time_step = duration / static_cast<double>(steps);
   pcc::ArmSimulation simulation(model.arm, even);

@@ -2,13 +2,17 @@
 
 #include <cmath>
 #include <initializer_list>
+#include <optional>
+#include <string>
 
 #include <fmt/format.h>
 
 #include "sinew/core/csv.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/file.hpp"
-#include "sinew/identify/column_unit.hpp"
+#include "sinew/core/heading.hpp"
+#include "sinew/core/unit.hpp"
+#include "sinew/identify/column_name.hpp"
 
 namespace sinew::identify {
 
@@ -31,11 +35,25 @@ Eigen::Index find_column(const Table& table, std::initializer_list<std::string_v
 
 double unit_of(const Table& table, Eigen::Index column, Dimension dimension, const char* example) {
   const std::string& name = table.names[static_cast<std::size_t>(column)];
-  const auto unit = column_unit(name, dimension);
+  const auto unit = heading_unit(table, column, dimension);
   if (unit) return *unit;
   throw Error(ErrorKind::wrong_columns, table.place,
               fmt::format("'{}' does not say {}", name, dimension_name(dimension)),
               fmt::format("write it with its unit, as {}", example));
+}
+
+/// A command is a volume, a voltage, or whatever else the drive takes; the gain of the drive has
+/// its unit.
+double command_unit(const Table& table, Eigen::Index column) {
+  const std::optional<std::string> unit =
+      parse_heading(table.names[static_cast<std::size_t>(column)]).unit;
+  const Dimension own =
+      unit && *unit != "-"
+          ? parse_unit_expression(*unit, {.file = table.place.file, .line = table.heading_line})
+                .dimension
+      : unit ? dimension::kNone
+             : dimension::kVolume;
+  return heading_unit(table, column, own).value_or(1.0);
 }
 
 }  // namespace
@@ -47,8 +65,7 @@ DriveRecord parse_drive_record(std::string_view bytes, const std::string& name) 
   const Eigen::Index output = find_column(table, {"volume", "output"}, "volume [ml]");
   DriveRecord record;
   record.name = std::filesystem::path(name).stem().string();
-  const std::string& heading = table.names[static_cast<std::size_t>(input)];
-  record.input = table.values.col(input) * column_unit(heading, dimension::kVolume).value_or(1.0);
+  record.input = table.values.col(input) * command_unit(table, input);
   record.output =
       table.values.col(output) * unit_of(table, output, dimension::kVolume, "volume [ml]");
   const VectorX times = table.values.col(time) * unit_of(table, time, dimension::kTime, "time [s]");

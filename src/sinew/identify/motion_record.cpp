@@ -12,7 +12,8 @@
 #include "sinew/core/csv.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/file.hpp"
-#include "sinew/identify/column_unit.hpp"
+#include "sinew/core/heading.hpp"
+#include "sinew/identify/column_name.hpp"
 
 namespace sinew::identify {
 
@@ -72,7 +73,7 @@ Columns find_columns(const Table& table, int segments) {
   Columns columns;
   columns.position.resize(static_cast<std::size_t>(3 * segments));
   const auto source = [&](std::size_t i, Dimension dimension, const char* example) {
-    const auto unit = column_unit(table.names[i], dimension);
+    const auto unit = heading_unit(table, static_cast<Eigen::Index>(i), dimension);
     if (!unit) {
       throw Error(ErrorKind::wrong_columns, table.place,
                   fmt::format("'{}' does not say {}", table.names[i], dimension_name(dimension)),
@@ -119,19 +120,21 @@ Columns find_columns(const Table& table, int segments) {
   return columns;
 }
 
-/// The table from its header on, which names a time; lines above are a preamble.
-std::string_view from_header(std::string_view bytes) {
+/// The table with its lines above the header, which names a time, left empty; they are a preamble.
+std::string from_header(std::string_view bytes) {
   std::size_t line = 0;
   while (line < bytes.size()) {
     const std::string_view rest = bytes.substr(line);
     const std::string first = plain_name(rest.substr(0, std::min<std::size_t>(rest.size(), 256)));
     const std::string text = first.substr(0, first.find_first_of("\r\n"));
     if (text.find("time") != std::string::npos && text.find_first_of(",;") != std::string::npos) {
-      return rest;
+      return std::string(static_cast<std::size_t>(std::count(bytes.begin(), rest.begin(), '\n')),
+                         '\n')
+          .append(rest);
     }
     line = std::min(bytes.find('\n', line), bytes.size() - 1) + 1;
   }
-  return bytes;
+  return std::string(bytes);
 }
 
 }  // namespace

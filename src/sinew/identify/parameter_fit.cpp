@@ -81,6 +81,9 @@ struct Problem {
   mutable VectorX prediction;
   mutable MatrixX jacobian;
   mutable std::exception_ptr failure;
+  std::function<bool(const FitProgress&)> proceed;
+  mutable FitProgress progress{.evaluations = 0, .cost = kInfinity, .values = {}};
+  mutable bool stopped = false;
 
   Problem(const ForwardModel& model_, const VectorX& measured_,
           const std::vector<Parameter>& parameters_)
@@ -129,9 +132,12 @@ struct Problem {
   /// Residuals of the moving parameters, for the solver. No exception passes through the solver;
   /// fit_parameters() rethrows it.
   bool residuals(const double* x, double* result, double* derivatives) const {
-    if (failure) return false;
+    if (failure || stopped) return false;
     try {
-      if (!evaluate(values(x), derivatives != nullptr)) return false;
+      const VectorX at = values(x);
+      const bool good = evaluate(at, derivatives != nullptr);
+      note(at, good);
+      if (!good) return false;
     } catch (...) {
       failure = std::current_exception();
       return false;
@@ -142,6 +148,15 @@ struct Problem {
       for (const Eigen::Index k : moving) *derivatives++ = jacobian(seen[r], k) * scale[k];
     }
     return true;
+  }
+  /// Keeps the best parameters, and asks whether to go on.
+  void note(const VectorX& at, bool good) const {
+    ++progress.evaluations;
+    if (const double now = good ? cost() : kInfinity; now < progress.cost) {
+      progress.cost = now;
+      progress.values = at;
+    }
+    if (proceed && !proceed(progress)) stopped = true;
   }
   double cost() const {
     double sum = 0.0;
@@ -200,7 +215,7 @@ Descent solve(Problem& problem, const VectorX& start, const ParameterFitSettings
     const int most = std::min(kRound, settings.max_iterations - attempt.iterations);
     const BoundedResult found = descend(problem, settings, most);
     attempt.iterations += std::max(1, found.iterations);
-    if (!found.usable) return attempt;
+    if (!found.usable || problem.stopped) return attempt;
     attempt.cost = found.cost;
     attempt.values = problem.base;
     if (!problem.evaluate(problem.base, true)) return attempt;
@@ -340,6 +355,7 @@ ParameterFit fit_parameters(const ForwardModel& model, const VectorX& measured,
                             const ParameterFitSettings& settings) {
   check(model, measured, parameters, settings);
   Problem problem(model, measured, parameters);
+  problem.proceed = settings.proceed;
   if (problem.seen.size() < problem.free.size()) {
     refuse(
         ErrorKind::too_few_points, "measured",
@@ -347,10 +363,12 @@ ParameterFit fit_parameters(const ForwardModel& model, const VectorX& measured,
         "measure more, or fix some of the parameters");
   }
   ParameterFit fit;
-  fit.start_cost = problem.evaluate(problem.starts(), false) ? problem.cost() : kInfinity;
+  const bool starts = problem.evaluate(problem.starts(), false);
+  fit.start_cost = starts ? problem.cost() : kInfinity;
+  problem.note(problem.starts(), starts);
   Random random(settings.seed);
   Descent best;
-  for (int k = 0; k < settings.starts; ++k) {
+  for (int k = 0; k < settings.starts && !problem.stopped; ++k) {
     const VectorX start = k == 0 ? problem.starts() : random_start(problem, random);
     const Descent found = solve(problem, start, settings);
     fit.costs.push_back(found.cost);
@@ -359,6 +377,12 @@ ParameterFit fit_parameters(const ForwardModel& model, const VectorX& measured,
       fit.best_start = k;
     }
   }
+  if (problem.stopped && problem.progress.cost < best.cost) {
+    best.values = problem.progress.values;
+    best.cost = problem.progress.cost;
+    best.converged = false;
+  }
+  fit.stopped = problem.stopped;
   if (best.values.size() == 0 || !problem.evaluate(best.values, true)) {
     refuse(ErrorKind::not_converged, "fit", "no start could be simulated",
            "start nearer, narrow the bounds, or try more starts");

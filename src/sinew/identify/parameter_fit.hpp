@@ -42,6 +42,13 @@ ForwardModel with_differences(Eigen::Index observations,
                               std::function<VectorX(const VectorX&)> predict, VectorX scales,
                               double step = 1e-5);
 
+/// How far a fit has come.
+struct FitProgress {
+  int evaluations = 0;  ///< predictions with or without derivatives
+  double cost = 0.0;    ///< lowest sum of squared residuals so far
+  VectorX values;       ///< (parameters,) where it was found
+};
+
 /// Options of fit_parameters().
 struct ParameterFitSettings {
   int starts = 1;  ///< the first as given, others random within the bounds
@@ -49,6 +56,8 @@ struct ParameterFitSettings {
   double confidence = 0.95;  ///< of the intervals, 0 to 1
   int max_iterations = 100;
   double tolerance = 1e-10;  ///< relative, of cost and parameters
+  /// Called after every prediction; false ends the fit at the best parameters so far.
+  std::function<bool(const FitProgress&)> proceed;
 };
 
 /// A fitted parameter and its confidence interval.
@@ -90,6 +99,7 @@ struct ParameterFit {
   std::vector<double> costs;  ///< of each start; infinite if it failed
   int best_start = 0, iterations = 0;
   bool converged = false;
+  bool stopped = false;  ///< by ParameterFitSettings::proceed
 
   int undetermined() const;  ///< number of undetermined directions
   /// A parameter by name. Throws Error: unknown-name.

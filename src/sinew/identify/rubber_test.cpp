@@ -10,7 +10,8 @@
 #include "sinew/core/csv.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/file.hpp"
-#include "sinew/identify/column_unit.hpp"
+#include "sinew/core/heading.hpp"
+#include "sinew/identify/column_name.hpp"
 
 namespace sinew::identify {
 
@@ -40,7 +41,7 @@ std::pair<Column, Column> find_columns(const Table& table) {
     const std::string name = plain_name(table.names[i]);
     Column column{static_cast<Eigen::Index>(i), has(name, "true") || has(name, "cauchy"), false, 1};
     if (has(name, "stress")) {
-      const auto unit = column_unit(table.names[i], dimension::kPressure);
+      const auto unit = heading_unit(table, column.index, dimension::kPressure);
       if (!unit) {
         unreadable = table.names[i];
         continue;
@@ -49,7 +50,8 @@ std::pair<Column, Column> find_columns(const Table& table) {
       consider(stress, column);
     } else if (has(name, "stretch") || has(name, "strain")) {
       column.is_stretch = has(name, "stretch");
-      column.unit = has(name, "%") ? 0.01 : 1.0;
+      column.unit =
+          heading_unit(table, column.index, dimension::kNone).value_or(has(name, "%") ? 0.01 : 1.0);
       consider(strain, column);
     }
   }
@@ -83,8 +85,9 @@ bool is_number(std::string_view cell) {
              std::string::npos;
 }
 
-/// The table from its header on, which is the last line before the first that has only numbers.
-std::string_view without_preamble(std::string_view bytes) {
+/// The table with the lines above its header left empty. The header is the last line before the
+/// first that has only numbers.
+std::string without_preamble(std::string_view bytes) {
   std::size_t header = 0, line = 0;
   while (line < bytes.size()) {
     const std::size_t end = std::min(bytes.find('\n', line), bytes.size());
@@ -96,11 +99,14 @@ std::string_view without_preamble(std::string_view bytes) {
       numbers = is_number(text.substr(cell, stop - cell));
       cell = stop + 1;
     }
-    if (numbers) return bytes.substr(header);
+    if (numbers) {
+      const auto above = std::count(bytes.begin(), bytes.begin() + std::ptrdiff_t(header), '\n');
+      return std::string(static_cast<std::size_t>(above), '\n').append(bytes.substr(header));
+    }
     header = line;
     line = end + 1;
   }
-  return bytes;
+  return std::string(bytes);
 }
 
 }  // namespace

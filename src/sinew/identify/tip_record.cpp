@@ -8,7 +8,8 @@
 #include "sinew/core/csv.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/file.hpp"
-#include "sinew/identify/column_unit.hpp"
+#include "sinew/core/heading.hpp"
+#include "sinew/identify/column_name.hpp"
 
 namespace sinew::identify {
 
@@ -27,7 +28,7 @@ TipColumn find_column(const Table& table, std::initializer_list<std::string_view
     const std::string_view first = std::string_view(name).substr(0, name.find_first_of(" [("));
     for (const std::string_view word : words) {
       if (first != word) continue;
-      const auto unit = column_unit(table.names[i], dimension);
+      const auto unit = heading_unit(table, static_cast<Eigen::Index>(i), dimension);
       if (unit) return {static_cast<Eigen::Index>(i), *unit};
       throw Error(ErrorKind::wrong_columns, table.place,
                   fmt::format("'{}' does not say {}", table.names[i], dimension_name(dimension)),

@@ -10,6 +10,7 @@
 #include "sinew/constraint/effector.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/rotation.hpp"
+#include "sinew/core/whole.hpp"
 #include "sinew/sim/actuation.hpp"
 #include "sinew/sim/channel.hpp"
 #include "sinew/sim/controlled_response.hpp"
@@ -102,7 +103,9 @@ ClosedLoop::ClosedLoop(sim::Simulation& simulation, InverseSettings settings)
   weights_ = Eigen::Map<VectorX>(weights.data(), std::ssize(weights));
   integral_.setZero(weights_.size());
   foreseen_.setZero(weights_.size(),
-                    static_cast<Eigen::Index>(std::ceil(longest / time_step_)) + 2);
+                    whole_count<Eigen::Index>(std::ceil(longest / time_step_) + 2.0, 1e6,
+                                              "steps between a motion and its measurement",
+                                              "shorten the delay or the timeout"));
   commands_.setZero(std::ssize(settings_.actuators));
   silent_.setZero(std::ssize(settings_.tasks));
   simulation_.attach(*this, settings_.actuators);
@@ -185,9 +188,8 @@ VectorX ClosedLoop::error_now() const {
     const VectorX rows = along(task, difference(task, simulation_.time(), value_of(sensor)));
     auto own = error.segment(first_[t], rows.size());
     own = rows;
-    const auto age = std::llround((simulation_.time() - sensor.time()) / time_step_);
-    for (std::int64_t n = now - std::clamp<std::int64_t>(age, 0, std::min(now, kept)); n < now;
-         ++n) {
+    const double age = std::round((simulation_.time() - sensor.time()) / time_step_);
+    for (std::int64_t n = now - whole<std::int64_t>(age, 0, std::min(now, kept)); n < now; ++n) {
       own -= foreseen_.col(n % kept).segment(first_[t], rows.size());
     }
   }
@@ -344,7 +346,7 @@ void ClosedLoop::save_memory(std::span<double> memory) const {
 
 void ClosedLoop::load_memory(std::span<const double> memory) {
   started_ = memory[0] != 0.0;
-  status_ = static_cast<InverseStatus>(static_cast<int>(memory[1]));
+  status_ = inverse_status_of(memory[1]);
   auto from = memory.begin() + 2;
   visit_memory(*this, [&](double& number) { number = *from++; });
   push_commands();

@@ -67,7 +67,7 @@ void InverseController::load_memory(std::span<const double> memory) {
   }
   if (memory[0] >= 2.0) surprise_ = memory[2];
   damping_.set(memory[4]);
-  status_ = static_cast<InverseStatus>(static_cast<int>(memory[5]));
+  status_ = inverse_status_of(memory[5]);
   program_.set_largest_asked(memory[6]);
   auto from = memory.begin() + kKnown;
   visit_memory(*this, [&](double& number) { number = *from++; });

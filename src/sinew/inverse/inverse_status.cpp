@@ -1,5 +1,7 @@
 #include "sinew/inverse/inverse_status.hpp"
 
+#include "sinew/core/whole.hpp"
+
 namespace sinew::inverse {
 
 std::string_view inverse_status_name(InverseStatus status) {
@@ -26,6 +28,10 @@ std::string_view inverse_status_name(InverseStatus status) {
       return "held-back";
   }
   return "unknown";
+}
+
+InverseStatus inverse_status_of(double number) {
+  return static_cast<InverseStatus>(whole<int>(number, 0, kInverseStatuses - 1));
 }
 
 }  // namespace sinew::inverse

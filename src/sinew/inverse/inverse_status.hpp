@@ -25,5 +25,7 @@ inline constexpr int kInverseStatuses = 10;
 /// "not-started", "on-target", "moving", "rate-limited", "out-of-reach", "local-optimum",
 /// "limits-conflict", "at-limits", "holding", "held-back".
 std::string_view inverse_status_name(InverseStatus status);
+/// The status of a number in a saved state; the first or last one for numbers beyond them.
+InverseStatus inverse_status_of(double number);
 
 }  // namespace sinew::inverse

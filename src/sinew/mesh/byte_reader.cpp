@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "sinew/core/whole.hpp"
+
 namespace sinew::mesh {
 
 namespace {
@@ -41,8 +43,9 @@ template <typename Wanted, typename Stored>
 Wanted converted(Stored value) {
   if constexpr (std::is_integral_v<Wanted>) {
     if constexpr (std::is_floating_point_v<Stored>) {
-      const bool fits = value > Stored(-9e18) && value < Stored(9e18);
-      if (!fits || value != static_cast<Stored>(static_cast<Wanted>(value))) return Wanted(-1);
+      const auto given = static_cast<double>(value);
+      const Wanted result = whole<Wanted>(given);
+      return static_cast<double>(result) == given ? result : Wanted(-1);
     } else if (std::cmp_greater(value, std::numeric_limits<Wanted>::max())) {
       return Wanted(-1);
     }

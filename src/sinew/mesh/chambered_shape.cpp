@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/core/whole.hpp"
 #include "sinew/mesh/shape_cells.hpp"
 #include "sinew/mesh/shape_checks.hpp"
 #include "sinew/mesh/sweep.hpp"
@@ -14,6 +15,8 @@
 namespace sinew::mesh {
 
 namespace {
+
+constexpr int kMostLayers = 2000;
 
 /// The circle of the chamber as an O-grid, and rings from it to the outer circle, with linearly
 /// interpolated centres and radii. Radii are in m. `wall` and `outside` list the nodes on the
@@ -74,7 +77,7 @@ std::vector<double> chamber_heights(const ChamberedCylinderShape& shape) {
   for (const double end : {shape.chamber_bottom, shape.chamber_top, shape.height}) {
     const double begin = heights.back();
     if (end <= begin) continue;
-    const int layers = std::max(1, static_cast<int>(std::lround((end - begin) / size)));
+    const int layers = whole<int>(std::round((end - begin) / size), 1, kMostLayers);
     for (int k = 1; k <= layers; ++k) heights.push_back(begin + (end - begin) * k / layers);
   }
   return heights;

@@ -111,14 +111,18 @@ MaybeDefect not_finite(const Mesh& mesh) {
   int count = 0;
   NodeId first = -1;
   for (NodeId node = 0; node < mesh.node_count(); ++node) {
-    if (mesh.nodes.row(node).allFinite()) continue;
+    if ((mesh.nodes.row(node).array().abs() <= kFarthestNode).all()) continue;
     if (count++ == 0) first = node;
   }
   if (count == 0) return {};
-  return Defect{ErrorKind::non_finite_node,
-                fmt::format("node {} is at {}{}", first, text_of(Vector3(mesh.nodes.row(first))),
-                            and_others(count)),
-                "every coordinate must be a finite number; write the mesh again"};
+  const Vector3 place = mesh.nodes.row(first);
+  return Defect{
+      ErrorKind::non_finite_node,
+      fmt::format("node {} is at {} m{}", first, text_of(place), and_others(count)),
+      place.allFinite()
+          ? fmt::format("coordinates are at most {:g} m; check its unit, or write the mesh again",
+                        kFarthestNode)
+          : "every coordinate must be a finite number; write the mesh again"};
 }
 
 MaybeDefect suspicious_size(const Mesh& mesh, const CheckOptions& options) {

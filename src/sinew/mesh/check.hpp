@@ -10,6 +10,10 @@
 
 namespace sinew::mesh {
 
+/// Largest sensible coordinate, m. Beyond it, volumes and products of lengths lose all digits or
+/// overflow.
+inline constexpr double kFarthestNode = 1e12;
+
 /// What check() accepts.
 struct CheckOptions {
   bool allow_several_components = false;  ///< accept disconnected parts
@@ -32,11 +36,11 @@ struct Defect {
 int reorder_elements(Mesh& mesh);
 
 /// Finds the defects of a mesh after reorder_elements(): one entry per check, for the first fault,
-/// with the number of faults. Kinds: no-volume-elements, index-out-of-range, non-finite-node,
-/// suspicious-unit, repeated-node-in-element, duplicate-node, zero-volume, inverted-element (two
-/// elements on the same side of a common face, or a hexahedron inverted at a corner),
-/// unsupported-element (a face of a hexahedron that meets faces of tetrahedra), disconnected-mesh.
-/// If one of the first three is found, the others are not checked.
+/// with the number of faults. Kinds: no-volume-elements, index-out-of-range, non-finite-node (also
+/// beyond kFarthestNode), suspicious-unit, repeated-node-in-element, duplicate-node, zero-volume,
+/// inverted-element (two elements on the same side of a common face, or a hexahedron inverted at a
+/// corner), unsupported-element (a face of a hexahedron that meets faces of tetrahedra),
+/// disconnected-mesh. If one of the first three is found, the others are not checked.
 std::vector<Defect> find_defects(const Mesh& mesh, const CheckOptions& options = {});
 
 /// Calls reorder_elements(), then throws the first result of find_defects() as Error at

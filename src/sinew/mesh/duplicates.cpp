@@ -7,11 +7,15 @@
 
 #include <Eigen/Geometry>
 
+#include "sinew/core/whole.hpp"
+
 namespace sinew::mesh {
 
 namespace {
 
 using Cell = std::array<std::int64_t, 3>;
+
+constexpr std::int64_t kLastCell = std::int64_t{1} << 62;  // leaves room for its neighbours
 
 struct CellHash {
   std::size_t operator()(const Cell& cell) const {
@@ -49,7 +53,8 @@ std::vector<NodeId> weld_map(const Points& points, const std::vector<char>& cons
     Cell home;
     for (std::size_t a = 0; a < 3; ++a) {
       const auto axis = static_cast<Eigen::Index>(a);
-      home[a] = static_cast<std::int64_t>(std::floor((x[axis] - box.min()[axis]) / tolerance));
+      home[a] =
+          whole<std::int64_t>(std::floor((x[axis] - box.min()[axis]) / tolerance), 0, kLastCell);
     }
     for (int neighbour = 0; neighbour < 27; ++neighbour) {
       const Cell cell{home[0] + neighbour % 3 - 1, home[1] + neighbour / 3 % 3 - 1,

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/core/whole.hpp"
 #include "sinew/mesh/byte_reader.hpp"
 
 namespace sinew::mesh {
@@ -138,7 +139,7 @@ class PlyWalker {
     const double given = number(*property.count_type);
     const std::size_t least = encoding_ == Encoding::text ? 1 : bytes_of(property.type);
     const std::size_t count =
-        in_.checked_count(given >= 0 ? static_cast<std::int64_t>(given) : -1, least, "entries");
+        in_.checked_count(given >= 0 ? whole<std::int64_t>(given) : -1, least, "entries");
     const bool corners = element.name == "face" && property.name.starts_with("vertex_ind");
     for (std::size_t k = 0; k < count; ++k) {
       const double value = number(property.type);

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "sinew/core/whole.hpp"
 #include "sinew/mesh/quality.hpp"
 #include "sinew/mesh/topology.hpp"
 
@@ -22,8 +23,7 @@ constexpr int kAngleBins = 9;
 void count_value(Histogram& histogram, double value) {
   const auto bins = static_cast<double>(histogram.counts.size());
   const double place = (value - histogram.low) / (histogram.high - histogram.low) * bins;
-  const double bin = std::clamp(std::floor(place), 0.0, bins - 1.0);
-  ++histogram.counts[static_cast<std::size_t>(bin)];
+  ++histogram.counts[whole<std::size_t>(place, 0, histogram.counts.size() - 1)];
 }
 
 void describe_edges(const Mesh& mesh, MeshReport& report) {
@@ -105,7 +105,7 @@ void describe_sets(const Mesh& mesh, MeshReport& report) {
 std::string bar(int count, int largest) {
   constexpr double kWidth = 40.0;
   const double length = largest > 0 ? std::ceil(kWidth * count / largest) : 0.0;
-  return std::string(static_cast<std::size_t>(length), '#');
+  return std::string(whole<std::size_t>(length, 0, 40), '#');
 }
 
 void print_histogram(const Histogram& histogram, std::string_view title, int decimals,

@@ -1,9 +1,12 @@
 #include "sinew/mesh/selection.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <set>
+#include <string_view>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -111,7 +114,15 @@ std::vector<NodeId> nodes_at(const Mesh& mesh, const Place3& place, const std::s
   const std::vector<std::string> names = set_names(mesh);
   std::string remedy = "the mesh has no sets: name physical groups in the mesher, or use a region";
   if (!names.empty()) {
-    const std::string near = nearest_word(name, names);
+    std::string near = nearest_word(name, names);
+    // Shapes about z have a bottom and a top, blocks the ends of each axis.
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 2> kSame = {
+        {{"z_min", "bottom"}, {"z_max", "top"}}};
+    for (const auto& [of_block, round] : kSame) {
+      for (const auto& [asked, own] : {std::pair(of_block, round), std::pair(round, of_block)}) {
+        if (name == asked && std::ranges::find(names, own) != names.end()) near = own;
+      }
+    }
     const bool all = names.size() <= kNamesShown;
     const auto end =
         names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kNamesShown));

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "sinew/core/whole.hpp"
 #include "sinew/mesh/distance.hpp"
 #include "sinew/mesh/topology.hpp"
 
@@ -21,6 +22,8 @@ constexpr std::array<std::array<std::size_t, 4>, 6> kSplit{
     {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}}};
 
 using Cell = std::array<std::int64_t, 3>;
+
+constexpr std::int64_t kFarthestCell = std::int64_t{1} << 40;
 
 std::uint64_t key_of(const Cell& cell) {
   constexpr std::uint64_t kBias = 1u << 20;
@@ -77,9 +80,10 @@ std::optional<SelfTouch::Touch> SelfTouch::find(const Points& positions, double 
   size = parts_.empty() ? 1.0 : size / static_cast<double>(parts_.size());
   if (!(size > 0.0) || !positions.allFinite()) return std::nullopt;
   const auto cell_of = [&](const Vector3& point) {
-    return Cell{static_cast<std::int64_t>(std::floor(point.x() / size)),
-                static_cast<std::int64_t>(std::floor(point.y() / size)),
-                static_cast<std::int64_t>(std::floor(point.z() / size))};
+    const auto along = [&](double x) {
+      return whole<std::int64_t>(std::floor(x / size), -kFarthestCell, kFarthestCell);
+    };
+    return Cell{along(point.x()), along(point.y()), along(point.z())};
   };
   std::unordered_map<std::uint64_t, std::vector<NodeId>> cells;
   for (const NodeId node : surface_) {

@@ -18,6 +18,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/file.hpp"
+#include "sinew/mesh/check.hpp"
 #include "sinew/mesh/duplicates.hpp"
 #include "sinew/mesh/ply_guard.hpp"
 
@@ -112,9 +113,10 @@ void require_whole_stl(std::string_view bytes, const std::string& name) {
 
 void require_finite(const Surface& surface) {
   for (NodeId node = 0; node < static_cast<NodeId>(surface.nodes.rows()); ++node) {
-    if (surface.nodes.row(node).allFinite()) continue;
+    if ((surface.nodes.row(node).array().abs() <= kFarthestNode).all()) continue;
     throw Error(ErrorKind::non_finite_node, {.file = surface.name},
-                fmt::format("vertex {} is not finite", node), "write the file again");
+                fmt::format("vertex {} is not finite, or beyond {:g}", node, kFarthestNode),
+                "write the file again");
   }
 }
 

@@ -61,7 +61,14 @@ class PvdWriter {
   /// Number of steps written.
   int count() const { return count_; }
 
+  /// Moves the list and its steps to another folder, where they replace files of the same names.
+  /// Throws what throw_unwritable() throws.
+  /// @param folder on the same disk.
+  void move_to(const std::filesystem::path& folder);
+
  private:
+  std::filesystem::path step_of(int number) const;  // relative to the folder of the list
+
   std::filesystem::path path_;
   long tail_ = 0;  // position of the closing tags
   int count_ = 0;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/whole.hpp"
 
 namespace sinew::pcc {
 
@@ -138,7 +139,8 @@ std::vector<BendingState> simulate(std::shared_ptr<const BendingActuator> actuat
   for (std::size_t i = 1; i < times.size(); ++i) {
     const double span = times[i] - times[i - 1];
     // An interval slightly longer than the longest step, due to rounding of times, is not divided.
-    const auto steps = static_cast<long>(std::max(1.0, std::ceil(span / longest_step - 1e-9)));
+    const auto steps = whole_count<long>(std::max(1.0, std::ceil(span / longest_step - 1e-9)), 1e9,
+                                         "steps between two times", "give a longer step");
     const auto count = static_cast<double>(steps);
     for (long k = 1; k <= steps; ++k) {
       const double part = static_cast<double>(k) / count;

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/whole.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/embedding.hpp"
@@ -254,7 +255,8 @@ class Bench {
 };
 
 long steps_in(double time, const BraceRunSettings& settings) {
-  return std::max(1L, std::lround(time / settings.time_step));
+  return whole_count<long>(std::max(1.0, std::round(time / settings.time_step)), 1e9,
+                           "time steps of a run", "increase the time step");
 }
 
 }  // namespace

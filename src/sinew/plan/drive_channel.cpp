@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/whole.hpp"
 
 namespace sinew::plan {
 
@@ -33,7 +34,8 @@ void check_channels(const std::vector<DriveChannel>& channels, Eigen::Index inpu
 }
 
 Eigen::Index sample_count(const pcc::DriveCylinder& cylinder, double seconds) {
-  return static_cast<Eigen::Index>(std::ceil(seconds / cylinder.sample_time - 1e-9)) + 1;
+  return whole_count<Eigen::Index>(std::ceil(seconds / cylinder.sample_time - 1e-9) + 1.0, 1e9,
+                                   "samples of a drive", "shorten the plan");
 }
 
 }  // namespace sinew::plan

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/whole.hpp"
 
 namespace sinew::plan {
 
@@ -50,7 +51,7 @@ VectorX DriveRun::torque(double time) const {
     const pcc::FluidicActuator& actuator = channels[static_cast<std::size_t>(i)].actuator;
     const double at =
         std::clamp((time + lead - actuator.delay) / step, 0.0, static_cast<double>(last));
-    const auto j = std::min(static_cast<Eigen::Index>(at), last - 1);
+    const auto j = whole<Eigen::Index>(at, 0, last - 1);
     const std::array<double, 4> weights = sample_weights(at - static_cast<double>(j));
     double value = 0.0;
     for (Eigen::Index m = 0; m < 4; ++m) {

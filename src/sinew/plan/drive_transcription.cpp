@@ -4,9 +4,13 @@
 #include <cmath>
 #include <utility>
 
+#include "sinew/core/whole.hpp"
+
 namespace sinew::plan {
 
 namespace {
+
+constexpr int kMaxSamples = 1000000;  // of a drive
 
 void append(VectorX& to, double value) {
   to.conservativeResize(to.size() + 1);
@@ -49,11 +53,12 @@ DriveTranscription::Channel DriveTranscription::channel(const PlanTask& task, in
   const pcc::DriveCylinder& cylinder = of.drive.cylinder;
   // The second sample acts at or before the beginning of the plan.
   const double shift = drive_.lead - actuator.delay;
-  of.offset = static_cast<int>(std::floor(shift / step_ + 1e-9)) - 1;
+  of.offset = whole<int>(std::floor(shift / step_ + 1e-9), -kMaxSamples, kMaxSamples) - 1;
   of.begin = of.offset * step_ - shift;
   of.at_rest = of.begin + step_ > -1e-9 * step_ ? 1 : 2;
   // There is one sample beyond the end, for cubic interpolation.
-  of.count = static_cast<int>(std::ceil((task.grid.duration - of.begin) / step_ - 1e-9)) + 2;
+  of.count = whole_count<int>(std::ceil((task.grid.duration - of.begin) / step_ - 1e-9) + 2.0,
+                              kMaxSamples, "samples of a drive", "shorten the plan");
   of.volume = first_ + variables_;
   of.command = of.volume + of.count;
   of.rest_volume = actuator.volume(task.start.torque[input]);
@@ -128,7 +133,7 @@ LinearForm DriveTranscription::volume(int input, double time) const {
   const Channel& of = channels_[static_cast<std::size_t>(input)];
   // At a sample, rounding must not select a sample that does not exist.
   const double at = (time - of.begin) / step_, rounding = 1e-9;
-  const int j = static_cast<int>(std::floor(at + rounding));
+  const int j = whole<int>(std::floor(at + rounding), -kMaxSamples, kMaxSamples);
   const std::array<double, 4> weights = sample_weights(std::max(at - j, 0.0));
   LinearForm form;
   for (int m = 0; m < 4; ++m) {

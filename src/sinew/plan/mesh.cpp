@@ -4,15 +4,17 @@
 #include <cmath>
 #include <vector>
 
+#include "sinew/core/whole.hpp"
+
 namespace sinew::plan {
 
 VectorX refined(const VectorX& fractions, const VectorX& defects, double left) {
-  constexpr double kMaxParts = 4.0;
+  constexpr int kMaxParts = 4;
   const auto count = static_cast<double>(fractions.size());
   std::vector<int> parts;
   for (const double defect : defects) {
     const double wanted = std::ceil(std::pow(count * defect / left, 0.25));
-    parts.push_back(static_cast<int>(std::clamp(wanted, 1.0, kMaxParts)));
+    parts.push_back(whole<int>(wanted, 1, kMaxParts));
   }
   if (*std::max_element(parts.begin(), parts.end()) == 1) parts.assign(parts.size(), 2);
   std::vector<double> cut;

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "sinew/core/whole.hpp"
 #include "sinew/pcc/adaptive_motion.hpp"
 
 namespace sinew::plan {
@@ -50,7 +51,9 @@ Replay replay_torque(const std::shared_ptr<const pcc::Arm>& arm, const PlanTask&
 /// Times at equal steps of about `time_step` over a duration.
 VectorX equal_times(double duration, double time_step) {
   const double steps = std::max(1.0, std::round(duration / time_step));
-  return VectorX::LinSpaced(static_cast<Eigen::Index>(steps) + 1, 0.0, duration);
+  const auto count =
+      whole_count<Eigen::Index>(steps, 1e9, "time steps of a plan", "increase the time step");
+  return VectorX::LinSpaced(count + 1, 0.0, duration);
 }
 
 }  // namespace

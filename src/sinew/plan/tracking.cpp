@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/whole.hpp"
 #include "sinew/linalg/dense.hpp"
 #include "sinew/linalg/dense_factor.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
@@ -69,7 +70,8 @@ Tracker::Tracker(std::shared_ptr<const pcc::Arm> arm, const PlanTask& task, cons
   check(settings);
   const Eigen::Index n = arm->coordinates(), inputs = arm->inputs();
   const auto count =
-      static_cast<Eigen::Index>(std::max(1.0, std::round(plan.duration() / settings.time_step)));
+      whole_count<Eigen::Index>(std::max(1.0, std::round(plan.duration() / settings.time_step)),
+                                1e9, "control periods of a plan", "increase the time step");
   time_step_ = plan.duration() / static_cast<double>(count);
   // The nominal motion is that under the torque held over each control period, in five steps per
   // period.
@@ -136,7 +138,8 @@ Replay track(std::shared_ptr<const pcc::Arm> arm, const Tracker& tracker,
   const VectorX q = trial.position.size() > 0 ? trial.position : task.start.position;
   const VectorX rate = trial.rate.size() > 0 ? trial.rate : task.start.rate;
   const auto fine =
-      static_cast<Eigen::Index>(std::max(1.0, std::round(tracker.time_step() / trial.time_step)));
+      whole_count<Eigen::Index>(std::max(1.0, std::round(tracker.time_step() / trial.time_step)),
+                                1e9, "time steps of a control period", "increase the time step");
   const double h = tracker.time_step() / static_cast<double>(fine);
   pcc::ArmSimulation simulation(arm, {.time_step = h});
   simulation.set_state(q, rate);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/record/hdf5_reader.hpp"
 #include "sinew/record/hdf5_writer.hpp"
 
@@ -139,6 +140,15 @@ void write_matrix(Hdf5Writer& file, Eigen::SparseMatrix<double> matrix) {
   file.dataset(kMatrix + "x", {stored}, std::span<const double>(matrix.valuePtr(), stored));
 }
 
+// Removes what was written when writing fails.
+struct Draft {
+  std::filesystem::path path;
+  ~Draft() {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+};
+
 }  // namespace
 
 FclibProblem read_fclib(const std::filesystem::path& path) {
@@ -158,7 +168,8 @@ FclibProblem read_fclib(const std::filesystem::path& path) {
 void write_fclib(const std::filesystem::path& path, const FclibProblem& problem) {
   check(problem);
   const auto rows = static_cast<std::size_t>(problem.q.size());
-  Hdf5Writer file(path);
+  const Draft draft{draft_beside(path)};
+  Hdf5Writer file(draft.path);
   file.dataset(kRoot + "/spacedim", {1}, std::array<std::int32_t, 1>{3});
   write_matrix(file, problem.w);
   file.dataset(kVectors + "q", {rows}, entries(problem.q));
@@ -172,6 +183,7 @@ void write_fclib(const std::filesystem::path& path, const FclibProblem& problem)
     file.dataset(kSolution + "r", {rows}, entries(problem.r));
   }
   file.flush();
+  file.rename(path);
 }
 
 }  // namespace sinew::record

@@ -1,14 +1,17 @@
 #include "sinew/record/hdf5_writer.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
 #include <functional>
 #include <numeric>
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
+#include "sinew/core/file.hpp"
 #include "sinew/record/hdf5_handle.hpp"
 
 namespace sinew::record {
@@ -48,6 +51,14 @@ Hdf5Handle text_type(std::string_view text) {
   return type;
 }
 
+// The reason, as in errno, for which a file cannot be created; 0 if it can be.
+int why_not_created(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (file < 0) return errno;
+  ::close(file);
+  return 0;
+}
+
 }  // namespace
 
 struct Hdf5Writer::File {
@@ -84,14 +95,17 @@ struct Hdf5Writer::File {
     const bool found = H5Fget_vfd_handle(file.id(), H5P_DEFAULT, &handle) >= 0 && handle != nullptr;
     return found ? *static_cast<int*>(handle) : -1;
   }
-  // Redirects all further writes of HDF5 to /dev/null. The file keeps the state of the last flush,
-  // and closing succeeds (HDF5 1.10 crashes on a full disk otherwise).
+  // Redirects all further writes of HDF5 to memory. The file keeps the state of the last flush, and
+  // closing succeeds: HDF5 crashes at the exit of a program that could not close a file. A file in
+  // memory, unlike /dev/null, can be truncated, which HDF5 does when it closes.
   void abandon() {
-    const int kept = descriptor();
-    const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-    if (kept >= 0 && nothing >= 0) ::dup2(nothing, kept);
-    if (nothing >= 0) ::close(nothing);
+    if (abandoned) return;
     abandoned = true;
+    const int kept = descriptor();
+    int elsewhere = ::memfd_create("abandoned", MFD_CLOEXEC);
+    if (elsewhere < 0) elsewhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+    if (kept >= 0 && elsewhere >= 0) ::dup3(elsewhere, kept, O_CLOEXEC);
+    if (elsewhere >= 0) ::close(elsewhere);
   }
   haddr_t end() const {
     haddr_t bytes = 0;
@@ -171,6 +185,7 @@ Hdf5Writer::Hdf5Writer(const std::filesystem::path& path) : file_(std::make_uniq
   file_->file =
       Hdf5Handle(H5Fcreate(file_->path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
   if (!file_->file.valid()) {
+    if (const int reason = why_not_created(path); reason != 0) throw_unwritable(path, reason);
     throw Error(ErrorKind::file_unwritable, {.file = file_->path},
                 fmt::format("the record cannot be created: {}", hdf5_reason()),
                 "check that its folder may be written to and that no program has the file open");
@@ -294,6 +309,11 @@ void Hdf5Writer::flush() {
   file_->expect(H5Fflush(file_->file.id(), H5F_SCOPE_LOCAL) >= 0, "flush");
   file_->release();
   file_->flushed = std::chrono::steady_clock::now();
+}
+
+void Hdf5Writer::rename(const std::filesystem::path& path) {
+  replace_file(file_->path, path);
+  file_->path = path.string();
 }
 
 void Hdf5Writer::flush_after(std::chrono::milliseconds interval) {

@@ -19,7 +19,7 @@ namespace sinew::record {
 /// functions throw Error(recording-failed) if the disk is full or missing.
 class Hdf5Writer {
  public:
-  /// Creates or replaces the file. Throws Error(file-unwritable).
+  /// Creates or replaces the file. Throws what throw_unwritable() throws.
   /// @param path of the file.
   explicit Hdf5Writer(const std::filesystem::path& path);
   ~Hdf5Writer();
@@ -60,6 +60,10 @@ class Hdf5Writer {
   /// Calls flush() if the last one was at least `interval` ago.
   /// @param interval minimum time between two flushes.
   void flush_after(std::chrono::milliseconds interval);
+
+  /// Renames the file, which replaces another one. Throws what throw_unwritable() throws.
+  /// @param path its new name, on the same disk.
+  void rename(const std::filesystem::path& path);
 
  private:
   struct File;

@@ -28,9 +28,11 @@ struct RecordSettings {
   bool vtk = false;        ///< whether to write run.pvd, a series of VTU files for ParaView
 };
 
-/// Records one run. The constructor first checks that everything can be written, and then creates
-/// the files. run.csv is complete after every frame. run.h5 is flushed every half second, so that
-/// the record survives a crash.
+/// Records one run. The constructor locks the folder, checks that everything can be written, and
+/// creates the files in a hidden folder within it. They replace those of an older run once the
+/// first frame is in them: if anything fails before, the older record is as it was. run.csv is
+/// complete after every frame. run.h5 is flushed every half second, so that the record survives a
+/// crash.
 ///
 /// All of sim::Observables is recorded, except timings. Numbers are in run.csv and run.h5, those of
 /// probes in probes.csv and run.h5, and those of sensors in sensors.csv and run.h5. Arrays of
@@ -81,7 +83,8 @@ class RunRecorder {
   /// Creates the files and records the current state as the first frame.
   /// @param observables of a simulation that outlives the recorder; inverse::add_controller() adds
   /// those of a controller. @param settings what to record, and where.
-  /// Throws Error(out-of-range) for `every` < 1, Error(file-unwritable), Error(recording-failed).
+  /// Throws Error(out-of-range) for `every` < 1, Error(file-unwritable), also if another run is
+  /// being recorded into the folder, Error(recording-failed) if the disk is full.
   RunRecorder(sim::Observables observables, RecordSettings settings);
   /// Closes all files. Call finish() before to get an error if the disk is full.
   ~RunRecorder();

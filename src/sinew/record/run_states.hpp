@@ -20,6 +20,8 @@ class RunStates {
   /// Appends the current values of the observables as a frame.
   void write();
   void flush() { file_.flush(); }
+  /// As Hdf5Writer::rename().
+  void rename(const std::filesystem::path& path) { file_.rename(path); }
 
  private:
   void describe(const RecordSettings& settings);

@@ -22,6 +22,8 @@ class RunTable {
   /// Appends the current values of the observables as a row. Throws what CsvWriter::write_row()
   /// throws.
   void write();
+  /// As CsvWriter::rename().
+  void rename(const std::filesystem::path& path) { writer_.rename(path); }
 
  private:
   sim::Observables& observables_;

@@ -115,6 +115,7 @@ Robot build(SceneDescription description) { return build(std::move(description),
 
 Robot build(SceneDescription description, const SharedMeshes& shared) {
   Robot robot;
+  robot.notices = description.notices;
   sim::StepSettings step = step_settings(description);
   if (auto notice = replace_tangent(description, step)) {
     robot.notices.push_back(std::move(*notice));

@@ -19,6 +19,7 @@
 #include "sinew/constraint/probe.hpp"
 #include "sinew/constraint/smooth_surface.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/core/notice.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/fem/mass_matrix.hpp"
 #include "sinew/inverse/inverse_settings.hpp"
@@ -473,7 +474,8 @@ struct SceneDescription {
   std::vector<JointDescription> joints;
   std::vector<ControllerDescription> controllers;
   RecordDescription record;
-  Node tree;  ///< tree that this was read from, for to_yaml() and overrides
+  std::vector<Notice> notices;  ///< about numbers of the scene
+  Node tree;                    ///< tree that this was read from, for to_yaml() and overrides
 
   /// `duration`, or by default the end of the longest signal or target; 0 if there is none.
   double run_duration() const;

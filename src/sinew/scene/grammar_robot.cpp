@@ -31,24 +31,33 @@ Choice shape(const char* word, const char* description, std::vector<Key> keys) {
 Form mesh_shape() {
   return variants(
       "shape",
-      {shape("block", "A box from the origin along the axes, z upwards.",
-             {shape_length("length", "100 mm", "Along x."),
-              shape_length("width", "20 mm", "Along y."),
-              shape_length("height", "20 mm", "Along z.")}),
-       shape("cylinder", "A solid cylinder about z with its base at the origin.",
+      {shape(
+           "block",
+           "A box from the origin along the axes, z upwards. Node sets: `x_min`, `x_max`, `y_min`, "
+           "`y_max`, `z_min`, `z_max`.",
+           {shape_length("length", "100 mm", "Along x."),
+            shape_length("width", "20 mm", "Along y."),
+            shape_length("height", "20 mm", "Along z.")}),
+       shape("cylinder",
+             "A solid cylinder about z with its base at the origin. Node sets: `bottom`, `top`, "
+             "`side`.",
              {shape_length("radius", "15 mm", "Outer radius."),
               shape_length("height", "195 mm", "Along z.")}),
-       shape("cone", "A solid truncated cone about z with its base at the origin.",
+       shape("cone",
+             "A solid truncated cone about z with its base at the origin. Node sets: `bottom`, "
+             "`top`, `side`.",
              {shape_length("base_radius", "20 mm", "Radius at z = 0."),
               shape_length("tip_radius", "8 mm", "Radius at the top."),
               shape_length("height", "195 mm", "Along z.")}),
-       shape("hollow-cylinder", "A tube about z with its base at the origin.",
+       shape("hollow-cylinder",
+             "A tube about z with its base at the origin. Node sets: `bottom`, `top`, `inner`, "
+             "`outer`.",
              {shape_length("inner_radius", "8 mm", "Radius of the bore."),
               shape_length("outer_radius", "15 mm", "Outer radius."),
               shape_length("height", "195 mm", "Along z.")}),
        shape("chambered-cylinder",
              "A solid cylinder about z with its base at the origin and a cylindrical chamber "
-             "beside its axis. The node set `chamber` is the chamber's wall.",
+             "beside its axis. Node sets: `bottom`, `top`, `side`, and `chamber`, its whole wall.",
              {shape_length("radius", "12.5 mm", "Outer radius."),
               shape_length("height", "65 mm", "Along z."),
               shape_length("chamber_radius", "3.7 mm", "Radius of the chamber."),
@@ -90,7 +99,9 @@ Form mesh_shape() {
                               "Gap between two ribs. Default: half the length of a rib."),
               optional_length("spine", "6 mm", "",
                               "Thickness of the spine. Default: a third of the height.")}),
-       shape("trunk", "A tapered trunk along z with bellows and its base at the origin.",
+       shape("trunk",
+             "A tapered trunk along z with bellows and its base at the origin. Node sets: "
+             "`bottom`, `top`, `side`.",
              {optional_length("base_radius", "20 mm", "20 mm", "Outer radius at z = 0."),
               optional_length("tip_radius", "12 mm", "8.5 mm", "Outer radius at the top."),
               optional_length("height", "195 mm", "195 mm", "Along z."),

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/core/whole.hpp"
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/read.hpp"
 #include "sinew/mesh/scale.hpp"
@@ -20,6 +21,8 @@
 namespace sinew::scene {
 
 namespace {
+
+constexpr int kMostCells = 1000000;  // more than any shape accepts, so that it names its limit
 
 // Reads parameters by name, with defaults.
 class Parameters {
@@ -34,7 +37,7 @@ class Parameters {
   int cells(double length, int otherwise) const {
     const auto size = values_.find("element_size");
     if (size == values_.end()) return otherwise;
-    return std::max(1, static_cast<int>(std::lround(length / size->second)));
+    return whole<int>(std::round(length / size->second), 1, kMostCells);
   }
 
  private:
@@ -43,7 +46,7 @@ class Parameters {
 
 // Number of cells along a length such that they are about as large as `across` cells along `width`.
 int matching(double length, double width, int across) {
-  return std::max(1, static_cast<int>(std::lround(length / width * across)));
+  return whole<int>(std::round(length / width * across), 1, kMostCells);
 }
 
 // Number of rings of a disc; at least two for hexahedra.

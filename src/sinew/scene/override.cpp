@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 
 #include <fmt/format.h>
@@ -61,9 +62,22 @@ class Walker {
     return word != nullptr && table_of(node, form).find(step) != nullptr;
   }
 
-  // The map form that has the key `step`; otherwise the first map form, for its error message.
+  // Whether all keys of a map belong to a form.
+  static bool fits(const Form& form, const Node& node) {
+    if (form.shape != Shape::table || !node.is_map()) return true;
+    return std::ranges::all_of(node.entries(), [&](const Node::Entry& entry) {
+      return form.table->find(entry.key) != nullptr;
+    });
+  }
+
+  // The map form that has the key `step`, if possible that of the keys that are there; otherwise
+  // the first map form, for its error message.
   Form map_form(const std::string& step) {
     const Form* first = nullptr;
+    for (const Form& form : forms_) {
+      const bool is_map = form.shape == Shape::table || form.shape == Shape::variants;
+      if (is_map && offers(form, *node_, step) && fits(form, *node_)) return form;
+    }
     for (const Form& form : forms_) {
       const bool is_map =
           form.shape == Shape::table || form.shape == Shape::variants || form.shape == Shape::names;
@@ -119,9 +133,33 @@ class Walker {
     const KeyTable& table = form.shape == Shape::variants ? table_of(*node_, form) : *form.table;
     const Key* key = table.find(step);
     if (key == nullptr) throw_unknown_key(step, table, place_);
+    require_one_form(step, table);
     clear_alternatives(step, table);
     forms_ = key->forms;
     descend(step, last);
+  }
+
+  // Refuses a key of one form beside those of another: a material is given by its name, or by its
+  // moduli. What the key would mean for the other form cannot be known.
+  void require_one_form(const std::string& step, const KeyTable& table) const {
+    if (!node_->is_map()) return;
+    for (const Node::Entry& entry : node_->entries()) {
+      if (table.find(entry.key) != nullptr) continue;
+      for (const Form& form : forms_) {
+        if (form.shape != Shape::table || form.table->find(entry.key) == nullptr) continue;
+        const std::string written = entry.value.is_scalar() ? " " + entry.value.spelling() : "";
+        const bool scales = form.table->find("scale") != nullptr;
+        throw Error(
+            ErrorKind::conflicting_keys, place_,
+            fmt::format("{} is given by its {}{}, which has no {}", path_, entry.key, written,
+                        step),
+            fmt::format(
+                "{}replace all of it: {}={{{}: ...}}",
+                scales ? fmt::format("write {0}.scale=1.2 to multiply its stiffness, or ", path_)
+                       : "",
+                path_, step));
+      }
+    }
   }
 
   // Removes the alternatives to `step`, and the keys that require them.

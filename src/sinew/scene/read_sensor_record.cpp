@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/csv.hpp"
+#include "sinew/core/heading.hpp"
 #include "sinew/scene/readers.hpp"
 
 namespace sinew::scene {
@@ -13,12 +14,10 @@ namespace {
 // Number of periods after which a sample counts as missing.
 constexpr double kGap = 1.5;
 
-std::string name_in(const std::string& heading) { return heading.substr(0, heading.find(" [")); }
-
 // Finds a column by its heading, with or without unit; -1 if there is none.
 Eigen::Index find_column(const Table& table, const std::string& name) {
   const auto found = std::ranges::find_if(table.names, [&](const std::string& heading) {
-    return heading == name || name_in(heading) == name;
+    return heading == name || parse_heading(heading).name == name;
   });
   return found == table.names.end() ? -1 : found - table.names.begin();
 }
@@ -34,12 +33,14 @@ class RecordReader {
     settings.allow_non_finite = settings.allow_empty = lost_;
     const std::filesystem::path path = context.path(fields, "file");
     table_ = at_place(place_, [&] { return read_csv(path, settings); });
+    table_.values.col(0) *= time_unit(fields, table_, 0);
   }
 
   sim::SensorRecord read() {
     const std::vector<Eigen::Index> columns = choose();
     // sensors.csv has the time of each sample, which also shows whether a row has a new sample.
     const Eigen::Index taken = find_column(table_, sensor_.name + ".sample_time");
+    if (taken > 0) table_.values.col(taken) *= time_unit(fields_, table_, taken);
     std::vector<Eigen::Index> rows;
     sim::SensorRecord record;
     for (Eigen::Index row = 0; row < table_.values.rows(); ++row) {
@@ -55,7 +56,7 @@ class RecordReader {
     record.values.resize(static_cast<Eigen::Index>(rows.size()),
                          static_cast<Eigen::Index>(columns.size()));
     for (std::size_t c = 0; c < columns.size(); ++c) {
-      const double unit = unit_of(columns[c]);
+      const double unit = column_unit(fields_, table_, columns[c]);
       for (std::size_t k = 0; k < rows.size(); ++k) {
         record.values(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(c)) =
             unit * table_.values(rows[k], columns[c]);
@@ -108,18 +109,6 @@ class RecordReader {
       columns[c] = static_cast<Eigen::Index>(1 + c);
     }
     return columns;
-  }
-
-  double unit_of(Eigen::Index column) const {
-    double unit = 1.0;
-    if (fields_.table().find("unit") == nullptr || fields_.read("unit", unit)) return unit;
-    if (table_.names.empty()) return 1.0;
-    const std::string& heading = table_.names[static_cast<std::size_t>(column)];
-    const std::size_t open = heading.find(" [");
-    if (open == std::string::npos || !heading.ends_with(']')) return 1.0;
-    return parse_unit(std::string_view(heading).substr(open + 2, heading.size() - open - 3),
-                      fields_.table().find("unit")->forms.front().dimension,
-                      {.file = table_.place.file, .line = 1, .item = place_.item});
   }
 
   void check_time(Eigen::Index row, double time, const std::vector<double>& before) const {

@@ -1,6 +1,9 @@
+#include <optional>
+
 #include <fmt/format.h>
 
 #include "sinew/core/csv.hpp"
+#include "sinew/core/heading.hpp"
 #include "sinew/scene/readers.hpp"
 
 namespace sinew::scene {
@@ -11,24 +14,30 @@ Location row_place(const Table& table, Eigen::Index row, const Location& written
   return {table.place.file, table.lines[static_cast<std::size_t>(row)], 0, written.item};
 }
 
-// Reads the table under `file`, and multiplies columns from `first` on by the unit under `unit`.
+// Reads the table under `file`, with columns from `first` on in SI units.
 Table read_scaled(const Fields& fields, int columns, Eigen::Index first,
                   const ReadContext& context) {
   const std::filesystem::path path = context.path(fields, "file");
   CsvSettings settings;
   settings.columns = columns;
   Table table = at_place(fields.place("file"), [&] { return read_csv(path, settings); });
-  double unit = 1.0;
-  if (fields.table().find("unit") != nullptr) fields.read("unit", unit);
-  table.values.rightCols(table.values.cols() - first) *= unit;
+  for (Eigen::Index k = first; k < table.values.cols(); ++k) {
+    table.values.col(k) *= column_unit(fields, table, k);
+  }
   return table;
+}
+
+// Whether the scene or a heading has the unit of a column.
+bool has_unit(const Fields& fields, const Table& table, Eigen::Index column) {
+  const Key* key = fields.table().find("unit");
+  const Dimension expected = key != nullptr ? key->forms.front().dimension : dimension::kNone;
+  return fields.find("unit") != nullptr || heading_unit(table, column, expected).has_value();
 }
 
 // The column with the heading "NAME" or "NAME [unit]".
 Eigen::Index column_of(const Table& table, const std::string& name, const Location& place) {
   for (std::size_t k = 1; k < table.names.size(); ++k) {
-    const std::string& heading = table.names[k];
-    if (heading == name || heading.substr(0, heading.find(" [")) == name) {
+    if (table.names[k] == name || parse_heading(table.names[k]).name == name) {
       return static_cast<Eigen::Index>(k);
     }
   }
@@ -39,32 +48,39 @@ Eigen::Index column_of(const Table& table, const std::string& name, const Locati
                                 fmt::join(table.names.begin() + 1, table.names.end(), ", ")));
 }
 
-// The unit (SI) in the heading of a column; 1 if there is none.
-double heading_unit(const std::string& heading, const Fields& fields, const Location& place) {
-  const std::size_t open = heading.find(" [");
-  const Key* key = fields.table().find("unit");
-  if (open == std::string::npos || !heading.ends_with(']') || key == nullptr) return 1.0;
-  return parse_unit(std::string_view(heading).substr(open + 2, heading.size() - open - 3),
-                    key->forms.front().dimension, place);
-}
-
 // Reads the time and one column of a table with headings.
-Table read_column(const Fields& fields, const ReadContext& context) {
+Table read_column(const Fields& fields, const ReadContext& context, bool& unit_given) {
   const std::filesystem::path path = context.path(fields, "file");
   Table table = at_place(fields.place("file"), [&] { return read_csv(path); });
   std::string name;
   fields.read("column", name);
   const Eigen::Index column = column_of(table, name, fields.place("column"));
-  double unit = heading_unit(table.names[static_cast<std::size_t>(column)], fields,
-                             {.file = path.string(), .line = 1, .item = fields.place("file").item});
-  if (fields.table().find("unit") != nullptr) fields.read("unit", unit);
+  unit_given = has_unit(fields, table, column);
   MatrixX values(table.values.rows(), 2);
-  values << table.values.col(0), unit * table.values.col(column);
+  values << table.values.col(0), column_unit(fields, table, column) * table.values.col(column);
   table.values = std::move(values);
   return table;
 }
 
 }  // namespace
+
+double column_unit(const Fields& fields, const Table& table, Eigen::Index column) {
+  const Key* key = fields.table().find("unit");
+  const Dimension expected = key != nullptr ? key->forms.front().dimension : dimension::kNone;
+  const std::optional<double> said =
+      heading_unit(table, column, expected, fields.place("file").item);
+  double unit = said.value_or(1.0);
+  if (key == nullptr || !fields.read("unit", unit) || !said || unit == *said) return unit;
+  const std::string& heading = table.names[static_cast<std::size_t>(column)];
+  if (!parse_heading(heading).unit) return unit;  // its last word was no unit after all
+  throw Error(ErrorKind::conflicting_keys, fields.place("unit"),
+              fmt::format("`unit` and the heading '{}' name different units", heading),
+              "leave `unit` out, or correct it");
+}
+
+double time_unit(const Fields& fields, const Table& table, Eigen::Index column) {
+  return heading_unit(table, column, dimension::kTime, fields.place("file").item).value_or(1.0);
+}
 
 std::filesystem::path ReadContext::path(const Fields& fields, std::string_view key) const {
   std::string written;
@@ -89,8 +105,10 @@ TimeTable read_time_table(const Fields& fields, int columns, const ReadContext& 
   TimeTable result;
   if (context.files == Files::ignore) return result;
   const bool named = columns == 1 && fields.find("column") != nullptr;
-  const Table table =
-      named ? read_column(fields, context) : read_scaled(fields, columns + 1, 1, context);
+  Table table = named ? read_column(fields, context, result.unit_given)
+                      : read_scaled(fields, columns + 1, 1, context);
+  if (!named) result.unit_given = has_unit(fields, table, 1);
+  table.values.col(0) *= time_unit(fields, table, 0);
   for (Eigen::Index row = 0; row < table.values.rows(); ++row) {
     const double time = table.values(row, 0);
     if (row > 0 && time <= result.times.back()) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sinew/core/csv.hpp"
 #include "sinew/scene/description.hpp"
 #include "sinew/scene/fields.hpp"
 #include "sinew/scene/node.hpp"
@@ -93,15 +94,23 @@ sim::Signal read_signal(const Fields& fields, std::string_view key, const ReadCo
 /// Reads the points under `key`: a list of vectors, or a CSV table.
 PointList read_points(const Fields& fields, std::string_view key, const ReadContext& context);
 
+/// The unit (SI) of a column: that under `unit`, else that of its heading, else the SI unit. Throws
+/// Error: conflicting-keys if they differ, and what heading_unit() throws.
+/// @param fields of the map that names the file; the dimension is that of its key `unit`, and 1
+/// without such a key. @param table,column of the file.
+double column_unit(const Fields& fields, const Table& table, Eigen::Index column);
+/// The unit (s) of a column of times. Throws what heading_unit() throws.
+double time_unit(const Fields& fields, const Table& table, Eigen::Index column);
+
 /// A CSV table of times and values in SI units.
 struct TimeTable {
   std::vector<double> times;                                                      ///< (n,) s
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> values;  ///< (n, columns)
+  bool unit_given = false;  ///< whether the scene or the headings have the unit of the values
 };
 /// Reads the CSV file under `file`, with the unit under `unit`. The result is empty if files are
-/// not opened. If there is one value and the key `column`, reads the column of that name; the
-/// default of its unit is then that of the heading. Throws Error: wrong-columns,
-/// non-monotonic-time.
+/// not opened. If there is one value and the key `column`, reads the column of that name. Throws
+/// Error: wrong-columns, non-monotonic-time, and what column_unit() and time_unit() throw.
 /// @param fields of the table. @param columns number of values in a row, besides the time.
 /// @param context of the scene.
 TimeTable read_time_table(const Fields& fields, int columns, const ReadContext& context);

@@ -8,6 +8,7 @@
 #include "sinew/scene/check.hpp"
 #include "sinew/scene/readers.hpp"
 #include "sinew/scene/renamed_words.hpp"
+#include "sinew/scene/suspicious_units.hpp"
 
 namespace sinew::scene {
 
@@ -249,6 +250,7 @@ SceneDescription parse_scene_tree(Node tree, const std::filesystem::path& base_d
   tree.name_paths();
   check_scene(tree);
   SceneDescription scene = read_scene(tree, {base_dir, files});
+  scene.notices = suspicious_units(tree, {base_dir, files});
   const std::filesystem::path file = tree.place().file;
   scene.name = file.has_stem() ? file.stem().string() : "scene";
   scene.tree = std::move(tree);

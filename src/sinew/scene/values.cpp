@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "sinew/core/whole.hpp"
 #include "sinew/scene/check.hpp"
+#include "sinew/scene/other_words.hpp"
 #include "sinew/scene/renamed_words.hpp"
 
 namespace sinew::scene {
@@ -181,7 +183,7 @@ int read_integer(const Node& node, const Form& form) {
     throw_wrong_type(node, {form}, fmt::format("{}", form.range.min));
   }
   check_range(value, form, node.place(), node.spelling());
-  return static_cast<int>(value);
+  return whole<int>(value);
 }
 
 const Choice& read_choice(const Node& node, const Form& form) {
@@ -250,7 +252,8 @@ std::vector<Sample> read_samples(const Node& node, const Form& form) {
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
   if (word.size() > kLongWord) return {};
-  const std::string nearest = nearest_word(word, candidates);
+  std::string nearest = word_for(word, candidates);
+  if (nearest.empty()) nearest = nearest_word(word, candidates);
   return nearest.empty() ? std::string() : fmt::format("did you mean '{}'? ", nearest);
 }
 

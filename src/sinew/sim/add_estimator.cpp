@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/whole.hpp"
 #include "sinew/sim/add_parts.hpp"
 #include "sinew/sim/estimator_model.hpp"
 #include "sinew/sim/model.hpp"
@@ -57,13 +58,13 @@ int add_estimator(ModelData& data, const EstimatorSettings& settings) {
     const EstimatorSensor sensor = sensor_of(data, settings.sensors[k], place, *settings.robot);
     // A sample is delivered at the first step at or after the delay.
     const double steps = std::ceil(sensor.delay / data.step.time_step - 1e-6);
-    if (steps > kMaxLags) {
+    if (!(steps <= kMaxLags)) {
       throw Error(ErrorKind::out_of_range, place,
                   fmt::format("'{}' is {:g} steps late, and an estimator remembers {}",
                               settings.sensors[k], steps, kMaxLags),
                   "give a shorter delay, or a longer time_step");
     }
-    estimator.lags = std::max(estimator.lags, static_cast<int>(steps));
+    estimator.lags = std::max(estimator.lags, whole<int>(steps));
     estimator.sensors.push_back(sensor);
   }
   data.estimators.push_back(std::move(estimator));

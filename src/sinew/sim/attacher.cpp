@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/core/whole.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/sim/attach.hpp"
 #include "sinew/sim/find_body.hpp"
@@ -27,7 +28,7 @@ std::vector<Vector3> sample(const Points& corners, int samples) {
   for (Eigen::Index k = 1; k < corners.rows(); ++k) {
     const Vector3 from = corners.row(k - 1).transpose(), to = corners.row(k).transpose();
     const double share = length > 0.0 ? (to - from).norm() / length : 0.0;
-    const int pieces = std::max(1, static_cast<int>(std::lround(share * (samples - 1))));
+    const int pieces = whole<int>(std::round(share * (samples - 1)), 1, std::max(1, samples - 1));
     for (int i = 1; i <= pieces; ++i) result.emplace_back(from + (to - from) * i / pieces);
   }
   return result;

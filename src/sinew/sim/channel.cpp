@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/whole.hpp"
 
 namespace sinew::sim {
 
@@ -182,15 +183,15 @@ bool Channel::load(std::span<const double>& memory) {
   if (memory.size() < kScalars || memory[0] != static_cast<double>(size_)) return false;
   const double flags = memory[5], waiting = memory[7];
   if (!(flags >= 0.0 && flags < 16.0) || !(waiting >= 0.0)) return false;
-  const int set = static_cast<int>(flags);
+  const int set = whole<int>(flags);
   const std::size_t values = (set & 1) != 0 ? size_ : 0;
   const std::size_t rest = memory.size() - kScalars;
   if (rest < size_ + values || waiting > static_cast<double>(rest - size_ - values)) return false;
-  const auto queue = static_cast<std::size_t>(waiting);
+  const auto queue = whole<std::size_t>(waiting);
   if (queue % (2 + size_) != 0) return false;
   restart();
-  samples_ = static_cast<std::int64_t>(memory[1]);
-  missing_ = static_cast<std::int64_t>(memory[2]);
+  samples_ = whole<std::int64_t>(memory[1], 0);
+  missing_ = whole<std::int64_t>(memory[2], 0);
   period_ = memory[3];
   taken_ = memory[4];
   has_value_ = (set & 1) != 0;

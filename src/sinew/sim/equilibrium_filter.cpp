@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sinew/constraint/effector.hpp"
+#include "sinew/core/whole.hpp"
 #include "sinew/sim/estimator_model.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/sensor_source.hpp"
@@ -180,7 +181,11 @@ bool EquilibriumFilter::load_own(std::span<const double>& memory) {
     good = good && !memory.empty();
     if (!good) return;
     using Number = std::remove_reference_t<decltype(number)>;
-    number = static_cast<Number>(memory.front());
+    if constexpr (std::integral<Number>) {
+      number = whole<Number>(memory.front());
+    } else {
+      number = static_cast<Number>(memory.front());
+    }
     memory = memory.subspan(1);
   });
   return good && filter_.load(memory);

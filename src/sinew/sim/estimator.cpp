@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/core/whole.hpp"
 #include "sinew/sim/equilibrium_filter.hpp"
 #include "sinew/sim/estimator_model.hpp"
 #include "sinew/sim/model.hpp"
@@ -96,13 +97,13 @@ void Estimator::correct(const Run& run) {
     const Eigen::Index own = std::exchange(first, first + size);
     const Channel& channel = run.sensors.channel(sensor.index);
     if (!channel.fresh() || (channel.received() && channel.time() == used_[k])) continue;
-    const auto late = std::max(0LL, std::llround((run.time() - channel.time()) / time_step));
+    const int late = whole<int>(std::round((run.time() - channel.time()) / time_step), 0);
     used_[k] = channel.time();
     if (late > model_.lags) {
       dropped_ += 1.0;
       continue;
     }
-    const int lag = static_cast<int>(late);
+    const int lag = late;
     if (!filter_->knows(lag)) continue;
     const VectorX said = Eigen::Map<const VectorX>(channel.value().data(), size);
     const VectorX innovation = model_.difference(k, said, filter_->path(lag).segment(own, size)) -

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sinew/core/types.hpp"
+#include "sinew/core/whole.hpp"
 #include "sinew/estimate/observability.hpp"
 
 namespace sinew::sim {
@@ -69,7 +70,7 @@ class Estimator {
   /// Directions determined by the prior alone, as text: "0.98 hand.z - 0.2 hand.x".
   std::vector<std::string> unobservable() const;
   /// Number of samples that arrived too late to be used.
-  long dropped() const { return static_cast<long>(dropped_); }
+  long dropped() const { return whole<long>(dropped_); }
   /// The estimator's robot, under the unknowns as estimated before the last step.
   const Simulation& robot() const;
 

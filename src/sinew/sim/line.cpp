@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/cable.hpp"
+#include "sinew/core/whole.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/sim/model_data.hpp"
 
@@ -40,7 +41,7 @@ LinePath set_guides(LinePath written, double spacing) {
     }
     // Between two bodies, the line is free of guides.
     const auto end = static_cast<std::size_t>(i);
-    const int pieces = bodies[end] == bodies[end - 1] ? std::max(static_cast<int>(parts), 1) : 1;
+    const int pieces = bodies[end] == bodies[end - 1] ? whole<int>(parts, 1) : 1;
     for (int k = 1; k <= pieces; ++k) {
       all.push_back(from + static_cast<double>(k) / pieces * (to - from));
       result.bodies.push_back(bodies[end]);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/core/named_hash.hpp"
+#include "sinew/core/whole.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/sensor_source.hpp"
@@ -102,7 +103,7 @@ bool Sensors::load(std::span<const double> memory) {
   memory = memory.subspan(1);
   for (Sensor& sensor : sensors_) {
     if (memory.size() < 1 + sensor.memory.size()) return false;
-    sensor.row = static_cast<std::size_t>(std::max(0.0, memory.front()));
+    sensor.row = whole<std::size_t>(memory.front());
     std::copy_n(memory.begin() + 1, sensor.memory.size(), sensor.memory.begin());
     memory = memory.subspan(1 + sensor.memory.size());
     if (!sensor.channel.load(memory)) return false;

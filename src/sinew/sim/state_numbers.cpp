@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "sinew/core/whole.hpp"
 #include "sinew/sim/state.hpp"
 
 namespace sinew::sim {
@@ -34,14 +35,14 @@ bool take(State& state, std::span<const double>& numbers) {
       const double size = next();
       good = good && size >= 0.0 && size <= static_cast<double>(numbers.size());
       if (!good) return;
-      const auto count = static_cast<std::ptrdiff_t>(size);
+      const auto count = whole<std::ptrdiff_t>(size);
       part.assign(numbers.begin(), numbers.begin() + count);
       numbers = numbers.subspan(static_cast<std::size_t>(count));
     } else {
       part = next();
     }
   });
-  state.steps = static_cast<std::int64_t>(next());
+  state.steps = whole<std::int64_t>(next(), 0);
   return good;
 }
 

@@ -7,6 +7,7 @@
 #include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/surface_contact.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/core/whole.hpp"
 #include "sinew/mechanics/step_system.hpp"
 
 namespace sinew::sim {
@@ -400,18 +401,18 @@ std::span<const double> TouchingSurfaces::load(std::span<const double> from) {
   constexpr std::size_t kEach = kKeyMemory + constraint::SurfaceContact::kMemory;
   const double told = from.empty() ? -1.0 : from[0];
   if (!(told >= 0.0 && told <= static_cast<double>(contact_.size())) ||
-      from.size() < kHead + kEach * static_cast<std::size_t>(told)) {
+      from.size() < kHead + kEach * whole<std::size_t>(told)) {
     throw Error(ErrorKind::wrong_length, {.item = "points of contact '" + contact_.name() + "'"},
                 "the state has none that fit", "take it from a simulation of the same model");
   }
-  const auto count = static_cast<std::size_t>(told);
+  const auto count = whole<std::size_t>(told);
   reach_ = from[1];
   keys_.resize(count);
   pairs_.resize(count);  // which of them wait is determined in the next step
   clear_rest();
   const double* at = from.data() + kHead;
   for (std::size_t k = 0; k < count; ++k, at += kEach) {
-    keys_[k] = {static_cast<int>(at[0]), static_cast<int>(at[1]), static_cast<int>(at[2])};
+    keys_[k] = {whole<int>(at[0]), whole<int>(at[1]), whole<int>(at[2])};
     pairs_[k] = contact_.load(k, at + kKeyMemory, rows_);
   }
   return from.subspan(kHead + count * kEach);
