@@ -41,6 +41,20 @@ bool is_needed(const sim::Observable& observable) {
   }
 }
 
+// The default element of a material may have become quadratic since the run was recorded: bodies
+// keep the linear tetrahedra that the file has.
+void keep_linear_elements(const record::RunFile& file, scene::SceneDescription& description) {
+  for (scene::BodyDescription& body : description.bodies) {
+    const bool is_default = body.element == scene::Element::any && !body.arm && !body.rigid &&
+                            !body.urdf &&
+                            std::ranges::find(file.bodies(), body.name) != file.bodies().end();
+    if (!is_default) continue;
+    const mesh::Mesh mesh = file.rest_mesh(body.name);
+    const bool linear = !mesh.tetrahedra.empty() && mesh.quadratic.empty();
+    if (linear && mesh.hexahedra.empty()) body.element = scene::Element::tet4;
+  }
+}
+
 scene::Robot recorded_robot(const record::RunFile& file) {
   if (!file.has_states()) {
     throw Error(ErrorKind::missing_key, {.item = "record.states"},
@@ -50,7 +64,10 @@ scene::Robot recorded_robot(const record::RunFile& file) {
   if (file.frames() == 0) {
     throw Error(ErrorKind::empty_list, {.item = "run.h5"}, "the run has no frames", "run it again");
   }
-  return scene::build(scene::parse_recorded_scene(file.scene(), file.scene_name()));
+  scene::SceneDescription description =
+      scene::parse_recorded_scene(file.scene(), file.scene_name());
+  keep_linear_elements(file, description);
+  return scene::build(std::move(description));
 }
 
 }  // namespace

@@ -46,8 +46,8 @@ def write(path, size, origin, cells, kind="tetra", seed=None):
     return order
 
 
-def body(path, young, **more):
-    return {"type": "fem", "mesh": {"file": str(path), "unit": "m"}, "density": 1000.0,
+def body(path, young, element="tet4", **more):
+    return {"type": "fem", "element": element, "mesh": {"file": str(path), "unit": "m"}, "density": 1000.0,
             "material": {"model": "neo-hookean", "young_modulus": young, "poisson_ratio": 0.3}, **more}
 
 
@@ -109,11 +109,12 @@ class Dragged:
     def __init__(self, folder, kind, friction, on, seed=None):
         self.orders = {"top": write(folder / "top.vtu", (0.02, 0.02, 0.02), (0.0073, 0.0091, 0.0201), (4, 4, 4), kind, seed)}
         motion = {"z": {"ramp": {"to": -1.5e-3, "duration": 0.1}}, "x": {"ramp": {"to": 1e-3, "start": 0.1, "duration": 0.1}}}
-        bodies = {"top": body(folder / "top.vtu", 2e5, fixed=held(0.0401), base=motion)}
+        element = "hex8" if kind == "hexahedron" else "tet4"
+        bodies = {"top": body(folder / "top.vtu", 2e5, element, fixed=held(0.0401), base=motion)}
         contact = {"body": "top", "surface": {"plane": {"point": [0, 0, 0.02]}}, "friction": friction}
         if on == "block":
             self.orders["low"] = write(folder / "low.vtu", (0.04, 0.04, 0.02), (0.0, 0.0, 0.0), (5, 5, 3), kind, None if seed is None else seed + 100)
-            bodies["low"] = body(folder / "low.vtu", 2e5, fixed=held(0.0))
+            bodies["low"] = body(folder / "low.vtu", 2e5, element, fixed=held(0.0))
             contact = {"between": ["low", "top"], "friction": friction}
         self.sim = sinew.load({"sinew": 1, "time_step": 0.01, "solver": {"ordering": "amd", "tolerance": 1e-12}, "bodies": bodies,
                                "contacts": {"press": contact}}, threads=1)

@@ -38,7 +38,7 @@ def hand():
         "sinew": 1, "gravity": "0 0 0 m/s^2", "time_step": "50 ms", "duration": "1 s", "solver": {"tolerance": 1e-8},
         "bodies": {
             "palm": {"type": "rigid", "shape": {"box": "30 30 10 mm"}, "mass": "50 g"},
-            "finger": {"type": "fem", "mesh": {"shape": "block", "length": "15 mm", "width": "15 mm", "height": "60 mm",
+            "finger": {"type": "fem", "element": "tet4", "mesh": {"shape": "block", "length": "15 mm", "width": "15 mm", "height": "60 mm",
                                                "element_size": "7.5 mm"}, "position": "-7.5 -7.5 5 mm",
                        "material": {"model": "neo-hookean", "young_modulus": "1 MPa", "poisson_ratio": 0.4}},
         },

@@ -126,7 +126,8 @@ def test_a_light_bracket_under_great_forces_takes_few_iterations():
     sim = sinew.load({
         "sinew": 1, "time_step": "5 ms", "integrator": "bdf2", "gravity": "-3 0 -5 m/s^2", "solver": {"method": "newton"},
         "bodies": {
-            "finger": {"type": "fem", "mesh": {"shape": "cylinder", "radius": "10 mm", "height": "60 mm", "element_size": "15 mm"},
+            "finger": {"type": "fem", "element": "tet4",
+                       "mesh": {"shape": "cylinder", "radius": "10 mm", "height": "60 mm", "element_size": "15 mm"},
                        "material": {"model": "neo-hookean", "young_modulus": "120 kPa", "poisson_ratio": 0.35}, "density": 1000.0,
                        "fixed": {"set": "bottom"}},
             "bracket": {"type": "rigid", "shape": {"box": "8 8 8 mm"}, "density": 1200.0, "pose": {"position": "0 8 48 mm"}},

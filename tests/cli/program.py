@@ -16,6 +16,7 @@ bodies:
   beam:
     type: fem
     mesh: {{shape: block, length: 100 mm, width: 20 mm, height: 20 mm, element_size: 10 mm}}
+    element: tet4
     material: {{model: corotational, young_modulus: 200 kPa, poisson_ratio: 0.4}}
     density: 1070 kg/m^3
     fixed: [{{set: x_min}}]

@@ -226,8 +226,8 @@ def test_rubber_takes_the_exact_tangent_in_place_of_the_rotated_one(scene, tmp_p
 
 
 def test_elements_are_named_and_warned_of(scene, tmp_path):
-    law = ("{model: corotational, young_modulus: 200 kPa, poisson_ratio: 0.4}",
-           "{model: corotational, young_modulus: 200 kPa, poisson_ratio: 0.45}")
+    law = ("element: tet4\n    material: {model: corotational, young_modulus: 200 kPa, poisson_ratio: 0.4}",
+           "material: {model: corotational, young_modulus: 200 kPa, poisson_ratio: 0.3}")
     short = ["--duration", "20ms", "--out", tmp_path / "o"]
     tacit = sinew("run", scene(replace=law), *short)
     assert tacit.returncode == DONE and tacit.stderr.count("\n") == 1, tacit.stderr
@@ -237,10 +237,10 @@ def test_elements_are_named_and_warned_of(scene, tmp_path):
     chosen = scene(replace=(law[0], law[1] + "\n    element: tet4"))
     assert sinew("run", chosen, *short).stderr == ""
     told = sinew("info", chosen)
-    assert "remark: " in told.stdout and "times too stiffly" in told.stdout
+    assert "remark: " in told.stdout and "times too stiff" in told.stdout
     facts = json.loads(sinew("info", chosen, "--json").stdout)
     assert facts["notices"][0]["level"] == "remark" and list(facts["bodies"][0]["elements"]) == ["tet4"]
-    rubber = sinew("run", scene(replace=(law[0], "dragon-skin-30")), *short)
+    rubber = sinew("run", scene(replace=(law[0], "material: dragon-skin-30")), *short)
     assert rubber.returncode == DONE and " tet10 elements" in rubber.stdout
     # Its cable has bare points, which matter for quadratic elements.
     assert rubber.stderr.count("\n") == 1 and rubber.stderr.rstrip().endswith("[bare-points]")

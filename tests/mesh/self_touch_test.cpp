@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/shapes.hpp"
 
 namespace sinew::mesh {
@@ -52,6 +53,73 @@ TEST_P(SelfTouchTest, NodesThatMeetNobodyAreFree) {
     twisted(i, 2) = y * std::sin(angle) + z * std::cos(angle);
   }
   EXPECT_FALSE(touch.find(twisted));
+}
+
+/// Two quadratic tetrahedra that do not touch at rest: a large one, and a small one below its
+/// highest corner 4, which the tests move.
+Mesh two_tetrahedra() {
+  Mesh mesh;
+  mesh.nodes.resize(8, 3);
+  mesh.nodes << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1,  //
+      5, 5, 5, 5, 5.2, 4.8, 5.2, 5, 4.8, 5, 5, 4.8;
+  mesh.tetrahedra = {{0, 1, 2, 3}, {4, 5, 6, 7}};
+  return with_middle_nodes(mesh);
+}
+
+/// Positions in which the face z = 0 of the large element bulges by `bulge` along -z at its centre,
+/// and the small one is at `point`.
+Points bulged(const Mesh& mesh, double bulge, const Vector3& point) {
+  Points moved = mesh.nodes;
+  // A third of the sum over the middle nodes of 4 L_i L_j is 4/3 at the centre of the face.
+  for (const auto& [a, b] : {std::pair(0, 1), {1, 2}, {2, 0}}) {
+    moved(middle_node(mesh.quadratic[0], a, b), 2) -= 0.75 * bulge;
+  }
+  const Eigen::RowVector3d to = point.transpose() - mesh.nodes.row(4);
+  for (NodeId node = 0; node < moved.rows(); ++node) {
+    if (mesh.nodes(node, 0) > 2.0) moved.row(node) += to;
+  }
+  return moved;
+}
+
+// The straight tetrahedron between the corners is neither all of a curved element nor within it.
+TEST(SelfTouchOfCurvedElements, GoesByTheCurvedFace) {
+  const Mesh mesh = two_tetrahedra();
+  const SelfTouch touch(mesh);
+  const double third = 1.0 / 3.0;
+  const Vector3 above(third, third, 0.05), below(third, third, -0.05);
+  EXPECT_TRUE(touch.find(bulged(mesh, 0.0, above)));
+  EXPECT_FALSE(touch.find(bulged(mesh, -0.2, above))) << "in the straight one, in the dent";
+  EXPECT_FALSE(touch.find(bulged(mesh, 0.0, below)));
+  EXPECT_TRUE(touch.find(bulged(mesh, 0.2, below))) << "in the bulge";
+}
+
+// Contact replaces the face by four flat triangles: three quarters of the bulge at its centre.
+TEST(SelfTouchOfCurvedElements, NodesOnTheFlatTrianglesOfContactAreOutside) {
+  const Mesh mesh = two_tetrahedra();
+  const SelfTouch touch(mesh);
+  const double third = 1.0 / 3.0;
+  EXPECT_FALSE(touch.find(bulged(mesh, 0.2, Vector3(third, third, -0.16))));
+  EXPECT_TRUE(touch.find(bulged(mesh, 0.2, Vector3(third, third, -0.14))));
+}
+
+TEST(SelfTouchOfCurvedElements, CoordinatesAreFoundFromThePoint) {
+  const Mesh mesh = two_tetrahedra();
+  const Points moved = bulged(mesh, 0.3, mesh.nodes.row(4).transpose());
+  Eigen::Matrix<double, 10, 3> nodes;
+  for (Eigen::Index a = 0; a < 10; ++a) {
+    nodes.row(a) = moved.row(mesh.quadratic[0][static_cast<std::size_t>(a)]);
+  }
+  for (const std::array<double, 4>& at :
+       {std::array{0.1, 0.2, 0.3, 0.4}, {0.7, 0.1, 0.1, 0.1}, {0.32, 0.33, 0.34, 0.01}}) {
+    Vector3 point = Vector3::Zero();
+    const auto shapes = quadratic_shapes(at);
+    for (Eigen::Index a = 0; a < 10; ++a) {
+      point += shapes[static_cast<std::size_t>(a)] * nodes.row(a).transpose();
+    }
+    const auto found = quadratic_coordinates(point, nodes);
+    ASSERT_TRUE(found);
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR((*found)[k], at[k], 1e-12);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Cells, SelfTouchTest,

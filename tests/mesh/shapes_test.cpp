@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <set>
 
 #include <gmock/gmock.h>
 
@@ -18,6 +20,7 @@
 #include "sinew/mesh/scale.hpp"
 #include "sinew/mesh/selection.hpp"
 #include "sinew/mesh/solid.hpp"
+#include "sinew/mesh/split_hexahedra.hpp"
 #include "sinew/mesh/surface.hpp"
 #include "sinew/mesh/topology.hpp"
 
@@ -48,6 +51,49 @@ TEST(Shapes, BlockFillsItsBox) {
   EXPECT_EQ(report.tetrahedra, 6 * 2 * 3 * 4);
   EXPECT_NEAR((report.low - Vector3(1, 2, 3)).norm(), 0.0, 1e-15);
   EXPECT_NEAR((report.high - Vector3(1.1, 2.2, 3.3)).norm(), 0.0, 1e-15);
+}
+
+/// The elements, each as its sorted corners, with the nodes of the mirror image along an axis.
+std::set<std::array<NodeId, 4>> mirrored(const Mesh& mesh, int axis, bool mirror) {
+  const double high = mesh.nodes.col(axis).maxCoeff(), low = mesh.nodes.col(axis).minCoeff();
+  std::map<std::array<long, 3>, NodeId> at;
+  const auto key = [&](const Vector3& x) {
+    return std::array{std::lround(1e6 * x.x()), std::lround(1e6 * x.y()), std::lround(1e6 * x.z())};
+  };
+  for (NodeId node = 0; node < mesh.node_count(); ++node) {
+    at[key(mesh.nodes.row(node).transpose())] = node;
+  }
+  std::set<std::array<NodeId, 4>> result;
+  for (const Tetrahedron& tetrahedron : mesh.tetrahedra) {
+    std::array<NodeId, 4> corners{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      Vector3 x = mesh.nodes.row(tetrahedron[k]).transpose();
+      if (mirror) x[axis] = high + low - x[axis];
+      corners[k] = at.at(key(x));
+    }
+    std::ranges::sort(corners);
+    result.insert(corners);
+  }
+  return result;
+}
+
+TEST(Shapes, BlockOfTetrahedraIsItsOwnMirrorImage) {
+  const Mesh mesh = block({.size = {0.06, 0.02, 0.04}, .cells = {6, 2, 4}});
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(mirrored(mesh, axis, true), mirrored(mesh, axis, false)) << axis;
+  }
+  const Mesh finger = ribbed_finger({.ribs = 3, .rib_cells = 2, .width_cells = 4});
+  for (int axis = 0; axis < 2; ++axis) {
+    EXPECT_EQ(mirrored(finger, axis, true), mirrored(finger, axis, false)) << axis;
+  }
+}
+
+TEST(Shapes, HexahedraSplitIntoTetrahedraThatFit) {
+  const Mesh hexahedra = cylinder({.rings = 3, .layers = 4}, Cells::hexahedra);
+  const Mesh split = split_hexahedra(hexahedra);
+  EXPECT_EQ(split.nodes, hexahedra.nodes);
+  EXPECT_EQ(require_sound(split).tetrahedra, 6 * static_cast<int>(hexahedra.hexahedra.size()));
+  EXPECT_NEAR(volume(split), volume(hexahedra), 1e-12 * volume(hexahedra));
 }
 
 TEST(Shapes, HexahedralBlockMatchesTheTetrahedralOne) {

@@ -1,8 +1,12 @@
 // The default element of a body, and the notice about linear tetrahedra that lock.
+#include <regex>
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "sinew/fem/element_count.hpp"
 #include "sinew/fem/has_elements.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/quadratic.hpp"
@@ -10,6 +14,8 @@
 #include "sinew/mesh/write.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/static_settings.hpp"
 
 #include "scene_fixture.hpp"
 
@@ -52,14 +58,25 @@ TEST(DefaultElement, RubbersGetQuadraticTetrahedra) {
   EXPECT_EQ(fem::describe_elements(elements(robot(kShape, kRubber))), "144 tet10 elements");
 }
 
-TEST(DefaultElement, UpToFourTenthsTetrahedraStayLinear) {
+TEST(DefaultElement, SoDoesEveryHyperelasticLawAtAnyPoissonRatio) {
   for (const char* material :
        {"{model: neo-hookean, young_modulus: 60 kPa, poisson_ratio: 0.4}",
-        "{model: neo-hookean, shear_modulus: 3 kPa, bulk_modulus: 14 kPa}",  // nu = 0.4
-        "{model: corotational, young_modulus: 60 kPa, poisson_ratio: 0.4}"}) {
+        "{model: neo-hookean, young_modulus: 60 kPa, poisson_ratio: 0}",
+        "{model: saint-venant-kirchhoff, young_modulus: 60 kPa, poisson_ratio: 0.3}",
+        "{model: neo-hookean, shear_modulus: 3 kPa, bulk_modulus: 14 kPa}"}) {
     const Robot made = robot(kShape, material);
-    EXPECT_EQ(element(made), "tet4") << material;
+    EXPECT_EQ(element(made), "tet10") << material;
     EXPECT_TRUE(made.notices.empty()) << material;
+  }
+}
+
+TEST(DefaultElement, LinearAndCorotationalLawsKeepLinearTetrahedra) {
+  for (const char* model : {"linear", "corotational"}) {
+    const Robot made = robot(
+        kShape, std::string("{model: ") + model + ", young_modulus: 60 kPa, poisson_ratio: 0.3}");
+    EXPECT_EQ(element(made), "tet4") << model;
+    ASSERT_EQ(made.notices.size(), 1U) << model;
+    EXPECT_EQ(made.notices.front().kind, NoticeKind::locking_element) << model;
   }
 }
 
@@ -90,6 +107,18 @@ TEST(DefaultElement, HexahedraAndQuadraticFilesStay) {
   EXPECT_EQ(elements(made).mesh().node_count(), quadratic.node_count());
 }
 
+/// The factor that the notice about locking states; 1 without a notice.
+double stated(const Robot& robot) {
+  for (const Notice& notice : robot.notices) {
+    if (notice.kind != NoticeKind::locking_element) continue;
+    std::smatch number;
+    EXPECT_TRUE(std::regex_search(notice.message, number, std::regex("([0-9.]+) times")))
+        << notice.message;
+    return std::stod(number[1]);
+  }
+  return 1.0;
+}
+
 TEST(LockingNotice, ADefaultWarnsAndAChoiceIsRemarkedOn) {
   const std::string material = "{model: corotational, young_modulus: 60 kPa, poisson_ratio: 0.45}";
   const Robot tacit = robot(kShape, material);
@@ -98,7 +127,7 @@ TEST(LockingNotice, ADefaultWarnsAndAChoiceIsRemarkedOn) {
   EXPECT_EQ(warning.level, NoticeLevel::warning);
   EXPECT_EQ(notice_kind_name(warning.kind), "locking-element");
   EXPECT_EQ(warning.place.item, "bodies.beam.material");
-  for (const char* word : {"tet4", "0.45", "3.5 times", "element: tet10", "neo-hookean"}) {
+  for (const char* word : {"tet4", "0.45", "3.8 times", "element: tet10", "neo-hookean"}) {
     EXPECT_NE(warning.text().find(word), std::string::npos) << word << " in " << warning.text();
   }
   const Robot chosen = robot(kShape, material, "element: tet4");
@@ -106,7 +135,108 @@ TEST(LockingNotice, ADefaultWarnsAndAChoiceIsRemarkedOn) {
   EXPECT_EQ(chosen.notices.front().level, NoticeLevel::remark);
   EXPECT_EQ(chosen.notices.front().place.item, "bodies.beam.element");
   EXPECT_EQ(robot(kShape, kRubber, "element: tet4").notices.size(), 1U);
-  EXPECT_TRUE(robot(kShape, kRubber, "element: tet4-patch").notices.empty());
+}
+
+// One element through the thickness: patches lock in shear, and hexahedra too.
+TEST(LockingNotice, PatchesAndHexahedraAreJudged) {
+  const char* shape = "{shape: block, length: 100 mm, width: 10 mm, height: 10 mm, element_size: ";
+  for (const char* element : {"tet4-patch", "hex8"}) {
+    const Robot coarse =
+        robot(shape + std::string("20 mm}"), kRubber, std::string("element: ") + element);
+    ASSERT_EQ(coarse.notices.size(), 1U) << element;
+    EXPECT_EQ(coarse.notices.front().level, NoticeLevel::warning) << element;
+    EXPECT_NE(coarse.notices.front().text().find(element), std::string::npos);
+    EXPECT_GT(stated(coarse), 1.2) << element;
+  }
+  EXPECT_TRUE(robot(shape + std::string("2.5 mm}"), kRubber, "element: hex8").notices.empty());
+}
+
+/// Mean motion of the first body's nodes up to `nodes` in equilibrium.
+double mean_motion(const Robot& robot, Eigen::Index nodes) {
+  sim::Simulation simulation(robot.model);
+  simulation.solve_static();
+  const Points& now = simulation.body(0).positions();
+  const Points& rest = robot.model->body(0).mesh().nodes;
+  return (now - rest).topRows(nodes).rowwise().norm().mean();
+}
+
+/// Bodies, and what acts on them so weakly that they respond linearly.
+struct Case {
+  const char* body;  ///< mesh, material and supports
+  const char* element;
+  const char* acts;
+};
+
+class LockingFactor : public ::testing::TestWithParam<Case> {};
+
+// The statement is about the scene's own actuators and loads: shear, bulging walls, thin ribs.
+TEST_P(LockingFactor, IsThatOfTheScenesOwnEquilibrium) {
+  const auto made = [&](const std::string& element, const std::string& gravity) {
+    return build(parse_scene_text(
+        "sinew: 1\ngravity: " + gravity + "\nsolver: {tolerance: 1e-9}\n" +
+            "bodies:\n  beam:\n    type: fem\n    density: 1000 kg/m^3\n    element: " + element +
+            "\n" + GetParam().body + GetParam().acts,
+        "scene.yaml", {}));
+  };
+  const bool by_gravity = std::string(GetParam().acts).empty();
+  const std::string gravity = by_gravity ? "0 0 -0.01 m/s^2" : "0 0 0 m/s^2";
+  const Robot linear = made(GetParam().element, gravity), quadratic = made("tet10", gravity);
+  const Eigen::Index nodes = linear.model->body(0).mesh().nodes.rows();
+  const double expected = mean_motion(quadratic, nodes) / mean_motion(linear, nodes);
+  EXPECT_NEAR(stated(linear), expected, 0.1 * expected);
+  EXPECT_GT(expected, 1.1);
+}
+
+constexpr const char* kBar =
+    "    mesh: {shape: block, length: 60 mm, width: 10 mm, height: 10 mm}\n"
+    "    material: {model: neo-hookean, young_modulus: 60 kPa, poisson_ratio: 0.3}\n"
+    "    fixed: {set: x_min}\n";
+constexpr const char* kRibs =
+    "    mesh: {shape: ribbed-finger, length: 60 mm, width: 12 mm, height: 12 mm, ribs: 4}\n"
+    "    material: {model: neo-hookean, young_modulus: 60 kPa, poisson_ratio: 0.45}\n"
+    "    fixed: {set: x_min}\n";
+constexpr const char* kModule =
+    "    mesh: {shape: chambered-cylinder, radius: 8 mm, height: 30 mm, chamber_radius: 5 mm,\n"
+    "           chamber_bottom: 3 mm, chamber_top: 27 mm}\n"
+    "    material: {model: neo-hookean, young_modulus: 60 kPa, poisson_ratio: 0.49}\n"
+    "    fixed: {set: bottom}\n";
+constexpr const char* kAir =
+    "actuators:\n  air: {type: chamber, body: beam, surface: {set: chamber}, command: {pressure: "
+    "0.01 "
+    "Pa}}\n";
+constexpr const char* kCable =
+    "actuators:\n  pull: {type: cable, body: beam, points: [0 6 10 mm, 60 6 10 mm], guide_radius: "
+    "2 mm,"
+    "\n         command: {tension: 1e-4 N}}\n";
+constexpr const char* kPush =
+    "loads:\n  push: {type: force, body: beam, point: 60 5 5 mm, force: 0 1e-5 0 N}\n";
+
+INSTANTIATE_TEST_SUITE_P(Robots, LockingFactor,
+                         ::testing::Values(Case{kBar, "tet4", ""}, Case{kBar, "tet4-patch", kPush},
+                                           Case{kRibs, "tet4", kCable},
+                                           Case{kRibs, "tet4-patch", kCable},
+                                           Case{kModule, "tet4", kAir}));
+
+// A body that joints or contacts hold is free as far as its own elements are concerned.
+TEST(LockingNotice, AFreeBodyIsJudgedByWhatDeformsIt) {
+  const Robot free = build(parse_scene_text(
+      "sinew: 1\nintegrator: backward-euler\nbodies:\n  beam:\n    type: fem\n    density: 1000 "
+      "kg/m^3\n    element: tet4\n    mesh: {shape: block, length: 60 mm, width: 10 mm, height: 10 "
+      "mm}\n    material: {model: neo-hookean, young_modulus: 60 kPa, poisson_ratio: 0.45}\n" +
+          std::string(
+              "actuators:\n  pull: {type: cable, body: beam, points: [0 5 9 mm, 60 5 9 mm]}\n"),
+      "scene.yaml", {}));
+  const Robot held = build(parse_scene_text(
+      "sinew: 1\nbodies:\n  beam:\n    type: fem\n    density: 1000 "
+      "kg/m^3\n    element: tet4\n    mesh: {shape: block, length: 60 mm, width: 10 mm, height: 10 "
+      "mm}\n    material: {model: neo-hookean, young_modulus: 60 kPa, poisson_ratio: 0.45}\n    "
+      "fixed: "
+      "{set: x_min}\n" +
+          std::string(
+              "actuators:\n  pull: {type: cable, body: beam, points: [0 5 9 mm, 60 5 9 mm]}\n"),
+      "scene.yaml", {}));
+  EXPECT_GT(stated(free), 1.5);
+  EXPECT_NEAR(stated(free), stated(held), 0.3 * stated(held));
 }
 
 }  // namespace

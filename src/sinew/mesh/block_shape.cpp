@@ -34,17 +34,14 @@ class BoxGrid {
   template <typename Skip>
   Mesh fill(Cells cells, const Skip& skip) const {
     Mesh mesh = nodes_and_sets();
-    // The six monotone paths along edges from corner 0 to corner 6 (Kuhn's triangulation).
-    constexpr std::array<std::size_t, 7> kRing = {1, 2, 3, 7, 4, 5, 1};
     for (int k = 0; k < cells_along(2); ++k) {
       for (int j = 0; j < cells_along(1); ++j) {
         for (int i = 0; i < cells_along(0); ++i) {
           if (skip(i, j, k)) continue;
-          const Hexahedron h = cell(i, j, k);
-          if (cells == Cells::hexahedra) mesh.hexahedra.push_back(h);
-          if (cells == Cells::hexahedra) continue;
-          for (std::size_t q = 0; q < 6; ++q) {
-            mesh.tetrahedra.push_back({h[0], h[kRing[q]], h[kRing[q + 1]], h[6]});
+          if (cells == Cells::hexahedra) {
+            mesh.hexahedra.push_back(cell(i, j, k));
+          } else {
+            split(mirrored_cell(i, j, k), (i + j + k) % 2 != 0, mesh);
           }
         }
       }
@@ -64,6 +61,30 @@ class BoxGrid {
     return {
         node(i, j, k),     node(i + 1, j, k),     node(i + 1, j + 1, k),     node(i, j + 1, k),
         node(i, j, k + 1), node(i + 1, j, k + 1), node(i + 1, j + 1, k + 1), node(i, j + 1, k + 1)};
+  }
+
+  /// Corners of the cell after mirroring it along each axis on which its number is odd. Cells that
+  /// share a face are mirror images in it, so their tetrahedra fit together; cells at equal
+  /// distances from the middle of an axis with an even number of cells are mirror images in it.
+  Hexahedron mirrored_cell(int i, int j, int k) const {
+    const int x = i % 2, y = j % 2, z = k % 2;
+    const auto at = [&](int a, int b, int c) {
+      return node(i + (a ^ x), j + (b ^ y), k + (c ^ z));
+    };
+    return {at(0, 0, 0), at(1, 0, 0), at(1, 1, 0), at(0, 1, 0),
+            at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1)};
+  }
+
+  /// The six monotone paths along edges from corner 0 to corner 6 (Kuhn's triangulation).
+  /// @param h corners in VTK_HEXAHEDRON order, up to a reflection. @param reflected whether that is
+  ///   odd. @param mesh receives six tetrahedra.
+  static void split(const Hexahedron& h, bool reflected, Mesh& mesh) {
+    constexpr std::array<std::size_t, 7> kRing = {1, 2, 3, 7, 4, 5, 1};
+    for (std::size_t q = 0; q < 6; ++q) {
+      NodeId first = h[kRing[q]], second = h[kRing[q + 1]];
+      if (reflected) std::swap(first, second);
+      mesh.tetrahedra.push_back({h[0], first, second, h[6]});
+    }
   }
 
   Mesh nodes_and_sets() const {

@@ -18,17 +18,25 @@ std::array<double, 4> barycentric_weights(const Vector3& point, const Corners& x
   return {1.0 - w1 - w2 - w3, w1, w2, w3};
 }
 
-double distance_to_tetrahedron(const Vector3& point, const Corners& x) {
+Vector3 closest_on_tetrahedron(const Vector3& point, const Corners& x) {
   const auto weights = barycentric_weights(point, x);
-  if (*std::min_element(weights.begin(), weights.end()) >= 0.0) return 0.0;
+  if (*std::min_element(weights.begin(), weights.end()) >= 0.0) return point;
   constexpr std::array<std::array<std::size_t, 3>, 4> kFaces = {
       {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+  Vector3 result = point;
   double least = kInfinity;
   for (const auto& [i, j, k] : kFaces) {
     const Vector3 nearest = collision::closest_on_triangle(point, x[i], x[j], x[k]).point;
-    least = std::min(least, (nearest - point).norm());
+    const double distance = (nearest - point).norm();
+    if (distance >= least) continue;
+    least = distance;
+    result = nearest;
   }
-  return least;
+  return result;
+}
+
+double distance_to_tetrahedron(const Vector3& point, const Corners& x) {
+  return (closest_on_tetrahedron(point, x) - point).norm();
 }
 
 }  // namespace sinew::mesh

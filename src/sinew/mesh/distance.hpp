@@ -14,6 +14,11 @@ namespace sinew::mesh {
 /// @param corners of the tetrahedron, m.
 std::array<double, 4> barycentric_weights(const Vector3& point, const Corners& corners);
 
+/// The nearest point of the tetrahedron; the point itself if it is inside.
+/// @param point (3,) m.
+/// @param corners of the tetrahedron, m.
+Vector3 closest_on_tetrahedron(const Vector3& point, const Corners& corners);
+
 /// Distance to the tetrahedron, m; 0 inside.
 /// @param point (3,) m.
 /// @param corners of the tetrahedron, m.

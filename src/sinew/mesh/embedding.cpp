@@ -48,6 +48,21 @@ struct Branch {
   int left = -1, right = -1;
 };
 
+/// Quadratic shape functions extrapolated linearly from the nearest point of the corners.
+std::array<double, 10> extrapolated_shapes(const Vector3& point, const Corners& corners) {
+  const auto near = barycentric_weights(closest_on_tetrahedron(point, corners), corners);
+  const auto far = barycentric_weights(point, corners);
+  const auto gradients = quadratic_gradients(near);
+  auto shapes = quadratic_shapes(near);
+  for (std::size_t a = 0; a < shapes.size(); ++a) {
+    for (std::size_t k = 1; k < 4; ++k) {
+      shapes[a] += gradients(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(k) - 1) *
+                   (far[k] - near[k]);
+    }
+  }
+  return shapes;
+}
+
 }  // namespace
 
 struct Embedder::Tree {
@@ -257,8 +272,9 @@ EmbeddedPoint Embedder::locate(const Vector3& point, Outside outside,
   }
   const auto p = static_cast<std::size_t>(part);
   const auto weights = barycentric_weights(point, tree_->corners[p]);
-  if (inside && !tree_->quadratic.empty()) {
-    const auto shapes = quadratic_shapes(weights);
+  if (!tree_->quadratic.empty()) {
+    const auto shapes =
+        inside ? quadratic_shapes(weights) : extrapolated_shapes(point, tree_->corners[p]);
     result.nodes.assign(tree_->quadratic[p].begin(), tree_->quadratic[p].end());
     result.weights.assign(shapes.begin(), shapes.end());
     return result;

@@ -21,7 +21,8 @@ constexpr double kOnSurface = 1e-5;
 enum class Outside {
   error,  ///< throw Error(point-outside-mesh) with the point, its distance and the nearest
   ///< element
-  nearest,  ///< extrapolate linearly from the nearest element; some weights are negative
+  /// extrapolate linearly from the nearest point of the nearest element; some weights are negative
+  nearest,
 };
 
 /// An embedded point x = sum_k weights[k] x(nodes[k]); the weights sum to 1.
@@ -35,8 +36,8 @@ struct EmbeddedPoint {
 /// Finds the element that contains a point by a bounding-volume tree, in O(log n) per query. On a
 /// common face, the lowest element number is taken, so that results do not depend on the tree.
 /// Hexahedra are searched as six tetrahedra around the diagonal 0-6, and points inside get
-/// trilinear weights. Quadratic tetrahedra are searched by their corners, and points inside get
-/// quadratic weights.
+/// trilinear weights. Quadratic tetrahedra are searched by their corners, and points get quadratic
+/// weights.
 class Embedder {
  public:
   /// Throws Error(no-volume-elements). @param mesh need not outlive this.

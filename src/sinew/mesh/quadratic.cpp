@@ -5,9 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/mesh/distance.hpp"
 
 namespace sinew::mesh {
 
@@ -94,6 +96,30 @@ const std::array<std::array<double, 4>, 4>& quadratic_points() {
 const Eigen::Matrix<double, 10, 10>& quadratic_products() {
   static const Eigen::Matrix<double, 10, 10> result = products();
   return result;
+}
+
+std::optional<std::array<double, 4>> quadratic_coordinates(
+    const Vector3& point, const Eigen::Matrix<double, 10, 3>& nodes) {
+  constexpr int kIterations = 30;
+  constexpr double kConverged = 1e-12, kFar = 3.0;
+  Corners corners;
+  for (int a = 0; a < 4; ++a) corners[static_cast<std::size_t>(a)] = nodes.row(a).transpose();
+  // The start is moved inside, where the map of an element without folds is invertible.
+  std::array<double, 4> l = barycentric_weights(point, corners);
+  double sum = 0.0;
+  for (double& weight : l) sum += weight = std::max(weight, 0.0);
+  for (double& weight : l) weight /= sum;
+  for (int k = 0; k < kIterations; ++k) {
+    const auto shapes = quadratic_shapes(l);
+    const Eigen::Map<const Eigen::Matrix<double, 10, 1>> n(shapes.data());
+    const Matrix3 slope = nodes.transpose() * quadratic_gradients(l);
+    const Vector3 step = slope.inverse() * (point - nodes.transpose() * n);
+    if (!step.allFinite() || step.norm() > kFar) return std::nullopt;
+    for (std::size_t a = 1; a < 4; ++a) l[a] += step[static_cast<Eigen::Index>(a) - 1];
+    l[0] = 1.0 - l[1] - l[2] - l[3];
+    if (step.norm() < kConverged) return l;
+  }
+  return std::nullopt;
 }
 
 NodeId middle_node(const QuadraticTetrahedron& element, NodeId first, NodeId second) {

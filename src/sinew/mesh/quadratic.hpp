@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "sinew/core/types.hpp"
 #include "sinew/mesh/mesh.hpp"
@@ -24,6 +25,13 @@ Eigen::Matrix<double, 10, 3> quadratic_gradients(const std::array<double, 4>& ba
 const std::array<std::array<double, 4>, 4>& quadratic_points();
 /// Integral of N_a N_b over an element with straight edges, divided by its volume.
 const Eigen::Matrix<double, 10, 10>& quadratic_products();
+
+/// Barycentric coordinates of a point in a curved element, by Newton's method from those in its
+/// corner tetrahedron; all in [0, 1] if the point is inside. None if it does not converge (a point
+/// far outside of a distorted element).
+/// @param point (3,) m. @param nodes (10, 3) m.
+std::optional<std::array<double, 4>> quadratic_coordinates(
+    const Vector3& point, const Eigen::Matrix<double, 10, 3>& nodes);
 
 /// The middle node between two corners; -1 if they are not two corners of the element.
 NodeId middle_node(const QuadraticTetrahedron& element, NodeId first, NodeId second);

@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "sinew/mesh/quadratic.hpp"
+
 namespace sinew::mesh {
 
 namespace {
@@ -31,6 +33,31 @@ double longest_edge(const Corners& x) {
     for (std::size_t j = i + 1; j < 4; ++j) longest = std::max(longest, (x[i] - x[j]).norm());
   }
   return longest;
+}
+
+double element_size(const Mesh& mesh, int element) {
+  const auto mean = [&](const auto& nodes, const auto& edges) {
+    double sum = 0.0;
+    for (const auto& [a, b] : edges) {
+      sum += (mesh.nodes.row(nodes[a]) - mesh.nodes.row(nodes[b])).norm();
+    }
+    return sum / static_cast<double>(edges.size());
+  };
+  constexpr std::array<std::array<std::size_t, 2>, 12> kBoxEdges = {{{0, 1},
+                                                                     {1, 2},
+                                                                     {2, 3},
+                                                                     {3, 0},
+                                                                     {4, 5},
+                                                                     {5, 6},
+                                                                     {6, 7},
+                                                                     {7, 4},
+                                                                     {0, 4},
+                                                                     {1, 5},
+                                                                     {2, 6},
+                                                                     {3, 7}}};
+  const auto e = static_cast<std::size_t>(element);
+  return e < mesh.tetrahedra.size() ? mean(mesh.tetrahedra[e], kEdges)
+                                    : mean(mesh.hexahedra[e - mesh.tetrahedra.size()], kBoxEdges);
 }
 
 double radius_ratio(const Corners& x) {

@@ -20,6 +20,10 @@ double signed_volume(const Corners& corners);
 /// Length of the longest edge, m.
 double longest_edge(const Corners& corners);
 
+/// Mean length of the straight edges between the corners of an element, m.
+/// @param mesh,element its number: tetrahedra, then hexahedra.
+double element_size(const Mesh& mesh, int element);
+
 /// Radius ratio 3 r / R of inscribed and circumscribed sphere: 1 for a regular tetrahedron, 0 for a
 /// flat one. Source: A. Liu, B. Joe, "Relationship between tetrahedron shape measures", BIT 34,
 /// 1994.

@@ -14,8 +14,9 @@ namespace sinew::mesh {
 /// of round shapes; for other cells, see the top of this file.
 enum class Cells { tetrahedra, quadratic, hexahedra };
 
-/// A box. With tetrahedra, each cell is split into six (Kuhn), all congruent or mirrored if the
-/// cells are cubes.
+/// A box. With tetrahedra, each cell is split into six (Kuhn), and neighbours are mirror images in
+/// their common face. The mesh is symmetric about the middle of every axis with an even number of
+/// cells.
 struct BlockShape {
   Vector3 corner = Vector3::Zero();    ///< m, the lower corner
   Vector3 size{0.1, 0.02, 0.02};       ///< m

@@ -124,15 +124,13 @@ Robot build(SceneDescription description, const SharedMeshes& shared) {
   sim::ModelBuilder builder(step);
   for (const BodyDescription& body : description.bodies) {
     const auto made = shared.find(body.name);
-    if (auto notice =
-            add_body(builder, description, body, made == shared.end() ? nullptr : &made->second)) {
-      robot.notices.push_back(std::move(*notice));
-    }
+    add_body(builder, description, body, made == shared.end() ? nullptr : &made->second);
     const int number = static_cast<int>(&body - description.bodies.data());
     if (auto notice = loose_part_notice(body.place, builder.added_body(number))) {
       robot.notices.push_back(std::move(*notice));
     }
   }
+  const auto of_bodies = static_cast<std::ptrdiff_t>(robot.notices.size());
   const BodyOf body_of = [&](const std::string& name) -> BuiltBody {
     const auto found = std::ranges::find(description.bodies, name, &BodyDescription::name);
     if (found == description.bodies.end()) return {sim::kWorld};
@@ -180,6 +178,8 @@ Robot build(SceneDescription description, const SharedMeshes& shared) {
     add_estimator(builder, description, estimator);
   }
   robot.model = builder.build(factorisation_settings(description.solver));
+  std::ranges::move(locking_notices(description, *robot.model, shared),
+                    std::inserter(robot.notices, robot.notices.begin() + of_bodies));
   for (const ControllerDescription& controller : description.controllers) {
     robot.controllers.push_back(controller_of(controller, *robot.model));
   }

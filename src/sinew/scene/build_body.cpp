@@ -177,26 +177,16 @@ rigid::Solid make_solid(mesh::Surface surface, bool convex) {
   return solid;
 }
 
-std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
-                               const BodyDescription& body, const SharedMesh* shared) {
-  std::optional<Notice> notice;
+void add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
+              const BodyDescription& body, const SharedMesh* shared) {
   try {
-    if (body.arm) {
-      add_arm(builder, scene, body);
-      return notice;
-    }
-    if (body.rigid) {
-      add_rigid(builder, scene, body);
-      return notice;
-    }
-    fem::FemBodySettings settings = fem_settings(scene, body, shared);
-    if (shared == nullptr) notice = locking_notice(body, *settings.mesh);
-    const int number = builder.add_fem_body(std::move(settings), body.place);
+    if (body.arm) return add_arm(builder, scene, body);
+    if (body.rigid) return add_rigid(builder, scene, body);
+    const int number = builder.add_fem_body(fem_settings(scene, body, shared), body.place);
     add_base(builder, number, body);
   } catch (const Error& error) {
     throw error.at(body.place);
   }
-  return notice;
 }
 
 }  // namespace sinew::scene

@@ -1,10 +1,9 @@
-// Selects the finite elements of a body, and makes notices about them.
+// Selects the finite elements of a body.
 #include <algorithm>
 
 #include <fmt/format.h>
 
 #include "sinew/core/rotation.hpp"
-#include "sinew/fem/bending_stiffness.hpp"
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/build_parts.hpp"
@@ -13,32 +12,11 @@ namespace sinew::scene {
 
 namespace {
 
-/// Largest Poisson's ratio at which linear tetrahedra are the default. Beyond it lambda, which
-/// makes them lock, is more than twice mu and grows without bound (fem/bending_stiffness.hpp).
-constexpr double kLargestLinearRatio = 0.4;
-
-double poisson_ratio(const MaterialDescription& material) {
-  return material.model == MaterialModel::hyperelastic ? material.energy.poisson_ratio()
-                                                       : material.poisson_ratio;
-}
-
 template <typename Visit>
 void each_material(const BodyDescription& body, Visit visit) {
   visit(body.material);
   for (const PartDescription& part : body.parts) visit(part.material);
 }
-
-// The largest Poisson's ratio of a body's materials.
-double poisson_ratio(const BodyDescription& body) {
-  double largest = -1.0;
-  each_material(body, [&](const MaterialDescription& one) {
-    largest = std::max(largest, poisson_ratio(one));
-  });
-  return largest;
-}
-
-/// The tolerance is for a ratio of 0.4 that is computed from bulk and shear modulus with rounding.
-bool locks(const BodyDescription& body) { return poisson_ratio(body) > kLargestLinearRatio + 1e-9; }
 
 bool is_hyperelastic(const MaterialDescription& material) {
   return material.model == MaterialModel::hyperelastic;
@@ -82,19 +60,10 @@ void check_law(const BodyDescription& body, const MaterialDescription& material,
   }
 }
 
-std::string remedy(const BodyDescription& body, bool only_tetrahedra) {
-  if (!only_tetrahedra) return "give a mesh of hexahedra or of tetrahedra alone";
-  if (is_hyperelastic(body)) return "write element: tet10, or leave `element` out";
-  const std::string other =
-      "write element: tet10 and a hyperelastic law, for instance model: neo-hookean with the same "
-      "moduli";
-  return body.element == Element::tet4 ? other : other + "; element: tet4 keeps it as it is";
-}
-
 // The mesh in the frame of its file, with the element type that the body names.
 mesh::Mesh make_own_mesh(const BodyDescription& body) {
   const bool chosen = body.element != Element::any;
-  if (chosen || !is_hyperelastic(body) || !locks(body)) {
+  if (chosen || !is_hyperelastic(body)) {
     return make_mesh(body.mesh, body.element);
   }
   if (!body.mesh.shape.empty()) return make_mesh(body.mesh, Element::tet10);
@@ -120,20 +89,6 @@ void place_in_world(const BodyDescription& body, Points& points) {
 void check_element(const BodyDescription& body, const mesh::Mesh& mesh) {
   check_kind(body, mesh);
   each_material(body, [&](const MaterialDescription& one) { check_law(body, one, mesh); });
-}
-
-std::optional<Notice> locking_notice(const BodyDescription& body, const mesh::Mesh& mesh) {
-  const bool linear = !mesh.tetrahedra.empty() && mesh.quadratic.empty();
-  if (!linear || body.element == Element::tet4_patch || !locks(body)) return std::nullopt;
-  const double ratio = poisson_ratio(body);
-  const bool chosen = body.element == Element::tet4;
-  return Notice{
-      chosen ? NoticeLevel::remark : NoticeLevel::warning, NoticeKind::locking_element,
-      chosen ? body.element_place : body.material.place,
-      fmt::format("linear tetrahedra (tet4) lock at Poisson's ratio {:.4g}: this mesh bends about "
-                  "{:.2g} times too stiffly as a whole, and more where walls are thin",
-                  ratio, fem::bending_stiffness_ratio(mesh, ratio)),
-      remedy(body, mesh.hexahedra.empty())};
 }
 
 }  // namespace sinew::scene

@@ -21,6 +21,7 @@ namespace sinew::mesh {
 class Embedder;
 }
 namespace sinew::sim {
+class Model;
 class ModelBuilder;
 }  // namespace sinew::sim
 
@@ -42,9 +43,9 @@ using JointOf = std::function<int(const std::string&)>;
 bool is_rigid(const BuiltBody& body);
 
 /// Makes the mesh of a finite-element body, with the element type that the body names. By default,
-/// files keep their elements and shapes get linear tetrahedra. If the material is hyperelastic with
-/// a Poisson's ratio above 0.4, quadratic tetrahedra replace linear ones, which would lock. Nodes
-/// of a file keep their numbers; midside nodes follow them. Throws what make_mesh() throws.
+/// files keep their elements and shapes get linear tetrahedra. If the material is hyperelastic,
+/// quadratic tetrahedra replace linear ones, which are too stiff. Nodes of a file keep their
+/// numbers; midside nodes follow them. Throws what make_mesh() throws.
 mesh::Mesh make_body_mesh(const BodyDescription& body);
 
 /// Transforms points from the frame of the body's mesh file to the world frame.
@@ -54,10 +55,6 @@ void place_in_world(const BodyDescription& body, Points& points);
 /// Throws Error(unsupported-element) if the mesh has other elements than the body asks for, or
 /// elements that do not support its material. @param body,mesh the body, and its make_body_mesh().
 void check_element(const BodyDescription& body, const mesh::Mesh& mesh);
-
-/// Notice about linear tetrahedra that lock, at a Poisson's ratio above 0.4: a remark if the scene
-/// asks for them, else a warning. @param body,mesh the body, and its make_body_mesh().
-std::optional<Notice> locking_notice(const BodyDescription& body, const mesh::Mesh& mesh);
 
 /// Warning about parts of a mesh that can move without deforming, see mesh::loose_joints(). With
 /// inertia, they swing; without, the step decides whether something else holds them.
@@ -101,10 +98,16 @@ using SharedMeshes = std::map<std::string, SharedMesh>;
 /// @param shared meshes of finite-element bodies; the others are made.
 Robot build(SceneDescription description, const SharedMeshes& shared);
 
+/// Notices about bodies of linear elements that are stiffer than the same mesh in quadratic ones by
+/// a tenth or more (element_stiffness.cpp), in the order of the bodies.
+/// @param scene expanded. @param model of it. @param shared bodies whose meshes are not judged.
+std::vector<Notice> locking_notices(const SceneDescription& scene, const sim::Model& model,
+                                    const SharedMeshes& shared);
+
 /// Adds a body of a scene. @param builder,scene,body which. @param shared its mesh; null: makes the
-/// mesh. @return a notice about a mesh that was made, if the user should know something about it.
-std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
-                               const BodyDescription& body, const SharedMesh* shared);
+/// mesh.
+void add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
+              const BodyDescription& body, const SharedMesh* shared);
 
 /// Adds an actuator. @param builder that has the bodies. @param scene of the actuator.
 /// @param actuator to be added. @param body_of,joint_of find what it acts on.

@@ -201,7 +201,8 @@ std::shared_ptr<const KeyTable> surface_table() {
             .example = "chamber.stl",
             .description =
                 "A closed surface as STL, OBJ or PLY, embedded in the body. It has the coordinates "
-                "of the body's mesh file and shares the body's scale, rotation and position."},
+                "of the body's mesh file and shares the body's scale, rotation and position. "
+                "Triangles larger than the elements are split."},
            file_unit_key("file")},
       .alternatives = {{{"inside", "patch", "file", "box", "sphere", "plane", "set"}, true}}};
   for (Key& key : region_keys("Faces with all their nodes")) surface.keys.push_back(std::move(key));
@@ -226,7 +227,9 @@ std::shared_ptr<const KeyTable> chamber_table() {
             .default_text = "false",
             .description =
                 "Closes openings of the surface with lids of zero stiffness that transfer "
-                "their force to the rim. If false, an open surface is an error."},
+                "their force to the rim. An opening ends in one plane, or in planes that meet, "
+                "such as the clamp of half a robot and its plane of symmetry. If false, an open "
+                "surface is an error."},
            {.name = "load_stiffness",
             .forms = {boolean()},
             .example = "false",

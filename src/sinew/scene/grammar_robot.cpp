@@ -16,7 +16,9 @@ Key optional_length(const char* name, const char* example, const char* default_t
 Key element_size() {
   return optional_length(
       "element_size", "5 mm", "",
-      "Target edge length of the elements. Default: a few elements through the thinnest part.");
+      "Target edge length of the elements. Default: a few elements through the thinnest part. "
+      "Blocks and ribbed fingers of tetrahedra get even numbers of cells, so that they are "
+      "symmetric.");
 }
 
 Choice shape(const char* word, const char* description, std::vector<Key> keys) {
@@ -354,21 +356,24 @@ std::shared_ptr<const KeyTable> fem_table() {
            "Rotation of the mesh about its origin: a rotation vector (axis times angle)."},
       {.name = "element",
        .forms = {choice(
-           {{"tet4", "Linear tetrahedra; they lock above nu = 0.4, most of all near 0.5."},
+           {{"tet4",
+             "Linear tetrahedra: too stiff in bending at any Poisson's ratio, and most of all near "
+             "0.5. A notice states the factor."},
             {"tet4-patch",
              "Linear tetrahedra that share the dilatation of about eight neighbours: no volumetric "
-             "locking. For hyperelastic materials."},
+             "locking, but too stiff in bending; a notice states the factor. For hyperelastic "
+             "materials."},
             {"tet10",
              "Quadratic tetrahedra: no locking. A linear mesh gets mid-edge nodes, numbered after "
              "its own nodes. For hyperelastic materials."},
             {"hex8",
              "Trilinear hexahedra with the pressure of their mean dilatation: no volumetric "
-             "locking. For hyperelastic materials."}})},
+             "locking, but too stiff in bending if they are long or few. For hyperelastic "
+             "materials."}})},
        .example = "hex8",
        .description = "The finite element. Default: the elements of the mesh file, and tetrahedra "
-                      "for shapes. By default, linear tetrahedra that would lock become quadratic "
-                      "(tet10): this applies to hyperelastic materials, such as the library's "
-                      "silicones, with a Poisson's ratio above 0.4."},
+                      "for shapes, which become quadratic (tet10) if all materials are "
+                      "hyperelastic, as those of the library are."},
       {.name = "material",
        .forms = material_forms(),
        .example = "{young_modulus: 450 kPa, poisson_ratio: 0.45}",

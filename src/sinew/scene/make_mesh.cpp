@@ -54,14 +54,20 @@ int rings(int asked, mesh::Cells cells) {
   return std::max(asked, cells == mesh::Cells::hexahedra ? 2 : 1);
 }
 
+// Blocks of tetrahedra are symmetric if they have an even number of cells along each axis. An odd
+// number is raised, so that a body bends in the plane of its load and nowhere else.
+int symmetric(int count, mesh::Cells cells) {
+  return cells == mesh::Cells::hexahedra ? count : count + count % 2;
+}
+
 mesh::Mesh make_block(const Parameters& p, mesh::Cells cells) {
   mesh::BlockShape shape;
   shape.size = {p.get("length", shape.size.x()), p.get("width", shape.size.y()),
                 p.get("height", shape.size.z())};
   const double smallest = shape.size.minCoeff();
   for (int c = 0; c < 3; ++c) {
-    shape.cells[static_cast<std::size_t>(c)] =
-        p.cells(shape.size[c], matching(shape.size[c], smallest, 2));
+    const int count = p.cells(shape.size[c], matching(shape.size[c], smallest, 2));
+    shape.cells[static_cast<std::size_t>(c)] = symmetric(count, cells);
   }
   return mesh::block(shape, cells);
 }
@@ -156,7 +162,10 @@ mesh::Mesh make_finger(const Parameters& p, mesh::Cells cells) {
   const double rise = shape.size.z() - shape.spine, cell = std::min(shape.spine, shape.gap);
   shape.rib_cells = p.cells(rib, matching(rib, cell, 1));
   shape.gap_cells = p.cells(shape.gap, matching(shape.gap, cell, 1));
-  shape.width_cells = p.cells(shape.size.y(), matching(shape.size.y(), cell, 1));
+  // The number of cells along the finger, n ribs + (n - 1) gaps, becomes even.
+  int& middle = shape.ribs % 2 == 0 ? shape.gap_cells : shape.rib_cells;
+  middle = symmetric(middle, cells);
+  shape.width_cells = symmetric(p.cells(shape.size.y(), matching(shape.size.y(), cell, 1)), cells);
   shape.spine_cells = p.cells(shape.spine, matching(shape.spine, cell, 1));
   shape.rib_rise_cells = p.cells(rise, matching(rise, cell, 1));
   return mesh::ribbed_finger(shape, cells);

@@ -1,16 +1,22 @@
 #include "sinew/sim/chamber_surface.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <optional>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "sinew/core/error.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/patch.hpp"
 #include "sinew/mesh/solid.hpp"
 #include "sinew/mesh/surface.hpp"
 #include "sinew/sim/attach.hpp"
+#include "sinew/sim/embedded_surface.hpp"
+#include "sinew/sim/lid.hpp"
 
 namespace sinew::sim {
 
@@ -31,6 +37,24 @@ std::map<Edge, NodeId> middles_of(const std::vector<mesh::Face>& patch) {
   return middles;
 }
 
+Rim rim_of(const mechanics::BodyModel& body, const std::vector<NodeId>& loop,
+           const std::map<Edge, NodeId>& middles) {
+  const Points& nodes = body.mesh().nodes;
+  const auto* surface = mechanics::as<const mechanics::HasSurface>(body);
+  Rim rim;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    rim.corners.push_back(nodes.row(loop[k]).transpose());
+    rim.held.push_back(surface != nullptr && surface->holds(loop[k]) ? 1 : 0);
+    const auto middle = middles.find(edge_of(loop[k], loop[(k + 1) % loop.size()]));
+    if (middle != middles.end()) rim.middles.push_back(nodes.row(middle->second).transpose());
+  }
+  return rim;
+}
+
+/// Lids over rims that are not plane are refused if they leave the volume of the chamber uncertain
+/// by more than this share.
+constexpr double kUncertain = 0.01;
+
 }  // namespace
 
 int ChamberSurface::add(int attached) {
@@ -44,12 +68,11 @@ int ChamberSurface::corner(NodeId node) {
   return corners_[node] = add(attach_node(body_, node));
 }
 
-// The mean of a loop, or the midpoint between it and a node of the loop.
-int ChamberSurface::add_spoke(const std::vector<NodeId>& loop, NodeId node) {
-  const double share = (node < 0 ? 1.0 : 0.5) / static_cast<double>(loop.size());
-  std::vector<double> weights(loop.size(), share);
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    if (loop[k] == node) weights[k] += 0.5;
+// The weighted mean of a loop, or the midpoint between it and a node of the loop.
+int ChamberSurface::add_spoke(const std::vector<NodeId>& loop, std::vector<double> weights,
+                              NodeId node) {
+  for (std::size_t k = 0; node >= 0 && k < loop.size(); ++k) {
+    weights[k] = 0.5 * (weights[k] + (loop[k] == node ? 1.0 : 0.0));
   }
   return add(body_.attach_nodes(loop, weights));
 }
@@ -72,13 +95,21 @@ void ChamberSurface::take(const std::vector<mesh::Face>& patch) {
 
 void ChamberSurface::close(const std::vector<mesh::Face>& patch) {
   const std::map<Edge, NodeId> middles = middles_of(patch);
+  RimShape worst;
   for (const std::vector<NodeId>& loop : mesh::open_loops(patch)) {
-    const int hub = add_spoke(loop, -1);
+    const Rim rim = rim_of(body_, loop, middles);
+    std::optional<std::vector<double>> weights = find_hub(rim, body_.mesh().nodes);
+    if (!weights) {
+      const RimShape shape = rim_shape(rim);
+      if (shape.uncertainty() > worst.uncertainty()) worst = shape;
+      weights.emplace(loop.size(), 1.0 / static_cast<double>(loop.size()));
+    }
+    const int hub = add_spoke(loop, *weights, -1);
     // A quadratic rim needs quadratic lid faces, with straight edges to the hub.
     std::map<NodeId, int> spokes;
     const auto spoke = [&](NodeId node) {
       const auto found = spokes.find(node);
-      return found != spokes.end() ? found->second : spokes[node] = add_spoke(loop, node);
+      return found != spokes.end() ? found->second : spokes[node] = add_spoke(loop, *weights, node);
     };
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const NodeId from = loop[k], to = loop[(k + 1) % loop.size()];
@@ -89,18 +120,45 @@ void ChamberSurface::close(const std::vector<mesh::Face>& patch) {
       faces_.push_back(lid);
     }
   }
+  const double share = worst.uncertainty() / std::abs(volume());
+  if (!(share > kUncertain)) return;
+  throw Error(
+      ErrorKind::surface_not_closed, {.item = "cap"},
+      fmt::format("the rim of an opening is not plane: it rises by {:.3g} mm, so that the "
+                  "volume under a lid is uncertain by {:.2g} % of the chamber's {:.3g} ml",
+                  1e3 * worst.rise, 100.0 * share, 1e6 * std::abs(volume())),
+      "let the opening end in one plane, or in planes that bound the body (a clamp and "
+      "planes of symmetry, of which three must meet in its fixed nodes), or give the closed "
+      "surface as a file");
+}
+
+/// Volume between the corners of the faces at rest, m^3.
+double ChamberSurface::volume() const {
+  const auto at = [&](int point) {
+    return body_.rest_position(points_[static_cast<std::size_t>(point)].number);
+  };
+  const Vector3 origin = at(0);
+  double sum = 0.0;
+  for (const constraint::ChamberFace& face : faces_) {
+    const auto [a, b, c, d] = face.corner;
+    const auto cone = [&](int i, int j, int k) {
+      return (at(i) - origin).dot((at(j) - origin).cross(at(k) - origin)) / 6.0;
+    };
+    sum += cone(a, b, c);
+    if (d >= 0) sum += cone(a, c, d);
+  }
+  return sum;
 }
 
 void ChamberSurface::take(const mesh::Surface& surface, mesh::Outside outside,
                           const std::string& name) {
-  const bool inwards = mesh::solid_moments(surface).volume < 0.0;
-  for (Eigen::Index i = 0; i < surface.nodes.rows(); ++i) {
-    const Vector3 at = surface.nodes.row(i).transpose();
-    add(body_.attach(at, outside, fmt::format("vertex {} of the surface of '{}'", i, name)));
+  mesh::Surface outward = surface;
+  if (mesh::solid_moments(surface).volume < 0.0) {
+    for (mesh::Triangle& triangle : outward.triangles) std::swap(triangle[0], triangle[1]);
   }
-  for (const auto& [a, b, c] : surface.triangles) {
-    faces_.push_back({{inwards ? b : a, inwards ? a : b, c, -1}});
-  }
+  const EmbeddedSurface embedded(body_, outward, outside, name);
+  for (const int point : embedded.points()) add(point);
+  faces_ = embedded.faces();
 }
 
 }  // namespace sinew::sim

@@ -28,10 +28,11 @@ class ChamberSurface {
 
   /// Adds faces of the body's mesh, oriented as seen from the material.
   void take(const std::vector<mesh::Face>& patch);
-  /// Closes the openings of a patch that was added, each by a fan of triangles about the mean of
-  /// its rim.
+  /// Closes the openings of a patch that was added, each by a fan of triangles about a hub in the
+  /// planes of its rim (find_hub()). A rim without such planes gets the mean of its nodes as a hub
+  /// if the volume hardly depends on it. Throws Error(surface-not-closed) otherwise.
   void close(const std::vector<mesh::Face>& patch);
-  /// Adds a separate surface of any orientation, whose vertices are attached to the body.
+  /// Adds a separate surface of any orientation, which is attached to the body (EmbeddedSurface).
   /// @param surface closed, m, at rest. @param outside for vertices outside the mesh.
   /// @param name of the chamber, for messages.
   void take(const mesh::Surface& surface, mesh::Outside outside, const std::string& name);
@@ -43,7 +44,8 @@ class ChamberSurface {
   /// All return the index of a point.
   int add(int attached);
   int corner(NodeId node);
-  int add_spoke(const std::vector<NodeId>& loop, NodeId node);
+  int add_spoke(const std::vector<NodeId>& loop, std::vector<double> weights, NodeId node);
+  double volume() const;
 
   mechanics::BodyModel& body_;
   int number_;

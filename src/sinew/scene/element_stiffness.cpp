@@ -1,0 +1,222 @@
+// Notices about bodies whose linear elements are too stiff.
+//
+// A body is compared with the same mesh in quadratic elements: both are loaded at rest by
+// everything that acts on the body in the scene, one cause at a time (sim/rest_fields.hpp), and the
+// factor of a cause is the ratio of the mean motions of the nodes. Bodies on which nothing acts,
+// and very fine ones, are judged as one beam instead (fem/bending_stiffness.hpp).
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "sinew/fem/bending_stiffness.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mesh/quadratic.hpp"
+#include "sinew/mesh/split_hexahedra.hpp"
+#include "sinew/scene/build.hpp"
+#include "sinew/scene/build_parts.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/rest_fields.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+/// Smaller factors are not mentioned.
+constexpr double kMentioned = 1.1;
+/// Factors above this are warned of, unless the scene asks for tet4.
+constexpr double kWarned = 1.2;
+/// Largest number of linear elements, a hexahedron counting as six, that are compared. The
+/// comparison of as many takes some seconds.
+constexpr std::size_t kMostElements = 40000;
+
+/// How much too stiff a body is.
+struct Excess {
+  double factor = 1.0;
+  std::string cause;     ///< what acts; empty: the body counts as one beam
+  double seconds = 0.0;  ///< of the comparison
+};
+
+bool is_linear(const mesh::Mesh& mesh) { return mesh.quadratic.empty(); }
+
+bool is_comparable(const mesh::Mesh& mesh) {
+  return mesh.tetrahedra.size() + 6 * mesh.hexahedra.size() <= kMostElements;
+}
+
+double poisson_ratio(const MaterialDescription& material) {
+  return material.model == MaterialModel::hyperelastic ? material.energy.poisson_ratio()
+                                                       : material.poisson_ratio;
+}
+
+double largest_poisson_ratio(const BodyDescription& body) {
+  double largest = poisson_ratio(body.material);
+  for (const PartDescription& part : body.parts) {
+    largest = std::max(largest, poisson_ratio(part.material));
+  }
+  return largest;
+}
+
+/// Gives a linear or corotational material the hyperelastic law with the same moduli at rest, which
+/// quadratic elements support.
+void make_hyperelastic(MaterialDescription& material) {
+  if (material.model == MaterialModel::hyperelastic) return;
+  const material::ElasticConstants constants{material.young_modulus, material.poisson_ratio};
+  material.model = MaterialModel::hyperelastic;
+  material.energy = material::neo_hookean(constants.shear_modulus());
+  material.energy.bulk_modulus =
+      material::bulk_modulus_of(constants.shear_modulus(), material.poisson_ratio);
+}
+
+/// The bodies of a scene and what acts on them, without contacts and everything that measures.
+SceneDescription only_acting(SceneDescription scene) {
+  scene.contacts.clear();
+  scene.controllers.clear();
+  scene.effectors.clear();
+  scene.estimators.clear();
+  scene.probes.clear();
+  scene.sensors.clear();
+  return scene;
+}
+
+double mean_motion(const Points& field, Eigen::Index nodes) {
+  return field.topRows(nodes).rowwise().norm().mean();
+}
+
+/// A scene as it is, and with quadratic elements.
+class Comparison {
+ public:
+  /// Throws what build() throws. @param scene,model to be compared. @param bodies indices of those
+  /// that get quadratic elements.
+  Comparison(const SceneDescription& scene, const sim::Model& model,
+             const std::vector<std::size_t>& bodies) {
+    SceneDescription own = only_acting(scene);
+    SharedMeshes meshes;
+    for (std::size_t b = 0; b < own.bodies.size(); ++b) {
+      const auto* elements = mechanics::as<const fem::HasElements>(model.body(static_cast<int>(b)));
+      if (elements == nullptr) continue;
+      meshes[own.bodies[b].name] = {elements->settings().mesh, elements->settings().embedder};
+    }
+    linear_ = build(own, meshes).model;
+    for (const std::size_t b : bodies) {
+      BodyDescription& body = own.bodies[b];
+      SharedMesh& mesh = meshes[body.name];
+      mesh = {std::make_shared<const mesh::Mesh>(
+                  mesh::with_middle_nodes(mesh::split_hexahedra(*mesh.mesh))),
+              nullptr};
+      body.element = Element::tet10;
+      make_hyperelastic(body.material);
+      for (PartDescription& part : body.parts) make_hyperelastic(part.material);
+    }
+    quadratic_ = build(std::move(own), meshes).model;
+  }
+
+  /// The largest factor of any cause; none if nothing acts on the body.
+  std::optional<Excess> excess(int body) const {
+    const auto linear = sim::rest_fields(linear_, body);
+    const auto quadratic = sim::rest_fields(quadratic_, body);
+    std::optional<Excess> worst;
+    for (const sim::RestField& soft : quadratic) {
+      const auto stiff = std::ranges::find(linear, soft.cause, &sim::RestField::cause);
+      if (stiff == linear.end()) continue;
+      const Eigen::Index nodes = stiff->nodes.rows();
+      const double factor = mean_motion(soft.nodes, nodes) / mean_motion(stiff->nodes, nodes);
+      if (!worst || factor > worst->factor) worst = {factor, soft.cause, 0.0};
+    }
+    return worst;
+  }
+
+ private:
+  std::shared_ptr<const sim::Model> linear_, quadratic_;
+};
+
+Excess as_one_beam(const BodyDescription& body, const mesh::Mesh& mesh) {
+  const bool patches = body.element == Element::tet4_patch;
+  return {fem::bending_stiffness_ratio(mesh, largest_poisson_ratio(body), patches), "", 0.0};
+}
+
+std::string element_words(const BodyDescription& body, const mesh::Mesh& mesh) {
+  if (body.element == Element::tet4_patch) return "linear tetrahedra in patches (tet4-patch)";
+  if (mesh.hexahedra.empty()) return "linear tetrahedra (tet4)";
+  return mesh.tetrahedra.empty() ? "trilinear hexahedra (hex8)" : "linear elements (tet4, hex8)";
+}
+
+std::string stiffness_remedy(const BodyDescription& body, const mesh::Mesh& mesh) {
+  const bool is_shape = !body.mesh.shape.empty();
+  if (!mesh.hexahedra.empty()) {
+    return is_shape ? "write element: tet10, or a smaller element_size"
+                    : "refine the mesh, or give one of tetrahedra alone with element: tet10";
+  }
+  const auto is_hyperelastic = [](const auto& owner) {
+    return owner.material.model == MaterialModel::hyperelastic;
+  };
+  if (is_hyperelastic(body) && std::ranges::all_of(body.parts, is_hyperelastic)) {
+    return "write element: tet10, or leave `element` out";
+  }
+  const std::string other =
+      "write element: tet10 and a hyperelastic law, for instance model: neo-hookean with the same "
+      "moduli";
+  return body.element == Element::tet4 ? other : other + "; element: tet4 keeps it as it is";
+}
+
+std::optional<Notice> notice_of(const BodyDescription& body, const mesh::Mesh& mesh,
+                                const Excess& excess) {
+  if (!(excess.factor >= kMentioned)) return std::nullopt;
+  const bool remark = body.element == Element::tet4 || excess.factor < kWarned;
+  const std::string how =
+      excess.cause.empty()
+          ? std::string("in bending, as one beam")
+          : fmt::format(
+                "under '{}' than quadratic elements of the same mesh (compared in {:.2g} s)",
+                excess.cause, excess.seconds);
+  return Notice{
+      remark ? NoticeLevel::remark : NoticeLevel::warning, NoticeKind::locking_element,
+      body.element == Element::any ? body.material.place : body.element_place,
+      fmt::format("{} lock at Poisson's ratio {:.4g}: this mesh is {:.2g} times too "
+                  "stiff {}",
+                  element_words(body, mesh), largest_poisson_ratio(body), excess.factor, how),
+      stiffness_remedy(body, mesh)};
+}
+
+}  // namespace
+
+std::vector<Notice> locking_notices(const SceneDescription& scene, const sim::Model& model,
+                                    const SharedMeshes& shared) {
+  std::vector<std::size_t> linear, comparable;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const mechanics::BodyModel& body = model.body(static_cast<int>(b));
+    const bool judged = mechanics::as<const fem::HasElements>(body) != nullptr &&
+                        is_linear(body.mesh()) && !shared.contains(scene.bodies[b].name);
+    if (judged) linear.push_back(b);
+    if (judged && is_comparable(body.mesh())) comparable.push_back(b);
+  }
+  using Clock = std::chrono::steady_clock;
+  std::optional<Comparison> comparison;
+  try {
+    if (!comparable.empty()) comparison.emplace(scene, model, comparable);
+  } catch (const Error&) {
+    // A region that selects nothing in the other mesh, for instance: the beam is left.
+  }
+  std::vector<Notice> notices;
+  for (const std::size_t b : linear) {
+    const mesh::Mesh& mesh = model.body(static_cast<int>(b)).mesh();
+    const auto start = Clock::now();
+    std::optional<Excess> excess;
+    if (comparison && is_comparable(mesh)) excess = comparison->excess(static_cast<int>(b));
+    if (!excess) excess = as_one_beam(scene.bodies[b], mesh);
+    excess->seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    if (auto notice = notice_of(scene.bodies[b], mesh, *excess)) {
+      notices.push_back(std::move(*notice));
+    }
+  }
+  return notices;
+}
+
+}  // namespace sinew::scene
