@@ -77,6 +77,9 @@ struct Tally {
   std::int64_t steps = 0;
   double wall = 0.0;  ///< s
   double min_volume_ratio = 1.0;
+  double max_residual = 0.0;   ///< relative
+  double max_distance = -1.0;  ///< m; negative: no step has one
+  bool follows = false;        ///< whether any step could end as Equilibrium::following
   struct Flagged {
     std::int64_t steps = 0;
     double first = 0.0;  ///< s
@@ -91,6 +94,9 @@ struct Tally {
 void count(Tally& tally, Session& session) {
   const sim::StepReport& report = session.simulation().report();
   ++tally.steps;
+  tally.max_residual = std::max(tally.max_residual, report.relative_residual);
+  tally.max_distance = std::fmax(tally.max_distance, report.distance);
+  tally.follows = tally.follows || report.following;
   tally.min_volume_ratio = std::min(tally.min_volume_ratio, report.smallest_volume_ratio);
   if (sim::is_flagged(report.status)) {
     Tally::Flagged& flagged = tally.flagged[report.status];
@@ -135,6 +141,15 @@ std::string error_text(const Session& session, double error) {
   return fmt::format("{:.4f} mm", 1e3 * error);
 }
 
+// Bound of the distance to the solutions of the steps; empty if no step has one.
+std::string distance_text(const Tally& tally, const Session& session) {
+  if (tally.max_distance < 0.0) return {};
+  const bool one = session.robot().model->step().method == sim::Method::one_linearisation;
+  const char* how = one ? " (one linearisation)" : tally.follows ? " (equilibrium: following)" : "";
+  if (!std::isfinite(tally.max_distance)) return fmt::format("not bounded in some steps{}", how);
+  return fmt::format("{:.2g} mm{}", 1e3 * tally.max_distance, how);
+}
+
 std::vector<std::vector<std::string>> summary(const Tally& tally, Session& session) {
   const double simulated =
       static_cast<double>(tally.steps) * session.robot().model->step().time_step;
@@ -153,6 +168,10 @@ std::vector<std::vector<std::string>> summary(const Tally& tally, Session& sessi
   }
   for (const auto& [status, times] : tally.statuses) {
     rows.push_back({"steps " + status, fmt::format("{}", times)});
+  }
+  rows.push_back({"largest relative residual", fmt::format("{:.1e}", tally.max_residual)});
+  if (const std::string text = distance_text(tally, session); !text.empty()) {
+    rows.push_back({"largest distance to the solution", text});
   }
   rows.push_back({"smallest volume ratio", fmt::format("{:.3f}", tally.min_volume_ratio)});
   return rows;

@@ -23,6 +23,7 @@ class RigidStep : public mechanics::DenseStep {
   void begin_query() override;
   void add_proposed_motion(Points& nodes) const override;
   double rounding_floor() const override;
+  double proposed_move() const override;
   mechanics::MotionReport apply_motion(double scale) override;
   mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;
   void scale_motion(double factor) override;

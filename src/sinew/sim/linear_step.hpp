@@ -29,6 +29,7 @@ class LinearStep {
   void look_back(mechanics::LinearisationRequest request);
 
   Run& run_;
+  double moved_ = 0.0;  // m, largest move of the step
 };
 
 }  // namespace sinew::sim

@@ -25,6 +25,7 @@ class NewtonStep {
   void solve(double time_step);
 
  private:
+  bool follows() const;
   NewtonSettings settings(double time_step) const;
   NewtonSettings settings_of_part(double time_step) const;
   std::string describe(const NewtonReport& result, const NewtonSettings& how) const;
@@ -36,6 +37,9 @@ class NewtonStep {
   NewtonReport remain(double time_step, const NewtonReport& failed);
   NewtonReport approach(double time_step);
   NewtonReport descend(double time_step, int iterations);
+  bool is_near(NewtonReport& result);
+  double correction();
+  void bound_distance(const NewtonReport& result);
   bool is_usable(const NewtonReport& result) const;
   JointConflict find_conflict(const NewtonReport& result, double time_step) const;
   void take_report(const NewtonReport& result);

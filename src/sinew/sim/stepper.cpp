@@ -190,12 +190,14 @@ double Stepper::substep(double end, double time_step, bool divisible) {
   return substep_.end(time_step);
 }
 
-// Newton's method decides; if it had few iterations or was not used, the residual decides.
+// Newton's method decides. One linearisation must leave no more than following steps do.
 bool Stepper::is_balanced() const {
-  const bool newton = run_.model->step().method == Method::newton;
-  if (newton && run_.report.newton == NewtonStatus::converged) return true;
-  const bool searched = newton && run_.controller == nullptr;
-  return run_.report.relative_residual <= (searched ? kSearched : kBalanced);
+  const StepReport& report = run_.report;
+  if (run_.model->step().method == Method::newton) {
+    return report.newton == NewtonStatus::converged;
+  }
+  return report.relative_residual <= kLag.residual &&
+         report.distance <= kLag.move * run_.model->size();
 }
 
 // Determines the status of the step.
