@@ -231,9 +231,9 @@ class NewtonSolver {
     return idle_ >= kIdle && !kept_ && is_within_stalled_tolerance();
   }
 
-  // The move of the next iteration with the last matrix, by the theory of distance_bound(). Moves of
-  // Newton's method shrink by omega m/2, those with the same matrix by omega times the distance to
-  // where it was formed. Needs two full moves.
+  // The move of the next iteration with the last matrix, by the theory of distance_bound(). Moves
+  // of Newton's method shrink by omega m/2, those with the same matrix by omega times the distance
+  // to where it was formed. Needs two full moves.
   double next_move() const {
     const double shrinks = moved_ / before_;
     const bool newton = derivative_ && !kept_ && !kept_before_;
