@@ -20,6 +20,7 @@ LiveSource::LiveSource(scene::Robot robot, std::shared_ptr<sim::Simulation> simu
       state_(std::move(robot), std::move(simulation), std::move(first)),
       description_(state_.description()),
       gallery_(settings.gallery) {
+  state_.follow();
   auto scene = nlohmann::json::parse(description_.scene);
   scene["gallery"] = static_cast<bool>(gallery_);
   description_.scene = scene.dump();

@@ -38,7 +38,15 @@ RobotState::RobotState(scene::Robot robot, std::shared_ptr<sim::Simulation> simu
   if (first_) attach(first_->name, first_->settings);
 }
 
-RobotState::~RobotState() { release(); }
+RobotState::~RobotState() {
+  release();
+  if (followed_before_) simulation_->follow(*followed_before_);
+}
+
+void RobotState::follow() {
+  followed_before_ = simulation_->follows();
+  simulation_->follow();
+}
 
 sim::Observables RobotState::list_observables() {
   sim::Observables list(*simulation_);

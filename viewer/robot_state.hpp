@@ -59,6 +59,8 @@ class RobotState {
   /// have the recorded values.
   sim::Observables& observables() { return observables_; }
 
+  /// Lets quasi-static steps follow as long as this exists, see sim::Simulation::follow().
+  void follow();
   /// Advances one step. If it throws Error, keeps that as stopped().
   void step();
   /// While the result exists, step() and settle() report their progress to `watcher`.
@@ -109,6 +111,7 @@ class RobotState {
   std::unique_ptr<inverse::TargetController> own_;
   inverse::TargetController* controller_ = nullptr;  ///< own_, or an observed one
   std::string controller_name_;
+  std::optional<bool> followed_before_;  // see follow()
   std::optional<scene::SceneController> first_;
   bool observing_ = false;
   std::map<std::string, Vector3> targets_;

@@ -49,6 +49,7 @@ struct Samples {
   std::array<std::vector<double>, sim::kStageCount + 1> stages;  // the last one is the whole step
   double error_sum = 0.0, error_max = 0.0;                       // m or rad
   double residual_max = 0.0;                                     // relative
+  double distance_max = 0.0;                                     // m, see StepReport::distance
   int active_set_changes = 0;
   std::vector<double> eigen;
 };
@@ -103,6 +104,7 @@ void measure_steps(const BenchOptions& options, Session& session, int warm_up, S
     }
     samples.stages.back().push_back(report.times.total);
     samples.residual_max = std::max(samples.residual_max, report.relative_residual);
+    samples.distance_max = std::fmax(samples.distance_max, report.distance);
     samples.error_sum += session.error();
     samples.error_max = std::max(samples.error_max, session.error());
     samples.active_set_changes += active == before ? 0 : 1;
@@ -153,6 +155,7 @@ nlohmann::ordered_json to_json(const Samples& samples, Session& session, int war
     json["active_set_changes"] = samples.active_set_changes;
   }
   json["max_relative_residual"] = samples.residual_max;
+  json["max_distance_m"] = samples.distance_max;
   json["bytes_per_simulation"] = session.simulation().bytes();
   if (!samples.eigen.empty()) {
     const double eigen = quantile(samples.eigen, 0.5);
@@ -193,6 +196,9 @@ void print_report(const nlohmann::ordered_json& json) {
   }
   rows.push_back({"max relative residual",
                   fmt::format("{:.2e}", json["max_relative_residual"].get<double>())});
+  if (const double distance = json["max_distance_m"].get<double>(); distance > 0.0) {
+    rows.push_back({"max distance to the solution", fmt::format("{:.3g} mm", 1e3 * distance)});
+  }
   rows.push_back({"memory per simulation",
                   fmt::format("{:.2f} MB", 1e-6 * json["bytes_per_simulation"].get<double>())});
   fmt::print("{}", format_table(rows));

@@ -80,6 +80,9 @@ struct Tally {
   double wall = 0.0;  ///< s
   double min_volume_ratio = 1.0;
   std::int64_t snapped = 0;
+  double max_residual = 0.0;   ///< relative
+  double max_distance = -1.0;  ///< m; negative: no step has one
+  bool follows = false;        ///< whether any step could end as Equilibrium::following
   struct Flagged {
     std::int64_t steps = 0;
     double first = 0.0;  ///< s
@@ -94,6 +97,9 @@ struct Tally {
 void count(Tally& tally, Session& session) {
   const sim::StepReport& report = session.simulation().report();
   ++tally.steps;
+  tally.max_residual = std::max(tally.max_residual, report.relative_residual);
+  tally.max_distance = std::fmax(tally.max_distance, report.distance);
+  tally.follows = tally.follows || report.following;
   tally.min_volume_ratio = std::min(tally.min_volume_ratio, report.smallest_volume_ratio);
   tally.snapped += report.snapped ? 1 : 0;
   if (sim::is_flagged(report.status)) {
@@ -139,6 +145,15 @@ std::string error_text(const Session& session, double error) {
   return fmt::format("{:.4f} mm", 1e3 * error);
 }
 
+// Bound of the distance to the solutions of the steps; empty if no step has one.
+std::string distance_text(const Tally& tally, const Session& session) {
+  if (tally.max_distance < 0.0) return {};
+  const bool one = session.robot().model->step().method == sim::Method::one_linearisation;
+  const char* how = one ? " (one linearisation)" : tally.follows ? " (equilibrium: following)" : "";
+  if (!std::isfinite(tally.max_distance)) return fmt::format("not bounded in some steps{}", how);
+  return fmt::format("{:.2g} mm{}", 1e3 * tally.max_distance, how);
+}
+
 std::vector<std::vector<std::string>> summary(const Tally& tally, Session& session) {
   const double simulated =
       static_cast<double>(tally.steps) * session.robot().model->step().time_step;
@@ -160,6 +175,10 @@ std::vector<std::vector<std::string>> summary(const Tally& tally, Session& sessi
   }
   if (tally.snapped > 0) {
     rows.push_back({"steps that snapped to another branch", fmt::format("{}", tally.snapped)});
+  }
+  rows.push_back({"largest relative residual", fmt::format("{:.1e}", tally.max_residual)});
+  if (const std::string text = distance_text(tally, session); !text.empty()) {
+    rows.push_back({"largest distance to the solution", text});
   }
   rows.push_back({"smallest volume ratio", fmt::format("{:.3f}", tally.min_volume_ratio)});
   return rows;

@@ -131,6 +131,33 @@ RunError
 )");
 }
 
+void bind_follow(SimulationType& type) {
+  type.def(
+          "follow", [](Session& self, bool on) { self.simulation().follow(on); },
+          py::arg("on") = true,
+          R"(follow($self, on=True)
+--
+
+Lets quasi-static steps follow (`equilibrium: following`) from the next step on, unless the scene's
+solver.equilibrium or solver.tolerance says otherwise: for a program that steers the robot in real
+time without a controller of Sinew. Environments of sinew.gym and the view do this. The setting is an
+input: clones have it, states do not.
+
+Parameters
+----------
+on : bool
+    False: back to the default, `converged` without a controller.
+)")
+      .def_property_readonly(
+          "equilibrium",
+          [](const Session& self) {
+            return self.simulation().equilibrium() == sim::Equilibrium::following ? "following"
+                                                                                  : "converged";
+          },
+          "str: when quasi-static steps end: 'converged' or 'following', as the scene says, or by "
+          "default.");
+}
+
 void bind_solve_static(SimulationType& type) {
   type.def(
       "solve_static", &solve_static, py::kw_only(), py::arg("tolerance") = 1e-10,
@@ -274,6 +301,7 @@ RunError
 void bind_simulation_stepping(SimulationType& type) {
   bind_step(type);
   bind_solve_static(type);
+  bind_follow(type);
   bind_follow_path(type);
   bind_run(type);
 }

@@ -42,8 +42,8 @@ double relative_error(const MatrixX& found, const MatrixX& expected) {
 }
 
 /// Compares all results of a factorisation with dense LU of the same matrix.
-void expect_agrees_with_dense(Factorisation& factorisation, const BlockSystem& system,
-                              double tolerance) {
+void expect_same_as_dense(Factorisation& factorisation, const BlockSystem& system,
+                          double tolerance) {
   const MatrixX a = system.dense_matrix();
   const MatrixX h = system.dense_rows();
   const VectorX b = system.dense_right();
@@ -68,6 +68,18 @@ void expect_agrees_with_dense(Factorisation& factorisation, const BlockSystem& s
   const std::span<double> inout(right.data(), static_cast<std::size_t>(right.size()));
   factorisation.solve(inout, inout, 5);
   EXPECT_LT(relative_error(right, expected), tolerance);
+}
+
+/// The same, also after another b has replaced that of the factorisation.
+void expect_agrees_with_dense(Factorisation& factorisation, const BlockSystem& system,
+                              double tolerance) {
+  expect_same_as_dense(factorisation, system, tolerance);
+  BlockSystem renewed = system;
+  for (std::size_t i = 0; i < renewed.right.size(); ++i) {
+    renewed.right[i] = std::cos(0.7 * static_cast<double>(i));
+  }
+  factorisation.renew(renewed.right);
+  expect_same_as_dense(factorisation, renewed, tolerance);
 }
 
 class RandomSystems : public ::testing::TestWithParam<int> {};

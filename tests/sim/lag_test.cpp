@@ -1,5 +1,5 @@
-// The residual that quasi-static steps may leave to the next one, and the cases in which they must
-// not.
+// The residual that following quasi-static steps may leave to the next one, and the cases in which
+// they must not.
 #include <cmath>
 #include <vector>
 
@@ -131,11 +131,31 @@ double largest_residual(const StepSettings& step) {
   return largest;
 }
 
-// An explicit tolerance is met, even if it equals the default.
+TEST(Lag, StepsConvergeUnlessTheyFollow) {
+  EXPECT_LE(largest_residual({}), kQuasiStaticTolerance);
+  EXPECT_GT(largest_residual({.equilibrium = Equilibrium::following}), 1.2 * kFollowingTolerance);
+}
+
+// An explicit tolerance is met, even if it equals the default of following steps.
 TEST(Lag, AToleranceThatIsAskedForIsKept) {
-  EXPECT_GT(largest_residual({}), 1.2 * kQuasiStaticTolerance);
-  for (const double tolerance : {kQuasiStaticTolerance, 1e-6}) {
-    EXPECT_LE(largest_residual({.tolerance = tolerance}), tolerance);
+  for (const double tolerance : {kFollowingTolerance, 1e-7}) {
+    EXPECT_LE(largest_residual({.equilibrium = Equilibrium::following, .tolerance = tolerance}),
+              tolerance);
+  }
+}
+
+TEST(Lag, OnlyAModelWithoutAWordFollowsWhenAsked) {
+  for (const auto word : {std::optional<Equilibrium>(), std::optional(Equilibrium::converged),
+                          std::optional(Equilibrium::following)}) {
+    BeamOptions options;
+    options.step.equilibrium = word;
+    Simulation simulation(beam(options));
+    EXPECT_EQ(simulation.equilibrium(), word.value_or(Equilibrium::converged));
+    simulation.follow();
+    EXPECT_EQ(simulation.equilibrium(), word.value_or(Equilibrium::following));
+    EXPECT_EQ(simulation.clone()->equilibrium(), simulation.equilibrium());
+    simulation.follow(false);
+    EXPECT_EQ(simulation.equilibrium(), word.value_or(Equilibrium::converged));
   }
 }
 

@@ -114,6 +114,7 @@ TEST(Observables, HaveTheNamesUnitsAndShapesOfTheRobot) {
                                             "numerical_loss [J]",
                                             "residual [N]",
                                             "relative_residual []",
+                                            "distance [m]",
                                             "iterations []",
                                             "substeps []",
                                             "scale []",

@@ -69,6 +69,7 @@ class TaskModel:
         overrides = {**task.settings, **task.randomised(**drawn), **task.set}
         with tempfile.TemporaryDirectory() as folder:
             self.first = Robot(load(task.described(Path(folder)), set=overrides, threads=1))
+        self.first.sim.follow()
         self.starts: list[State] = task.prepare(self.first)
         self.first.sim.restore(self.starts[0])
         self.rest = task.measure_rest(self.first)

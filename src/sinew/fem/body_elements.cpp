@@ -54,15 +54,18 @@ void BodyElements::linearise(const mechanics::LinearisationRequest& request, boo
   const RayleighDamping& damping = state_.model.settings().damping;
   const double mass = weights.acceleration.motion + damping.mass * weights.velocity.motion;
   const double rate = damping.stiffness * weights.velocity.motion;
-  const AssemblyWeights wanted{element_tangent(request.tangent), 1.0, mass, true,
-                               state_.stiffness_factor};
+  AssemblyWeights wanted{element_tangent(request.tangent), 1.0, mass, true,
+                         state_.stiffness_factor};
+  if (!request.with_matrix) {
+    wanted.tangent = active_->present ? active_->present->tangent : Tangent::none;
+  }
   active_->damped = rate > 0.0;
   if (active_->damped && first) keep_damping_stiffness(request.weights);
   const bool historic = !state_.element_history.empty();
   if (active_->present == wanted && !historic && !active_->damped) return;
   active_->assembly.evaluate(state_.positions, wanted);
   active_->present = wanted;
-  if (!active_->damped) return;
+  if (!active_->damped || !request.with_matrix) return;
   const auto matrix = active_->assembly.matrix();
   for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i] += rate * active_->damping_stiffness[i];
 }

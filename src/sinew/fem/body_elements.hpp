@@ -31,7 +31,8 @@ class BodyElements {
   const SystemWorkspace& active() const { return *active_; }
 
   void begin_step();
-  /// Evaluates forces and matrix at the current positions. @param request weights and tangent.
+  /// Evaluates forces and, if the request needs it, the matrix at the current positions. @param
+  /// request weights and tangent.
   /// @param first whether this is the first linearisation of the step.
   void linearise(const mechanics::LinearisationRequest& request, bool first);
   /// Called when a motion starts from the current positions. If the step iterates, later

@@ -171,6 +171,41 @@ void BodyRows::add_compliance(std::span<const int> problem_row, const SystemWork
   }
 }
 
+// The problem's row of a row of transient_.
+int BodyRows::transient_row(std::size_t k, std::span<const int> problem_row) const {
+  const auto leader = static_cast<std::size_t>(member_start_[k / 3]);
+  return problem_row[static_cast<std::size_t>(members_[leader]) + k % 3];
+}
+
+void BodyRows::add_free_motion(std::span<const int> problem_row, const SystemWorkspace& workspace,
+                               VectorX& row_motion) const {
+  const VectorX& motion = workspace.factorisation->free_motion();
+  for (std::size_t k = 0; k < model_.fixed_rows(); ++k) {
+    const int row = problem_row[static_cast<std::size_t>(model_.rows()[k])];
+    row_motion[row] += motion[static_cast<Eigen::Index>(k)];
+  }
+}
+
+void BodyRows::add_motions(std::span<const int> problem_row, const SystemWorkspace& workspace,
+                           const VectorX& motion, VectorX& row_motion) const {
+  const auto moves = [&](const linalg::BorderPattern& pattern, std::span<const double> values,
+                         std::size_t k) {
+    double sum = 0.0;
+    for (auto e = pattern.row_start[k]; e < pattern.row_start[k + 1]; ++e) {
+      const Eigen::Map<const Vector3> value(values.data() + 3 * static_cast<std::size_t>(e));
+      sum += value.dot(motion.segment<3>(3 * pattern.node[static_cast<std::size_t>(e)]));
+    }
+    return sum;
+  };
+  for (std::size_t k = 0; k < model_.fixed_rows(); ++k) {
+    const int row = problem_row[static_cast<std::size_t>(model_.rows()[k])];
+    row_motion[row] += moves(workspace.system.border, workspace.border, k);
+  }
+  for (std::size_t k = 0; k < static_cast<std::size_t>(transient_.rows()); ++k) {
+    row_motion[transient_row(k, problem_row)] += moves(transient_, transient_values_, k);
+  }
+}
+
 void BodyRows::add_transient_compliance(std::span<const int> problem_row,
                                         const SystemWorkspace& workspace, MatrixX& compliance,
                                         VectorX& free_motion) const {
@@ -181,8 +216,7 @@ void BodyRows::add_transient_compliance(std::span<const int> problem_row,
   const std::span<const std::int32_t> rows(model_.rows());
   const std::size_t fixed = model_.fixed_rows();
   const auto row_of = [&](Eigen::Index k) {
-    const auto leader = static_cast<std::size_t>(member_start_[static_cast<std::size_t>(k / 3)]);
-    return problem_row[static_cast<std::size_t>(members_[leader] + k % 3)];
+    return transient_row(static_cast<std::size_t>(k), problem_row);
   };
   const auto count = static_cast<Eigen::Index>(transient_.rows());
   for (Eigen::Index j = 0; j < count; ++j) {

@@ -34,6 +34,14 @@ class BodyRows {
   /// See mechanics::StepSystem.
   void add_compliance(std::span<const int> problem_row, const SystemWorkspace& workspace,
                       MatrixX& compliance, VectorX& free_motion) const;
+  /// Whether any transient row is active.
+  bool has_transient() const { return transient_.rows() > 0; }
+  /// Adds the factor's H A^-1 b of the persistent rows. @param row_motion (rows of the problem,).
+  void add_free_motion(std::span<const int> problem_row, const SystemWorkspace& workspace,
+                       VectorX& row_motion) const;
+  /// Adds H motion. @param motion (3 free,) m. @param row_motion (rows of the problem,).
+  void add_motions(std::span<const int> problem_row, const SystemWorkspace& workspace,
+                   const VectorX& motion, VectorX& row_motion) const;
   /// Efforts of the persistent rows, in the order of the factorisation's border.
   std::span<const double> fixed_effort(std::span<const double> effort);
 
@@ -47,6 +55,7 @@ class BodyRows {
   void take_transient(const mechanics::RowValues& rows);
   void add_triple(std::int32_t row, const mechanics::RowValues& rows);
   void list_nodes(std::int32_t row, const mechanics::RowValues& rows);
+  int transient_row(std::size_t k, std::span<const int> problem_row) const;
   double effort_of(std::size_t triple, int row, std::span<const double> effort) const;
   void hold(const linalg::BorderPattern& pattern, std::vector<double>& values) const;
 

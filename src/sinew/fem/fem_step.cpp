@@ -58,6 +58,7 @@ void FemStep::linearise(const mechanics::LinearisationRequest& request) {
   elements_.linearise(request, first_linearisation_);
   loads_.linearise(request);
   form_right_side(request.weights);
+  content_ = Content::other;
   first_linearisation_ = false;
 }
 
@@ -122,6 +123,7 @@ mechanics::Inertia FemStep::condense() {
   mechanics::Inertia inertia;
   inertia.status = workspace.factorisation->factorise(workspace.assembly.matrix(), workspace.border,
                                                       span_of(right_));
+  content_ = Content::right;
   inertia.negative_pivots = workspace.factorisation->negative_pivots();
   inertia.unsymmetric = !loads_.unsymmetric().empty();
   return inertia;
@@ -166,19 +168,60 @@ void FemStep::lessen(std::span<const double> force) {
   if (lessens_) lessening_ = Eigen::Map<const VectorX>(force.data(), right_.size());
 }
 
+// Rows that are not in the border, and unsymmetric terms, need a solution for every right-hand
+// side.
+void FemStep::renew(std::span<const double> effort) {
+  linalg::Factorisation& factor = *elements_.active().factorisation;
+  find_imbalance(effort);
+  if (!rows_.has_transient() && loads_.unsymmetric().empty()) {
+    factor.renew(span_of(imbalance_));
+    const auto own = rows_.fixed_effort(effort);
+    base_effort_.assign(own.begin(), own.end());
+    content_ = Content::imbalance;
+    return;
+  }
+  content_ = Content::other;
+  solve_for_imbalance();
+}
+
+void FemStep::solve_for_imbalance() {
+  linalg::Factorisation& factor = *elements_.active().factorisation;
+  factor.solve(span_of(imbalance_), span_of(motion_));
+  correct_for_unsymmetric();
+}
+
+void FemStep::correct_for_unsymmetric() {
+  if (loads_.unsymmetric().empty()) return;
+  correct_for_open_pressure(loads_.unsymmetric(), state_.model.elements().held(),
+                            *elements_.active().factorisation, motion_);
+}
+
 void FemStep::solve_motion(std::span<const double> effort) {
   linalg::Factorisation& factor = *elements_.active().factorisation;
   const FemBodyModel& model = state_.model;
-  if (model.rows().size() > model.fixed_rows()) {
-    find_imbalance(effort);
-    factor.solve(span_of(imbalance_), span_of(motion_));
-  } else {
+  const bool in_border = model.rows().size() == model.fixed_rows();
+  if (content_ == Content::imbalance) {
+    const auto own = rows_.fixed_effort(effort);
+    effort_change_.resize(own.size());
+    for (std::size_t k = 0; k < own.size(); ++k) effort_change_[k] = own[k] - base_effort_[k];
+    factor.solve_with_effort(effort_change_, span_of(motion_));
+  } else if (content_ == Content::right && in_border) {
     factor.solve_with_effort(rows_.fixed_effort(effort), span_of(motion_));
-  }
-  if (!loads_.unsymmetric().empty()) {
-    correct_for_open_pressure(loads_.unsymmetric(), model.elements().held(), factor, motion_);
+    correct_for_unsymmetric();
+  } else {
+    find_imbalance(effort);
+    solve_for_imbalance();
   }
   leave_from_here();
+}
+
+void FemStep::add_row_motions(std::span<const int> problem_row, VectorX& row_motion) const {
+  const SystemWorkspace& workspace = elements_.active();
+  if (content_ == Content::imbalance) {
+    rows_.add_free_motion(problem_row, workspace, row_motion);
+  } else {
+    rows_.add_motions(problem_row, workspace, motion_, row_motion);
+  }
 }
 
 void FemStep::solve(std::span<const double> right, std::span<double> result) {
@@ -199,11 +242,12 @@ void FemStep::propose_drift(double time_step) {
   }
   for (const std::int32_t held : elements.held()) motion_[held] = 0.0;
   keep_positions();
+  departs_ = false;
 }
 
 void FemStep::leave_from_here() {
   keep_positions();
-  elements_.leave_from_here();
+  departs_ = true;
 }
 
 void FemStep::keep_positions() {
@@ -232,6 +276,8 @@ void FemStep::add_proposed_motion(Points& nodes) const {
 }
 
 mechanics::MotionReport FemStep::apply_motion(double scale) {
+  if (departs_) elements_.leave_from_here();
+  departs_ = false;
   const auto nodes = state_.model.elements().free_nodes();
   double sum = 0.0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -265,6 +311,11 @@ void FemStep::carried_force(const mechanics::StepWeights& weights) {
   const auto forces = elements_.active().assembly.forces();
   std::copy_n(forces.data(), imbalance_.size(), imbalance_.data());
   if (weights.dynamic()) inertia_.add_stiffness_damping(weights, elements_.active(), imbalance_);
+}
+
+bool FemStep::keeps_linearisation() const {
+  return state_.model.elements().solids().empty() && state_.element_history.empty() &&
+         !elements_.active().damped;
 }
 
 bool FemStep::can_carry_on() const {

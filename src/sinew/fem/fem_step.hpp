@@ -36,7 +36,10 @@ class FemStep : public mechanics::StepSystem {
   double rounding_floor() const override;
   void lessen(std::span<const double> force) override;
 
+  void renew(std::span<const double> effort) override;
   void solve_motion(std::span<const double> effort) override;
+  void add_row_motions(std::span<const int> problem_row, VectorX& row_motion) const override;
+  double proposed_move() const override { return motion_.cwiseAbs().maxCoeff(); }
   void solve(std::span<const double> right, std::span<double> result) override;
   void propose_motion(std::span<const double> motion) override;
   void propose_drift(double time_step) override;
@@ -46,6 +49,7 @@ class FemStep : public mechanics::StepSystem {
   mechanics::SmallestVolume smallest_volume() override { return elements_.smallest_volume(); }
   mechanics::LargestStretch largest_stretch() override { return elements_.largest_stretch(); }
   mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;
+  bool keeps_linearisation() const override;
   void release() override { elements_.release(); }
   bool can_carry_on() const override;
   void scale_motion(double factor) override;
@@ -65,6 +69,8 @@ class FemStep : public mechanics::StepSystem {
  private:
   void form_right_side(const mechanics::StepWeights& weights);
   void find_imbalance(std::span<const double> effort);
+  void solve_for_imbalance();
+  void correct_for_unsymmetric();
   void keep_positions();
   void leave_from_here();
   void count_tether(const mechanics::StepWeights& weights, mechanics::StepEnd& end);
@@ -85,6 +91,11 @@ class FemStep : public mechanics::StepSystem {
   VectorX from_;       // positions at which motion_ starts, m
   VectorX lessening_;  // N
   bool lessens_ = false;
+  // What b the factor contains: right_; right_ + H^T base_effort_; another one.
+  enum class Content { right, imbalance, other };
+  Content content_ = Content::other;
+  std::vector<double> base_effort_, effort_change_;  // (border rows,) N
+  bool departs_ = false;      // whether a solved motion has not been applied yet
   double force_scale_ = 0.0;  // N
   double min_force_ = 0.0;    // N, at the stiffness factor 1
   double blow_up_ = 0.0;      // m^2, sum of squared positions above which the state counts as lost

@@ -43,6 +43,16 @@ class BlockFactorisation final : public Factorisation {
                                           : FactorStatus::positive_definite;
   }
 
+  void renew(std::span<const double> right) override {
+    check_factor();
+    from_node_order(right.data());
+    numeric_.forward(unknowns_.data(), numeric_.scratch(0));
+    numeric_.renew_right(unknowns_.data(), weights_.data());
+    const int rows = symbolic_->border_rows;
+    std::copy_n(weights_.data(), rows, free_motion_.data());
+    free_energy_ = weights_.data()[rows];
+  }
+
   const MatrixX& compliance() const override { return compliance_; }
   const VectorX& free_motion() const override { return free_motion_; }
   double free_energy() const override { return free_energy_; }

@@ -233,6 +233,29 @@ void BlockNumeric::forward(double* x, Scratch& scratch) const {
   }
 }
 
+void BlockNumeric::renew_right(const double* x, double* products) {
+  const BlockSymbolic& s = *symbolic_;
+  std::fill_n(products, 3 * s.border_nodes, 0.0);
+  double* const sum = scratch(0).values.data();
+  for (int p = 0; p < s.panel_count(); ++p) {
+    const Panel& panel = s.panels[at(p)];
+    double* column = factor_.data() + panel.offset;
+    const double* const own = x + 3 * panel.first;
+    const double* const sign = sign_.data() + 3 * panel.first;
+    const int first = panel.below + 3 * (panel.border_row - panel.row_begin);
+    const int rows = 3 * (panel.row_end - panel.border_row);
+    std::fill_n(sum, rows, 0.0);
+    for (int j = 0; j < 3 * panel.width; ++j, column += panel.leading) {
+      column[panel.right_row] = own[j];
+      const double factor = sign[j] * own[j];
+      for (int r = 0; r < rows; ++r) sum[r] += column[first + r] * factor;
+    }
+    for (int r = 0; r < rows; ++r) {
+      products[3 * (s.rows[at(panel.border_row + r / 3)] - s.nodes) + r % 3] += sum[r];
+    }
+  }
+}
+
 void BlockNumeric::backward(double* x, const double* weights, Scratch& scratch) const {
   const BlockSymbolic& s = *symbolic_;
   double* const v = scratch.values.data();

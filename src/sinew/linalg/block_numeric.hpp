@@ -59,6 +59,10 @@ class BlockNumeric {
 
   /// Forward substitution x := S^-1 L^-1 x, in elimination order.
   void forward(double* x, Scratch& scratch) const;
+  /// Replaces the row of b in the factor, b^T L^-T S^-1, and multiplies the border with it.
+  /// @param x (3 nodes,) S^-1 L^-1 b, in elimination order, see forward().
+  /// @param products (3 border nodes,) (H; b) A^-1 b.
+  void renew_right(const double* x, double* products);
   /// Backward substitution x := L^-T (x + L_border^T weights), in elimination order. weights (3
   /// border nodes,).
   void backward(double* x, const double* weights, Scratch& scratch) const;

@@ -72,14 +72,19 @@ class EigenFactorisation final : public Factorisation {
     solver_.factorize(matrix_);
     if (solver_.info() != Eigen::Success) return FactorStatus::singular;
     fill_rows(border);
-    const Eigen::Map<const VectorX> b(right.data(), matrix_.rows());
     if (rows_.cols() > 0) solved_rows_ = solver_.solve(rows_);
-    solved_right_ = solver_.solve(b);
     compliance_.noalias() = rows_.transpose() * solved_rows_;
     compliance_ = (0.5 * (compliance_ + compliance_.transpose())).eval();
+    renew(right);
+    return pivots();
+  }
+
+  void renew(std::span<const double> right) override {
+    if (matrix_.rows() == 0) return;
+    const Eigen::Map<const VectorX> b(right.data(), matrix_.rows());
+    solved_right_ = solver_.solve(b);
     free_motion_.noalias() = rows_.transpose() * solved_right_;
     free_energy_ = b.dot(solved_right_);
-    return pivots();
   }
 
   const MatrixX& compliance() const override { return compliance_; }

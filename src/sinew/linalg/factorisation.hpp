@@ -53,6 +53,11 @@ class Factorisation {
   /// but solving and condensing throw Error(internal) until the next factorise().
   virtual void release() {}
 
+  /// Replaces b, with the same A and H: free_motion(), free_energy() and solve_with_effort() then
+  /// refer to the new one; transient_coupling() does not. Costs one forward substitution.
+  /// @param right (3 n,) b.
+  virtual void renew(std::span<const double> right) = 0;
+
   /// W = H A^-1 H^T, (m, m), symmetric, both triangles filled. Valid after factorise().
   virtual const MatrixX& compliance() const = 0;
   /// Free motion H A^-1 b, (m,).

@@ -243,6 +243,21 @@ void DenseStep::solve_motion(std::span<const double> effort) {
   depart();
 }
 
+void DenseStep::renew(std::span<const double> effort) {
+  find_imbalance(effort);
+  if (motion_.size() > 0) decomposed_.solve(scratch_, motion_);
+}
+
+void DenseStep::add_row_motions(std::span<const int> problem_row, VectorX& row_motion) const {
+  if (motion_.size() == 0) return;
+  for (Eigen::Index j = 0; j < columns_; ++j) {
+    const int at = problem_row[static_cast<std::size_t>(world_row(j))];
+    if (at < 0) continue;
+    const double share = shares_.empty() ? 1.0 : shares_[static_cast<std::size_t>(j)];
+    row_motion[at] += share * rows_.col(j).dot(motion_);
+  }
+}
+
 Vector3 DenseStep::proposed_motion(int site) const {
   if (motion_.size() == 0) return Vector3::Zero();
   site_jacobian(site, jacobian_);

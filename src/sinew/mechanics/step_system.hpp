@@ -9,6 +9,8 @@
 ///   solve_motion dq = A^-1 (b + H^T lambda)                                    (correction)
 ///   apply_motion q <- q_before (+) scale dq, with a report on the result
 ///   end_step     updates the velocities
+/// linearise() and take_rows() may be repeated after a motion with renew() in place of condense():
+/// the matrix A is then that of the last condensation (simplified Newton method).
 #pragma once
 
 #include <cstddef>
@@ -31,6 +33,8 @@ struct LinearisationRequest {
   bool with_geometric_stiffness = false;
   /// Further linearisations of the same step may follow (Newton's iterations).
   bool iterating = false;
+  /// Whether A is needed. If not, a body may evaluate b only; condense() must not follow.
+  bool with_matrix = true;
 };
 
 /// Result of a condensation.
@@ -136,8 +140,18 @@ class StepSystem {
   /// stepping. @param force (size(),) N, copied; empty: subtracts nothing.
   virtual void lessen(std::span<const double> force) = 0;
 
+  /// Uses the last factorisation with the b and H of the present linearisation. After it,
+  /// solve_motion() computes dq = A^-1 (b + H^T effort + H^T (effort' - effort)) for other efforts
+  /// effort'; the last H may be that of the factorisation. Overwrites the proposed motion.
+  /// @param effort (all rows,) N, of the present state.
+  virtual void renew(std::span<const double> effort) = 0;
+  /// Adds H A^-1 (b + H^T effort) of the last renew() to the motions of the problem's rows.
+  /// @param problem_row see add_compliance(). @param row_motion (rows of the problem,).
+  virtual void add_row_motions(std::span<const int> problem_row, VectorX& row_motion) const = 0;
   /// Computes the proposed motion dq = A^-1 (b + H^T effort).
   virtual void solve_motion(std::span<const double> effort) = 0;
+  /// Largest change of any coordinate in the proposed motion, m, as in MotionReport.
+  virtual double proposed_move() const = 0;
   /// Solves for any right-hand side with the A of the last condensation. @param right,result
   /// (size(),).
   virtual void solve(std::span<const double> right, std::span<double> result) = 0;
@@ -161,6 +175,9 @@ class StepSystem {
   /// kSaneStretch.
   virtual LargestStretch largest_stretch() { return {}; }
   virtual StepEnd end_step(const StepWeights& weights) = 0;
+  /// Whether a linearisation at the end of a step with iterations serves the next step, so that it
+  /// costs nothing to evaluate the matrix there.
+  virtual bool keeps_linearisation() const { return true; }
   /// Called when the last condensation is no longer needed; other simulations may then use its
   /// memory.
   virtual void release() {}

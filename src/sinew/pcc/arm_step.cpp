@@ -78,11 +78,15 @@ double ArmStep::rounding_floor() const {
          matrix().cwiseAbs().rowwise().sum().norm();
 }
 
+double ArmStep::proposed_move() const {
+  return motion().cwiseAbs().maxCoeff() * model_.arm().length();
+}
+
 mechanics::MotionReport ArmStep::apply_motion(double scale) {
   state_.q = from_ + scale * motion();
   pose_.moved();
   mechanics::MotionReport report;
-  report.largest_move = scale * motion().cwiseAbs().maxCoeff() * model_.arm().length();
+  report.largest_move = scale * proposed_move();
   report.finite = state_.q.cwiseAbs().maxCoeff() < kLargestAngle;
   return report;
 }

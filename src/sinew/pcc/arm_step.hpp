@@ -18,6 +18,7 @@ class ArmStep : public mechanics::DenseStep {
 
   void begin_step() override { state_.start = state_.q; }
   double rounding_floor() const override;
+  double proposed_move() const override;
   mechanics::MotionReport apply_motion(double scale) override;
   mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;
   void scale_motion(double factor) override;

@@ -48,11 +48,11 @@ struct RecordSettings {
 /// rest), `actuator_work`, `outside_work` (loads and forces set from Python), `dissipation`
 /// (damping, drag, friction of cables) and `numerical_loss` (work minus dissipation minus the gain
 /// of the energies: the loss of the integrator, and work that moved a base), all `[J]`; `residual
-/// [N]`, `relative_residual`, `iterations`, `substeps`, `scale` (of the motion, below 1 if a step
-/// was cut back), `smallest_volume_ratio`; with contacts `contact_residual`, `contact_signorini
-/// [m]` and `contact_coulomb [m]`; with contact zones `contact_aggregation`; and as words `status`
-/// and, if the list has one, `controller`. The row at t = 0 is the initial state; its statuses are
-/// `start`.
+/// [N]`, `relative_residual`, `distance [m]` (StepReport), `iterations`, `substeps`, `scale` (of
+/// the motion, below 1 if a step was cut back), `smallest_volume_ratio`; with contacts
+/// `contact_residual`, `contact_signorini [m]` and `contact_coulomb [m]`; with contact zones
+/// `contact_aggregation`; and as words `status` and, if the list has one, `controller`. The row at
+/// t = 0 is the initial state; its statuses are `start`.
 ///
 /// probes.csv, if the scene has probes, has one row per frame: `time [s]`, then per probe
 /// `bend [rad]` (a bend, a distance, an extent), `tip.x [m]` ... (a point), or `axis.length [m]`

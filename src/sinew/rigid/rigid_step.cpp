@@ -150,6 +150,10 @@ double RigidStep::rounding_floor() const {
   return kEpsilon * at * matrix().cwiseAbs().rowwise().sum().norm();
 }
 
+double RigidStep::proposed_move() const {
+  return size() == 0 ? 0.0 : motion().cwiseAbs().maxCoeff();
+}
+
 mechanics::MotionReport RigidStep::apply_motion(double scale) {
   if (size() == 0) return {};
   const Vector6 moved = scale * motion();

@@ -24,6 +24,7 @@ class RigidStep : public mechanics::DenseStep {
   void add_proposed_motion(Points& nodes) const override;
   mechanics::Wrench unbalanced(std::span<const double> effort, const Vector3& about) override;
   double rounding_floor() const override;
+  double proposed_move() const override;
   mechanics::MotionReport apply_motion(double scale) override;
   mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;
   void scale_motion(double factor) override;

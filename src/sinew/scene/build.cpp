@@ -58,6 +58,7 @@ sim::StepSettings step_settings(const SceneDescription& scene) {
   step.adaptive = scene.solver.adaptive;
   step.method = scene.solver.method;
   step.tangent = scene.solver.tangent;
+  step.equilibrium = scene.solver.equilibrium;
   step.tolerance = scene.solver.tolerance;
   step.max_iterations = scene.solver.max_iterations;
   step.contact_tolerance = scene.solver.contact_tolerance;

@@ -50,6 +50,7 @@ using fem::MassMatrix;
 using inverse::Regularisation;
 using mechanics::Integrator;
 using mechanics::Tangent;
+using sim::Equilibrium;
 using sim::Method;
 enum class MaterialModel { linear, corotational, hyperelastic };
 enum class Element { any, tet4, tet4_patch, tet10, hex8 };
@@ -61,8 +62,9 @@ struct SolverDescription {
   Method method = Method::newton;
   Tangent tangent = Tangent::exact;
   std::optional<sim::AdaptiveStep> adaptive;
-  std::optional<double> tolerance;  ///< of Newton's method: residual relative to the loads
-  int max_iterations = 50;          ///< of Newton's method
+  std::optional<Equilibrium> equilibrium;  ///< when quasi-static steps end
+  std::optional<double> tolerance;         ///< of Newton's method: residual relative to the loads
+  int max_iterations = 50;                 ///< of Newton's method
   double contact_tolerance = 1e-10;
   int threads = 1;                ///< inside a step
   std::string backend = "block";  ///< a name of linalg::backends()

@@ -17,13 +17,13 @@ Key later_key(const char* name, const char* description) {
 }
 
 Form method_choice(const char* short_for = "") {
-  return choice({{"newton",
-                  "Iterates until the step's equation holds to `tolerance`; one iteration if "
-                  "little changes."},
-                 {"one-linearisation",
-                  "One linear solve per step, in predictable time. The status reports unbalanced "
-                  "forces and energy gain, but the step is not repeated."}},
-                short_for);
+  return choice(
+      {{"newton", "Iterates until the step's equation holds to `tolerance`."},
+       {"one-linearisation",
+        "One linear solve per step, in predictable time. The report bounds the error, and "
+        "the status flags unbalanced forces and energy gain, but the step is not "
+        "repeated."}},
+      short_for);
 }
 
 Form integrator_choice(const char* short_for = "") {
@@ -113,13 +113,31 @@ std::shared_ptr<const KeyTable> solver_table() {
             .default_text = "exact",
             .description = "The matrix of a step's linear equations. It affects how fast a "
                            "step converges, not the solution."},
+           {.name = "equilibrium",
+            .forms = {choice({{"converged",
+                               "Every quasi-static step iterates to equilibrium: to a residual of "
+                               "`tolerance`, or "
+                               "to rounding."},
+                              {"following",
+                               "A quasi-static step may end once its error is of second order in "
+                               "its motion; the "
+                               "next step removes it. The report bounds the distance to "
+                               "equilibrium. For control "
+                               "in real time."}})},
+            .example = "following",
+            .description = "When the iterations of a quasi-static step end. Default: `converged`; "
+                           "`following` under a controller, in the view and in sinew.gym. Dynamic "
+                           "steps and materials with viscosity or softening always converge."},
            {.name = "tolerance",
             .forms = {quantity(plain_number(), Range{0.0, 1.0, true, true})},
             .example = "1e-8",
-            .description = "Newton: largest residual force, relative to the sum of internal and "
-                           "external forces. Default: 1e-4 in quasi-static steps, which may end "
-                           "early while the robot moves; 1e-8 in dynamics and for materials with "
-                           "viscosity or softening. A tolerance that you set holds in every step."},
+            .description =
+                "Newton: largest residual force, relative to the sum of internal and "
+                "external forces. Default: 1e-6 in quasi-static steps (1e-4 for "
+                "`equilibrium: following`, which may also end earlier); 1e-8 in dynamics "
+                "and for materials with viscosity or softening, or 1e-6 where iterations "
+                "no longer reduce the residual. A tolerance that you set holds in every "
+                "step."},
            {.name = "max_iterations",
             .forms = {integer(1, 100000)},
             .example = "50",

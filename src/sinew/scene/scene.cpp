@@ -55,6 +55,11 @@ void read_solver(const Fields& fields, SolverDescription& solver) {
     values.below("adaptive").read("tolerance", adaptive.tolerance);
     values.below("adaptive").read("smallest", adaptive.smallest);
   }
+  if (values.find("equilibrium") != nullptr) {
+    values.read_choice(
+        "equilibrium", solver.equilibrium.emplace(),
+        {{"converged", Equilibrium::converged}, {"following", Equilibrium::following}});
+  }
   if (values.find("tolerance") != nullptr) values.read("tolerance", solver.tolerance.emplace());
   values.read("max_iterations", solver.max_iterations);
   values.read("contact_tolerance", solver.contact_tolerance);

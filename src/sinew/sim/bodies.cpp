@@ -128,6 +128,20 @@ void Bodies::solve_motion(std::span<const double> effort) {
   for (auto* system : systems_) system->solve_motion(effort);
 }
 
+void Bodies::renew(std::span<const double> effort) {
+  for (auto* system : systems_) system->renew(effort);
+}
+
+void Bodies::add_row_motions(std::span<const int> problem_row, VectorX& row_motion) const {
+  for (const auto* system : systems_) system->add_row_motions(problem_row, row_motion);
+}
+
+double Bodies::proposed_move() const {
+  double largest = 0.0;
+  for (const auto* system : systems_) largest = std::max(largest, system->proposed_move());
+  return largest;
+}
+
 void Bodies::solve(const VectorX& right, VectorX& result) {
   result.resize(right.size());
   std::span<double> to(result.data(), static_cast<std::size_t>(result.size()));
@@ -180,6 +194,10 @@ mechanics::LargestStretch Bodies::largest_stretch(int& body) {
 
 bool Bodies::can_carry_on() const {
   return std::ranges::all_of(systems_, &mechanics::StepSystem::can_carry_on);
+}
+
+bool Bodies::keep_linearisation() const {
+  return std::ranges::all_of(systems_, &mechanics::StepSystem::keeps_linearisation);
 }
 
 void Bodies::scale_motion(double factor) {

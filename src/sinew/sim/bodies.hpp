@@ -60,6 +60,10 @@ class Bodies {
   void lessen(std::span<const double> force);
 
   void solve_motion(std::span<const double> effort);
+  void renew(std::span<const double> effort);
+  void add_row_motions(std::span<const int> problem_row, VectorX& row_motion) const;
+  /// Largest change of any coordinate in the proposed motion, m.
+  double proposed_move() const;
   /// A^-1 times a right-hand side, and a motion for apply_motion(); (all bodies' size(),).
   void solve(const VectorX& right, VectorX& result);
   void propose_motion(const VectorX& motion);
@@ -69,6 +73,8 @@ class Bodies {
   mechanics::SmallestVolume smallest_volume();
   /// @param body out: the body that has it; -1: none is stretched.
   mechanics::LargestStretch largest_stretch(int& body);
+  /// Whether all bodies keep their linearisation, see mechanics::StepSystem.
+  bool keep_linearisation() const;
   /// See mechanics::StepSystem; `change` has the shape (all bodies' size(),), m/s.
   bool can_carry_on() const;
   void scale_motion(double factor);

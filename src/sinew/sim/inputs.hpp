@@ -26,6 +26,7 @@ struct Inputs {
   std::vector<Command> commands;  ///< (actuators,)
   std::vector<Signal> loads;      ///< (loads,) factors
   std::vector<BodyInputs> bodies;
+  bool follows = false;  ///< see Simulation::follow()
 };
 
 }  // namespace sinew::sim

@@ -1,5 +1,7 @@
 #include "sinew/sim/linear_step.hpp"
 
+#include <limits>
+
 #include <fmt/format.h>
 
 #include "sinew/sim/rest_search.hpp"
@@ -7,6 +9,7 @@
 #include "sinew/sim/sanity.hpp"
 #include "sinew/sim/step_failure.hpp"
 #include "sinew/sim/step_verdict.hpp"
+#include "sinew/sim/step_tolerances.hpp"
 
 namespace sinew::sim {
 
@@ -72,6 +75,7 @@ void LinearStep::move_soundly() {
     if (motion.finite) motion.volume = run_.world.bodies().smallest_volume();
     if (motion.finite && (motion.volume.ratio > 0.0 || !was_sound)) {
       run_.volume_ratio = report.smallest_volume_ratio = motion.volume.ratio;
+      moved_ = motion.largest_move;
       return;
     }
   }
@@ -105,6 +109,13 @@ void LinearStep::look_back(mechanics::LinearisationRequest request) {
   report.residual = run_.world.bodies().residual(run_.effort);
   report.relative_residual = report.residual / (run_.world.bodies().force_scale() + 1e-300);
   report.violation = run_.world.violation(run_.effort, report.law);
+  report.following = false;
+  report.distance = std::numeric_limits<double>::infinity();
+  if (report.scale == 1.0) {
+    run_.correction_solver.begin_step();
+    const double left = run_.world.correction(run_.correction_solver, run_.effort);
+    report.distance = distance_bound(left, moved_, run_.world.problem().size);
+  }
   require_solution();
 }
 

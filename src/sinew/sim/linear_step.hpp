@@ -30,6 +30,7 @@ class LinearStep {
   void require_solution();
 
   Run& run_;
+  double moved_ = 0.0;  // m, largest move of the step
 };
 
 }  // namespace sinew::sim

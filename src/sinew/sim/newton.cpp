@@ -24,6 +24,12 @@ constexpr double kRounding = 1e-11;
 constexpr double kRoundedResidual = 1e-7;
 // An iteration that leaves more than this fraction of the residual no longer converges.
 constexpr double kLessened = 0.5;
+// Iterations without such a reduction after which the residual has stalled.
+constexpr int kIdle = 4;
+// A factor is kept while motions shrink to this fraction from one iteration to the next. It is not
+// tried again in a step after this many refusals.
+constexpr double kContraction = 0.25;
+constexpr int kMostRefused = 2;
 // An iteration makes progress if it lowers the merit below this fraction of the lowest so far.
 constexpr double kProgress = 0.9;
 
@@ -41,12 +47,11 @@ class NewtonSolver {
         watch_(watch) {}
 
   NewtonReport run() {
-    linearise(settings_.request.tangent);
+    linearise(settings_.request.tangent, true);
     for (report_.iterations = 0; report_.iterations < settings_.max_iterations;) {
       if (converged_) return finish(NewtonStatus::converged);
-      if (!condense()) return finish(NewtonStatus::singular);
-      report_.law = world_.solve_step(solver_, controller_, effort_, clock_);
-      if (report_.law == step::LawStatus::failed) return finish(NewtonStatus::law_failed);
+      const NewtonStatus proposed = propose();
+      if (proposed != NewtonStatus::converged) return finish(proposed);
       const NewtonStatus moved = move();
       ++report_.iterations;
       report_.whole_move += report_.motion.largest_move;
@@ -54,15 +59,16 @@ class NewtonSolver {
       if (moved != NewtonStatus::converged) return finish(moved);
       if (is_only_descending() || is_idle()) break;
     }
-    return finish(converged_ ? NewtonStatus::converged : NewtonStatus::iteration_limit);
+    const bool done = converged_ || (idle_ > 0 && is_within_stalled_tolerance());
+    return finish(done ? NewtonStatus::converged : NewtonStatus::iteration_limit);
   }
 
  private:
   bool is_idle() {
     const double left = report_.relative_residual + report_.violation / world_.problem().size;
-    idle_ = left < kProgress * lowest_ ? 0 : idle_ + 1;
+    lost_ = left < kProgress * lowest_ ? 0 : lost_ + 1;
     lowest_ = std::min(lowest_, left);
-    return settings_.max_idle > 0 && idle_ >= settings_.max_idle;
+    return settings_.max_idle > 0 && lost_ >= settings_.max_idle;
   }
 
   bool is_only_descending() const {
@@ -70,13 +76,54 @@ class NewtonSolver {
            report_.tangent_fallbacks == report_.iterations;
   }
 
-  void linearise(mechanics::Tangent tangent) {
+  void linearise(mechanics::Tangent tangent, bool with_matrix) {
     auto request = settings_.request;
     request.tangent = tangent;
+    request.with_matrix = with_matrix;
     world_.linearise(request);
+    has_matrix_ = with_matrix;
     clock_.mark(Stage::assembly);
     world_.form_rows(effort_, settings_.geometric);
     clock_.mark(Stage::rows);
+  }
+
+  // Whether the next iteration may use the factor of the last condensation. A controller needs W of
+  // the present state.
+  bool may_keep_factor() const {
+    return settings_.keeps_factor && controller_ == nullptr && derivative_ &&
+           refused_ < kMostRefused;
+  }
+
+  // Proposes a motion that obeys the laws.
+  NewtonStatus propose() {
+    before_ = moved_;
+    kept_before_ = kept_;
+    if (report_.iterations > 0 && full_step_ && may_keep_factor() && propose_again()) {
+      return NewtonStatus::converged;
+    }
+    kept_ = false;
+    if (!has_matrix_) linearise(settings_.request.tangent, true);
+    if (!condense()) return NewtonStatus::singular;
+    report_.law = world_.solve_step(solver_, controller_, effort_, clock_);
+    return report_.law == step::LawStatus::failed ? NewtonStatus::law_failed
+                                                  : NewtonStatus::converged;
+  }
+
+  // The same with the last factor. Refuses a motion that has not become much smaller: a new factor
+  // then costs less than the iterations that it saves.
+  bool propose_again() {
+    const step::LawStatus law = world_.solve_step_again(solver_, effort_, clock_);
+    const bool contracts =
+        law != step::LawStatus::failed &&
+        world_.bodies().proposed_move() <= kContraction * report_.motion.largest_move;
+    if (contracts) {
+      report_.law = law;
+      kept_ = true;
+      return true;
+    }
+    std::ranges::copy(world_.efforts_before(), effort_.begin());
+    ++refused_;
+    return false;
   }
 
   // The exact tangent may be indefinite far from equilibrium; the projected one is not. If the
@@ -91,7 +138,7 @@ class NewtonSolver {
         stable && settings_.request.tangent == mechanics::Tangent::exact && !world_.has_majorant();
     if (!stable && settings_.request.tangent == mechanics::Tangent::exact) {
       clock_.mark(Stage::factorisation);
-      linearise(mechanics::Tangent::projected);
+      linearise(mechanics::Tangent::projected, true);
       status = world_.condense();
       ++report_.factorisations;
       ++report_.tangent_fallbacks;
@@ -132,10 +179,9 @@ class NewtonSolver {
       return false;
     const bool at_rest = full_step_ && report_.motion.largest_move <= kRounding * size &&
                          report_.relative_residual <= kRoundedResidual;
-    // A matrix larger than the derivative gives small motions even far from an equilibrium.
-    const bool strict = settings_.lag.residual > 0.0 && !derivative_;
-    const double tolerance =
-        strict ? std::min(settings_.tolerance, kRoundedResidual) : settings_.tolerance;
+    const double tolerance = settings_.strict && !derivative_
+                                 ? std::min(settings_.tolerance, kRoundedResidual)
+                                 : settings_.tolerance;
     return report_.relative_residual <= tolerance || at_rest ||
            (is_spent() && report_.residual <= world_.bodies().rounding_floor()) || lags_little();
   }
@@ -150,7 +196,7 @@ class NewtonSolver {
       clock_.mark(Stage::correction);
       inverted = true;
       if (!report_.motion.finite) continue;
-      linearise(settings_.request.tangent);
+      linearise(settings_.request.tangent, needs_matrix(halving == 0));
       report_.motion.volume = world_.bodies().smallest_volume();
       inverted = !(report_.motion.volume.ratio > 0.0);
       if (inverted) continue;
@@ -158,10 +204,53 @@ class NewtonSolver {
       if (report_.iterations == 0) report_.first_move = report_.motion.largest_move / scale;
       full_step_ = halving == 0;
       stagnant_ = full_step_ && report_.residual > kLessened * residual_before;
+      moved_ = full_step_ ? report_.motion.largest_move : 0.0;
       converged_ = converged();
-      if (converged_ || after < kMeritGrowth * before) return NewtonStatus::converged;
+      if (!converged_ && !(after < kMeritGrowth * before)) continue;
+      converged_ = converged_ || has_stalled();
+      return NewtonStatus::converged;
     }
     return inverted ? NewtonStatus::inverted : NewtonStatus::stalled;
+  }
+
+  // Without an iteration, the report is that of the state at the start.
+  // Whether the next iteration, or the next step, is expected to need the matrix at the state that
+  // is about to be linearised. A wrong guess costs time only.
+  bool needs_matrix(bool full_step) const {
+    if (!full_step || !may_keep_factor()) return true;
+    const double shrinks = kept_ && before_ > 0.0 ? report_.motion.largest_move / before_ : 1.0;
+    const bool ends =
+        settings_.lag.residual > 0.0 || shrinks * report_.relative_residual <= settings_.tolerance;
+    return ends && world_.bodies().keep_linearisation();
+  }
+
+  bool is_within_stalled_tolerance() const {
+    const double most = settings_.stalled_tolerance;
+    return report_.relative_residual <= most && report_.violation <= most * world_.problem().size;
+  }
+
+  // Whether iterations with new matrices have ceased to reduce the residual, within the tolerance
+  // for this case.
+  bool has_stalled() {
+    if (report_.relative_residual <= kLessened * best_) {
+      best_ = report_.relative_residual;
+      idle_ = 0;
+    } else if (!kept_) {
+      ++idle_;
+    } else {
+      refused_ = kMostRefused;
+    }
+    return idle_ >= kIdle && !kept_ && is_within_stalled_tolerance();
+  }
+
+  // The move of the next iteration with the last matrix, by the theory of distance_bound(). Moves
+  // of Newton's method shrink by omega m/2, those with the same matrix by omega times the distance
+  // to where it was formed. Needs two full moves.
+  double next_move() const {
+    const double shrinks = moved_ / before_;
+    const bool newton = derivative_ && !kept_ && !kept_before_;
+    const bool changes = kept_ && !kept_before_;
+    return (newton ? shrinks : changes ? 2.0 : 1.0) * shrinks * moved_;
   }
 
   // Without an iteration, the report is that of the state at the start.
@@ -171,6 +260,9 @@ class NewtonSolver {
     report_.motion.volume = report_.sanity.volume;
     const bool lost = status == NewtonStatus::converged && !report_.sanity.sound();
     report_.status = lost ? NewtonStatus::unphysical : status;
+    if (status == NewtonStatus::converged && moved_ > 0.0 && moved_ < before_) {
+      report_.distance = distance_bound(next_move(), moved_, world_.problem().size);
+    }
     return report_;
   }
 
@@ -182,12 +274,18 @@ class NewtonSolver {
   StageClock& clock_;
   StepWatch& watch_;
   NewtonReport report_;
-  bool converged_ = false;     // after the last motion
-  bool full_step_ = false;     // whether that motion was a full step
-  bool derivative_ = false;    // whether the condensed matrix was the derivative
-  int idle_ = 0;               // iterations in succession without progress
-  double lowest_ = kInfinity;  // merit
-  bool stagnant_ = false;      // the last full step did not lessen the residual
+  bool converged_ = false;                   // after the last motion
+  bool full_step_ = false;                   // whether that motion was a full step
+  bool derivative_ = false;                  // whether the condensed matrix was the derivative
+  bool stagnant_ = false;                    // the last full step did not lessen the residual
+  bool has_matrix_ = false;                  // whether the last linearisation included the matrix
+  bool kept_ = false, kept_before_ = false;  // whether the last motion used an earlier factor
+  int refused_ = 0;                          // motions with an earlier factor that were refused
+  double moved_ = 0.0, before_ = 0.0;        // m, the last full moves; 0: not a full step
+  double best_ = INFINITY;                   // relative residual
+  int idle_ = 0;                             // iterations since
+  double lowest_ = kInfinity;                // merit
+  int lost_ = 0;                             // iterations since without progress
 };
 
 }  // namespace

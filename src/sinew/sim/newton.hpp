@@ -3,11 +3,13 @@
 /// condenses, solves the laws and moves the bodies, with a line search.
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include "sinew/mechanics/step_system.hpp"
 #include "sinew/sim/newton_status.hpp"
 #include "sinew/sim/sanity.hpp"
+#include "sinew/sim/step_tolerances.hpp"
 #include "sinew/step/law_status.hpp"
 
 namespace sinew::step {
@@ -21,14 +23,6 @@ class StageClock;
 class StepWatch;
 class World;
 
-/// Bounds on the error that an iteration may leave to the next step, although the residual exceeds
-/// the tolerance. After a full iteration with the exact derivative, the remaining motion is of
-/// second order: about the last motion times the relative residual.
-struct Lag {
-  double residual = 0.0;  ///< relative residual; 0: no error may be left
-  double move = 0.0;      ///< largest move times relative residual, relative to the robot's size
-};
-
 struct NewtonSettings {
   mechanics::LinearisationRequest request;
   double tolerance = 1e-8;         ///< on the residual relative to the loads
@@ -36,6 +30,13 @@ struct NewtonSettings {
   int max_iterations = 50;
   std::span<const int> geometric = {};  ///< constraints whose geometric stiffness is added to A
   Lag lag = {};
+  /// Both tolerances where iterations no longer reduce the residual; 0: the same as above.
+  double stalled_tolerance = 0.0;
+  /// Whether a solution found with another matrix than the derivative must have a small residual,
+  /// since a matrix larger than the derivative gives small motions even far from an equilibrium.
+  bool strict = false;
+  /// Whether later iterations may keep the factor of an earlier one.
+  bool keeps_factor = false;
   /// The search ends after this many iterations if each of them found the exact tangent indefinite;
   /// 0: no limit.
   int max_indefinite = 0;
@@ -50,6 +51,9 @@ struct NewtonReport {
   double residual = 0.0;           ///< N, |p - f - ... + H^T lambda|
   double relative_residual = 0.0;  ///< relative to the sum of the forces' norms
   double violation = 0.0;          ///< m, of the law
+  /// m, bound of the distance to the solution if it follows from the moves of the iterations (see
+  /// distance_bound()); else NaN.
+  double distance = std::numeric_limits<double>::quiet_NaN();
   int factorisations = 0;
   int tangent_fallbacks = 0;  ///< iterations in which the exact tangent was indefinite
   double first_move = 0.0;    ///< m, largest change of a coordinate in a full first iteration

@@ -1,6 +1,8 @@
 #include "sinew/sim/newton_step.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include <fmt/format.h>
@@ -20,8 +22,6 @@ namespace sinew::sim {
 
 namespace {
 
-// Errors that quasi-static steps leave to the next one, if they do not persist.
-constexpr Lag kLag{0.1, 1e-3};
 // Bounds of a search, beyond which none of the steps of 600 random robots was solved
 // (docs/solver.md).
 // Iterations with the projected tangent, which descend to a stable equilibrium if there is one.
@@ -56,20 +56,29 @@ bool goes_on(const NewtonReport& result) {
 
 }  // namespace
 
+bool NewtonStep::follows() const {
+  return run_.equilibrium() == Equilibrium::following && !run_.model->errors_last() &&
+         !run_.model->step().tolerance;
+}
+
 NewtonSettings NewtonStep::settings(double time_step) const {
   const StepSettings& step = run_.model->step();
   const bool lasts = run_.model->errors_last();
-  const bool lags = !lasts && !step.tolerance;
-  const double tolerance =
-      step.tolerance.value_or(lasts ? kLastingTolerance : kQuasiStaticTolerance);
+  const double usual = lasts       ? kLastingTolerance
+                       : follows() ? kFollowingTolerance
+                                   : kQuasiStaticTolerance;
   const int most = divisible_ && step.dynamic() ? kIterationsBeforeHalving : step.max_iterations;
-  return {run_.request(time_step),
-          tolerance,
-          std::min(tolerance, kMotionTolerance),
-          std::min(most, step.max_iterations),
-          run_.model->geometric_stiffness().in_steps,
-          lags ? kLag : Lag{},
-          0};
+  NewtonSettings result;
+  result.request = run_.request(time_step);
+  result.tolerance = step.tolerance.value_or(usual);
+  result.motion_tolerance = std::min(result.tolerance, kMotionTolerance);
+  result.max_iterations = std::min(most, step.max_iterations);
+  result.geometric = run_.model->geometric_stiffness().in_steps;
+  if (follows()) result.lag = kLag;
+  if (lasts && !step.tolerance) result.stalled_tolerance = kStalledTolerance;
+  result.strict = !step.tolerance;
+  result.keeps_factor = true;
+  return result;
 }
 
 NewtonSettings NewtonStep::settings_of_part(double time_step) const {
@@ -85,7 +94,7 @@ void NewtonStep::solve(double time_step) {
   if (must_settle() && converged(result))
     RestSearch(run_, time_step).settle(settings(time_step), result);
   take_report(result);
-  if (converged(result)) return;
+  if (converged(result)) return bound_distance(result);
   const JointConflict conflict = find_conflict(result, time_step);
   const bool usable = !conflict.opens && is_usable(result);
   if (usable && (run_.keeps_going || is_balanced(run_))) return;
@@ -316,8 +325,37 @@ NewtonReport NewtonStep::remain(double time_step, const NewtonReport& failed) {
   result.motion.finite = true;
   result.sanity = examine(world, run_.effort);
   result.motion.volume = result.sanity.volume;
-  if (!(result.relative_residual <= kBalanced)) return failed;
-  return result;
+  return is_near(result) ? result : failed;
+}
+
+// Whether the present state, which is linearised, is as near to an equilibrium with the present
+// efforts as that of a following step: by the exact Newton correction.
+bool NewtonStep::is_near(NewtonReport& result) {
+  if (!(result.relative_residual <= kLag.residual)) return false;
+  World& world = run_.world;
+  if (world.condense() == linalg::FactorStatus::singular || !world.is_stable()) return false;
+  const double left = correction();
+  if (!(left <= kLag.move * world.problem().size)) return false;
+  result.status = NewtonStatus::converged;
+  result.motion.largest_move = INFINITY;  // the matrix is that of the present state
+  return true;
+}
+
+double NewtonStep::correction() {
+  run_.correction_solver.begin_step();
+  return run_.world.correction(run_.correction_solver, run_.effort);
+}
+
+// In dynamics, the moves of the iterations alone give a bound, since a solution of the law for it
+// would cost more than it tells: the tolerance is narrow.
+void NewtonStep::bound_distance(const NewtonReport& result) {
+  StepReport& report = run_.report;
+  report.following = follows();
+  report.distance = result.distance;
+  const bool known = std::isfinite(result.distance) && !report.following;
+  if (run_.model->step().dynamic() || known) return;
+  report.distance =
+      distance_bound(correction(), result.motion.largest_move, run_.world.problem().size);
 }
 
 // Removes the residual at the start of the step gradually, as in statics (static_solver.cpp), with
@@ -336,6 +374,11 @@ NewtonReport NewtonStep::approach(double time_step) {
     run_.restore(sound_);
     run_.begin_world(time_step);
   };
+  NewtonSettings rough = part;  // of all parts but the last
+  if (!run_.model->errors_last() && !run_.model->step().tolerance) {
+    rough.tolerance = kFollowingTolerance;
+    rough.lag = kLag;
+  }
   go_back();
   world.linearise(part.request);
   world.form_rows(run_.effort, part.geometric);
@@ -345,10 +388,11 @@ NewtonReport NewtonStep::approach(double time_step) {
   const auto solve = [&](double fraction) {
     if (iterations == kIterationsInParts) return false;
     part.max_iterations = std::min(part.max_iterations, kIterationsInParts - iterations);
+    rough.max_iterations = part.max_iterations;
     commands = goal;
     blend(commands, start, 1.0 - fraction);
     world.homotopy().set_fraction(fraction);
-    result = run_.newton(nullptr, part);
+    result = run_.newton(nullptr, fraction > 0.0 ? rough : part);
     iterations += result.iterations;
     tried_fallbacks_ += result.tangent_fallbacks;
     part_snapped_ = part_snapped_ || snaps(result);
@@ -416,7 +460,8 @@ bool NewtonStep::is_usable(const NewtonReport& result) const {
   if (run_.model->step().dynamic()) return result.status == NewtonStatus::unphysical && !divisible_;
   if (result.status == NewtonStatus::singular || must_settle()) return false;
   if (run_.model->contacts().empty()) return true;
-  return result.relative_residual <= (run_.controller == nullptr ? kSearched : kBalanced) &&
+  return result.relative_residual <=
+             (run_.controller == nullptr ? kFollowingTolerance : kLag.residual) &&
          result.violation <= kMotionTolerance * run_.model->size();
 }
 
@@ -435,6 +480,8 @@ void NewtonStep::take_report(const NewtonReport& result) {
   report.residual = result.residual;
   report.relative_residual = result.relative_residual;
   report.violation = result.violation;
+  report.distance = std::numeric_limits<double>::quiet_NaN();
+  report.following = false;
   report.iterations = result.iterations;
   report.newton = result.status;
   report.scale = 1.0;

@@ -32,6 +32,7 @@ class NewtonStep {
   void solve(double time_step);
 
  private:
+  bool follows() const;
   NewtonSettings settings(double time_step) const;
   NewtonSettings settings_of_part(double time_step) const;
   std::string describe(const NewtonReport& result, const NewtonSettings& how) const;
@@ -45,6 +46,9 @@ class NewtonStep {
   NewtonReport approach(double time_step);
   NewtonReport descend(double time_step, int iterations);
   bool must_settle() const;
+  bool is_near(NewtonReport& result);
+  double correction();
+  void bound_distance(const NewtonReport& result);
   bool is_usable(const NewtonReport& result) const;
   bool solves(const NewtonReport& result);
   bool snaps(const NewtonReport& result) const;

@@ -22,6 +22,9 @@ Run::Run(std::shared_ptr<const Model> shared_model, int threads)
       solver(qp::ConeSettings{.tolerance = model->step().contact_tolerance,
                               .usable = kUsableContacts,
                               .poll = &watch.poll()}),
+      correction_solver(qp::ConeSettings{.tolerance = model->step().contact_tolerance,
+                                         .usable = kUsableContacts,
+                                         .poll = &watch.poll()}),
       actuation(*model),
       surroundings(*model, world.bodies()),
       effort(static_cast<std::size_t>(model->rows().rows()), 0.0),
@@ -73,6 +76,12 @@ NewtonReport Run::newton(step::Controller* chooser, const NewtonSettings& settin
 step::WithMemory* Run::attached() const {
   if (controller != nullptr) return controller;
   return commander;
+}
+
+Equilibrium Run::equilibrium() const {
+  const bool steered = follows || attached() != nullptr;
+  return model->step().equilibrium.value_or(steered ? Equilibrium::following
+                                                    : Equilibrium::converged);
 }
 
 void Run::finish_step() {

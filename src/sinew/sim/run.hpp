@@ -53,6 +53,8 @@ struct Run {
   NewtonReport newton(step::Controller* chooser, const NewtonSettings& settings);
   /// The attached controller or commander; null if there is none.
   step::WithMemory* attached() const;
+  /// When quasi-static steps end; see StepSettings::equilibrium.
+  Equilibrium equilibrium() const;
   /// Updates efforts and motions of actuators and joints from the state at the end of the step.
   void finish_step();
   void restart();
@@ -76,6 +78,7 @@ struct Run {
   World world;
   StepWatch watch;
   step::StepSolver solver;
+  step::DirectSolver correction_solver;    ///< for World::correction()
   step::Controller* controller = nullptr;  ///< attached; chooses efforts within steps
   Commander* commander = nullptr;          ///< attached; gives commands before steps
   Actuation actuation;
@@ -85,6 +88,7 @@ struct Run {
   std::int64_t steps = 0;  ///< since the start
   double last_step = 0.0;  ///< s, length of the last substep; 0: the integrator starts afresh
   double next_step = 0.0;  ///< s, length to try for the next substep; 0: the whole step
+  bool follows = false;    ///< see Simulation::follow()
   double volume_ratio = 1.0;
   double now = 0.0;  ///< s, end of the current substep
   /// Whether the state descends from a failed step (is_failure()).

@@ -117,6 +117,7 @@ Inputs Run::inputs() const {
     inputs.commands.push_back(actuator.command);
   }
   inputs.loads = surroundings.factors();
+  inputs.follows = follows;
   for (const auto& body : world.bodies().all()) {
     BodyInputs& own = inputs.bodies.emplace_back();
     if (const auto* pulled = mechanics::as<mechanics::TakesForces>(*body)) {
@@ -148,6 +149,7 @@ void Run::set_inputs(const Inputs& inputs) {
   }
   actuation.set_commands(inputs.commands);
   surroundings.set_factors(inputs.loads);
+  follows = inputs.follows;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const BodyInputs& own = inputs.bodies[i];
     if (auto* pulled = mechanics::as<mechanics::TakesForces>(*bodies[i])) {

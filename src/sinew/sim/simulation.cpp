@@ -117,6 +117,10 @@ Path Simulation::follow_path(const PathSettings& settings, const std::function<v
 
 void Simulation::reset() { run_->restart(); }
 
+void Simulation::follow(bool on) { run_->follows = on; }
+bool Simulation::follows() const { return run_->follows; }
+Equilibrium Simulation::equilibrium() const { return run_->equilibrium(); }
+
 void Simulation::command(int actuator, Command command, const Commander* by) {
   run_->actuation.command(actuator, std::move(command), by);
 }

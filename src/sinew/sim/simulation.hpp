@@ -116,6 +116,15 @@ class Simulation {
   /// attached.
   void reset();
 
+  /// From the next step on, quasi-static steps follow (Equilibrium::following), unless the model's
+  /// StepSettings::equilibrium says otherwise: for programs that steer the robot in real time
+  /// without attaching a controller.
+  /// @param on false: as the model says, otherwise `converged` without a controller.
+  void follow(bool on = true);
+  bool follows() const;
+  /// When quasi-static steps end: as the model says, or by the default for this run.
+  Equilibrium equilibrium() const;
+
   /// Sets the command of an actuator. Throws Error(actuator-owned) unless the actuator's owner is
   /// `by` (null: it has no owner); actuators of a controller accept no commands.
   void command(int actuator, Command command, const Commander* by = nullptr);

@@ -413,9 +413,11 @@ constexpr int kStart = -1;  // the status before any step
 
 void add_report(Observables& list) {
   const Simulation& simulation = list.simulation();
-  std::vector<Observable> parts = {number(ObservableKind::report, "residual", "N")};
-  for (const char* name : {"relative_residual", "iterations", "substeps", "scale",
-                           "smallest_volume_ratio", "snapped"}) {
+  std::vector<Observable> parts = {number(ObservableKind::report, "residual", "N"),
+                                   number(ObservableKind::report, "relative_residual"),
+                                   number(ObservableKind::report, "distance", "m")};
+  for (const char* name : {"iterations", "substeps", "scale", "smallest_volume_ratio",
+                           "snapped"}) {
     parts.push_back(number(ObservableKind::report, name));
   }
   const bool touches = !simulation.model().contacts().empty();
@@ -437,6 +439,7 @@ void add_report(Observables& list) {
     Numbers to(all);
     to.put(report.residual);
     to.put(report.relative_residual);
+    to.put(report.distance);
     to.put(report.iterations);
     to.put(report.substeps);
     to.put(report.scale);

@@ -45,14 +45,13 @@ bool StaticSearch::equilibrate(double fraction) {
 bool StaticSearch::step(const mechanics::StepWeights& weights, double tolerance, int max_iterations,
                         int max_idle) {
   begin();
-  last_ = run_.newton(nullptr, {request(weights),
-                                tolerance,
-                                tolerance,
-                                max_iterations,
-                                run_.model->geometric_stiffness().all,
-                                {},
-                                0,
-                                max_idle});
+  NewtonSettings settings;
+  settings.request = request(weights);
+  settings.tolerance = settings.motion_tolerance = tolerance;
+  settings.max_iterations = max_iterations;
+  settings.geometric = run_.model->geometric_stiffness().all;
+  settings.max_idle = max_idle;
+  last_ = run_.newton(nullptr, settings);
   report_.iterations += last_.iterations;
   return last_.status == NewtonStatus::converged;
 }

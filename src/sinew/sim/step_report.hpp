@@ -2,6 +2,8 @@
 /// The report of a step.
 #pragma once
 
+#include <limits>
+
 #include "sinew/sim/newton_status.hpp"
 #include "sinew/sim/stages.hpp"
 #include "sinew/sim/step_status.hpp"
@@ -20,8 +22,14 @@ struct StepReport {
   double residual = 0.0;  ///< N, |p - f - ... + H^T lambda| at the end of the step
   double relative_residual = 0.0;  ///< relative to the sum of the forces' norms
   double violation = 0.0;          ///< m, violation of the law by the motion at the end
-  int iterations = 1;              ///< linear solutions in the last substep
-  int substeps = 1;                ///< number of substeps
+  /// m, bound of the distance (largest difference of any coordinate) between the state and the
+  /// solution of the step's equation under the same commands, see distance_bound(). Infinite if no
+  /// bound was found; NaN if none was sought: in dynamic steps that took less than two iterations,
+  /// and in flagged steps.
+  double distance = std::numeric_limits<double>::quiet_NaN();
+  bool following = false;  ///< whether the step could end as Equilibrium::following
+  int iterations = 1;      ///< linear solutions in the last substep
+  int substeps = 1;        ///< number of substeps
   /// Substeps that were undone and retried, smaller or with a smaller change of the efforts that a
   /// controller chooses.
   int retries = 0;

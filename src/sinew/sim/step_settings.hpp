@@ -16,18 +16,32 @@ enum class Method {
   newton,             ///< as many as the tolerance requires; one if little changes
 };
 
+/// When the iterations of a quasi-static step end. Materials with memory always take `converged`.
+enum class Equilibrium {
+  converged,  ///< at equilibrium, to the tolerance or to rounding
+  /// Once the error is of second order in the motion of the step, which the next step removes. The
+  /// report bounds the distance to the equilibrium (StepReport::distance).
+  following,
+};
+
 /// Divides time steps into smaller ones if the integrator's error requires it or a step fails.
 struct AdaptiveStep {
   double tolerance = 1e-4;  ///< step error in any coordinate, relative to the robot's size
   double smallest = 0.0;    ///< s, > 0, smallest step
 };
 
-/// Default tolerance of quasi-static steps. At higher residuals, an error of second order in the
-/// motion of an iteration is left to the next step.
-inline constexpr double kQuasiStaticTolerance = 1e-4;
+/// Default tolerance of quasi-static steps.
+inline constexpr double kQuasiStaticTolerance = 1e-6;
+/// The same for Equilibrium::following. At higher residuals, an error of second order in the motion
+/// of an iteration is left to the next step.
+inline constexpr double kFollowingTolerance = 1e-4;
 /// Default tolerance where the error of a step persists: as an impulse in dynamics, as a strain in
 /// materials with memory.
 inline constexpr double kLastingTolerance = 1e-8;
+/// Such a step also counts as solved below this residual if iterations no longer reduce it: contact
+/// laws and friction are solved iteratively, and near an instability the equation amplifies their
+/// errors.
+inline constexpr double kStalledTolerance = 1e-6;
 
 /// How each step is solved.
 struct StepSettings {
@@ -44,9 +58,11 @@ struct StepSettings {
   /// tangent is indefinite for the robot with its constraints too, the projected one is used
   /// instead.
   mechanics::Tangent tangent = mechanics::Tangent::exact;
+  /// When quasi-static steps end. None: `following` with an attached controller or commander and
+  /// after Simulation::follow(), otherwise `converged`.
+  std::optional<Equilibrium> equilibrium;
   /// Tolerance of Newton's method: residual relative to the loads, and violation relative to the
-  /// robot's size; no larger error is left to the next step. None: kQuasiStaticTolerance, with
-  /// errors that may be left to the next step (docs/solver.md), or kLastingTolerance.
+  /// robot's size; no larger error is accepted in any step. None: one of the constants above.
   std::optional<double> tolerance;
   int max_iterations = 50;  ///< of Newton's method
 

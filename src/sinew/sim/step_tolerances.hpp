@@ -2,16 +2,41 @@
 /// Tolerances on the equation and the law of a step.
 #pragma once
 
+#include <algorithm>
+#include <limits>
+
 namespace sinew::sim {
 
-/// States with a larger relative residual are not equilibria, whatever the loads. Half of the
-/// forces of a slender robot are axial; a residual of this size in them bends the robot by a
-/// negligible amount.
-inline constexpr double kBalanced = 0.02;
-/// Relative residual accepted when all search methods were used: cable friction can keep Newton's
-/// method from converging further.
-inline constexpr double kSearched = 2e-5;
+/// Bounds on the error that an iteration may leave to the next step, although the residual exceeds
+/// the tolerance. After a full iteration with the exact derivative, the remaining motion is of
+/// second order: about the last motion times the relative residual.
+struct Lag {
+  double residual = 0.0;  ///< relative residual; 0: no error may be left
+  double move = 0.0;      ///< largest move times relative residual, relative to the robot's size
+};
+/// Of Equilibrium::following.
+inline constexpr Lag kLag{0.1, 1e-3};
 /// Tolerance on commanded motions, relative to the robot's size.
 inline constexpr double kMotionTolerance = 1e-5;
+
+/// Bound of the distance to the solution x* after an iteration moved by m to x, m. With the same
+/// matrix A, the next iteration would move by c = |A^-1 r(x)|: the simplified Newton method. Its
+/// errors satisfy e <- (I - A^-1 K) e, and the affine covariant Lipschitz condition gives
+///   |I - A^-1 K| <= omega m = h,   c <= h/2 m   (one Newton step),
+///   |x - x*| <= c/(1 - h) = c/(1 - 2 c/m)
+/// (P. Deuflhard, Newton Methods for Nonlinear Problems (2004), theorem 2.5 and section 2.1.2, with
+/// h estimated by 2 c/m). The norm is the largest change of a coordinate, in which h may be
+/// underestimated: the bound is multiplied by kSafe. Infinite where the contraction 2 c/m is not
+/// below 1.
+/// @param correction c, m. @param move m, m. @param size of the robot, m: smaller moves than its
+///   rounding say nothing about the contraction.
+inline double distance_bound(double correction, double move, double size) {
+  constexpr double kSafe = 2.0;
+  constexpr double kRounding = 1e-11;  // relative to the size
+  if (correction <= kRounding * size) return kSafe * correction;
+  const double contraction = 2.0 * correction / move;
+  if (!(contraction < 1.0)) return std::numeric_limits<double>::infinity();
+  return kSafe * correction / (1.0 - contraction);
+}
 
 }  // namespace sinew::sim

@@ -16,11 +16,13 @@ constexpr double kUnbalanced = 0.02;
 }  // namespace
 
 bool is_balanced(const Run& run) {
-  if (!run.report.physical) return false;
-  const bool newton = run.model->step().method == Method::newton;
-  if (newton && run.report.newton == NewtonStatus::converged) return true;
-  const bool searched = newton && run.controller == nullptr;
-  return run.report.relative_residual <= (searched ? kSearched : kBalanced);
+  const StepReport& report = run.report;
+  if (!report.physical) return false;
+  if (run.model->step().method == Method::newton) {
+    return report.newton == NewtonStatus::converged;
+  }
+  return report.relative_residual <= kLag.residual &&
+         report.distance <= kLag.move * run.model->size();
 }
 
 bool reactions_balance(Run& run) {

@@ -9,7 +9,7 @@ namespace sinew::sim {
 struct Run;
 
 /// Whether forces balance at the end of the step that the report of a run describes: Newton's
-/// method decides; if it had few iterations or was not used, the residual decides.
+/// method decides. One linearisation must leave no more than following steps do.
 bool is_balanced(const Run& run);
 /// Whether the reactions of what is fixed balance the loads, contacts and joints in a quasi-static
 /// step, in force and moment. This takes no search at its word: the resultant is summed from the

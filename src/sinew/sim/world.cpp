@@ -8,9 +8,19 @@
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/stage_clock.hpp"
 #include "sinew/sim/standing_blocks.hpp"
+#include "sinew/step/direct_solver.hpp"
 #include "sinew/step/step_solver.hpp"
 
 namespace sinew::sim {
+
+namespace {
+
+auto numbers(const linalg::AlignedNumbers& all) {
+  return Eigen::Map<const VectorX, Eigen::AlignedMax>(all.data(),
+                                                      static_cast<Eigen::Index>(all.size()));
+}
+
+}  // namespace
 
 World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
     : model_(std::move(model)),
@@ -125,6 +135,45 @@ linalg::FactorStatus World::condense() {
 step::LawStatus World::solve_step(step::StepSolver& solver, step::Controller* controller,
                                   std::span<double> effort, StageClock& clock) {
   effort_before_.assign(effort.begin(), effort.end());
+  return solve_laws(solver, controller, false, effort, clock);
+}
+
+step::LawStatus World::solve_step_again(step::StepSolver& solver, std::span<double> effort,
+                                        StageClock& clock) {
+  effort_before_.assign(effort.begin(), effort.end());
+  renew_free_motion(effort_before_);
+  clock.mark(Stage::correction);
+  return solve_laws(solver, nullptr, true, effort, clock);
+}
+
+// The linearised rows at the present state x with the matrix A and W of an earlier one. With
+// efforts lambda, a change to lambda' moves the bodies by
+//   dq = A^-1 (b + H^T lambda'),   H dq = H A^-1 (b + H^T lambda) + W (lambda' - lambda),
+// so delta_free = delta + H A^-1 (b + H^T lambda) - W lambda. W = H A^-1 H^T holds for the earlier
+// H only, which changes the rate of convergence, not the limit lambda' = lambda.
+void World::renew_free_motion(std::span<const double> effort) {
+  bodies_.renew(effort);
+  problem_.delta_free = problem_.delta;
+  bodies_.add_row_motions(numbering_.problem_rows(), problem_.delta_free);
+  numbering_.gather_efforts(effort, scratch_);
+  problem_.delta_free.noalias() -= problem_.compliance * numbers(scratch_);
+}
+
+double World::correction(step::DirectSolver& solver, std::span<const double> effort) {
+  held_free_ = problem_.delta_free;
+  renew_free_motion(effort);
+  const step::LawStatus status = solver.solve(problem_, scratch_);
+  trial_.assign(effort.begin(), effort.end());
+  numbering_.scatter_efforts(scratch_, trial_);
+  bodies_.solve_motion(trial_);
+  problem_.delta_free.swap(held_free_);
+  const double move = bodies_.proposed_move();
+  bodies_.residual(effort);  // bodies remember the efforts of their last residual
+  return status == step::LawStatus::failed ? std::nan("") : move;
+}
+
+step::LawStatus World::solve_laws(step::StepSolver& solver, step::Controller* controller,
+                                  bool again, std::span<double> effort, StageClock& clock) {
   // Each choice of a controller takes several solutions of the law. Most of the points that become
   // active between surfaces are also found at the efforts before the choice, with one solution per
   // round. The controller therefore chooses only when no more points are found there.
@@ -140,6 +189,7 @@ step::LawStatus World::solve_step(step::StepSolver& solver, step::Controller* co
     bodies_.solve_motion(effort);
     clock.mark(Stage::correction);
     const bool found = correct_contacts(looks, clock);
+    if (found && again) renew_free_motion(effort_before_);
     mended = found || looks;
     looks = looks && found;
   }

@@ -20,6 +20,7 @@
 
 namespace sinew::step {
 class Controller;
+class DirectSolver;
 class StepSolver;
 }  // namespace sinew::step
 
@@ -71,6 +72,19 @@ class World {
   ///   clock records the times of the stages from the law on.
   step::LawStatus solve_step(step::StepSolver& solver, step::Controller* controller,
                              std::span<double> effort, StageClock& clock);
+  /// The same with the matrix and W of the last condense(), although the bodies have been
+  /// linearised and the rows formed anew since: one iteration of the simplified Newton method (P.
+  /// Deuflhard, Newton Methods for Nonlinear Problems (2004), section 2.1). It converges to the
+  /// solution of the same equations, since b, H and delta are those of the present state.
+  step::LawStatus solve_step_again(step::StepSolver& solver, std::span<double> effort,
+                                   StageClock& clock);
+  /// (rows,) N, the efforts before the last solve_step() or solve_step_again().
+  std::span<const double> efforts_before() const { return effort_before_; }
+  /// The motion that solve_step_again() would propose, as its largest change of any coordinate, m.
+  /// Changes neither the problem nor the efforts; actuators of a controller keep their efforts.
+  /// @param solver of the laws, begun for this step. @param effort (rows,) N, of the present state.
+  /// @return NaN if the laws have no solution.
+  double correction(step::DirectSolver& solver, std::span<const double> effort);
 
   /// Inertia of all bodies' matrices at the last condensation.
   const mechanics::Inertia& inertia() const { return inertia_; }
@@ -135,8 +149,11 @@ class World {
   void place_contacts(double from, double to);
   void begin_contacts(double from, double to, std::span<double> effort, double reach);
   bool correct_contacts(bool looks, StageClock& clock);
+  step::LawStatus solve_laws(step::StepSolver& solver, step::Controller* controller, bool again,
+                             std::span<double> effort, StageClock& clock);
   void number_rows();
   void form_compliance();
+  void renew_free_motion(std::span<const double> effort);
 
   std::shared_ptr<const Model> model_;
   Bodies bodies_;
@@ -153,6 +170,9 @@ class World {
   std::vector<double> effort_before_;      // (rows,) N, of the last step or iteration
   linalg::AlignedNumbers problem_effort_;  // (rows of the problem,) N, of the last solution
   linalg::AlignedNumbers scratch_;         // (rows of the problem,)
+  // For correction():
+  VectorX held_free_;
+  std::vector<double> trial_;  // (rows,) N
 };
 
 }  // namespace sinew::sim
