@@ -12,6 +12,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "sinew/core/types.hpp"
@@ -31,6 +32,8 @@ struct LinearisationRequest {
   bool with_geometric_stiffness = false;
   /// Further linearisations of the same step may follow (Newton's iterations).
   bool iterating = false;
+  /// Weights of the bodies whose integrator starts afresh in this step, if there are any.
+  std::optional<StepWeights> afresh = {};
 };
 
 /// Result of a condensation.

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -69,8 +70,15 @@ class Bodies {
   bool can_carry_on() const;
   void scale_motion(double factor);
   void add_velocity(const VectorX& change);
-  /// The largest error estimate of any body, m.
-  double end_step(const mechanics::StepWeights& weights);
+  /// (bodies,) 1: the integrator of the body starts afresh in the next step.
+  std::vector<char>& afresh() { return afresh_; }
+  const std::vector<char>& afresh() const { return afresh_; }
+  /// Whether the integrator of any body starts afresh.
+  bool any_afresh() const;
+  /// The largest error estimate of any body, m. @param weights of the step.
+  /// @param afresh those of the bodies whose integrator started afresh.
+  double end_step(const mechanics::StepWeights& weights,
+                  const std::optional<mechanics::StepWeights>& afresh = {});
   /// See mechanics::StepSystem.
   void release();
   /// Results of each body's last step.
@@ -85,6 +93,7 @@ class Bodies {
   std::vector<std::unique_ptr<mechanics::Body>> bodies_;
   std::vector<mechanics::StepSystem*> systems_;
   std::vector<mechanics::StepEnd> ends_;
+  std::vector<char> afresh_;  // (bodies,)
 };
 
 }  // namespace sinew::sim

@@ -130,7 +130,7 @@ std::vector<PathPoint> PathFollower::follow(const std::function<void()>& visit) 
     if (visit) visit();
     length = std::min(longest, length * std::clamp(kWantedIterations / iterations, 0.5, 2.0));
   }
-  run_.last_step = 0.0;
+  run_.forget_history();
   run_.ledger.restart();
   return path;
 }

@@ -43,6 +43,8 @@ struct State {
   std::vector<double> controller;  ///< memory of the attached controller; empty without one
   std::vector<double> sensors;     ///< memory of the sensors, see Sensors; empty without
   std::vector<double> estimators;  ///< memory of the estimators, see Estimators; empty without
+  /// (bodies,) 1: the integrator of the body starts afresh; empty if `last_step` tells it of all.
+  std::vector<double> afresh;
   EnergyLedger ledger;
   double volume_ratio = 1.0;  ///< min det F
   double residual = 0.0;      ///< relative residual of the last step; controllers detect rest by it
@@ -79,6 +81,7 @@ struct State {
     visitor("next step", state.next_step);
     visitor("sensors", state.sensors);
     visitor("estimators", state.estimators);
+    visitor("afresh", state.afresh);
   }
 
   /// Hash of the bits of all numbers and the count of steps: equal states have equal hashes.

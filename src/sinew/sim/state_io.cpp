@@ -156,10 +156,12 @@ SavedState read(std::string_view bytes, const std::string& name) {
   State::visit(state, [&](std::string_view part, auto& numbers) {
     // Older versions had no moving joints, no contacts between surfaces, no sensors and no
     // estimators.
-    const bool lacks = (part == "joints" && saved.header.version < kFirstWithJoints) ||
-                       (part == "points" && saved.header.version < kFirstWithPoints) ||
-                       (part == "sensors" && saved.header.version <= kVersionWithoutSensors) ||
-                       (part == "estimators" && saved.header.version <= kVersionWithoutEstimators);
+    const bool lacks =
+        (part == "joints" && saved.header.version < kFirstWithJoints) ||
+        (part == "points" && saved.header.version < kFirstWithPoints) ||
+        (part == "sensors" && saved.header.version <= kVersionWithoutSensors) ||
+        (part == "estimators" && saved.header.version <= kVersionWithoutEstimators) ||
+        (part == "afresh" && saved.header.version <= kVersionWithoutRestarts);
     if (!lacks) reader.number(numbers);
   });
   if (!reader.done()) corrupt(name, "something follows the last number");
@@ -176,10 +178,13 @@ std::string format_state(const Simulation& simulation) {
 std::string format_state(const State& state, const Model& model) {
   Writer writer;
   writer.append(kMagic.data(), kMagic.size());
-  const bool concludes = !state.estimators.empty(), senses = !state.sensors.empty() || concludes;
-  const std::uint32_t version[2] = {concludes ? kStateVersion
-                                    : senses  ? kVersionWithoutEstimators
-                                              : kVersionWithoutSensors,
+  const bool restarts = !state.afresh.empty();
+  const bool concludes = !state.estimators.empty() || restarts;
+  const bool senses = !state.sensors.empty() || concludes;
+  const std::uint32_t version[2] = {restarts    ? kStateVersion
+                                    : concludes ? kVersionWithoutRestarts
+                                    : senses    ? kVersionWithoutEstimators
+                                                : kVersionWithoutSensors,
                                     0};
   writer.append(version, sizeof version);
   writer.word(model.fingerprint());
@@ -191,7 +196,8 @@ std::string format_state(const State& state, const Model& model) {
   }
   writer.word(state.bodies.size());
   State::visit(state, [&](std::string_view part, const auto& numbers) {
-    const bool lacks = (part == "sensors" && !senses) || (part == "estimators" && !concludes);
+    const bool lacks = (part == "sensors" && !senses) || (part == "estimators" && !concludes) ||
+                       (part == "afresh" && !restarts);
     if (!lacks) writer.number(numbers);
   });
   return writer.finish();

@@ -25,11 +25,11 @@ struct State;
 ///
 /// A change of the layout, of what the fingerprint hashes or of what State::visit() visits requires
 /// a new kStateVersion. States of all versions from kOldestStateVersion on can be read; sample
-/// files are kept in python/tests/states. States without estimators, or without sensors, are
-/// written in the version before these were introduced.
-/// written as such.
-inline constexpr std::uint32_t kStateVersion = 10, kVersionWithoutEstimators = 9,
-                               kVersionWithoutSensors = 8, kOldestStateVersion = 6;
+/// files are kept in python/tests/states. States without bodies that start afresh, without
+/// estimators, or without sensors, are written in the version before these were introduced.
+inline constexpr std::uint32_t kStateVersion = 11, kVersionWithoutRestarts = 10,
+                               kVersionWithoutEstimators = 9, kVersionWithoutSensors = 8,
+                               kOldestStateVersion = 6;
 
 /// Metadata of a saved state.
 struct StateHeader {
