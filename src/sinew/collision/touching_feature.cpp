@@ -71,15 +71,6 @@ TouchingFeature feature(const ConvexSolid&, const Vector3& on, const Vector3&) {
   return {Kind::point, on, Vector3::Zero(), 0.0};
 }
 
-// (3,) m: the point of a feature that is farthest in a direction.
-Vector3 support(const TouchingFeature& feature, const Vector3& direction) {
-  if (feature.radius == 0.0) return feature.at;
-  if (feature.kind != Kind::circle) return feature.at + feature.radius * direction;
-  const Vector3 across = direction - direction.dot(feature.axis) * feature.axis;
-  const double length = across.norm();
-  return length > 0.0 ? Vector3(feature.at + feature.radius / length * across) : feature.at;
-}
-
 void slide_to(TouchingFeature& line, const Vector3& point) {
   line.at += line.axis.dot(point - line.at) * line.axis;
 }
@@ -123,13 +114,21 @@ TouchingFeature touching_feature(const Shape& shape, const Vector3& on, const Ve
   return std::visit([&](const auto& own) { return feature(own, on, outward); }, shape);
 }
 
+Vector3 farthest_point(const TouchingFeature& feature, const Vector3& direction) {
+  if (feature.radius == 0.0) return feature.at;
+  if (feature.kind != Kind::circle) return feature.at + feature.radius * direction;
+  const Vector3 across = direction - direction.dot(feature.axis) * feature.axis;
+  const double length = across.norm();
+  return length > 0.0 ? Vector3(feature.at + feature.radius / length * across) : feature.at;
+}
+
 TouchingPlace touching_place(const TouchingFeature& first, const TouchingFeature& second,
                              const Vector3& normal) {
-  TouchingPlace place{support(first, -normal), support(second, normal), normal, 0.0};
+  TouchingPlace place{farthest_point(first, -normal), farthest_point(second, normal), normal, 0.0};
   place.gap = normal.dot(place.on_first - place.on_second);
   if (first.kind == Kind::face && second.kind != Kind::face) {
     place.on_first = place.on_second + place.gap * normal;
-  } else {
+  } else if (second.kind == Kind::face) {
     place.on_second = place.on_first - place.gap * normal;
   }
   return place;

@@ -40,8 +40,13 @@ struct TouchingPlace {
   double gap = 0.0;                   ///< m, normal.(on_first - on_second)
 };
 
-/// The place at which two features touch, seen along a given normal. Both points lie on one line
-/// along the normal. @param normal (3,) unit length, from the second feature towards the first.
+/// (3,) m: the point of a feature that is farthest in a direction; of a face, its own point.
+/// @param direction (3,) unit length.
+Vector3 farthest_point(const TouchingFeature& feature, const Vector3& direction);
+
+/// The place at which two features touch, seen along a given normal: their farthest points towards
+/// each other. The point of a face is opposite that of the other feature. @param normal (3,) unit
+/// length, from the second feature towards the first.
 TouchingPlace touching_place(const TouchingFeature& first, const TouchingFeature& second,
                              const Vector3& normal);
 /// The same with the normal of the features: that of a face, the direction between the centres of

@@ -67,7 +67,8 @@ void set_features(const collision::Shape& own, const collision::Shape& other,
   second = collision::touching_feature(other, found.on_second, found.normal);
   const double size = first.radius + second.radius + (found.on_first - found.on_second).norm() +
                       (found.on_first - first.at).norm() + (found.on_second - second.at).norm();
-  result.may_turn = agrees(turned_place(first, second, found.normal), found, size);
+  const bool round = first.radius > 0.0 || second.radius > 0.0;
+  result.may_turn = round && agrees(turned_place(first, second, found.normal), found, size);
   if (result.may_turn || agrees(touching_place(first, second, found.normal), found, size)) return;
   first = material(own, found.on_first, -found.normal);
   second = material(other, found.on_second, found.normal);
@@ -78,8 +79,11 @@ Rolled rolled(const RollingPoint& point, const ShapePlace& own, const ShapePlace
   const TouchingFeature first = point.own.feature.moved(own.pose);
   const TouchingFeature second = point.other.feature.moved(other.pose);
   const Vector3 normal = point.frame.col(0);
-  Rolled result{point.frame, Vector3::Zero(), Vector3::Zero()};
+  Rolled result;
+  result.frame = point.frame;
   collision::TouchingPlace place = touching_place(first, second, normal);
+  result.own_pressed = farthest_point(first, -normal);
+  result.other_pressed = farthest_point(second, normal);
   if (point.turns) {
     const collision::TouchingPlace turned = turned_place(first, second, normal);
     if (turned.normal.dot(normal) > kSameSide) {
@@ -87,12 +91,15 @@ Rolled rolled(const RollingPoint& point, const ShapePlace& own, const ShapePlace
       result.frame = Eigen::Quaterniond::FromTwoVectors(normal, turned.normal).toRotationMatrix() *
                      point.frame;
       result.frame.col(0) = turned.normal;
+      result.own_pressed = result.other_pressed = place.on_first;
     }
   }
-  result.at = place.on_first;
-  Vector3 slip = travel(point.own, own, first.at, result.at - first.at, halved);
-  slip -= on_world && halved ? half_of_whole(point, result.at - second.at)
-                             : travel(point.other, other, second.at, result.at - second.at, halved);
+  result.own_at = place.on_first;
+  result.other_at = place.on_second + place.gap * place.normal;
+  const Vector3 own_lever = result.own_at - first.at, other_lever = result.other_at - second.at;
+  Vector3 slip = travel(point.own, own, first.at, own_lever, halved);
+  slip -= on_world && halved ? half_of_whole(point, other_lever)
+                             : travel(point.other, other, second.at, other_lever, halved);
   const Matrix3 mean = halved ? result.frame : Matrix3(0.5 * (result.frame + point.frame));
   result.motion << place.gap, mean.col(1).dot(slip), mean.col(2).dot(slip);
   return result;

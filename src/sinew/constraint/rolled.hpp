@@ -18,8 +18,13 @@ struct ShapePlace {
 
 /// A contact point at the present poses of its two sides, see mechanics::RollingPoint.
 struct Rolled {
-  Matrix3 frame;   ///< columns: normal and tangents
-  Vector3 at;      ///< (3,) m, where the forces act on both sides
+  Matrix3 frame;  ///< columns: normal and tangents
+  /// (3,) m, where friction acts on either side: opposite places, moved to one point along the
+  /// normal.
+  Vector3 own_at, other_at;
+  /// (3,) m, where the normal force acts. With a normal of its own, the same place. A fixed normal
+  /// acts at the points whose distance along it is the gap, so that its work is that of the gap.
+  Vector3 own_pressed, other_pressed;
   Vector3 motion;  ///< (3,) m: gap, and slips since the start of the step
 };
 

@@ -41,8 +41,7 @@ void ShapeContact::roll_from(std::size_t point, const Configuration& configurati
   begin(rolling.own, own.pose, own.centre);
   begin(rolling.other, other,
         carrier_ ? Vector3(other * carrier_->rest_centre_of_mass) : Vector3(Vector3::Zero()));
-  const Rolled now{rolling.frame, found.on_first, Vector3::Zero()};
-  write_rolled(configuration, point, now, values);
+  write_rolled(configuration, point, roll(configuration, point, values), values);
 }
 
 Rolled ShapeContact::roll(const Configuration& configuration, std::size_t point,
@@ -54,22 +53,24 @@ Rolled ShapeContact::roll(const Configuration& configuration, std::size_t point,
   return now;
 }
 
-// Efforts act at one point on both sides, on the carrier opposite to those on the point.
+// On the carrier, efforts act opposite to those on the point.
 void ShapeContact::write_rolled(const Configuration& configuration, std::size_t point,
                                 const Rolled& now, mechanics::RowValues& values) const {
-  const auto write = [&](const RigidSide& side, double sense, std::size_t first) {
-    const Vector3 lever = now.at - configuration.position(side.centre);
-    const Vector3 arm = configuration.rotation(side.turn).transpose() * lever;
+  const auto write = [&](const RigidSide& side, double sense, std::size_t first,
+                         const Vector3& pressed, const Vector3& rubbed) {
+    const Vector3 centre = configuration.position(side.centre);
+    const Matrix3 turn = configuration.rotation(side.turn);
     for (int j = 0; j < 3; ++j) {
       const std::size_t at = entry(point, j) + first;
-      values.arm[at] = arm;
+      const Vector3 lever = (j == 0 ? pressed : rubbed) - centre;
+      values.arm[at] = turn.transpose() * lever;
       values.lever[at] = lever;
       values.direction[at] = sense * now.frame.col(j);
       values.direction[at + 1] = lever.cross(values.direction[at]);
     }
   };
-  write(*own_, 1.0, 0);
-  if (carrier_) write(*carrier_, -1.0, own_entries());
+  write(*own_, 1.0, 0, now.own_pressed, now.own_at);
+  if (carrier_) write(*carrier_, -1.0, own_entries(), now.other_pressed, now.other_at);
 }
 
 void ShapeContact::look_ahead(const Eigen::Isometry3d& pose, mechanics::RowValues& values) const {

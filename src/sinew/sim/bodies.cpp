@@ -64,7 +64,9 @@ void Bodies::linearise(const mechanics::LinearisationRequest& request) {
   }
 }
 
-bool Bodies::any_afresh() const { return std::ranges::find(afresh_, 1) != afresh_.end(); }
+bool Bodies::any_afresh() const {
+  return std::ranges::any_of(afresh_, [](char count) { return count != 0; });
+}
 
 void Bodies::take_rows(const mechanics::RowValues& rows) {
   for (auto* system : systems_) system->take_rows(rows);

@@ -9,6 +9,7 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/step_system.hpp"
 #include "sinew/qp/friction_cone.hpp"
+#include "sinew/sim/bodies.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/row_numbering.hpp"
 #include "sinew/sim/touching_surfaces.hpp"
@@ -163,7 +164,7 @@ void ContactRows::choose_active(std::span<const double> effort, double time_step
   }
   std::ranges::transform(effort, touched_.begin(), [](double r) { return r > 0.0 ? 1 : 0; });
   judge_sliding(effort, time_step);
-  judge_moving(time_step);
+  judge_moving(effort, time_step);
   let_normals_turn(effort);
 }
 
@@ -184,6 +185,16 @@ void ContactRows::let_normals_turn(std::span<const double> effort) {
   }
 }
 
+// Whether the impact of a point that was pressed when the step began may go on. A step of backward
+// Euler holds a point at the end of the step only. Where the normal turns by v h/R within it, it
+// leaves a velocity of v^2 h/(2 R) along the normal, which is no impact.
+bool ContactRows::may_go_on(const constraint::Contact& contact) const {
+  const auto goes_on = [&](int body) {
+    return body >= 0 && afresh_[static_cast<std::size_t>(body)] < kMaxRestarts;
+  };
+  return goes_on(contact.body()) || goes_on(contact.other_body());
+}
+
 bool ContactRows::starts_afresh(const constraint::Contact& contact) const {
   const auto starts = [&](int body) {
     return body >= 0 && afresh_[static_cast<std::size_t>(body)] != 0;
@@ -193,8 +204,9 @@ bool ContactRows::starts_afresh(const constraint::Contact& contact) const {
 
 // The normal velocity of a persistent contact point is zero up to an error of second order. A point
 // with a force and a normal velocity landed in the last step or passes an edge. Points that are
-// found while the step is solved land in it.
-void ContactRows::judge_moving(double time_step) {
+// found while the step is solved land in it. A point that stuck in the last step does not slide,
+// although a step of backward Euler leaves it a velocity where the other surface turns.
+void ContactRows::judge_moving(std::span<const double> effort, double time_step) {
   if (mechanics::history_count(model_.step().integrator) == 0) return;
   const double still = speed_at_rest(kStill, time_step);
   const double gentle = speed_at_rest(kGentle, time_step);
@@ -207,7 +219,9 @@ void ContactRows::judge_moving(double time_step) {
         contact.frame(k, rows_).transpose() * planes_.velocity_beside(contact, k);
     const double normal = std::abs(velocity[0]);
     pace_[row] = normal > still ? Pace::fast : normal > gentle ? Pace::gentle : Pace::none;
-    slid_[row] = velocity.tail<2>().norm() > still ? 1 : 0;
+    const bool stuck =
+        effort[row] > 0.0 && !contact.friction().slides(Vector3::Map(effort.data() + row));
+    slid_[row] = !stuck && velocity.tail<2>().norm() > still ? 1 : 0;
   });
 }
 
@@ -496,8 +510,9 @@ void ContactRows::mark_impacts(std::span<const double> effort, std::span<char> b
     for (std::size_t k = 0; k < contact.size(); ++k) {
       const auto row = static_cast<std::size_t>(contact.row(k));
       if (!(effort[row] > 0.0)) continue;
-      const Pace least = touched_[row] != 0 ? Pace::fast : Pace::gentle;
-      if (pace_[row] >= least) mark(contact, bodies);
+      const bool lands = touched_[row] == 0 && pace_[row] >= Pace::gentle;
+      const bool goes_on = touched_[row] != 0 && pace_[row] == Pace::fast && may_go_on(contact);
+      if (lands || goes_on) mark(contact, bodies);
     }
   }
 }
@@ -508,7 +523,8 @@ void ContactRows::mark_stopped(std::span<const double> effort, std::span<char> b
     const Vector3 force = Vector3::Map(effort.data() + row);
     if (!(force[0] > 0.0)) return;
     const bool sticks = contact.friction().sticking > 0.0 && !contact.friction().slides(force);
-    if (pace_[row] == Pace::fast || (sticks && slid_[row] != 0)) mark(contact, bodies);
+    const bool stops = pace_[row] == Pace::fast && (touched_[row] == 0 || may_go_on(contact));
+    if (stops || (sticks && slid_[row] != 0)) mark(contact, bodies);
   });
 }
 

@@ -175,11 +175,12 @@ class ContactRows {
   }
   void let_normals_turn(std::span<const double> effort);
   bool starts_afresh(const constraint::Contact& contact) const;
+  bool may_go_on(const constraint::Contact& contact) const;
   static void mark(const constraint::Contact& contact, std::span<char> bodies);
   double fastest_node() const;
   double speed_at_rest(double fraction, double time_step) const;
   void judge_sliding(std::span<const double> effort, double time_step);
-  void judge_moving(double time_step);
+  void judge_moving(std::span<const double> effort, double time_step);
   void judge_sliding(const constraint::Contact& contact, std::size_t point,
                      std::span<const double> effort);
   bool hold_reversed(const RowNumbering& numbering, const linalg::AlignedNumbers& effort);

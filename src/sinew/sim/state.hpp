@@ -43,7 +43,7 @@ struct State {
   std::vector<double> controller;  ///< memory of the attached controller; empty without one
   std::vector<double> sensors;     ///< memory of the sensors, see Sensors; empty without
   std::vector<double> estimators;  ///< memory of the estimators, see Estimators; empty without
-  /// (bodies,) 1: the integrator of the body starts afresh; empty if `last_step` tells it of all.
+  /// (bodies,) see Bodies::afresh(); empty if `last_step` tells that all start afresh, or none.
   std::vector<double> afresh;
   EnergyLedger ledger;
   double volume_ratio = 1.0;  ///< min det F
