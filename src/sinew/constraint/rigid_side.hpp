@@ -20,10 +20,11 @@ class Configuration;
 /// of the centre and w of the orientation contributes n.v + (r x n).w.
 /// `entry` is always that of the centre; the entry of the orientation is the next one.
 struct RigidSide {
-  mechanics::MaterialPoint centre;        ///< any point of the body
-  mechanics::Orientation turn;            ///< of the body
-  Vector3 rest_centre = Vector3::Zero();  ///< (3,) m
-  collision::Shape shape;                 ///< at rest, in the world
+  mechanics::MaterialPoint centre;                ///< any point of the body
+  mechanics::Orientation turn;                    ///< of the body
+  Vector3 rest_centre = Vector3::Zero();          ///< (3,) m
+  Vector3 rest_centre_of_mass = Vector3::Zero();  ///< (3,) m
+  collision::Shape shape;                         ///< at rest, in the world
 
   /// Transform of the body from its pose at rest to the present one.
   Eigen::Isometry3d pose(const Configuration& configuration) const;

@@ -60,7 +60,7 @@ void ShapeContact::begin_step(const Configuration& configuration, const Eigen::I
                               mechanics::RowValues& values) const {
   if (own_ || carrier_) prepare(values);
   const Eigen::Isometry3d carry = end * start.inverse();
-  if (own_) return find_points(configuration, start, carry, values);
+  if (own_) return find_points(configuration, start, end, values);
   const bool rests = start.isApprox(end, 0.0);
   for (std::size_t i = 0; i < size(); ++i) {
     const Vector3 at = configuration.position(points_[i]);
@@ -76,14 +76,15 @@ void ShapeContact::begin_step(const Configuration& configuration, const Eigen::I
 
 // If the motion of the surface is prescribed, the frames of the points move with it.
 void ShapeContact::find_points(const Configuration& configuration, const Eigen::Isometry3d& start,
-                               const Eigen::Isometry3d& carry, mechanics::RowValues& values) const {
+                               const Eigen::Isometry3d& end, mechanics::RowValues& values) const {
+  const Eigen::Isometry3d carry = end * start.inverse();
   const collision::TouchingPoints found = collision::touching_points(
       collision::moved(own_->shape, own_->pose(configuration)), collision::moved(surface_, start),
       std::numeric_limits<double>::infinity());
   for (std::size_t k = 0; k < found.size(); ++k) {
     const Vector3 normal = carry.linear() * found[k].normal;
     set_frame(k, carry * found[k].on_first, collision::tangent_frame(normal), found[k].gap, values);
-    watch(configuration, k, found[k].on_first, values);
+    roll_from(k, configuration, found[k], start, end, values);
   }
   for (std::size_t k = found.size(); k < size(); ++k) {
     if (!idle(k, values)) put_away(k, values);
@@ -95,6 +96,7 @@ void ShapeContact::find_points(const Configuration& configuration, const Eigen::
 void ShapeContact::put_away(std::size_t point, mechanics::RowValues& values) const {
   set_frame(point, Vector3::Zero(), collision::tangent_frame(Vector3::UnitZ()), kIdle, values);
   values.delta.segment<3>(row(point)) = values.reference.segment<3>(row(point));
+  rolling_of(point, values).used = false;
   const auto clear = [&](std::size_t centre, const Vector3& direction) {
     values.direction[centre] = direction;
     values.direction[centre + 1] = values.arm[centre] = values.lever[centre] = Vector3::Zero();
@@ -110,24 +112,20 @@ bool ShapeContact::idle(std::size_t point, const mechanics::RowValues& values) c
   return own_ && values.reference[row(point)] == kIdle;
 }
 
-// The gap's row watches the centres of curvature, which lie on the normal through the point.
+// For a material point beside a rigid body. The gap's row watches the centre of curvature, which
+// lies on the normal through the point.
 void ShapeContact::watch(const Configuration& configuration, std::size_t point, const Vector3& at,
                          mechanics::RowValues& values) const {
   const Vector3 normal = values.direction[entry(point)];
-  const double gap = values.reference[row(point)];
   values.start[static_cast<std::size_t>(row(point))] = at;
-  const auto hold = [&](const RigidSide& side, const collision::Shape& shape, double sense,
-                        double below, std::size_t first) {
-    const Matrix3 turn = configuration.rotation(side.turn);
-    const double radius = collision::rounding_radius(shape, turn.transpose() * normal);
-    const Vector3 core = radius > 0.0 ? Vector3(at + sense * (radius + below) * normal) : at;
-    for (int j = 0; j < 3; ++j) {
-      side.watch(configuration, entry(point, j) + first, j == 0 ? core : at, values);
-    }
-  };
-  if (own_) hold(*own_, own_->shape, 1.0, 0.0, 0);
-  if (carrier_) hold(*carrier_, surface_, -1.0, gap, own_entries());
-  write_sides(configuration, point, values);
+  const Matrix3 turn = configuration.rotation(carrier_->turn);
+  const double radius = collision::rounding_radius(surface_, turn.transpose() * normal);
+  const double below = radius + values.reference[row(point)];
+  const Vector3 core = radius > 0.0 ? Vector3(at - below * normal) : at;
+  for (int j = 0; j < 3; ++j) {
+    carrier_->watch(configuration, entry(point, j) + 1, j == 0 ? core : at, values);
+  }
+  write_carrier(configuration, point, values);
 }
 
 collision::ShapeApproach ShapeContact::approach(const Vector3& from, const Vector3& to,
@@ -157,13 +155,11 @@ Vector3 ShapeContact::position_now(const Configuration& configuration, std::size
 Vector3 ShapeContact::position_beside(const Configuration& configuration, std::size_t point,
                                       const mechanics::RowValues& values) const {
   if ((!own_ && !carrier_) || values.arm.empty()) return position_now(configuration, point, values);
+  if (own_) return position(point, roll(configuration, point, values).motion, values);
   const Vector3& start = values.start[static_cast<std::size_t>(row(point))];
   const auto moved = [&](int row) {
-    const std::size_t at = entry(point, row);
-    Vector3 result = own_ ? own_->displacement(configuration, at, values)
-                          : Vector3(configuration.position(points_[point]) - start);
-    if (carrier_) result -= carrier_->displacement(configuration, at + own_entries(), values);
-    return result;
+    return Vector3(configuration.position(points_[point]) - start -
+                   carrier_->displacement(configuration, entry(point, row) + 1, values));
   };
   const Vector3 along = moved(1);
   const Vector3& normal = values.direction[entry(point)];
@@ -179,14 +175,12 @@ Vector3 ShapeContact::velocity_beside(const Configuration& configuration, std::s
   return result;
 }
 
-// Writes the entries of the bodies: on the carrier, efforts act opposite to those on the point.
-void ShapeContact::write_sides(const Configuration& configuration, std::size_t point,
-                               mechanics::RowValues& values) const {
+// On the carrier, efforts act opposite to those on the point.
+void ShapeContact::write_carrier(const Configuration& configuration, std::size_t point,
+                                 mechanics::RowValues& values) const {
   for (int j = 0; j < 3; ++j) {
-    const std::size_t at = entry(point, j);
-    const Vector3 direction = values.direction[at];
-    if (own_) own_->write(configuration, at, direction, values);
-    if (carrier_) carrier_->write(configuration, at + own_entries(), -direction, values);
+    const Vector3 direction = values.direction[entry(point, j)];
+    carrier_->write(configuration, entry(point, j) + 1, -direction, values);
   }
 }
 
@@ -249,7 +243,14 @@ void ShapeContact::linearise(const Configuration& configuration,
   const bool begun = !values.arm.empty();
   for (std::size_t i = 0; i < size(); ++i) {
     if (idle(i, values)) continue;
-    if ((own_ || carrier_) && begun) write_sides(configuration, i, values);
+    if (own_) {
+      if (!begun || !rolling_of(i, values).used) continue;  // a loaded state, no step
+      const Rolled now = roll(configuration, i, values);
+      write_rolled(configuration, i, now, values);
+      values.delta.segment<3>(row(i)) = now.motion;
+      continue;
+    }
+    if (carrier_ && begun) write_carrier(configuration, i, values);
     values.delta.segment<3>(row(i)) =
         row_values(i, position_beside(configuration, i, values), values);
   }
@@ -257,6 +258,10 @@ void ShapeContact::linearise(const Configuration& configuration,
 
 double ShapeContact::linear_gap(const Configuration& configuration, std::size_t point,
                                 const mechanics::RowValues& values) const {
+  if (own_) {
+    return rolling_of(point, values).used ? roll(configuration, point, values).motion[0]
+                                          : values.delta[row(point)];
+  }
   return row_values(point, position_beside(configuration, point, values), values)[0];
 }
 
@@ -312,6 +317,7 @@ void ShapeContact::save(const mechanics::RowValues& values, double* to) const {
 void ShapeContact::load(const double* from, mechanics::RowValues& values) const {
   if (own_ && values.arm.empty()) prepare(values);
   for (std::size_t k = 0; k < size(); ++k) {
+    if (own_) rolling_of(k, values).used = false;
     for (int j = 0; j < 3; ++j, from += 3) {
       values.direction[entry(k, j)] = Eigen::Map<const Vector3>(from);
     }
@@ -328,6 +334,7 @@ void ShapeContact::prepare(mechanics::RowValues& values) {
     numbers->resize(values.direction.size(), Vector3::Zero());
   }
   values.start.resize(values.active.size(), Vector3::Zero());
+  values.rolling.resize(values.active.size() / 3 + 1);
 }
 
 namespace {

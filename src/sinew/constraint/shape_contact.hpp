@@ -11,6 +11,7 @@
 #include "sinew/collision/approach.hpp"
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/rigid_side.hpp"
+#include "sinew/constraint/rolled.hpp"
 #include "sinew/constraint/smooth_surface.hpp"
 
 namespace sinew::constraint {
@@ -33,8 +34,9 @@ namespace sinew::constraint {
 /// curvature as y, which does not move while the body rolls.
 ///
 /// The contact points of a rigid body with a shape are found anew in every step
-/// (collision::touching_points()); unused points are idle. Their frames are fixed through the step,
-/// and the gap's row watches the centres of curvature on both sides.
+/// (collision::touching_points()); unused points are idle. Each follows the place where the shapes
+/// touch (mechanics::RollingPoint). Its frame keeps its directions, unless the normal follows as
+/// well (let_turn()).
 class ShapeContact : public Contact {
  public:
   /// @param name for messages. @param points that may touch. @param surface checked() is applied.
@@ -96,6 +98,16 @@ class ShapeContact : public Contact {
   bool idle(std::size_t point, const mechanics::RowValues& values) const override;
   Vector3 position_now(const Configuration& configuration, std::size_t point,
                        const mechanics::RowValues& values) const override;
+  /// Lets the normal of a point follow the features that touch, if they have one. Only for points
+  /// with a force: a fixed tangent plane keeps the others from passing through the surface.
+  /// @param point below size(), of own(). @param values of the step.
+  void let_turn(std::size_t point, mechanics::RowValues& values) const {
+    mechanics::RollingPoint& rolling = rolling_of(point, values);
+    rolling.turns = rolling.may_turn;
+  }
+  /// For a halved step: where a surface of the world is at the end of its second half.
+  /// @param pose of the surface. @param values of the step.
+  void look_ahead(const Eigen::Isometry3d& pose, mechanics::RowValues& values) const;
   /// Present position of a point relative to the surface as it was when the step began, (3,) m.
   /// @param configuration of the bodies. @param point below size(). @param values of the step.
   Vector3 position_beside(const Configuration& configuration, std::size_t point,
@@ -145,13 +157,30 @@ class ShapeContact : public Contact {
   void set_frame(std::size_t point, const Vector3& carried, const Matrix3& frame, double gap,
                  mechanics::RowValues& values) const;
   static void prepare(mechanics::RowValues& values);
+  mechanics::RollingPoint& rolling_of(std::size_t point, mechanics::RowValues& values) const {
+    return values.rolling[static_cast<std::size_t>(row(point) / 3)];
+  }
+  const mechanics::RollingPoint& rolling_of(std::size_t point,
+                                            const mechanics::RowValues& values) const {
+    return values.rolling[static_cast<std::size_t>(row(point) / 3)];
+  }
+  ShapePlace place_of(const RigidSide& side, const Configuration& configuration) const;
+  ShapePlace other_place(const Configuration& configuration,
+                         const mechanics::RollingPoint& rolling) const;
+  void roll_from(std::size_t point, const Configuration& configuration,
+                 const collision::TouchingPoint& found, const Eigen::Isometry3d& start,
+                 const Eigen::Isometry3d& end, mechanics::RowValues& values) const;
+  Rolled roll(const Configuration& configuration, std::size_t point,
+              const mechanics::RowValues& values) const;
+  void write_rolled(const Configuration& configuration, std::size_t point, const Rolled& now,
+                    mechanics::RowValues& values) const;
   void find_points(const Configuration& configuration, const Eigen::Isometry3d& start,
-                   const Eigen::Isometry3d& carry, mechanics::RowValues& values) const;
+                   const Eigen::Isometry3d& end, mechanics::RowValues& values) const;
   void put_away(std::size_t point, mechanics::RowValues& values) const;
   void watch(const Configuration& configuration, std::size_t point, const Vector3& at,
              mechanics::RowValues& values) const;
-  void write_sides(const Configuration& configuration, std::size_t point,
-                   mechanics::RowValues& values) const;
+  void write_carrier(const Configuration& configuration, std::size_t point,
+                     mechanics::RowValues& values) const;
   std::size_t own_entries() const { return own_ ? 2 : 1; }
 
   std::vector<mechanics::MaterialPoint> points_;

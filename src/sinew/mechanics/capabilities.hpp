@@ -156,8 +156,9 @@ class HasShape {
   virtual Vector3 rest_origin() const = 0;  ///< (3,) m, origin of its own frame at rest
   /// Signed distance, m, from a point (3,) m to the surface at rest: negative inside.
   virtual double rest_distance(const Vector3& point) const = 0;
-  virtual double mass() const = 0;         ///< kg
-  virtual Vector3 own_centre() const = 0;  ///< (3,) m, centre of mass in its own frame
+  virtual double mass() const = 0;                  ///< kg
+  virtual Vector3 own_centre() const = 0;           ///< (3,) m, centre of mass in its own frame
+  virtual Vector3 rest_centre_of_mass() const = 0;  ///< (3,) m
   /// (3, 3) kg m^2, inertia about the centre of mass, in its own axes.
   virtual Matrix3 own_inertia() const = 0;
   virtual const char* shape_name() const = 0;  ///< "box", "sphere", ..., "mesh"

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "sinew/core/types.hpp"
+#include "sinew/mechanics/rolling_point.hpp"
 #include "sinew/mechanics/site.hpp"
 
 namespace sinew::mechanics {
@@ -111,6 +112,12 @@ struct RowValues {
   std::vector<Vector3> lever;          ///< m, the same arm now, in world axes
   std::vector<Vector3> watched_start;  ///< m, watched point at the start of the step
   std::vector<Vector3> start;  ///< (rows,) m, at the first row of a point: its start position
+  /// (rows / 3, rounded up) of contacts of the shapes of rigid bodies, at a third of the first row
+  /// of a point; empty without such contacts.
+  std::vector<RollingPoint> rolling;
+  /// Whether the step is the first half of a step of the midpoint rule, whose motion will be
+  /// repeated: slips are then those of the velocity in the middle (see RollingPoint).
+  bool halved = false;
   /// (entries,) for contacts between surfaces, at entries whose site is a SurfaceSite; empty
   /// without such contacts.
   std::vector<Patch> patch;

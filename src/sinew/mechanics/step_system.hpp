@@ -14,6 +14,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "sinew/core/types.hpp"
@@ -35,6 +36,8 @@ struct LinearisationRequest {
   bool iterating = false;
   /// Whether A is needed. If not, a body may evaluate b only; condense() must not follow.
   bool with_matrix = true;
+  /// Weights of the bodies whose integrator starts afresh in this step, if there are any.
+  std::optional<StepWeights> afresh = {};
 };
 
 /// Result of a condensation.

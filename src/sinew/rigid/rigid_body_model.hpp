@@ -68,6 +68,7 @@ class RigidBodyModel final : public mechanics::BodyModel,
   Vector3 own_centre() const override {
     return settings_.rotation.transpose() * (mass_.centre - settings_.position);
   }
+  Vector3 rest_centre_of_mass() const override { return mass_.centre; }
   Matrix3 own_inertia() const override {
     return settings_.rotation.transpose() * mass_.inertia * settings_.rotation;
   }

@@ -93,6 +93,7 @@ constraint::RigidSide attach_side(ModelData& data, int body, const ContactSettin
   return {{{body, on.attach(centre, mesh::Outside::nearest, what)}},
           {{body, rigid->attach_orientation(centre, mesh::Outside::nearest, what)}},
           centre,
+          shape->rest_centre_of_mass(),
           shape->rest_shape()};
 }
 

@@ -35,6 +35,7 @@ Bodies::Bodies(const Model& model, ThreadPool& pool) {
     systems_.push_back(&bodies_.back()->system());
   }
   ends_.resize(bodies_.size());
+  afresh_.resize(bodies_.size(), 0);
 }
 
 std::size_t Bodies::size() const {
@@ -52,7 +53,19 @@ void Bodies::begin_query() {
 }
 
 void Bodies::linearise(const mechanics::LinearisationRequest& request) {
-  for (auto* system : systems_) system->linearise(request);
+  if (!request.afresh || !any_afresh()) {
+    for (auto* system : systems_) system->linearise(request);
+    return;
+  }
+  mechanics::LinearisationRequest restarted = request;
+  restarted.weights = *request.afresh;
+  for (std::size_t i = 0; i < systems_.size(); ++i) {
+    systems_[i]->linearise(afresh_[i] != 0 ? restarted : request);
+  }
+}
+
+bool Bodies::any_afresh() const {
+  return std::ranges::any_of(afresh_, [](char count) { return count != 0; });
 }
 
 void Bodies::take_rows(const mechanics::RowValues& rows) {
@@ -213,10 +226,11 @@ void Bodies::release() {
   for (auto* system : systems_) system->release();
 }
 
-double Bodies::end_step(const mechanics::StepWeights& weights) {
+double Bodies::end_step(const mechanics::StepWeights& weights,
+                        const std::optional<mechanics::StepWeights>& afresh) {
   double worst = 0.0;
   for (std::size_t i = 0; i < systems_.size(); ++i) {
-    ends_[i] = systems_[i]->end_step(weights);
+    ends_[i] = systems_[i]->end_step(afresh && afresh_[i] != 0 ? *afresh : weights);
     worst = std::max(worst, ends_[i].error);
   }
   return worst;
@@ -230,6 +244,7 @@ mechanics::Energies Bodies::energies() {
 
 void Bodies::restart() {
   for (const auto& body : bodies_) body->restart();
+  std::ranges::fill(afresh_, 0);
 }
 
 std::size_t Bodies::bytes() const {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,9 @@ class ThreadPool;
 namespace sinew::sim {
 
 class Model;
+
+/// Steps that start afresh in a row are counted up to this number: an impact extends over two.
+inline constexpr char kMaxRestarts = 3;
 
 /// The equivalent of a mechanics::StepSystem for all bodies: sums, the worst status of any body,
 /// and motions concatenated in the order of the bodies. Nothing allocates after construction except
@@ -79,8 +83,16 @@ class Bodies {
   bool can_carry_on() const;
   void scale_motion(double factor);
   void add_velocity(const VectorX& change);
-  /// The largest error estimate of any body, m.
-  double end_step(const mechanics::StepWeights& weights);
+  /// (bodies,) above 0: the integrator of the body starts afresh in the next step; the number of
+  /// such steps in a row, at most kMaxRestarts.
+  std::vector<char>& afresh() { return afresh_; }
+  const std::vector<char>& afresh() const { return afresh_; }
+  /// Whether the integrator of any body starts afresh.
+  bool any_afresh() const;
+  /// The largest error estimate of any body, m. @param weights of the step.
+  /// @param afresh those of the bodies whose integrator started afresh.
+  double end_step(const mechanics::StepWeights& weights,
+                  const std::optional<mechanics::StepWeights>& afresh = {});
   /// See mechanics::StepSystem.
   void release();
   /// Results of each body's last step.
@@ -95,6 +107,7 @@ class Bodies {
   std::vector<std::unique_ptr<mechanics::Body>> bodies_;
   std::vector<mechanics::StepSystem*> systems_;
   std::vector<mechanics::StepEnd> ends_;
+  std::vector<char> afresh_;  // (bodies,)
 };
 
 }  // namespace sinew::sim

@@ -70,6 +70,7 @@ void ContactPlanes::place(double from, double to) {
     contact.begin_step(configuration_, start, poses_[i], to - from, rows_);
     const bool moves = own.motion && !contact.carrier();
     if (!moves || (!events_ && start.isApprox(poses_[i], 0.0))) continue;
+    if (contact.own()) contact.look_ahead(own.pose(to + (to - from)), rows_);
     carried_.push_back({start * poses_[i].inverse(), poses_[i],
                         own.motion->rate(from, Signal::Side::after), &contact, &own});
   }

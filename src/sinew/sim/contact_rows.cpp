@@ -9,6 +9,7 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/step_system.hpp"
 #include "sinew/qp/friction_cone.hpp"
+#include "sinew/sim/bodies.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/row_numbering.hpp"
 #include "sinew/sim/touching_surfaces.hpp"
@@ -29,6 +30,9 @@ constexpr double kAhead = 3.0;
 // A stopped point was moving if it was faster than this fraction of the fastest point, and than
 // this fraction of the robot's size per step.
 constexpr double kStill = 1e-3, kNoMotion = 1e-9;
+// A landing slower than this fraction is none: its jump of the velocity is smaller than the errors
+// of the integrator.
+constexpr double kGentle = 1e-5;
 // Friction is static at points slower than this fraction of the fastest point.
 constexpr double kStays = 1e-6;
 // Rounds of a step in which overlapping surfaces get points, and zones redistribute their forces.
@@ -53,16 +57,18 @@ bool is_rigid(const Model& model, const constraint::Contact& contact) {
 
 ContactRows::ContactRows(const Model& model, const constraint::Configuration& configuration,
                          std::span<mechanics::StepSystem* const> systems,
-                         mechanics::RowValues& rows, ThreadPool& pool)
+                         std::span<const char> afresh, mechanics::RowValues& rows, ThreadPool& pool)
     : model_(model),
       configuration_(configuration),
       systems_(systems),
       rows_(rows),
       planes_(model, configuration, rows, pool),
       touched_(static_cast<std::size_t>(model.rows().rows()), 0),
-      moved_(touched_),
+      pace_(touched_.size(), Pace::none),
+      slid_(touched_),
       slides_(touched_),
       closed_(touched_) {
+  afresh_ = afresh;
   auto touching = planes_.surfaces().begin();
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
     const ContactModel& contact = model.contacts()[i];
@@ -165,19 +171,63 @@ void ContactRows::choose_active(std::span<const double> effort, double time_step
   std::ranges::transform(effort, touched_.begin(), [](double r) { return r > 0.0 ? 1 : 0; });
   judge_sliding(effort, time_step);
   judge_moving(effort, time_step);
+  let_normals_turn(effort);
 }
 
-// With BDF2, the normal velocity of a persistent contact point is zero up to an error of second
-// order. A point with a force and a normal velocity landed in the last step or passes an edge.
+// Only of points that were pressed when the step began and of bodies whose formula reaches back:
+// a landing, and the step after it, must not gain energy (Substep::end()).
+void ContactRows::let_normals_turn(std::span<const double> effort) {
+  if (!planes_.normals_turn()) return;
+  for (std::size_t i = 0; i < strikes_.size(); ++i) {
+    const constraint::ShapeContact* contact = planes_.shape(i);
+    if (contact == nullptr || !contact->own() || starts_afresh(*contact)) continue;
+    for (std::size_t k = 0; k < contact->size(); ++k) {
+      if (contact->idle(k, rows_)) continue;
+      const int row = contact->row(k);
+      const bool pressed =
+          strikes(i) ? is_closed(row) : effort[static_cast<std::size_t>(row)] > 0.0;
+      if (pressed) contact->let_turn(k, rows_);
+    }
+  }
+}
+
+// Whether the impact of a point that was pressed when the step began may go on. A step of backward
+// Euler holds a point at the end of the step only. Where the normal turns by v h/R within it, it
+// leaves a velocity of v^2 h/(2 R) along the normal, which is no impact.
+bool ContactRows::may_go_on(const constraint::Contact& contact) const {
+  const auto goes_on = [&](int body) {
+    return body >= 0 && afresh_[static_cast<std::size_t>(body)] < kMaxRestarts;
+  };
+  return goes_on(contact.body()) || goes_on(contact.other_body());
+}
+
+bool ContactRows::starts_afresh(const constraint::Contact& contact) const {
+  const auto starts = [&](int body) {
+    return body >= 0 && afresh_[static_cast<std::size_t>(body)] != 0;
+  };
+  return starts(contact.body()) || starts(contact.other_body());
+}
+
+// The normal velocity of a persistent contact point is zero up to an error of second order. A point
+// with a force and a normal velocity landed in the last step or passes an edge. Points that are
+// found while the step is solved land in it. A point that stuck in the last step does not slide,
+// although a step of backward Euler leaves it a velocity where the other surface turns.
 void ContactRows::judge_moving(std::span<const double> effort, double time_step) {
-  if (model_.step().integrator != mechanics::Integrator::bdf2) return;
+  if (mechanics::history_count(model_.step().integrator) == 0) return;
   const double still = speed_at_rest(kStill, time_step);
+  const double gentle = speed_at_rest(kGentle, time_step);
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
     const auto row = static_cast<std::size_t>(contact.row(k));
-    moved_[row] = 0;
-    if (!(effort[row] > 0.0)) return;
-    const Vector3& normal = rows_.direction[contact.entry(k)];
-    moved_[row] = std::abs(normal.dot(planes_.velocity_beside(contact, k))) > still ? 1 : 0;
+    pace_[row] = Pace::fast;
+    slid_[row] = 1;
+    if (contact.idle(k, rows_)) return;
+    const Vector3 velocity =
+        contact.frame(k, rows_).transpose() * planes_.velocity_beside(contact, k);
+    const double normal = std::abs(velocity[0]);
+    pace_[row] = normal > still ? Pace::fast : normal > gentle ? Pace::gentle : Pace::none;
+    const bool stuck =
+        effort[row] > 0.0 && !contact.friction().slides(Vector3::Map(effort.data() + row));
+    slid_[row] = !stuck && velocity.tail<2>().norm() > still ? 1 : 0;
   });
 }
 
@@ -444,47 +494,63 @@ bool ContactRows::gap_closed(std::span<const double> effort) const {
 }
 
 bool ContactRows::stops_touching_point(std::span<const double> effort) const {
-  for (std::size_t row = 0; row < moved_.size(); ++row) {
-    if (moved_[row] != 0 && effort[row] > 0.0) return true;
+  for (std::size_t row = 0; row < pace_.size(); ++row) {
+    if (pace_[row] == Pace::fast && touched_[row] != 0 && effort[row] > 0.0) return true;
   }
   return false;
 }
 
-bool ContactRows::stops_points(std::span<const double> effort, double time_step) const {
-  const double still = speed_at_rest(kStill, time_step);
-  for (const constraint::Contact* contact : planes_.contacts()) {
-    for (std::size_t k = 0; k < contact->size(); ++k) {
-      const Eigen::Map<const Vector3> force(effort.data() + contact->row(k));
-      if (!(force[0] > 0.0)) continue;
-      const Vector3 velocity =
-          contact->frame(k, rows_).transpose() * planes_.velocity_beside(*contact, k);
-      const bool sticks = contact->friction().sticking > 0.0 && !contact->friction().slides(force);
-      if (std::abs(velocity[0]) > still || (sticks && velocity.tail<2>().norm() > still)) {
-        return true;
-      }
+void ContactRows::mark(const constraint::Contact& contact, std::span<char> bodies) {
+  for (const int body : {contact.body(), contact.other_body()}) {
+    if (body >= 0) bodies[static_cast<std::size_t>(body)] = 1;
+  }
+}
+
+void ContactRows::mark_impacts(std::span<const double> effort, std::span<char> bodies) const {
+  for (std::size_t i = 0; i < zones_.size(); ++i) {
+    const constraint::Contact& contact = *planes_.contacts()[i];
+    if (zones_[i]) {
+      if (zones_[i]->gap_closed(effort, rows_)) mark(contact, bodies);
+      continue;
+    }
+    for (std::size_t k = 0; k < contact.size(); ++k) {
+      const auto row = static_cast<std::size_t>(contact.row(k));
+      if (!(effort[row] > 0.0)) continue;
+      const bool lands = touched_[row] == 0 && pace_[row] >= Pace::gentle;
+      const bool goes_on = touched_[row] != 0 && pace_[row] == Pace::fast && may_go_on(contact);
+      if (lands || goes_on) mark(contact, bodies);
     }
   }
-  return false;
 }
 
-bool ContactRows::breaks_loose(std::span<const double> effort) const {
-  if (!has_kinetic_) return false;
-  bool found = false;
+void ContactRows::mark_stopped(std::span<const double> effort, std::span<char> bodies) const {
+  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
+    const auto row = static_cast<std::size_t>(contact.row(k));
+    const Vector3 force = Vector3::Map(effort.data() + row);
+    if (!(force[0] > 0.0)) return;
+    const bool sticks = contact.friction().sticking > 0.0 && !contact.friction().slides(force);
+    const bool stops = pace_[row] == Pace::fast && (touched_[row] == 0 || may_go_on(contact));
+    if (stops || (sticks && slid_[row] != 0)) mark(contact, bodies);
+  });
+}
+
+void ContactRows::mark_loose(std::span<const double> effort, std::span<char> bodies) const {
+  if (!has_kinetic_) return;
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
     const constraint::Friction& friction = contact.friction();
     const Vector3 force = Vector3::Map(effort.data() + contact.row(k));
-    found |= friction.sliding < friction.sticking && force[0] > 0.0 &&
-             qp::slides(force, friction.sticking);
+    const bool loose = friction.sliding < friction.sticking && force[0] > 0.0 &&
+                       qp::slides(force, friction.sticking);
+    if (loose) mark(contact, bodies);
   });
-  return found;
 }
 
-bool ContactRows::turns_back(const step::StepProblem& problem, const RowNumbering& numbering,
-                             const linalg::AlignedNumbers& effort, double time_step) const {
-  if (!has_kinetic_) return false;
+void ContactRows::mark_turning_back(const step::StepProblem& problem, const RowNumbering& numbering,
+                                    const linalg::AlignedNumbers& effort, double time_step,
+                                    std::span<char> bodies) const {
+  if (!has_kinetic_) return;
   const Eigen::Map<const VectorX, Eigen::AlignedMax> lambda(
       effort.data(), static_cast<Eigen::Index>(effort.size()));
-  bool found = false;
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
     const int row = contact.row(k), problem_row = numbering.problem_row_of(row);
     if (problem_row < 0 || slides_[static_cast<std::size_t>(row)] == 0) return;
@@ -493,18 +559,20 @@ bool ContactRows::turns_back(const step::StepProblem& problem, const RowNumberin
         contact.frame(k, rows_).transpose() * planes_.velocity_beside(contact, k);
     const Eigen::Vector2d way = problem.delta_free.segment<2>(problem_row + 1) +
                                 problem.compliance.middleRows<2>(problem_row + 1) * lambda;
-    found |= way.dot(velocity.tail<2>()) < 0.5 * time_step * velocity.tail<2>().squaredNorm();
+    if (way.dot(velocity.tail<2>()) < 0.5 * time_step * velocity.tail<2>().squaredNorm()) {
+      mark(contact, bodies);
+    }
   });
-  return found;
 }
 
-// m/s, over the points of all contacts.
+// m/s, of the points of all contacts and of the bodies there: the point of a rolling ball rests.
 double ContactRows::fastest_node() const {
   double fastest = 0.0;
   for (const constraint::Contact* contact : planes_.contacts()) {
     for (std::size_t k = 0; k < contact->size(); ++k) {
       if (contact->idle(k, rows_)) continue;
-      fastest = std::max(fastest, planes_.velocity_beside(*contact, k).norm());
+      fastest = std::max({fastest, planes_.velocity_beside(*contact, k).norm(),
+                          planes_.centre_velocity_beside(*contact, k).norm()});
     }
   }
   return fastest;

@@ -30,10 +30,11 @@ class RowNumbering;
 class ContactRows {
  public:
   /// All must outlive it. @param model,configuration,pool see ContactPlanes.
-  /// @param systems of the bodies. @param rows of the contacts.
+  /// @param systems of the bodies. @param afresh (bodies,) see Bodies::afresh().
+  /// @param rows of the contacts.
   ContactRows(const Model& model, const constraint::Configuration& configuration,
-              std::span<mechanics::StepSystem* const> systems, mechanics::RowValues& rows,
-              ThreadPool& pool);
+              std::span<mechanics::StepSystem* const> systems, std::span<const char> afresh,
+              mechanics::RowValues& rows, ThreadPool& pool);
 
   /// m: distance within which surfaces of bodies get points in a step, however slow they are.
   /// @param reach m, a lower bound.
@@ -113,23 +114,28 @@ class ContactRows {
   /// Whether a point has a force that had none at the start of the step. @param effort (rows,) N.
   bool gap_closed(std::span<const double> effort) const;
   /// Whether a point that had a force at the start of the step, but moved along its normal then,
-  /// still has one, so its velocity jumps. Only with BDF2; false with other integrators.
-  /// @param effort (rows,) N.
+  /// still has one, so its velocity jumps. Only with integrators that reach back; false with
+  /// others. @param effort (rows,) N.
   bool stops_touching_point(std::span<const double> effort) const;
-  /// Whether the step holds a point that moved when it began: an impact along the normal, or one
-  /// that slid and sticks. Before bodies' velocities follow. @param effort (rows,) N.
-  /// @param time_step s.
-  bool stops_points(std::span<const double> effort, double time_step) const;
-  /// Whether the friction of a point with a kinetic coefficient is at its static limit: the force
-  /// will jump in the next step. @param effort (rows,) N.
-  bool breaks_loose(std::span<const double> effort) const;
-  /// Whether a point with kinetic friction comes to rest within the step: it moves by less than
-  /// half of v_0 h, where v_0 is its velocity at the start, so under constant deceleration it ends
-  /// the step moving backwards. Call before velocities are updated.
-  /// @param problem,numbering of the step.
-  /// @param effort (rows of the problem,) N. @param time_step h, s.
-  bool turns_back(const step::StepProblem& problem, const RowNumbering& numbering,
-                  const linalg::AlignedNumbers& effort, double time_step) const;
+  /// Marks the bodies at points of impact: points that got a force in the step, or still have one,
+  /// although they moved along their normals when it began. A round body that rolls may close a gap
+  /// in every step, but does not strike. Only with integrators that reach back.
+  /// @param effort (rows,) N. @param bodies (bodies,) gets 1 for both bodies.
+  void mark_impacts(std::span<const double> effort, std::span<char> bodies) const;
+  /// Marks the bodies at points that the step holds although they moved when it began: an impact
+  /// along the normal, or a point that slid and sticks. @param effort,bodies as above.
+  void mark_stopped(std::span<const double> effort, std::span<char> bodies) const;
+  /// Marks the bodies at points with a kinetic coefficient whose friction is at its static limit:
+  /// the force will jump in the next step. @param effort,bodies as above.
+  void mark_loose(std::span<const double> effort, std::span<char> bodies) const;
+  /// Marks the bodies at points with kinetic friction that come to rest within the step: such a
+  /// point moves by less than half of v_0 h, where v_0 is its velocity at the start, so under
+  /// constant deceleration it ends the step moving backwards. Call before velocities are updated.
+  /// @param problem,numbering of the step. @param effort (rows of the problem,) N.
+  /// @param time_step h, s. @param bodies as above.
+  void mark_turning_back(const step::StepProblem& problem, const RowNumbering& numbering,
+                         const linalg::AlignedNumbers& effort, double time_step,
+                         std::span<char> bodies) const;
   /// At the end of a step: the approximate difference between the forces of aggregated contacts and
   /// those of single points, relative to the sum of the zones' forces (ContactZones::end_step()); 0
   /// without forces.
@@ -167,6 +173,10 @@ class ContactRows {
   bool is_searched(std::size_t contact) const {
     return surfaces_[contact] != nullptr && !zones_[contact] && !strikes(contact);
   }
+  void let_normals_turn(std::span<const double> effort);
+  bool starts_afresh(const constraint::Contact& contact) const;
+  bool may_go_on(const constraint::Contact& contact) const;
+  static void mark(const constraint::Contact& contact, std::span<char> bodies);
   double fastest_node() const;
   double speed_at_rest(double fraction, double time_step) const;
   void judge_sliding(std::span<const double> effort, double time_step);
@@ -191,14 +201,17 @@ class ContactRows {
   std::vector<char> touched_;            // (rows,) normal rows with a force when the step began
   bool has_kinetic_ = false;             // some contact has two coefficients
   double still_ = 0.0;                   // m/s: what is slower stays
-  std::vector<char> moved_;              // (rows,) of touched_, those that moved along the normal
-  std::vector<char> slides_;             // (rows,) normal rows whose friction is kinetic
+  enum class Pace : char { none, gentle, fast };
+  std::vector<Pace> pace_;      // (rows,) of points along their normals at the start
+  std::vector<char> slid_;      // (rows,) normal rows of points that slid then
+  std::vector<char> slides_;    // (rows,) normal rows whose friction is kinetic
   std::vector<Vector3> along_;  // (rows,) sliding directions, of any length; empty: no such contact
   bool events_ = false;
-  std::vector<char> strikes_;  // (contacts,)
-  std::vector<char> rigid_;    // (contacts,) see step::ContactBlock
-  std::vector<char> wanted_;   // (contacts,)
-  std::vector<char> closed_;   // (rows,) normal rows of contacts that strike
+  std::vector<char> strikes_;     // (contacts,)
+  std::vector<char> rigid_;       // (contacts,) see step::ContactBlock
+  std::span<const char> afresh_;  // (bodies,) of Bodies::afresh()
+  std::vector<char> wanted_;      // (contacts,)
+  std::vector<char> closed_;      // (rows,) normal rows of contacts that strike
 };
 
 }  // namespace sinew::sim

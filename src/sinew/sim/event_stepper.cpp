@@ -36,7 +36,10 @@ bool stops(const step::ActuatorBlock& block) {
 class Events {
  public:
   explicit Events(ContactRows& contacts) : contacts_(contacts) { contacts_.set_events(true); }
-  ~Events() { contacts_.set_events(false); }
+  ~Events() {
+    contacts_.set_events(false);
+    contacts_.planes().set_halved(false);
+  }
   Events(const Events&) = delete;
   Events& operator=(const Events&) = delete;
 
@@ -75,6 +78,7 @@ void EventStepper::make_parts(double begin, double time_step) {
 
 // Solves impacts at the present time until no closed point approaches.
 void EventStepper::collide(double time) {
+  run_.world.contacts().planes().set_halved(false);
   for (strikes_ = 0;; ++strikes_) {
     run_.surroundings.set_base_rates(time, Signal::Side::after);
     points_.look(time, run_.effort);
@@ -158,6 +162,7 @@ double EventStepper::move(double time, double length) {
   const double solved = smooth ? 0.5 * length : length;
   substep_.read_commands(time + solved, solved);
   effort_before_ = run_.effort;
+  run_.world.contacts().planes().set_halved(smooth);
   substep_.begin(solved);
   if (smooth) {
     midpoint_.solve(substep_, solved);
@@ -180,6 +185,7 @@ double EventStepper::move(double time, double length) {
 // touch there. As a step of backward Euler, the part has those of its start.
 void EventStepper::solve_unturned(double end, double length) {
   run_.go_back();
+  run_.world.contacts().planes().set_halved(false);
   substep_.read_commands(end, length);
   substep_.begin(length);
   substep_.solve(length);

@@ -47,12 +47,16 @@ void Midpoint::carry_on(Substep& substep, double half) {
   Bodies& bodies = run_.world.bodies();
   const double middle = run_.now;
   bodies.scale_motion(2.0);
+  ContactPlanes& planes = run_.world.contacts().planes();
+  planes.set_halved(false);
   place(middle + half);
   for (int round = 0; correct() > kHeld * run_.model->size() && round < kMaxRounds; ++round) {
     place(middle);
     bodies.scale_motion(0.5);
+    planes.set_halved(true);
     substep.solve(half);
     bodies.scale_motion(2.0);
+    planes.set_halved(false);
     place(middle + half);
   }
   measure_false_work();

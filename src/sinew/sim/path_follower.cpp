@@ -138,7 +138,7 @@ Path PathFollower::follow(const std::function<void()>& visit) {
     rest();
     if (visit) visit();
   }
-  run_.last_step = 0.0;
+  run_.forget_history();
   run_.ledger.rest();
   return path;
 }

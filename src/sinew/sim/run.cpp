@@ -43,14 +43,31 @@ mechanics::StepWeights Run::step_weights(double time_step) const {
 }
 
 Quadrature Run::quadrature() const {
-  const StepSettings& settings = model->step();
-  const bool back = mechanics::history_count(settings.integrator) > 0 && last_step > 0.0;
-  return back || !settings.dynamic() ? Quadrature::trapezoid : Quadrature::one_force;
+  const bool back = reaches_back() && !world.bodies().any_afresh();
+  return back || !model->step().dynamic() ? Quadrature::trapezoid : Quadrature::one_force;
 }
 
 mechanics::LinearisationRequest Run::request(double time_step) const {
-  return {step_weights(time_step), model->step().tangent,
-          model->geometric_stiffness().extends_pattern, true};
+  return {step_weights(time_step),
+          model->step().tangent,
+          model->geometric_stiffness().extends_pattern,
+          true,
+          true,
+          weights_afresh(time_step)};
+}
+
+std::optional<mechanics::StepWeights> Run::weights_afresh(double time_step) const {
+  if (last_step == 0.0 || !world.bodies().any_afresh()) return {};
+  return mechanics::step_weights(model->step().integrator, time_step);
+}
+
+void Run::forget_history() {
+  last_step = 0.0;
+  std::ranges::fill(world.bodies().afresh(), 0);
+}
+
+bool Run::reaches_back() const {
+  return mechanics::history_count(model->step().integrator) > 0 && last_step > 0.0;
 }
 
 void Run::read_commands(double time, double time_step) {
@@ -65,6 +82,7 @@ void Run::begin_world(double time_step) {
   surroundings.move_bases(now);
   surroundings.apply(now);
   clock.mark(Stage::assembly);
+  world.contacts().planes().let_normals_turn(reaches_back() || world.rows().halved);
   world.begin_step(now - time_step, now, effort);
   clock.mark(Stage::detection);
 }

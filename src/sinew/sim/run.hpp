@@ -41,6 +41,13 @@ struct Run {
   /// How the work of the next step is computed.
   Quadrature quadrature() const;
   mechanics::LinearisationRequest request(double time_step) const;
+  /// Weights of the bodies whose integrator starts afresh in the next step, if there are any.
+  /// @param time_step s.
+  std::optional<mechanics::StepWeights> weights_afresh(double time_step) const;
+  /// Whether the next step uses a formula of several steps.
+  bool reaches_back() const;
+  /// Lets the integrators of all bodies start afresh in the next step.
+  void forget_history();
   /// Writes limits and commands of the actuators into the step's problem. @param time s, the end of
   /// the step. @param time_step s; infinity removes the rate limits.
   void read_commands(double time, double time_step);

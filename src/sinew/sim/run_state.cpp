@@ -39,6 +39,9 @@ void check_state(const Run& run, const State& state) {
   check_count("load factors of the state", run.surroundings.applied().size(), state.loads.size());
   check_count("frames of the state", run.world.contacts().planes().frames_size(),
               state.frames.size());
+  if (!state.afresh.empty()) {
+    check_count("restarts of the state", bodies.size(), state.afresh.size());
+  }
   check_count("joints of the state", run.world.joints().values().size(), state.joints.size());
 }
 
@@ -72,6 +75,9 @@ void Run::keep(State& state) const {
   state.failed = failed ? 1.0 : 0.0;
   state.residual = report.relative_residual;
   state.last_step = last_step;
+  const std::vector<char>& afresh = world.bodies().afresh();
+  state.afresh.clear();
+  if (world.bodies().any_afresh()) state.afresh.assign(afresh.begin(), afresh.end());
   state.next_step = next_step;
   state.steps = steps;
   sensors.save(state.sensors);
@@ -94,6 +100,10 @@ void Run::restore(const State& state) {
   failed = state.failed != 0.0;
   report.relative_residual = state.residual;
   last_step = state.last_step;
+  std::vector<char>& afresh = world.bodies().afresh();
+  std::ranges::fill(afresh, 0);
+  std::ranges::transform(state.afresh, afresh.begin(),
+                         [](double count) { return static_cast<char>(count); });
   next_step = state.next_step;
   steps = state.steps;
   if (!sensors.load(state.sensors)) sensors.restart(*this);

@@ -48,6 +48,8 @@ struct State {
   std::vector<double> controller;  ///< memory of the attached controller; empty without one
   std::vector<double> sensors;     ///< memory of the sensors, see Sensors; empty without
   std::vector<double> estimators;  ///< memory of the estimators, see Estimators; empty without
+  /// (bodies,) see Bodies::afresh(); empty if `last_step` tells that all start afresh, or none.
+  std::vector<double> afresh;
   EnergyLedger ledger;
   double volume_ratio = 1.0;  ///< min det F
   double failed = 0.0;        ///< 1 if it descends from a failed step, see is_failure()
@@ -91,6 +93,7 @@ struct State {
     visitor("sensors", state.sensors);
     visitor("estimators", state.estimators);
     visitor("failure", state.failed);
+    visitor("afresh", state.afresh);
   }
 
   /// Hash of the bits of all numbers and the count of steps: equal states have equal hashes.

@@ -61,7 +61,7 @@ StaticReport StaticSolver::run() {
   run_.world.problem().actuators = goal_;
   search_.begin();
   run_.world.bodies().end_step({});
-  run_.last_step = 0.0;
+  run_.forget_history();
   run_.ledger.rest();
   run_.finish_step();
   run_.actuation.advance_drives(run_.world.problem().actuators);

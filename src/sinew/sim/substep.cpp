@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sinew/core/error.hpp"
+#include "sinew/sim/connected_bodies.hpp"
 #include "sinew/sim/linear_step.hpp"
 #include "sinew/sim/newton_step.hpp"
 #include "sinew/sim/run.hpp"
@@ -29,6 +30,8 @@ bool is_too_far(const Error& failure) {
 
 }  // namespace
 
+Substep::Substep(Run& run) : run_(run), marks_(run.world.bodies().all().size(), 0) {}
+
 void Substep::read_commands(double end, double time_step) {
   run_.now = end;
   run_.read_commands(end, time_step);
@@ -38,8 +41,8 @@ void Substep::begin(double time_step) {
   run_.keep(run_.before);
   held_before_ = run_.report.choice_held;
   failures_ = 0;
-  stops_points_ = false;
-  if (reaches_back() || run_.controller != nullptr) actuators_ = run_.world.problem().actuators;
+  std::ranges::fill(marks_, 0);
+  if (may_start_afresh() || run_.controller != nullptr) actuators_ = run_.world.problem().actuators;
   begin_world(time_step);
   if (lands_by_bdf2_) energy_before_ = run_.world.bodies().energies().total();
 }
@@ -106,32 +109,50 @@ void Substep::hold_back(double time_step, const Error& failure) {
 
 void Substep::solve_once(double time_step) {
   solve_equation(time_step, divisible_);
-  if (!reaches_back()) return;
-  stops_points_ = stops_points(time_step);
-  if (stops_points_ && run_.last_step > 0.0) solve_afresh(time_step);
+  if (!may_start_afresh()) return;
+  mark_stopped(time_step);
+  if (run_.last_step > 0.0 && marks_others()) solve_afresh(time_step);
 }
 
-bool Substep::reaches_back() const {
-  const auto integrator = run_.model->step().integrator;
+bool Substep::may_start_afresh() const {
   return !run_.model->contacts().empty() &&
-         (integrator == mechanics::Integrator::generalized_alpha ||
-          integrator == mechanics::Integrator::bdf2);
+         mechanics::history_count(run_.model->step().integrator) > 0;
 }
 
-bool Substep::stops_points(double time_step) const {
+void Substep::mark_stopped(double time_step) {
   const bool alpha = run_.model->step().integrator == mechanics::Integrator::generalized_alpha;
-  return run_.world.turns_back(time_step) ||
-         (alpha && run_.world.contacts().stops_points(run_.effort, time_step));
+  run_.world.mark_turning_back(time_step, marks_);
+  if (alpha) run_.world.contacts().mark_stopped(run_.effort, marks_);
+  spread_marks();
+}
+
+// Whether a body is marked whose formula reaches back in this part.
+bool Substep::marks_others() const {
+  const std::vector<char>& afresh = run_.world.bodies().afresh();
+  for (std::size_t i = 0; i < marks_.size(); ++i) {
+    if (marks_[i] != 0 && afresh[i] == 0) return true;
+  }
+  return false;
+}
+
+// An impulse at a body reaches all bodies that are connected to it by rows with an effort.
+void Substep::spread_marks() {
+  if (std::ranges::find(marks_, 1) == marks_.end()) return;
+  mark_connected_bodies(*run_.model, run_.world.bodies().systems(), run_.effort, marks_);
 }
 
 // Generalized-alpha uses the acceleration of the previous step. At a point that is stopped, this is
 // an impulse instead, and the point would rebound with twice the energy. Such a step is repeated
-// with backward Euler, v = d/h, and so is the next one, whose acceleration is the first that can be
-// used. A step of any multistep formula is also repeated if a point with kinetic friction comes to
-// rest: its velocity would reverse before static friction can hold it.
+// with backward Euler, v = d/h, for the bodies that the impulse reaches, and so is the next one,
+// whose acceleration is the first that can be used. A step of any multistep formula is also
+// repeated if a point with kinetic friction comes to rest: its velocity would reverse before static
+// friction can hold it.
 void Substep::solve_afresh(double time_step) {
   run_.go_back();
-  run_.last_step = 0.0;
+  std::vector<char>& afresh = run_.world.bodies().afresh();
+  for (std::size_t i = 0; i < marks_.size(); ++i) {
+    if (marks_[i] != 0 && afresh[i] == 0) afresh[i] = 1;
+  }
   begin_again(time_step);
   solve_equation(time_step, divisible_);
 }
@@ -184,13 +205,13 @@ void Substep::solve_equation(double time_step, bool divisible) {
 double Substep::end(double time_step) {
   double error = end_once(time_step);
   if (lands_by_bdf2_ && lands() && has_gained()) {
+    std::ranges::fill(marks_, 1);
     try {
       solve_afresh(time_step);
     } catch (...) {
       run_.go_back();
       throw;
     }
-    stops_points_ = true;
     error = end_once(time_step);
   }
   end_zones();
@@ -199,24 +220,32 @@ double Substep::end(double time_step) {
 
 double Substep::end_once(double time_step) {
   const Quadrature quadrature = run_.quadrature();
-  const double error = run_.world.bodies().end_step(run_.step_weights(time_step));
-  run_.last_step = jumps() ? 0.0 : time_step;
+  const double error =
+      run_.world.bodies().end_step(run_.step_weights(time_step), run_.weights_afresh(time_step));
+  const bool again = run_.last_step == 0.0;
+  run_.last_step = time_step;
+  if (may_start_afresh()) start_afresh(again);
   count(quadrature, time_step);
   return error;
 }
 
-// A point that lands is stopped in this step or, since the gap is closed at the end of the step
-// only, in the next one.
-bool Substep::lands() const {
-  const ContactRows& contacts = run_.world.contacts();
-  return contacts.gap_closed(run_.effort) || contacts.stops_touching_point(run_.effort);
-}
-
-// Whether the velocity or the friction of a point jumps, after which a multistep formula restarts:
-// a formula that reaches back over the jump would let the point rebound and gain energy. Friction
-// jumps when it falls from its static to its kinetic limit.
-bool Substep::jumps() const {
-  return stops_points_ || lands() || run_.world.contacts().breaks_loose(run_.effort);
+// After a jump of its velocity or friction, a multistep formula restarts: a formula that reaches
+// back over the jump would let the point rebound and gain energy. Friction jumps when it falls from
+// its static to its kinetic limit.
+// @param again whether all bodies started afresh in this part.
+void Substep::start_afresh(bool again) {
+  run_.world.contacts().mark_impacts(run_.effort, marks_);
+  run_.world.contacts().mark_loose(run_.effort, marks_);
+  spread_marks();
+  std::vector<char>& afresh = run_.world.bodies().afresh();
+  const auto systems = run_.world.bodies().systems();
+  bool all = true;
+  for (std::size_t i = 0; i < marks_.size(); ++i) {
+    const int before = again ? 1 : afresh[i];
+    afresh[i] = marks_[i] != 0 ? static_cast<char>(std::min(before + 1, int{kMaxRestarts})) : '\0';
+    all = all && (systems[i]->size() == 0 || afresh[i] == 1);
+  }
+  if (all) run_.forget_history();
 }
 
 // Whether the energy of the bodies has grown by more than the work of actuators, loads and moving
@@ -253,7 +282,8 @@ void Substep::count(Quadrature quadrature, double time_step) {
                      .quadrature = quadrature,
                      .length = time_step,
                      .dynamic = run_.model->step().dynamic()});
-  if (lands_by_bdf2_ && run_.last_step == 0.0) limit_dissipation();
+  const bool stops = run_.last_step == 0.0 || run_.world.bodies().any_afresh();
+  if (lands_by_bdf2_ && stops) limit_dissipation();
 }
 
 // In a BDF2 step that stops a point, the force at its end times the motion in it can be more than

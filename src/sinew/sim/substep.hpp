@@ -19,7 +19,7 @@ struct Run;
 class Substep {
  public:
   /// @param run must outlive it.
-  explicit Substep(Run& run) : run_(run) {}
+  explicit Substep(Run& run);
 
   /// Evaluates the commands for a part that ends at a time. @param end,time_step s.
   void read_commands(double end, double time_step);
@@ -46,18 +46,20 @@ class Substep {
   void solve_once(double time_step);
   void solve_afresh(double time_step);
   void begin_again(double time_step);
-  bool reaches_back() const;
-  bool stops_points(double time_step) const;
+  bool may_start_afresh() const;
+  void mark_stopped(double time_step);
+  bool marks_others() const;
+  void spread_marks();
   double end_once(double time_step);
+  void start_afresh(bool again);
   void end_zones();
   bool lands() const;
-  bool jumps() const;
   bool has_gained() const;
   void limit_dissipation();
   void count(Quadrature quadrature, double time_step);
 
   Run& run_;
-  bool stops_points_ = false;   // whether points that moved at the start of the part are stopped
+  std::vector<char> marks_;     // (bodies,) 1: stopped in this part, or connected to such a body
   bool divisible_ = false;      // see solve()
   bool lands_by_bdf2_ = false;  // whether points may land in this part, a BDF2 step with history
   double energy_before_ = 0.0;  // J, if lands_by_bdf2_: of the bodies at the start of the part

@@ -30,7 +30,7 @@ World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
       rows_(model_->rows()),
       joints_(*model_),
       problem_(standing_blocks(*model_, joints_.block_count())),
-      contacts_(*model_, configuration_, bodies_.systems(), rows_, pool),
+      contacts_(*model_, configuration_, bodies_.systems(), bodies_.afresh(), rows_, pool),
       stiffness_(*model_, configuration_, bodies_.systems(), problem_) {
   number_rows();
   contacts_.planes().find_points(contacts_.reach(0.0), 0.0, {});

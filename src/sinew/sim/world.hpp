@@ -118,9 +118,10 @@ class World {
   Solved keep_solved() const { return {problem_, numbering_, rows_.delta, inertia_, has_solved_}; }
   void put_back(Solved solved);
 
-  /// For the step that was solved last, see ContactRows::turns_back(). @param time_step s.
-  bool turns_back(double time_step) const {
-    return contacts_.turns_back(problem_, numbering_, problem_effort_, time_step);
+  /// For the step that was solved last, see ContactRows::mark_turning_back(). @param time_step s.
+  /// @param bodies (bodies,) marks.
+  void mark_turning_back(double time_step, std::span<char> bodies) const {
+    contacts_.mark_turning_back(problem_, numbering_, problem_effort_, time_step, bodies);
   }
   const RowNumbering& numbering() const { return numbering_; }
   /// Stores the present positions at which cables stick to their guides and joints to their
