@@ -69,7 +69,8 @@ void set_features(const collision::Shape& own, const collision::Shape& other,
                       (found.on_first - first.at).norm() + (found.on_second - second.at).norm();
   const bool round = first.radius > 0.0 || second.radius > 0.0;
   result.may_turn = round && agrees(turned_place(first, second, found.normal), found, size);
-  if (result.may_turn || agrees(touching_place(first, second, found.normal), found, size)) return;
+  const bool follows = round && agrees(touching_place(first, second, found.normal), found, size);
+  if (result.may_turn || follows) return;
   first = material(own, found.on_first, -found.normal);
   second = material(other, found.on_second, found.normal);
 }
