@@ -52,7 +52,7 @@ std::shared_ptr<const KeyTable> solid_capsule() {
                               radius_key("5 mm")}});
 }
 
-std::shared_ptr<const KeyTable> solid_table() {
+std::shared_ptr<const KeyTable> contact_solid_table() {
   return make_table({.name = "surface of a contact",
                      .description = "Exactly one of plane, sphere and capsule.",
                      .keys = {{.name = "plane",
@@ -104,7 +104,7 @@ Form contact_form() {
                           .description = "Pairs that may pass through each other. Only with "
                                          "`between: all`."});
   contact.keys.push_back({.name = "surface",
-                          .forms = {table(solid_table())},
+                          .forms = {table(contact_solid_table())},
                           .example = "{plane: {point: 0 0 0 mm, normal: 0 0 1}}",
                           .description = "The surface, fixed in the world or moved by `motion`."});
   contact.keys.push_back(
