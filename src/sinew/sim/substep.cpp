@@ -248,6 +248,12 @@ void Substep::start_afresh(bool again) {
   if (all) run_.forget_history();
 }
 
+bool Substep::lands() const {
+  const ContactRows& contacts = run_.world.contacts();
+  return contacts.gap_closed(run_.effort) || contacts.stops_touching_point(run_.effort) ||
+         contacts.catches(run_.effort);
+}
+
 // Whether the energy of the bodies has grown by more than the work of actuators, loads and moving
 // surfaces. Work of a moving base is not counted, so such a step may have gained energy.
 bool Substep::has_gained() const {
