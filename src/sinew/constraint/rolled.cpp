@@ -18,10 +18,12 @@ constexpr double kSameSide = 0.5;
 // and of positions relative to the radii and distances there. Points are found iteratively.
 constexpr double kSame = 1e-6;
 
-// The centre of curvature, or the material point.
-TouchingFeature material(const collision::Shape& shape, const Vector3& on, const Vector3& outward) {
+// The ball about the centre of curvature, or the material point at `sharp`.
+TouchingFeature material(const collision::Shape& shape, const Vector3& on, const Vector3& outward,
+                         const Vector3& sharp) {
   const double radius = collision::rounding_radius(shape, outward);
-  return {TouchingFeature::Kind::point, on - radius * outward, Vector3::Zero(), radius};
+  const Vector3 at = radius > 0.0 ? Vector3(on - radius * outward) : sharp;
+  return {TouchingFeature::Kind::point, at, Vector3::Zero(), radius};
 }
 
 bool agrees(const collision::TouchingPlace& place, const collision::TouchingPoint& found,
@@ -71,8 +73,8 @@ void set_features(const collision::Shape& own, const collision::Shape& other,
   result.may_turn = round && agrees(turned_place(first, second, found.normal), found, size);
   const bool follows = round && agrees(touching_place(first, second, found.normal), found, size);
   if (result.may_turn || follows) return;
-  first = material(own, found.on_first, -found.normal);
-  second = material(other, found.on_second, found.normal);
+  first = material(own, found.on_first, -found.normal, found.on_first);
+  second = material(other, found.on_second, found.normal, found.on_first);
 }
 
 Rolled rolled(const RollingPoint& point, const ShapePlace& own, const ShapePlace& other,

@@ -30,6 +30,9 @@ void ShapeContact::roll_from(std::size_t point, const Configuration& configurati
   const Eigen::Isometry3d other = carrier_ ? carrier_->pose(configuration) : start;
   set_features(collision::moved(own_->shape, own.pose), collision::moved(surface_, other), found,
                rolling);
+  const collision::TouchingPlace place =
+      touching_place(rolling.own.feature, rolling.other.feature, found.normal);
+  rolling.offset[0] -= found.gap - place.gap;
   const auto begin = [&](mechanics::RollingPoint::Side& side, const Eigen::Isometry3d& pose,
                          const Vector3& centre) {
     side.core = side.feature.at;

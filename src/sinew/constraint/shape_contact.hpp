@@ -105,6 +105,10 @@ class ShapeContact : public Contact {
     mechanics::RollingPoint& rolling = rolling_of(point, values);
     rolling.turns = rolling.may_turn;
   }
+  /// Whether it has. @param point of own(), or any. @param values of the step.
+  bool may_turn(std::size_t point, const mechanics::RowValues& values) const {
+    return own_ && rolling_of(point, values).may_turn;
+  }
   /// For a halved step: where a surface of the world is at the end of its second half.
   /// @param pose of the surface. @param values of the step.
   void look_ahead(const Eigen::Isometry3d& pose, mechanics::RowValues& values) const;

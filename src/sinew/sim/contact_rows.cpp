@@ -192,13 +192,15 @@ void ContactRows::let_normals_turn(std::span<const double> effort) {
 }
 
 // Whether the impact of a point that was pressed when the step began may go on. A step of backward
-// Euler holds a point at the end of the step only. Where the normal turns by v h/R within it, it
-// leaves a velocity of v^2 h/(2 R) along the normal, which is no impact.
-bool ContactRows::may_go_on(const constraint::Contact& contact) const {
+// Euler holds a point at its end only. Where the normal turns within it, as on round bodies, that
+// leaves a velocity along the normal, v^2 h/(2 R), which is no impact.
+bool ContactRows::may_go_on(std::size_t number, std::size_t point) const {
+  const constraint::ShapeContact* contact = planes_.shape(number);
+  if (contact == nullptr || !contact->may_turn(point, rows_)) return true;
   const auto goes_on = [&](int body) {
     return body >= 0 && afresh_[static_cast<std::size_t>(body)] < kMaxRestarts;
   };
-  return goes_on(contact.body()) || goes_on(contact.other_body());
+  return goes_on(contact->body()) || goes_on(contact->other_body());
 }
 
 bool ContactRows::starts_afresh(const constraint::Contact& contact) const {
@@ -500,6 +502,22 @@ bool ContactRows::stops_touching_point(std::span<const double> effort) const {
   return false;
 }
 
+bool ContactRows::catches(std::span<const double> effort) const {
+  bool found = false;
+  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
+    found = found || catches(contact, k, effort);
+  });
+  return found;
+}
+
+bool ContactRows::catches(const constraint::Contact& contact, std::size_t point,
+                          std::span<const double> effort) const {
+  const auto row = static_cast<std::size_t>(contact.row(point));
+  const Vector3 force = Vector3::Map(effort.data() + row);
+  if (slid_[row] == 0 || !(force[0] > 0.0)) return false;
+  return contact.friction().sticking > 0.0 && !contact.friction().slides(force);
+}
+
 void ContactRows::mark(const constraint::Contact& contact, std::span<char> bodies) {
   for (const int body : {contact.body(), contact.other_body()}) {
     if (body >= 0) bodies[static_cast<std::size_t>(body)] = 1;
@@ -517,21 +535,22 @@ void ContactRows::mark_impacts(std::span<const double> effort, std::span<char> b
       const auto row = static_cast<std::size_t>(contact.row(k));
       if (!(effort[row] > 0.0)) continue;
       const bool lands = touched_[row] == 0 && pace_[row] >= Pace::gentle;
-      const bool goes_on = touched_[row] != 0 && pace_[row] == Pace::fast && may_go_on(contact);
+      const bool goes_on = touched_[row] != 0 && pace_[row] == Pace::fast && may_go_on(i, k);
       if (lands || goes_on) mark(contact, bodies);
     }
   }
 }
 
 void ContactRows::mark_stopped(std::span<const double> effort, std::span<char> bodies) const {
-  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
-    const auto row = static_cast<std::size_t>(contact.row(k));
-    const Vector3 force = Vector3::Map(effort.data() + row);
-    if (!(force[0] > 0.0)) return;
-    const bool sticks = contact.friction().sticking > 0.0 && !contact.friction().slides(force);
-    const bool stops = pace_[row] == Pace::fast && (touched_[row] == 0 || may_go_on(contact));
-    if (stops || (sticks && slid_[row] != 0)) mark(contact, bodies);
-  });
+  for (std::size_t i = 0; i < strikes_.size(); ++i) {
+    const constraint::Contact& contact = *planes_.contacts()[i];
+    for (std::size_t k = 0; k < contact.size(); ++k) {
+      const auto row = static_cast<std::size_t>(contact.row(k));
+      if (!(effort[row] > 0.0)) continue;
+      const bool stops = pace_[row] == Pace::fast && (touched_[row] == 0 || may_go_on(i, k));
+      if (stops || catches(contact, k, effort)) mark(contact, bodies);
+    }
+  }
 }
 
 void ContactRows::mark_loose(std::span<const double> effort, std::span<char> bodies) const {

@@ -117,6 +117,9 @@ class ContactRows {
   /// still has one, so its velocity jumps. Only with integrators that reach back; false with
   /// others. @param effort (rows,) N.
   bool stops_touching_point(std::span<const double> effort) const;
+  /// Whether a point that slid when the step began sticks at its end. Only with integrators that
+  /// reach back. @param effort (rows,) N.
+  bool catches(std::span<const double> effort) const;
   /// Marks the bodies at points of impact: points that got a force in the step, or still have one,
   /// although they moved along their normals when it began. A round body that rolls may close a gap
   /// in every step, but does not strike. Only with integrators that reach back.
@@ -175,7 +178,9 @@ class ContactRows {
   }
   void let_normals_turn(std::span<const double> effort);
   bool starts_afresh(const constraint::Contact& contact) const;
-  bool may_go_on(const constraint::Contact& contact) const;
+  bool may_go_on(std::size_t contact, std::size_t point) const;
+  bool catches(const constraint::Contact& contact, std::size_t point,
+               std::span<const double> effort) const;
   static void mark(const constraint::Contact& contact, std::span<char> bodies);
   double fastest_node() const;
   double speed_at_rest(double fraction, double time_step) const;

@@ -200,8 +200,9 @@ void Substep::solve_equation(double time_step, bool divisible) {
 // changes by
 //   lambda.H d - |v - v_before|^2_M/2 <= 0,   lambda.H d = -lambda_n.gap + lambda_t.slip <= 0,
 // with the gap at the start of the step, for a convex potential and rows that do not turn. A
-// landing that gains energy is therefore repeated with backward Euler. Other landings are kept,
-// since rolling bodies land in every step.
+// landing that gains energy is therefore repeated with backward Euler, and so is a step in which
+// friction stops a point, which gets such a velocity along the surface. Others are kept, since
+// rolling bodies land in every step.
 double Substep::end(double time_step) {
   double error = end_once(time_step);
   if (lands_by_bdf2_ && lands() && has_gained()) {
@@ -248,6 +249,8 @@ void Substep::start_afresh(bool again) {
   if (all) run_.forget_history();
 }
 
+// Whether a point is stopped. One that lands is stopped in this step or, since the gap is closed at
+// the end of the step only, in the next one.
 bool Substep::lands() const {
   const ContactRows& contacts = run_.world.contacts();
   return contacts.gap_closed(run_.effort) || contacts.stops_touching_point(run_.effort) ||
