@@ -57,15 +57,15 @@ TEST(LeastForces, GridsUnderAPlateCarryALinearPressure) {
   }
 }
 
-struct Case {
+struct ForceCase {
   MatrixX w;
   std::vector<EffortSet> sets;
   VectorX feasible;
 };
 
 // Random rigid motions under cones, rays and intervals, and efforts inside them.
-Case random_case(Random& random) {
-  Case result;
+ForceCase random_case(Random& random) {
+  ForceCase result;
   int rows = 0;
   const int blocks = random.integer(3, 12);
   std::vector<double> efforts;
@@ -100,7 +100,7 @@ Case random_case(Random& random) {
   return result;
 }
 
-double beyond(const Case& robot, const VectorX& effort) {
+double beyond(const ForceCase& robot, const VectorX& effort) {
   double worst = 0.0;
   for (const EffortSet& set : robot.sets) {
     if (set.kind == Kind::interval) {
@@ -121,7 +121,7 @@ TEST(LeastForces, CauseTheMotionWithinTheirSetsAndAreTheLeast) {
   Random random(5);
   int inside = 0;
   for (int trial = 0; trial < 400; ++trial) {
-    const Case robot = random_case(random);
+    const ForceCase robot = random_case(random);
     LeastForces solver;
     ASSERT_TRUE(solver.factorise(robot.w, diagonal_of(robot.w)));
     VectorX motion = robot.w * robot.feasible, force(motion.size());
