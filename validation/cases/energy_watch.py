@@ -77,7 +77,7 @@ def pulled(random, period):
     size = float(random.uniform(0.05, 0.4))
     cable = {"type": "cable", "body": "b", "points": points,
              "command": {"tension": {"sine": {"amplitude": size, "period": period, "mean": size}}}}
-    loads = {"p": {"type": "pressure", "body": "b", "faces": {"set": "x_min"},
+    loads = {"p": {"type": "pressure", "body": "b", "surface": {"set": "x_min"},
                    "pressure": {"sine": {"amplitude": float(random.uniform(5, 60)), "period": 0.7 * period}}}}
     return {"bodies": {"b": block(random)}, "actuators": {"c": cable}, "loads": loads}
 
