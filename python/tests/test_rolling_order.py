@@ -97,29 +97,33 @@ def test_a_ball_moves_off_a_round_body_with_second_order(integrator, shape, roug
 
 @pytest.mark.parametrize("integrator", SECOND_ORDER, ids=NAMES)
 def test_two_free_balls_slide_on_each_other_with_second_order(integrator):
-    """Two balls pressed together by springs turn about their common centre; reference: the same motion at a sixteenth of the step."""
+    """Forces press two balls together, which slide and turn about each other; reference: the same motion at a sixteenth of the step."""
 
     def place(step):
-        bodies = {"one": ball([0.0, 0.0, RADIUS], linear=(0.3, 0.0, 0.0), angular=(5.0, 0.0, 20.0)),
-                  "two": ball([0.0, 0.0, -RADIUS], linear=(-0.3, 0.05, 0.0), angular=(0.0, 10.0, 0.0))}
-        pull = {"pull": {"type": "spring", "body": "one", "pull": "two", "points": [[0.0, 0.0, RADIUS], [0.0, 0.0, -RADIUS]],
-                         "stiffness": 300.0, "free_length": 0.0}}
-        sim = load(bodies, {"touch": {"between": ["one", "two"], "friction": 0.1}}, step, integrator, (0.0, 0.0, 0.0), actuators=pull)
-        sim.step(round(0.064 / step))
+        bodies = {"one": ball([0.0, 0.0, RADIUS], linear=(0.3, 0.0, 0.0)), "two": ball([0.0, 0.0, -RADIUS], linear=(-0.3, 0.05, 0.0))}
+        presses = {f"press_{name}": {"type": "force", "body": name, "point": [0.0, 0.0, at], "direction": [0.0, 0.0, 1.0],
+                                     "command": {"force": force}} for name, at, force in (("one", RADIUS, -5.0), ("two", -RADIUS, 5.0))}
+        sim = load(bodies, {"touch": {"between": ["one", "two"]}}, step, integrator, (0.0, 0.0, 0.0), actuators=presses)
+        sim.step(round(0.024 / step))
         momentum = sum(np.array(sim.body(name).velocity[:3]) for name in ("one", "two"))
         assert np.allclose(momentum, [0.0, 0.05, 0.0], atol=1e-9)
-        return np.array(sim.body("one").position)
+        between = np.array(sim.body("one").position) - np.array(sim.body("two").position)
+        assert abs(np.linalg.norm(between) - 2.0 * RADIUS) < (0.6 * step) ** 2 / (4.0 * RADIUS)  # what one step along the chord would open
+        return between
 
-    fine = place(0.25e-3)
-    check_order([np.linalg.norm(place(step) - fine) for step in (4e-3, 2e-3)], 1.6)
+    fine = place(0.125e-3)
+    check_order([np.linalg.norm(place(step) - fine) for step in (2e-3, 1e-3, 0.5e-3)])
 
 
 @pytest.mark.parametrize("other", ["ball", "disc"])
 @pytest.mark.parametrize("integrator", SECOND_ORDER, ids=NAMES)
 def test_a_body_that_rolls_leaves_others_alone(integrator, other):
-    """Rolling is smooth: no integrator starts afresh, neither for the rolling body nor for a pendulum far away."""
+    """Rolling is smooth: no integrator starts afresh, neither for the rolling body nor for a pendulum far away.
 
-    def energy(rolling):
+    Backward Euler for all bodies would change the velocity of the pendulum by 0.02.
+    """
+
+    def motion(rolling):
         shape = {"ball": {"sphere": {"radius": RADIUS}}, "disc": {"cylinder": {"radius": RADIUS, "height": 0.02}}}[other]
         turned = {"rotation": {"axis": [1.0, 0.0, 0.0], "angle": np.pi / 2.0}} if other == "disc" else {}
         bodies = {"bar": {"type": "rigid", "shape": {"box": [0.02, 0.02, 0.3]}, "mass": 0.2,
@@ -135,7 +139,7 @@ def test_a_body_that_rolls_leaves_others_alone(integrator, other):
         sim.step(150)
         return np.array(sim.body("bar").velocity)
 
-    assert np.allclose(energy(True), energy(False), rtol=0.0, atol=1e-9)
+    assert np.allclose(motion(True), motion(False), rtol=0.0, atol=1e-5)  # iterations end at a residual of the whole scene
 
 
 @pytest.mark.parametrize("integrator", SECOND_ORDER[:2], ids=NAMES[:2])
@@ -152,7 +156,7 @@ def test_an_impact_restarts_only_the_bodies_that_it_reaches(integrator):
         sim.step(80)
         return np.array(sim.body("bar").velocity)
 
-    assert np.allclose(bar(True), bar(False), rtol=0.0, atol=1e-9)
+    assert np.allclose(bar(True), bar(False), rtol=0.0, atol=1e-5)
 
 
 @pytest.mark.parametrize("integrator", SECOND_ORDER[:2], ids=NAMES[:2])
@@ -188,6 +192,8 @@ def test_a_ball_on_a_turntable_has_second_order(integrator):
                    joints={"shaft": {"type": "hinge", "bodies": ["world", "plate"], "point": [0, 0, 0], "axis": "z"}},
                    actuators={"motor": {"type": "motor", "joint": "shaft", "command": {"velocity": turn}}})
         sim.step(round(1.0 / step))
-        errors.append(abs(np.linalg.norm(np.array(sim.body("ball").position[:2]) - centre) / radius - 1.0))
+        ahead = 2.0 / 7.0 * turn
+        exact = centre + np.array([[np.cos(ahead), -np.sin(ahead)], [np.sin(ahead), np.cos(ahead)]]) @ (at - centre)
+        errors.append(np.linalg.norm(np.array(sim.body("ball").position[:2]) - exact) / radius)
     assert errors[-1] < 1e-3
-    check_order(errors, 1.6)
+    check_order(errors)
