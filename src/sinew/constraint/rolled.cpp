@@ -59,6 +59,24 @@ Vector3 half_of_whole(const RollingPoint& point, const Vector3& lever) {
   return 0.5 * (moved + rotation_vector(turn).cross(lever));
 }
 
+// The place with the normal of the features, unless it has turned too far. Returns whether it has
+// not.
+bool follow(const RollingPoint& point, const TouchingFeature& first, const TouchingFeature& second,
+            collision::TouchingPlace& place) {
+  const collision::TouchingPlace there = turned_place(first, second, point.frame.col(0));
+  if (!(there.normal.dot(point.frame.col(0)) > kSameSide)) return false;
+  place = there;
+  return true;
+}
+
+// The frame, turned to a normal by the smallest rotation.
+Matrix3 turned(const Matrix3& frame, const Vector3& normal) {
+  Matrix3 result =
+      Eigen::Quaterniond::FromTwoVectors(frame.col(0), normal).toRotationMatrix() * frame;
+  result.col(0) = normal;
+  return result;
+}
+
 }  // namespace
 
 void set_features(const collision::Shape& own, const collision::Shape& other,
@@ -87,24 +105,27 @@ Rolled rolled(const RollingPoint& point, const ShapePlace& own, const ShapePlace
   collision::TouchingPlace place = touching_place(first, second, normal);
   result.own_pressed = farthest_point(first, -normal);
   result.other_pressed = farthest_point(second, normal);
-  if (point.turns) {
-    const collision::TouchingPlace turned = turned_place(first, second, normal);
-    if (turned.normal.dot(normal) > kSameSide) {
-      place = turned;
-      result.frame = Eigen::Quaterniond::FromTwoVectors(normal, turned.normal).toRotationMatrix() *
-                     point.frame;
-      result.frame.col(0) = turned.normal;
-      result.own_pressed = result.other_pressed = place.on_first;
-    }
-  }
-  result.own_at = place.on_first;
-  result.other_at = place.on_second + place.gap * place.normal;
-  const Vector3 own_lever = result.own_at - first.at, other_lever = result.other_at - second.at;
+  const bool follows =
+      point.turning != RollingPoint::Turning::fixed && follow(point, first, second, place);
+  if (follows) result.frame = turned(point.frame, place.normal);
+  const Vector3 own_lever = place.on_first - first.at;
+  const Vector3 other_lever = place.on_second + place.gap * place.normal - second.at;
   Vector3 slip = travel(point.own, own, first.at, own_lever, halved);
   slip -= on_world && halved ? half_of_whole(point, other_lever)
                              : travel(point.other, other, second.at, other_lever, halved);
   const Matrix3 mean = halved ? result.frame : Matrix3(0.5 * (result.frame + point.frame));
   result.motion << place.gap, mean.col(1).dot(slip), mean.col(2).dot(slip);
+  result.own_at = first.at + own_lever;
+  result.other_at = second.at + other_lever;
+  if (follows && point.turning == RollingPoint::Turning::mean) {
+    result.own_at = first.at + 0.5 * (point.own.lever + own_lever);
+    result.other_at = second.at + 0.5 * (point.other.lever + other_lever);
+    result.frame = turned(point.frame, mean.col(0).normalized());
+  }
+  if (follows) {
+    result.own_pressed = result.own_at;
+    result.other_pressed = result.other_at;
+  }
   return result;
 }
 

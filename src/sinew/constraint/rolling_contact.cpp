@@ -1,5 +1,6 @@
 // Contact points of a rigid body's shape, which follow the place where the shapes touch.
-#include "sinew/collision/principal_frame.hpp"
+#include <algorithm>
+
 #include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/shape_contact.hpp"
 
@@ -22,7 +23,7 @@ void ShapeContact::roll_from(std::size_t point, const Configuration& configurati
                              const Eigen::Isometry3d& end, mechanics::RowValues& values) const {
   mechanics::RollingPoint& rolling = rolling_of(point, values);
   rolling.used = true;
-  rolling.turns = false;
+  rolling.turning = mechanics::RollingPoint::Turning::fixed;
   rolling.surface = rolling.surface_ahead = end;
   rolling.frame = frame(point, values);
   rolling.offset = values.offset.segment<3>(row(point));
@@ -74,6 +75,32 @@ void ShapeContact::write_rolled(const Configuration& configuration, std::size_t 
   };
   write(*own_, 1.0, 0, now.own_pressed, now.own_at);
   if (carrier_) write(*carrier_, -1.0, own_entries(), now.other_pressed, now.other_at);
+}
+
+double ShapeContact::turning_speed(const Configuration& configuration, std::size_t point,
+                                   const mechanics::RowValues& values) const {
+  constexpr auto kFace = collision::TouchingFeature::Kind::face;
+  const mechanics::RollingPoint& rolling = rolling_of(point, values);
+  if (!rolling.used || !rolling.may_turn) return 0.0;
+  const auto first = rolling.own.feature.moved(own_->pose(configuration));
+  const auto second = rolling.other.feature.moved(other_place(configuration, rolling).pose);
+  const Vector3 normal = values.direction[entry(point)];
+  Vector3 along = own_->velocity(configuration, first.at);
+  if (carrier_) along -= carrier_->velocity(configuration, second.at);
+  const double speed = normal.cross(along).norm();
+  const auto turning = [&](const RigidSide& side) {
+    return normal.cross(Vector3(configuration.velocity(side.turn))).norm();
+  };
+  double rate = 0.0;
+  if (second.kind == kFace) {
+    rate = carrier_ ? turning(*carrier_) : 0.0;
+  } else if (first.kind == kFace) {
+    rate = turning(*own_);
+  } else {
+    rate = speed / (first.at - second.at).norm();
+  }
+  const double slip = normal.cross(velocity_beside(configuration, point, values)).norm();
+  return rate * std::max(speed, slip);
 }
 
 void ShapeContact::look_ahead(const Eigen::Isometry3d& pose, mechanics::RowValues& values) const {

@@ -99,16 +99,19 @@ class ShapeContact : public Contact {
   Vector3 position_now(const Configuration& configuration, std::size_t point,
                        const mechanics::RowValues& values) const override;
   /// Lets the normal of a point follow the features that touch, if they have one. Only for points
-  /// with a force: a fixed tangent plane keeps the others from passing through the surface.
-  /// @param point below size(), of own(). @param values of the step.
-  void let_turn(std::size_t point, mechanics::RowValues& values) const {
+  /// that touch when the step begins: a fixed tangent plane keeps the others from passing through
+  /// the surface.
+  /// @param point below size(), of own(). @param turning in the step. @param values of the step.
+  void let_turn(std::size_t point, mechanics::RollingPoint::Turning turning,
+                mechanics::RowValues& values) const {
     mechanics::RollingPoint& rolling = rolling_of(point, values);
-    rolling.turns = rolling.may_turn;
+    if (rolling.may_turn) rolling.turning = turning;
   }
-  /// Whether it has. @param point of own(), or any. @param values of the step.
-  bool may_turn(std::size_t point, const mechanics::RowValues& values) const {
-    return own_ && rolling_of(point, values).may_turn;
-  }
+  /// m/s^2: the rate at which the normal of a point's features turns, times the speed of the two
+  /// sides along each other; 0 if the features have no normal of their own.
+  /// @param configuration of the bodies. @param point of own(). @param values of the step.
+  double turning_speed(const Configuration& configuration, std::size_t point,
+                       const mechanics::RowValues& values) const;
   /// For a halved step: where a surface of the world is at the end of its second half.
   /// @param pose of the surface. @param values of the step.
   void look_ahead(const Eigen::Isometry3d& pose, mechanics::RowValues& values) const;

@@ -21,7 +21,21 @@ namespace sinew::mechanics {
 ///   integral over half of the step = c - c_start + theta x (x sin(a)/a + r),   a = |theta|,
 /// with the centre of mass c and x = X - c. The factor sin(a)/a makes the motion of X in the whole
 /// step exact.
+///
+/// The gap is that of the features with their present normal (Turning::end), and the force acts
+/// along it where formulas of second order need it. The work of this force is not that of the gap,
+/// which is constant while the shapes roll: in a step of backward Euler, it would add energy of
+/// second order. There, the force acts along the mean of the normals at both ends, and friction at
+/// the mean levers (Turning::mean). For two balls with centres a apart at the start and b at the
+/// end, that is the discrete gradient (a + b)/(|a| + |b|) of the distance, whose product with b - a
+/// is |b| - |a| (Gonzalez, J. Nonlinear Sci. 6, 1996, 449). The work of the step is then zero.
 struct RollingPoint {
+  /// What the normal does in a step.
+  enum class Turning : char {
+    fixed,  ///< keeps its direction: a tangent plane, which no point can pass unnoticed
+    mean,   ///< follows the features; forces act along the mean of both ends
+    end,    ///< follows the features; forces act along that of the end
+  };
   /// One of the two shapes.
   struct Side {
     collision::TouchingFeature feature;  ///< at rest, in the axes of its body or surface
@@ -38,7 +52,7 @@ struct RollingPoint {
   Vector3 offset = Vector3::Zero();     ///< (3,) m, of its rows at the start
   bool used = false;                    ///< whether the point is one of the present step
   bool may_turn = false;                ///< whether its features have a normal of their own
-  bool turns = false;                   ///< whether its normal follows them in this step
+  Turning turning = Turning::fixed;     ///< of its normal in this step
 };
 
 }  // namespace sinew::mechanics

@@ -64,9 +64,7 @@ void Bodies::linearise(const mechanics::LinearisationRequest& request) {
   }
 }
 
-bool Bodies::any_afresh() const {
-  return std::ranges::any_of(afresh_, [](char count) { return count != 0; });
-}
+bool Bodies::any_afresh() const { return std::ranges::find(afresh_, 1) != afresh_.end(); }
 
 void Bodies::take_rows(const mechanics::RowValues& rows) {
   for (auto* system : systems_) system->take_rows(rows);

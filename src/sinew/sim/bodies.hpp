@@ -20,9 +20,6 @@ namespace sinew::sim {
 
 class Model;
 
-/// Steps that start afresh in a row are counted up to this number: an impact extends over two.
-inline constexpr char kMaxRestarts = 3;
-
 /// The equivalent of a mechanics::StepSystem for all bodies: sums, the worst status of any body,
 /// and motions concatenated in the order of the bodies. Nothing allocates after construction except
 /// motions that are returned.
@@ -83,8 +80,7 @@ class Bodies {
   bool can_carry_on() const;
   void scale_motion(double factor);
   void add_velocity(const VectorX& change);
-  /// (bodies,) above 0: the integrator of the body starts afresh in the next step; the number of
-  /// such steps in a row, at most kMaxRestarts.
+  /// (bodies,) 1: the integrator of the body starts afresh in the next step.
   std::vector<char>& afresh() { return afresh_; }
   const std::vector<char>& afresh() const { return afresh_; }
   /// Whether the integrator of any body starts afresh.

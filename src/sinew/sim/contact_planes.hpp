@@ -69,10 +69,9 @@ class ContactPlanes {
   /// Whether impacts are events: the points of striking surfaces are then searched at the start of
   /// each part of a step.
   void set_events(bool events) { events_ = events; }
-  /// Whether normals of pressed points may follow their shapes in the coming steps. With a fixed
-  /// normal, backward Euler gains no energy; formulas of second order need the present one.
-  void let_normals_turn(bool may_turn) { normals_turn_ = may_turn; }
-  bool normals_turn() const { return normals_turn_; }
+  /// What normals of touching points do in the coming steps; see mechanics::RollingPoint.
+  void let_normals_turn(mechanics::RollingPoint::Turning turning) { turning_ = turning; }
+  mechanics::RollingPoint::Turning turning() const { return turning_; }
   /// Whether the coming steps are first halves of steps of the midpoint rule, or, after their
   /// motion was doubled, whole steps again.
   void set_halved(bool halved) { rows_.halved = halved; }
@@ -174,7 +173,7 @@ class ContactPlanes {
   double placed_ = 0.0;           // s, time for which the planes were placed
   VectorX moved_on_;              // (rows,) m, added to the offsets by move_on()
   bool events_ = false;
-  bool normals_turn_ = false;
+  mechanics::RollingPoint::Turning turning_ = mechanics::RollingPoint::Turning::fixed;
   int turns_left_ = 0;
 };
 

@@ -9,7 +9,6 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/step_system.hpp"
 #include "sinew/qp/friction_cone.hpp"
-#include "sinew/sim/bodies.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/row_numbering.hpp"
 #include "sinew/sim/touching_surfaces.hpp"
@@ -30,6 +29,8 @@ constexpr double kAhead = 3.0;
 // A stopped point was moving if it was faster than this fraction of the fastest point, and than
 // this fraction of the robot's size per step.
 constexpr double kStill = 1e-3, kNoMotion = 1e-9;
+// Gaps up to this fraction of the robot's size are rounding.
+constexpr double kTouching = 1e-9;
 // A landing slower than this fraction is none: its jump of the velocity is smaller than the errors
 // of the integrator.
 constexpr double kGentle = 1e-5;
@@ -174,33 +175,24 @@ void ContactRows::choose_active(std::span<const double> effort, double time_step
   let_normals_turn(effort);
 }
 
-// Only of points that were pressed when the step began and of bodies whose formula reaches back:
-// a landing, and the step after it, must not gain energy (Substep::end()).
+// Only of points that touched when the step began. Bodies that start afresh make a step of backward
+// Euler.
 void ContactRows::let_normals_turn(std::span<const double> effort) {
-  if (!planes_.normals_turn()) return;
+  using enum mechanics::RollingPoint::Turning;
+  if (planes_.turning() == fixed) return;
+  const double touching = kTouching * model_.size();
   for (std::size_t i = 0; i < strikes_.size(); ++i) {
     const constraint::ShapeContact* contact = planes_.shape(i);
-    if (contact == nullptr || !contact->own() || starts_afresh(*contact)) continue;
+    if (contact == nullptr || !contact->own()) continue;
+    const auto turning = starts_afresh(*contact) ? mean : planes_.turning();
     for (std::size_t k = 0; k < contact->size(); ++k) {
       if (contact->idle(k, rows_)) continue;
       const int row = contact->row(k);
-      const bool pressed =
-          strikes(i) ? is_closed(row) : effort[static_cast<std::size_t>(row)] > 0.0;
-      if (pressed) contact->let_turn(k, rows_);
+      const bool touches =
+          effort[static_cast<std::size_t>(row)] > 0.0 || std::abs(rows_.reference[row]) <= touching;
+      if (strikes(i) ? is_closed(row) : touches) contact->let_turn(k, turning, rows_);
     }
   }
-}
-
-// Whether the impact of a point that was pressed when the step began may go on. A step of backward
-// Euler holds a point at its end only. Where the normal turns within it, as on round bodies, that
-// leaves a velocity along the normal, v^2 h/(2 R), which is no impact.
-bool ContactRows::may_go_on(std::size_t number, std::size_t point) const {
-  const constraint::ShapeContact* contact = planes_.shape(number);
-  if (contact == nullptr || !contact->may_turn(point, rows_)) return true;
-  const auto goes_on = [&](int body) {
-    return body >= 0 && afresh_[static_cast<std::size_t>(body)] < kMaxRestarts;
-  };
-  return goes_on(contact->body()) || goes_on(contact->other_body());
 }
 
 bool ContactRows::starts_afresh(const constraint::Contact& contact) const {
@@ -218,19 +210,41 @@ void ContactRows::judge_moving(std::span<const double> effort, double time_step)
   if (mechanics::history_count(model_.step().integrator) == 0) return;
   const double still = speed_at_rest(kStill, time_step);
   const double gentle = speed_at_rest(kGentle, time_step);
-  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
-    const auto row = static_cast<std::size_t>(contact.row(k));
-    pace_[row] = Pace::fast;
-    slid_[row] = 1;
-    if (contact.idle(k, rows_)) return;
-    const Vector3 velocity =
-        contact.frame(k, rows_).transpose() * planes_.velocity_beside(contact, k);
-    const double normal = std::abs(velocity[0]);
-    pace_[row] = normal > still ? Pace::fast : normal > gentle ? Pace::gentle : Pace::none;
-    const bool stuck =
-        effort[row] > 0.0 && !contact.friction().slides(Vector3::Map(effort.data() + row));
-    slid_[row] = !stuck && velocity.tail<2>().norm() > still ? 1 : 0;
-  });
+  for (std::size_t i = 0; i < strikes_.size(); ++i) {
+    const constraint::Contact& contact = *planes_.contacts()[i];
+    for (std::size_t k = 0; k < contact.size(); ++k) {
+      const auto row = static_cast<std::size_t>(contact.row(k));
+      pace_[row] = Pace::fast;
+      slid_[row] = 1;
+      if (contact.idle(k, rows_)) continue;
+      const Vector3 velocity =
+          contact.frame(k, rows_).transpose() * planes_.velocity_beside(contact, k);
+      const double parting = touched_[row] != 0 ? turning_speed(i, k, time_step) : 0.0;
+      pace_[row] = pace_of(velocity[0], parting, still, gentle);
+      const bool stuck =
+          effort[row] > 0.0 && !contact.friction().slides(Vector3::Map(effort.data() + row));
+      slid_[row] = !stuck && velocity.tail<2>().norm() > still ? 1 : 0;
+    }
+  }
+}
+
+// @param parting m/s, a velocity away from the surface that is no impact. Generalized-alpha, which
+// is not damped as BDF2 is, turns its sign from step to step until it has decayed.
+ContactRows::Pace ContactRows::pace_of(double velocity, double parting, double still,
+                                       double gentle) const {
+  const bool alpha = model_.step().integrator == mechanics::Integrator::generalized_alpha;
+  const double closing = alpha ? parting : 0.0;
+  if (velocity < -still - closing || velocity > still + parting) return Pace::fast;
+  return std::abs(velocity) > gentle ? Pace::gentle : Pace::none;
+}
+
+// m/s: the velocity along its normal with which a pressed point of a round body may end a step of
+// backward Euler without an impact. Its velocity is that along the chord of its path: where the
+// normal turns at the rate w, and the velocity along the surface is v, it points away by w v h/2.
+double ContactRows::turning_speed(std::size_t number, std::size_t point, double time_step) const {
+  const constraint::ShapeContact* contact = planes_.shape(number);
+  if (contact == nullptr || !contact->own()) return 0.0;
+  return time_step * contact->turning_speed(configuration_, point, rows_);
 }
 
 void ContactRows::want(std::span<const int> contacts) {
@@ -535,7 +549,7 @@ void ContactRows::mark_impacts(std::span<const double> effort, std::span<char> b
       const auto row = static_cast<std::size_t>(contact.row(k));
       if (!(effort[row] > 0.0)) continue;
       const bool lands = touched_[row] == 0 && pace_[row] >= Pace::gentle;
-      const bool goes_on = touched_[row] != 0 && pace_[row] == Pace::fast && may_go_on(i, k);
+      const bool goes_on = touched_[row] != 0 && pace_[row] == Pace::fast;
       if (lands || goes_on) mark(contact, bodies);
     }
   }
@@ -547,7 +561,7 @@ void ContactRows::mark_stopped(std::span<const double> effort, std::span<char> b
     for (std::size_t k = 0; k < contact.size(); ++k) {
       const auto row = static_cast<std::size_t>(contact.row(k));
       if (!(effort[row] > 0.0)) continue;
-      const bool stops = pace_[row] == Pace::fast && (touched_[row] == 0 || may_go_on(i, k));
+      const bool stops = pace_[row] == Pace::fast;
       if (stops || catches(contact, k, effort)) mark(contact, bodies);
     }
   }

@@ -178,7 +178,6 @@ class ContactRows {
   }
   void let_normals_turn(std::span<const double> effort);
   bool starts_afresh(const constraint::Contact& contact) const;
-  bool may_go_on(std::size_t contact, std::size_t point) const;
   bool catches(const constraint::Contact& contact, std::size_t point,
                std::span<const double> effort) const;
   static void mark(const constraint::Contact& contact, std::span<char> bodies);
@@ -186,6 +185,9 @@ class ContactRows {
   double speed_at_rest(double fraction, double time_step) const;
   void judge_sliding(std::span<const double> effort, double time_step);
   void judge_moving(std::span<const double> effort, double time_step);
+  enum class Pace : char { none, gentle, fast };
+  Pace pace_of(double velocity, double parting, double still, double gentle) const;
+  double turning_speed(std::size_t contact, std::size_t point, double time_step) const;
   void judge_sliding(const constraint::Contact& contact, std::size_t point,
                      std::span<const double> effort);
   bool hold_reversed(const RowNumbering& numbering, const linalg::AlignedNumbers& effort);
@@ -206,10 +208,9 @@ class ContactRows {
   std::vector<char> touched_;            // (rows,) normal rows with a force when the step began
   bool has_kinetic_ = false;             // some contact has two coefficients
   double still_ = 0.0;                   // m/s: what is slower stays
-  enum class Pace : char { none, gentle, fast };
-  std::vector<Pace> pace_;      // (rows,) of points along their normals at the start
-  std::vector<char> slid_;      // (rows,) normal rows of points that slid then
-  std::vector<char> slides_;    // (rows,) normal rows whose friction is kinetic
+  std::vector<Pace> pace_;               // (rows,) of points along their normals at the start
+  std::vector<char> slid_;               // (rows,) normal rows of points that slid then
+  std::vector<char> slides_;             // (rows,) normal rows whose friction is kinetic
   std::vector<Vector3> along_;  // (rows,) sliding directions, of any length; empty: no such contact
   bool events_ = false;
   std::vector<char> strikes_;     // (contacts,)

@@ -82,7 +82,11 @@ void Run::begin_world(double time_step) {
   surroundings.move_bases(now);
   surroundings.apply(now);
   clock.mark(Stage::assembly);
-  world.contacts().planes().let_normals_turn(reaches_back() || world.rows().halved);
+  using enum mechanics::RollingPoint::Turning;
+  const bool second_order = reaches_back() || world.rows().halved;
+  world.contacts().planes().let_normals_turn(!model->step().dynamic() ? fixed
+                                             : second_order           ? end
+                                                                      : mean);
   world.begin_step(now - time_step, now, effort);
   clock.mark(Stage::detection);
 }

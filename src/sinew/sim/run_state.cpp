@@ -102,8 +102,7 @@ void Run::restore(const State& state) {
   last_step = state.last_step;
   std::vector<char>& afresh = world.bodies().afresh();
   std::ranges::fill(afresh, 0);
-  std::ranges::transform(state.afresh, afresh.begin(),
-                         [](double count) { return static_cast<char>(count); });
+  std::ranges::transform(state.afresh, afresh.begin(), [](double on) { return on != 0.0; });
   next_step = state.next_step;
   steps = state.steps;
   if (!sensors.load(state.sensors)) sensors.restart(*this);

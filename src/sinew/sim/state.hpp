@@ -48,7 +48,7 @@ struct State {
   std::vector<double> controller;  ///< memory of the attached controller; empty without one
   std::vector<double> sensors;     ///< memory of the sensors, see Sensors; empty without
   std::vector<double> estimators;  ///< memory of the estimators, see Estimators; empty without
-  /// (bodies,) see Bodies::afresh(); empty if `last_step` tells that all start afresh, or none.
+  /// (bodies,) see Bodies::afresh(); empty if all start afresh, as `last_step` tells, or none.
   std::vector<double> afresh;
   EnergyLedger ledger;
   double volume_ratio = 1.0;  ///< min det F

@@ -151,7 +151,7 @@ void Substep::solve_afresh(double time_step) {
   run_.go_back();
   std::vector<char>& afresh = run_.world.bodies().afresh();
   for (std::size_t i = 0; i < marks_.size(); ++i) {
-    if (marks_[i] != 0 && afresh[i] == 0) afresh[i] = 1;
+    if (marks_[i] != 0) afresh[i] = 1;
   }
   begin_again(time_step);
   solve_equation(time_step, divisible_);
@@ -223,9 +223,8 @@ double Substep::end_once(double time_step) {
   const Quadrature quadrature = run_.quadrature();
   const double error =
       run_.world.bodies().end_step(run_.step_weights(time_step), run_.weights_afresh(time_step));
-  const bool again = run_.last_step == 0.0;
   run_.last_step = time_step;
-  if (may_start_afresh()) start_afresh(again);
+  if (may_start_afresh()) start_afresh();
   count(quadrature, time_step);
   return error;
 }
@@ -233,18 +232,15 @@ double Substep::end_once(double time_step) {
 // After a jump of its velocity or friction, a multistep formula restarts: a formula that reaches
 // back over the jump would let the point rebound and gain energy. Friction jumps when it falls from
 // its static to its kinetic limit.
-// @param again whether all bodies started afresh in this part.
-void Substep::start_afresh(bool again) {
+void Substep::start_afresh() {
   run_.world.contacts().mark_impacts(run_.effort, marks_);
   run_.world.contacts().mark_loose(run_.effort, marks_);
   spread_marks();
-  std::vector<char>& afresh = run_.world.bodies().afresh();
+  std::ranges::copy(marks_, run_.world.bodies().afresh().begin());
   const auto systems = run_.world.bodies().systems();
   bool all = true;
   for (std::size_t i = 0; i < marks_.size(); ++i) {
-    const int before = again ? 1 : afresh[i];
-    afresh[i] = marks_[i] != 0 ? static_cast<char>(std::min(before + 1, int{kMaxRestarts})) : '\0';
-    all = all && (systems[i]->size() == 0 || afresh[i] == 1);
+    all = all && (marks_[i] != 0 || systems[i]->size() == 0);
   }
   if (all) run_.forget_history();
 }

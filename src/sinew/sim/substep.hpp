@@ -51,7 +51,7 @@ class Substep {
   bool marks_others() const;
   void spread_marks();
   double end_once(double time_step);
-  void start_afresh(bool again);
+  void start_afresh();
   void end_zones();
   bool lands() const;
   bool has_gained() const;
