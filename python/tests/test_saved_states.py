@@ -37,7 +37,7 @@ def measure(sim):
 
 
 def test_there_is_a_file_of_each_scene_for_the_present_version(tmp_path):
-    for scene in SCENES:  # robots without sensors are saved in the format of version 8
+    for scene in SCENES:
         load(scene).save_state(tmp_path / "now.state")
         version = int.from_bytes((tmp_path / "now.state").read_bytes()[8:12], "little")
         assert (FOLDER / f"{scene}-{version}.state").exists()

@@ -21,6 +21,9 @@ namespace {
 
 constexpr double kFall = 0.03;     // m
 constexpr double kNothing = 1e-9;  // of m g h
+// The same for round bodies that roll after they have landed: BDF2 reaches back to steps whose
+// contact point was elsewhere (docs/contact.md).
+constexpr double kLater = 1e-6;
 const Vector3 kSize(0.06, 0.04, 0.02);
 
 using Scene = void (*)(sim::ModelBuilder& builder, double friction);
@@ -28,7 +31,8 @@ using Scene = void (*)(sim::ModelBuilder& builder, double friction);
 struct Landing {
   const char* name;
   Scene scene;
-  double end;  ///< s: end of the test, before sliding and turning bodies add errors of their own
+  double end;  ///< s: until then nothing is gained, before sliding and turning bodies add errors
+  double last = 0.0;  ///< s: until then kLater may be gained
 };
 
 int add_block(sim::ModelBuilder& builder, const std::string& name, const Vector3& at,
@@ -104,11 +108,12 @@ TEST_P(Landings, GainNoEnergy) {
       }
       const double start = simulation.energies().total();
       double energy = start, least = start;
-      while (simulation.time() < GetParam().end) {
+      while (simulation.time() < std::max(GetParam().end, GetParam().last)) {
+        const double allowed = simulation.time() < GetParam().end ? kNothing : kLater;
         const double lifted = overlap(simulation);
         simulation.step();
         const double now = simulation.energies().total();
-        EXPECT_LE(now - energy, mass * kGravity * (kNothing * kFall + lifted))
+        EXPECT_LE(now - energy, mass * kGravity * (allowed * kFall + lifted))
             << "at " << simulation.time() << ", steps of " << time_step << ", mu " << friction;
         energy = now;
         least = std::min(least, now);
@@ -122,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(Bdf2, Landings,
                          ::testing::Values(Landing{"block", block, 0.11},
                                            Landing{"leaning_block", leaning_block, 0.11},
                                            Landing{"stack", stack, 0.3},
-                                           Landing{"balls", balls, 0.112}),
+                                           Landing{"balls", balls, 0.112, 0.3}),
                          [](const auto& one) { return std::string(one.param.name); });
 
 // A beam with a cable, and a block that falls beside it. A base moves, too, so a BDF2 step in which
