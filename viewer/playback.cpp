@@ -76,7 +76,10 @@ void Playback::put_actuator(const sim::Observable& what, double number, sim::Sta
   if (what.quantity == "motion") state.motions[place] = state.setpoints[place] = number;
   for (const sim::CommandKind kind : sim::command_kinds(actuator)) {
     if (what.name != sim::command_name(actuator, kind) || !std::isfinite(number)) continue;
-    simulation_.command(index, {kind, sim::Signal::constant(number)});
+    // Older versions recorded pressures below vacuum.
+    const bool pressure = kind == sim::CommandKind::effort && actuator.vacuum.has_value();
+    const double told = pressure ? std::max(number, *actuator.vacuum) : number;
+    simulation_.command(index, {kind, sim::Signal::constant(told)});
   }
 }
 

@@ -354,7 +354,7 @@ def test_run_records(scene):
         "time", "tip.position", "push.force", "push.displacement", "push.force_command", "push.displacement_command",
         *(f"{side}.{what}{told}" for side in ("east", "north", "west", "south")
           for what in ("tension", "displacement") for told in ("", "_command")),
-        "residual", "relative_residual", "distance", "iterations", "substeps", "scale", "smallest_volume_ratio", "status",
+        "residual", "relative_residual", "distance", "iterations", "substeps", "scale", "smallest_volume_ratio", "snapped", "status",
     }
     assert list(result["status"]) == ["start"] + 20 * ["solved"]
     assert (result["east.tension_command"] == 4.0).all() and np.isnan(result["east.displacement_command"]).all()

@@ -22,7 +22,10 @@ namespace {
 using sinew::testing::beam;
 using sinew::testing::BeamOptions;
 
-// Its choices fail until the step has failed often enough; then it pulls the first cable with 1 N.
+constexpr double kPull = 0.02;  // N, which one linearisation can follow
+
+// Its choices fail until the step has failed often enough; then it pulls the first cable with 20
+// mN.
 class Reckless : public step::Controller {
  public:
   Reckless(Simulation& simulation, int patience) : simulation_(simulation), patience_(patience) {
@@ -35,7 +38,7 @@ class Reckless : public step::Controller {
   step::LawStatus choose(const step::StepProblem&, const step::Response&, step::Guards,
                          std::span<double> effort) override {
     if (failures_ < patience_) throw Error(ErrorKind::not_converged, {}, "crushed", "pull less");
-    effort[0] = 1.0;
+    effort[0] = kPull;
     return step::LawStatus::solved;
   }
   double foreseen() const override { return 0.0; }
@@ -76,7 +79,7 @@ TEST_P(RejectedChoice, GivesWayToAnother) {
   const StepReport& report = simulation.step();
   EXPECT_EQ(controller.most(), 3);
   EXPECT_GE(report.retries, 3);
-  EXPECT_EQ(simulation.actuator(0).effort, 1.0);
+  EXPECT_EQ(simulation.actuator(0).effort, kPull);
   careful.step();
   EXPECT_EQ(other.most(), 0);
   // Newton's method divides dynamic steps into smaller ones before a choice is rejected.
@@ -94,7 +97,7 @@ TEST_P(RejectedChoice, HoldsTheLastEffortsInTheEnd) {
   {
     Reckless controller(simulation, 0);
     simulation.step();
-    ASSERT_EQ(simulation.actuator(0).effort, 1.0);
+    ASSERT_EQ(simulation.actuator(0).effort, kPull);
   }
   Reckless controller(simulation, 100);
   const StepReport& report = simulation.step();
@@ -102,7 +105,7 @@ TEST_P(RejectedChoice, HoldsTheLastEffortsInTheEnd) {
   EXPECT_EQ(controller.held_back(), 6);
   EXPECT_TRUE(report.choice_held);
   EXPECT_EQ(simulation.steps(), 2);
-  EXPECT_EQ(simulation.actuator(0).effort, 1.0);
+  EXPECT_EQ(simulation.actuator(0).effort, kPull);
 }
 
 INSTANTIATE_TEST_SUITE_P(

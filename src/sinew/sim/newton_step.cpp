@@ -99,16 +99,18 @@ void NewtonStep::solve(double time_step) {
   const bool usable = !conflict.opens && is_usable(result);
   if (usable && (run_.keeps_going || is_balanced(run_))) return;
   if (!conflict.text.empty()) fail_joints(run_, conflict);
-  if (!run_.model->step().dynamic()) fail_if_free(run_, result.status, time_step);
   if (result.status == NewtonStatus::law_failed) fail_law(run_);
   const std::string text = describe(result, settings(time_step));
   const std::string folded =
       describe_folded_cable(*run_.model, run_.world.configuration(), run_.effort);
+  const bool dynamic = run_.model->step().dynamic();
+  if (!dynamic && run_.model->is_loose()) fail_if_free(run_, result.status, time_step);
   if (!folded.empty()) {
     fail(run_, ErrorKind::not_converged, text + folded,
          "lessen its tension, or place its points so that they stay apart");
   }
   if (!searches_on(result)) {
+    if (!dynamic) fail_if_free(run_, result.status, time_step);
     fail(run_, kind_of(result), text + describe_choice(), remedy(result.status));
   }
   if (!approached_) {
@@ -116,6 +118,8 @@ void NewtonStep::solve(double time_step) {
     const NewtonReport way = approach(time_step);
     if (converged(way)) return take_report(way);
   }
+  // Where equilibria were found on the way, the matrix is singular at what follows them only.
+  if (!(reached_ > 0.0)) fail_if_free(run_, result.status, time_step);
   fail_to_find(result, text, time_step);
 }
 

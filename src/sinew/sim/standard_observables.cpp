@@ -411,13 +411,24 @@ void add_energies(Observables& list) {
 
 constexpr int kStart = -1;  // the status before any step
 
+// The words of a step's status by the number that stands for them in recordings, so that recordings
+// of older versions keep their meaning.
+constexpr std::array kStatusByCode = {
+    StepStatus::solved,        StepStatus::limits_conflict,    StepStatus::command_not_reached,
+    StepStatus::cut_back,      StepStatus::not_in_equilibrium, StepStatus::gaining_energy,
+    StepStatus::after_failure, StepStatus::cavitates,          StepStatus::unphysical};
+static_assert(kStatusByCode.size() == static_cast<std::size_t>(kLastStepStatus) + 1);
+
+int code_of(StepStatus status) {
+  return static_cast<int>(std::ranges::find(kStatusByCode, status) - kStatusByCode.begin());
+}
+
 void add_report(Observables& list) {
   const Simulation& simulation = list.simulation();
   std::vector<Observable> parts = {number(ObservableKind::report, "residual", "N"),
                                    number(ObservableKind::report, "relative_residual"),
                                    number(ObservableKind::report, "distance", "m")};
-  for (const char* name : {"iterations", "substeps", "scale", "smallest_volume_ratio",
-                           "snapped"}) {
+  for (const char* name : {"iterations", "substeps", "scale", "smallest_volume_ratio", "snapped"}) {
     parts.push_back(number(ObservableKind::report, name));
   }
   const bool touches = !simulation.model().contacts().empty();
@@ -431,8 +442,8 @@ void add_report(Observables& list) {
   if (zones) parts.push_back(number(ObservableKind::report, "contact_aggregation"));
   parts.push_back(number(ObservableKind::status, "status"));
   parts.back().words = {{kStart, "start"}};
-  for (int code = 0; code <= static_cast<int>(kLastStepStatus); ++code) {
-    parts.back().words.push_back({code, step_status_name(static_cast<StepStatus>(code))});
+  for (const StepStatus status : kStatusByCode) {
+    parts.back().words.push_back({code_of(status), step_status_name(status)});
   }
   list.add(std::move(parts), [&simulation, touches, zones](std::span<double> all) {
     const StepReport& report = simulation.report();
@@ -451,7 +462,7 @@ void add_report(Observables& list) {
       to.put(report.contact_coulomb);
     }
     if (zones) to.put(report.contact_aggregation);
-    to.put(simulation.steps() > 0 ? static_cast<int>(report.status) : kStart);
+    to.put(simulation.steps() > 0 ? code_of(report.status) : kStart);
   });
 }
 

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sinew/core/error.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/step_verdict.hpp"
+#include "sinew/step/controller.hpp"
 
 namespace sinew::sim {
 
@@ -24,6 +26,8 @@ constexpr double kReached = 1e-3;
 constexpr double kNoEnergy = 1e-10;
 // Relative rounding of a pressure at vacuum.
 constexpr double kVacuumRounding = 1e-9;
+// By how many failures a controller trusts its linearisation less after a step without it.
+constexpr int kTrust = 6;
 
 }  // namespace
 
@@ -43,13 +47,7 @@ void Stepper::step() {
   if (opens) run_.ledger.open(run_.world.bodies().energies());
   divided_ = false;
   try {
-    if (run_.model->step().event_driven()) {
-      step_by_events();
-    } else if (run_.model->step().adaptive) {
-      step_adaptively();
-    } else {
-      step_in_parts();
-    }
+    make_or_hold_back();
   } catch (const Error& failure) {
     if (failure.is_run_failure()) report.status = failure_status(run_);
     undo(opens);
@@ -65,8 +63,66 @@ void Stepper::step() {
   report.times = run_.clock.times();
 }
 
+void Stepper::make() {
+  divided_ = false;
+  if (run_.model->step().event_driven()) return step_by_events();
+  if (run_.model->step().adaptive) return step_adaptively();
+  step_in_parts();
+}
+
+// The choices of a controller in the parts of a dynamic step may lead where no effort helps any
+// more: the whole step is then made without it.
+void Stepper::make_or_hold_back() {
+  try {
+    return make();
+  } catch (const Error& failure) {
+    if (run_.controller == nullptr || !failure.is_run_failure()) throw;
+    undo(false);
+    step::Controller* const controller = std::exchange(run_.controller, nullptr);
+    std::vector<double> memory(controller->memory_size());
+    controller->save_memory(memory);
+    bool solved = false;
+    try {
+      solved = hold_back();
+    } catch (...) {  // of a watcher
+      held_.clear();
+      run_.controller = controller;
+      controller->load_memory(memory);
+      throw;
+    }
+    held_.clear();
+    run_.controller = controller;
+    controller->load_memory(memory);
+    if (!solved) throw;
+    controller->hold_back(kTrust);
+  }
+  run_.report.choice_held = true;
+}
+
+// The actuators of the controller keep the efforts of the last step or, where these cannot be
+// solved either, retreat towards none. @return whether one of these steps was solved.
+bool Stepper::hold_back() {
+  const std::vector<ActuatorState> start = run_.actuation.states();
+  for (const double fraction : {1.0, 0.5, 0.0}) {
+    held_.clear();
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      const Limits& limits = run_.model->actuators()[i].effort;
+      held_.push_back(std::clamp(fraction * start[i].effort, limits.min, limits.max));
+    }
+    try {
+      make();
+      return true;
+    } catch (const Error& failure) {
+      if (!failure.is_run_failure()) throw;
+      undo(false);
+      ++run_.report.retries;
+    }
+  }
+  return false;
+}
+
 void Stepper::undo(bool opened_ledger) {
-  if (divided_) run_.restore(start_);
+  if (std::exchange(divided_, false)) run_.restore(start_);
   if (opened_ledger) run_.ledger.restart();
   part_.reset();
 }
@@ -197,6 +253,10 @@ void Stepper::step_adaptively() {
 double Stepper::substep(double end, double time_step, bool divisible) {
   substep_.read_commands(end, time_step);
   if (part_) go_in_proportion();
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    if (!run_.actuation.states()[i].chosen) continue;
+    run_.world.problem().actuators[i].hold_effort(held_[i]);
+  }
   substep_.begin(time_step);
   substep_.solve(time_step, divisible);
   return substep_.end(time_step);
@@ -221,8 +281,7 @@ void Stepper::judge() {
   if (cavitates()) raise(StepStatus::cavitates);
   if (report.scale < 1.0) raise(StepStatus::cut_back);
   if (report.violation > kReached * run_.model->size()) raise(StepStatus::command_not_reached);
-  report.balanced =
-      is_balanced(run_) && (run_.model->step().dynamic() || reactions_balance(run_));
+  report.balanced = is_balanced(run_) && (run_.model->step().dynamic() || reactions_balance(run_));
   if (!report.balanced) raise(failure_status(run_));
   if (run_.failed) raise(StepStatus::after_failure);
   if (run_.model->step().dynamic()) watch_energy();

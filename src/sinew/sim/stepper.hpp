@@ -33,6 +33,9 @@ class Stepper {
     std::vector<double> goal;          // (actuators,) commands at its end
   };
 
+  void make();
+  void make_or_hold_back();
+  bool hold_back();
   void undo(bool opened_ledger);
   void step_in_parts();
   double first_part() const;
@@ -50,6 +53,7 @@ class Stepper {
   State start_;           // of the whole step, if it is divided
   bool divided_ = false;  // whether the step is divided
   std::optional<Part> part_;
+  std::vector<double> held_;  // (actuators,) efforts in place of a controller's choice; or empty
   Substep substep_;
   EventStepper events_;
 };
