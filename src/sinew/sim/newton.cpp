@@ -148,10 +148,14 @@ class NewtonSolver {
   }
 
   // Both terms decrease in proportion to (1 - step length) along the Newton direction.
-  double merit() {
+  void measure_residual() {
     report_.residual = world_.bodies().residual(effort_);
     const double scale = world_.bodies().force_scale() + 1e-300;
     report_.relative_residual = report_.residual / scale;
+  }
+
+  double merit() {
+    measure_residual();
     report_.violation = world_.violation(effort_, report_.law);
     return report_.relative_residual + report_.violation / world_.problem().size;
   }
@@ -255,7 +259,9 @@ class NewtonSolver {
 
   // Without an iteration, the report is that of the state at the start.
   NewtonReport finish(NewtonStatus status) {
-    if (report_.iterations == 0) merit();
+    // A singular matrix gives no compliance by which the laws could be measured.
+    if (report_.iterations == 0 && status == NewtonStatus::singular) measure_residual();
+    if (report_.iterations == 0 && status != NewtonStatus::singular) merit();
     report_.sanity = examine(world_, effort_);
     report_.motion.volume = report_.sanity.volume;
     const bool lost = status == NewtonStatus::converged && !report_.sanity.sound();

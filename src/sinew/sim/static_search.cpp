@@ -44,6 +44,7 @@ bool StaticSearch::equilibrate(double fraction) {
 
 bool StaticSearch::step(const mechanics::StepWeights& weights, double tolerance, int max_iterations,
                         int max_idle) {
+  weights_ = weights;
   begin();
   NewtonSettings settings;
   settings.request = request(weights);
@@ -62,9 +63,13 @@ bool StaticSearch::rests() {
   linearise();
   const double residual = world.bodies().residual(run_.effort);
   const double relative = residual / (world.bodies().force_scale() + 1e-300);
+  if (!(relative <= settings_.tolerance)) return false;
+  // The laws compare efforts with motions by the compliance, which needs a matrix without a null
+  // space. The residual above is of a body at rest, this one is not used.
+  linearise(weights_);
+  if (world.condense() == linalg::FactorStatus::singular) return false;
   const double violation = world.violation(run_.effort, step::LawStatus::solved);
-  const double size = run_.model->size();
-  if (!(relative <= settings_.tolerance && violation <= settings_.tolerance * size)) return false;
+  if (!(violation <= settings_.tolerance * run_.model->size())) return false;
   last_.status = NewtonStatus::converged;
   last_.residual = residual;
   last_.relative_residual = relative;

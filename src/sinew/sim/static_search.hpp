@@ -34,6 +34,9 @@ class StaticSearch {
   /// Weights of overdamped motion, see OverdampedMotion. @param sigma 1/s^2.
   mechanics::StepWeights overdamped(double sigma) const;
 
+  /// Puts back the report of a search whose state was restored.
+  void put_back(const NewtonReport& last) { last_ = last; }
+
   /// Begins a slow motion from the present state.
   void begin();
   /// Linearises at the present state, at rest.
@@ -60,7 +63,7 @@ class StaticSearch {
   const StaticSettings& settings_;
   StaticReport report_;
   NewtonReport last_;
-  mechanics::StepWeights rest_;
+  mechanics::StepWeights rest_, weights_;  // at rest, and of the last step
 };
 
 }  // namespace sinew::sim
