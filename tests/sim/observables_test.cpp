@@ -119,6 +119,7 @@ TEST(Observables, HaveTheNamesUnitsAndShapesOfTheRobot) {
                                             "substeps []",
                                             "scale []",
                                             "smallest_volume_ratio []",
+                                            "snapped []",
                                             "status []",
                                             "time.step [s]",
                                             "time.detection [s]",
