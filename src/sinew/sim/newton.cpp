@@ -88,10 +88,10 @@ class NewtonSolver {
   }
 
   // Whether the next iteration may use the factor of the last condensation. A controller needs W of
-  // the present state.
+  // the present state. New factors need fewer iterations: near their limit, none is kept.
   bool may_keep_factor() const {
     return settings_.keeps_factor && controller_ == nullptr && derivative_ &&
-           refused_ < kMostRefused;
+           refused_ < kMostRefused && 4 * report_.iterations < settings_.max_iterations;
   }
 
   // Proposes a motion that obeys the laws.
