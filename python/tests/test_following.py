@@ -116,7 +116,7 @@ def distances(scene, **settings):
     rows = []
     for _ in range(STEPS):
         exact.restore(sim.state())
-        sim.step()
+        sim.step(keep_going=True)
         if sim.controller:
             for name, actuator in sim.actuators.items():
                 exact.actuator(name).tension = actuator.tension
@@ -166,7 +166,7 @@ def test_default_steps_without_a_controller_are_equilibria(name):
         exact.step()
         assert sim.report.relative_residual <= 1e-6 and not sim.report.following
         true = np.abs(positions(sim) - positions(exact)).max()
-        assert true <= sim.report.distance + 1e-13 and true < 1e-7
+        assert true <= sim.report.distance + 1e-13 and true < 1e-6  # m, of 0.1 m
 
 
 def test_the_scene_decides_who_follows():
@@ -194,7 +194,7 @@ def test_following_steps_continue_bit_for_bit():
     assert sim.state() == other.state()
 
 
-def press(size, **more):
+def press():
     """A soft cube between frictionless plates, one of which comes down by 20 mm/s."""
 
     def plate(z, normal):
@@ -203,26 +203,23 @@ def press(size, **more):
 
     down = {"motion": {"z": {"ramp": {"to": -0.02, "duration": 1.0}}}}
     return {
-        "sinew": 1, "time_step": 0.02, "integrator": "backward-euler", "gravity": [0, 0, 0],
+        "sinew": 1, "time_step": 0.03, "integrator": "backward-euler", "gravity": [0, 0, 0],
         "bodies": {"cube": {"type": "fem", "element": "tet10", "density": 1000.0,
                             "material": {"model": "neo-hookean", "young_modulus": 6e4, "poisson_ratio": 0.45},
-                            "mesh": {"shape": "block", "length": 0.03, "width": 0.03, "height": 0.03, "element_size": size}}},
-        "contacts": {"low": plate(0.0, 1.0), "up": {**plate(0.03, -1.0), **down}}, **more}  # fmt: skip
+                            "mesh": {"shape": "block", "length": 0.03, "width": 0.03, "height": 0.03, "element_size": 0.01}}},
+        "contacts": {"low": plate(0.0, 1.0), "up": {**plate(0.03, -1.0), **down}}}  # fmt: skip
 
 
 def test_a_dynamic_step_whose_residual_stalls_is_solved_and_says_so():
-    """Near the surface instability of rubber (Biot 1963, a compression by 0.44 to 0.46) iterations stall above 1e-8."""
-    sim = load(press(0.01))
+    """Far beyond the surface instability of rubber (Biot 1963, a compression by 0.46), iterations stall above 1e-8."""
+    sim = load(press())
     residuals = []
-    for _ in range(38):  # the 37th ended with 'iteration-limit' at 1.5e-8
+    for _ in range(33):  # to a compression by 0.66
         sim.step()
         residuals.append(sim.report.relative_residual)
         assert sim.report.status == "solved"
-        assert min(contact.gaps.min() for contact in sim.contacts.values()) > -1e-8
+        assert min(contact.gaps.min() for contact in sim.contacts.values()) > -1e-7
     assert 1e-8 < max(residuals) <= 1e-6
-
-
-def test_a_tolerance_in_the_scene_holds_where_the_residual_stalls():
-    sim = load(press(0.01), tolerance=1e-8)
+    strict = load(press(), tolerance=1e-8)
     with pytest.raises(sinew.RunError, match="not-converged"):
-        sim.step(40)
+        strict.step(33)

@@ -8,8 +8,8 @@
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/sanity.hpp"
 #include "sinew/sim/step_failure.hpp"
-#include "sinew/sim/step_verdict.hpp"
 #include "sinew/sim/step_tolerances.hpp"
+#include "sinew/sim/step_verdict.hpp"
 
 namespace sinew::sim {
 
@@ -114,7 +114,8 @@ void LinearStep::look_back(mechanics::LinearisationRequest request) {
   if (report.scale == 1.0) {
     run_.correction_solver.begin_step();
     const double left = run_.world.correction(run_.correction_solver, run_.effort);
-    report.distance = distance_bound(left, moved_, run_.world.problem().size);
+    report.distance =
+        distance_bound(left, moved_, report.relative_residual, run_.world.problem().size);
   }
   require_solution();
 }

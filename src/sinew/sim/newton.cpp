@@ -88,16 +88,15 @@ class NewtonSolver {
   }
 
   // Whether the next iteration may use the factor of the last condensation. A controller needs W of
-  // the present state.
+  // the present state. New factors need fewer iterations: near their limit, none is kept.
   bool may_keep_factor() const {
     return settings_.keeps_factor && controller_ == nullptr && derivative_ &&
-           refused_ < kMostRefused;
+           refused_ < kMostRefused && 4 * report_.iterations < settings_.max_iterations;
   }
 
   // Proposes a motion that obeys the laws.
   NewtonStatus propose() {
     before_ = moved_;
-    kept_before_ = kept_;
     if (report_.iterations > 0 && full_step_ && may_keep_factor() && propose_again()) {
       return NewtonStatus::converged;
     }
@@ -247,17 +246,6 @@ class NewtonSolver {
     return idle_ >= kIdle && !kept_ && is_within_stalled_tolerance();
   }
 
-  // The move of the next iteration with the last matrix, by the theory of distance_bound(). Moves
-  // of Newton's method shrink by omega m/2, those with the same matrix by omega times the distance
-  // to where it was formed. Needs two full moves.
-  double next_move() const {
-    const double shrinks = moved_ / before_;
-    const bool newton = derivative_ && !kept_ && !kept_before_;
-    const bool changes = kept_ && !kept_before_;
-    return (newton ? shrinks : changes ? 2.0 : 1.0) * shrinks * moved_;
-  }
-
-  // Without an iteration, the report is that of the state at the start.
   NewtonReport finish(NewtonStatus status) {
     // A singular matrix gives no compliance by which the laws could be measured.
     if (report_.iterations == 0 && status == NewtonStatus::singular) measure_residual();
@@ -266,9 +254,9 @@ class NewtonSolver {
     report_.motion.volume = report_.sanity.volume;
     const bool lost = status == NewtonStatus::converged && !report_.sanity.sound();
     report_.status = lost ? NewtonStatus::unphysical : status;
-    if (status == NewtonStatus::converged && moved_ > 0.0 && moved_ < before_) {
-      report_.distance = distance_bound(next_move(), moved_, world_.problem().size);
-    }
+    // The moves with a kept factor shrink at least by kContraction: the others add up to less than
+    // the last one.
+    if (status == NewtonStatus::converged && kept_ && moved_ > 0.0) report_.distance = moved_;
     return report_;
   }
 
@@ -280,18 +268,18 @@ class NewtonSolver {
   StageClock& clock_;
   StepWatch& watch_;
   NewtonReport report_;
-  bool converged_ = false;                   // after the last motion
-  bool full_step_ = false;                   // whether that motion was a full step
-  bool derivative_ = false;                  // whether the condensed matrix was the derivative
-  bool stagnant_ = false;                    // the last full step did not lessen the residual
-  bool has_matrix_ = false;                  // whether the last linearisation included the matrix
-  bool kept_ = false, kept_before_ = false;  // whether the last motion used an earlier factor
-  int refused_ = 0;                          // motions with an earlier factor that were refused
-  double moved_ = 0.0, before_ = 0.0;        // m, the last full moves; 0: not a full step
-  double best_ = INFINITY;                   // relative residual
-  int idle_ = 0;                             // iterations since
-  double lowest_ = kInfinity;                // merit
-  int lost_ = 0;                             // iterations since without progress
+  bool converged_ = false;             // after the last motion
+  bool full_step_ = false;             // whether that motion was a full step
+  bool derivative_ = false;            // whether the condensed matrix was the derivative
+  bool stagnant_ = false;              // the last full step did not lessen the residual
+  bool has_matrix_ = false;            // whether the last linearisation included the matrix
+  bool kept_ = false;                  // whether the last motion used an earlier factor
+  int refused_ = 0;                    // motions with an earlier factor that were refused
+  double moved_ = 0.0, before_ = 0.0;  // m, the last full moves; 0: not a full step
+  double best_ = INFINITY;             // relative residual
+  int idle_ = 0;                       // iterations since
+  double lowest_ = kInfinity;          // merit
+  int lost_ = 0;                       // iterations since without progress
 };
 
 }  // namespace

@@ -341,7 +341,7 @@ bool NewtonStep::is_near(NewtonReport& result) {
   const double left = correction();
   if (!(left <= kLag.move * world.problem().size)) return false;
   result.status = NewtonStatus::converged;
-  result.motion.largest_move = INFINITY;  // the matrix is that of the present state
+  result.distance = 2.0 * left;  // by the matrix of this state
   return true;
 }
 
@@ -356,10 +356,11 @@ void NewtonStep::bound_distance(const NewtonReport& result) {
   StepReport& report = run_.report;
   report.following = follows();
   report.distance = result.distance;
-  const bool known = std::isfinite(result.distance) && !report.following;
+  const bool stayed = result.motion.largest_move == 0.0;
+  const bool known = std::isfinite(result.distance) && (stayed || !report.following);
   if (run_.model->step().dynamic() || known) return;
-  report.distance =
-      distance_bound(correction(), result.motion.largest_move, run_.world.problem().size);
+  report.distance = distance_bound(correction(), result.motion.largest_move,
+                                   result.relative_residual, run_.world.problem().size);
 }
 
 // Removes the residual at the start of the step gradually, as in statics (static_solver.cpp), with
