@@ -12,7 +12,10 @@ namespace sinew::qp {
 namespace {
 
 constexpr double kAddedCompliance = 1e-6;  // a
-constexpr int kMaxClosings = 4;            // in which points are found to close
+// Of the coefficient: friction of points that rest stays below its limit by more than the part that
+// qp::slides() takes for sliding.
+constexpr double kInside = 1.0 - 1e-6;
+constexpr int kMaxClosings = 4;  // in which points are found to close
 // Gaps that may be closed before anything is known of the motion, relative to rounding.
 constexpr double kNearGap = 1e3;
 // Of the motion that the largest effort causes at the point: less is no slip.
@@ -140,7 +143,7 @@ void ForceChoice::gather(const ForcePart& part) {
     for (int c = row; c < row + 3; ++c) x_[at(c)] = 0.0;
     if (!closed) continue;
     const double mu = friction(block);
-    if (mu > 0.0) rows_.add({.kind = EffortSet::Kind::cone, .friction = mu}, row);
+    if (mu > 0.0) rows_.add({.kind = EffortSet::Kind::cone, .friction = kInside * mu}, row);
     if (mu == 0.0) rows_.add({}, row);
   }
   rows_.gather(*problem_, *scales_);
