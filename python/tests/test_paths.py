@@ -95,7 +95,7 @@ def test_a_large_pressure_is_divided_by_itself():
     sim.actuator("air").pressure = 5e3
     halves += sim.solve_static().iterations
     assert sim.actuator("air").volume == pytest.approx(volume, rel=1e-8)
-    assert at_once.iterations <= 2 * halves
+    assert at_once.iterations <= 3 * halves
 
 
 @pytest.mark.parametrize("pressure", [7e3, 12e3, 40e3])

@@ -59,16 +59,13 @@ struct Followed {
 Followed follow(Simulation& simulation, const PathSettings& settings) {
   Followed result;
   const double top = simulation.effector_value(0).z();
-  result.path = simulation
-                    .follow_path(settings,
-                                 [&] {
-                                   result.visits.push_back(
-                                       {top - simulation.effector_value(0).z(),
-                                        simulation.contacts().resultant(0).normal_force,
-                                        simulation.body(0).positions(),
-                                        simulation.contacts().points(0), simulation.state()});
-                                 })
-                    .points;
+  const Path path = simulation.follow_path(settings, [&] {
+    result.visits.push_back(
+        {top - simulation.effector_value(0).z(), simulation.contacts().resultant(0).normal_force,
+         simulation.body(0).positions(), simulation.contacts().points(0), simulation.state()});
+  });
+  EXPECT_EQ(path.end, PathEnd::full_load) << path.reason;
+  result.path = path.points;
   return result;
 }
 

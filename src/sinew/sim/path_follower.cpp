@@ -18,6 +18,7 @@ namespace sinew::sim {
 namespace {
 
 constexpr double kWantedIterations = 6.0;  // of a step of suitable length
+constexpr double kShortest = 1e-8;         // first trial of a step, relative to the robot's size
 constexpr int kMaxPathHalvings = 14;
 constexpr int kMaxBisections = 40;  // of a step that passes a bifurcation
 
@@ -83,6 +84,7 @@ bool PathFollower::advance(PathStep& step, double& length) {
       bisects_ = bisects_ && !passes;
       const double next = step.length() * std::clamp(kWantedIterations / iterations, 0.5, 2.0);
       length = std::min(bisects_ ? step.length() : longest, next);
+      length = std::max(length, kShortest * run_.model->size());
       return true;
     }
     step.undo();

@@ -25,6 +25,9 @@ constexpr double kPredictedLoad = 0.08;
 constexpr double kLargestLoad = 0.1;
 // Bound of the correction, relative to the prediction.
 constexpr double kLargestCorrection = 0.5;
+// Motions below this fraction of the robot's size are rounding: a load on a point that a surface
+// holds moves nothing.
+constexpr double kNothing = 1e-9;
 constexpr double kDiagonal = 1.75;  // > sqrt(3), bound of a 3D motion over its largest coordinate
 
 }  // namespace
@@ -155,7 +158,8 @@ bool PathStep::is_sound() {
   const auto motion = bodies.apply_motion(1.0);
   const auto volume = motion.finite ? bodies.smallest_volume() : mechanics::SmallestVolume{};
   if (!motion.finite || !(volume.ratio > 0.0) ||
-      !(moved_.cwiseAbs().maxCoeff() < kFarthest * length_)) {
+      !(moved_.cwiseAbs().maxCoeff() <
+        kFarthest * std::max(length_, kNothing * run_.model->size()))) {
     return false;
   }
   run_.volume_ratio = volume.ratio;
@@ -170,7 +174,9 @@ bool PathStep::stays_on_path() const {
   if (std::ranges::any_of(touching_, [](const auto& block) { return block.friction > 0.0; })) {
     return true;
   }
-  return (moved_ - predicted_).norm() <= kLargestCorrection * predicted_.norm();
+  const double nothing =
+      kNothing * run_.model->size() * std::sqrt(static_cast<double>(moved_.size()));
+  return (moved_ - predicted_).norm() <= kLargestCorrection * predicted_.norm() + nothing;
 }
 
 // Whether touching points have compressive forces, and all others are outside. Removes tensile
@@ -219,7 +225,7 @@ bool PathStep::see(const VectorX& here, const VectorX& ahead, PathPlace& place) 
 
 // @return the number of iterations; 0 if the step failed.
 int PathStep::try_length(double length) {
-  run_.world.begin_step(run_.time(), run_.time(), run_.effort, kFarthest * kDiagonal * length);
+  run_.world.begin_step(run_.now, run_.now, run_.effort, kFarthest * kDiagonal * length);
   touching_.clear();
   VectorX here, ahead;
   for (int iteration = 0; iteration <= kMaxIterations; ++iteration) {

@@ -37,9 +37,9 @@ void StaticSearch::linearise(const mechanics::StepWeights& weights) {
   run_.world.form_rows(run_.effort, run_.model->geometric_stiffness().all);
 }
 
-bool StaticSearch::equilibrate(double fraction) {
+bool StaticSearch::equilibrate(double fraction, int max_idle) {
   run_.world.homotopy().set_fraction(fraction);
-  return step(rest_, settings_.tolerance, settings_.max_iterations, max_idle(*run_.model));
+  return step(rest_, settings_.tolerance, settings_.max_iterations, max_idle);
 }
 
 bool StaticSearch::step(const mechanics::StepWeights& weights, double tolerance, int max_iterations,

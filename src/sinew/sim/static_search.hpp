@@ -44,8 +44,9 @@ class StaticSearch {
   /// Linearises at the present state. @param weights of inertia; none at rest.
   void linearise(const mechanics::StepWeights& weights);
   /// Searches an equilibrium. @param fraction of the homotopy residual that still acts.
+  /// @param max_idle see NewtonSettings.
   /// @return whether Newton's method converged.
-  bool equilibrate(double fraction);
+  bool equilibrate(double fraction, int max_idle = 0);
   /// Solves an overdamped step. @param weights of inertia.
   /// @param tolerance of residual and violation. @param max_iterations,max_idle see NewtonSettings.
   /// @return whether it converged.

@@ -94,7 +94,7 @@ bool StaticSolver::find_without_limits() {
 }
 
 void StaticSolver::find() {
-  if (!search_.equilibrate(0.0)) approach();
+  if (!search_.equilibrate(0.0, max_idle(*run_.model))) approach();
   settling_.follow_surfaces();
   settling_.settle();
   if (run_.model->is_loose()) settling_.require_held();
@@ -161,7 +161,7 @@ double StaticSolver::step_load(double smallest) {
   report_.load_steps = 0;
   const auto solve = [&](double fraction) {
     blend(fraction);
-    return search_.equilibrate(fraction);
+    return search_.equilibrate(fraction, max_idle(*run_.model));
   };
   const auto keep = [&] {
     ++report_.load_steps;
