@@ -216,12 +216,13 @@ std::optional<Notice> notice_of(const BodyDescription& body, const mesh::Mesh& m
           : fmt::format(
                 "under '{}' than quadratic elements of the same mesh (compared {} {:.2g} s)",
                 excess.cause, excess.earlier ? "earlier, in" : "in", excess.seconds);
-  return Notice{remark ? NoticeLevel::remark : NoticeLevel::warning, NoticeKind::locking_element,
-                body.element == Element::any ? body.material.place : body.element_place,
-                fmt::format("{} at Poisson's ratio {:.4g}: this mesh is {:.2g} times too {} {}",
-                            element_words(body, mesh), largest_poisson_ratio(body), size,
-                            excess.factor < 1.0 ? "soft" : "stiff", how),
-                stiffness_remedy(body, mesh)};
+  return Notice{
+      remark ? NoticeLevel::remark : NoticeLevel::warning, NoticeKind::locking_element,
+      body.element == Element::any ? body.material.place : body.element_place,
+      fmt::format("{} at Poisson's ratio {:.4g}: this mesh is {:.2g} times too {} {}",
+                  element_words(body, mesh), 1e-9 * std::round(1e9 * largest_poisson_ratio(body)),
+                  size, excess.factor < 1.0 ? "soft" : "stiff", how),
+      stiffness_remedy(body, mesh)};
 }
 
 }  // namespace
