@@ -46,11 +46,13 @@ def simulate():
     return sim, seen
 
 
-def surface(tetrahedra):
-    """(m, 3): triangles that belong to a single tetrahedron."""
-    faces = np.concatenate([tetrahedra[:, f] for f in ([0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3])])
+def surface(hexahedra):
+    """(m, 3): triangles of the faces that belong to a single hexahedron."""
+    sides = ([0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7])
+    faces = np.concatenate([hexahedra[:, side] for side in sides])
     _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
-    return faces[first[count == 1]]
+    outer = faces[first[count == 1]]
+    return np.concatenate([outer[:, [0, 1, 2]], outer[:, [0, 2, 3]]])
 
 
 def table(sim, seen):
@@ -58,8 +60,8 @@ def table(sim, seen):
     error = 1e3 * seen["error"][second]
     share = np.mean([status == "on-target" for status in np.array(seen["status"])[second]])
     rows = [
-        ("robot", f"{len(sim.body('trunk').positions)} nodes, {len(sim.body('trunk').tetrahedra)} "
-                  f"tetrahedra, {len(sim.actuators)} cables"),
+        ("robot", f"{len(sim.body('trunk').positions)} nodes, {len(sim.body('trunk').hexahedra)} "
+                  f"hexahedra, {len(sim.actuators)} cables"),
         ("simulated", f"{sim.time:g} s in {sim.steps} steps of {1e3 * sim.time_step:g} ms"),
         ("computing time a step", f"median {np.median(seen['milliseconds']):.2f} ms, 95 % under "
                                   f"{np.percentile(seen['milliseconds'], 95):.2f} ms"),
@@ -75,7 +77,7 @@ def table(sim, seen):
 
 
 def draw_robot(axes, sim, seen):
-    faces = surface(sim.body("trunk").tetrahedra)
+    faces = surface(sim.body("trunk").hexahedra)
     for (nodes, cables), shade in zip(seen["poses"], (0.35, 1.0)):
         axes.plot_trisurf(*(1e3 * nodes.T), triangles=faces, color="#e8a87c", alpha=0.28 * shade,
                           linewidth=0, shade=True)

@@ -60,12 +60,13 @@ inline int add_part(sim::ModelBuilder& builder, const char* name,
   return builder.add_fem_body(std::move(body));
 }
 
+/// Both parts have even numbers of cells along x, so that they split like those of the whole beam.
 inline std::shared_ptr<const sim::Model> cut_beam(const CutBeam& options) {
   sim::ModelBuilder builder(options.step);
   const double middle = 0.5 * kBeamLength;
-  const auto whole = beam_part(0.0, kBeamLength, 10, 1);
-  const auto lower = options.cut ? beam_part(0.0, middle, 5, 1) : whole;
-  const auto upper = beam_part(middle, kBeamLength, 5 * options.finer, options.finer);
+  const auto whole = beam_part(0.0, kBeamLength, 12, 1);
+  const auto lower = options.cut ? beam_part(0.0, middle, 6, 1) : whole;
+  const auto upper = beam_part(middle, kBeamLength, 6 * options.finer, options.finer);
   const int first = add_part(builder, "lower", lower, options, true, "x_min");
   const int second = options.cut
                          ? add_part(builder, "upper", upper, options, options.second_fixed, "x_max")

@@ -143,7 +143,7 @@ TEST(PathContact, ABeamIsLaidDownAndLifted) {
     down += all.path.back().load_fraction * (next_down - down);
     up += all.path.back().load_fraction * (next_up - up);
   }
-  EXPECT_GE(*std::ranges::max_element(touching), 6);
+  EXPECT_GE(*std::ranges::max_element(touching), 3);  // all nodes of its end
   EXPECT_EQ(touching.back(), 0);
 }
 

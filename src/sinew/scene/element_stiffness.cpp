@@ -1,19 +1,26 @@
-// Notices about bodies whose linear elements are too stiff.
+// Notices about bodies whose linear elements are too stiff or too soft.
 //
 // A body is compared with the same mesh in quadratic elements: both are loaded at rest by
 // everything that acts on the body in the scene, one cause at a time (sim/rest_fields.hpp), and the
 // factor of a cause is the ratio of the mean motions of the nodes. Bodies on which nothing acts,
-// and very fine ones, are judged as one beam instead (fem/bending_stiffness.hpp).
+// and very fine ones, are judged as one beam instead (fem/bending_stiffness.hpp). Comparisons that
+// take long are kept from run to run under a hash of all that they depend on
+// (core/cache_folder.hpp).
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <map>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "sinew/core/cache_folder.hpp"
+#include "sinew/core/named_hash.hpp"
 #include "sinew/fem/bending_stiffness.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/fem/has_elements.hpp"
@@ -32,7 +39,8 @@ namespace {
 
 /// Smaller factors are not mentioned.
 constexpr double kMentioned = 1.1;
-/// Factors above this are warned of, unless the scene asks for tet4.
+/// Factors above this are warned of, unless the scene asks for tet4, or for an element of a body on
+/// which nothing acts.
 constexpr double kWarned = 1.2;
 /// Largest number of linear elements, a hexahedron counting as six, that are compared. The
 /// comparison of as many takes some seconds.
@@ -40,10 +48,37 @@ constexpr std::size_t kMostElements = 40000;
 
 /// How much too stiff a body is.
 struct Excess {
-  double factor = 1.0;
+  double factor = 1.0;   ///< below 1: too soft, as single mean-dilatation hexahedra in bending
   std::string cause;     ///< what acts; empty: the body counts as one beam
   double seconds = 0.0;  ///< of the comparison
+  bool earlier = false;  ///< made by an earlier run
+
+  double size() const { return std::max(factor, 1.0 / factor); }
 };
+
+/// Shorter comparisons are made again, s.
+constexpr double kKept = 0.1;
+/// Version of the comparison: kept results of others are not used.
+constexpr const char* kKeptAs = "locking-1";
+
+/// Under which the comparison of a body is kept.
+std::string kept_name(const sim::Model& model, const std::string& body) {
+  ValueHash hash;
+  for (const NamedHash& part : model.parts()) hash.add(part.name, part.hash);
+  return fmt::format("{}/{:016x}", kKeptAs, hash.add(body).value());
+}
+
+std::optional<Excess> recalled(const std::string& name) {
+  const std::optional<std::string> text = recall_result(name);
+  if (!text) return std::nullopt;
+  std::istringstream words(*text);
+  Excess excess;
+  excess.earlier = true;
+  words >> excess.factor >> excess.seconds >> std::ws;
+  const bool whole = words && std::getline(words, excess.cause);
+  if (!whole || !(excess.factor > 0.0) || !std::isfinite(excess.factor)) return std::nullopt;
+  return excess;
+}
 
 bool is_linear(const mesh::Mesh& mesh) { return mesh.quadratic.empty(); }
 
@@ -118,7 +153,7 @@ class Comparison {
     quadratic_ = build(std::move(own), meshes).model;
   }
 
-  /// The largest factor of any cause; none if nothing acts on the body.
+  /// The factor of the cause for which it is farthest from 1; none if nothing acts on the body.
   std::optional<Excess> excess(int body) const {
     const auto linear = sim::rest_fields(linear_, body);
     const auto quadratic = sim::rest_fields(quadratic_, body);
@@ -128,7 +163,8 @@ class Comparison {
       if (stiff == linear.end()) continue;
       const Eigen::Index nodes = stiff->nodes.rows();
       const double factor = mean_motion(soft.nodes, nodes) / mean_motion(stiff->nodes, nodes);
-      if (!worst || factor > worst->factor) worst = {factor, soft.cause, 0.0};
+      const Excess own{.factor = factor, .cause = soft.cause};
+      if (!worst || own.size() > worst->size()) worst = own;
     }
     return worst;
   }
@@ -139,7 +175,7 @@ class Comparison {
 
 Excess as_one_beam(const BodyDescription& body, const mesh::Mesh& mesh) {
   const bool patches = body.element == Element::tet4_patch;
-  return {fem::bending_stiffness_ratio(mesh, largest_poisson_ratio(body), patches), "", 0.0};
+  return {.factor = fem::bending_stiffness_ratio(mesh, largest_poisson_ratio(body), patches)};
 }
 
 std::string element_words(const BodyDescription& body, const mesh::Mesh& mesh) {
@@ -168,20 +204,24 @@ std::string stiffness_remedy(const BodyDescription& body, const mesh::Mesh& mesh
 
 std::optional<Notice> notice_of(const BodyDescription& body, const mesh::Mesh& mesh,
                                 const Excess& excess) {
-  if (!(excess.factor >= kMentioned)) return std::nullopt;
-  const bool remark = body.element == Element::tet4 || excess.factor < kWarned;
+  const double size = excess.size();
+  if (!(size >= kMentioned)) return std::nullopt;
+  // A body on which nothing acts may never bend.
+  const bool by_choice =
+      body.element == Element::tet4 || (body.element != Element::any && excess.cause.empty());
+  const bool remark = by_choice || size < kWarned;
   const std::string how =
       excess.cause.empty()
           ? std::string("in bending, as one beam")
           : fmt::format(
-                "under '{}' than quadratic elements of the same mesh (compared in {:.2g} s)",
-                excess.cause, excess.seconds);
+                "under '{}' than quadratic elements of the same mesh (compared {} {:.2g} s)",
+                excess.cause, excess.earlier ? "earlier, in" : "in", excess.seconds);
   return Notice{
       remark ? NoticeLevel::remark : NoticeLevel::warning, NoticeKind::locking_element,
       body.element == Element::any ? body.material.place : body.element_place,
-      fmt::format("{} lock at Poisson's ratio {:.4g}: this mesh is {:.2g} times too "
-                  "stiff {}",
-                  element_words(body, mesh), largest_poisson_ratio(body), excess.factor, how),
+      fmt::format("{} at Poisson's ratio {:.4g}: this mesh is {:.2g} times too {} {}",
+                  element_words(body, mesh), 1e-9 * std::round(1e9 * largest_poisson_ratio(body)),
+                  size, excess.factor < 1.0 ? "soft" : "stiff", how),
       stiffness_remedy(body, mesh)};
 }
 
@@ -198,21 +238,39 @@ std::vector<Notice> locking_notices(const SceneDescription& scene, const sim::Mo
     if (judged && is_comparable(body.mesh())) comparable.push_back(b);
   }
   using Clock = std::chrono::steady_clock;
+  const auto since = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  std::map<std::size_t, Excess> known;
+  for (const std::size_t b : comparable) {
+    if (auto excess = recalled(kept_name(model, scene.bodies[b].name))) known[b] = *excess;
+  }
+  std::erase_if(comparable, [&](std::size_t b) { return known.contains(b); });
+  const auto begin = Clock::now();
   std::optional<Comparison> comparison;
   try {
     if (!comparable.empty()) comparison.emplace(scene, model, comparable);
   } catch (const Error&) {
     // A region that selects nothing in the other mesh, for instance: the beam is left.
   }
+  const double preparing = since(begin);
+  for (const std::size_t b : comparable) {
+    if (!comparison) break;
+    const auto start = Clock::now();
+    std::optional<Excess> excess = comparison->excess(static_cast<int>(b));
+    if (!excess) continue;
+    excess->seconds = preparing / static_cast<double>(comparable.size()) + since(start);
+    known[b] = *excess;
+    if (excess->seconds < kKept) continue;
+    keep_result(kept_name(model, scene.bodies[b].name),
+                fmt::format("{} {} {}\n", excess->factor, excess->seconds, excess->cause));
+  }
   std::vector<Notice> notices;
   for (const std::size_t b : linear) {
     const mesh::Mesh& mesh = model.body(static_cast<int>(b)).mesh();
-    const auto start = Clock::now();
-    std::optional<Excess> excess;
-    if (comparison && is_comparable(mesh)) excess = comparison->excess(static_cast<int>(b));
-    if (!excess) excess = as_one_beam(scene.bodies[b], mesh);
-    excess->seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    if (auto notice = notice_of(scene.bodies[b], mesh, *excess)) {
+    const auto found = known.find(b);
+    const Excess excess = found == known.end() ? as_one_beam(scene.bodies[b], mesh) : found->second;
+    if (auto notice = notice_of(scene.bodies[b], mesh, excess)) {
       notices.push_back(std::move(*notice));
     }
   }

@@ -21,6 +21,8 @@ namespace {
 
 /// Time step of a free body, in times that sound takes through it.
 constexpr double kSteps = 100.0;
+/// Smaller parts of a force that deform a free body are rounding.
+constexpr double kDeforming = 1e-6;
 
 class BodyAtRest {
  public:
@@ -59,16 +61,19 @@ class BodyAtRest {
       forces.emplace_back(load.name, imbalance() - weight);
       set(load, 0.0);
     }
-    // Without weight, b is what rounding leaves of the forces at rest.
+    // Without weight, b is what rounding leaves of the forces at rest. The weight of a free body
+    // does not deform it.
     const bool heavy = elements_.elements().load_mass().cwiseAbs().sum() > 0.0;
-    if (heavy && !elements_.settings().gravity.isZero(0.0)) forces.emplace_back("gravity", weight);
+    if (heavy && !is_free_ && !elements_.settings().gravity.isZero(0.0)) {
+      forces.emplace_back("gravity", weight);
+    }
     system_.linearise(request_);
     std::vector<RestField> fields;
     if (system_.condense().status != linalg::FactorStatus::positive_definite) return fields;
     for (auto& [cause, force] : forces) {
       const double size = force.norm();
       if (is_free_) remove_rigid_part(force);
-      if (!(force.norm() > 1e-9 * size)) continue;
+      if (!(force.norm() > kDeforming * size)) continue;
       fields.push_back({cause, displacement(force)});
     }
     return fields;

@@ -19,8 +19,9 @@ struct RestField {
 };
 
 /// Solves K u = f at rest for one finite-element body and every force f that acts on it: a unit
-/// effort of each actuator, each load at a factor of 1, and gravity. Other bodies do not move, and
-/// joints and contacts exert no forces. A body that is free gets the part of f that deforms it,
+/// effort of each actuator, each load at a factor of 1, and gravity (not of a free body). Other
+/// bodies do not move, and joints and contacts exert no forces. A body that is free gets the part
+/// of f that deforms it,
 ///   f - M R (R^T M R)^-1 R^T f   with the rigid motions R
 /// (inertia relief), and K + M/h^2 in place of K, with h a hundred times as long as sound takes
 /// through the body.
