@@ -26,7 +26,7 @@ actuators:
   air:
     type: chamber
     body: finger
-    set: inner
+    surface: {set: inner}
     cap: true
     command: {pressure: COMMAND}
 masses:
