@@ -284,7 +284,8 @@ int run(const RunOptions& options) {
   settings.vtk = options.vtk;
   sim::Observables observables(session.simulation());
   inverse::add_controller(observables, session.controller());
-  const bool replaces = std::filesystem::exists(settings.folder / "run.csv");
+  std::error_code unknown;  // a path that is too long is refused by the recorder
+  const bool replaces = std::filesystem::exists(settings.folder / "run.csv", unknown);
   Records records;
   records.run.emplace(std::move(observables), settings);
   if (!options.quiet) records.extremes.emplace(session);

@@ -47,9 +47,12 @@ TEST(HeadingUnit, IsThatInBracketsOrTheLastWord) {
   EXPECT_EQ(unit("x_mm", dimension::kLength), 1e-3);
   EXPECT_EQ(unit("x mm", dimension::kLength), 1e-3);
   EXPECT_EQ(unit("pressure_kPa", dimension::kPressure), 1e3);
+  EXPECT_EQ(unit("p/kPa", dimension::kPressure), 1e3);
+  EXPECT_EQ(unit("v_m/s", dimension::kVelocity), 1.0);
+  EXPECT_EQ(unit("x [in]", dimension::kLength), 0.0254);
   EXPECT_EQ(unit("duty [%]", dimension::kNone), 0.01);
   EXPECT_EQ(unit("strain [-]", dimension::kNone), 1.0);
-  for (const char* none : {"x", "mm", "tip_x", "x []", "motor_0"}) {
+  for (const char* none : {"x", "mm", "tip_x", "x []", "motor_0", "pull_in", "a/b"}) {
     EXPECT_EQ(unit(none, dimension::kLength), std::nullopt) << none;
   }
   // The last word of a name is a unit only where it fits.

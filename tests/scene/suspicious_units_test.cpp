@@ -17,6 +17,7 @@ using ::testing::HasSubstr;
 const std::string kChambers = R"(sinew: 1
 bodies:
   finger:
+    type: fem
     mesh: {shape: hollow-cylinder, inner_radius: 5 mm, outer_radius: 8 mm, height: 60 mm}
     material: {young_modulus: MODULUS, poisson_ratio: 0.4}
     density: DENSITY
@@ -25,7 +26,7 @@ actuators:
   air:
     type: chamber
     body: finger
-    set: inner
+    surface: {set: inner}
     cap: true
     command: {pressure: COMMAND}
 masses:
@@ -65,7 +66,7 @@ TEST(SuspiciousUnits, BareNumbersFarFromRobotsAreNamed) {
   EXPECT_EQ(modulus.kind, NoticeKind::suspicious_unit);
   EXPECT_EQ(modulus.level, NoticeLevel::warning);
   EXPECT_EQ(modulus.place.item, "bodies.finger.material.young_modulus");
-  EXPECT_EQ(modulus.place.line, 5);
+  EXPECT_EQ(modulus.place.line, 6);
   EXPECT_THAT(modulus.text(), HasSubstr("450 without a unit is 450 Pa"));
   EXPECT_THAT(modulus.text(), HasSubstr("450 kPa"));
   EXPECT_EQ(only(scene("450 kPa", "1.07", "0", "5 g")).place.item, "bodies.finger.density");

@@ -179,6 +179,7 @@ class Recorded : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
+// The notices about what a recording lacks; the scene may have others.
 TEST_F(Recorded, RunsAreShownWithWhatWasRecorded) {
   const scene::Robot same = robot();
   sim::Simulation simulation(same.model);

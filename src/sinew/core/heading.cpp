@@ -10,16 +10,18 @@ namespace sinew {
 
 namespace {
 
-// The last word of "stress_MPa" or "stress MPa"; empty if there is only one.
-std::string_view last_word(std::string_view name) {
-  const std::size_t before = name.find_last_of("_ ");
+// What follows the last of the separators; empty if there is none.
+std::string_view after_last(std::string_view name, const char* separators) {
+  const std::size_t before = name.find_last_of(separators);
   return before == std::string_view::npos ? std::string_view() : name.substr(before + 1);
 }
 
-// The unit that a name ends with, if it is one of this dimension; most words are not.
+// The unit that a name ends with, if it is one of this dimension; most words are not, and a
+// `pull_in` is not in inches.
 std::optional<double> unit_at_end(std::string_view name, Dimension expected) {
-  const std::string_view word = last_word(name);
-  if (word.empty()) return std::nullopt;
+  std::string_view word = after_last(name, "_ ");
+  if (word.empty()) word = after_last(name, "/");
+  if (word.empty() || word == "in") return std::nullopt;
   try {
     return parse_unit(word, expected);
   } catch (const Error&) {

@@ -50,6 +50,7 @@ constexpr std::array kUnits = {
     NamedUnit{"l", {1.0, 1e3, dimension::kVolume}, true},
     NamedUnit{"L", {1.0, 1e3, dimension::kVolume}, true},
     NamedUnit{"A", {1.0, 1.0, dimension::kCurrent}, true},
+    NamedUnit{"V", {1.0, 1.0, {.length = 2, .mass = 1, .time = -3, .current = -1}}, true},
     NamedUnit{"Ohm", {1.0, 1.0, dimension::kResistance}, true},
     NamedUnit{"F", {1.0, 1.0, dimension::kCapacitance}, true},
     NamedUnit{"bar", {1e5, 1.0, dimension::kPressure}, true},
@@ -101,7 +102,7 @@ std::string suggest(std::string_view name, std::optional<Dimension> expected) {
     return fmt::format("write one of {}, or a product of units", fmt::join(candidates, ", "));
   }
   if (nearest.empty())
-    return "known are m, g, s, N, Pa, J, W, K, Hz, l, bar, A, Ohm, F with SI prefixes, psi, "
+    return "known are m, g, s, N, Pa, J, W, K, Hz, l, bar, A, V, Ohm, F with SI prefixes, psi, "
            "atm, in, min, h, deg, rad, dB, % and their products";
   return fmt::format("did you mean '{}'?", nearest);
 }

@@ -77,6 +77,7 @@ struct Hdf5Writer::File {
   Hdf5Handle links;  // makes the groups above a path
   std::vector<Series> series;
   haddr_t reserved = 0;       // bytes reserved from the start of the file
+  haddr_t filled = 0;         // of which the last flush needs all
   std::uint64_t pending = 0;  // bytes of chunks begun since the last flush
   bool abandoned = false;
   std::chrono::steady_clock::time_point flushed = std::chrono::steady_clock::now();
@@ -111,29 +112,37 @@ struct Hdf5Writer::File {
     haddr_t bytes = 0;
     return H5Fget_eoa(file.id(), &bytes) >= 0 ? bytes : 0;
   }
-  // Reserves disk space before HDF5 needs it, so that no write can fail half-way: for chunks in
-  // memory, and for growth of the index of every series.
-  /// @return error as in errno; 0 if there is none.
-  int reserve() {
-    const haddr_t wanted = end() + pending + kHeadroom * (series.size() + 16);
+  // Reserves disk space before HDF5 needs it. HDF5 cannot close a file after a write of metadata
+  // that failed, and then crashes at the exit of the program.
+  /// @param extra bytes beyond the space that HDF5 has allocated. @return error as in errno; 0 if
+  /// there is none.
+  int reserve(haddr_t extra) {
+    const haddr_t wanted = end() + extra;
     if (wanted <= reserved) return 0;
     const int problem = ::posix_fallocate(descriptor(), static_cast<off_t>(reserved),
                                           static_cast<off_t>(wanted - reserved));
     if (problem == 0) reserved = wanted;
     return problem;
   }
-  // Releases unused space, since HDF5 truncates the file when it flushes.
+  // Room for the chunks in memory, and for growth of the index of every series.
+  haddr_t growth() const { return pending + kHeadroom * (series.size() + 16); }
+  // Releases unused space, since HDF5 truncates the file when it flushes. What HDF5 has allocated
+  // and not written stays reserved.
   void release() {
     pending = 0;
-    reserved = end();
-    if (::ftruncate(descriptor(), static_cast<off_t>(reserved)) != 0) reserved = 0;
+    if (::ftruncate(descriptor(), static_cast<off_t>(end())) != 0) filled = 0;
+    reserved = filled;
+    if (reserve(0) == 0) filled = reserved;
   }
   // Reserves space, or fails after writing all earlier frames, for which space was reserved before.
-  void require_room() {
-    const int problem = reserve();
+  void require_room(haddr_t more = 0) {
+    const int problem = reserve(growth() + more);
     if (problem == 0) return;
-    for (Series& one : series) write_waiting(one);
-    H5Fflush(file.id(), H5F_SCOPE_LOCAL);
+    const bool has_room = reserve(0) == 0;
+    for (Series& one : series) {
+      if (has_room) write_waiting(one);
+    }
+    if (has_room && reserve(0) == 0) H5Fflush(file.id(), H5F_SCOPE_LOCAL);
     fail("series", std::strerror(problem));
   }
   void write_frames(Series& target, std::uint64_t frames, std::span<const double> values) {
@@ -159,6 +168,9 @@ struct Hdf5Writer::File {
   void write(const std::string& name, const Extent& shape, hid_t stored, hid_t type,
              const void* values) {
     const QuietHdf5 quiet;
+    haddr_t bytes = H5Tget_size(stored);
+    for (const hsize_t size : shape) bytes *= size;
+    require_room(bytes);
     const Hdf5Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
                            H5Sclose);
     const Hdf5Handle set(H5Dcreate2(file.id(), name.c_str(), stored, space.id(), links.id(),
@@ -250,6 +262,7 @@ void Hdf5Writer::dataset(const std::string& path, const std::vector<std::uint64_
 
 void Hdf5Writer::text(const std::string& path, std::string_view text) {
   const QuietHdf5 quiet;
+  file_->require_room(text.size());
   const Hdf5Handle type = text_type(text);
   const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Hdf5Handle set(H5Dcreate2(file_->file.id(), path.c_str(), type.id(), space.id(),
@@ -262,6 +275,7 @@ void Hdf5Writer::text(const std::string& path, std::string_view text) {
 
 int Hdf5Writer::series(const std::string& path, const std::vector<std::uint64_t>& shape) {
   const QuietHdf5 quiet;
+  file_->require_room();
   File::Series made;
   made.size = volume(shape);
   made.extent.assign(shape.begin(), shape.end());
