@@ -50,6 +50,19 @@ constexpr double kSnap = 5.0;
 
 bool converged(const NewtonReport& result) { return result.status == NewtonStatus::converged; }
 
+// Whether the matrix is singular at the start of the step. Else it is singular only at the states
+// of iterations beyond the last equilibrium, where nothing is loose.
+bool starts_singular(Run& run, double time_step) {
+  const std::vector<step::ActuatorBlock> goal = run.world.problem().actuators;
+  run.restore(run.before);
+  run.begin_world(time_step);
+  run.world.linearise({{}, mechanics::Tangent::exact, true, true});
+  run.world.form_rows(run.effort, run.model->geometric_stiffness().all);
+  const bool singular = run.world.condense() == linalg::FactorStatus::singular;
+  run.world.problem().actuators = goal;
+  return singular;
+}
+
 bool goes_on(const NewtonReport& result) {
   return !converged(result) && result.law != LawStatus::failed;
 }
@@ -118,8 +131,9 @@ void NewtonStep::solve(double time_step) {
     const NewtonReport way = approach(time_step);
     if (converged(way)) return take_report(way);
   }
-  // Where equilibria were found on the way, the matrix is singular at what follows them only.
-  if (!(reached_ > 0.0)) fail_if_free(run_, result.status, time_step);
+  if (!(reached_ > 0.0) && starts_singular(run_, time_step)) {
+    fail_if_free(run_, result.status, time_step);
+  }
   fail_to_find(result, text, time_step);
 }
 
