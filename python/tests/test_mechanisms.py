@@ -85,21 +85,10 @@ def test_a_cable_may_hold_a_loose_part(tmp_path, kind):
     weight = 2 * EDGE**3 * 1000 * GRAVITY
     body = sim.body("b")
     fixed = np.abs(np.array(body.rest_positions)[:, 0]) < 1e-9
-    held = np.array(body.reaction_forces)[fixed].sum(axis=0)[2]
+    held = np.array(body.reactions)[fixed].sum(axis=0)[2]
     assert held + sim.actuator("rope").tension == pytest.approx(weight, rel=1e-3)
-    assert sim.actuator("rope").tension == pytest.approx(weight / 4, rel=0.1)  # half of one cube, over the lever
-
-
-def test_contact_that_does_not_hold_a_loose_part_fails_in_the_step(tmp_path):
-    mesh = cubes(tmp_path / "m.vtk", HINGE, "hex8")
-    ceiling = {"c": {"body": "b", "surface": {"plane": {"point": [0, 0, 0.05], "normal": [1, 0, 0]}}, "nodes": {"box": [0.019, -1, 0.019, 1, 1, 1]}}}
-    ceiling["c"]["surface"]["plane"]["point"] = [-0.5, 0, 0]
-    sim = sinew.load({**scene({"b": soft(mesh, "hex8")}, contacts=ceiling), "gravity": [0, GRAVITY, 0]})
-    before = np.array(sim.body("b").positions)
-    with pytest.raises(sinew.Error, match="body 'b'.*turns freely about the axis|body 'b'.*moves freely") as caught:
-        sim.step()
-    assert caught.value.kind == "singular-matrix"
-    assert np.array_equal(before, sim.body("b").positions)
+    lever = 0.005 / 0.009  # of the weight of one cube and of the rope, about the common edge
+    assert sim.actuator("rope").tension == pytest.approx(weight / 2 * lever, rel=0.03)
 
 
 def bar(z=-0.15, axis="y", **more):
@@ -183,28 +172,6 @@ def test_a_chain_hangs_as_least_energy_says():
         assert sim.joint("j0").force[2] == pytest.approx(count * 0.02 * GRAVITY / 2, rel=1e-5)
 
 
-def test_a_tendon_bends_a_finger_of_rigid_phalanges():
-    bodies, joints, points = {}, {}, [[-0.02, 0, -0.008]]
-    for k in range(3):
-        bodies[f"p{k}"] = {"type": "rigid", "shape": {"box": [0.03, 0.01, 0.01]}, "mass": 0.01, "pose": {"position": [0.015 + 0.03 * k, 0, 0]}}
-        joints[f"j{k}"] = {"type": "hinge", "axis": "y", "bodies": ["world" if k == 0 else f"p{k - 1}", f"p{k}"], "point": [0.03 * k, 0, 0]}
-        for x in (0.008, 0.022):
-            points.append({"body": f"p{k}", "point": [0.03 * k + x, 0, -0.008]})
-    springs = {f"s{k}": {"type": "spring", "body": f"p{k}", "pull": "world" if k == 0 else "body", "stiffness": 200.0, "free_length": 0.005,
-                         "points": [[-0.01, 0, 0.012] if k == 0 else {"body": f"p{k - 1}", "point": [0.03 * k - 0.01, 0, 0.005]},
-                                    {"body": f"p{k}", "point": [0.03 * k + 0.01, 0, 0.005]}]} for k in range(3)}
-    tendon = {"type": "cable", "body": "p0", "pull": "world", "points": points, "command": {"tension": {"ramp": {"to": 2.0, "duration": 0.1}}}}
-    sim = sinew.load(scene(bodies, joints=joints, actuators={"t": tendon, **springs}))
-    for _ in range(12):
-        sim.step()
-        assert sim.report.status == "solved"
-    quasi = [sim.joint(f"j{k}").angle for k in range(3)]
-    assert max(map(abs, quasi)) > 0.05
-    moving = sinew.load(scene(bodies, joints=joints, actuators={"t": tendon, **springs}, integrator="backward-euler") | {"time_step": 0.02})
-    moving.step(1500)
-    assert quasi == pytest.approx([moving.joint(f"j{k}").angle for k in range(3)], abs=1e-4)
-
-
 def test_a_plate_hangs_on_four_ropes():
     bodies = {"frame": {"type": "rigid", "shape": {"box": [2, 2, 0.02]}, "fixed": True, "pose": {"position": [0, 0, 1]}},
               "plate": {"type": "rigid", "shape": {"box": [0.2, 0.2, 0.02]}, "mass": 2.0, "pose": {"position": [0, 0, 0]}}}
@@ -260,23 +227,3 @@ def test_what_slides_is_named(angle, friction, words):
         with pytest.raises(sinew.Error, match=f"body 'b' .*{words}"):
             getattr(sim, act)()
         assert np.abs(sim.body("b").position - np.array(sloped(angle, friction)["bodies"]["b"]["pose"]["position"])).max() < 1e-12
-
-
-@pytest.mark.parametrize("steps", [False, True])
-def test_a_block_lies_in_a_groove(steps):
-    groove = {"l": plane([0, 1, 0], np.pi / 4), "r": plane([0, 1, 0], -np.pi / 4)}
-    high = 0.02 * np.sqrt(2.0)
-    sim = sinew.load(scene({"b": block([0, 0, high + 5e-4], rotation={"axis": [0, 1, 0], "angle": np.pi / 4}), **groove},
-                           contacts={k: {"between": ["b", k], "friction": 0.3} for k in groove}))
-    sim.step(2) if steps else sim.solve_static()
-    assert sim.body("b").position == pytest.approx([0, 0, high], abs=1e-6)
-    assert sum(np.array(sim.contact(k).force) for k in groove)[2] == pytest.approx(0.2 * GRAVITY, rel=1e-4)
-
-
-@pytest.mark.parametrize("steps", [False, True])
-def test_a_ball_settles_in_a_corner(steps):
-    corner = {f"p{k}": plane([-np.sin(2 * np.pi * k / 3), np.cos(2 * np.pi * k / 3), 0], 0.7) for k in range(3)}
-    ball = {"type": "rigid", "shape": {"sphere": 0.01}, "mass": 0.05, "pose": {"position": [0.001, 0, 0.0145]}}
-    sim = sinew.load(scene({"b": ball, **corner}, contacts={k: {"between": ["b", k], "friction": 0.0} for k in corner}))
-    sim.step(2) if steps else sim.solve_static()
-    assert sim.body("b").position == pytest.approx([0, 0, 0.01 / np.cos(0.7)], abs=1e-6)  # it may spin

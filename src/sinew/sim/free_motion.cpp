@@ -25,6 +25,8 @@ constexpr double kShift = 1e-11;
 constexpr double kLargerShift = 100.0;
 constexpr int kShiftTries = 4;
 constexpr int kPowers = 6;
+// Smaller residuals, relative to the forces, drive nothing.
+constexpr double kDrives = 1e-6;
 // Of the largest motion: nodes and bodies that move less are not named.
 constexpr double kMoves = 0.02;
 // Of the largest motion: centres of mass that move less are at rest.
@@ -42,8 +44,12 @@ Vector3 centre_of(const mechanics::Body& body) {
 }
 
 // A part of the nodes of a body, and their displacements.
-std::string describe_part(const std::string& name, const Points& at, const Points& moved,
+std::string describe_part(const mechanics::BodyModel& body, const Points& at, const Points& moved,
                           double least) {
+  const std::string& name = body.name();
+  if (!body.held_nodes()) {  // a rigid body moves as a whole
+    return fmt::format("body '{}' {}", name, RigidFit(at, moved).text());
+  }
   std::vector<Eigen::Index> nodes;
   for (Eigen::Index i = 0; i < at.rows(); ++i) {
     if (moved.row(i).norm() > least) nodes.push_back(i);
@@ -73,6 +79,8 @@ VectorX FreeMotion::find(StaticSearch& search) {
   const double mass = search.mass_along(y) / y.squaredNorm();
   search.begin();
   search.linearise();
+  VectorX force;
+  bodies.imbalance(run.effort, force);
   const double stiffness = std::max(bodies.rounding_floor() / kEpsilon, bodies.force_scale()) /
                            (run.model->size() * std::sqrt(static_cast<double>(size)));
   if (!(mass > 0.0) || !(stiffness > 0.0)) return {};
@@ -91,9 +99,16 @@ VectorX FreeMotion::find(StaticSearch& search) {
     if (!y.allFinite() || !(y.norm() > 0.0)) return {};
     curvature = x.dot(y) / y.squaredNorm();
   }
+  // Among several free motions, the one in which forces that do not balance drive the robot.
+  if (force.norm() > kDrives * bodies.force_scale()) {
+    VectorX driven;
+    motions.solve(force.normalized(), driven);
+    const double driven_curvature = force.normalized().dot(driven) / driven.squaredNorm();
+    if (driven_curvature <= 2.0 * curvature) y = driven;
+  }
   y /= y.cwiseAbs().maxCoeff();
   const double inertia = sigma * search.mass_along(y) / y.squaredNorm();
-  exists_ = std::abs(curvature) <= 2.0 * inertia;
+  exists_ = std::abs(curvature) <= 4.0 * inertia;
   return exists_ ? y : VectorX();
 }
 
@@ -126,7 +141,7 @@ void FreeMotion::describe(StaticSearch& search, const VectorX& motion) {
     if (moved[b].rows() == 0 || !(moved[b].rowwise().norm().maxCoeff() > kMoves * most)) continue;
     if (named++ == kMostNames) break;
     text_ += (text_.empty() ? "" : "; ") +
-             describe_part(bodies.all()[b]->model().name(), before[b], moved[b], kMoves * most);
+             describe_part(bodies.all()[b]->model(), before[b], moved[b], kMoves * most);
   }
   if (named > kMostNames) text_ += "; ...";
 }

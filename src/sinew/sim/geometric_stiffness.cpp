@@ -10,6 +10,16 @@
 
 namespace sinew::sim {
 
+namespace {
+
+// Part of an anchor that is not cancelled where joints leave bodies free: a neutral motion (a door
+// on a vertical hinge) has no other stiffness, and rounding would choose it. Efforts of anchors are
+// part of no equilibrium, so it changes only the way to the solution. The laws of contacts would
+// get its inverse as a compliance; they take efforts of least norm in its place.
+constexpr double kKept = 1e-8;
+
+}  // namespace
+
 GeometricStiffness::GeometricStiffness(const Model& model,
                                        const constraint::Configuration& configuration,
                                        std::span<mechanics::StepSystem* const> systems,
@@ -32,9 +42,10 @@ GeometricStiffness::GeometricStiffness(const Model& model,
 void GeometricStiffness::begin(const mechanics::LinearisationRequest& request) {
   tangent_ = request.tangent;
   // In dynamics, inertia makes anchors unnecessary.
+  const double kept = model_.is_loose() && model_.contacts().empty() ? kKept : 0.0;
+  const double cancelled = request.weights.dynamic() ? 0.0 : 1.0 - kept;
   for (std::size_t k = 0; k < anchor_rows_; ++k) {
-    problem_.stiffness[k].stiffness =
-        request.weights.dynamic() ? 0.0 : -model_.anchors()[k / 3].stiffness;
+    problem_.stiffness[k].stiffness = -cancelled * model_.anchors()[k / 3].stiffness;
   }
 }
 
@@ -113,7 +124,8 @@ void GeometricStiffness::add_anchors() {
     const auto& [row, stiffness] = problem_.stiffness[k];
     if (stiffness == 0.0) continue;
     const auto entry = model_.rows().row_start[static_cast<std::size_t>(row)];
-    add_to({model_.rows().site[static_cast<std::size_t>(entry)]}, stiffness * Matrix3::Identity());
+    add_to({model_.rows().site[static_cast<std::size_t>(entry)]},
+           -model_.anchors()[k / 3].stiffness * Matrix3::Identity());
   }
 }
 

@@ -20,6 +20,8 @@ constexpr double kLighter = 0.25;  // factor of sigma after an easy step
 constexpr double kHeavier = 2.0;   // after a hard one
 // Smallest sigma relative to the first, at which all but neutral motions have come to rest.
 constexpr double kLightest = 1e-10;
+// A robot that has moved by this multiple of its size slides or falls without end.
+constexpr double kRunsAway = 10.0;
 constexpr double kHeaviest = 8.0;  // after a failed one
 constexpr int kMaxFailures = 8;    // in a row
 // A decreasing motion below this fraction of the robot's size per step is settling.
@@ -135,6 +137,8 @@ OverdampedMotion::End OverdampedMotion::relax(double sigma, double near) {
   run_.world.homotopy().set_fraction(0.0);
   int& steps = search_.report().relaxation_steps;
   const double least = kLightest * sigma;
+  const double largest = kRunsAway * run_.model->size();
+  const std::vector<Points> start = positions();
   double settled = kSettling * run_.model->size();
   double tolerance = kRelaxationTolerance;
   double moved_before = 0.0;
@@ -157,6 +161,7 @@ OverdampedMotion::End OverdampedMotion::relax(double sigma, double near) {
     if (!left_.empty() && moved_since(left_) < near) {
       return search_.equilibrate(0.0) ? End::returned : End::failed;
     }
+    if (!(moved_since(start) < largest)) break;
     const bool slows = moved < moved_before;
     if (slows && moved < settled) {
       if (arrives()) return End::arrived;

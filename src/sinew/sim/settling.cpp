@@ -78,6 +78,7 @@ void Settling::settle() {
     const auto ended = departures < kMaxDepartures ? motion_.leave(stability, disturbance)
                                                    : OverdampedMotion::End::failed;
     if (ended == OverdampedMotion::End::failed) {
+      if (run_.model->is_loose()) require_held();  // neutral motions may count as unstable
       fail(run_, ErrorKind::not_converged,
            fmt::format("the equilibrium is unstable in {} direction{} (negative pivots of the "
                        "exact tangent), and none that is stable was found from it in {} steps "
@@ -96,7 +97,18 @@ void Settling::settle() {
   }
 }
 
+// Points that slid until the robot came to rest may hold it by less than all of their friction,
+// which a solution from rest tells.
 void Settling::require_held() {
+  if (!run_.model->contacts().empty()) {
+    State rest;
+    run_.keep(rest);
+    const NewtonReport last = search_.last();
+    if (!search_.equilibrate(0.0)) {
+      run_.restore(rest);
+      search_.put_back(last);
+    }
+  }
   const FreeMotion free(search_);
   if (free.exists() && free.moves_centres() && !returns(free.motion())) {
     fail(run_, ErrorKind::singular_matrix, "the equilibrium is neutral: " + free.text(),
@@ -114,6 +126,7 @@ bool Settling::returns(const VectorX& motion) {
   if (run_.model->contacts().empty()) return false;
   State rest;
   run_.keep(rest);
+  const NewtonReport last = search_.last();
   const std::vector<Points> at = motion_.positions();
   Bodies& bodies = run_.world.bodies();
   search_.begin();
@@ -123,6 +136,7 @@ bool Settling::returns(const VectorX& motion) {
   motion_.relax_from_here();
   const bool back = motion_.moved_since(at) < kReturned * pushed;
   run_.restore(rest);
+  search_.put_back(last);
   search_.begin();
   return back;
 }
