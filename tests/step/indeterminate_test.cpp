@@ -78,6 +78,23 @@ TEST(Indeterminate, ABlockStandsOnAllItsPointsAlike) {
   }
 }
 
+// On a slope the lower corners carry most, and the chosen friction of the upper ones comes near its
+// limit. None of them counts as sliding, since none moves.
+TEST(Indeterminate, PointsAtRestDoNotCountAsSliding) {
+  for (const double slope : {0.1, 0.3, 0.4, 0.49}) {
+    RigidContacts scene = block_on_grid(2);
+    scene.push(0, {slope * RigidContacts::kGravity * RigidContacts::kStep, 0.0, 0.0});
+    const StepProblem problem = problem_of(scene, 0.5);
+    const VectorX force = forces_of(problem);
+    const VectorX motion = problem.delta_free + problem.compliance * force;
+    EXPECT_LT(motion.cwiseAbs().maxCoeff(), 1e-12) << slope;
+    for (const ContactBlock& block : problem.contacts) {
+      const Vector3 own = force.segment<3>(block.row);
+      EXPECT_FALSE(own[0] > 0.0 && qp::slides(own, block.friction)) << slope;
+    }
+  }
+}
+
 // Each corner of the tower carries a quarter of what lies above, whatever gaps and forces were
 // before, and in whichever order the points come.
 TEST(Indeterminate, ATowerStandsOnItsCornersAlikeInAnyOrder) {
