@@ -98,11 +98,11 @@ def test_a_large_pressure_is_divided_by_itself():
     assert at_once.iterations <= 3 * halves
 
 
-@pytest.mark.parametrize("pressure", [7e3, 12e3, 40e3])
+@pytest.mark.parametrize("pressure", [7e3, 20e3])
 def test_a_pressure_beyond_the_limit_point_is_named(pressure):
     sim = finger(pressure)
     with pytest.raises(sinew.RunError, match="chamber 'air' has no equilibrium at .* kPa.*limit point") as error:
         sim.solve_static()
     named = float(str(error.value).split("about ")[1].split(" kPa")[0])
-    path = finger(pressure).follow_path(max_points=60)
+    path = finger(pressure).follow_path(max_points=30)
     assert named == pytest.approx(1e-3 * pressure * path["limit_load"], rel=0.01)

@@ -98,7 +98,6 @@ NewtonSettings NewtonStep::settings(double time_step) const {
 NewtonSettings NewtonStep::settings_of_part(double time_step) const {
   NewtonSettings part = settings(time_step);
   part.max_iterations = std::min(part.max_iterations, kIterationsOfPart);
-  part.max_idle = max_idle(*run_.model);
   return part;
 }
 

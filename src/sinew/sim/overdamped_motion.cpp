@@ -27,6 +27,7 @@ constexpr int kMaxFailures = 8;    // in a row
 // A decreasing motion below this fraction of the robot's size per step is settling.
 constexpr double kSettling = 0.02;
 constexpr double kLater = 0.25;
+constexpr double kNearRest = 1e-5;  // of the robot's size per step
 // Distance to the equilibrium that was left, relative to the disturbance, at which the state has
 // returned.
 constexpr double kBack = 0.1;
@@ -166,7 +167,11 @@ OverdampedMotion::End OverdampedMotion::relax(double sigma, double near) {
     if (slows && moved < settled) {
       if (arrives()) return End::arrived;
       settled = kLater * moved;
-      tolerance = search_.settings().tolerance;  // the motion must find the rest by itself
+      // Where Newton's method cannot, the motion must find the rest by itself.
+      const bool alone = run_.model->is_loose() ||
+                         search_.last().status == NewtonStatus::singular ||
+                         moved < kNearRest * run_.model->size();
+      if (alone) tolerance = search_.settings().tolerance;
     }
     moved_before = moved;
     // While the robot moves away from left_, less inertia could let a step overshoot.
