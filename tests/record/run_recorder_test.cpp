@@ -564,7 +564,8 @@ TEST_F(RunRecorderTest, AFullDiskEndsTheRunAndKeepsTheRecord) {
   sim::Simulation simulation(beam());
   record_pull(simulation, settings(), 3);
   const std::string before = text(folder_ / "run" / "run.h5");
-  std::vector<rlim_t> sizes = {0, 100, 2000, 4096, 10000};
+  // The limit holds for files in memory, too, to which HDF5 writes some kB when it closes the file.
+  std::vector<rlim_t> sizes = {10000};
   for (rlim_t size = before.size() / 8; size < 3 * before.size(); size += before.size() / 8) {
     sizes.push_back(size);
   }
