@@ -10,13 +10,13 @@
 namespace sinew::collision {
 namespace {
 
-struct Pair {
+struct RoundPair {
   const char* name;
   Shape first, second;
 };
 
 // Pairs in contact or slightly apart, one of them round.
-std::vector<Pair> pairs() {
+std::vector<RoundPair> round_pairs() {
   const Matrix3 tilted = Eigen::AngleAxisd(0.3, Vector3(1.0, 2.0, 0.5).normalized()).matrix();
   const Sphere ball{{0.1, -0.2, 1.01}, 1.0};
   const Plane floor{};
@@ -31,7 +31,7 @@ std::vector<Pair> pairs() {
           {"leaning disc on plane", Cylinder{{0.0, 0.0, 1.0}, {0.2, 0.0, 1.05}, 0.9}, floor}};
 }
 
-Eigen::Isometry3d motion(double size) {
+Eigen::Isometry3d small_motion(double size) {
   Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
   result.translate(size * Vector3(0.4, -0.3, 0.2));
   result.rotate(Eigen::AngleAxisd(size, Vector3(0.5, 1.0, -0.7).normalized()));
@@ -39,7 +39,7 @@ Eigen::Isometry3d motion(double size) {
 }
 
 // The deepest contact point of two shapes.
-TouchingPoint deepest(const Shape& first, const Shape& second) {
+TouchingPoint deepest_point(const Shape& first, const Shape& second) {
   TouchingPoint best;
   best.gap = kInfinity;
   for (const TouchingPoint& point : touching_points(first, second, kInfinity)) {
@@ -50,13 +50,13 @@ TouchingPoint deepest(const Shape& first, const Shape& second) {
 
 // Two moved features touch where the moved shapes do: an independent search.
 TEST(TouchingFeature, FollowsTheShapes) {
-  for (const Pair& pair : pairs()) {
-    const TouchingPoint at = deepest(pair.first, pair.second);
+  for (const RoundPair& pair : round_pairs()) {
+    const TouchingPoint at = deepest_point(pair.first, pair.second);
     const auto first = touching_feature(pair.first, at.on_first, -at.normal);
     const auto second = touching_feature(pair.second, at.on_second, at.normal);
     for (const double size : {0.0, 0.02, 0.1}) {
-      const auto expected = deepest(moved(pair.first, motion(size)), pair.second);
-      const auto place = turned_place(first.moved(motion(size)), second, at.normal);
+      const auto expected = deepest_point(moved(pair.first, small_motion(size)), pair.second);
+      const auto place = turned_place(first.moved(small_motion(size)), second, at.normal);
       EXPECT_NEAR(place.gap, expected.gap, 1e-9) << pair.name << ", " << size;
       EXPECT_LT((place.normal - expected.normal).norm(), 1e-6) << pair.name << ", " << size;
       EXPECT_LT((place.on_first - expected.on_first).norm(), 1e-6) << pair.name << ", " << size;
@@ -69,13 +69,13 @@ TEST(TouchingFeature, FollowsTheShapes) {
 // differences.
 TEST(TouchingFeature, GapHasTheNormalAsGradient) {
   constexpr double kSmall = 1e-5;
-  for (const Pair& pair : pairs()) {
-    const TouchingPoint at = deepest(pair.first, pair.second);
+  for (const RoundPair& pair : round_pairs()) {
+    const TouchingPoint at = deepest_point(pair.first, pair.second);
     const auto first = touching_feature(pair.first, at.on_first, -at.normal);
     const auto second = touching_feature(pair.second, at.on_second, at.normal);
-    const double after = turned_place(first.moved(motion(kSmall)), second, at.normal).gap;
-    const double before = turned_place(first.moved(motion(-kSmall)), second, at.normal).gap;
-    const Vector3 moved = motion(kSmall) * at.on_first - motion(-kSmall) * at.on_first;
+    const double after = turned_place(first.moved(small_motion(kSmall)), second, at.normal).gap;
+    const double before = turned_place(first.moved(small_motion(-kSmall)), second, at.normal).gap;
+    const Vector3 moved = small_motion(kSmall) * at.on_first - small_motion(-kSmall) * at.on_first;
     EXPECT_NEAR((after - before) / (2.0 * kSmall), at.normal.dot(moved) / (2.0 * kSmall), 1e-6)
         << pair.name;
   }
