@@ -123,7 +123,7 @@ TEST(PathContact, ABeamIsLaidDownAndLifted) {
   const double size = model->size();
   double down = 0.0, up = 0.0;  // N, at the start
   std::vector<int> touching;
-  for (const auto& [next_down, next_up] : {std::pair{14.0, 0.0}, std::pair{0.0, 4.0}}) {
+  for (const auto& [next_down, next_up] : {std::pair{12.0, 0.0}, std::pair{0.0, 4.0}}) {
     path.command(2, tension(next_down));
     path.command(0, tension(next_up));
     const Followed all = follow(path, {});

@@ -48,7 +48,7 @@ bool HomotopyPath::advance(PathStep& step) {
     if (run_.watch.iterations() - first > kMaxIterations) break;
     const int iterations = step.take(length);
     if (iterations == 0) {
-      length = step.shortened(length);
+      length = 0.5 * std::min(length, step.length());
       ++halvings;
       continue;
     }
@@ -57,13 +57,11 @@ bool HomotopyPath::advance(PathStep& step) {
       turned = true;
       step.undo();
       if (change.peak() - change.from.load_fraction <= kNear * change.peak()) break;
-      length = step.shortened(length);
+      length = 0.5 * step.length();
       continue;
     }
     run_.world.bodies().end_step({});
-    const double base = step.is_by_load() ? length : step.length();
-    const double next = base * std::clamp(kWantedIterations / iterations, 0.5, 2.0);
-    step.lengthen();
+    const double next = step.length() * std::clamp(kWantedIterations / iterations, 0.5, 2.0);
     length = std::min(kLongest * size, next);
   }
   return turned;

@@ -65,7 +65,7 @@ int PathFollower::take(PathStep& step, double& length) {
   for (int halving = 0; halving <= kMaxPathHalvings; ++halving) {
     const int iterations = step.take(length);
     if (iterations > 0) return iterations;
-    length = step.shortened(length);
+    length = 0.5 * std::min(length, step.length());
   }
   return 0;
 }
@@ -82,15 +82,14 @@ bool PathFollower::advance(PathStep& step, double& length) {
     const bool passes = step.change().bifurcates();
     if (!passes || step.change().is_narrow() || halving == kMaxBisections) {
       bisects_ = bisects_ && !passes;
-      const double base = step.is_by_load() ? length : step.length();
-      const double next = base * std::clamp(kWantedIterations / iterations, 0.5, 2.0);
-      length = std::min(bisects_ ? base : longest, next);
-      if (!bisects_) step.lengthen();
+      const double next = step.length() * std::clamp(kWantedIterations / iterations, 0.5, 2.0);
+      length = std::min(bisects_ ? step.length() : longest, next);
+      length = std::max(length, kShortest * run_.model->size());
       return true;
     }
     step.undo();
     bisects_ = true;
-    length = step.shortened(length);
+    length = 0.5 * step.length();
   }
 }
 

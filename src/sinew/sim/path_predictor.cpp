@@ -107,15 +107,13 @@ bool PathPredictor::predict(const HeldAnswer& by_rest, const HeldAnswer& by_load
     const double left = path.look_ahead();
     const double full = path.direction() > 0.0 ? bounds.load_rise - result.load_fraction
                                                : bounds.load_fall + result.load_fraction;
-    const double far = way_until(moved, edge.motion, bounds.length);
-    const double by = std::min({left, full, far});
+    const double by = std::min({left, full, way_until(moved, edge.motion, bounds.length)});
     const double largest = edge.motion.cwiseAbs().maxCoeff();
     if (!(by < kInfinity) || !(largest > 0.0)) return false;
     path.advance(by);
     moved += by * edge.motion;
     result.length = moved.cwiseAbs().maxCoeff();
-    result.by_load = full < far;
-    result.origin = moved - bounds.length / largest * edge.motion;
+    result.origin = moved - result.length / largest * edge.motion;
     result.load_fraction += by * path.direction();
     result.answer.motion += by * edge.motion;
     result.answer.efforts += by * edge.efforts;

@@ -17,7 +17,6 @@ struct PathPrediction {
   VectorX origin;              ///< start of a straight step with this end, direction and length
   double load_fraction = 0.0;  ///< increment of the load fraction
   double length = 0.0;         ///< m, largest motion in any coordinate by the load
-  bool by_load = false;        ///< whether a bound of the load ended it
 };
 
 /// Bounds of a prediction; it ends at the first that it reaches.

@@ -34,8 +34,7 @@ constexpr double kDiagonal = 1.75;  // > sqrt(3), bound of a 3D motion over its 
 
 PathBounds PathStep::bounds(double length) const {
   const double left = std::max(1.0 + kBeyond - load_fraction_, kBeyond);
-  const double most = load_share_ * kPredictedLoad;
-  return {length, std::min(most, left), most};
+  return {length, std::min(kPredictedLoad, left), kPredictedLoad};
 }
 
 // r at a load fraction; the bodies stay linearised there.
@@ -112,7 +111,6 @@ bool PathStep::predict(const VectorX& here, const VectorX& ahead, double length)
   moved_.setZero(by_load.motion.size());
   origin_ = prediction.origin;
   length_ = prediction.length;
-  by_load_ = prediction.by_load;
   predicted_ = prediction.answer.motion;
   move(prediction.answer.motion, prediction.load_fraction);
   push(motions.rows(), prediction.answer.efforts);
@@ -259,7 +257,6 @@ int PathStep::take(double length) {
   change_.from = last.to;
   moved_.resize(0);
   length_ = length;
-  by_load_ = false;
   const int iterations = try_length(length);
   if (iterations > 0) {
     change_.length = moved_.norm();
@@ -271,12 +268,6 @@ int PathStep::take(double length) {
     change_ = last;
   }
   return iterations;
-}
-
-double PathStep::shortened(double length) {
-  if (!by_load_) return 0.5 * std::min(length, length_);
-  load_share_ *= 0.5;
-  return length;
 }
 
 void PathStep::undo() {

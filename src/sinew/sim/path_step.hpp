@@ -2,7 +2,6 @@
 /// One step of given length along a path of equilibria.
 #pragma once
 
-#include <algorithm>
 #include <functional>
 #include <span>
 #include <utility>
@@ -69,13 +68,6 @@ class PathStep {
   /// m, largest motion in any coordinate that the last step predicted: at most the length that was
   /// asked for, and less where the load bounds it.
   double length() const { return length_; }
-  /// Whether a bound of the load ended the last prediction.
-  bool is_by_load() const { return by_load_; }
-  /// Halves the bound that ended the last prediction: a bound of the load remains in the step.
-  /// @param length m, of the last step. @return m, length of a shorter one.
-  double shortened(double length);
-  /// Doubles the bound of the load again.
-  void lengthen() { load_share_ = std::min(1.0, 2.0 * load_share_); }
 
  private:
   int try_length(double length);
@@ -103,8 +95,6 @@ class PathStep {
   PathPlace earlier_;           // the point before change_.from
   VectorX predicted_;           // motion
   double length_ = 0.0;
-  bool by_load_ = false;
-  double load_share_ = 1.0;                   // of the bound of the load
   std::vector<step::ContactBlock> touching_;  // of the problem
   VectorX moved_;                             // motion since the step began
   VectorX origin_;                            // start of D, relative to that of the step
