@@ -175,7 +175,7 @@ TEST(Passing, ImpactsAreThoseOfThePlaceWhereTheyHappen) {
       Simulation& simulation = *flown;
       while (!(simulation.contacts().resultant(0).normal_force > 0.0)) {
         ASSERT_LT(simulation.time(), 0.05);
-        simulation.step();
+        simulation.step(OnFailure::keep_going);  // one linearisation leaves 13 % of the forces
       }
       double most = 0.0;
       Vector3 normal = Vector3::Zero();

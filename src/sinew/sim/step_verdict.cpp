@@ -21,8 +21,7 @@ bool is_balanced(const Run& run) {
   if (run.model->step().method == Method::newton) {
     return report.newton == NewtonStatus::converged;
   }
-  return report.relative_residual <= kLag.residual &&
-         report.distance <= kLag.move * run.model->size();
+  return report.relative_residual <= kLag.residual;
 }
 
 bool reactions_balance(Run& run) {

@@ -9,7 +9,8 @@ namespace sinew::sim {
 struct Run;
 
 /// Whether forces balance at the end of the step that the report of a run describes: Newton's
-/// method decides. One linearisation must leave no more than following steps do.
+/// method decides. One linearisation must leave no larger residual than
+/// following steps do; the bound of its distance is reported.
 bool is_balanced(const Run& run);
 /// Whether the reactions of what is fixed balance the loads, contacts and joints in a quasi-static
 /// step, in force and moment. This takes no search at its word: the resultant is summed from the
