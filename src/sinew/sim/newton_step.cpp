@@ -90,8 +90,8 @@ NewtonSettings NewtonStep::settings(double time_step) const {
   if (follows()) result.lag = kLag;
   if (lasts && !step.tolerance) result.stalled_tolerance = kStalledTolerance;
   result.strict = !step.tolerance;
-  // Between surfaces, every iteration searches for points, which costs more than a factor saves.
-  result.keeps_factor = !run_.world.contacts().may_find_points();
+  // With contacts, every iteration may find points and change their states, which needs W anew.
+  result.keeps_factor = run_.model->contacts().empty();
   return result;
 }
 
