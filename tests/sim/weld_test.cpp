@@ -155,7 +155,9 @@ TEST(Weld, StandsBesideContactAndFrictionOfCables) {
       simulation->command(0, effort(0.05 * k));
       EXPECT_EQ(simulation->step().status, StepStatus::solved) << k;
     }
-    EXPECT_LT((tip_of(cut) - tip_of(whole)).norm(), 1e-6 * kBeamLength) << k;
+    // Friction amplifies the differences of the two solutions where a point begins to touch.
+    const bool touches = whole.contacts().resultant(0).normal_force > 0.0;
+    EXPECT_LT((tip_of(cut) - tip_of(whole)).norm(), (touches ? 1e-5 : 1e-6) * kBeamLength) << k;
   }
   EXPECT_GT(whole.contacts().resultant(0).normal_force, 0.0);
   EXPECT_NEAR(cut.contacts().resultant(0).normal_force, whole.contacts().resultant(0).normal_force,

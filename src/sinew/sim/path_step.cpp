@@ -127,10 +127,13 @@ bool PathStep::correct(const VectorX& here, const VectorX& ahead) {
   VectorX forces, forces_by_load;
   contacts.solve(here, true, answer, forces);
   contacts.solve(ahead - here, false, by_load, forces_by_load);
-  const VectorX normal = moved_ - origin_;
-  const double along = normal.dot(by_load.motion);
-  if (along == 0.0) return false;
-  const double by = -normal.dot(answer.motion) / along;
+  double by = 0.0;
+  if (!is_still()) {
+    const VectorX normal = moved_ - origin_;
+    const double along = normal.dot(by_load.motion);
+    if (along == 0.0) return false;
+    by = -normal.dot(answer.motion) / along;
+  }
   move(answer.motion + by * by_load.motion, by);
   push(motions.rows(), answer.efforts + by * by_load.efforts);
   push(contacts.rows(), forces + by * forces_by_load);
@@ -262,6 +265,7 @@ int PathStep::take(double length) {
     change_.length = moved_.norm();
     earlier_ = last.from;
     direction_before_ = std::exchange(direction_, moved_ - origin_);
+    if (is_still()) direction_.resize(0);
   } else {
     run_.restore(run_.before);
     load_fraction_ = last.to.load_fraction;
@@ -269,6 +273,10 @@ int PathStep::take(double length) {
   }
   return iterations;
 }
+
+// Where a load moves nothing, as on a point that it presses onto a surface, the step is one of the
+// load, and its motion, which is rounding, has no direction.
+bool PathStep::is_still() const { return length_ <= kNothing * run_.model->size(); }
 
 void PathStep::undo() {
   run_.restore(run_.before);

@@ -81,6 +81,7 @@ class PathStep {
   std::vector<step::HeldRow> joints_and_sticking() const;
   void move(const VectorX& motion, double load_fraction);
   void push(std::span<const step::HeldRow> held, const VectorX& efforts);
+  bool is_still() const;
   bool is_sound();
   bool is_path_point();
   bool stays_on_path() const;
