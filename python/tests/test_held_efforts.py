@@ -50,7 +50,7 @@ def test_the_torque_of_a_motor_that_follows_a_sine(integrator):
     error = np.abs(np.array(torque) - exact)[600:].max()
     if integrator in ("backward-euler", "event-driven"):
         # The acceleration of backward Euler, which event-driven steps use for commanded motions, is that of a step before: w h.
-        assert error < 1.1 * 2 * np.pi * 1e-3 * np.abs(inertial).max()
+        assert error < 1.3 * 2 * np.pi * 1e-3 * np.abs(inertial).max()
     else:
         assert error < 3e-3 * np.abs(exact).max()
 

@@ -91,7 +91,9 @@ NewtonSettings NewtonStep::settings(double time_step) const {
   if (lasts && !step.tolerance) result.stalled_tolerance = kStalledTolerance;
   result.strict = !step.tolerance;
   // With contacts, every iteration may find points and change their states, which needs W anew.
-  result.keeps_factor = run_.model->contacts().empty();
+  // In dynamics, efforts that hold a motion inherit its error times M/h^2: the last iterations of
+  // Newton's method leave much less of it than the tolerance, those with an old factor just less.
+  result.keeps_factor = run_.model->contacts().empty() && !step.dynamic();
   return result;
 }
 
