@@ -41,19 +41,21 @@ struct TouchingPlace {
 };
 
 /// (3,) m: the point of a feature that is farthest in a direction; of a face, its own point.
-/// @param direction (3,) unit length.
+/// @param feature of a shape. @param direction (3,) unit length.
 Vector3 farthest_point(const TouchingFeature& feature, const Vector3& direction);
 
 /// The place at which two features touch, seen along a given normal: their farthest points towards
-/// each other. The point of a face is opposite that of the other feature. @param normal (3,) unit
-/// length, from the second feature towards the first.
+/// each other. The point of a face is opposite that of the other feature.
+/// @param first,second features of two shapes. @param normal (3,) unit length, from the second
+/// feature towards the first.
 TouchingPlace touching_place(const TouchingFeature& first, const TouchingFeature& second,
                              const Vector3& normal);
 /// The same with the normal of the features: that of a face, the direction between the centres of
 /// balls, or between the nearest points of lines. The gap is then the distance, and its gradient
 /// with respect to the motions of the two points of contact is the normal. Where the features have
 /// no such normal (two corners, a rim on a ball), `near` is kept.
-/// @param near (3,) unit length, a normal that is less than 90 degrees away.
+/// @param first,second features of two shapes. @param near (3,) unit length, a normal that is less
+/// than 90 degrees away.
 TouchingPlace turned_place(const TouchingFeature& first, const TouchingFeature& second,
                            const Vector3& near);
 

@@ -21,7 +21,8 @@ struct UsualRange {
 /// The range of a dimension: pressures (and moduli), densities, stiffnesses, masses; else null.
 const UsualRange* usual_range(Dimension dimension);
 
-/// Whether a number other than 0 is outside the range. @param value SI; its sign does not count.
+/// Whether a number other than 0 is outside a range. @param range of its dimension.
+/// @param value SI; its sign does not count.
 bool is_unusual(const UsualRange& range, double value);
 
 /// The notice about such a number. @param range,value the number. @param written as the user wrote

@@ -36,10 +36,13 @@ class BodyRows {
                       MatrixX& compliance, VectorX& free_motion) const;
   /// Whether any transient row is active.
   bool has_transient() const { return transient_.rows() > 0; }
-  /// Adds the factor's H A^-1 b of the persistent rows. @param row_motion (rows of the problem,).
+  /// Adds the factor's H A^-1 b of the persistent rows. @param problem_row see
+  /// mechanics::StepSystem. @param workspace see the class. @param row_motion (rows of the
+  /// problem,).
   void add_free_motion(std::span<const int> problem_row, const SystemWorkspace& workspace,
                        VectorX& row_motion) const;
-  /// Adds H motion. @param motion (3 free,) m. @param row_motion (rows of the problem,).
+  /// Adds H motion. @param problem_row,workspace as before. @param motion (3 free,) m.
+  /// @param row_motion (rows of the problem,).
   void add_motions(std::span<const int> problem_row, const SystemWorkspace& workspace,
                    const VectorX& motion, VectorX& row_motion) const;
   /// Efforts of the persistent rows, in the order of the factorisation's border.

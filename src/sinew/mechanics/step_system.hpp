@@ -131,7 +131,10 @@ class StepSystem {
   /// the reactions of fixed nodes lack to balance all loads, contacts and joints. Zero for bodies
   /// whose coordinates are not displacements, which are held as a whole. @param effort (all rows,)
   /// N. @param about (3,) m, the point of the moment.
-  virtual Wrench unbalanced(std::span<const double>, const Vector3&) { return {}; }
+  virtual Wrench unbalanced([[maybe_unused]] std::span<const double> effort,
+                            [[maybe_unused]] const Vector3& about) {
+    return {};
+  }
   /// Scale of the residual of the last linearisation, N: the sum of the norms of internal and
   /// external forces, plus the force of a negligible strain, so that it is not zero at rest.
   virtual double force_scale() const = 0;

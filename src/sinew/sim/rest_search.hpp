@@ -36,8 +36,8 @@ class RestSearch {
 };
 
 /// Throws Error(singular-matrix) after a quasi-static step that found no equilibrium, if a motion
-/// is free, with its name; also if the matrix is singular for another reason. @param status of the
-/// search that failed. @param time_step s.
+/// is free, with its name; also if the matrix is singular for another reason. @param run in
+/// the state where the search ended. @param status of the search that failed. @param time_step s.
 void fail_if_free(Run& run, NewtonStatus status, double time_step);
 
 }  // namespace sinew::sim

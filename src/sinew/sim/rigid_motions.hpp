@@ -43,7 +43,8 @@ class BodyParts {
 /// on which they vanish.
 class RigidMotions {
  public:
-  /// All must outlive it. @param parts of all bodies of `data`. @param bodies those that may move.
+  /// All must outlive it. @param data with the bodies. @param parts of all bodies of `data`. @param
+  /// bodies those that may move.
   RigidMotions(const ModelData& data, const std::vector<BodyParts>& parts,
                const std::vector<int>& bodies);
 
@@ -59,7 +60,7 @@ class RigidMotions {
   /// (columns, k) the motions that nothing holds, orthonormal.
   MatrixX free_motions() const;
   /// (parts,) whether each part of a body moves in one of some motions; empty for a body that may
-  /// not move. @param free result of free_motions().
+  /// not move. @param body its index. @param free result of free_motions().
   std::vector<char> moving_parts(int body, const MatrixX& free) const;
 
  private:

@@ -20,7 +20,8 @@ class World;
 /// @param problem,effort of the equilibrium.
 std::vector<step::HeldRow> held_rows(const step::StepProblem& problem,
                                      std::span<const double> effort);
-/// The same of a world's problem. @param effort (rows,) N, of all rows of the world.
+/// The same of a world's problem. @param world at the equilibrium. @param effort (rows,) N, of all
+/// rows of the world.
 std::vector<step::HeldRow> held_rows(const World& world, std::span<const double> effort);
 
 /// (size,) pseudo-random numbers in [-1, 1), always the same: a vector without symmetry, which
