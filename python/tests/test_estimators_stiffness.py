@@ -92,10 +92,11 @@ def test_a_change_of_stiffness_is_outside_work():
 @pytest.mark.parametrize("method", ["newton", "one-linearisation"])
 def test_a_factor_that_is_taken_back_has_no_effect(method):
     """Energies that were read at another factor do not enter the next step."""
-    tree = beam("backward-euler", estimators={}, solver={"method": method})
+    # With time steps of 10 ms, one linearisation leaves a third of the forces of this undamped fall out of balance.
+    tree = beam("backward-euler", estimators={}, solver={"method": method}, time_step="2 ms")
     del tree["bodies"]["beam"]["damping"]
     sim = sinew.load(tree)
-    sim.step(5)
+    sim.step(25)
     clone = sim.clone()
     sim.body("beam").stiffness_factor = 2.0
     assert sim.ledger["strain_energy"] == pytest.approx(2.0 * clone.ledger["strain_energy"], rel=1e-9)

@@ -133,6 +133,19 @@ def module(integrator):
         "effectors": {"t": {"body": "b", "point": "0 0 50 mm"}}})
 
 
+def smallest_volume_ratio(body):
+    """The smallest det F at the eight Gauss points of trilinear hexahedra."""
+    rest, now = (np.array(p)[np.array(body.hexahedra)] for p in (body.rest_positions, body.positions))
+    corners = np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]])
+    smallest = np.inf
+    for point in corners / np.sqrt(3):
+        factors = (1 + corners * point) / 2
+        slopes = corners / 2 * np.stack([factors[:, 1] * factors[:, 2], factors[:, 2] * factors[:, 0], factors[:, 0] * factors[:, 1]], axis=1)
+        volumes = [np.linalg.det(np.einsum("eni,nj->eij", p, slopes)) for p in (now, rest)]
+        smallest = min(smallest, (volumes[0] / volumes[1]).min())
+    return smallest
+
+
 @pytest.mark.parametrize("integrator", ["quasi-static", "backward-euler", "bdf2"])
 @pytest.mark.parametrize("target", [[-2e-3, 1e-3, 52e-3], [2e-3, 0.0, 50e-3], [0.0, 0.0, 46e-3]])
 def test_a_controller_stays_sane(target, integrator):
@@ -147,5 +160,6 @@ def test_a_controller_stays_sane(target, integrator):
             assert sim.actuator("p").pressure >= -101325.0
             assert sim.actuator("p").volume > 0.05 * rest
             assert sim.body("b").element_field("max_stretch").max() < 3
-            assert sim.report.smallest_volume_ratio == pytest.approx(sim.body("b").element_field("volume_ratio").min(), abs=0.2)
+            # Means of elements (element_field) stay near 1 where a wall bulges: hex8 keeps them there.
+            assert sim.report.smallest_volume_ratio == pytest.approx(smallest_volume_ratio(sim.body("b")), rel=1e-9)
     assert ik.error < 1.2 * start

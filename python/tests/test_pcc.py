@@ -232,7 +232,7 @@ controllers:
     for _ in range(400):
         sim.step()
     # The remaining rotation is about z, whose error has no weight.
-    to_go = Rotation.from_rotvec([0.3, 0.25, 0]) * Rotation.from_rotvec(sim.effectors["section"].rotation).inv()
+    to_go = Rotation.from_rotvec([0.3, 0.25, 0]) * Rotation.from_rotvec(np.array(sim.effectors["section"].rotation)).inv()
     np.testing.assert_allclose(to_go.as_rotvec()[:2], 0, atol=1e-4)
 
 

@@ -52,6 +52,8 @@ def test_the_program_tells_runs_records_and_plots_it(scene, tmp_path):
         for heading, cell in row.items():
             if heading.rpartition(".")[2] in ("status", "controller") or heading.split(" ")[0].endswith("_command"):
                 continue
+            if heading == "distance [m]":  # NaN: not known, as in dynamic steps
+                continue
             assert np.isfinite(float(cell)), heading
     sinew("info", out / "run.h5")
     sinew("plot", out, "--out", tmp_path / "run.png")

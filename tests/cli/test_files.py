@@ -99,5 +99,5 @@ effectors:"""))
     meshio.Mesh(np.array(corners), [("triangle", np.array(faces))]).write(path.parent / "cavity.stl")
     told = sinew("info", path)
     assert told.returncode == DONE, told.stderr
-    assert "chamber air, 2.193 ml in 12 faces" in told.stdout
+    assert "chamber air, 2.193 ml in 96 faces" in told.stdout
     assert not re.search(r"\d{7}", told.stdout)

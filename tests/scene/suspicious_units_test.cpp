@@ -51,7 +51,8 @@ SceneDescription scene(const std::string& modulus, const std::string& density,
 TEST(SuspiciousUnits, NumbersWithUnitsOrOfUsualSizeAreFine) {
   for (const char* pressure :
        {"30 kPa", "30e3", "0", "30 Pa", "-20 kPa", "{ramp: {from: 10, to: 30e3, duration: 1 s}}",
-        "{steps: [[0 s, 0], [1 s, 5], [2 s, 2e4]]}", "{sine: {mean: 5 kPa, amplitude: 5, period: 1 s}}"}) {
+        "{steps: [[0 s, 0], [1 s, 5], [2 s, 2e4]]}",
+        "{sine: {mean: 5 kPa, amplitude: 5, period: 1 s}}"}) {
     EXPECT_TRUE(scene("450e3", "1070", pressure, "0.005").notices.empty()) << pressure;
   }
   EXPECT_TRUE(scene("450 Pa", "1 kg/m^3", "30 Pa", "42 kg").notices.empty());

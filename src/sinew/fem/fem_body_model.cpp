@@ -116,7 +116,9 @@ std::vector<NodeId> FemBodyModel::nodes_of(int point) const {
   return known ? attachment(point).nodes : std::vector<NodeId>();
 }
 
-bool FemBodyModel::is_loaded() const { return settings_.gravity.norm() > 0.0 || !added_loads_.empty(); }
+bool FemBodyModel::is_loaded() const {
+  return settings_.gravity.norm() > 0.0 || !added_loads_.empty();
+}
 
 Vector3 FemBodyModel::rest_position(int point) const {
   Vector3 position = Vector3::Zero();

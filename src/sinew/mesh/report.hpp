@@ -49,7 +49,7 @@ struct MeshReport {
   Components components;
   std::vector<LooseJoint> loose;        ///< result of loose_joints()
   std::vector<std::string> loose_text;  ///< each of them in words
-  std::vector<Defect> defects;  ///< result of find_defects()
+  std::vector<Defect> defects;          ///< result of find_defects()
 };
 
 /// Describes a mesh with or without defects. The number of reordered elements is that in

@@ -38,7 +38,8 @@ constexpr std::array kFiles = {"run.csv",    "run.h5",      "scene.yaml",
 fs::path with_folder(const fs::path& folder) {
   std::error_code problem;
   fs::create_directories(folder, problem);
-  if (problem) throw_unwritable(folder, problem.value());
+  if (problem == std::errc::no_space_on_device) throw_unwritable(folder, problem.value());
+  if (problem) unwritable(folder, problem.message());
   if (!fs::is_directory(folder)) unwritable(folder, "it is a file");
   if (::access(folder.c_str(), W_OK | X_OK) != 0) unwritable(folder, std::strerror(errno));
   return folder;

@@ -103,8 +103,9 @@ class Observables {
   /// - Energies, J: `strain_energy`, `kinetic_energy`, `gravity_energy`, `actuator_work`,
   ///   `outside_work`, `dissipation`, `numerical_loss`.
   /// - Report: `residual` N, `relative_residual`, `distance` m (StepReport), `iterations`,
-  ///   `substeps`, `scale`, `smallest_volume_ratio`, `snapped` (0 or 1); with contacts `contact_residual`,
-  ///   `contact_signorini` m and `contact_coulomb` m; with zones `contact_aggregation`; `status`.
+  ///   `substeps`, `scale`, `smallest_volume_ratio`, `snapped` (0 or 1); with contacts
+  ///   `contact_residual`, `contact_signorini` m and `contact_coulomb` m; with zones
+  ///   `contact_aggregation`; `status`.
   /// - Times of the computation, s: `time.step`, and `time.STAGE` for each stage.
   /// @param simulation must outlive the list.
   explicit Observables(Simulation& simulation);
