@@ -37,6 +37,9 @@ LEAST_ORDER, LARGEST_ORDER = 1.0, 6.0
 #: Rounding error of sums over some thousand nodes: smaller values count as zero. It applies to displacements relative to the
 #: largest coordinate, to rotations in rad, and to values of a robot that does not move, in SI units.
 _ROUNDING = 1e3 * float(np.finfo(float).eps)
+#: Richardson's extrapolation holds for meshes that are alike but for the size of their cells. Largest factor by which the number of
+#: elements may differ from that of such a mesh: rounding to even numbers of cells makes two cells four instead of three.
+_ALIKE = 1.2
 
 
 @dataclass(frozen=True)
@@ -128,8 +131,9 @@ def study(
 ) -> Study:
     """Runs a scene on its own meshes and on finer ones, and extrapolates the final values to zero element size.
 
-    The cells of primitive shapes become smaller by factors of 1.5, 2, 2.5, ...; tetrahedra of mesh files are split into eight
-    per level. The estimate needs meshes on which the differences shrink: see `Estimate.order`.
+    The cells of primitive shapes become smaller by factors of 1.5, 2, 2.5, ..., without those that numbers of cells, even for
+    tetrahedra, cannot follow: a block of two cells per edge has four, six, ... . Tetrahedra of mesh files are split into eight per
+    level. The estimate needs meshes on which the differences shrink: see `Estimate.order`.
 
     Parameters
     ----------
@@ -195,20 +199,33 @@ class _Refinement:
         if not self._bodies:
             raise Error("bad-argument", "convergence", "the scene has no body of finite elements", "use a scene with a mesh to refine")
         self._sizes = {name: _edge(self._first.body(name)) for name in self._bodies}
+        self._shrink = 1.0  # of the last mesh
 
     def load(self, k: int, before: Optional[Level]) -> Any:
         """The scene on its k-th mesh."""
         if k == 0:
             return self._first
-        shrink = 1.0 + 0.5 * k  # two cells become three, then four ...
+        usable = []  # how far each candidate is from being alike, its factor and the scene
         for _ in range(8):
+            self._shrink += 0.5  # two cells become three, then four ...
             for name in self._bodies:
-                self._refine(name, k, shrink)
+                self._refine(name, k, self._shrink)
             sim = _load(self._tree, None)
-            if before is None or _count(sim)[0] > 1.2 * before.elements:
+            if before is None or _count(sim)[0] > 1.2 * before.elements:  # else rounding gave the same whole numbers of cells
+                usable.append((self._unlikeness(sim), self._shrink, sim))
+            if len(usable) == 2 or (usable and usable[-1][0] < _ALIKE):
                 break
-            shrink *= 1.2  # rounding gave the same whole numbers of cells
+        if not usable:
+            return sim
+        _, self._shrink, sim = min(usable, key=lambda candidate: candidate[:2])
         return sim
+
+    def _unlikeness(self, sim: Any) -> float:
+        """Factor, >= 1, between the number of elements and that of a mesh refined alike in all directions; splitting is so always."""
+        if any("shape" not in self._tree["bodies"][name]["mesh"] for name in self._bodies):
+            return 1.0
+        ratio = _count(sim)[0] / (_count(self._first)[0] * self._shrink**3)
+        return max(ratio, 1.0 / ratio)
 
     def _refine(self, name: str, k: int, shrink: float) -> None:
         own = self._tree["bodies"][name]["mesh"]
