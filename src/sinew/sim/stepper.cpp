@@ -132,7 +132,10 @@ void Stepper::undo(bool opened_ledger) {
 void Stepper::step_in_parts() {
   const StepSettings& settings = run_.model->step();
   const double whole = settings.time_step;
-  const bool parts = settings.method == Method::newton && settings.dynamic();
+  // A controller would choose anew in each part, to close the whole gap: its choice is rejected for
+  // the whole step instead (Substep::solve).
+  const bool steered = run_.controller != nullptr;
+  const bool parts = settings.method == Method::newton && settings.dynamic() && !steered;
   double length = parts ? first_part() : 1.0, next = kLonger * run_.next_step;
   if (length == 1.0) {
     try {
