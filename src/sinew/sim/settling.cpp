@@ -63,6 +63,8 @@ void Settling::follow_surfaces() {
 void Settling::settle() {
   double disturbance = kDisturbance;
   StaticReport& report = search_.report();
+  State rest;  // before the first departure
+  NewtonReport last;
   for (int departures = 0;; ++departures) {
     // Needs the tangent at this state, not at the last iterate.
     search_.begin();
@@ -75,10 +77,18 @@ void Settling::settle() {
     report.negative_pivots = stability.negative_pivots();
     report.stable = report.negative_pivots == 0;
     if (report.stable || search_.settings().stability == StabilityChoice::any) return;
+    if (departures == 0) {
+      run_.keep(rest);
+      last = search_.last();
+    }
     const auto ended = departures < kMaxDepartures ? motion_.leave(stability, disturbance)
                                                    : OverdampedMotion::End::failed;
     if (ended == OverdampedMotion::End::failed) {
-      if (run_.model->is_loose()) require_held();  // neutral motions may count as unstable
+      if (run_.model->is_loose()) {  // neutral motions may count as unstable
+        run_.restore(rest);
+        search_.put_back(last);
+        require_held();
+      }
       fail(run_, ErrorKind::not_converged,
            fmt::format("the equilibrium is unstable in {} direction{} (negative pivots of the "
                        "exact tangent), and none that is stable was found from it in {} steps "
