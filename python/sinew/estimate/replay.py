@@ -87,7 +87,7 @@ def settled(twin: Twin, record: Record, commanded: Mapping[str, str],
     -------
     tuple of dict of str to (n,) ndarray, list of Estimate
         "time [s]", each unknown and its ".std", "chi_squared", "probability", "status" ("converged", "iteration-limit",
-        "no-readings", "not-converged"); NaN without an estimate.
+        "stalled", "no-readings", "not-converged"); NaN without an estimate.
     """
     commands, names = _commands(record, commanded), twin.inputs[:twin.asked]
     rows: list[Optional[Estimate]] = []

@@ -17,6 +17,7 @@ from .twin import Twin
 
 __all__ = ["Estimate", "Observability", "observability", "solve"]
 
+_FIRST_RADIUS = 1.0  # of trust, in standard deviations of the prior
 _SEEN = 1.0  # singular value above which readings outweigh the prior
 
 
@@ -81,7 +82,8 @@ class Estimate:
         log p(readings | model), by Laplace's approximation.
     iterations : int
     status : str
-        "converged" or "iteration-limit".
+        "converged"; "iteration-limit"; or "stalled": no shorter step lowers the cost, because the model has no equilibrium in
+        that direction, or because of rounding. The estimate is then the best point that was found.
     positions : dict of str to (n, 3) ndarray
         Nodes of all bodies, m.
     """
@@ -168,6 +170,10 @@ class _Problem:
         """(seen,) whitened residual; moves the model."""
         return np.linalg.solve(self.lower, self.numbers - self.twin.predict(self.mean + self.std * v)[self.seen])
 
+    def keep(self, v: np.ndarray) -> tuple:
+        """The model at its present equilibrium; see Twin.keep()."""
+        return self.twin.keep(self.mean + self.std * v)
+
     def jacobian(self, v: np.ndarray) -> np.ndarray:
         """(seen, k) derivative of L^-1 h with respect to v at the present state of the model."""
         return np.linalg.solve(self.lower, self.twin.sensitivity(self.mean + self.std * v)[self.seen] * self.std)
@@ -177,43 +183,92 @@ def _cost(residual: np.ndarray, v: np.ndarray) -> float:
     return 0.5 * float(residual @ residual + v @ v)
 
 
+def _begin(problem: _Problem, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The start and its residual. A start without an equilibrium is replaced by one nearer to the prior mean."""
+    for share in (1.0, 0.5, 0.0):
+        try:
+            return share * v, problem.residual(share * v)
+        except RunError:
+            if share == 0.0 or not v.any():
+                raise
+    raise AssertionError
+
+
+class _Model:
+    """Quadratic model of the cost about a point: |r - J s|^2 / 2 + |v + s|^2 / 2."""
+
+    def __init__(self, jacobian: np.ndarray, residual: np.ndarray, v: np.ndarray) -> None:
+        self.jacobian, self.residual, self.v = jacobian, residual, v
+        self.values, self.axes = np.linalg.eigh(jacobian.T @ jacobian + np.eye(len(v)))
+        self.slope = self.axes.T @ (jacobian.T @ residual - v)
+
+    def step(self, radius: float) -> np.ndarray:
+        """The minimum within a ball (Nocedal & Wright, Numerical Optimization, 2006, sec. 4.3): (A + mu 1) s = g, mu by
+        bisection."""
+        whole = self.slope / self.values
+        if np.linalg.norm(whole) <= radius:
+            return self.axes @ whole
+        low, high = 0.0, float(np.linalg.norm(self.slope)) / radius
+        for _ in range(60):
+            damping = 0.5 * (low + high)
+            longer = np.linalg.norm(self.slope / (self.values + damping)) > radius
+            low, high = (damping, high) if longer else (low, damping)
+        return self.axes @ (self.slope / (self.values + high))
+
+    def decrease(self, step: np.ndarray) -> float:
+        return _cost(self.residual, self.v) - _cost(self.residual - self.jacobian @ step, self.v + step)
+
+
 def _descend(problem: _Problem, v: np.ndarray, max_iterations: int, tolerance: float):
-    """Gauss-Newton; steps are halved until the cost decreases and the equilibrium exists."""
-    residual = problem.residual(v)
-    cost, status = _cost(residual, v), "iteration-limit"
+    """Gauss-Newton steps within a ball of trust, whose radius is first one standard deviation of the prior: larger steps leave
+    the range in which the linearisation, and maybe the equilibrium, exists. Ends with the model at the result."""
+    v, residual = _begin(problem, v)
+    cost, status, radius = _cost(residual, v), "iteration-limit", _FIRST_RADIUS
     for iteration in range(1, max_iterations + 1):  # noqa: B007
-        jacobian = problem.jacobian(v)
-        step = np.linalg.solve(jacobian.T @ jacobian + np.eye(len(v)), jacobian.T @ residual - v)
-        foreseen = cost - _cost(residual - jacobian @ step, v + step)
-        scale = 1.0
-        while True:
-            try:
-                trial = problem.residual(v + scale * step)
-                if _cost(trial, v + scale * step) <= cost - 1e-4 * scale * foreseen:
-                    break
-            except RunError:
-                trial = None
-            scale *= 0.5
-            if scale < 1e-3:
-                break
-        if scale < 1e-3:  # limited by rounding, or there is no equilibrium in this direction
-            residual = problem.residual(v)
-            status = "converged" if foreseen < 1e-6 * (1.0 + cost) else "iteration-limit"
+        kept = problem.keep(v)
+        model = _Model(problem.jacobian(v), residual, v)
+        whole = model.step(math.inf)
+        foreseen = model.decrease(whole)
+        step, trial, radius = _trusted(problem, model, cost, radius)
+        if trial is None:  # limited by rounding, or there is no equilibrium in this direction
+            problem.twin.go_back(kept)
+            status = "converged" if foreseen < 1e-6 * (1.0 + cost) else "stalled"
             break
-        v, residual = v + scale * step, trial
+        v, residual = v + step, trial
         fell, cost = cost - _cost(residual, v), _cost(residual, v)
         # The length of the step in standard deviations of the estimate is sqrt(2 foreseen).
-        if foreseen < 0.5 * tolerance**2 or (scale == 1.0 and fell < 0.5 * tolerance**2):
-            status = "converged"
+        little = fell < 0.5 * tolerance**2
+        if foreseen < 0.5 * tolerance**2 or little:
+            free = np.linalg.norm(step) > 0.999 * np.linalg.norm(whole)
+            status = "converged" if foreseen < 0.5 * tolerance**2 or free else "stalled"
             break
     return v, residual, iteration, status
+
+
+def _trusted(problem: _Problem, model: _Model, cost: float, radius: float):
+    """A step that lowers the cost, the residual after it, and the radius for the next; no residual if none does."""
+    whole = float(np.linalg.norm(model.step(math.inf)))
+    radius = min(radius, whole) if whole > 0.0 else radius
+    smallest = 1e-3 * radius
+    while radius >= smallest:
+        step = model.step(radius)
+        foreseen = model.decrease(step)
+        try:
+            trial = problem.residual(model.v + step)
+            share = (cost - _cost(trial, model.v + step)) / foreseen if foreseen > 0.0 else 0.0
+            if share >= 1e-4:
+                return step, trial, radius * (2.0 if share > 0.75 else 1.0 if share > 0.25 else 0.5)
+        except RunError:
+            pass
+        radius *= 0.5
+    return np.zeros_like(model.v), None, radius
 
 
 def solve(twin: Twin, readings: Mapping[str, Any], *, start: Optional[Sequence[float]] = None, unobservable: str = "report",
           max_iterations: int = 30, tolerance: float = 1e-3, extra: Optional[np.ndarray] = None) -> Estimate:
     """Maximum a posteriori estimate of the unknowns from readings of a robot at rest.
 
-    Minimises |R^(-1/2) (y - h(u))|^2 + |P_0^(-1/2) (u - u_0)|^2 by the Gauss-Newton method, where h is the nonlinear static
+    Minimises |R^(-1/2) (y - h(u))|^2 + |P_0^(-1/2) (u - u_0)|^2 by the Gauss-Newton method with a region of trust, where h is the nonlinear static
     equilibrium. Derivatives use the same compliance as control (Tarantola, Inverse Problem Theory, SIAM 2005, sec. 3.4). The
     covariance follows from the linearisation at the estimate.
 
@@ -242,7 +297,7 @@ def solve(twin: Twin, readings: Mapping[str, Any], *, start: Optional[Sequence[f
     Error
         unknown-name, wrong-shape, no-sensors for readings; unobservable.
     RunError
-        not-converged if the model has no equilibrium at the initial guess.
+        not-converged if the model has no equilibrium at the initial guess, half-way to the prior mean, or at the prior mean.
     """
     problem = _Problem(twin, readings, extra)
     v = np.zeros(len(problem.mean)) if start is None else (np.asarray(start, float) - problem.mean) / problem.std

@@ -72,8 +72,9 @@ class Twin:
     markers : dict of str to (str, (3,) array_like), optional
         Measured points that are not in the scene, as body and position at rest (m); they become effectors of the model.
     commanded : dict of str to str, optional
-        Actuators with their commanded quantity, "displacement" or "tension". Replaces the command of the scene and
-        starts from 0.
+        Actuators with their commanded quantity, "displacement" or "tension". A scene that commands this quantity keeps its
+        command; if it commands the other one, the command starts at the value reached in the scene's equilibrium, and without
+        a command at 0. Only a reading changes it.
     set, folder, threads
         As in sinew.load().
 
@@ -104,7 +105,9 @@ class Twin:
             if name not in self._tree.get("actuators", {}):
                 raise Error("unknown-name", "Twin(commanded)", f"the scene has no actuator '{name}'",
                             f"it has {', '.join(self._tree.get('actuators', {})) or 'none'}")
-            self._tree["actuators"][name]["command"] = {quantity: 0.0}
+        told = {name: self._told(name, quantity) for name, quantity in (commanded or {}).items()}
+        for name, command in told.items():
+            self._tree["actuators"][name]["command"] = command
         for unknown in self.unknowns:
             if isinstance(unknown, Force):
                 for path, what in unknown.overrides().items():
@@ -122,7 +125,19 @@ class Twin:
             raise Error("duplicate-name", f"Twin({section})", f"the scene has '{name}' already", "choose another name")
         parts[name] = what
 
+    def _told(self, name: str, quantity: str) -> Any:
+        """Command of an actuator in the given quantity that leaves the scene's equilibrium as it is."""
+        command = self._tree["actuators"][name].get("command")
+        if isinstance(command, Mapping) and quantity in command:
+            return command
+        if not command:
+            return {quantity: 0.0}
+        scene = load(self._tree, set=self._at_start(), threads=self._threads)
+        scene.solve_static()
+        return {quantity: float(getattr(scene.actuator(name), quantity))}
+
     def _prepare(self) -> None:
+        self._fresh = self.sim.state()
         self._path_dependent = bool(self.sim.contacts) or any(" point " in row for row in self.sim.rows)
         self._start = self.sim.state() if self._path_dependent else None
         self._outputs: list[_Output] = []
@@ -355,24 +370,58 @@ class Twin:
             if not actuator.owned:
                 setattr(fresh.actuator(name), kind, value)
         self.sim, self._parameters = fresh, tuple(logarithms)
+        self._fresh = fresh.state()
         if self._path_dependent:
             self._start = fresh.state()
 
     def settle(self) -> None:
         """Brings the model to its static equilibrium; with contacts and friction always from the same initial state.
 
+        Without an equilibrium from the present state, the search starts once more from the scene's initial state.
+
         Raises
         ------
         RunError
-            not-converged.
+            not-converged; the model is then in the state before the search.
         """
+        before = self.sim.state()
         if self._start is not None:
             self.sim.restore(self._start)
+        try:
+            self._solve()
+        except RunError:
+            if self._start is not None:
+                self.sim.restore(before)
+                raise
+            self.sim.restore(self._fresh)
+            try:
+                self._solve()
+            except RunError:
+                self.sim.restore(before)
+                raise
+
+    def _solve(self) -> None:
         report = self.sim.solve_static(max_iterations=_ITERATIONS, max_load_steps=_LOAD_STEPS,
                                        max_relaxation_steps=_RELAXATION_STEPS)
         if report.status != "converged":
             raise RunError("not-converged", "Twin", f"the equilibrium was not found: {report.status}",
                            "take a nearer start, or a tighter prior")
+
+    def keep(self, values: Sequence[float]) -> tuple:
+        """The model at its present equilibrium, for go_back().
+
+        Parameters
+        ----------
+        values : (inputs,) array_like
+            Present values of the inputs.
+        """
+        return np.array(values, float), self.sim, self._parameters, self._start, self._fresh, self.sim.state()
+
+    def go_back(self, kept: tuple) -> None:
+        """Returns to a kept equilibrium without solving for it again, so it cannot fail."""
+        values, self.sim, self._parameters, self._start, self._fresh, state = kept
+        self.set(values)
+        self.sim.restore(state)
 
     def read(self) -> np.ndarray:
         """(outputs,) present readings of the sensors, without noise."""
@@ -396,7 +445,7 @@ class Twin:
         """(outputs, inputs) derivative of predict() at the present equilibrium.
 
         From one linearisation if all readings are rows. Otherwise, and for parameters, by central differences, which leave the
-        model in its present state.
+        model in its present state; beside a value without an equilibrium, by a difference to the other side.
 
         Parameters
         ----------
@@ -493,12 +542,30 @@ class Twin:
         return result
 
     def _differentiate(self, values: np.ndarray, which: list[int], result: np.ndarray) -> None:
-        stds = self.prior()[1]
-        for k in which:
-            step = np.zeros(len(values))
-            step[k] = _STEP * stds[k]
-            result[:, k] = (self.predict(values + step) - self.predict(values - step)) / (2.0 * step[k])
-        self.predict(values)
+        stds, here, kept = self.prior()[1], self.read(), self.keep(values)
+        try:
+            for k in which:
+                step = np.zeros(len(values))
+                step[k] = _STEP * stds[k]
+                result[:, k] = self._slope(values, step, step[k], here, kept)
+        finally:
+            self.go_back(kept)
+
+    def _slope(self, values: np.ndarray, step: np.ndarray, length: float, here: np.ndarray, kept: tuple) -> np.ndarray:
+        sides: list[tuple[float, np.ndarray]] = []
+        failure: Optional[RunError] = None
+        for sign in (1.0, -1.0):
+            try:
+                sides.append((sign, self.predict(values + sign * step)))
+            except RunError as error:
+                failure = error
+                self.go_back(kept)
+        if len(sides) == 2:
+            return (sides[0][1] - sides[1][1]) / (2.0 * length)
+        if not sides:
+            assert failure is not None
+            raise failure
+        return sides[0][0] * (sides[0][1] - here) / length
 
     def with_unknowns(self, unknowns: Iterable[Unknown], measured: Optional[Iterable[Measured]] = None) -> "Twin":
         """A model on the same simulation with other unknowns. It must need no new rows, hence no new Force.
