@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import os
 import pathlib
 import re
 import sys
@@ -26,6 +27,17 @@ def _pyplot():
                          "axes.spines.right": False, "legend.frameon": False,
                          "figure.constrained_layout.use": True, "legend.fontsize": 8})
     return plt
+
+
+def save(figure, path) -> None:
+    """Writes a figure beside the file that it then replaces: what was there stays whole until then."""
+    path = pathlib.Path(path)
+    draft = path.with_name(f"{path.name}.{os.getpid()}.tmp")
+    try:
+        figure.savefig(draft, dpi=110, format=path.suffix.lstrip(".") or "png")
+        os.replace(draft, path)
+    finally:
+        draft.unlink(missing_ok=True)
 
 
 # Displayed unit of each SI unit, and the conversion factor.
@@ -172,7 +184,7 @@ def run(folder, out) -> pathlib.Path:
         labels = axis.get_legend_handles_labels()[1]
         axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02), ncol=1 + (len(labels) - 1) // LEGEND_ROWS)
     axes[-1, 0].set_xlabel("time (s)")
-    figure.savefig(out, dpi=110)
+    save(figure, out)
     plt.close(figure)
     return pathlib.Path(out)
 
@@ -203,7 +215,7 @@ def fit(data, out) -> pathlib.Path:
         top.set(title=f"{test['name']} ({test['mode']})", ylabel="nominal stress (kPa)")
         low.set(xlabel="stretch", ylabel="fit - measured (kPa)")
         top.legend()
-    figure.savefig(out, dpi=110)
+    save(figure, out)
     plt.close(figure)
     return pathlib.Path(out)
 
@@ -237,7 +249,7 @@ def reach(data, out) -> pathlib.Path:
                       color=colour)
     axis.set(xlabel=f"{'xy'[aside]} (cm)", ylabel="z (cm)", aspect="equal")
     axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02))
-    figure.savefig(out, dpi=110)
+    save(figure, out)
     plt.close(figure)
     return pathlib.Path(out)
 
@@ -273,7 +285,7 @@ def plan(data, out) -> pathlib.Path:
     end.set(xlabel="time (s)", title=f"at the end {100 * content['tip_error_m']:.2g} cm, "
                                      f"{100 * content['tip_speed_m_s']:.2g} cm/s")
     end.legend()
-    figure.savefig(out, dpi=110)
+    save(figure, out)
     plt.close(figure)
     return pathlib.Path(out)
 
@@ -328,7 +340,7 @@ def brace(data, out) -> pathlib.Path:
                        label=key.replace("_", " "))
     error.set(xlabel="time disturbed (s)", ylabel="tip from goal (mm)")
     error.legend()
-    figure.savefig(out, dpi=110)
+    save(figure, out)
     plt.close(figure)
     return pathlib.Path(out)
 
@@ -366,7 +378,7 @@ def identify(data, out) -> pathlib.Path:
         upper.set(title=f"{record['name']} ({kind}): NRMSE {100 * record['nrmse']:.2g} %", ylabel="x (cm): dots seen")
         lower.set(xlabel="time (s)", ylabel="distance of prediction (mm)")
     axes[1, 0].legend()
-    figure.savefig(out, dpi=110)
+    save(figure, out)
     plt.close(figure)
     return pathlib.Path(out)
 
