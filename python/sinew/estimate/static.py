@@ -268,8 +268,8 @@ def solve(twin: Twin, readings: Mapping[str, Any], *, start: Optional[Sequence[f
           max_iterations: int = 30, tolerance: float = 1e-3, extra: Optional[np.ndarray] = None) -> Estimate:
     """Maximum a posteriori estimate of the unknowns from readings of a robot at rest.
 
-    Minimises |R^(-1/2) (y - h(u))|^2 + |P_0^(-1/2) (u - u_0)|^2 by the Gauss-Newton method with a region of trust, where h is the nonlinear static
-    equilibrium. Derivatives use the same compliance as control (Tarantola, Inverse Problem Theory, SIAM 2005, sec. 3.4). The
+    Minimises |R^(-1/2) (y - h(u))|^2 + |P_0^(-1/2) (u - u_0)|^2 by the Gauss-Newton method with a region of trust, where h is
+    the nonlinear static equilibrium. Derivatives use the same compliance as control (Tarantola, Inverse Problem Theory, SIAM 2005, sec. 3.4). The
     covariance follows from the linearisation at the estimate.
 
     Parameters

@@ -139,7 +139,6 @@ class Twin:
     def _prepare(self) -> None:
         self._fresh = self.sim.state()
         self._path_dependent = bool(self.sim.contacts) or any(" point " in row for row in self.sim.rows)
-        self._start = self.sim.state() if self._path_dependent else None
         self._outputs: list[_Output] = []
         self._inputs = [_Input(name, unknown, k) for unknown in self.unknowns for k, name in enumerate(names_of(unknown))]
         self._check_actuators()
@@ -371,8 +370,6 @@ class Twin:
                 setattr(fresh.actuator(name), kind, value)
         self.sim, self._parameters = fresh, tuple(logarithms)
         self._fresh = fresh.state()
-        if self._path_dependent:
-            self._start = fresh.state()
 
     def settle(self) -> None:
         """Brings the model to its static equilibrium; with contacts and friction always from the same initial state.
@@ -385,16 +382,15 @@ class Twin:
             not-converged; the model is then in the state before the search.
         """
         before = self.sim.state()
-        if self._start is not None:
-            self.sim.restore(self._start)
+        if self._path_dependent:
+            self.sim.restore(self._fresh)
         try:
             self._solve()
         except RunError:
-            if self._start is not None:
-                self.sim.restore(before)
-                raise
-            self.sim.restore(self._fresh)
             try:
+                if self._path_dependent:
+                    raise
+                self.sim.restore(self._fresh)
                 self._solve()
             except RunError:
                 self.sim.restore(before)
@@ -415,11 +411,11 @@ class Twin:
         values : (inputs,) array_like
             Present values of the inputs.
         """
-        return np.array(values, float), self.sim, self._parameters, self._start, self._fresh, self.sim.state()
+        return np.array(values, float), self.sim, self._parameters, self._fresh, self.sim.state()
 
     def go_back(self, kept: tuple) -> None:
         """Returns to a kept equilibrium without solving for it again, so it cannot fail."""
-        values, self.sim, self._parameters, self._start, self._fresh, state = kept
+        values, self.sim, self._parameters, self._fresh, state = kept
         self.set(values)
         self.sim.restore(state)
 
