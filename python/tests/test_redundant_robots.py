@@ -190,10 +190,14 @@ def comes_to_rest(seed, walls):
     del scene["solver"]
     sim = sinew.load(scene)
     ik = sinew.InverseController(sim, targets=targets, weights=weights, actuators=owned)
-    ik.step(190)
-    before = [np.array(sim.effector(name).position) for name in targets]
-    ik.step(10)
-    moved = [np.abs(sim.effector(name).position - at).max() for name, at in zip(targets, before)]
+    # A choice that penalises the change of efforts approaches them by about 1 % per step: a few robots need 400 steps.
+    for _ in range(2):
+        ik.step(190)
+        before = [np.array(sim.effector(name).position) for name in targets]
+        ik.step(10)
+        moved = [np.abs(sim.effector(name).position - at).max() for name, at in zip(targets, before)]
+        if max(moved) < 0.05 * 1e-4:
+            break
     return max(moved) / 1e-4, ik.status
 
 

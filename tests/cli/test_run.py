@@ -50,7 +50,7 @@ def test_flagged_steps_end_with_one_unless_told_to_keep_going(tmp_path):
     assert failed.returncode == FAILED
     assert "one linearisation leaves" in failed.stderr and "solver: newton" in failed.stderr
     rows = rows_of(tmp_path / "rough" / "run.csv")
-    assert {row["status"] for row in rows} == {"start", "solved"} and len(rows) < 151
+    assert rows[0]["status"] == "start" and {row["status"] for row in rows[1:]} <= {"solved"} and len(rows) < 151
     told = sinew("run", trunk, *pull, *rough, "--keep-going", "--out", "rough", cwd=tmp_path)
     assert told.returncode == DONE
     assert "steps are not-in-equilibrium, the first at t = " in told.stderr

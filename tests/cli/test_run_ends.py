@@ -43,6 +43,7 @@ bodies:
   block:
     type: fem
     mesh: {shape: block, length: 60 mm, width: 60 mm, height: 3 mm, element_size: 1.5 mm}
+    element: tet4
     material: {young_modulus: 500 kPa, poisson_ratio: 0.3}
     density: 1000 kg/m^3
 contacts:
