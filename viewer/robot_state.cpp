@@ -11,6 +11,7 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/free_motion_error.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -23,6 +24,26 @@ namespace {
 
 using Json = nlohmann::json;
 constexpr const char* kOwnController = "view";
+// Of a motion that nothing resists: the largest displacement that is shown, relative to the robot's
+// size, the smallest, relative to the largest, and the number of displacements.
+constexpr double kShownMotion = 0.15;
+constexpr double kLeastMotion = 0.1;
+constexpr std::size_t kMostArrows = 60;
+
+std::vector<std::pair<Vector3, Vector3>> sample(const std::vector<sim::BodyMotion>& motion,
+                                                double size) {
+  std::vector<std::pair<Vector3, Vector3>> all, some;
+  for (const sim::BodyMotion& body : motion) {
+    for (Eigen::Index i = 0; i < body.displacements.rows(); ++i) {
+      const Vector3 by = body.displacements.row(i).transpose();
+      if (by.norm() < kLeastMotion) continue;
+      all.emplace_back(body.positions.row(i).transpose(), kShownMotion * size * by);
+    }
+  }
+  const std::size_t stride = all.size() / kMostArrows + 1;
+  for (std::size_t i = 0; i < all.size(); i += stride) some.push_back(all[i]);
+  return some;
+}
 
 }  // namespace
 
@@ -81,10 +102,20 @@ void RobotState::step() {
   try {
     simulation_->step();
     ++shape_;
+  } catch (const sim::FreeMotionError& error) {
+    stop(error);
+    stopped_->free_motion = sample(error.motion(), simulation_->model().size());
   } catch (const Error& error) {
-    stopped_ = StoppedRun{simulation_->steps() + 1, std::string(error_kind_name(error.kind())),
-                          error.what(), error.remedy()};
+    stop(error);
   }
+}
+
+void RobotState::stop(const Error& error) {
+  stopped_ = StoppedRun{simulation_->steps() + 1,
+                        std::string(error_kind_name(error.kind())),
+                        error.what(),
+                        error.remedy(),
+                        {}};
 }
 
 void RobotState::reset() {
@@ -273,7 +304,11 @@ std::string RobotState::status_members() const {
     status["stopped"] = {{"step", stopped_->step},
                          {"kind", stopped_->kind},
                          {"message", stopped_->message},
-                         {"remedy", stopped_->remedy}};
+                         {"remedy", stopped_->remedy},
+                         {"free_motion", Json::array()}};
+    for (const auto& [at, by] : stopped_->free_motion) {
+      status["stopped"]["free_motion"].push_back({at.x(), at.y(), at.z(), by.x(), by.y(), by.z()});
+    }
   }
   return status.dump();
 }

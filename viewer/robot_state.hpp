@@ -30,6 +30,9 @@ namespace sinew::viewer {
 struct StoppedRun {
   std::int64_t step = 0;
   std::string kind, message, remedy;
+  /// Places and displacements of nodes in a motion that nothing resists, m; the largest is a
+  /// fraction of the robot's size. Empty unless that is why.
+  std::vector<std::pair<Vector3, Vector3>> free_motion;
 };
 
 /// The state of a robot in the view.
@@ -97,6 +100,7 @@ class RobotState {
  private:
   void attach(const std::string& name, const inverse::InverseSettings& settings);
   void detach();
+  void stop(const Error& error);
   std::shared_ptr<const Acting> acting();
   int task_of(int effector) const { return inverse::task_of(controller_, effector); }
   sim::Observables list_observables();

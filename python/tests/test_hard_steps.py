@@ -72,7 +72,7 @@ def test_a_slack_cable_cannot_keep_the_limit_of_its_displacement():
         "sinew": 1, "gravity": "0 0 0 m/s^2", "time_step": "5 ms", "integrator": "bdf2",
         "bodies": {"beam": {
             "type": "fem", "mesh": {"shape": "block", "length": "60 mm", "width": "10 mm", "height": "10 mm", "element_size": "10 mm"},
-            "material": {"young_modulus": "100 kPa", "poisson_ratio": 0.3}, "density": 1000.0, "fixed": {"set": "x_min"}}},
+            "material": {"young_modulus": "150 kPa", "poisson_ratio": 0.3}, "density": 1000.0, "fixed": {"set": "x_min"}}},
         "actuators": {
             "cable": {"type": "cable", "body": "beam", "pull": "world", "outside": "nearest", "points": ["58 5 8 mm", "-10 5 8 mm"],
                       "limits": {"displacement": {"max": "0.5 mm"}}, "command": {"tension": "0 N"}},
@@ -86,4 +86,4 @@ def test_a_slack_cable_cannot_keep_the_limit_of_its_displacement():
         assert sim.report.iterations < 10
         assert sim.actuator("cable").tension == 0.0
         reached.append(sim.actuator("cable").displacement)
-    assert max(reached) > 1.5e-3
+    assert max(reached) > 1.0e-3  # twice the limit

@@ -196,7 +196,7 @@ def comes_to_rest(seed, walls):
         before = [np.array(sim.effector(name).position) for name in targets]
         ik.step(10)
         moved = [np.abs(sim.effector(name).position - at).max() for name, at in zip(targets, before)]
-        if max(moved) < 0.05 * 1e-4:
+        if max(moved) < 0.05 * 1e-4 and ik.status != "moving":
             break
     return max(moved) / 1e-4, ik.status
 

@@ -189,8 +189,9 @@ function alerts(): void {
   const source = status?.source;
   if (!connection.open) list.push(['error', notices.get('connection') || 'The program is not there; trying again.']);
   if (source?.stopped) {
-    const {step, message, remedy} = source.stopped;
+    const {step, message, remedy, free_motion: free} = source.stopped;
     list.push(['error', `The run stopped at step ${step}: ${message}${remedy && !message.includes(remedy) ? `; ${remedy}` : ''}. `
+               + (free.length > 0 ? 'Arrows show the motion that nothing resists. ' : '')
                + 'The robot shows its last solved state: change a command and play on, or go back in time.',
                button('Reset', 'Back to the start', () => panel.reset())]);
   }
@@ -331,6 +332,7 @@ const connection = new Connection({
     cost += performance.now() - begin;
   },
   status: (next) => {
+    if (status?.source.stopped?.step !== next.source.stopped?.step) robot.showFree(next.source.stopped?.free_motion ?? []);
     status = next;
     panel.update(next);
     robot.steerable(next.driver === connection.client && mode !== 'replay');
@@ -414,6 +416,7 @@ const view = {
   arrows: () => robot.arrows(),
   contacts: () => robot.contacts.told(),
   joints: () => robot.joints.told(),
+  free: () => robot.free.told(),
   plots: () => plots.told(),
   timeline: () => latest?.timeline ?? null,
   box: () => robot.box(),

@@ -36,7 +36,8 @@ export interface SourceStatus {
   playing: boolean; speed: number; slow: boolean; controller: string | null;
   commands: Record<string, {quantity: string; value: number; owned: boolean}>;
   targets: Record<string, number[]>; troubles: Trouble[];
-  stopped: {step: number; kind: string; message: string; remedy: string} | null;
+  /** `free_motion`: places and displacements of nodes (x, y, z, dx, dy, dz), m. */
+  stopped: {step: number; kind: string; message: string; remedy: string; free_motion: number[][]} | null;
   frame?: number;
   recording?: {on: boolean; frames: number; seconds: number; bytes: number; full: boolean} | null;
 }

@@ -14,6 +14,7 @@ import {LineSegmentsGeometry} from 'three/addons/lines/LineSegmentsGeometry.js';
 import {Bodies3d} from './bodies3d';
 import {Camera3d, View} from './camera3d';
 import {told} from './colours';
+import {Arrows3d} from './arrows3d';
 import {Contacts3d} from './contacts3d';
 import {Joints3d} from './joints3d';
 import {make} from './dom';
@@ -24,6 +25,7 @@ import type {Frame, Pick, Scene} from './protocol';
 const GIZMO = 0.6;  // size of the target's arrows
 const PROBE = 0x009e73;
 const PICKED = 0xcc79a7;
+const FREE = 0xaa3377;
 // Edges of an element as pairs of nodes (VTK's order), by its number of nodes. Quadratic edges have two parts.
 const ELEMENT_EDGES: Record<number, number[]> = {
   4: [0, 1, 1, 2, 2, 0, 0, 3, 1, 3, 2, 3],
@@ -78,6 +80,7 @@ export class Robot3d {
   private probes: {line: Line; ends: Mesh[]; marks: number}[] = [];
   readonly contacts = new Contacts3d();
   readonly joints = new Joints3d();
+  readonly free = new Arrows3d(FREE);  // of a motion that nothing resists
   private spring = new Line(new BufferGeometry(), new LineBasicMaterial({color: STRONG}));
   private size = 0.2;
   private grabbed: {plane: Plane; body: number; vertices: number[]; weights: number[]} | null = null;
@@ -119,7 +122,7 @@ export class Robot3d {
       mark.renderOrder = 4;
       mark.visible = mark.frustumCulled = false;
     }
-    this.world.add(this.robot, this.bodies.root, this.handle, helper, this.spring, this.picked, this.outline);
+    this.world.add(this.robot, this.bodies.root, this.handle, helper, this.spring, this.picked, this.outline, this.free.root);
     this.world.add(new AmbientLight(0xffffff, 0.5), new HemisphereLight(0xffffff, 0x8090a0, 1.2));
     const sun = new DirectionalLight(0xffffff, 1.8);
     sun.position.set(1, -2, 3);
@@ -251,6 +254,12 @@ export class Robot3d {
     if (frame.targets) this.place(this.targets, frame.targets);
     this.steer();
     this.drawSpring(frame.pull);
+  }
+
+  /** Shows a motion that nothing resists: (x, y, z, dx, dy, dz) of nodes, m. */
+  showFree(arrows: number[][]): void {
+    this.touch();
+    this.free.draw(arrows);
   }
 
   /** Marks the picked node or element; null: none. */

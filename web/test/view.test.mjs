@@ -95,6 +95,7 @@ test('a slider does what Python does', async () => {
   const there = python(`
 import json, sinew
 sim = sinew.load(${JSON.stringify(DIRECT)})
+sim.follow()  # as the view does
 sim.actuator("long_2").tension = 1.5
 sim.step(120)
 print(json.dumps({"tip": list(sim.effector("tip").position), "hash": f"{sim.state_hash:016x}"}))`);
@@ -492,6 +493,29 @@ test('what the page records can be saved', async () => {
   assert.ok(moved > 1e-3, `the trunk moves by ${moved} m`);
   await page.close();
   await stop(served);
+});
+
+test('a motion that nothing resists is shown', async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'sinew-view-'));
+  const scene = join(folder, 'free.yaml');
+  writeFileSync(scene, `sinew: 1
+gravity: 0 0 0
+bodies:
+  post: {type: rigid, shape: {box: 10 10 10 mm}, density: 1000 kg/m^3, fixed: true}
+  arm: {type: rigid, shape: {box: 60 20 10 mm}, density: 1000 kg/m^3, pose: {position: 30 0 0 mm}}
+joints:
+  elbow: {type: hinge, bodies: [post, arm], point: 0 0 0 mm, axis: 0 1 0}
+`);
+  const served = await serve(scene);
+  const page = await open(served.url);
+  await until(page, (s) => s.status.stopped);
+  await page.getByText('Arrows show the motion that nothing resists').waitFor();
+  assert.ok(await page.evaluate(() => window.sinewView.free()) > 3);
+  await page.screenshot({path: process.env.SINEW_SHOT ?? join(folder, 'free.png')});
+  await ask(page, {type: 'reset'});
+  await page.close();
+  await stop(served);
+  rmSync(folder, {recursive: true});
 });
 
 test('a run that stopped says why, and starts anew', async () => {

@@ -42,6 +42,7 @@ void DenseStep::make_room(Eigen::Index columns) {
 void DenseStep::linearise(const LinearisationRequest& request) {
   definite_wanted_ = request.tangent == Tangent::corotated;
   iterating_ = request.iterating;
+  projected_ = request.tangent == Tangent::projected;
   force_scale_ = form(request, right_, matrix_);
   if (lessens_) right_ -= lessening_;
   add_row_stiffness(matrix_);

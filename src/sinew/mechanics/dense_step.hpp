@@ -68,6 +68,8 @@ class DenseStep : public StepSystem {
   const MatrixX& matrix() const { return matrix_; }
   /// Whether further linearisations of this step may follow.
   bool iterating() const { return iterating_; }
+  /// Whether A is to be a majorant of the derivative, see Tangent::projected.
+  bool projected() const { return projected_; }
   /// A row on the surface, from the last take_rows().
   struct SurfaceRow {
     std::int32_t row = 0;  // of the world
@@ -106,6 +108,7 @@ class DenseStep : public StepSystem {
   bool definite_wanted_ = true;
   bool is_symmetric_ = true;  // A of the last condensation
   bool iterating_ = false;
+  bool projected_ = false;
   std::vector<SurfaceRow> surface_rows_, surface_rows_before_;
   std::vector<double> shares_;  // (columns,) shares in RowGroups; empty: all are 1
   // Columns in use: those of own_.rows, then of surface_rows_. The arrays may have more columns.

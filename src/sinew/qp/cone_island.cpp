@@ -71,6 +71,10 @@ ConeStatus ConeIsland::solve(const ConePart& part, std::span<double> start) {
       sweep(part);
     }
     measure_motion(part);
+    if (!x_.allFinite()) {  // the matrix is not positive semidefinite
+      result_.status = ConeStatus::not_convex;
+      break;
+    }
     if (judge(part) <= settings_.tolerance || newton_if_it_pays(part)) {
       result_.status = ConeStatus::solved;
       break;
@@ -217,6 +221,7 @@ double ConeIsland::judge(const ConePart& part) {
   const ConeProblem& problem = part.problem;
   miss_ = {};
   largest_ = floor_ = asked_ = 0.0;
+  if (!x_.allFinite()) return result_.residual = INFINITY;  // a maximum would skip it
   result_.signorini = result_.coulomb = result_.complementarity = 0.0;
   for (std::size_t k = 0; k < problem.cones.size(); ++k) {
     if (usable(k)) judge_cone(problem, k);

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "sinew/core/rotation.hpp"
+#include "sinew/linalg/positive_part.hpp"
 #include "sinew/rigid/rigid_body_model.hpp"
 #include "sinew/rigid/rigid_nodes.hpp"
 
@@ -84,6 +85,9 @@ Vector3 RigidStep::arm_of(const mechanics::Patch& patch) const {
 // (add_compliance): a bracket of a gram under newtons took tens of iterations. A single
 // linearisation keeps the exact derivative, on which its order depends. So does a body without
 // loads, for its gyroscopic moment.
+//
+// A body that is squeezed between others has a negative stiffness -f r against turning, which
+// friction outweighs: but a law of friction needs A > 0 without its own rows.
 void RigidStep::add_row_stiffness(MatrixX& matrix) {
   const RigidBodyModel& model = state_.model;
   if (!model.is_free()) return;
@@ -101,10 +105,16 @@ void RigidStep::add_row_stiffness(MatrixX& matrix) {
     if (effort == 0.0 || site.kind == RigidBodyModel::Attachment::Kind::orientation) continue;
     block -= turned(effort * state_.memory.directions[e], site.arm);
   }
+  Matrix3 pressed = Matrix3::Zero();
   for (const SurfaceRow& row : surface_rows()) {
     loaded = loaded || row.effort != 0.0;
-    if (row.effort != 0.0) block -= turned(row.effort * row.direction, arm_of(row.patch));
+    if (row.effort != 0.0) pressed -= turned(row.effort * row.direction, arm_of(row.patch));
   }
+  if (projected()) {
+    const Matrix3 symmetric = 0.5 * (pressed + pressed.transpose());
+    pressed = linalg::positive_part(symmetric);
+  }
+  block += pressed;
   if (loaded && iterating()) block = (0.5 * (block + block.transpose())).eval();
 }
 

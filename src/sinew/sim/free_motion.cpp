@@ -135,6 +135,9 @@ void FreeMotion::describe(StaticSearch& search, const VectorX& motion) {
     drift = std::max(drift, (centre_of(body) - centres[b]).norm() / scale);
   }
   bodies.apply_motion(0.0);
+  for (std::size_t b = 0; most > 0.0 && b < before.size(); ++b) {
+    bodies_.push_back({bodies.all()[b]->model().name(), before[b], moved[b] / most});
+  }
   moves_centres_ = drift > kUnmoved * most;
   std::size_t named = 0;
   for (std::size_t b = 0; b < before.size(); ++b) {

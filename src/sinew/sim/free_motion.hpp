@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sinew/core/types.hpp"
+#include "sinew/sim/free_motion_error.hpp"
 
 namespace sinew::sim {
 
@@ -32,6 +33,8 @@ class FreeMotion {
   /// Names the bodies and nodes that move, and how: "body 'bar' turns freely about the axis through
   /// (0, 0, 0) m along (0, 1, 0)". Empty if there is no such motion.
   const std::string& text() const { return text_; }
+  /// How the nodes of all bodies move; empty if there is no such motion.
+  const std::vector<BodyMotion>& bodies() const { return bodies_; }
 
  private:
   VectorX find(StaticSearch& search);
@@ -40,6 +43,7 @@ class FreeMotion {
   VectorX motion_;
   bool exists_ = false, moves_centres_ = false;
   std::string text_;
+  std::vector<BodyMotion> bodies_;
 };
 
 }  // namespace sinew::sim

@@ -35,10 +35,9 @@ constexpr double kReturned = 0.5;
 void fail_if_free(StaticSearch& search, const std::string& message) {
   const FreeMotion free(search);
   if (!free.exists()) return;
-  fail(search.run(), ErrorKind::singular_matrix, message + ": " + free.text(),
-       "hold it by a fixed region, a joint, a cable or a contact, remove loose elements of the "
-       "mesh, "
-       "or choose a dynamic integrator");
+  fail_free(search.run(), free, message,
+            "hold it by a fixed region, a joint, a cable or a contact, remove loose elements of "
+            "the mesh, or choose a dynamic integrator");
 }
 
 Settling::Settling(StaticSearch& search, OverdampedMotion& motion)
@@ -121,9 +120,9 @@ void Settling::require_held() {
   }
   const FreeMotion free(search_);
   if (free.exists() && free.moves_centres() && !returns(free.motion())) {
-    fail(run_, ErrorKind::singular_matrix, "the equilibrium is neutral: " + free.text(),
-         "hold it by a fixed region, a joint, a cable, friction or a contact, or choose a dynamic "
-         "integrator");
+    fail_free(run_, free, "the equilibrium is neutral",
+              "hold it by a fixed region, a joint, a cable, friction or a contact, or choose a "
+              "dynamic integrator");
   }
   search_.begin();  // the tangent at rest, for queries
   search_.linearise();

@@ -9,6 +9,7 @@
 #include "sinew/constraint/contact.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/sim/contact_reader.hpp"
+#include "sinew/sim/free_motion.hpp"
 #include "sinew/sim/joint_conflict.hpp"
 #include "sinew/sim/run.hpp"
 
@@ -57,15 +58,26 @@ std::string describe_worst(const Run& run) {
   return "";
 }
 
-}  // namespace
-
-void fail(Run& run, ErrorKind kind, const std::string& message, const std::string& remedy) {
+Error failure(Run& run, ErrorKind kind, const std::string& message, const std::string& remedy) {
   run.go_back();
   std::string names;
   for (const auto& body : run.model->bodies()) names += (names.empty() ? "" : ", ") + body.name();
-  throw Error(kind,
-              {.item = fmt::format("step {} (t = {:g} s), body {}", run.steps + 1, run.now, names)},
-              message, remedy);
+  const std::string item =
+      fmt::format("step {} (t = {:g} s), body {}", run.steps + 1, run.now, names);
+  return Error(kind, {.item = item}, message, remedy);
+}
+
+}  // namespace
+
+void fail(Run& run, ErrorKind kind, const std::string& message, const std::string& remedy) {
+  throw failure(run, kind, message, remedy);
+}
+
+void fail_free(Run& run, const FreeMotion& free, const std::string& message,
+               const std::string& remedy) {
+  throw FreeMotionError(
+      failure(run, ErrorKind::singular_matrix, message + ": " + free.text(), remedy),
+      free.bodies());
 }
 
 void fail_joints(Run& run, const JointConflict& conflict) {

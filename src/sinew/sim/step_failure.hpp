@@ -8,12 +8,17 @@
 
 namespace sinew::sim {
 
+class FreeMotion;
 struct JointConflict;
 struct Run;
 
 /// Restores `before` of the run and throws an error that names the step and the bodies.
 [[noreturn]] void fail(Run& run, ErrorKind kind, const std::string& message,
                        const std::string& remedy);
+/// The same with the text of a motion that nothing resists after the message; throws
+/// FreeMotionError.
+[[noreturn]] void fail_free(Run& run, const FreeMotion& free, const std::string& message,
+                            const std::string& remedy);
 /// The same if no efforts satisfy the laws.
 [[noreturn]] void fail_law(Run& run);
 /// The same if joints and prescribed motions contradict each other.

@@ -7,6 +7,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/step_verdict.hpp"
+#include "sinew/sim/without_controller.hpp"
 #include "sinew/step/controller.hpp"
 
 namespace sinew::sim {
@@ -78,23 +79,21 @@ void Stepper::make_or_hold_back() {
   } catch (const Error& failure) {
     if (run_.controller == nullptr || !failure.is_run_failure()) throw;
     undo(false);
-    step::Controller* const controller = std::exchange(run_.controller, nullptr);
-    std::vector<double> memory(controller->memory_size());
-    controller->save_memory(memory);
+    std::vector<double> memory(run_.controller->memory_size());
+    run_.controller->save_memory(memory);
     bool solved = false;
     try {
+      const WithoutController without(run_);
       solved = hold_back();
     } catch (...) {  // of a watcher
       held_.clear();
-      run_.controller = controller;
-      controller->load_memory(memory);
+      run_.controller->load_memory(memory);
       throw;
     }
     held_.clear();
-    run_.controller = controller;
-    controller->load_memory(memory);
+    run_.controller->load_memory(memory);
     if (!solved) throw;
-    controller->hold_back(kTrust);
+    run_.controller->hold_back(kTrust);
   }
   run_.report.choice_held = true;
 }

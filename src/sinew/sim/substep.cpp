@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <optional>
 
 #include "sinew/core/error.hpp"
 #include "sinew/sim/connected_bodies.hpp"
@@ -11,6 +11,7 @@
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/step_failure.hpp"
 #include "sinew/sim/step_verdict.hpp"
+#include "sinew/sim/without_controller.hpp"
 #include "sinew/step/controller.hpp"
 
 namespace sinew::sim {
@@ -41,6 +42,7 @@ void Substep::begin(double time_step) {
   run_.keep(run_.before);
   held_before_ = run_.report.choice_held;
   failures_ = 0;
+  holds_back_ = false;
   std::ranges::fill(marks_, 0);
   if (may_start_afresh() || run_.controller != nullptr) actuators_ = run_.world.problem().actuators;
   begin_world(time_step);
@@ -87,24 +89,22 @@ void Substep::hold_back(double time_step, const Error& failure) {
     if (states[i].chosen) actuators_[i].hold_effort(states[i].effort);
   }
   begin_again(time_step);
-  step::Controller* const controller = std::exchange(run_.controller, nullptr);
   try {
+    const WithoutController without(run_);
     solve_once(time_step);
   } catch (const Error& other) {
-    run_.controller = controller;
     run_.go_back();
     if (!other.is_run_failure()) throw;
     throw Error(failure.kind(), failure.place(),
                 failure.message() + "; the efforts of the last step do not solve it either",
                 failure.remedy());
   } catch (...) {  // of a watcher
-    run_.controller = controller;
     run_.go_back();
     throw;
   }
-  run_.controller = controller;
+  holds_back_ = true;
   run_.report.choice_held = true;
-  controller->hold_back(failures_ + 1);
+  run_.controller->hold_back(failures_ + 1);
 }
 
 void Substep::solve_once(double time_step) {
@@ -207,16 +207,24 @@ double Substep::end(double time_step) {
   double error = end_once(time_step);
   if (lands_by_bdf2_ && lands() && has_gained()) {
     std::ranges::fill(marks_, 1);
-    try {
-      solve_afresh(time_step);
-    } catch (...) {
-      run_.go_back();
-      throw;
-    }
+    repeat_afresh(time_step);
     error = end_once(time_step);
   }
   end_zones();
   return error;
+}
+
+// Repeats the step with backward Euler. Where all choices of the controller were rejected, it makes
+// none again.
+void Substep::repeat_afresh(double time_step) {
+  try {
+    std::optional<WithoutController> without;
+    if (holds_back_) without.emplace(run_);
+    solve_afresh(time_step);
+  } catch (...) {
+    run_.go_back();
+    throw;
+  }
 }
 
 double Substep::end_once(double time_step) {

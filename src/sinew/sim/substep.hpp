@@ -45,6 +45,7 @@ class Substep {
   void solve_equation(double time_step, bool divisible);
   void solve_once(double time_step);
   void solve_afresh(double time_step);
+  void repeat_afresh(double time_step);
   void begin_again(double time_step);
   bool may_start_afresh() const;
   void mark_stopped(double time_step);
@@ -65,6 +66,7 @@ class Substep {
   double energy_before_ = 0.0;  // J, if lands_by_bdf2_: of the bodies at the start of the part
   bool held_before_ = false;    // a controller's choice, in earlier parts of the step
   int failures_ = 0;            // of this part with the choices of a controller
+  bool holds_back_ = false;     // whether this part is made without a choice of the controller
   // Of the part before it is solved, if its formula reaches back or a controller chooses.
   std::vector<step::ActuatorBlock> actuators_;
 };

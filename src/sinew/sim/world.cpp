@@ -185,6 +185,9 @@ step::LawStatus World::solve_laws(step::StepSolver& solver, step::Controller* co
     status = solver.solve(problem_, looks ? nullptr : controller, problem_effort_);
     clock.mark(Stage::law);
     if (status == step::LawStatus::failed) return status;
+    // Residuals of the laws are maxima, which skip what is not a number.
+    const auto finite = [](double own) { return std::isfinite(own); };
+    if (!std::ranges::all_of(problem_effort_, finite)) return step::LawStatus::failed;
     numbering_.scatter_efforts(problem_effort_, effort);
     bodies_.solve_motion(effort);
     clock.mark(Stage::correction);
