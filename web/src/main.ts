@@ -203,7 +203,7 @@ function alerts(): void {
                button('Dismiss', 'Do not show this again', () => { scene!.notices = scene!.notices!.filter((x) => x !== n); alerts(); })]);
   }
   const troubles = source?.troubles ?? [];
-  for (const t of troubles.filter((x) => x.level !== 'info').slice(0, 5)) list.push([t.level, `${t.subject}: ${t.text}`]);
+  for (const t of troubles.filter((x) => x.level !== 'info' && !(source?.stopped && x.subject === 'step')).slice(0, 5)) list.push([t.level, `${t.subject}: ${t.text}`]);
   const slack = troubles.filter((t) => t.kind === 'slack').map((t) => t.subject);
   if (slack.length > 0 && source?.controller === null) list.push(['info', `slack: ${slack.join(', ')}`]);
   if (source?.slow) list.push(['warning', 'The simulation cannot keep up with real time.']);

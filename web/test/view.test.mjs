@@ -499,12 +499,12 @@ test('a motion that nothing resists is shown', async () => {
   const folder = mkdtempSync(join(tmpdir(), 'sinew-view-'));
   const scene = join(folder, 'free.yaml');
   writeFileSync(scene, `sinew: 1
-gravity: 0 0 0
+gravity: 0 0 -9.81 m/s^2
 bodies:
   post: {type: rigid, shape: {box: 10 10 10 mm}, density: 1000 kg/m^3, fixed: true}
   arm: {type: rigid, shape: {box: 60 20 10 mm}, density: 1000 kg/m^3, pose: {position: 30 0 0 mm}}
 joints:
-  elbow: {type: hinge, bodies: [post, arm], point: 0 0 0 mm, axis: 0 1 0}
+  door: {type: hinge, bodies: [post, arm], point: 0 0 0 mm, axis: 0 0 1}
 `);
   const served = await serve(scene);
   const page = await open(served.url);
