@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 
@@ -47,13 +49,35 @@ double edge_of(const mesh::Mesh& mesh, double volume) {
   return std::cbrt(volume / shares);
 }
 
-Vector3 present(const Simulation& simulation, const CablePath::Place& place) {
-  const Points& nodes = simulation.body(place.body).positions();
+double size_of(const mesh::Mesh& mesh) {
+  return (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
+}
+
+Vector3 mean(const mesh::EmbeddedPoint& point, const Points& nodes) {
   Vector3 sum = Vector3::Zero();
-  for (std::size_t k = 0; k < place.point.nodes.size(); ++k) {
-    sum += place.point.weights[k] * nodes.row(place.point.nodes[k]).transpose();
+  for (std::size_t k = 0; k < point.nodes.size(); ++k) {
+    sum += point.weights[k] * nodes.row(point.nodes[k]).transpose();
   }
   return sum;
+}
+
+Vector3 present(const Simulation& simulation, const CablePath::Place& place) {
+  return mean(place.point, simulation.body(place.body).positions());
+}
+
+using EmbedderOf = std::function<const mesh::Embedder&(int body)>;
+
+// Places of the material between two points at rest; those in the air are left out.
+std::vector<CablePath::Place> places_between(const Vector3& from, const Vector3& to, int body,
+                                             const EmbedderOf& embedder) {
+  std::vector<CablePath::Place> places;
+  for (int k = 1; k <= kSamples; ++k) {
+    const double share = static_cast<double>(k) / (kSamples + 1);
+    const Vector3 at = (1.0 - share) * from + share * to;
+    mesh::EmbeddedPoint point = embedder(body).locate(at, mesh::Outside::nearest, "cable");
+    if (point.distance == 0.0) places.push_back({body, std::move(point)});
+  }
+  return places;
 }
 
 // The points of a cable at rest, and the body of each; where the pull point is fixed to the world,
@@ -90,7 +114,7 @@ CablePath::CablePath(const Simulation& simulation, const constraint::Cable& cabl
                      Embedders& embedders) {
   const Model& model = simulation.model();
   const auto [rest, bodies] = rest_path(model, cable);
-  const auto embedder = [&](int body) -> const mesh::Embedder& {
+  const EmbedderOf embedder = [&](int body) -> const mesh::Embedder& {
     auto& made = embedders[body];
     if (!made) made = std::make_unique<mesh::Embedder>(model.body(body).mesh());
     return *made;
@@ -98,34 +122,24 @@ CablePath::CablePath(const Simulation& simulation, const constraint::Cable& cabl
   Points means = rest;
   for (Eigen::Index i = 0; i < rest.rows(); ++i) {
     const int body = bodies[static_cast<std::size_t>(i)];
-    Place& ball = balls.emplace_back();
     const bool in_world = i == 0 && cable.pull_point();
     const fem::HasElements* own = elements_of(model, body);
+    Place& ball = balls.emplace_back();
     if (in_world || own == nullptr) continue;
     const mesh::Mesh& mesh = model.body(body).mesh();
     const double side = edge_of(mesh, own->elements().volume());
     edge = std::max(edge, side);
-    const Vector3 extent = mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff();
-    size = std::max(size, extent.norm());
+    size = std::max(size, size_of(mesh));
     ball = {body, embedder(body).spread(rest.row(i), side, mesh::Outside::nearest, "cable")};
-    Vector3 mean = Vector3::Zero();
-    for (std::size_t k = 0; k < ball.point.nodes.size(); ++k) {
-      mean += ball.point.weights[k] * mesh.nodes.row(ball.point.nodes[k]).transpose();
-    }
-    means.row(i) = mean.transpose();
+    means.row(i) = mean(ball.point, mesh.nodes).transpose();
   }
   shorter = length_of(means) - length_of(rest);
   for (Eigen::Index i = 0; i + 1 < rest.rows(); ++i) {
     const int body = bodies[static_cast<std::size_t>(i)];
     if (body != bodies[static_cast<std::size_t>(i) + 1]) continue;
     if (elements_of(model, body) == nullptr) continue;
-    Span span{static_cast<int>(i), thickness_of(model.body(body).mesh()), {}};
-    for (int k = 1; k <= kSamples; ++k) {
-      const double share = static_cast<double>(k) / (kSamples + 1);
-      const Vector3 at = (1.0 - share) * rest.row(i) + share * rest.row(i + 1);
-      mesh::EmbeddedPoint point = embedder(body).locate(at, mesh::Outside::nearest, "cable");
-      if (point.distance == 0.0) span.places.push_back({body, std::move(point)});
-    }
+    Span span{static_cast<int>(i), thickness_of(model.body(body).mesh()),
+              places_between(rest.row(i), rest.row(i + 1), body, embedder)};
     if (!span.places.empty()) spans.push_back(std::move(span));
   }
 }
