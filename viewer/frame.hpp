@@ -111,8 +111,8 @@ struct Frame {
   std::vector<float> targets;    ///< (3 effectors,) m; NaN: no target
   std::vector<float> probes;     ///< (3 marks,) m, marks of all probes in turn
   /// For each contact (7 + 7 points,): position, m, and quaternion (x, y, z, w) of the surface
-  /// relative to its initial pose, then for each point its position, m, the force on the body, N,
-  /// and its qp::ContactState.
+  /// relative to its initial pose, then for each point its position, m (NaN: it was not found), the
+  /// force on the body, N, and its qp::ContactState.
   std::vector<std::vector<float>> contacts;
   std::vector<float> joints;  ///< (12 joints,), see joint_marks()
   std::optional<PullFrame> pull;

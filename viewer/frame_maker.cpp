@@ -153,8 +153,13 @@ void FrameMaker::fill_contacts(Frame& frame) {
     values.reserve(7 * (1 + state.size()));
     for (std::size_t k = 0; k < state.size(); ++k) {
       using Vector = Eigen::Map<const Vector3>;
-      put(Vector(&position[3 * k]));
-      put(Vector3(normal_force[k] * Vector(&normal[3 * k]) + Vector(&friction_force[3 * k])));
+      const Vector across(&normal[3 * k]);
+      // A point that was not found has no place. Older recordings have an arbitrary one, and zero
+      // for its normal.
+      const bool found = across.squaredNorm() > 0.0;
+      put(found ? Vector3(Vector(&position[3 * k])) : Vector3(Vector3::Constant(kNone)));
+      put(found ? Vector3(normal_force[k] * across + Vector(&friction_force[3 * k]))
+                : Vector3(Vector3::Zero()));
       values.push_back(static_cast<float>(state[k]));
     }
   }

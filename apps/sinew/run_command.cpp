@@ -22,6 +22,7 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/record/motion_recorder.hpp"
 #include "sinew/record/run_recorder.hpp"
+#include "sinew/scene/watched_cables.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
@@ -193,13 +194,23 @@ void warn(const Tally& tally, const sim::StepSettings& step) {
   }
 }
 
+// Prints what the run showed about its cables on stderr. It flags no step.
+void tell(const sim::CableWatch& cables) {
+  for (const Notice& notice : cables.notices()) {
+    const char* level = notice.level == NoticeLevel::warning ? "warning" : "note";
+    fmt::print(stderr, "sinew: {}: {}\n", level, notice.text());
+  }
+}
+
 // The recorders of a run.
 struct Records {
   std::optional<record::RunRecorder> run;
   std::optional<record::RunMotion> motion;
   std::optional<RunExtremes> extremes;
+  std::optional<sim::CableWatch> cables;
 
   void after_step() {
+    cables->after_step();
     run->after_step();
     if (motion) motion->after_step();
     if (extremes) extremes->after_step();
@@ -289,6 +300,7 @@ int run(const RunOptions& options) {
   Records records;
   records.run.emplace(std::move(observables), settings);
   if (!options.quiet) records.extremes.emplace(session);
+  records.cables.emplace(session.simulation(), scene::watched_cables(session.robot()));
   if (!options.glb.empty()) records.motion.emplace(session.simulation(), description.name);
 
   const auto begin = std::chrono::steady_clock::now();
@@ -312,6 +324,7 @@ int run(const RunOptions& options) {
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::recording_failed) finish();
     warn(tally, session.simulation().model().step());
+    tell(*records.cables);
     try {
       write_motion();
     } catch (const Error&) {  // the error that ended the run is reported
@@ -321,6 +334,7 @@ int run(const RunOptions& options) {
   finish();
   write_motion();
   warn(tally, session.simulation().model().step());
+  tell(*records.cables);
   if (tally.steps < steps) {
     fmt::print(
         stderr,

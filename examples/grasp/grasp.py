@@ -97,8 +97,8 @@ def along(grip):
 
 
 def near(contact):
-    """Number of contact points with a gap below the search distance, which is the largest gap."""
-    return int(np.count_nonzero(contact.gaps < contact.gaps.max()))
+    """Number of contact points that the last step found."""
+    return len(contact.gaps)
 
 
 def sideways(sim):
@@ -112,7 +112,7 @@ def sideways(sim):
 
 
 def run(sim, until=END, moments=()):
-    """Steps until a time (s). Returns smallest gap (m) and computation time (s) of each step, and nodal positions at `moments`."""
+    """Steps until a time (s). Returns smallest gap (m; NaN: nothing near) and computation time (s) of each step, and nodal positions at `moments`."""
     gaps, taken, frames = [], [], {}
     while sim.time < until - 0.5 * STEP:
         start = time.perf_counter()
@@ -120,7 +120,7 @@ def run(sim, until=END, moments=()):
         taken.append(time.perf_counter() - start)
         if sim.report.flagged:
             raise RuntimeError(f"the step to {sim.time:.3f} s is {sim.report.status}")
-        gaps.append(min(grip.gap for grip in grips(sim)))
+        gaps.append(np.fmin.reduce([grip.gap for grip in grips(sim)]))
         for moment in moments:
             if abs(sim.time - moment) < 0.5 * STEP:
                 frames[moment] = {name: body.positions.copy() for name, body in sim.bodies.items()}
@@ -179,7 +179,7 @@ def show():
     print(f"places of fingers and cup near each other: {figures['near']}, with a force: {figures['carrying']}")
     print(f"the cup has risen by {1e3 * figures['risen']:.2f} mm, leans by {np.degrees(figures['tilt']):.2f} degrees, "
           f"and moved by {1e6 * slip:.3g} um in the last second")  # fmt: skip
-    print(f"smallest gap of the run: {1e3 * min(first[0].min(), last[0].min()):.1e} mm")
+    print(f"smallest gap of the run: {1e3 * np.nanmin([*first[0], *last[0]]):.1e} mm")
     print(f"a step: {1e3 * np.median(taken):.1f} ms (median), {1e3 * taken.max():.0f} ms (longest), one core")
     return sim, frames
 

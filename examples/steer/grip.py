@@ -110,7 +110,7 @@ def hold(force):
         start = time.process_time()
         sim.step()
         taken = time.process_time() - start
-        rows.append((sim.time, *(grip.normal_force for grip in grips), grasp.risen(sim), min(grip.gap for grip in grips), taken))
+        rows.append((sim.time, *(grip.normal_force for grip in grips), grasp.risen(sim), np.fmin.reduce([grip.gap for grip in grips]), taken))
     return np.array(rows), sim
 
 
@@ -129,7 +129,7 @@ def report(force, rows):
     late = rows[rows[:, 0] > LIFTS + 0.25]
     off = np.abs(late[:, 1:4] / force - 1.0).max()
     print(f"asked {force:g} N: fingers {np.round(late[-1, 1:4], 4)} N at the end, off by {100 * off:.2f} % at most, the shell is "
-          f"{1e3 * late[-1, 4]:.1f} mm higher, gap >= {1e6 * late[:, 5].min():.3f} um, {1e3 * np.median(late[:, 6]):.1f} ms a step")  # fmt: skip
+          f"{1e3 * late[-1, 4]:.1f} mm higher, gap >= {1e6 * np.nanmin(late[:, 5]):.3f} um, {1e3 * np.median(late[:, 6]):.1f} ms a step")  # fmt: skip
     return off
 
 

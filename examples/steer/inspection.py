@@ -59,7 +59,7 @@ def report(friction, rows):
     touching = late[:, 4] + late[:, 5]
     print(f"friction {friction}: error {1e3 * np.median(late[:, 1]):.4f} mm (largest {1e3 * late[:, 1].max():.3f}), "
           f"{np.median(late[:, 3]):.0f} points take part ({late[:, 3].max():.0f}), {np.median(touching):.0f} carry force "
-          f"({touching.max():.0f}), force {np.median(late[:, 6]):.2f} N, gap >= {1e6 * late[:, 7].min():.3f} um, "
+          f"({touching.max():.0f}), force {np.median(late[:, 6]):.2f} N, gap >= {1e6 * np.nanmin(late[:, 7]):.3f} um, "
           f"{1e3 * np.median(late[:, 2]):.2f} ms a step (95 %: {1e3 * np.quantile(late[:, 2], 0.95):.2f})")  # fmt: skip
 
 

@@ -142,7 +142,7 @@ def carry(sim, radius):
         states = np.concatenate([np.array(grip.states) for grip in grips])
         rows.append((sim.time, np.linalg.norm(cup.position - asked), np.linalg.norm(turn.value - rotation),
                      *(grip.normal_force for grip in grips), len(sim.contact_problem().friction), np.sum(states == "stick"),
-                     np.sum(states == "slip"), min(grip.gap for grip in grips), taken))  # fmt: skip
+                     np.sum(states == "slip"), np.fmin.reduce([grip.gap for grip in grips]), taken))  # fmt: skip
         way.append(cup.position - start)
     return np.array(rows), np.array(way)
 
@@ -153,7 +153,7 @@ def report(rows):
           f"{np.degrees(rows[:, 2].max()):.3f}); normal forces {rows[:, 3:6].min():.3f} to {rows[:, 3:6].max():.3f} N; "
           f"{np.median(rows[:, 6]):.0f} points in the law ({rows[:, 6].min():.0f} to {rows[:, 6].max():.0f}), "
           f"{np.median(rows[:, 7] + rows[:, 8]):.0f} with a force, of which {np.median(rows[:, 7]):.0f} stick; "
-          f"gap >= {1e6 * rows[:, 9].min():.3f} um; "
+          f"gap >= {1e6 * np.nanmin(rows[:, 9]):.3f} um; "
           f"{1e3 * np.median(rows[:, 10]):.1f} ms a step (95 %: {1e3 * np.quantile(rows[:, 10], 0.95):.1f})")  # fmt: skip
 
 

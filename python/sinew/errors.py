@@ -84,7 +84,9 @@ class Notice(NamedTuple):
     kind : str
         "locking-element": the elements are much stiffer than the material. "bare-points": a cable pulls at single
         points, which dent the material. "other-tangent": the materials do not have the requested tangent, and another
-        one is used.
+        one is used. "slack-cable": a cable with a commanded displacement was slack in all steps of a run. "bowstring": a
+        cable ran straight between two points of a body that bent. Simulation.run() warns of the last two, and of bare
+        points whose dents took more than a tenth of a cable's pull.
     place : Location
         Location in the scene.
     message : str

@@ -103,8 +103,8 @@ def _panel(heading: str, names=()) -> tuple[str, str] | None:
         return "Contact force (N)", f"{of} {last.removesuffix('_force')}"
     if last in ("sticking", "slipping"):
         return "Contact points", f"{of} {last}"
-    if last == "gap":
-        return "Contact gap (m)", of
+    if last in ("gap", "gap_above"):  # a gap that was not measured is above the dashed line
+        return "Contact gap (m)", of + last.removeprefix("gap").replace("_", " ")
     done = last.removesuffix("_command")
     told = " command" if done != last else ""
     if done in ("displacement", "volume_growth", "angle"):
@@ -115,7 +115,7 @@ def _panel(heading: str, names=()) -> tuple[str, str] | None:
 
 
 def _owner(name: str) -> str:
-    return name.removesuffix(" command").removesuffix(" true")
+    return name.removesuffix(" command").removesuffix(" true").removesuffix(" above")
 
 
 def _style(line: int) -> tuple[int, str]:
@@ -153,8 +153,8 @@ def run(folder, out) -> pathlib.Path:
     numbers = {_split(heading)[0]: values for heading, values in columns.items()}
     panels: dict[str, list[tuple[str, str, list[float]]]] = {}
     for heading, values in columns.items():
-        commanded = not _split(heading)[0].endswith("_command") or any(map(math.isfinite, values))
-        if commanded and (panel := _panel(heading, numbers)) is not None:
+        optional = _split(heading)[0].endswith(("_command", ".gap_above"))
+        if (not optional or any(map(math.isfinite, values))) and (panel := _panel(heading, numbers)) is not None:
             panels.setdefault(panel[0], []).append((panel[1], _split(heading)[1], values))
     probes = read_run(folder, "probes.csv") if (pathlib.Path(folder) / "probes.csv").exists() else {}
     for heading, values in probes.items():

@@ -19,9 +19,17 @@ const sim::ContactModel& model(const Contact& self) {
   return self.session->model().contacts()[static_cast<std::size_t>(self.index)];
 }
 
+// Only those that were found: the others have no place.
 std::vector<sim::ContactPoint> points(const Contact& self) {
   const Session::Use use(*self.session);
-  return self.session->simulation().contacts().points(self.index);
+  auto all = self.session->simulation().contacts().points(self.index);
+  std::erase_if(all, [](const sim::ContactPoint& point) { return !point.is_measured(); });
+  return all;
+}
+
+sim::ContactResultant sum(const Contact& self) {
+  const Session::Use use(*self.session);
+  return self.session->simulation().contacts().sum(self.index);
 }
 
 sim::ContactResultant resultant(const Contact& self) {
@@ -84,28 +92,32 @@ py::object surface(const Contact& self) {
 
 void bind_sums(py::class_<Contact>& type) {
   type.def_property_readonly(
-          "force", [](const Contact& self) { return reading(resultant(self).force); },
+          "force", [](const Contact& self) { return reading(sum(self).force); },
           "(3,) ndarray: force on the body in the last step, summed over all points (N).")
       .def_property_readonly(
-          "normal_force", [](const Contact& self) { return resultant(self).normal_force; },
+          "normal_force", [](const Contact& self) { return sum(self).normal_force; },
           "float: sum of the points' normal forces (N), >= 0.")
       .def_property_readonly(
-          "friction_force", [](const Contact& self) { return resultant(self).friction_force; },
+          "friction_force", [](const Contact& self) { return sum(self).friction_force; },
           "float: sum of the magnitudes of the points' friction forces (N).")
       .def_property_readonly(
           "gap", [](const Contact& self) { return resultant(self).smallest_gap; },
-          "float: smallest gap of all points (m), negative inside the surface; for deformable "
-          "bodies that are not near each other, the search distance, a lower bound.");
+          "float: smallest gap (m), negative inside the surface. NaN between surfaces of meshes "
+          "that are farther apart than the distance of the search: see `gap_above`.")
+      .def_property_readonly(
+          "gap_above", [](const Contact& self) { return resultant(self).gap_above; },
+          "float: where `gap` is NaN, the searched distance (m): the gap is larger. Else NaN.");
 }
 
 void bind_points(py::class_<Contact>& type) {
   type.def_property_readonly(
           "positions",
           [](const Contact& self) { return vectors(self, &sim::ContactPoint::position); },
-          "(n, 3) ndarray: present positions of the points that may touch (m).")
+          "(n, 3) ndarray: present positions of the points that may touch (m). Where points are "
+          "searched for in every step, those that the last one found; none before the first step.")
       .def_property_readonly(
           "gaps", [](const Contact& self) { return numbers(self, &sim::ContactPoint::gap); },
-          "(n,) ndarray: distance of every point from the surface (m), negative inside.")
+          "(n,) ndarray: distance of each of these points from the surface (m), negative inside.")
       .def_property_readonly(
           "normals", [](const Contact& self) { return vectors(self, &sim::ContactPoint::normal); },
           "(n, 3) ndarray: outward normals of the surface in the last step.")
@@ -119,7 +131,7 @@ void bind_points(py::class_<Contact>& type) {
           "(n, 3) ndarray: force on the body along the surface (N).")
       .def_property_readonly("states", &states,
                              "list of str: 'open', 'stick' or 'slip' (friction at its limit) of "
-                             "every point.");
+                             "each of these points.");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 
 #include "sinew/core/whole.hpp"
 #include "sinew/inverse/controller_observables.hpp"
+#include "sinew/scene/watched_cables.hpp"
 #include "sinew/sim/observables.hpp"
 
 #include "arrays.hpp"
@@ -137,11 +139,16 @@ void advance_and_record(Session& session, std::int64_t steps, std::int64_t every
                         Recording& recording) {
   using Clock = std::chrono::steady_clock;
   constexpr auto kPause = std::chrono::milliseconds(100);
+  constexpr std::int64_t kMany = 10;  // steps of which something can be said of its cables
   auto told = Clock::now();
+  std::optional<sim::CableWatch> cables;
+  if (steps >= kMany) {
+    cables.emplace(session.simulation(), scene::watched_cables(session.robot().robot));
+  }
   write_moment(session, recording);
   for (std::int64_t done = 0; done < steps;) {
     const std::int64_t part = std::min(every, steps - done);
-    session.advance(part, on_failure);
+    session.advance(part, on_failure, cables ? &*cables : nullptr);
     done += part;
     write_moment(session, recording);
     if (!progress.is_none() && (done == steps || Clock::now() - told > kPause)) {
@@ -150,6 +157,7 @@ void advance_and_record(Session& session, std::int64_t steps, std::int64_t every
     }
   }
   if (steps > 1) session.warn_units();
+  if (cables) session.warn_cables(*cables);
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ void Session::check_loads() const {
   }
 }
 
-void Session::advance(std::int64_t count, sim::OnFailure on_failure) {
+void Session::advance(std::int64_t count, sim::OnFailure on_failure, sim::CableWatch* cables) {
   if (count < 0) {
     throw Error(ErrorKind::out_of_range, {.item = "step(n)"}, fmt::format("n is {}", count),
                 "give zero or more steps; reset() goes back to the start");
@@ -115,6 +115,7 @@ void Session::advance(std::int64_t count, sim::OnFailure on_failure) {
       const auto pause = Clock::now() + kSignalInterval;
       do {
         simulation_.step(on_failure);
+        if (cables != nullptr) cables->after_step();
         note_status();
         steps_.store(simulation_.steps(), std::memory_order_relaxed);
         ++done;
@@ -174,6 +175,18 @@ void Session::warn_units() {
     const std::string message = unusual_notice(range, told.largest, {}, {.item = what}).text();
     const pybind11::object kind = pybind11::module_::import("sinew.errors").attr("SinewWarning");
     if (PyErr_WarnEx(kind.ptr(), message.c_str(), 1) != 0) throw pybind11::error_already_set();
+  }
+}
+
+void Session::warn_cables(const sim::CableWatch& cables) {
+  for (const Notice& notice : cables.notices()) {
+    const std::string what =
+        fmt::format("{} {}", notice_kind_name(notice.kind), notice.place.text());
+    if (notice.level == NoticeLevel::remark || !told_of_cables_.insert(what).second) continue;
+    const pybind11::object kind = pybind11::module_::import("sinew.errors").attr("SinewWarning");
+    if (PyErr_WarnEx(kind.ptr(), notice.text().c_str(), 1) != 0) {
+      throw pybind11::error_already_set();
+    }
   }
 }
 

@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "sinew/inverse/target_controller.hpp"
 #include "sinew/mechanics/tangent.hpp"
 #include "sinew/scene/build.hpp"
+#include "sinew/sim/cable_watch.hpp"
 #include "sinew/sim/linearisation.hpp"
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -102,7 +104,11 @@ class Session {
   /// Ctrl-C, also within a step; the state is then that of the last complete step. It warns
   /// (sinew.SinewWarning) of flagged steps, once per status until the next reset. Throws what
   /// sim::Simulation::step() throws, and Error(not-finite) for external forces.
-  void advance(std::int64_t count, sim::OnFailure on_failure = sim::OnFailure::stop);
+  /// @param cables that watches the run; null: none does.
+  void advance(std::int64_t count, sim::OnFailure on_failure = sim::OnFailure::stop) {
+    advance(count, on_failure, nullptr);
+  }
+  void advance(std::int64_t count, sim::OnFailure on_failure, sim::CableWatch* cables);
   /// Advances from a thread that does not hold the GIL, without checking for Ctrl-C or warning.
   /// @param count maximum number of steps. @param ended called after each step; true ends the run.
   void advance_unlocked(std::int64_t count, const std::function<bool()>& ended);
@@ -116,6 +122,9 @@ class Session {
   /// robots, such as 30 for 30 kPa. A loop that raises a pressure step by step passes small ones,
   /// so this is for calls whose result is final: many steps, and equilibria.
   void warn_units();
+  /// Issues a SinewWarning for what a run showed about its cables, once per cable and kind.
+  /// @param cables that watched the run.
+  void warn_cables(const sim::CableWatch& cables);
   sim::StaticReport solve_static(const sim::StaticSettings& settings);
   /// @param visit called without the GIL.
   sim::Path follow_path(const sim::PathSettings& settings, const std::function<void()>& visit);
@@ -170,6 +179,7 @@ class Session {
   std::map<std::string, Told> pressures_;  // by attribute
   std::atomic<std::int64_t> steps_{0};
   mutable std::atomic<bool> busy_{false};
+  std::set<std::string> told_of_cables_;  // kinds of notices and places
 };
 
 }  // namespace sinew::python

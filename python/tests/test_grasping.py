@@ -34,7 +34,7 @@ def test_a_soft_gripper_lifts_a_soft_cup(grasp):
     assert held["sideways"] < 1e-3
     assert held["carrying"] <= 12 < held["near"]
     assert np.abs(cup.positions - before).max() < 50e-6  # after 0.2 s at rest
-    assert min(gaps.min(), later.min()) > -1e-9
+    assert np.nanmin([*gaps, *later]) > -1e-9
 
 
 def test_walls_that_widen_upwards_need_less_friction(grasp):

@@ -95,11 +95,17 @@ class Drawn {
     const at = new Vector3(), force = new Vector3(), middle = new Vector3(), matrix = new Matrix4();
     const turn = new Quaternion(), upright = new Quaternion(), color = new Color();
     const lines: number[] = [];
-    let heads = 0, recoloured = false;
+    let heads = 0, measured = 0, recoloured = false;
     for (let k = 0; k < count; ++k) {
-      const from = STRIDE * (k + 1), state = values[from + 6];
+      const from = STRIDE * (k + 1), found = Number.isFinite(values[from]), state = found ? values[from + 6] : -1;
+      if (!found) {  // no place to draw it at
+        this.states[k] = state;
+        this.beads.setMatrixAt(k, matrix.makeScale(0, 0, 0));
+        continue;
+      }
       at.fromArray(values, from);
-      middle.addScaledVector(at, 1 / count);
+      middle.add(at);
+      measured += 1;
       const radius = POINT * this.size * (state > 0 ? 1 : 0.5);
       this.beads.setMatrixAt(k, matrix.compose(at, upright, new Vector3(radius, radius, radius)));
       if (this.states[k] !== state) {
@@ -124,7 +130,7 @@ class Drawn {
       this.arrows.geometry.dispose();
       this.arrows.geometry = new LineSegmentsGeometry().setPositions(lines);
     }
-    if (this.patch) this.follow(middle);
+    if (this.patch && measured > 0) this.follow(middle.divideScalar(measured));
   }
 
   /** Whether this is a plane where another contact has the same one. */

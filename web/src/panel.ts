@@ -154,9 +154,9 @@ export class Panel {
   private show(signals: Float64Array): void {
     this.joints.show();
     for (const {value, columns} of this.contacts) {
-      const [normal, , gap, sticking, slipping] = columns.map((k) => signals[k]);
+      const [normal, , gap, above, sticking, slipping] = columns.map((k) => signals[k]);
       const text = sticking + slipping > 0 ? `${told(normal, 'N')}, ${sticking} stick, ${slipping} slip`
-        : `open, ${told(gap, 'm')} away`;
+        : Number.isFinite(gap) ? `open, ${told(gap, 'm')} away` : `open, more than ${told(above, 'm')} away`;
       if (value.textContent !== text) value.textContent = text;
     }
     for (const {value, columns, unit} of this.probes) {

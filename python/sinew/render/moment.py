@@ -33,7 +33,7 @@ class Moment:
     poses : dict of str to (3, 4) ndarray
         Rotation and translation (m) of contact surfaces from their positions in the scene.
     touching, forces : (m, 3) ndarrays
-        Contact points, m, and the forces on the bodies there, N.
+        Contact points, m (NaN: not found, without a force), and the forces on the bodies there, N.
     effectors, goals : dict of str to (3,) ndarray
         m.
     """
@@ -129,7 +129,10 @@ def _goals(sim: Any) -> dict[str, np.ndarray]:
 
 
 def between(first: Moment, second: Moment, share: float) -> Moment:
-    """Linear interpolation between two moments of a robot; values that are not numbers come from the nearer one."""
+    """Linear interpolation between two moments of a robot; values that are not numbers come from the nearer one.
+
+    So do contact points where not all were found in both moments: an index may then mean two different points.
+    """
 
     def mixed(a: Any, b: Any) -> Any:
         if isinstance(a, dict):
@@ -137,6 +140,8 @@ def between(first: Moment, second: Moment, share: float) -> Moment:
         return (1.0 - share) * a + share * b
 
     nearer = first if share < 0.5 else second
+    if not np.isfinite([first.touching, second.touching]).all():
+        first, second = (dataclasses.replace(one, touching=nearer.touching, forces=nearer.forces) for one in (first, second))
     parts = {part.name: mixed(getattr(first, part.name), getattr(second, part.name))
              for part in dataclasses.fields(Moment) if part.name != "slack"}  # fmt: skip
     return Moment(**parts, slack=nearer.slack)

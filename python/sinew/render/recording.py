@@ -109,7 +109,8 @@ class Recording:
         for contact in file.get("contacts", {}).values():
             if "position" in contact:
                 touching.append(contact["position"][index])
-                forces.append(contact["normal_force"][index][:, None] * contact["normal"][index] + contact["friction_force"][index])
+                across = np.nan_to_num(contact["normal"][index])  # NaN: points that were not found, without a force
+                forces.append(contact["normal_force"][index][:, None] * across + contact["friction_force"][index])
         return Moment(
             time=float(self.times[index]),
             positions=positions,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import pathlib
 from collections.abc import Callable
@@ -18,7 +19,7 @@ _MAX_PANELS = 7
 _MAX_GROUPS = 24  # combinations of words with curves of their own
 _FLAT = 1e-5      # thickness of a set of points relative to its extent, below which it has no volume
 # SI units of the quantities that measures end with.
-_UNITS = {**dict.fromkeys(("displacement", "length", "x", "y", "z", "gap", "error"), "m"),
+_UNITS = {**dict.fromkeys(("displacement", "length", "x", "y", "z", "gap", "gap_above", "error"), "m"),
           **dict.fromkeys(("angle", "rx", "ry", "rz"), "rad"), **dict.fromkeys(("tension", "force", "normal_force", "friction_force"), "N"),
           "pressure": "Pa", "torque": "N m", "volume_growth": "m^3", "volume": "m^3", "stiffness": "N/m"}
 
@@ -81,6 +82,11 @@ def _unit(name: str) -> str:
     return _UNITS.get(last, "m" if last.isdigit() and ".position" in name else "")
 
 
+def _finite(values: np.ndarray) -> np.ndarray:
+    """The values that are known: a gap that was not measured is NaN."""
+    return values[np.isfinite(values)]
+
+
 def _legend(axis: Any, table: _Table) -> None:
     """Names the groups beside an axis."""
     labels = axis.get_legend_handles_labels()[1]
@@ -109,7 +115,7 @@ def _scatter(plt: Any, table: _Table) -> Any:
         for j, right in enumerate(names):
             axis = axes[i, j]
             if i == j:
-                axis.hist([table.numbers(upper)[rows] for _, rows in groups], bins=20, stacked=True,
+                axis.hist([_finite(table.numbers(upper)[rows]) for _, rows in groups], bins=20, stacked=True,
                           color=[_colour(k) if table.words else plot.OURS for k in range(len(groups))])
             else:
                 colour = plot.DATA if upper in table.inputs else plot.OURS
@@ -133,18 +139,19 @@ def _parallel(plt: Any, table: _Table) -> Any:
     words = {name: list(dict.fromkeys(table.rows[name].astype(str))) for name in table.words}
     columns = [np.array([words[name].index(word) for word in table.rows[name].astype(str)], dtype=float) if name in words
                else table.numbers(name) for name in names]
-    scaled = np.array([(column - column.min()) / np.ptp(column) if np.ptp(column) else 0.5 + 0 * column for column in columns])
+    ends = [(seen.min(), seen.max()) if (seen := _finite(column)).size else (math.nan, math.nan) for column in columns]
+    scaled = np.array([(column - low) / (high - low) if high > low else 0.5 + 0 * column for column, (low, high) in zip(columns, ends)])
     figure, axis = plt.subplots(figsize=(1.5 * len(names) + 1.5, 4.2))
-    colours = plt.get_cmap("viridis")(scaled[-1])
+    colours = plt.get_cmap("viridis").with_extremes(bad=plot.QUIET)(np.ma.masked_invalid(scaled[-1]))
     for k in np.argsort(scaled[-1]):
         axis.plot(range(len(names)), scaled[:, k], lw=0.7, alpha=0.6, color=colours[k])
-    for k, (name, column) in enumerate(zip(names, columns)):
+    for k, (name, reach) in enumerate(zip(names, ends)):
         axis.axvline(k, color=plot.DATA, lw=0.8)
         if name in words:
             for word, at in zip(words[name], np.linspace(0.0, 1.0, len(words[name]))):
                 axis.text(k + 0.03, at, word, ha="left", va="center", fontsize=7)
             continue
-        for at, number in ((-0.04, column.min()), (1.02, column.max())):
+        for at, number in zip((-0.04, 1.02), reach):
             axis.text(k, at, f"{number:.3g}", ha="center", va="bottom" if at > 0 else "top", fontsize=7)
     axis.set(xticks=range(len(names)), yticks=[], xlim=(-0.3, len(names) - 0.7), ylim=(-0.1, 1.1))
     axis.set_xticklabels([table.label(name).replace(" (", "\n(") for name in names], fontsize=7)
@@ -172,7 +179,7 @@ def _surface(plt: Any, table: _Table) -> Any:
             _curves(axis, table, name, groups)
         else:
             values = table.numbers(name)
-            axis.bar(range(len(groups)), [values[rows].mean() for _, rows in groups], color=[_colour(g) for g in range(len(groups))])
+            axis.bar(range(len(groups)), [_finite(values[rows]).mean() if _finite(values[rows]).size else math.nan for _, rows in groups], color=[_colour(g) for g in range(len(groups))])
             axis.set_xticks(range(len(groups)), [label for label, _ in groups], rotation=30, ha="right", fontsize=7)
             axis.set_ylabel(table.label(name))
     if not apart and table.inputs:
@@ -194,11 +201,12 @@ def _curves(axis: Any, table: _Table, name: str, groups: list[tuple[str, np.ndar
 
 def _contours(figure: Any, axis: Any, table: _Table, name: str, label: str, rows: np.ndarray) -> None:
     """An output of a group over the first two inputs."""
+    rows = rows[np.isfinite(table.numbers(name)[rows])]
     first, second, values = (table.numbers(column)[rows] for column in (*table.inputs[:2], name))
     axis.set(xlabel=table.label(table.inputs[0]), ylabel=table.label(table.inputs[1]),
              title=f"{table.label(name)}\n{label}" if label else table.label(name))
     # With more than two inputs there are several values at a point: draw points instead of contours.
-    flat = len(np.unique(first)) < 2 or len(np.unique(second)) < 2 or len(first) < 4 or not np.ptp(values)
+    flat = len(np.unique(first)) < 2 or len(np.unique(second)) < 2 or len(first) < 4 or np.all(values == values[0])
     if len(table.inputs) > 2 or flat:
         drawn = axis.scatter(first, second, c=values, s=14, cmap="viridis")
     else:

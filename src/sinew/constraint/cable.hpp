@@ -51,6 +51,10 @@ class Cable : public Constraint {
   /// True while every segment is under tension.
   bool stiffens(std::span<const double> effort) const override;
 
+  /// The points in bodies, in their order from the pull point.
+  const std::vector<mechanics::MaterialPoint>& material_points() const { return points_; }
+  /// The pull point, if it is fixed to the world, (3,) m.
+  const std::optional<Vector3>& pull_point() const { return pull_point_; }
   /// L_0, m.
   double rest_length() const { return rest_length_; }
   /// Present length L, m.

@@ -112,6 +112,12 @@ bool ShapeContact::idle(std::size_t point, const mechanics::RowValues& values) c
   return own_ && values.reference[row(point)] == kIdle;
 }
 
+// After load(), as in a step, a point without a lever is idle: put_away().
+bool ShapeContact::has_place(std::size_t point, const mechanics::RowValues& values) const {
+  if (!own_) return true;
+  return !values.arm.empty() && !idle(point, values) && !values.arm[entry(point, 1)].isZero(0.0);
+}
+
 // For a material point beside a rigid body. The gap's row watches the centre of curvature, which
 // lies on the normal through the point.
 void ShapeContact::watch(const Configuration& configuration, std::size_t point, const Vector3& at,
@@ -290,12 +296,12 @@ Vector3 ShapeContact::shift(const Eigen::Isometry3d& back, const Configuration& 
 }
 
 double ShapeContact::deepest(const Configuration& configuration, const Eigen::Isometry3d& pose,
-                             const mechanics::RowValues& values) const {
+                             const mechanics::RowValues& values, double margin) const {
   double least = std::numeric_limits<double>::infinity();
   if (own_) {
     const auto found =
         collision::touching_points(collision::moved(own_->shape, own_->pose(configuration)),
-                                   collision::moved(surface_, pose), 0.0);
+                                   collision::moved(surface_, pose), margin);
     for (const collision::TouchingPoint& point : found) least = std::min(least, point.gap);
     return least;
   }

@@ -125,9 +125,13 @@ class ShapeContact : public Contact {
                                  std::size_t point) const override;
   /// The smallest present gap, m, of points that the step has found or not; negative if they
   /// overlap.
-  /// @param configuration,pose,values see gap_now().
+  /// @param configuration,pose,values see gap_now(). @param margin m: between shapes, larger gaps
+  ///   are infinity.
   double deepest(const Configuration& configuration, const Eigen::Isometry3d& pose,
-                 const mechanics::RowValues& values) const;
+                 const mechanics::RowValues& values, double margin = 0.0) const;
+  /// Whether a point has a place on its body: it is a material point, or the step has found it.
+  /// @param point below size(). @param values of the step, of a state that was loaded, or of none.
+  bool has_place(std::size_t point, const mechanics::RowValues& values) const;
   /// By how much the rows of a point would increase if its world surface were displaced from its
   /// pose in the step: (3,) m, normal and tangents. @param back the inverse of that displacement.
   /// @param configuration of the bodies. @param point below size(). @param values of the step.

@@ -157,8 +157,14 @@ double SurfaceContact::linear_gap(const Configuration& configuration, std::size_
 
 double SurfaceContact::gap_now(const Configuration& configuration, const Eigen::Isometry3d&,
                                std::size_t point, const mechanics::RowValues& values) const {
-  return idle(point, values) ? values.reference[row(point)]
-                             : linear_gap(configuration, point, values);
+  return linear_gap(configuration, point, values);
+}
+
+double SurfaceContact::distance(const Configuration& configuration, std::size_t point,
+                                const mechanics::RowValues& values) const {
+  return relative(configuration.surface_nodes(body()), configuration.surface_nodes(other_body()),
+                  point, values)
+      .norm();
 }
 
 void SurfaceContact::save(std::size_t point, const collision::ProximityPair& pair,

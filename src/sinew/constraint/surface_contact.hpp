@@ -68,10 +68,15 @@ class SurfaceContact : public Contact {
                                  std::size_t point) const override;
   double linear_gap(const Configuration& configuration, std::size_t point,
                     const mechanics::RowValues& values) const override;
-  /// The value of its linear row, since surface points and normal are fixed through a step. For an
-  /// idle point, its reference: the distance up to which points were searched for.
+  /// The value of its linear row, since surface points and normal are fixed through a step. For a
+  /// point that is not idle().
   double gap_now(const Configuration& configuration, const Eigen::Isometry3d& pose,
                  std::size_t point, const mechanics::RowValues& values) const override;
+
+  /// Present distance of the two surface points of a contact point, m. @param configuration of the
+  /// bodies. @param point not idle(). @param values of the step.
+  double distance(const Configuration& configuration, std::size_t point,
+                  const mechanics::RowValues& values) const;
 
   /// Allocates what this contact needs in `values`.
   void prepare(mechanics::RowValues& values) const;

@@ -18,6 +18,8 @@ enum class NoticeKind {
   other_tangent,    ///< the materials of the scene do not have the requested tangent
   loose_part,       ///< elements of a mesh are joined to the others by a node or an edge only
   suspicious_unit,  ///< a number without a unit is far from those of robots
+  slack_cable,      ///< a cable with a commanded displacement was slack in all steps of a run
+  bowstring,        ///< a cable ran straight between two points of a body that bent
 };
 
 /// Where a notice is shown.

@@ -170,7 +170,8 @@ std::shared_ptr<const KeyTable> cable_table() {
            .example = "10 mm",
            .default_text = "0 m",
            .description = "Adds evenly spaced guides between the points, at most this far apart, "
-                          "as in a conduit. 0: only the points."},
+                          "as in a conduit. 0: only the points, between which the cable runs "
+                          "straight also where the body bends."},
           {.name = "geometric_stiffness",
            .forms = {boolean()},
            .example = "false",

@@ -44,8 +44,10 @@ ContactPlanes::ContactPlanes(const Model& model, const constraint::Configuration
     contacts_.push_back(&contact);
     shapes_.push_back(dynamic_cast<const constraint::ShapeContact*>(&contact));
     const auto* touching = dynamic_cast<const constraint::SurfaceContact*>(&contact);
+    touching_.push_back(nullptr);
     if (touching == nullptr) continue;
     surfaces_.push_back(std::make_unique<TouchingSurfaces>(*touching, configuration, rows, pool));
+    touching_.back() = surfaces_.back().get();
     strikes_.push_back(model.contacts()[i].strikes ? 1 : 0);
   }
   poses_.resize(contacts_.size(), Eigen::Isometry3d::Identity());

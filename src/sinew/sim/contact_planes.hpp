@@ -47,6 +47,8 @@ class ContactPlanes {
   std::span<const constraint::Contact* const> contacts() const { return contacts_; }
   /// A contact with a shape; null for a contact between surfaces of bodies.
   const constraint::ShapeContact* shape(std::size_t contact) const { return shapes_[contact]; }
+  /// The surfaces of a contact between bodies; null for a contact with a shape.
+  TouchingSurfaces* touching(std::size_t contact) const { return touching_[contact]; }
   /// Places the planes for a step. Call before bodies follow their bases, whose motion then counts
   /// as motion along the surface.
   /// @param from,to s, start and end of the step, which fix the positions of moving surfaces.
@@ -156,6 +158,7 @@ class ContactPlanes {
   std::vector<const constraint::Contact*> contacts_;
   std::vector<const constraint::ShapeContact*> shapes_;
   std::vector<std::unique_ptr<TouchingSurfaces>> surfaces_;
+  std::vector<TouchingSurfaces*> touching_;  // (contacts,)
   VectorX start_;
   VectorX curvature_;
   bool curved_ = false;

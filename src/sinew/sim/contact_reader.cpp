@@ -1,9 +1,15 @@
 #include "sinew/sim/contact_reader.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/shape_contact.hpp"
+#include "sinew/constraint/surface_contact.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/run.hpp"
+#include "sinew/sim/touching_surfaces.hpp"
 
 namespace sinew::sim {
 
@@ -18,12 +24,20 @@ Eigen::Isometry3d ContactReader::pose(int contact) const {
   return run_.world.contacts().planes().pose_now(static_cast<std::size_t>(contact), run_.time());
 }
 
+bool ContactReader::is_found(int contact, std::size_t point) const {
+  const auto& rows = run_.world.rows();
+  const auto* shape = run_.world.contacts().planes().shape(static_cast<std::size_t>(contact));
+  if (shape != nullptr) return shape->has_place(point, rows);
+  return !run_.model->contact(contact).idle(point, rows);
+}
+
 ContactPoint ContactReader::point(int contact, std::size_t point) const {
   return this->point(contact, point, pose(contact));
 }
 
 ContactPoint ContactReader::point(int contact, std::size_t point,
                                   const Eigen::Isometry3d& pose) const {
+  if (!is_found(contact, point)) return {};
   const constraint::Contact& touching = run_.model->contact(contact);
   const auto row = static_cast<std::size_t>(touching.row(point));
   const Matrix3 frame = touching.frame(point, run_.world.rows());
@@ -45,6 +59,30 @@ std::vector<ContactPoint> ContactReader::points(int contact) const {
 }
 
 ContactResultant ContactReader::resultant(int contact) const {
+  ContactResultant result = sum(contact);
+  const ContactGap gap = this->gap(contact, result);
+  result.smallest_gap = gap.value;
+  result.gap_above = gap.above;
+  return result;
+}
+
+ContactGap ContactReader::gap(int contact, const ContactResultant& sum) const {
+  if (sum.normal_force > 0.0 || sum.smallest_gap <= 0.0) return {sum.smallest_gap};
+  const ContactRows& contacts = run_.world.contacts();
+  const auto index = static_cast<std::size_t>(contact);
+  if (const constraint::ShapeContact* shape = contacts.planes().shape(index)) {
+    if (!shape->own()) return {sum.smallest_gap};
+    return {
+        shape->deepest(run_.world.configuration(), pose(contact), run_.world.rows(), kInfinity)};
+  }
+  TouchingSurfaces& surfaces = *contacts.planes().touching(index);
+  const double reach = std::max(contacts.reach(0.0), surfaces.nearest_point());
+  const double gap = surfaces.measure_gap(reach);
+  if (std::isfinite(gap)) return {gap};
+  return {.above = reach - surfaces.contact().separation()};
+}
+
+ContactResultant ContactReader::sum(int contact) const {
   const Eigen::Isometry3d stands = pose(contact);
   ContactResultant resultant;
   for (std::size_t k = 0; k < run_.model->contact(contact).size(); ++k) {

@@ -24,9 +24,21 @@ class ContactReader {
   /// @param run must outlive it.
   explicit ContactReader(const Run& run) : run_(run) {}
   /// @param contact index of Model::contacts(). @param point below constraint::Contact::size().
+  /// Points that the step did not find are not ContactPoint::is_measured().
   ContactPoint point(int contact, std::size_t point) const;
   std::vector<ContactPoint> points(int contact) const;
+  /// With the gap(). @param contact index of Model::contacts().
   ContactResultant resultant(int contact) const;
+  /// The resultant without a gap of its own: `smallest_gap` is that of the points of the step.
+  /// @param contact index of Model::contacts().
+  ContactResultant sum(int contact) const;
+  /// The present gap. Where bodies touch, it is the smallest gap of the points of the step, for
+  /// which the laws hold. Else it is the distance of the two bodies as they stand, since others
+  /// than the points of the step may have come nearer; between surfaces, up to the distance of the
+  /// search, 1 % of the robot's size. Against a surface of the world, points of a deformable body
+  /// are measured at any distance.
+  /// @param contact index of Model::contacts(). @param sum of its points.
+  ContactGap gap(int contact, const ContactResultant& sum) const;
   /// Present pose of the surface, relative to its pose in the scene.
   Eigen::Isometry3d pose(int contact) const;
   /// The same as point(contact, point), for a known pose of the surface.
@@ -41,6 +53,8 @@ class ContactReader {
   step::ContactProblem problem() const;
 
  private:
+  bool is_found(int contact, std::size_t point) const;
+
   const Run& run_;
 };
 

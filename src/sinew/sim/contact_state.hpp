@@ -2,7 +2,7 @@
 /// States of contacts: which points touch, and their forces.
 #pragma once
 
-#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -20,31 +20,45 @@ class Model;
 /// may touch. @param model that contains the contact. @param contact index of Model::contacts().
 std::vector<std::string> touching_bodies(const Model& model, int contact);
 
-/// State of one contact point after the last step.
+/// State of one contact point after the last step. Where points are searched for in every step,
+/// those that were not found have neither position nor gap nor normal: these are NaN.
 struct ContactPoint {
-  Vector3 position = Vector3::Zero();        ///< (3,) m
-  double gap = 0.0;                          ///< m, exact, negative inside the surface
-  Vector3 normal = Vector3::UnitZ();         ///< (3,) outward normal used by the step
-  double normal_force = 0.0;                 ///< N, >= 0, on the body, along `normal`
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+  Vector3 position = Vector3::Constant(kUnknown);  ///< (3,) m
+  double gap = kUnknown;                           ///< m, exact, negative inside the surface
+  Vector3 normal = Vector3::Constant(kUnknown);    ///< (3,) outward normal used by the step
+  double normal_force = 0.0;                       ///< N, >= 0, on the body, along `normal`
   Vector3 friction_force = Vector3::Zero();  ///< (3,) N, on the body, tangential to the surface
   /// open: no force; slip: friction at its limit; stick: within it.
   qp::ContactState state = qp::ContactState::open;
+
+  /// Whether the point was found.
+  bool is_measured() const { return !std::isnan(gap); }
+};
+
+/// The smallest gap of a contact.
+struct ContactGap {
+  double value = ContactPoint::kUnknown;  ///< m; NaN if the search found nothing to measure
+  double above = ContactPoint::kUnknown;  ///< m: then, the gap is larger than this; else NaN
 };
 
 /// Resultant of all points of one contact.
 struct ContactResultant {
-  Vector3 force = Vector3::Zero();  ///< (3,) N, on the body
-  double normal_force = 0.0;        ///< N, sum over the points
-  double friction_force = 0.0;      ///< N, sum of the points' magnitudes
-  double smallest_gap = std::numeric_limits<double>::infinity();  ///< m
-  int sticking = 0, slipping = 0;                                 ///< numbers of points
+  Vector3 force = Vector3::Zero();               ///< (3,) N, on the body
+  double normal_force = 0.0;                     ///< N, sum over the points
+  double friction_force = 0.0;                   ///< N, sum of the points' magnitudes
+  double smallest_gap = ContactPoint::kUnknown;  ///< m; NaN if it was not measured
+  double gap_above = ContactPoint::kUnknown;     ///< m: then, it is larger than this; else NaN
+  int sticking = 0, slipping = 0;                ///< numbers of points
 
   /// Adds a point to the resultant. @param point of the contact.
   void add(const ContactPoint& point) {
+    if (!point.is_measured()) return;
     force += point.normal_force * point.normal + point.friction_force;
     normal_force += point.normal_force;
     friction_force += point.friction_force.norm();
-    smallest_gap = std::min(smallest_gap, point.gap);
+    smallest_gap = std::fmin(smallest_gap, point.gap);
     sticking += point.state == qp::ContactState::stick ? 1 : 0;
     slipping += point.state == qp::ContactState::slip ? 1 : 0;
   }

@@ -93,9 +93,10 @@ class Observables {
   /// - Sensor: `NAME.measured`, `NAME.true`, and the time `NAME.sample_time`, s, when the former
   ///   was taken (NaN before the first sample).
   /// - Contact of n points: `NAME.pose` (3, 4), `NAME.points.position` (n, 3) m, `.gap` (n,) m,
-  ///   `.normal` (n, 3), `.normal_force` (n,) N, `.friction_force` (n, 3) N, `.state` (n,).
+  ///   `.normal` (n, 3), `.normal_force` (n,) N, `.friction_force` (n, 3) N, `.state` (n,). Points
+  ///   that the step did not find have a position, gap and normal of NaN.
   /// - Resultant of a contact: `NAME.force` (3,) N, `NAME.normal_force` and `NAME.friction_force`
-  ///   N, `NAME.gap` m, `NAME.sticking`, `NAME.slipping`.
+  ///   N, `NAME.gap` m, `NAME.gap_above` m (see ContactGap), `NAME.sticking`, `NAME.slipping`.
   /// - Joint: `NAME.force` (3,) N and `NAME.moment` (3,) N m (see JointLoad), `NAME.gap` m, and, if
   ///   free, `NAME.angle` rad and `NAME.displacement` m.
   /// - Estimator: for each unknown force `NAME.UNKNOWN` (3,) N and its standard deviation

@@ -237,7 +237,7 @@ void put_contact(const Simulation& simulation, int index, std::span<double> all)
   Eigen::Map<Pose>(all.data()) = pose.affine();
   part(12);
   Numbers position = part(3 * n), gap = part(n), normal = part(3 * n), normal_force = part(n),
-          friction_force = part(3 * n), state = part(n), sums = part(8);
+          friction_force = part(3 * n), state = part(n), sums = part(9);
   ContactResultant resultant;
   for (std::size_t k = 0; k < n; ++k) {
     const ContactPoint point = simulation.contacts().point(index, k, pose);
@@ -252,7 +252,9 @@ void put_contact(const Simulation& simulation, int index, std::span<double> all)
   sums.put(resultant.force);
   sums.put(resultant.normal_force);
   sums.put(resultant.friction_force);
-  sums.put(resultant.smallest_gap);
+  const ContactGap whole = simulation.contacts().gap(index, resultant);
+  sums.put(whole.value);
+  sums.put(whole.above);
   sums.put(resultant.sticking);
   sums.put(resultant.slipping);
 }
@@ -294,6 +296,7 @@ void add_contacts(Observables& list) {
     add_sum("normal_force", "N");
     add_sum("friction_force", "N");
     add_sum("gap", "m");
+    add_sum("gap_above", "m");
     add_sum("sticking", "");
     add_sum("slipping", "");
     list.add(std::move(parts),

@@ -9,6 +9,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/core/whole.hpp"
 #include "sinew/mechanics/step_system.hpp"
+#include "sinew/sim/surface_gap.hpp"
 
 namespace sinew::sim {
 
@@ -50,6 +51,8 @@ TouchingSurfaces::TouchingSurfaces(const constraint::SurfaceContact& contact,
       second_(contact.second().surface) {
   contact.prepare(rows);
 }
+
+TouchingSurfaces::~TouchingSurfaces() = default;
 
 TouchingSurfaces::Key TouchingSurfaces::name(const collision::ProximityPair& pair) {
   using enum collision::FeatureKind;
@@ -382,6 +385,20 @@ double TouchingSurfaces::drift(std::span<const double> effort) {
     worst = std::max(worst, nearest);
   }
   return worst;
+}
+
+// The points of a pair are points of the surfaces, wherever they have moved since the search.
+double TouchingSurfaces::nearest_point() const {
+  double nearest = kInfinity;
+  for (std::size_t k = 0; k < keys_.size(); ++k) {
+    nearest = std::min(nearest, contact_.distance(configuration_, k, rows_));
+  }
+  return keys_.empty() ? 0.0 : nearest;
+}
+
+double TouchingSurfaces::measure_gap(double distance) {
+  if (!gap_) gap_ = std::make_unique<SurfaceGap>(contact_, configuration_, pool_);
+  return gap_->measure(distance);
 }
 
 void TouchingSurfaces::save(std::vector<double>& to) const {

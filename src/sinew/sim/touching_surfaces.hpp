@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -26,6 +27,8 @@ class StepSystem;
 
 namespace sinew::sim {
 
+class SurfaceGap;
+
 /// Finds the contact points of a step at its start, and again where a proposed motion makes
 /// surfaces overlap. Depends only on positions and on the forces of the last step.
 class TouchingSurfaces {
@@ -44,6 +47,7 @@ class TouchingSurfaces {
   TouchingSurfaces(const constraint::SurfaceContact& contact,
                    const constraint::Configuration& configuration, mechanics::RowValues& rows,
                    ThreadPool& pool);
+  ~TouchingSurfaces();
 
   const constraint::SurfaceContact& contact() const { return contact_; }
   /// Sets how far begin_step() and look_around() search: up to `reach`, and where nodes are faster,
@@ -89,6 +93,12 @@ class TouchingSurfaces {
   /// m: largest difference between the exact gap of a point with a force and the gap of its row.
   /// @param effort (rows,) N.
   double drift(std::span<const double> effort);
+  /// m, >= separation: a distance within which the surfaces are at present, by the points of the
+  /// step; 0 if there are none.
+  double nearest_point() const;
+  /// m: the present gap of the surfaces; infinity if they are farther apart than `distance`. The
+  /// points of the step and all that a step depends on stay as they are. @param distance m.
+  double measure_gap(double distance);
   std::size_t count() const { return keys_.size(); }
   const Key& key(std::size_t point) const { return keys_[point]; }
   /// Whether a point stays inactive until a motion leads into it: edges that cross where both
@@ -150,6 +160,7 @@ class TouchingSurfaces {
   double reach_ = 0.0;                          // m, of the step: all nearer pairs are points
   VectorX first_ahead_, second_ahead_;          // (nodes,) m: how far they are expected to move
   std::vector<std::array<int, 2>> kept_edges_;  // that had a force and were not found
+  std::unique_ptr<SurfaceGap> gap_;             // made when it is first asked for
   std::vector<Force> before_;                   // of the last step, by name
   Points first_start_, second_start_;           // m, when the step began
   Points first_end_, second_end_;               // m, where a motion leads

@@ -1,0 +1,24 @@
+#include "sinew/scene/watched_cables.hpp"
+
+#include <algorithm>
+#include <variant>
+
+#include "sinew/sim/model.hpp"
+
+namespace sinew::scene {
+
+std::vector<sim::WatchedCable> watched_cables(const Robot& robot) {
+  std::vector<sim::WatchedCable> cables;
+  for (const ActuatorDescription& actuator : robot.description.actuators) {
+    const auto* cable = std::get_if<CableDescription>(&actuator.own);
+    if (cable == nullptr) continue;
+    const bool told = std::ranges::any_of(robot.notices, [&](const Notice& notice) {
+      return notice.kind == NoticeKind::bare_points && notice.place.text() == actuator.place.text();
+    });
+    cables.push_back({robot.model->actuator_index(actuator.name), actuator.place,
+                      cable->guide_radius_given || told});
+  }
+  return cables;
+}
+
+}  // namespace sinew::scene
