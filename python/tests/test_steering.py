@@ -24,9 +24,7 @@ def load(name):
 def test_a_trunk_leans_on_a_tube_and_arrives_behind_it(friction):
     inspection = load("inspection")
     inspection.TRAVEL = 0.5
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", sinew.SinewWarning)
-        rows, _ = inspection.inspect(friction)
+    rows, _ = inspection.inspect(friction)
     # Columns: time, error, seconds, points, sticking, slipping, normal force, gap, on target.
     there = rows[(rows[:, 0] > 1.0) & (rows[:, 0] < 1.5)]
     assert there[:, 1].max() < 5e-6 and there[:, 8].all()
