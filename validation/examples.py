@@ -26,12 +26,12 @@ from suite import examples  # noqa: E402
 from suite.example_table import EXAMPLES  # noqa: E402
 
 
-def run_one(example: examples.Example, options: argparse.Namespace) -> tuple[str, list[str]]:
-    """The line of an example, and what is wrong with it."""
+def run_one(example: examples.Example, options: argparse.Namespace) -> tuple[str, list[str] | None]:
+    """The line of an example, and what is wrong with it; None if it is skipped."""
     with tempfile.TemporaryDirectory(prefix="sinew-example-") as folder:
         ran = examples.run(example, options.build, pathlib.Path(folder), options.patience)
         if ran is None:
-            return f"{example.path}: skipped, {example.needs} is missing", []
+            return f"{example.path}: skipped, {example.needs} is missing", None
         wrong = [ran.problem] if ran.problem else []
         told = []
         for figure in example.figures if not ran.problem else ():
@@ -75,18 +75,20 @@ def main() -> int:
         print("\n".join(one.path for one in chosen))
         return 0
     before = examples.source_state()
-    failed = []
+    failed, skipped = [], 0
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         pending = {pool.submit(run_one, one, options): one for one in sorted(chosen, key=lambda one: -one.limit)}
         for done in concurrent.futures.as_completed(pending):
             line, wrong = done.result()
-            print(f"[{sum(future.done() for future in pending)}/{len(chosen)}] " + "\n    ".join([line, *wrong]), flush=True)
+            print(f"[{sum(future.done() for future in pending)}/{len(chosen)}] " + "\n    ".join([line, *(wrong or [])]), flush=True)
+            skipped += wrong is None
             if wrong:
                 failed.append(pending[done].path)
     changed = examples.changed_sources(before)
     if changed:
         print("files under examples/ have changed: " + ", ".join(changed))
-    print(f"{len(chosen) - len(failed)} of {len(chosen)} as claimed" + (f"; not: {', '.join(sorted(failed))}" if failed else ""))
+    print(f"{len(chosen) - len(failed) - skipped} of {len(chosen)} as claimed" + (f", {skipped} skipped" if skipped else "")
+          + (f"; not: {', '.join(sorted(failed))}" if failed else ""))
     return 1 if failed or changed else 0
 
 

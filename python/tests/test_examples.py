@@ -109,6 +109,9 @@ def test_figures_and_complaints_are_found(build, tmp_path):
     script = tmp_path / "warns.py"
     script.write_text("import warnings\nwarnings.warn('no')\n")
     assert "Warning" in examples.run(examples.Example(str(script)), build, tmp_path).problem
+    said = "a.py:3: SinewWarning: bodies.a.element: too stiff [locking-element]\n  load()\n"
+    assert "locking" in examples.complaint(0, said) and examples.complaint(0, said, ("locking-element",)) == ""
+    assert "bare" in examples.complaint(0, said + "sinew: warning: bare points [bare-points]\n", ("locking-element",))
     script.write_text("import time\ntime.sleep(60)\n")
     assert "not finished" in examples.run(examples.Example(str(script), limit=0.3), build, tmp_path).problem
 

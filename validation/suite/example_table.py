@@ -90,7 +90,7 @@ EXAMPLES = (
     Example("fluidic_arm/plan.py", figures=tuple(
         Figure(f"nearest equilibrium to goal {goal}", printed(rf"^{goal} +([0-9.]+)"), distance, 0.05, "cm", "docs/planning.md, Results")
         for goal, distance in (("A", 11.2), ("B", 9.1), ("C", 7.4), ("D", 21.5)))),
-    Example("grasp/grasp.py", limit=1200, figures=(
+    Example("grasp/grasp.py", limit=1200, notices=("locking-element",), figures=(
         Figure("rise of the tapered cup at friction 0.6", printed(r"^ +0\.60 +([-0-9.]+)"), 62.4, 0.1, "mm", "docs/grasping.md"),
         Figure("rise of the straight cup at friction 0.6", printed(r"^ +0\.60 +([-0-9.]+) +([-0-9.]+)", 2), 59.7, 0.1, "mm",
                "docs/grasping.md"),
@@ -117,7 +117,7 @@ EXAMPLES = (
     Example("python/follow_circle.py"),
     Example("python/grasp.py"),
     Example("python/workspace.py"),
-    Example("steer/grip.py", arguments=("--force", "1.0"), limit=300, figures=(
+    Example("steer/grip.py", arguments=("--force", "1.0"), limit=300, notices=("locking-element",), figures=(
         Figure("largest error of a force", printed(r"off by ([0-9.]+) % at most"), 0.0, 0.01, "%", f"{_STEER}, Hold an egg"),)),
     Example("steer/in_hand.py", arguments=("--angle", "90", "--grip", "1"), limit=300, figures=(
         Figure("angle reached", printed(r"^turned ([0-9.]+)"), 90.0, 0.0001, "degrees", f"{_STEER}, Roll a cylinder"),
@@ -132,7 +132,7 @@ EXAMPLES = (
     Example("steer/roll.py", arguments=("--to", "140", "60"), limit=300, figures=(
         Figure("error at 140 mm", printed(r"asked 140\.0 mm: off by ([-+0-9.]+)"), -0.16, 0.05, "mm", f"{_STEER}, Roll to a position"),
         Figure("error at 60 mm", printed(r"asked 60\.0 mm: off by ([-+0-9.]+)"), 0.02, 0.05, "mm", f"{_STEER}, Roll to a position"))),
-    Example("steer/stride.py", arguments=("--strides", "4", "8", "2"), limit=900, figures=(
+    Example("steer/stride.py", arguments=("--strides", "4", "8", "2"), limit=900, notices=("locking-element",), figures=(
         Figure("first stride", printed(r"^stride of 4\.0 mm: ([0-9.]+)"), 3.9, 0.1, "mm", f"{_STEER}, Strides"),
         Figure("second stride", printed(r"^stride of 8\.0 mm: ([0-9.]+)"), 8.1, 0.1, "mm", f"{_STEER}, Strides"),
         Figure("third stride", printed(r"^stride of 2\.0 mm: ([0-9.]+)"), 2.0, 0.01, "mm", f"{_STEER}, Strides"))),

@@ -80,6 +80,7 @@ class Example:
     figures: tuple[Figure, ...] = ()
     arguments: tuple[str, ...] = ()
     limit: float = 120.0
+    notices: tuple[str, ...] = ()  # kinds of warnings that its page explains
     needs: str = ""  # a Python module, or a folder of published data that the argument "{data}" names
 
     def command(self, build: pathlib.Path) -> list[str] | None:
@@ -157,19 +158,17 @@ def run(example: Example, build: pathlib.Path, folder: pathlib.Path, patience: f
         output, _ = process.communicate()
         problem = f"not finished after {patience * example.limit:.0f} s"
     else:
-        problem = complaint(process.returncode, output)
+        problem = complaint(process.returncode, output, example.notices)
     return Ran(output, folder, time.monotonic() - start, problem)
 
 
-def complaint(code: int, output: str) -> str:
-    """What is wrong with a run, or nothing: an exit code, a warning, a flagged step."""
-    found = COMPLAINT.search(output)
+def complaint(code: int, output: str, notices: tuple[str, ...] = ()) -> str:
+    """What is wrong with a run, or nothing: an exit code, a warning of another kind than `notices`, a flagged step."""
+    lines = output.strip().splitlines()
     if code:
-        lines = output.strip().splitlines()
         return f"exit code {code}: {lines[-1] if lines else 'no output'}"
-    if not found:
-        return ""
-    return output[found.start():].splitlines()[0]
+    known = tuple(f"[{kind}]" for kind in notices)
+    return next((line for line in lines if COMPLAINT.search(line) and not line.endswith(known or ("\0",))), "")
 
 
 def source_state() -> dict[str, tuple[int, int]]:
