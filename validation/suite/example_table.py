@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .examples import Example, Figure, Ran, at, first_above, largest, last, printed
+from .examples import Example, Figure, at, first_above, largest, last, printed
 
 # Imported by scripts, and no examples of their own.
 PARTS = ("fluidic_arm/ilc_plant.py",)
@@ -16,12 +16,6 @@ PARTS = ("fluidic_arm/ilc_plant.py",)
 
 def _aside(column: str):
     return lambda ran: 1e3 * abs(float(ran.table[column][-1]))
-
-
-def _periods(ran: Ran, column: str, period: float) -> np.ndarray:
-    """Change of a column in each period."""
-    ends = [int(np.argmin(np.abs(ran.table["time"] - k * period))) for k in range(round(ran.table["time"][-1] / period) + 1)]
-    return np.diff(ran.table[column][ends])
 
 
 _CURL = "docs/locomotion.md, Curling"
@@ -61,7 +55,9 @@ EXAMPLES = (
     Example("rigid/slider_crank.yaml"),
     Example("rigid/urdf_arm.yaml"),
     Example("ring/sma.yaml"),
-    Example("roll/roll.yaml", limit=240),
+    Example("roll/roll.yaml", limit=240, figures=(
+        Figure("distance in periods 3 and 4, a whole turn", lambda ran: at("rim.x", 8.0, 1e3)(ran) - at("rim.x", 4.0, 1e3)(ran),
+               184.5, 0.5, "mm", "docs/locomotion.md, Rolling"),)),
     Example("trunk/circle.yaml"),
     Example("trunk/trunk.yaml"),
     Example("bending_actuator/simulate.py", figures=(
