@@ -56,10 +56,10 @@ def test_folded_material_does(height, angle, axis):
     assert sim.contact("self").gap > -1e-7
 
 
-# The arm of the example on a coarse mesh, with differences of the size of rounding on another machine. Its tip meets its base once.
+# The arm of the example in long steps, with differences of the size of rounding on another machine. Its tip meets its base once.
 @pytest.mark.parametrize("change", ["", "gravity=0 0 9.81001 m/s^2", "bodies.arm.mesh.base_radius=17.00002 mm", "time_step=19.9 ms"])
-def test_a_coarse_arm_curls_up_whatever_the_rounding(change):
-    sim = sinew.load(ARM, set=["time_step=20 ms", "bodies.arm.mesh.element_size=7 mm", *filter(None, [change])])
+def test_the_arm_curls_up_whatever_the_rounding(change):
+    sim = sinew.load(ARM, set=["time_step=20 ms", *filter(None, [change])])
     touch, first = sim.contact("self"), None
     while sim.time < 2.8:
         sim.step()
