@@ -1,9 +1,11 @@
 # Shortcuts for common tasks, which `make` lists. CMakePresets.json and scripts/ do the work.
 # `make JOBS=2 ...` limits the number of compilers at once, `make PYTHON=...` chooses an interpreter.
+# `make examples PRESET=portable` uses the build for any x86-64-v2 machine.
 PREFIX ?= /usr/local
+PRESET ?= release
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build demo test combinations validate bench docs format format-check lint \
+.PHONY: help setup build demo test combinations validate examples bench docs format format-check lint \
         asan tsan portable install clean view
 
 help:  ## list the targets
@@ -37,6 +39,11 @@ validate:  ## compare results with references; writes docs/scorecard.md
 	@scripts/setup.sh validate
 	@scripts/build.sh release sinew sinew_python
 	@build/release/bin/sinew validate
+
+examples:  ## run all scenes and scripts of examples/ and check their figures; PRESET=portable: with that build
+	@scripts/setup.sh sweep validate
+	@scripts/build.sh $(PRESET) sinew sinew_python
+	@$(or $(PYTHON),/usr/bin/python3) validation/examples.py --build build/$(PRESET) $(if $(JOBS),--jobs $(JOBS))
 
 bench:  ## measure the time of a step by stage, and compare solvers
 	@scripts/bench.sh

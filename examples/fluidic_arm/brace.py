@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 """A soft fluidic arm leans on a bar to hold its tip steadier: the sequence of poses, and the error of the tip with and
-without the brace, as a figure beside this script or in the given folder."""
+without the brace, as a figure.
+
+    python brace.py [FOLDER]     writes bracing.png to FOLDER (default: out/fluidic_arm)
+"""
 
 import sys
 from pathlib import Path
@@ -31,7 +34,8 @@ def backbone(length, theta):
 
 
 def main():
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path("out/fluidic_arm")
+    folder.mkdir(parents=True, exist_ok=True)
     arm, limits = pcc.published_arm(), pcc.published_torque_limits()
     ends = [[CENTRE[0], y, CENTRE[1]] for y in (-0.1, 0.1)]
     bar = plan.BraceObject.capsule(*ends, RADIUS)

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Plans swings of a soft fluidic arm in the commands of its drive cylinders, and for comparison in torques that are
-inverted afterwards. Both are simulated through cylinders, lines, actuators and arm. Prints a table, and draws a figure
-beside this script or in the given folder."""
+inverted afterwards. Both are simulated through cylinders, lines, actuators and arm. Prints a table, and draws a figure.
+
+    python drive.py [FOLDER]     writes drive.png to FOLDER (default: out/fluidic_arm)
+"""
 
 import sys
 from pathlib import Path
@@ -30,7 +32,8 @@ def ways(goal, cylinders):
 
 
 def main():
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path("out/fluidic_arm")
+    folder.mkdir(parents=True, exist_ok=True)
     cylinders = [ilc_plant.cylinder(frequency=SLOWER)] * 3
     print("goal  way           tip (cm)  speed (cm/s)")
     runs = {}

@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 """A soft fluidic arm swings to points that it cannot hold at rest: reach map, planned torques and
-phase plots of the tip, as figures beside this script or in the given folder."""
+phase plots of the tip, as figures.
+
+    python plan.py [FOLDER]      writes reach.png and plans.png to FOLDER (default: out/fluidic_arm)
+"""
 
 import sys
 from pathlib import Path
@@ -43,7 +46,8 @@ def torques_and_phases(plans, paths, folder):
 
 
 def main():
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path("out/fluidic_arm")
+    folder.mkdir(parents=True, exist_ok=True)
     arm, limits = pcc.published_arm(), pcc.published_torque_limits()
     plans, paths = {}, {}
     print("goal  at rest (cm)  proof           iterations  time (s)  tip (cm)  speed (cm/s)")

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """A hand on a virtual wall of 1 N/mm at 1 kHz: the energy that the wall creates with and without passivity control, and
-the force on the hand as a number and an arrow, in a figure beside this script or in the given folder.
+the force on the hand as a number and an arrow, in a figure.
 
-    wall.py [FOLDER]      on an ideal clock
+    wall.py [FOLDER]      on an ideal clock; writes wall.png to FOLDER (default: out/high_rate)
     wall.py --live        ten seconds in a thread of its own: the arrow in the terminal, then the lateness of periods
     wall.py --view        in the browser: a device and the point of contact that it pulls, until you close the page or press Ctrl-C
 """
@@ -119,7 +119,8 @@ def main():
         return live()
     if sys.argv[1:] == ["--view"]:
         return shown()
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path("out/high_rate")
+    folder.mkdir(parents=True, exist_ok=True)
     times = np.arange(0.0, DURATION, 1.0 / RATE)
     places = hand(times)
     found = {passivity: feel(places, passivity) for passivity in (True, False)}

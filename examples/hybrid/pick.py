@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """A hand with three soft fingers on a rigid arm picks up a box: contact forces, motor torques, and a picture.
 
-    PYTHONPATH=build/release/python /usr/bin/python3 examples/hybrid/pick.py [--out FOLDER] [--write-motion]
+    PYTHONPATH=build/release/python /usr/bin/python3 examples/hybrid/pick.py [--out FOLDER] [--write-motion FILE]
 
 Runs pick.yaml, prints its results (docs/grasping.md explains them), and draws FOLDER/pick.png. The motors and cables of
-the scene follow pick.csv, which --write-motion rewrites: straight paths of the wrist, which determine the angles of
+the scene follow pick.csv, which --write-motion examples/hybrid/pick.csv rewrites: straight paths of the wrist, which determine the angles of
 shoulder and elbow; the wrist keeps the palm level.
 """
 
@@ -225,10 +225,10 @@ def draw(path, shapes):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, default=Path("out/hybrid"))
-    parser.add_argument("--write-motion", action="store_true", help="write pick.csv anew")
+    parser.add_argument("--write-motion", type=Path, metavar="FILE", help="write the motion of pick.csv to a file")
     arguments = parser.parse_args()
     if arguments.write_motion:
-        write_motion(HERE / "pick.csv")
+        write_motion(arguments.write_motion)
     arguments.out.mkdir(parents=True, exist_ok=True)
     found, shapes = pick(SHOWN)
     slid, turned = 1e3 * (found["held"][0] - found["lifted"][0]), np.degrees(found["held"][1] - found["lifted"][1])

@@ -63,8 +63,8 @@ def main():
         plant = trunk(**DIFFERENT, more=[CAMERA])
         loop = make(kind, "effort", plant)
         shown[kind] = errors = drive(loop, plant, 1.6)
-        least = f"{loop.least_eigenvalue:.2f} +- {loop.least_eigenvalue_std:.2f}"  # nan without measurements
-        print(f"  {kind:14} {1e3 * errors[-100:].mean():6.3f}  {loop.status}, least eigenvalue {least}")
+        least = f", least eigenvalue {loop.least_eigenvalue:.2f} +- {loop.least_eigenvalue_std:.2f}"
+        print(f"  {kind:14} {1e3 * errors[-100:].mean():6.3f}  {loop.status}{'' if kind == 'open' else least}")
     if len(sys.argv) > 1:
         import matplotlib.pyplot as plt
 

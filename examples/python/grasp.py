@@ -69,7 +69,7 @@ def main():
     finger = collision.Surface(closed(trunk.nodes, 0.2, 0), boundary(trunk.tetrahedra))
     angles = np.radians(np.linspace(5.0, 30.0, 51))
     contact = first_contact(finger, can, trunk.nodes, angles)
-    print(f"{finger} meets the can at {np.degrees(contact):.2f} deg")
+    print(f"the fingers meet the can at {np.degrees(contact):.2f} deg")
 
     # Gaps before the first contact, overlap after it.
     gaps, volumes = np.full(len(angles), np.nan), np.zeros(len(angles))

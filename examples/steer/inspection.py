@@ -18,7 +18,8 @@ import yaml
 
 HERE = Path(__file__).resolve().parent
 FIRST, SECOND = np.array([0.046, -0.022, 0.165]), np.array([0.046, 0.022, 0.165])  # m
-TUBE = {"capsule": {"ends": ["30 -60 95 mm", "30 60 95 mm"], "radius": "12 mm"}}
+TUBE = {"type": "rigid", "fixed": True, "shape": {"capsule": {"length": "120 mm", "radius": "12 mm"}},
+        "pose": {"position": "30 0 95 mm", "rotation": {"axis": "1 0 0", "angle": "90 deg"}}}  # fmt: skip
 ARRIVE, TRAVEL, STEP = 1.5, 2.0, 0.01  # s
 
 
@@ -27,7 +28,8 @@ def scene(friction):
     for actuator in tree["actuators"].values():
         actuator["points"]["file"] = str(HERE.parent / "trunk" / actuator["points"]["file"])
         actuator["command"] = {"tension": "0 N"}
-    tree["contacts"] = {"tube": {"body": "trunk", "friction": friction, "surface": TUBE}}
+    tree["bodies"]["tube"] = TUBE
+    tree["contacts"] = {"tube": {"between": ["trunk", "tube"], "friction": friction}}
     return tree
 
 

@@ -1,5 +1,7 @@
 #!/usr/bin/python3
-"""Writes the routes of the trunk's eight cables as CSV files (x, y, z in mm) beside this script.
+"""Writes the routes of the trunk's eight cables as CSV files (x, y, z in mm).
+
+    make_cables.py [FOLDER]      default: out/trunk; examples/trunk for the tables of trunk.yaml and circle.yaml
 
 Four long cables run from the base to the tip, a quarter turn apart, and approach the axis as the
 trunk tapers; four short ones follow the same route up to half the height. The first point of each
@@ -7,6 +9,7 @@ is its pull point, below the base.
 """
 
 import pathlib
+import sys
 
 import numpy as np
 
@@ -27,7 +30,8 @@ def route(turn: float, points: int) -> np.ndarray:
 
 
 def main() -> None:
-    folder = pathlib.Path(__file__).parent
+    folder = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "out/trunk")
+    folder.mkdir(parents=True, exist_ok=True)
     for k in range(4):
         turn = (k + 1) * np.pi / 2  # the first cable lies on +y
         for name, points in (("long", POINTS), ("short", HALF)):

@@ -233,7 +233,7 @@ def test_the_finger_with_sensors_runs():
     finger = sinew.load(ROOT / "examples/finger/sensors.yaml")
     out = finger.run(0.6)
     pressure = out["gauge.true"]
-    assert pressure[-1] > 15e3
+    assert 14e3 < pressure[-1] < 25e3  # behind the command, since the supply is narrow
     error = out["gauge.measured"] - pressure - 100
     assert error[1:].std() == pytest.approx(finger.sensor("gauge").std, rel=0.5)
     # The inflow agrees with the isothermal gas law p V = p_0 v.

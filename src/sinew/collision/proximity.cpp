@@ -28,6 +28,9 @@ constexpr double kTooFar = 1.001, kRounding2 = 1e-20;
 constexpr double kParallel = 1e-6;
 // With a larger slack for edges, cones of normals exclude nothing.
 constexpr double kNegligibleSlack = 1e-6;
+// Distance from a place at which the outside is examined, relative to the depth, and at least,
+// relative to the search distance: less than the separation of surfaces in contact.
+constexpr double kOutside = 1e-6, kLeastOutside = 1e-9;
 // A slack that allows all neighbours, whatever the rounding of the sine.
 constexpr double kAnySlack = 2.0;
 
@@ -319,8 +322,22 @@ class PairSearch {
   };
   void keep(const Placed& p, const Placed& q, const Vector3& normal, bool between_flat = false) {
     const double distance = distance_along(normal, p.point, q.point);
-    if (distance < 0.0 && !leads_out(p, q, -distance)) return;
+    if (distance < 0.0 && !(leads_out(p, q, -distance) && has_passed(p, q, -distance))) return;
     found_.push_back({p.point, q.point, normal, distance, between_flat});
+  }
+
+  // Two places of one surface that face away from each other have either passed each other, or the
+  // straight way between them is material: a wall, or an element that is compressed to less than
+  // the depth. In the first case, just outside of one place is the other part of the body. With a
+  // closed surface, its winding number there tells: 1 or more, or 0.
+  bool has_passed(const Placed& p, const Placed& q, double depth) const {
+    if (!same_ || !first_.surface().topology().closed()) return true;
+    const double step = std::max(kOutside * depth, kLeastOutside * reach_);
+    return is_covered(p.point.point - step * p.direction.normalized()) ||
+           is_covered(q.point.point + step * q.direction.normalized());
+  }
+  bool is_covered(const Vector3& point) const {
+    return winding_number(first_.surface(), point) > 0;
   }
 
   // Whether features that have passed each other have no shorter way out. Next to an edge of a
