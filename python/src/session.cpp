@@ -177,14 +177,30 @@ void Session::warn_units() {
   }
 }
 
+void Session::warn_strains(const scene::StrainWatch& strains) {
+  for (const Notice& notice : strains.notices()) {
+    if (!told_laws_.insert(notice.place.item).second) continue;
+    const pybind11::object kind = pybind11::module_::import("sinew.errors").attr("SinewWarning");
+    if (PyErr_WarnEx(kind.ptr(), notice.text().c_str(), 1) != 0) {
+      throw pybind11::error_already_set();
+    }
+  }
+}
+
 sim::StaticReport Session::solve_static(const sim::StaticSettings& settings) {
   warn_units();
   const Use use(*this);
   check_loads();
   const sim::Watched watched = look_for_signals(simulation_);
-  const pybind11::gil_scoped_release release;
-  const sim::StaticReport report = simulation_.solve_static(settings);
-  lend_factors(simulation_);
+  sim::StaticReport report;
+  {
+    const pybind11::gil_scoped_release release;
+    report = simulation_.solve_static(settings);
+    lend_factors(simulation_);
+  }
+  scene::StrainWatch strains(robot().robot);
+  strains.see(simulation_);
+  warn_strains(strains);
   return report;
 }
 
@@ -206,6 +222,7 @@ void Session::reset() {
   }
   simulation_.reset();
   flagged_.clear();
+  told_laws_.clear();
   steps_ = 0;
 }
 

@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "sinew/inverse/target_controller.hpp"
 #include "sinew/mechanics/tangent.hpp"
 #include "sinew/scene/build.hpp"
+#include "sinew/scene/strain_watch.hpp"
 #include "sinew/sim/linearisation.hpp"
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -116,6 +118,9 @@ class Session {
   /// robots, such as 30 for 30 kPa. A loop that raises a pressure step by step passes small ones,
   /// so this is for calls whose result is final: many steps, and equilibria.
   void warn_units();
+  /// Issues a SinewWarning for each law that was not tested at the strains of a run, once each
+  /// until the next reset. @param strains of the run.
+  void warn_strains(const scene::StrainWatch& strains);
   sim::StaticReport solve_static(const sim::StaticSettings& settings);
   /// @param visit called without the GIL.
   sim::Path follow_path(const sim::PathSettings& settings, const std::function<void()>& visit);
@@ -168,6 +173,7 @@ class Session {
     bool warned = false;
   };
   std::map<std::string, Told> pressures_;  // by attribute
+  std::set<std::string> told_laws_;        // by place; since the last reset
   std::atomic<std::int64_t> steps_{0};
   mutable std::atomic<bool> busy_{false};
 };

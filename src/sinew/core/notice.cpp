@@ -7,9 +7,9 @@
 namespace sinew {
 
 std::string_view notice_kind_name(NoticeKind kind) {
-  constexpr std::array<std::string_view, 7> kNames = {
-      "locking-element", "bare-points", "unused-element", "coarse-contact",
-      "other-tangent",   "loose-part",  "suspicious-unit"};
+  constexpr std::array<std::string_view, 9> kNames = {
+      "locking-element", "bare-points",     "unused-element", "coarse-contact", "other-tangent",
+      "loose-part",      "suspicious-unit", "unstable-law",   "strain-range"};
   return kNames.at(static_cast<std::size_t>(kind));
 }
 

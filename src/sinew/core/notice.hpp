@@ -18,6 +18,8 @@ enum class NoticeKind {
   other_tangent,    ///< the materials of the scene do not have the requested tangent
   loose_part,       ///< elements of a mesh are joined to the others by a node or an edge only
   suspicious_unit,  ///< a number without a unit is far from those of robots
+  unstable_law,     ///< a material loses its stability at strains of robots
+  strain_range,     ///< the strains of a run are not those at which its material was tested
 };
 
 /// Where a notice is shown.
