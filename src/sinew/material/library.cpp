@@ -115,9 +115,9 @@ NamedMaterial small_strain(const char* name, const char* trade_name, const Small
 }
 constexpr const char* kCompressionRemark =
     "Assumes that the ends of the cylinders slid freely; the source does not say. Had they stuck, "
-    "the modulus would be about a quarter lower (apparent modulus E (1 + 2 S^2), S = D/4H: Gent, "
-    "Lindley 1959). A later evaluation by the source gives 4 to 6 % more. Its force-free stretches "
-    "between 0.75 and 2 were not checked in other modes.";
+    "the modulus would be 30 % lower (our simulation of the test). A later evaluation by the "
+    "source gives 4 to 6 % more. Between 1 and 2 the law is interpolated. Not checked in other "
+    "modes.";
 
 void add_ecoflex(std::vector<NamedMaterial>& list) {
   constexpr double kDensity = 1070.0;
