@@ -18,6 +18,7 @@ void add_mesh(CommandLine& line);
 void add_view(CommandLine& line);
 void add_schema(CommandLine& line);
 void add_fit(CommandLine& line);
+void add_materials(CommandLine& line);
 void add_reach(CommandLine& line);
 void add_plan(CommandLine& line);
 void add_brace(CommandLine& line);

@@ -35,6 +35,7 @@
 #include "arguments.hpp"
 #include "commands.hpp"
 #include "info_body.hpp"
+#include "material_text.hpp"
 #include "terminal.hpp"
 
 namespace sinew::cli {
@@ -216,6 +217,9 @@ Facts scene_facts(const InfoOptions& options) {
       format_quantity(model.step().time_step, dimension::kTime),
       duration > 0.0 ? rounded_quantity(duration, dimension::kTime) : "without a duration");
   for (const auto& body : model.bodies()) add_body(facts.json, facts.text, body);
+  for (const scene::BodyDescription& body : robot.description.bodies) {
+    add_laws(facts.json, facts.text, body);
+  }
   for (const Notice& notice : robot.notices) add_notice(facts, notice);
   for (std::size_t a = 0; a < model.actuators().size(); ++a) {
     const sim::ActuatorModel& actuator = model.actuators()[a];

@@ -52,6 +52,7 @@ int run(int argc, const char* const* argv) {
   cli::add_validate(line);
   cli::add_info(line);
   cli::add_mesh(line);
+  cli::add_materials(line);
   cli::add_fit(line);
   cli::add_identify(line);
   cli::add_reach(line);

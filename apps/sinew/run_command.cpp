@@ -22,6 +22,7 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/record/motion_recorder.hpp"
 #include "sinew/record/run_recorder.hpp"
+#include "sinew/scene/strain_watch.hpp"
 #include "sinew/scene/watched_cables.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -38,6 +39,7 @@ namespace sinew::cli {
 namespace {
 
 constexpr double kMaxSteps = 1e9;
+constexpr std::int64_t kStrainSamples = 64;  // states whose strains are looked at
 
 struct RunOptions {
   SceneOptions scene;
@@ -208,6 +210,7 @@ struct Records {
   std::optional<record::RunMotion> motion;
   std::optional<RunExtremes> extremes;
   std::optional<sim::CableWatch> cables;
+  std::optional<scene::StrainWatch> strains;
 
   void after_step() {
     cables->after_step();
@@ -222,11 +225,13 @@ void advance(Session& session, Records& records, std::int64_t steps, const RunOp
   const Interrupt interrupt;
   ProgressBar bar(steps, !options.quiet);
   const sim::Watched watched = watch_steps(session.simulation(), bar, tally.steps);
+  const std::int64_t stride = std::max<std::int64_t>(steps / kStrainSamples, 1);
   while (tally.steps < steps) {
     Interrupt::check();
     session.step(options.keep_going);
     records.after_step();
     count(tally, session);
+    if (tally.steps % stride == 0) records.strains->see(session.simulation());
     if (!bar.due()) continue;
     bar.update(tally.steps, session.controller() == nullptr
                                 ? fmt::format("t = {:.2f} s", session.simulation().time())
@@ -301,6 +306,7 @@ int run(const RunOptions& options) {
   records.run.emplace(std::move(observables), settings);
   if (!options.quiet) records.extremes.emplace(session);
   records.cables.emplace(session.simulation(), scene::watched_cables(session.robot()));
+  records.strains.emplace(session.robot());
   if (!options.glb.empty()) records.motion.emplace(session.simulation(), description.name);
 
   const auto begin = std::chrono::steady_clock::now();
@@ -325,6 +331,7 @@ int run(const RunOptions& options) {
     if (error.kind() != ErrorKind::recording_failed) finish();
     warn(tally, session.simulation().model().step());
     tell(*records.cables);
+    print_warnings(records.strains->notices());
     try {
       write_motion();
     } catch (const Error&) {  // the error that ended the run is reported
@@ -335,6 +342,8 @@ int run(const RunOptions& options) {
   write_motion();
   warn(tally, session.simulation().model().step());
   tell(*records.cables);
+  records.strains->see(session.simulation());
+  print_warnings(records.strains->notices());
   if (tally.steps < steps) {
     fmt::print(
         stderr,

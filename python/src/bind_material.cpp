@@ -1,6 +1,7 @@
 // Binds materials without a scene: laws, and materials of the library.
 #include <fmt/format.h>
 
+#include "sinew/material/instability.hpp"
 #include "sinew/material/library.hpp"
 #include "sinew/scene/scene.hpp"
 
@@ -74,6 +75,11 @@ std::pair<double, double> stable_range(const Material& self, const std::string& 
   return material::stable_range(self.energy, to_mode(mode), lowest, highest);
 }
 
+// None for a number that the library does not know.
+py::object known(double value) {
+  return value > 0.0 ? py::object(py::float_(value)) : py::object(py::none());
+}
+
 py::dict library() {
   py::dict result;
   for (const material::NamedMaterial& named : material::material_library()) {
@@ -84,6 +90,13 @@ py::dict library() {
     entry["stretch_range"] = named.highest > 0.0
                                  ? py::object(py::make_tuple(named.lowest, named.highest))
                                  : py::object(py::none());
+    entry["error"] = known(named.error);
+    entry["young_modulus"] = named.energy.young_modulus();
+    entry["measured_modulus"] = known(named.measured_modulus);
+    entry["measured_by"] = named.measured_by;
+    entry["soft_below"] = known(named.soft_below);
+    entry["better"] = named.better;
+    entry["unstable"] = material::instability(named.energy);
     entry["source"] = named.source;
     entry["remark"] = named.remark;
     result[named.name.c_str()] = entry;
@@ -194,8 +207,13 @@ The library of materials that scenes can name.
 Returns
 -------
 dict of dict
-    By name: 'trade_name', 'law', 'density' (kg/m^3), 'stretch_range' (stretches measured by the source,
-    or None if it does not say), 'source' and 'remark'.
+    By name: 'trade_name'; 'law'; 'density' (kg/m^3); 'stretch_range', the stretches measured by the
+    source, or None if it does not say; 'error', the largest relative deviation of the nominal stress
+    from the data there (above a stretch of 1.5 for fits to tensile curves), or None; 'young_modulus'
+    at small strain (Pa); 'measured_modulus' (Pa, or None) and 'measured_by', what another test found;
+    'soft_below', the stretch below which the law is too soft, or None; 'better', the entry to use
+    instead there, or in place of an unstable law; 'unstable', where the law is unstable between
+    stretches of 0.5 and 3, empty if nowhere; 'source' and 'remark'.
 )");
 }
 

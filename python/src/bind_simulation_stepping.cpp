@@ -255,7 +255,9 @@ void bind_run(SimulationType& type) {
            R"(run($self, duration=None, *, record=None, every=1, progress=None, keep_going=False)
 --
 
-Simulates for a time and returns the recorded quantities, including the initial state.
+Simulates for a time and returns the recorded quantities, including the initial state. A SinewWarning
+(strain-range) names library laws that were not tested at the strains of the run, once until reset();
+64 states of the run are looked at, and the last.
 
 Parameters
 ----------

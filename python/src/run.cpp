@@ -139,18 +139,27 @@ void advance_and_record(Session& session, std::int64_t steps, std::int64_t every
                         Recording& recording) {
   using Clock = std::chrono::steady_clock;
   constexpr auto kPause = std::chrono::milliseconds(100);
-  constexpr std::int64_t kMany = 10;  // steps of which something can be said of its cables
+  constexpr std::int64_t kMany = 10;           // steps of which something can be said of its cables
+  constexpr std::int64_t kStrainSamples = 64;  // states whose strains are looked at
   auto told = Clock::now();
   std::optional<sim::CableWatch> cables;
   if (steps >= kMany) {
     cables.emplace(session.simulation(), scene::watched_cables(session.robot().robot));
   }
   write_moment(session, recording);
+  scene::StrainWatch strains(session.robot().robot);
+  const std::int64_t stride = std::max<std::int64_t>(steps / kStrainSamples, 1);
+  std::int64_t seen = 0;
   for (std::int64_t done = 0; done < steps;) {
     const std::int64_t part = std::min(every, steps - done);
     session.advance(part, on_failure, cables ? &*cables : nullptr);
     done += part;
     write_moment(session, recording);
+    if (done - seen >= stride || done == steps) {
+      const Session::Use use(session);
+      strains.see(session.simulation());
+      seen = done;
+    }
     if (!progress.is_none() && (done == steps || Clock::now() - told > kPause)) {
       progress(done, steps);
       told = Clock::now();
@@ -158,6 +167,7 @@ void advance_and_record(Session& session, std::int64_t steps, std::int64_t every
   }
   if (steps > 1) session.warn_units();
   if (cables) session.warn_cables(*cables);
+  session.warn_strains(strains);
 }
 
 }  // namespace

@@ -43,6 +43,11 @@ sim::Watched look_for_signals(sim::Simulation& simulation) {
 // step.
 void lend_factors(sim::Simulation& simulation) { simulation.world().bodies().release(); }
 
+void issue_warning(const std::string& message) {
+  const pybind11::object kind = pybind11::module_::import("sinew.errors").attr("SinewWarning");
+  if (PyErr_WarnEx(kind.ptr(), message.c_str(), 1) != 0) throw pybind11::error_already_set();
+}
+
 }  // namespace
 
 mechanics::Tangent to_tangent(const std::string& word, const std::string& argument) {
@@ -154,8 +159,7 @@ void Session::warn() {
     const std::string message = fmt::format(
         "the step to t = {:g} s is {}; {}", flagged.first, sim::step_status_name(status),
         sim::step_status_remedy(status, simulation_.model().step()));
-    const pybind11::object kind = pybind11::module_::import("sinew.errors").attr("SinewWarning");
-    if (PyErr_WarnEx(kind.ptr(), message.c_str(), 1) != 0) throw pybind11::error_already_set();
+    issue_warning(message);
   }
 }
 
@@ -173,8 +177,7 @@ void Session::warn_units() {
     if (told.warned || !is_unusual(range, told.largest)) continue;
     told.warned = true;
     const std::string message = unusual_notice(range, told.largest, {}, {.item = what}).text();
-    const pybind11::object kind = pybind11::module_::import("sinew.errors").attr("SinewWarning");
-    if (PyErr_WarnEx(kind.ptr(), message.c_str(), 1) != 0) throw pybind11::error_already_set();
+    issue_warning(message);
   }
 }
 
@@ -183,10 +186,13 @@ void Session::warn_cables(const sim::CableWatch& cables) {
     const std::string what =
         fmt::format("{} {}", notice_kind_name(notice.kind), notice.place.text());
     if (notice.level == NoticeLevel::remark || !told_of_cables_.insert(what).second) continue;
-    const pybind11::object kind = pybind11::module_::import("sinew.errors").attr("SinewWarning");
-    if (PyErr_WarnEx(kind.ptr(), notice.text().c_str(), 1) != 0) {
-      throw pybind11::error_already_set();
-    }
+    issue_warning(notice.text());
+  }
+}
+
+void Session::warn_strains(const scene::StrainWatch& strains) {
+  for (const Notice& notice : strains.notices()) {
+    if (told_laws_.insert(notice.place.item).second) issue_warning(notice.text());
   }
 }
 
@@ -195,9 +201,15 @@ sim::StaticReport Session::solve_static(const sim::StaticSettings& settings) {
   const Use use(*this);
   check_loads();
   const sim::Watched watched = look_for_signals(simulation_);
-  const pybind11::gil_scoped_release release;
-  const sim::StaticReport report = simulation_.solve_static(settings);
-  lend_factors(simulation_);
+  sim::StaticReport report;
+  {
+    const pybind11::gil_scoped_release release;
+    report = simulation_.solve_static(settings);
+    lend_factors(simulation_);
+  }
+  scene::StrainWatch strains(robot().robot);
+  strains.see(simulation_);
+  warn_strains(strains);
   return report;
 }
 
@@ -219,6 +231,7 @@ void Session::reset() {
   }
   simulation_.reset();
   flagged_.clear();
+  told_laws_.clear();
   steps_ = 0;
 }
 

@@ -19,6 +19,7 @@
 #include "sinew/mechanics/tangent.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/cable_watch.hpp"
+#include "sinew/scene/strain_watch.hpp"
 #include "sinew/sim/linearisation.hpp"
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -125,6 +126,9 @@ class Session {
   /// Issues a SinewWarning for what a run showed about its cables, once per cable and kind.
   /// @param cables that watched the run.
   void warn_cables(const sim::CableWatch& cables);
+  /// Issues a SinewWarning for each law that was not tested at the strains of a run, once each
+  /// until the next reset. @param strains of the run.
+  void warn_strains(const scene::StrainWatch& strains);
   sim::StaticReport solve_static(const sim::StaticSettings& settings);
   /// @param visit called without the GIL.
   sim::Path follow_path(const sim::PathSettings& settings, const std::function<void()>& visit);
@@ -177,6 +181,7 @@ class Session {
     bool warned = false;
   };
   std::map<std::string, Told> pressures_;  // by attribute
+  std::set<std::string> told_laws_;        // by place; since the last reset
   std::atomic<std::int64_t> steps_{0};
   mutable std::atomic<bool> busy_{false};
   std::set<std::string> told_of_cables_;  // kinds of notices and places

@@ -1,5 +1,7 @@
 """Materials without a simulation."""
 
+import pathlib
+
 import numpy as np
 import pytest
 import sinew
@@ -9,7 +11,10 @@ def test_the_library_says_where_its_numbers_come_from():
     library = sinew.materials()
     assert "ecoflex-00-30" in library
     for name, entry in library.items():
-        assert set(entry) == {"trade_name", "law", "density", "stretch_range", "source", "remark"}
+        assert set(entry) == {
+            "trade_name", "law", "density", "stretch_range", "error", "young_modulus", "measured_modulus", "measured_by",
+            "soft_below", "better", "unstable", "source", "remark"}
+        assert entry["better"] == "" or (entry["better"] in library and library[entry["better"]]["unstable"] == "")
         assert entry["source"] and entry["density"] > 500
         assert sinew.material(name).density == entry["density"]
 
@@ -31,11 +36,11 @@ def test_every_silicone_is_stable_in_its_range_or_says_so(name):
 
 
 @pytest.mark.parametrize(("name", "at_two", "at_three"), [
-    ("dragon-skin-10", 112.97, 272.79),
+    ("dragon-skin-10-tensile", 112.97, 272.79),
     ("dragon-skin-20", 318.36, 722.26),
     ("dragon-skin-30", 437.12, 959.47),
     ("dragon-skin-fx-pro", 62.34, 132.45),
-    ("ecoflex-00-10", 14.79, 31.12),
+    ("ecoflex-00-10-tensile", 14.79, 31.12),
     ("ecoflex-00-30-tensile", 29.72, 52.39),
     ("ecoflex-00-50-tensile", 40.95, 79.01),
     ("sorta-clear-40", 564.34, 1216.81),
@@ -45,6 +50,129 @@ def test_fits_meet_the_published_curves(name, at_two, at_three):
     found = 1e-3 * sinew.material(name).nominal_stress([2.0, 3.0])
     rms = float(sinew.materials()[name]["source"].split("RMS ")[1].split(" kPa")[0])
     np.testing.assert_allclose(found, [at_two, at_three], atol=3 * rms, rtol=0)
+
+
+# Nominal stress (kPa) at a stretch: specimen A1 in compression (Dawood et al. 2026), and the manufacturer's 100 % modulus.
+PLAIN = {
+    "ecoflex-00-10": [(0.900114, -5.921), (0.875113, -7.552), (0.750113, -16.602), (2.0, 55.2)],
+    "ecoflex-00-30-compression": [(0.900112, -11.066), (0.875114, -14.129), (0.750114, -31.411), (2.0, 68.9)],
+    "ecoflex-00-50": [(0.900111, -17.198), (0.875114, -22.168), (0.750112, -49.970), (2.0, 82.7)],
+    "dragon-skin-10": [(2.0, 151.7)],
+}
+
+
+@pytest.mark.parametrize("name", PLAIN)
+def test_laws_of_small_strain_meet_their_sources(name):
+    entry = sinew.materials()[name]
+    stretch, stress = np.array(PLAIN[name]).T
+    found = 1e-3 * sinew.material(name).nominal_stress(stretch)
+    np.testing.assert_allclose(found, stress, rtol=entry["error"])
+    assert found[-1] == pytest.approx(stress[-1], rel=1e-3)
+    assert entry["young_modulus"] == pytest.approx(entry["measured_modulus"], rel=0.01)
+    assert entry["stretch_range"][0] <= stretch.min() and entry["stretch_range"][1] == 2.0
+    assert entry["unstable"] == "" and entry["soft_below"] is None
+
+
+def test_tensile_fits_say_how_much_too_soft_they_are():
+    library = sinew.materials()
+    ratios = {name: entry["measured_modulus"] / entry["young_modulus"]
+              for name, entry in library.items() if entry["soft_below"] and entry["measured_modulus"]}
+    assert {name: round(ratio, 1) for name, ratio in ratios.items()} == {
+        "dragon-skin-10-tensile": 1.8, "ecoflex-00-10-tensile": 2.4, "ecoflex-00-30-tensile": 2.2, "ecoflex-00-50-tensile": 2.6}
+    for name in ratios:
+        better = library[library[name]["better"]]
+        assert better["young_modulus"] == pytest.approx(better["measured_modulus"], rel=0.01)
+    assert all("fit to the tensile curve" in library[name]["source"] for name, entry in library.items() if entry["soft_below"])
+
+
+def bar(material, pull=0.0):
+    """A bar of 40 mm that is pulled by its weight: `pull` is its acceleration in g."""
+    return {"sinew": 1, "gravity": [0, 0, -9.81 * pull], "bodies": {"bar": {
+        "type": "fem", "element": "hex8", "material": material, "fixed": [{"set": "z_max", "axes": "z"}, {"set": "x_min", "axes": "x"},
+                                                                          {"set": "y_min", "axes": "y"}],
+        "mesh": {"shape": "block", "length": 0.01, "width": 0.01, "height": 0.04, "element_size": 0.01}}}}
+
+
+def notices(sim, kind):
+    return [notice for notice in sim.notices if notice.kind == kind]
+
+
+@pytest.mark.parametrize(("law", "words"), [
+    ("ecoflex-00-50-published", ["'ecoflex-00-50-published' is unstable above 1.13 and below 0.885 in uniaxial", "write ecoflex-00-50 "]),
+    ({"name": "ecoflex-00-30-published", "scale": 2}, ["above 1.79 in equibiaxial stretch", "write ecoflex-00-30 "]),
+    ({"model": "yeoh", "c10": "20 kPa", "c20": "-2 kPa", "c30": 0, "poisson_ratio": 0.49}, ["unstable above", "sinew fit"]),
+    ({"model": "ogden", "mu": [107.9e3, 21.47, -87.1e3], "alpha": [1.55, 7.86, -1.91], "poisson_ratio": 0.45,
+      "convention": "two-mu-over-alpha-squared"}, ["the law is unstable above 1.13", "sinew fit"]),
+])
+def test_an_unstable_law_says_so_at_load(law, words):
+    with pytest.warns(sinew.SinewWarning, match="unstable-law"):
+        sim = sinew.load(bar(law))
+    (told,) = notices(sim, "unstable-law")
+    text = f"{told.item}: {told.message}; {told.remedy} "
+    assert told.level == "warning" and "bodies.bar.material" in text
+    for word in words:
+        assert word in text, text
+
+
+def test_part_and_small_strain_laws_are_judged_too():
+    scene = bar("ecoflex-00-50")
+    scene["bodies"]["bar"]["parts"] = {"tip": {"region": {"box": [-1, -1, -1, 1, 1, 0.021]}, "material": "ecoflex-00-50-published"}}
+    with pytest.warns(sinew.SinewWarning, match=r"bodies.bar.parts.tip.material: .*unstable-law"):
+        sinew.load(scene)
+    sim = sinew.load(bar({"model": "saint-venant-kirchhoff", "young_modulus": 1e5, "poisson_ratio": 0.3}))
+    (told,) = notices(sim, "unstable-law")
+    assert told.level == "remark" and "below 0.577" in told.message
+
+
+@pytest.mark.parametrize("name", sorted(sinew.materials()))
+def test_only_unstable_laws_say_that_they_are(name):
+    """Against the tangent of the compressible law: the stiffness of a block in uniaxial stress, by finite differences."""
+    entry, material = sinew.materials()[name], sinew.material(name)
+    ranges = [material.stable_range(mode, 0.5, 3.0) for mode in ("uniaxial", "equibiaxial", "planar")]
+    assert (entry["unstable"] == "") == all(found == (0.5, 3.0) for found in ranges)
+    assert (entry["unstable"] == "") == (not name.endswith("-published"))
+    if name.endswith("-published"):
+        return
+    lowest, highest = entry["stretch_range"] or (0.5, 3.0)
+    stretch = np.linspace(min(lowest, 0.75), highest, 200)
+    for mode in ("uniaxial", "equibiaxial", "planar"):  # the true stress along the stretch rises
+        assert np.all(np.diff(material.nominal_stress(stretch, mode) * stretch) > 0), mode
+
+
+@pytest.mark.filterwarnings("error::sinew.SinewWarning")
+@pytest.mark.parametrize(("law", "pull", "word"), [
+    ("dragon-skin-10-tensile", 20.0, "1.8 times as much; write dragon-skin-10, which was tested from 0.9 to 2"),
+    ("dragon-skin-30", 40.0, "probably too soft there; scale it to a test of your own"),
+    ("dragon-skin-10", 20.0, None),                                      # right at small strain
+    ({"name": "dragon-skin-30", "scale": 1.3}, 40.0, None),              # matched by the user
+    ("dragon-skin-30", 0.0, None),                                       # no strain at all
+    ("ecoflex-00-10-tensile", 90.0, None),                               # stretched to where it was fitted
+    ("dragon-skin-10-beam", 100.0, "was tested up to 1.1; check it"),
+])
+def test_strains_outside_the_test_of_a_law_are_told(law, pull, word):
+    sim = sinew.load(bar(law, pull))
+    if word is None:
+        sim.solve_static()
+        sim.run(0.01)
+        return
+    with pytest.raises(sinew.SinewWarning, match=f"bodies.bar.material: the largest stretch is .*{word}.*strain-range"):
+        sim.solve_static()
+    sim.reset()
+    with pytest.raises(sinew.SinewWarning, match="strain-range"):
+        sim.run(0.05)
+
+
+def test_the_plain_law_carries_a_chamber_whose_published_law_inverts():
+    module = pathlib.Path(__file__).resolve().parents[2] / "examples" / "finger" / "module.yaml"
+
+    def inflated(law):
+        sim = sinew.load(module, set=[f"bodies.module.material={law}", "actuators.chamber.command={pressure: 6 kPa}"])
+        sim.solve_static()
+        return sim.actuator("chamber").volume_growth
+
+    assert 0.0 < inflated("ecoflex-00-50") < 1e-6
+    with pytest.warns(sinew.SinewWarning, match="unstable-law"), pytest.raises(sinew.RunError):
+        inflated("ecoflex-00-50-published")
 
 
 def test_a_law_as_in_a_scene():

@@ -16,7 +16,8 @@ from program import DONE, PROGRAM, rows_of
 
 COMBINATIONS = os.environ.get("SINEW_COMBINATIONS", "build/release/bin/combinations")
 FLAGGED = 1
-NOTICES = ("[bare-points]", "[other-tangent]", "[coarse-contact]", "[locking-element]", "[slack-cable]", "[bowstring]")
+NOTICES = ("[bare-points]", "[other-tangent]", "[coarse-contact]", "[locking-element]", "[slack-cable]", "[bowstring]",
+           "[unstable-law]", "[strain-range]")
 SAMPLE = range(1, 73, 8)  # a sample of the scenes that cover all pairs of features
 
 

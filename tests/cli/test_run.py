@@ -240,11 +240,40 @@ def test_elements_are_named_and_warned_of(scene, tmp_path):
     assert "remark: " in told.stdout and "times too stiff" in told.stdout
     facts = json.loads(sinew("info", chosen, "--json").stdout)
     assert facts["notices"][0]["level"] == "remark" and list(facts["bodies"][0]["elements"]) == ["tet4"]
-    rubber = sinew("run", scene(replace=(law[0], "material: dragon-skin-30")), *short)
+    rubber = sinew("run", scene(replace=(law[0], "material: {name: dragon-skin-30, scale: 1.2}")), *short)
     assert rubber.returncode == DONE and " tet10 elements" in rubber.stdout
     # Its cable has bare points, which matter for quadratic elements.
     assert rubber.stderr.count("\n") == 1 and rubber.stderr.rstrip().endswith("[bare-points]")
     assert "guide_radius: " in rubber.stderr
+
+
+def test_laws_are_warned_of_at_load_and_where_strains_stay_small(scene, tmp_path):
+    law = "element: tet4\n    material: {model: corotational, young_modulus: 200 kPa, poisson_ratio: 0.4}"
+    short = ["--duration", "20ms", "--out", tmp_path / "o"]
+
+    def lines(material):
+        done = sinew("run", scene(replace=(law, f"element: hex8\n    material: {material}")), *short)
+        return [line for line in done.stderr.splitlines() if "[unstable-law]" in line or "[strain-range]" in line]
+
+    (small,) = lines("dragon-skin-10-tensile")
+    assert "bodies.beam.material: the largest stretch is 1." in small and "write dragon-skin-10," in small
+    assert lines("dragon-skin-10") == []
+    (unstable,) = lines("ecoflex-00-50-published")
+    assert "above 1.13 and below 0.885 in uniaxial stretch" in unstable and "write ecoflex-00-50 [" in unstable
+    told = sinew("info", scene(replace=(law, "material: dragon-skin-10-tensile")))
+    assert "tested stretch 1 to 4, error 15 % above 1.5" in told.stdout and "remark: " in told.stdout
+    assert "is too soft where no stretch exceeds 2" in told.stdout
+
+
+def test_the_library_is_printed():
+    table = sinew("materials")
+    assert table.returncode == DONE
+    (row,) = [line.split() for line in table.stdout.splitlines() if line.startswith("ecoflex-00-50-published ")]
+    assert row[-1] == "unstable" and "152.7" in row
+    one = sinew("materials", "dragon-skin-10")
+    assert "0.9 to 2" in one.stdout and "11 %" in one.stdout and "Dubied" in one.stdout
+    wrong = sinew("materials", "dragon-skin-11")
+    assert wrong.returncode == WRONG and "did you mean 'dragon-skin-10'?" in wrong.stderr
 
 
 def test_the_commands_of_the_readme_work_as_printed(tmp_path):

@@ -20,7 +20,7 @@ SOURCES = {"published": "the multi-flexible-body study with these dimensions; it
 COST = 40
 STIFF = ("{model: ogden, mu: [107900, 21.47, -87100], alpha: [1.55, 7.86, -1.91], convention: mu-over-alpha, "
          "poisson_ratio: 0.49}")
-RUNS = (("Ecoflex 00-30", "ecoflex-00-30", 0.01, 3.0, 0.01), ("Ecoflex 00-50", "ecoflex-00-50", 0.1, 0.4, 0.001),
+RUNS = (("Ecoflex 00-30", "ecoflex-00-30", 0.01, 3.0, 0.01), ("Ecoflex 00-50", "ecoflex-00-50-published", 0.1, 0.4, 0.001),
         ("Ecoflex 00-50 of 167 kPa", STIFF, 0.1, 2.0, 0.01))
 
 

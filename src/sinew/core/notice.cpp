@@ -7,9 +7,10 @@
 namespace sinew {
 
 std::string_view notice_kind_name(NoticeKind kind) {
-  constexpr std::array<std::string_view, 9> kNames = {
-      "locking-element", "bare-points",     "unused-element", "coarse-contact", "other-tangent",
-      "loose-part",      "suspicious-unit", "slack-cable",    "bowstring"};
+  constexpr std::array<std::string_view, 11> kNames = {
+      "locking-element", "bare-points",  "unused-element",  "coarse-contact",
+      "other-tangent",   "loose-part",   "suspicious-unit", "slack-cable",
+      "bowstring",       "unstable-law", "strain-range"};
   return kNames.at(static_cast<std::size_t>(kind));
 }
 

@@ -20,6 +20,8 @@ enum class NoticeKind {
   suspicious_unit,  ///< a number without a unit is far from those of robots
   slack_cable,      ///< a cable with a commanded displacement was slack in all steps of a run
   bowstring,        ///< a cable ran straight between two points of a body that bent
+  unstable_law,     ///< a material loses its stability at strains of robots
+  strain_range,     ///< the strains of a run are not those at which its material was tested
 };
 
 /// Where a notice is shown.

@@ -127,6 +127,7 @@ Robot build(SceneDescription description, const SharedMeshes& shared) {
     const auto made = shared.find(body.name);
     add_body(builder, description, body, made == shared.end() ? nullptr : &made->second);
     const int number = static_cast<int>(&body - description.bodies.data());
+    std::ranges::move(law_notices(body), std::back_inserter(robot.notices));
     if (auto notice = loose_part_notice(body.place, builder.added_body(number))) {
       robot.notices.push_back(std::move(*notice));
     }

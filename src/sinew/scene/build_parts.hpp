@@ -61,6 +61,10 @@ void check_element(const BodyDescription& body, const mesh::Mesh& mesh);
 /// @param place of the body in the scene. @param body with a mesh.
 std::optional<Notice> loose_part_notice(const Location& place, const mechanics::BodyModel& body);
 
+/// Notices about the laws of a body that are unstable at strains of robots, and remarks about those
+/// of the library that are too soft at small strain.
+std::vector<Notice> law_notices(const BodyDescription& body);
+
 /// Notice about a cable whose point forces dent quadratic elements by a hundredth of the body's
 /// size or more: a remark if the scene gives a guide radius of 0, else a warning.
 /// @param actuator of type cable. @param body that it runs through.

@@ -90,6 +90,8 @@ struct MaterialDescription {
   material::Hyperelastic energy;  ///< used if hyperelastic, in place of the next two
   double young_modulus = 0.0;     ///< Pa
   double poisson_ratio = 0.0;
+  std::string library;   ///< its name, if it is from the library
+  bool scaled = false;   ///< whether the scene scales its moduli
   double density = 0.0;  ///< kg/m^3, of a material from the library; else 0
   Location young_modulus_place, poisson_ratio_place;
 };

@@ -151,13 +151,14 @@ void use_library(const std::string& name, MaterialDescription& material) {
   const material::NamedMaterial& named = material::named_material(name);
   material.model = MaterialModel::hyperelastic;
   material.energy = named.energy;
+  material.library = named.name;
   material.density = named.density;
 }
 
 // Multiplies the stiffness by the factor under `scale`.
 void stiffen(const Fields& fields, MaterialDescription& material) {
   double factor = 1.0;
-  fields.read("scale", factor);
+  material.scaled = fields.read("scale", factor) || material.scaled;
   material.young_modulus *= factor;
   material.energy = material::scaled(material.energy, factor);
 }
