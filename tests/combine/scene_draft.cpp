@@ -243,6 +243,18 @@ class Drafter {
     }
   }
 
+  // The element of a body; empty: the default of its material. An estimator repeats every step,
+  // which would take minutes with 800 quadratic nodes around a chamber.
+  std::string element_of(const Body& body) const {
+    const bool patches = of("material") != "saint-venant-kirchhoff";
+    const bool quadratic = hyperelastic() && (!has("element") || of("element") == "tet10");
+    const bool large = body.shape.mesh.find("chambered") != std::string::npos;
+    if (quadratic && large && has("estimator")) return patches ? "tet4-patch" : "tet4";
+    const bool fits = of("element") != "tet4-patch" || patches;
+    const bool named = has("element") && fits && (hyperelastic() || of("element") == "tet4");
+    return named ? of("element") : "";
+  }
+
   // @param held how the body is held: fixed, or placed and held by a joint.
   void add_fem_body(const Body& body, std::string held = {}) {
     const bool loose = !held.empty();
@@ -250,10 +262,8 @@ class Drafter {
     std::string text =
         fmt::format("type: fem, mesh: {}, material: {}, density: 1000 kg/m^3, mass_matrix: {}, {}",
                     body.shape.mesh, material(), of("mass_matrix"), held);
-    const bool unfit = of("element") == "tet4-patch" && of("material") == "saint-venant-kirchhoff";
-    if (has("element") && !unfit && (hyperelastic() || of("element") == "tet4")) {
-      text += ", element: " + of("element");
-    }
+    const std::string element = element_of(body);
+    if (!element.empty()) text += ", element: " + element;
     if (has("damping")) text += ", damping: {mass: 0.5 1/s, stiffness: 1 ms}";
     if (has("initial_velocity") && dynamic()) {
       text += fmt::format(", initial_velocity: {{linear: {} m/s}}",

@@ -49,6 +49,9 @@ constexpr double kPartOfError = 0.1;
 // A gap below 1e-9 of the size counts as closed. Rounding may decide whether it closes now or later
 // in the step, and impacts amplify the difference.
 constexpr double kEventTolerance = 1e-7;
+// The regularisation that decides between redundant actuators weighs 1e-5 of the task
+// (InverseSettings::epsilon times relaxation), so a choice amplifies rounding by as much.
+constexpr double kChoiceTolerance = 1e-8;
 // Of opposite nodes, relative to the robot's size, and of opposite forces, relative to them. Sums
 // of forces have another order on both sides.
 constexpr double kSymmetry = 1e-8, kForceSymmetry = 1e-6;
@@ -130,10 +133,11 @@ bool is_finite(const sim::State& state) {
 }
 
 // Relative to the robot's size.
-double order_tolerance(const sim::Model& model) {
-  if (model.step().event_driven()) return kEventTolerance;
-  const auto& adaptive = model.step().adaptive;
-  return adaptive ? kPartOfError * adaptive->tolerance : kOrderTolerance;
+double order_tolerance(const scene::Robot& robot) {
+  const sim::StepSettings& step = robot.model->step();
+  if (step.event_driven()) return kEventTolerance;
+  if (step.adaptive) return kPartOfError * step.adaptive->tolerance;
+  return robot.controllers.empty() ? kOrderTolerance : kChoiceTolerance;
 }
 
 // Distance between the nodes of two runs with bodies in opposite orders, m.
@@ -269,7 +273,7 @@ class Trial {
     // rounding.
     if (!sim::is_flagged(first->condition) && !first->choice_held) {
       double distance = distance_of_order({.reversed = true}, first->simulation);
-      const double tolerance = order_tolerance(*robot->model) * robot->model->size();
+      const double tolerance = order_tolerance(*robot) * robot->model->size();
       if (!(distance <= tolerance)) {
         // The residual that a quasi-static step leaves to the next one may depend on rounding.
         Run converged(build(write_scene(draft_, {.converged = true})));
