@@ -102,8 +102,7 @@ Array support_forces(const Body& self) {
   sim::Simulation& simulation = self.session->simulation();
   simulation.world().measure_delta();  // rows at the current state
   return copy(fem::reactions(body(self), fem::element_states(body(self)), simulation.efforts(),
-                             simulation.world().rows().direction, simulation.model().rows(),
-                             self.index));
+                             simulation.world().rows(), simulation.model().rows(), self.index));
 }
 
 }  // namespace
@@ -188,7 +187,9 @@ Returns
       .def_property_readonly(
           "reactions", &support_forces,
           "(n, 3) ndarray: forces of the supports on fixed nodes and along fixed axes (N), which "
-          "balance elements, gravity, external forces and actuators; zero elsewhere.");
+          "balance elements, membranes, gravity, external forces, contacts, joints and actuators; "
+          "zero "
+          "elsewhere.");
 }
 
 }  // namespace sinew::python

@@ -16,7 +16,7 @@ namespace {
 
 // Scenes are tried in blocks, which run in parallel.
 constexpr std::uint64_t kBlock = 15;
-constexpr int kRandomBlocks = 2;
+constexpr int kRandomBlocks = 2, kSymmetricBlocks = 2;
 constexpr std::uint64_t kChangedScenes = 30;
 
 // A selection with the named levels, and the first level of all other features.
@@ -129,6 +129,20 @@ TEST_P(RandomScenes, RunAndReproduce) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenes, ::testing::Range(0, kRandomBlocks));
+
+class SymmetricScenes : public CombinationBlock {};
+TEST_P(SymmetricScenes, StaySymmetric) {
+  for (std::uint64_t seed = first; seed < first + kBlock; ++seed) {
+    const Outcome outcome = try_symmetric_scene(random_selection(seed), seed);
+    EXPECT_NE(outcome.kind, Outcome::Kind::wrong)
+        << seed << ": " << outcome.cause << "\n"
+        << write_scene(draft_symmetric_scene(random_selection(seed), seed));
+    if (outcome.kind == Outcome::Kind::refused) {
+      EXPECT_TRUE(is_refused(random_selection(seed))) << seed << ": " << outcome.cause;
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Seeds, SymmetricScenes, ::testing::Range(0, kSymmetricBlocks));
 
 // Defects found among thousands of scenes: a crash of controllers with a contact that stops a point
 // under generalized-alpha, and a limited cable under event-driven integration, whose run continued

@@ -21,16 +21,18 @@ using namespace sinew::combine;
 constexpr const char* kUsage =
     "combinations [--from SEED] [--count N]       random selections (300)\n"
     "combinations --pairs [--from K] [--count N]  the cover of all pairs of levels\n"
-    "combinations [--pairs] --print SEED          the scene of a seed\n";
+    "combinations --symmetric [--from SEED] [--count N]  symmetric robots of random selections\n"
+    "combinations [--pairs | --symmetric] --print SEED   the scene of a seed\n";
 
 // Tries a scene in a child process. A crash is also an outcome.
-std::string try_apart(const Selection& selection, std::uint64_t seed) {
+std::string try_apart(const Selection& selection, std::uint64_t seed, bool symmetric) {
   int ends[2];
   if (pipe(ends) != 0) std::abort();
   const pid_t child = fork();
   if (child == 0) {
     close(ends[0]);
-    const Outcome outcome = try_scene(selection, seed);
+    const Outcome outcome =
+        symmetric ? try_symmetric_scene(selection, seed) : try_scene(selection, seed);
     const std::string text =
         fmt::format("{}|{}|{}", outcome_name(outcome.kind), outcome.cause, outcome.condition);
     if (write(ends[1], text.data(), text.size()) < 0) std::abort();
@@ -54,12 +56,14 @@ std::string try_apart(const Selection& selection, std::uint64_t seed) {
 int main(int count, char** words) {
   std::uint64_t from = 0, printed = 0;
   int number = 300;
-  bool pairs = false, prints = false;
+  bool pairs = false, symmetric = false, prints = false;
   for (int k = 1; k < count; ++k) {
     const std::string word = words[k];
     const bool has_value = k + 1 < count;
     if (word == "--pairs") {
       pairs = true;
+    } else if (word == "--symmetric") {
+      symmetric = true;
     } else if (word == "--from" && has_value) {
       from = std::stoull(words[++k]);
     } else if (word == "--count" && has_value) {
@@ -74,7 +78,8 @@ int main(int count, char** words) {
   }
   if (prints) {
     const Selection selection = pairs ? pairwise_cover().at(printed) : random_selection(printed);
-    std::cout << write_scene(draft_scene(selection, printed));
+    std::cout << write_scene(symmetric ? draft_symmetric_scene(selection, printed)
+                                       : draft_scene(selection, printed));
     return 0;
   }
   const std::vector<Selection> cover = pairs ? pairwise_cover() : std::vector<Selection>{};
@@ -85,7 +90,7 @@ int main(int count, char** words) {
     const std::uint64_t seed = from + static_cast<std::uint64_t>(k);
     const Selection selection =
         pairs ? cover[static_cast<std::size_t>(seed)] : random_selection(seed);
-    const std::string outcome = try_apart(selection, seed);
+    const std::string outcome = try_apart(selection, seed, symmetric);
     ++sums[outcome.substr(0, outcome.find('|'))];
     if (!outcome.starts_with("ran||solved")) std::cout << seed << ' ' << outcome << std::endl;
   }

@@ -172,6 +172,8 @@ std::vector<Feature> list_features() {
       {"force_task", {"none", "force", "limits", "reserve"}},
       {"feedback", switched},
       {"estimator", {"none", "force", "effort", "stiffness"}},
+      {"equilibrium", or_none(words(solver, "equilibrium"))},
+      {"ambient", switched},
   };
 }
 
@@ -291,6 +293,14 @@ const std::vector<Feature>& features() {
 const std::string& level(const Selection& selection, std::string_view feature) {
   const auto index = static_cast<std::size_t>(find_feature(feature));
   return features()[index].levels[static_cast<std::size_t>(selection[index])];
+}
+
+void set_level(Selection& selection, std::string_view feature, std::string_view wanted) {
+  const auto index = static_cast<std::size_t>(find_feature(feature));
+  const std::vector<std::string>& levels = features()[index].levels;
+  const auto found = std::ranges::find(levels, wanted);
+  if (found == levels.end()) throw std::logic_error("no level " + std::string(wanted));
+  selection[index] = static_cast<int>(found - levels.begin());
 }
 
 std::vector<Selection> pairwise_cover() {

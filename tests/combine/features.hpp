@@ -25,6 +25,9 @@ using Selection = std::vector<int>;
 /// The level of a feature in a selection. Throws std::logic_error for an unknown feature.
 const std::string& level(const Selection& selection, std::string_view feature);
 
+/// Changes the level of a feature. Throws std::logic_error for an unknown feature or level.
+void set_level(Selection& selection, std::string_view feature, std::string_view wanted);
+
 /// Selections in which every pair of levels of two features that this version accepts together
 /// occurs at least once, since most defects of combinations need only two features (Kuhn, Wallace &
 /// Gallo, IEEE Trans. Software Eng. 30(6), 2004). The algorithm is greedy, like AETG (Cohen, Dalal,

@@ -107,7 +107,8 @@ struct Body {
 
 class Drafter {
  public:
-  Drafter(const Selection& selection, std::uint64_t seed) : selection_(selection), random_(seed) {}
+  Drafter(const Selection& selection, std::uint64_t seed, bool symmetric = false)
+      : selection_(selection), random_(seed), symmetric_(symmetric) {}
 
   SceneDraft draft() {
     write_settings();
@@ -143,6 +144,15 @@ class Drafter {
     sections_[section].push_back({std::move(id), std::move(text)});
   }
   double draw(double from, double to) { return random_.uniform(from, to); }
+  // A place across a body, -1 to 1: in symmetric scenes on the plane of symmetry.
+  double beside(double place) const { return symmetric_ ? 0.0 : place; }
+  // A place from below to above, -1 to 1. In symmetric scenes it is inside the body: beside it, a
+  // point would follow one of two elements that are equally near.
+  double up(double place) const { return symmetric_ ? -0.5 : place; }
+  // Components of a vector, which lies in the plane of symmetry of symmetric scenes.
+  const char* within(const char* in_plane, const char* any) const {
+    return symmetric_ ? in_plane : any;
+  }
   bool dynamic() const { return of("integrator") != "quasi-static"; }
 
   // The first finite-element body or the first arm; nullptr if there is none.
@@ -168,6 +178,7 @@ class Drafter {
                                      of("method"), tangent, of("factorisation"), of("ordering"));
     // An inexact matrix converges linearly, so that the number of iterations would affect results.
     if (of("method") == "newton" && tangent != "exact") solver += ", tolerance: 1e-11";
+    if (has("equilibrium")) solver += ", equilibrium: " + of("equilibrium");
     if (has("adaptive")) solver += ", adaptive: {tolerance: 1e-3, smallest: 2.5 ms}";
     settings_ = fmt::format("sinew: 1\ntime_step: {} ms\nintegrator: {}\nsolver: {{{}}}\n",
                             dynamic() ? 5 : 10, integrator, solver);
@@ -232,6 +243,18 @@ class Drafter {
     }
   }
 
+  // The element of a body; empty: the default of its material. An estimator repeats every step,
+  // which would take minutes with 800 quadratic nodes around a chamber.
+  std::string element_of(const Body& body) const {
+    const bool patches = of("material") != "saint-venant-kirchhoff";
+    const bool quadratic = hyperelastic() && (!has("element") || of("element") == "tet10");
+    const bool large = body.shape.mesh.find("chambered") != std::string::npos;
+    if (quadratic && large && has("estimator")) return patches ? "tet4-patch" : "tet4";
+    const bool fits = of("element") != "tet4-patch" || patches;
+    const bool named = has("element") && fits && (hyperelastic() || of("element") == "tet4");
+    return named ? of("element") : "";
+  }
+
   // @param held how the body is held: fixed, or placed and held by a joint.
   void add_fem_body(const Body& body, std::string held = {}) {
     const bool loose = !held.empty();
@@ -239,19 +262,18 @@ class Drafter {
     std::string text =
         fmt::format("type: fem, mesh: {}, material: {}, density: 1000 kg/m^3, mass_matrix: {}, {}",
                     body.shape.mesh, material(), of("mass_matrix"), held);
-    const bool unfit = of("element") == "tet4-patch" && of("material") == "saint-venant-kirchhoff";
-    if (has("element") && !unfit && (hyperelastic() || of("element") == "tet4")) {
-      text += ", element: " + of("element");
-    }
+    const std::string element = element_of(body);
+    if (!element.empty()) text += ", element: " + element;
     if (has("damping")) text += ", damping: {mass: 0.5 1/s, stiffness: 1 ms}";
     if (has("initial_velocity") && dynamic()) {
-      text += ", initial_velocity: {linear: 0.02 0.05 0 m/s}";
+      text += fmt::format(", initial_velocity: {{linear: {} m/s}}",
+                          within("0.02 0 0.05", "0.02 0.05 0"));
     }
     if (has("base") && !loose) {
       text += fmt::format(
-          ", base: {{y: {{sine: {{amplitude: {:.3g} mm, period: 200 ms}}}}, angle: {{ramp: {{to: "
+          ", base: {{{}: {{sine: {{amplitude: {:.3g} mm, period: 200 ms}}}}, angle: {{ramp: {{to: "
           "{:.3g} deg, duration: 100 ms}}}}, axis: 0 1 0}}",
-          draw(1.0, 3.0), draw(2.0, 8.0));
+          within("z", "y"), draw(1.0, 3.0), draw(2.0, 8.0));
     }
     add("bodies", body.id, "{" + text + "}");
   }
@@ -407,6 +429,13 @@ class Drafter {
   void add_cables() {
     if (!has("cable")) return;
     const Body& body = some_body();
+    if (symmetric_) {
+      // Both get the same command: the numbers are drawn again.
+      const Random now = random_;
+      add_cable("cable_0", body, 0.6, -0.2, of("cable"));
+      random_ = now;
+      return add_cable("cable_1", body, -0.6, -0.2, of("cable"));
+    }
     add_cable("cable_0", body, 0.6, -0.2, of("cable"));
     if (of("second_cable") == "twin") add_cable("cable_1", body, 0.6, -0.2, "tension");
     if (of("second_cable") == "antagonist") add_cable("cable_1", body, -0.6, -0.2, "tension");
@@ -423,6 +452,7 @@ class Drafter {
         "type: chamber, body: <{}>, surface: {}, limits: {{pressure: {{min: -10 kPa, max: 20 "
         "kPa}}}}",
         on->id, closed ? "{inside: 4 0 30 mm}" : "{set: inner}, cap: true");
+    if (has("ambient") && medium != "gas") text += ", ambient_pressure: 95 kPa";
     text += look_up("medium", medium,
                     {{"none", ""},
                      {"gas", ", ambient_pressure: 95 kPa, gas: {dead_volume: 1 ml}"},
@@ -449,8 +479,8 @@ class Drafter {
                  {"shape_memory", "shape_memory: {" + coil + "}, command: {power: 2 W}"}});
     add("actuators", "spring",
         fmt::format("{{type: spring, body: <{}>, outside: nearest, points: [{}, {}], {}}}", on.id,
-                    vector_text(on.shape.at(0.3, -0.5, 0.5)),
-                    vector_text(on.shape.at(0.8, -0.5, 0.5)), kind));
+                    vector_text(on.shape.at(0.3, beside(-0.5), up(0.5))),
+                    vector_text(on.shape.at(0.8, beside(-0.5), up(0.5))), kind));
   }
 
   void add_force() {
@@ -461,9 +491,10 @@ class Drafter {
                 {{"force", "force: " + signal(draw(0.02, 0.1), "N")},
                  {"displacement", "displacement: " + signal(draw(0.2, 1.0), "mm")}});
     add("actuators", "push",
-        fmt::format("{{type: force, body: <{}>, point: {}, direction: 1 1 0, outside: nearest, "
+        fmt::format("{{type: force, body: <{}>, point: {}, direction: {}, outside: nearest, "
                     "command: {{{}}}, limits: {{force: {{min: -2 N, max: 2 N}}}}}}",
-                    on.id, vector_text(on.shape.at(0.9, 0.0, 0.0)), told));
+                    on.id, vector_text(on.shape.at(0.9, 0.0, 0.0)), within("1 0 1", "1 1 0"),
+                    told));
     steerable_.push_back({"push", on.id});
   }
 
@@ -490,13 +521,15 @@ class Drafter {
         {{"force", fmt::format(", point: {}, force: 0.02 0 -0.03 N, outside: nearest, factor: "
                                "{{ramp: {{to: 1, duration: 30 ms}}}}",
                                vector_text(shape.at(0.8, 0.0, 0.0)))},
-         {"line",
-          fmt::format(", points: [{}, {}], outside: nearest, force_per_length: 0 0.5 0 N/m",
-                      vector_text(shape.at(0.2, 0.5, 0.5)), vector_text(shape.at(0.9, 0.5, 0.5)))},
+         {"line", fmt::format(", points: [{}, {}], outside: nearest, force_per_length: {} N/m",
+                              vector_text(shape.at(0.2, beside(0.5), up(0.5))),
+                              vector_text(shape.at(0.9, beside(0.5), up(0.5))),
+                              within("0 0 0.5", "0 0.5 0"))},
          {"traction", where + ", traction: 10 0 -20 Pa"},
          {"acceleration",
-          ", acceleration: 1 0.5 0 m/s^2, factor: {sine: {amplitude: 1, period: "
-          "100 ms}}"},
+          fmt::format(
+              ", acceleration: {} m/s^2, factor: {{sine: {{amplitude: 1, period: 100 ms}}}}",
+              within("1 0 0.5", "1 0.5 0"))},
          {"pressure", where + ", pressure: {ramp: {to: 50 Pa, duration: 30 ms}}"},
          {"water", ", density: 1000 kg/m^3, velocity: 0.1 0 0 m/s"}});
     add("loads", "load", fmt::format("{{type: {}, body: <{}>{}}}", of("load"), on->id, what));
@@ -507,7 +540,7 @@ class Drafter {
     if (!has("mass") || on == nullptr) return;
     add("masses", "hung",
         fmt::format("{{body: <{}>, point: {}, mass: 2 g, outside: nearest}}", on->id,
-                    vector_text(on->shape.at(0.95, 0.2, 0.2))));
+                    vector_text(on->shape.at(0.95, beside(0.2), up(0.2)))));
   }
 
   void add_membrane() {
@@ -525,12 +558,13 @@ class Drafter {
     std::string moves = "fixed: true";
     flies_ |= dynamic();
     if (dynamic()) {
-      moves = fmt::format("mass: 20 g, velocity: {{linear: {} m/s, angular: 3 1 2 rad/s}}", axis);
+      moves = fmt::format("mass: 20 g, velocity: {{linear: {} m/s, angular: {} rad/s}}", axis,
+                          within("0 1 0", "3 1 2"));
     } else if (has("base")) {
       moves = fmt::format(
           "motion: {{{}: {{ramp: {{to: 0.4 mm, duration: 60 ms}}}}, angle: {{ramp: {{to: 2 deg, "
           "duration: 60 ms}}}}, axis: {}, centre: {}}}",
-          "xyz"[along], axis, vector_text(centre));
+          "xyz"[along], within("0 1 0", axis), vector_text(centre));
     }
     add("bodies", "stone",
         fmt::format("{{type: rigid, shape: {{box: 30 30 30 mm}}, pose: {{position: {}}}, {}}}",
@@ -811,7 +845,8 @@ class Drafter {
   std::vector<Steerable> steerable_;
   std::array<double, 3> tip_{};
   bool orientation_ = false;
-  bool flies_ = false;  // whether there is a free body
+  bool flies_ = false;      // whether there is a free body
+  bool symmetric_ = false;  // about the plane across y through the middle of the block
 };
 
 // Other names with the opposite alphabetical order.
@@ -834,6 +869,16 @@ std::string replace_references(std::string text, const Layout& layout) {
 
 SceneDraft draft_scene(const Selection& selection, std::uint64_t seed) {
   return Drafter(selection, seed).draft();
+}
+
+SceneDraft draft_symmetric_scene(Selection selection, std::uint64_t seed) {
+  set_level(selection, "bodies", "fem");
+  set_level(selection, "mesh", seed % 2 == 0 ? "block" : "ribbed-finger");
+  for (const char* one : {"chamber", "link", "controller", "estimator", "contact_zones"}) {
+    set_level(selection, one, "none");
+  }
+  if (level(selection, "element") == "tet4-patch") set_level(selection, "element", "tet10");
+  return Drafter(selection, seed, true).draft();
 }
 
 std::string write_scene(const SceneDraft& draft, const Layout& layout) {

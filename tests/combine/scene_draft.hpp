@@ -28,6 +28,13 @@ struct SceneDraft {
 /// @param selection level of each feature. @param seed of the numbers.
 SceneDraft draft_scene(const Selection& selection, std::uint64_t seed);
 
+/// Makes a scene that is symmetric about the plane y = kMiddle: one block or finger, whose loads,
+/// commands and contacts are mirrored into themselves. Features that do not allow that are left
+/// out, and so are patches of elements and zones of contact points, which are chosen in the order
+/// of nodes. @param selection,seed as above.
+SceneDraft draft_symmetric_scene(Selection selection, std::uint64_t seed);
+inline constexpr double kMiddle = 0.01;  ///< m
+
 /// Choice of names and order.
 struct Layout {
   bool renamed = false;   ///< other names, with the same order

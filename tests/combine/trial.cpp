@@ -19,11 +19,13 @@
 #include "sinew/inverse/controller_observables.hpp"
 #include "sinew/inverse/target_controller.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
 #include "sinew/record/run_file.hpp"
 #include "sinew/record/run_layout.hpp"
 #include "sinew/record/run_recorder.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/scene.hpp"
+#include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
@@ -31,6 +33,7 @@
 
 #include "random.hpp"
 #include "scene_draft.hpp"
+#include "step_check.hpp"
 
 namespace sinew::combine {
 
@@ -46,6 +49,12 @@ constexpr double kPartOfError = 0.1;
 // A gap below 1e-9 of the size counts as closed. Rounding may decide whether it closes now or later
 // in the step, and impacts amplify the difference.
 constexpr double kEventTolerance = 1e-7;
+// The regularisation that decides between redundant actuators weighs 1e-5 of the task
+// (InverseSettings::epsilon times relaxation), so a choice amplifies rounding by as much.
+constexpr double kChoiceTolerance = 1e-8;
+// Of opposite nodes, relative to the robot's size, and of opposite forces, relative to them. Sums
+// of forces have another order on both sides.
+constexpr double kSymmetry = 1e-8, kForceSymmetry = 1e-6;
 constexpr double kEnergyTolerance = 1e-10;  // relative to an energy
 // Energy of bodies at rest due to rounding, J.
 constexpr double kNoEnergy = 1e-15;
@@ -124,10 +133,11 @@ bool is_finite(const sim::State& state) {
 }
 
 // Relative to the robot's size.
-double order_tolerance(const sim::Model& model) {
-  if (model.step().event_driven()) return kEventTolerance;
-  const auto& adaptive = model.step().adaptive;
-  return adaptive ? kPartOfError * adaptive->tolerance : kOrderTolerance;
+double order_tolerance(const scene::Robot& robot) {
+  const sim::StepSettings& step = robot.model->step();
+  if (step.event_driven()) return kEventTolerance;
+  if (step.adaptive) return kPartOfError * step.adaptive->tolerance;
+  return robot.controllers.empty() ? kOrderTolerance : kChoiceTolerance;
 }
 
 // Distance between the nodes of two runs with bodies in opposite orders, m.
@@ -162,7 +172,7 @@ bool same_bits(std::span<const double> one, std::span<const double> other) {
 // A run that is recorded, with the values that the record must contain.
 class Record {
  public:
-  explicit Record(Run& run) : list(run.observables()), run_(run) {
+  explicit Record(Run& run) : list(run.observables()), run_(run), check_(run.simulation) {
     record::RecordSettings settings;
     settings.folder = folder_;
     recorder_ = std::make_unique<record::RunRecorder>(run.observables(), settings);
@@ -174,8 +184,10 @@ class Record {
 
   void advance(int steps) {
     for (int k = 0; k < steps && run_.error().empty(); ++k) {
+      check_.begin();
       run_.advance(1);
       if (!run_.error().empty()) return;
+      if (unsound.empty()) unsound = check_.end();
       recorder_->after_step();
       look();
     }
@@ -189,6 +201,7 @@ class Record {
 
   sim::Observables list;
   std::vector<std::vector<double>> seen;  // values by observable, for all frames in turn
+  std::string unsound;                    // the first requirement on a step that was not met
 
  private:
   void look() {
@@ -201,6 +214,7 @@ class Record {
   }
 
   Run& run_;
+  StepCheck check_;
   std::filesystem::path folder_ =
       std::filesystem::temp_directory_path() / fmt::format("sinew_trial_{}", ::getpid());
   std::unique_ptr<record::RunRecorder> recorder_;
@@ -229,6 +243,8 @@ class Trial {
     record.advance(kSteps - kHalf);
     reference_ = first->states;
     if (!is_finite(first->simulation.state())) fail("a state is not finite");
+    if (!record.unsound.empty()) fail(record.unsound);
+    if (!first->error().empty()) check_failure(*robot, first->simulation.report());
     check_record(*robot, *first, record);
 
     Run threaded(*robot, 2);
@@ -257,7 +273,7 @@ class Trial {
     // rounding.
     if (!sim::is_flagged(first->condition) && !first->choice_held) {
       double distance = distance_of_order({.reversed = true}, first->simulation);
-      const double tolerance = order_tolerance(*robot->model) * robot->model->size();
+      const double tolerance = order_tolerance(*robot) * robot->model->size();
       if (!(distance <= tolerance)) {
         // The residual that a quasi-static step leaves to the next one may depend on rounding.
         Run converged(build(write_scene(draft_, {.converged = true})));
@@ -288,6 +304,23 @@ class Trial {
     Run reversed(build(write_scene(draft_, layout)));
     reversed.advance(kSteps);
     return largest_distance(from, reversed.simulation);
+  }
+
+  // A step that stops a run names its failure, and so do all steps of a run that keeps going.
+  void check_failure(const scene::Robot& robot, const sim::StepReport& report) {
+    if (!sim::is_failure(report.status)) fail("a run stops without a failure");
+    Run kept(robot);
+    bool failed = false;
+    try {
+      for (int k = 0; k < kSteps; ++k) {
+        const sim::StepStatus status = kept.simulation.step(sim::OnFailure::keep_going).status;
+        if (failed && !sim::is_flagged(status)) fail("a step after a failure is not flagged");
+        failed = failed || sim::is_failure(status);
+      }
+    } catch (const Error&) {
+      failed = true;  // a state that cannot be evaluated
+    }
+    if (!failed) fail("a run that keeps going does not report the failure");
   }
 
   // A record reads back bit for bit, and a copy of the simulation has the same observables.
@@ -339,6 +372,53 @@ class Trial {
   std::string wrong_;
 };
 
+// The node opposite to each node of a body at rest; empty if its mesh is not symmetric.
+std::vector<Eigen::Index> opposite_nodes(const Points& rest, double size) {
+  std::vector<Eigen::Index> result;
+  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
+    const Eigen::RowVector3d mirrored(rest(i, 0), 2.0 * kMiddle - rest(i, 1), rest(i, 2));
+    Eigen::Index nearest = 0;
+    const double off = (rest.rowwise() - mirrored).rowwise().norm().minCoeff(&nearest);
+    if (off > 1e-9 * size) return {};
+    result.push_back(nearest);
+  }
+  return result;
+}
+
+// What is not symmetric after the steps of a symmetric robot; empty if all is.
+std::string find_asymmetry(const sim::Simulation& simulation) {
+  const double size = simulation.model().size();
+  for (int b = 0; b < simulation.bodies(); ++b) {
+    const Points& now = simulation.body(b).positions();
+    const std::string& name = simulation.model().body(b).name();
+    const auto opposite = opposite_nodes(simulation.body(b).model().mesh().nodes, size);
+    if (opposite.empty()) return fmt::format("the mesh of '{}' is not symmetric", name);
+    double off = 0.0;
+    for (Eigen::Index i = 0; i < now.rows(); ++i) {
+      const auto other = now.row(opposite[static_cast<std::size_t>(i)]);
+      off = std::max(off, std::hypot(now(i, 0) - other[0], now(i, 1) + other[1] - 2.0 * kMiddle,
+                                     now(i, 2) - other[2]));
+    }
+    if (!(off <= kSymmetry * size))
+      return fmt::format("'{}' is unsymmetric by {:.1e} m", name, off);
+  }
+  for (std::size_t c = 0; c < simulation.model().contacts().size(); ++c) {
+    const auto resultant = simulation.contacts().resultant(static_cast<int>(c));
+    if (std::abs(resultant.force.y()) <= kForceSymmetry * resultant.normal_force) continue;
+    return fmt::format("a contact pushes sideways with {:.1e} of {:.1e} N", resultant.force.y(),
+                       resultant.normal_force);
+  }
+  std::optional<double> first;
+  for (std::size_t i = 0; i < simulation.model().actuators().size(); ++i) {
+    if (simulation.model().actuators()[i].type != sim::ActuatorType::cable) continue;
+    const double tension = simulation.actuator(static_cast<int>(i)).effort;
+    if (!first) first = tension;
+    if (std::abs(tension - *first) <= kForceSymmetry * std::abs(*first)) continue;
+    return fmt::format("opposite cables have {:.9g} and {:.9g} N", *first, tension);
+  }
+  return {};
+}
+
 }  // namespace
 
 const char* outcome_name(Outcome::Kind kind) {
@@ -357,6 +437,21 @@ const char* outcome_name(Outcome::Kind kind) {
 
 Outcome try_scene(const Selection& selection, std::uint64_t seed) {
   return Trial(draft_scene(selection, seed)).run();
+}
+
+Outcome try_symmetric_scene(const Selection& selection, std::uint64_t seed) {
+  try {
+    Run run(build(write_scene(draft_symmetric_scene(selection, seed), {.converged = true})));
+    Record record(run);
+    record.advance(kSteps);
+    const std::string condition(sim::step_status_name(run.condition));
+    if (!run.error().empty()) return {Outcome::Kind::stopped, run.error(), condition};
+    std::string wrong = record.unsound;
+    if (wrong.empty() && !sim::is_flagged(run.condition)) wrong = find_asymmetry(run.simulation);
+    return {wrong.empty() ? Outcome::Kind::ran : Outcome::Kind::wrong, wrong, condition};
+  } catch (const Error& error) {
+    return {Outcome::Kind::refused, error.what(), ""};
+  }
 }
 
 std::string try_changed_number(const Selection& selection, std::uint64_t seed) {

@@ -15,7 +15,7 @@ struct Outcome {
     ran,      ///< it ran, and was reproduced in every way
     refused,  ///< it was refused before its first step
     stopped,  ///< an error in a step stopped it, reproduced in every way
-    wrong,    ///< a result is not finite or was not reproduced
+    wrong,    ///< a step does not meet StepCheck, or a result was not reproduced
   };
   Kind kind = Kind::ran;
   std::string cause;      ///< unless `ran`
@@ -25,10 +25,17 @@ struct Outcome {
 /// "ran", "refused", "stopped", "wrong".
 const char* outcome_name(Outcome::Kind kind);
 
-/// Runs the scene of a selection for a few steps, records it and reads the record back. Then
+/// Runs the scene of a selection for a few steps, checks each one (StepCheck), records it and reads
+/// the record back. Then
 /// repeats the run with two threads, from a state saved half-way, from a copy made half-way, after
 /// reset(), with other names, and in another order. @param selection,seed see draft_scene().
 Outcome try_scene(const Selection& selection, std::uint64_t seed);
+
+/// Runs the symmetric scene of a selection (draft_symmetric_scene()), checks each step, and
+/// compares both sides of the robot at the end: nodes, tensions of opposite cables, forces of
+/// contacts.
+/// @param selection,seed see draft_symmetric_scene().
+Outcome try_symmetric_scene(const Selection& selection, std::uint64_t seed);
 
 /// Changes a random number of the scene by a few per cent. A state of the original scene must then
 /// be refused, or continue as in the original. Numbers of inputs (commands, load factors, targets)

@@ -1,9 +1,14 @@
 #include "sinew/fem/element_states.hpp"
 
+#include <array>
+#include <numeric>
+
+#include "sinew/fem/assembly.hpp"
 #include "sinew/fem/element_points.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/fem/has_material.hpp"
+#include "sinew/fem/membrane.hpp"
 #include "sinew/fem/solid_elements.hpp"
 
 namespace sinew::fem {
@@ -36,6 +41,41 @@ void add_point(const PointBatch& point, std::size_t lane, ElementStates& states)
   }
 }
 
+// Adds the forces of the membranes on all nodes, of which those of the body omit the fixed ones.
+void add_membranes(const HasMaterial& body, Points& forces) {
+  const FemBodySettings& settings = body.material().settings();
+  if (settings.elements.membranes.empty()) return;
+  const auto count = static_cast<int>(forces.rows());
+  std::vector<NodeId> every(static_cast<std::size_t>(count));
+  std::iota(every.begin(), every.end(), NodeId{0});
+  const auto diagonal =
+      linalg::BlockPattern::from_cliques(count, std::array<std::int32_t, 1>{}, {});
+  const Membranes membranes(*settings.mesh, settings.elements.membranes, every, diagonal);
+  std::vector<double> gradient(3 * every.size(), 0.0);
+  membranes.add(body.positions(), Tangent::none, 0.0, gradient, {});
+  for (Eigen::Index i = 0; i < forces.rows(); ++i) {
+    forces.row(i) -= Eigen::RowVector3d::Map(&gradient[static_cast<std::size_t>(3 * i)]);
+  }
+}
+
+// Calls visit(node, weight) for the nodes on which an entry of a row acts.
+template <class Visit>
+void visit_nodes(const HasElements& model, const mechanics::RowValues& values, std::int32_t entry,
+                 int site, Visit&& visit) {
+  const auto e = static_cast<std::size_t>(entry);
+  if (!values.patch.empty() && values.patch[e].nodes[0] >= 0) {
+    const mechanics::Patch& patch = values.patch[e];
+    for (std::size_t a = 0; a < patch.nodes.size() && patch.nodes[a] >= 0; ++a) {
+      visit(patch.nodes[a], patch.weights[a]);
+    }
+    return;
+  }
+  const Attachment& attached = model.attachment(site);
+  for (std::size_t a = 0; a < attached.nodes.size(); ++a) {
+    visit(attached.nodes[a], attached.weights[a]);
+  }
+}
+
 }  // namespace
 
 ElementStates element_states(const HasMaterial& body) {
@@ -55,30 +95,37 @@ ElementStates element_states(const HasMaterial& body) {
   for (auto* tensors : {&states.deformation, &states.piola, &states.cauchy}) {
     for (std::size_t e = 0; e < count; ++e) (*tensors)[e] /= states.volume[e];
   }
+  add_membranes(body, states.forces);
   return states;
 }
 
-Points reactions(const HasMaterial& body, const ElementStates& states,
-                 std::span<const double> effort, std::span<const Vector3> directions,
-                 const mechanics::RowPattern& rows, int index) {
+Points nodal_balance(const HasMaterial& body, const ElementStates& states,
+                     std::span<const double> effort, const mechanics::RowValues& values,
+                     const mechanics::RowPattern& rows, int index) {
   const HasElements& model = body.material();
-  const FemModel& elements = model.elements();
   Points sum = states.forces + body.external_forces() + body.load_forces();
   for (NodeId node = 0; node < static_cast<NodeId>(sum.rows()); ++node) {
-    sum.row(node) += elements.load_mass()[node] * model.settings().gravity.transpose();
+    sum.row(node) += model.elements().load_mass()[node] * model.settings().gravity.transpose();
   }
   for (int k = 0; k < rows.rows(); ++k) {
     const auto row = static_cast<std::size_t>(k);
+    if (effort[row] == 0.0) continue;
     for (auto e = rows.row_start[row]; e < rows.row_start[row + 1]; ++e) {
       const auto& site = rows.site[static_cast<std::size_t>(e)];
       if (site.body != index) continue;
-      const auto& attached = model.attachment(site.number);
-      for (std::size_t a = 0; a < attached.nodes.size(); ++a) {
-        sum.row(attached.nodes[a]) +=
-            effort[row] * attached.weights[a] * directions[static_cast<std::size_t>(e)].transpose();
-      }
+      const Vector3 force = effort[row] * values.direction[static_cast<std::size_t>(e)];
+      visit_nodes(model, values, e, site.number,
+                  [&](NodeId node, double weight) { sum.row(node) += weight * force.transpose(); });
     }
   }
+  return sum;
+}
+
+Points reactions(const HasMaterial& body, const ElementStates& states,
+                 std::span<const double> effort, const mechanics::RowValues& values,
+                 const mechanics::RowPattern& rows, int index) {
+  const FemModel& elements = body.material().elements();
+  const Points sum = nodal_balance(body, states, effort, values, rows, index);
   Points result = Points::Zero(sum.rows(), 3);
   const auto free = elements.free_index();
   for (NodeId node = 0; node < static_cast<NodeId>(sum.rows()); ++node) {

@@ -110,9 +110,8 @@ void ParaviewSeries::add_fields(int index, mesh::VtuFields& fields) {
       fields.cells.push_back({infos[k].name, 1, column(values, k, infos.size())});
     }
   }
-  const Points held =
-      fem::reactions(body, states, simulation_.efforts(), simulation_.world().rows().direction,
-                     simulation_.model().rows(), index);
+  const Points held = fem::reactions(body, states, simulation_.efforts(),
+                                     simulation_.world().rows(), simulation_.model().rows(), index);
   fields.points.push_back({"reaction", 3, {held.data(), held.data() + held.size()}});
   if (!simulation_.model().contacts().empty()) add_contact_force(body, fields);
 }

@@ -182,7 +182,9 @@ void ContactZones::spread(std::span<double> effort, const mechanics::RowValues& 
   }
 }
 
-// Also lists the points of each zone that have a force or overlap.
+// Also lists the points of each zone that have a force or overlap. The gap of a point with a force
+// is zero up to rounding, whose sign must not decide anything: neither which points share forces,
+// nor whether overlaps have grown.
 void ContactZones::measure_overlaps(std::span<const double> gaps,
                                     const mechanics::RowValues& rows) {
   for (Zone& zone : zones_) {
@@ -191,9 +193,11 @@ void ContactZones::measure_overlaps(std::span<const double> gaps,
     zone.begin = -1;
   }
   for (std::size_t k = contact_.size(); k-- > 0;) {
-    if (contact_.idle(k, rows) || !(weight_[k] > 0.0 || gaps[k] < 0.0)) continue;
+    if (contact_.idle(k, rows)) continue;
+    const double overlap = gaps[k] < -kFloor * size_ ? -gaps[k] : 0.0;
+    if (!(weight_[k] > 0.0 || overlap > 0.0)) continue;
     Zone& zone = zones_[static_cast<std::size_t>(zone_of(k, rows))];
-    zone.overlap = std::max(zone.overlap, -gaps[k]);
+    zone.overlap = std::max(zone.overlap, overlap);
     next_[k] = zone.begin;
     zone.begin = static_cast<int>(k);
   }
@@ -247,7 +251,10 @@ bool ContactZones::refine(std::span<const double> gaps, const step::StepProblem&
     const double force = row < 0 ? 0.0 : effort[static_cast<std::size_t>(row)];
     const double compliance = row < 0 ? 0.0 : problem.compliance(row, row);
     const double allowed = std::min(kTolerance * size_, kOfDeflection * compliance * force);
-    if (!(zone.overlap > std::max(allowed, kFloor * size_))) continue;
+    if (!(zone.overlap > allowed)) {
+      zone.overlap = 0.0;  // if it grows, this is not because forces were redistributed
+      continue;
+    }
     found = true;
     if (zone.overlap_before > 0.0 && zone.overlap > kGrows * zone.overlap_before) {
       zone.relaxation *= kLess;
