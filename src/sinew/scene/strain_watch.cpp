@@ -22,13 +22,15 @@ namespace {
 
 constexpr double kAtRest = 1e-6;  // strain
 
+// How much too soft a law is at small strain.
 std::string factor_text(const material::NamedMaterial& law) {
   if (law.measured_modulus == 0.0) return "is probably too soft there";
   const double own = law.energy.young_modulus();
   return fmt::format(
-      "is too soft there: its Young's modulus at small strain is {:.3g} kPa, and that of {} is "
-      "{:.3g} kPa, {:.2g} times as much",
-      1e-3 * own, law.measured_by, 1e-3 * law.measured_modulus, law.measured_modulus / own);
+      "is too soft there: its Young's modulus at small strain is {:.3g} kPa; {} gave {:.3g} kPa, "
+      "{:.2g} times as much",
+      1e-3 * own, law.measured_by.substr(0, law.measured_by.find(':')), 1e-3 * law.measured_modulus,
+      law.measured_modulus / own);
 }
 
 }  // namespace
@@ -76,8 +78,8 @@ std::vector<Notice> StrainWatch::notices() const {
     if (one.largest < 1.0 + kAtRest) continue;
     if (one.largest < law.soft_below && !one.scaled) {
       add(one,
-          fmt::format("the largest stretch is {:.3g}, and the law '{}' {}", one.largest, law.name,
-                      factor_text(law)),
+          fmt::format("the largest strain is {:.2g} %, and the law '{}' {}",
+                      100.0 * (one.largest - 1.0), law.name, factor_text(law)),
           material::small_strain_remedy(law));
     } else if (law.highest > 0.0 && one.largest > law.highest) {
       add(one,
