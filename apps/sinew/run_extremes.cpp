@@ -29,8 +29,9 @@ std::string quantity_of(const sim::Observable& observable) {
 
 // A value in a unit of suitable size, with four digits: "12.5 kPa".
 std::string shown(double value, const std::string& unit) {
+  // A torque is shown in N m: its dimension is that of an energy, whose unit is J.
   constexpr Dimension kKnown[] = {dimension::kLength, dimension::kForce, dimension::kPressure,
-                                  dimension::kEnergy, dimension::kVolume};
+                                  dimension::kVolume};
   for (const Dimension known : kKnown) {
     try {
       if (!unit.empty() && parse_unit(unit, known) == 1.0) return rounded_quantity(value, known);

@@ -15,6 +15,12 @@ import pytest
 from program import CONTROL, DONE, FAILED, ROOT, WRONG, rows_of, sinew
 
 
+def test_torques_are_in_newton_metres(tmp_path):
+    result = sinew("run", ROOT / "examples" / "rigid" / "slider_crank.yaml", "--duration", "0.01s", "--out", tmp_path / "out")
+    assert result.returncode == DONE, result.stderr
+    assert re.search(r"^peak torque +0\.1[0-9]* N m of motor at ", result.stdout, re.MULTILINE), result.stdout
+
+
 def test_run_records_what_was_asked(scene, tmp_path):
     path = scene()
     result = sinew("run", path, cwd=tmp_path)
