@@ -67,7 +67,7 @@ ContactResultant ContactReader::resultant(int contact) const {
 }
 
 ContactGap ContactReader::gap(int contact, const ContactResultant& sum) const {
-  if (sum.normal_force > 0.0 || sum.smallest_gap <= 0.0) return {sum.smallest_gap};
+  if (sum.normal_force > 0.0) return {sum.smallest_gap};
   const ContactRows& contacts = run_.world.contacts();
   const auto index = static_cast<std::size_t>(contact);
   if (const constraint::ShapeContact* shape = contacts.planes().shape(index)) {
@@ -77,7 +77,8 @@ ContactGap ContactReader::gap(int contact, const ContactResultant& sum) const {
   }
   TouchingSurfaces& surfaces = *contacts.planes().touching(index);
   const double reach = std::max(contacts.reach(0.0), surfaces.nearest_point());
-  const double gap = surfaces.measure_gap(reach);
+  // Points that touched when the step began may be at 0, or at rounding on either side of it.
+  const double gap = std::fmin(surfaces.measure_gap(reach), sum.smallest_gap);
   if (std::isfinite(gap)) return {gap};
   return {.above = reach - surfaces.contact().separation()};
 }
