@@ -167,6 +167,22 @@ def test_default_steps_without_a_controller_are_equilibria(name):
         assert true <= sim.report.distance + 1e-13 and true < 1e-6  # m, of 0.1 m
 
 
+def test_a_converged_step_holds_what_a_following_step_chooses():
+    """The controller chooses along one linearisation; the step then converges with its efforts and its factor."""
+    follows, converges = (load(ROBOTS["steered"](), equilibrium=how) for how in ("following", "converged"))
+    iterations = []
+    for _ in range(60):
+        follows.restore(converges.state())
+        converges.step()
+        follows.step()
+        assert converges.report.status == "solved" and converges.report.relative_residual <= 1e-6
+        iterations.append(converges.report.iterations)
+        if follows.report.iterations == 1:
+            chosen = [actuator.tension for actuator in follows.actuators.values()]
+            assert [actuator.tension for actuator in converges.actuators.values()] == chosen
+    assert np.median(iterations) <= 6 and max(iterations) <= 20
+
+
 def test_the_scene_decides_who_follows():
     scene = ROBOTS["steered"]()
     assert load(scene).equilibrium == "following"

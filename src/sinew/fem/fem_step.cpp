@@ -27,6 +27,7 @@ FemStep::FemStep(FemState& state, ThreadPool& pool, bool with_geometric_stiffnes
       elements_(state, pool, with_geometric_stiffness),
       loads_(state),
       rows_(state.model),
+      touched_blocks_(state.model),
       inertia_(state) {
   const FemBodyModel& model = state.model;
   const auto nodes = model.elements().free_nodes();
@@ -92,23 +93,9 @@ void FemStep::form_right_side(const mechanics::StepWeights& weights) {
 }
 
 void FemStep::add_geometric_stiffness(const mechanics::StiffnessPair& pair) {
-  const FemBodyModel& model = state_.model;
-  const Attachment& first = model.attachment(pair.first.number);
-  const Attachment& second = model.attachment(pair.second.number);
-  const bool same = pair.first.number == pair.second.number;
-  const auto free = model.elements().free_index();
-  for (std::size_t a = 0; a < first.nodes.size(); ++a) {
-    const auto i = free[static_cast<std::size_t>(first.nodes[a])];
-    if (i < 0) continue;
-    for (std::size_t b = 0; b < second.nodes.size(); ++b) {
-      const auto j = free[static_cast<std::size_t>(second.nodes[b])];
-      if (j < 0 || (same && i < j)) continue;
-      Matrix3 block = -first.weights[a] * second.weights[b] * pair.hessian;
-      // A pair of different points includes its transpose.
-      if (!same && i == j) block = (block + block.transpose()).eval();
-      elements_.active().assembly.add_block(i, j, block);
-    }
-  }
+  SystemWorkspace& workspace = elements_.active();
+  touched_blocks_.add(workspace.system, pair.first.number, pair.second.number, pair.hessian,
+                      workspace.assembly.matrix());
   elements_.moved();
 }
 
@@ -373,7 +360,8 @@ void FemStep::count_tether(const mechanics::StepWeights& weights, mechanics::Ste
 std::size_t FemStep::bytes() const {
   const Eigen::Index numbers =
       right_.size() + motion_.size() + from_.size() + imbalance_.size() + lessening_.size();
-  return sizeof(double) * static_cast<std::size_t>(numbers) + inertia_.bytes() + elements_.bytes();
+  return sizeof(double) * static_cast<std::size_t>(numbers) + inertia_.bytes() + elements_.bytes() +
+         touched_blocks_.bytes();
 }
 
 }  // namespace sinew::fem

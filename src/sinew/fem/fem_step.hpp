@@ -7,6 +7,7 @@
 #include "sinew/fem/body_rows.hpp"
 #include "sinew/fem/fem_state.hpp"
 #include "sinew/fem/inertia_forces.hpp"
+#include "sinew/fem/touched_blocks.hpp"
 #include "sinew/mechanics/step_system.hpp"
 
 namespace sinew::fem {
@@ -81,6 +82,7 @@ class FemStep : public mechanics::StepSystem {
   BodyElements elements_;
   BodyLoads loads_;
   BodyRows rows_;
+  TouchedBlocks touched_blocks_;
   InertiaForces inertia_;
   mechanics::Tangent tangent_ = mechanics::Tangent::corotated;  // of the last linearisation
   bool first_linearisation_ = true;

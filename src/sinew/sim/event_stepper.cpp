@@ -69,11 +69,21 @@ void EventStepper::make_parts(double begin, double time_step) {
   for (double done = 0.0; done < time_step;) {
     if (++report.substeps > kMaxParts) give_up("impacts follow each other too fast");
     const double left = time_step - done, now = begin + done;
-    const double length = advance(now, std::min({left, longest_, points_.next_corner(now) - now}));
+    const double length = advance(now, std::min({left, longest_, next_corner(now) - now}));
     done = left - length > kNoTime * time_step ? done + length : time_step;
     points_.forget_rest();
     collide(begin + done);
   }
+}
+
+// s: of prescribed and commanded motions.
+double EventStepper::next_corner(double time) const {
+  double next = points_.next_corner(time);
+  for (const ActuatorState& state : run_.actuation.states()) {
+    if (state.chosen || state.command.kind == CommandKind::effort) continue;
+    next = std::min(next, state.command.signal.next_corner(time));
+  }
+  return next;
 }
 
 // Solves impacts at the present time until no closed point approaches.
@@ -113,7 +123,7 @@ double EventStepper::advance(double time, double left) {
     }
     const double free = points_.free_length(length, run_.report.substeps);
     if (free >= length && !points_.found_rest()) {
-      hold(time + length);
+      hold(time + length, length);
       return length;
     }
     ++run_.report.retries;
@@ -137,7 +147,9 @@ bool EventStepper::turns_too_far(double length) {
 
 // What the midpoint rule leaves of velocities along rows that are held; and backward Euler, where
 // bodies are held on what moves by itself: it gives them the mean velocity of that.
-void EventStepper::hold(double time) {
+// And what commanded motions lack of their velocities.
+void EventStepper::hold(double time, double length) {
+  const std::span<const HeldRate> commanded = midpoint_.held_rates();
   const bool joins = carried_on_ && !run_.world.problem().bilaterals.empty();
   const bool moves = !run_.model->base_motions().empty() || run_.world.contacts().planes().moves();
   if (moves) {
@@ -145,7 +157,10 @@ void EventStepper::hold(double time) {
     run_.world.contacts().planes().move_on(time);
   }
   if (carried_on_) midpoint_.turn_to_end();
-  if (joins || ((carried_on_ || moves) && points_.drift(run_.effort))) impact_.hold();
+  const bool drifts = (carried_on_ || moves) && points_.drift(run_.effort);
+  if (!joins && !drifts && commanded.empty()) return;
+  impact_.hold(commanded, length);
+  run_.finish_step();
 }
 
 // Points with negligible rebounds stay closed: the impact is repeated as inelastic.
@@ -158,9 +173,10 @@ void EventStepper::rest(double time) {
 
 // Makes a part of this length, or half of it. @return its length.
 double EventStepper::move(double time, double length) {
-  const bool smooth = is_smooth(time + length, length);
+  const bool smooth = is_smooth(time, length);
   const double solved = smooth ? 0.5 * length : length;
   substep_.read_commands(time + solved, solved);
+  if (smooth) midpoint_.aim_at_middle();
   effort_before_ = run_.effort;
   run_.world.contacts().planes().set_halved(smooth);
   substep_.begin(solved);
@@ -175,33 +191,37 @@ double EventStepper::move(double time, double length) {
     substep_.end_as_midpoint(length);
     return length;
   }
-  if (smooth && midpoint_.has_turned()) solve_unturned(time + solved, solved);
+  if (smooth && (midpoint_.has_turned() || midpoint_.has_commands())) solve_again(time, solved);
   substep_.end(solved);
   return solved;
 }
 
 // Solves a part again that ends where the midpoint would be. Its turned points have the material
 // points and normals of the end, and a gap of zero at the start between material points that do not
-// touch there. As a step of backward Euler, the part has those of its start.
-void EventStepper::solve_unturned(double end, double length) {
+// touch there; its commanded motions are half-way to those of a later time. As a step of backward
+// Euler, the part has those of its start, and commands of its end.
+void EventStepper::solve_again(double begin, double length) {
   run_.go_back();
   run_.world.contacts().planes().set_halved(false);
-  substep_.read_commands(end, length);
+  substep_.read_commands(begin + length, length);
+  run_.world.measure_delta();
+  midpoint_.take_commands(begin, length);
   substep_.begin(length);
   substep_.solve(length);
 }
 
 // Whether the first half of a part predicts the second. A limit or a taut cable that has just
 // stopped a body leaves it a velocity, which a step of backward Euler removes.
-bool EventStepper::is_smooth(double end, double length) {
+bool EventStepper::is_smooth(double begin, double length) {
   World& world = run_.world;
+  substep_.read_commands(begin + length, length);
+  world.measure_delta();  // at the present state, not at the end of the last part
+  const bool commands = midpoint_.take_commands(begin, length);
+  if (!commands) return false;
   if (run_.actuation.drive_numbers() > 0 || !run_.model->guides().empty()) return false;
   if (!world.bodies().can_carry_on() || world.contacts().touches_softly(run_.effort)) return false;
-  substep_.read_commands(end, length);
-  world.measure_delta();  // at the present state, not at the end of the last part
   return std::ranges::none_of(world.problem().actuators, [&](const step::ActuatorBlock& block) {
-    if (block.row < 0) return false;
-    if (block.kind == step::CommandKind::motion) return true;
+    if (block.row < 0 || block.kind == step::CommandKind::motion) return false;
     if (!stops(block) || run_.effort[static_cast<std::size_t>(block.row)] == 0.0) return false;
     const double way = length * block.motion_scale * row_velocity(world, block.row);
     return std::abs(way) > kStill * run_.model->size();
@@ -213,9 +233,9 @@ bool EventStepper::is_smooth(double end, double length) {
 bool EventStepper::stays_smooth() const {
   const World& world = run_.world;
   if (!world.bodies().can_carry_on() || world.contacts().gap_closed(run_.effort)) return false;
-  if (points_.caught(run_.effort)) return false;
+  if (points_.caught(run_.effort) || !midpoint_.keeps_commands()) return false;
   return std::ranges::none_of(world.problem().actuators, [&](const step::ActuatorBlock& block) {
-    if (block.row < 0) return false;
+    if (block.row < 0 || block.kind == step::CommandKind::motion) return false;
     const auto row = static_cast<std::size_t>(block.row);
     return stops(block) && effort_before_[row] == 0.0 && run_.effort[row] != 0.0;
   });

@@ -22,9 +22,11 @@ struct Run;
 ///
 /// A part is a step of the midpoint rule (Midpoint), or of backward Euler if half a motion does not
 /// predict the other half: if deformable bodies have contact or moving bases, if motions of
-/// actuators are commanded, if joints or cables have friction, or if drives or materials have
-/// memory. It ends in its middle if something else stops a body (a joint limit, a cable that
-/// becomes taut, a point that stops sliding), and at the corners of prescribed motions.
+/// deformable bodies are commanded or commanded motions have no velocity (a script gives a new
+/// value in every step), if joints or cables have friction, or if drives or materials have memory.
+/// It ends in its middle if something else stops a body (a joint limit, a cable that
+/// becomes taut, a point that stops sliding), and at the corners of prescribed and commanded
+/// motions.
 ///
 /// A rebound by less than 1e-9 of the robot's size is suppressed: the impact is solved again
 /// without restitution, and the point stays closed. This ends infinite sequences of rebounds (Zeno
@@ -43,12 +45,13 @@ class EventStepper {
   void collide(double time);
   double advance(double time, double left);
   double move(double time, double length);
-  bool is_smooth(double end, double length);
+  double next_corner(double time) const;
+  bool is_smooth(double begin, double length);
   bool stays_smooth() const;
-  void solve_unturned(double end, double length);
+  void solve_again(double begin, double length);
   bool turns_too_far(double length);
   void rest(double time);
-  void hold(double time);
+  void hold(double time, double length);
   [[noreturn]] void give_up(const char* what);
 
   Run& run_;

@@ -30,9 +30,11 @@ mechanics::StepWeights weights_of_inertia() {
 
 }  // namespace
 
-void Impact::hold() {
+void Impact::hold(std::span<const HeldRate> commanded, double length) {
   run_.world.bodies().begin_query();
   form();
+  for (const HeldRate& held : commanded) command(held);
+  motors_end_ = law_.bilaterals.size();
   for (const step::ContactBlock& block : law_.contacts) {
     const int row = run_.world.numbering().model_row_of(block.row);
     const bool pressed = run_.effort[static_cast<std::size_t>(row)] > 0.0;
@@ -42,7 +44,38 @@ void Impact::hold() {
   law_.contacts.clear();
   find_impulses({}, 0.0);
   law_.contacts = std::move(contacts);
+  add_to_efforts(length);
   apply();
+}
+
+void Impact::command(const HeldRate& held) {
+  const int row = run_.world.numbering().problem_row_of(held.row);
+  const auto motors = std::span(law_.bilaterals).subspan(joints_);
+  const auto found = std::ranges::find(motors, row, &step::BilateralBlock::row);
+  if (found != motors.end()) {
+    found->motion = held.rate;
+    return;
+  }
+  before_[row] = row_velocity(run_.world, held.row);
+  law_.bilaterals.push_back({row, held.rate, held.motion_scale});
+}
+
+void Impact::add_to_efforts(double length) {
+  for (const step::BilateralBlock& block : std::span(law_.bilaterals).first(motors_end_)) {
+    const int row = run_.world.numbering().model_row_of(block.row);
+    run_.effort[static_cast<std::size_t>(row)] +=
+        impulse_[static_cast<std::size_t>(block.row)] / length;
+  }
+}
+
+// J: of actuators that hold a motion.
+double Impact::work_of_motors() const {
+  double sum = 0.0;
+  for (std::size_t k = joints_; k < motors_end_; ++k) {
+    const int row = law_.bilaterals[k].row;
+    sum += 0.5 * impulse_[static_cast<std::size_t>(row)] * (before_[row] + after_[row]);
+  }
+  return sum;
 }
 
 // Different coefficients may increase the energy (Kane's paradox). The smallest one for all points
@@ -81,10 +114,12 @@ void Impact::form() {
     measure(block.row);
     block.motion = 0.0;
   }
+  joints_ = law_.bilaterals.size();
   for (const step::ActuatorBlock& block : problem.actuators) {
     if (block.row < 0 || !block.holds_motion()) continue;
     law_.bilaterals.push_back({block.row, measure(block.row), block.motion_scale});
   }
+  motors_end_ = law_.bilaterals.size();
   for (const step::ContactBlock& block : law_.contacts) {
     before_.segment<3>(block.row) = contact_velocity(world, block.contact, point_of(block));
   }
@@ -149,7 +184,11 @@ void Impact::apply() {
   bodies.add_velocity(change_);
   bodies.residual(run_.effort);  // bodies store the efforts
   run_.world.forget_solved();
-  run_.ledger.count_impact(-gained_, outside());
+  const double driven = work_of_motors();
+  run_.ledger.count_impact(driven - gained_, outside());
+  EnergyLedger sums = run_.ledger.sums();
+  sums.actuators += driven;
+  run_.ledger.set(sums);
 }
 
 }  // namespace sinew::sim

@@ -14,6 +14,13 @@ namespace sinew::sim {
 
 struct Run;
 
+/// The velocity of a row that holds a commanded motion.
+struct HeldRate {
+  int row = -1;               ///< of the model
+  double rate = 0.0;          ///< m/s or rad/s
+  double motion_scale = 1.0;  ///< m per motion
+};
+
 /// Newton's impact law with friction in Moreau's form (Moreau 1988, sec. 10; Acary & Brogliato,
 /// Numerical Methods for Nonsmooth Dynamical Systems, 2008, sec. 4.2): with the impulses p (N s) of
 /// all closed points, joints and held motors, u+ = u- + W p, W = H M^-1 H^T,
@@ -36,11 +43,17 @@ class Impact {
   /// Throws Error(not-converged | singular-matrix).
   void solve(std::span<const double> restitution);
   /// At the end of a part of a step: removes the velocities along the rows of joints and of closed
-  /// points with a force. These velocities are errors of second order.
-  void hold();
+  /// points with a force, and gives commanded motions their velocities. The changes are errors of
+  /// second order. Their impulses at joints and actuators are added to the mean efforts of the
+  /// part.
+  /// @param commanded velocities. @param length s, of the part.
+  void hold(std::span<const HeldRate> commanded, double length);
 
  private:
   void form();
+  void command(const HeldRate& held);
+  void add_to_efforts(double length);
+  double work_of_motors() const;
   void find_impulses(std::span<const double> restitution, double max_restitution);
   double smallest(std::span<const double> restitution) const;
   std::size_t point_of(const step::ContactBlock& block) const;
@@ -54,7 +67,9 @@ class Impact {
   linalg::AlignedNumbers impulse_;  // (rows of the problem,) N s
   std::vector<double> all_;         // (rows,) N s
   VectorX force_, rest_, change_;   // (all bodies' size(),)
-  double gained_ = 0.0;             // J, change of the kinetic energy
+  // Bilateral blocks: first those of joints, then up to motors_end_ those of actuators.
+  std::size_t joints_ = 0, motors_end_ = 0;
+  double gained_ = 0.0;  // J, change of the kinetic energy
 };
 
 }  // namespace sinew::sim

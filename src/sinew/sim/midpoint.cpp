@@ -7,6 +7,8 @@
 #include <Eigen/Geometry>
 
 #include "sinew/constraint/surface_contact.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/sim/row_motions.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/substep.hpp"
 #include "sinew/sim/touching_surfaces.hpp"
@@ -17,6 +19,10 @@ namespace {
 
 // Tolerance on held motions at the end of a step, relative to the robot's size.
 constexpr double kHeld = 1e-12;
+// Smaller deviations of a motion from its command, relative to the robot's size, are rounding.
+constexpr double kOnCommand = 1e-9;
+// s: a corner this close to the end of a part is there.
+constexpr double kCorner = 1e-9;
 // Each round reduces the error to about the square of the step's rotation.
 constexpr int kMaxRounds = 12;
 // Updates of the points at the midpoint. Another update would change them by terms of order h^4.
@@ -35,6 +41,78 @@ void carry_friction(const Matrix3& from, const Matrix3& to, Eigen::Ref<Eigen::Ve
 
 Midpoint::Midpoint(Run& run)
     : run_(run), widened_(run.effort.size(), 0.0), turned_(run.effort.size(), 0) {}
+
+bool Midpoint::is_held(std::size_t actuator) const {
+  const step::ActuatorBlock& block = run_.world.problem().actuators[actuator];
+  const double effort = run_.effort[static_cast<std::size_t>(block.row)];
+  return block.effort_min < effort && effort < block.effort_max;
+}
+
+bool Midpoint::has_few_coordinates(int row) const {
+  const mechanics::RowPattern& rows = run_.model->rows();
+  const auto own = static_cast<std::size_t>(row);
+  for (auto e = rows.row_start[own]; e < rows.row_start[own + 1]; ++e) {
+    const mechanics::Site& site = rows.site[static_cast<std::size_t>(e)];
+    if (site.body >= 0 && !run_.model->body(site.body).has_few_coordinates()) return false;
+  }
+  return true;
+}
+
+bool Midpoint::take_commands(double begin, double length) {
+  commanded_.clear();
+  const std::vector<step::ActuatorBlock>& blocks = run_.world.problem().actuators;
+  const std::size_t own = run_.actuation.states().size();
+  bool smooth = true;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (blocks[i].row < 0 || blocks[i].kind != step::CommandKind::motion) continue;
+    // Those after the actuators are friction of joints.
+    smooth = i < own && take_command(i, begin, length) && smooth;
+  }
+  return smooth;
+}
+
+// A motion that is limited, that has a corner in the part, or that a script sets anew for every
+// step is no smooth function of time.
+bool Midpoint::take_command(std::size_t actuator, double begin, double length) {
+  const step::ActuatorBlock& block = run_.world.problem().actuators[actuator];
+  const ActuatorState& state = run_.actuation.states()[actuator];
+  if (block.owned || block.drive != nullptr || !has_few_coordinates(block.row)) return false;
+  const Signal& signal = state.command.signal;
+  const double end = begin + length, still = kOnCommand * run_.model->size() / block.motion_scale;
+  const bool by_rate = state.command.kind == step::CommandKind::input;
+  const double first = by_rate ? signal.value(begin) : signal.rate(begin, Signal::Side::after);
+  const double last = by_rate ? signal.value(end) : signal.rate(end, Signal::Side::before);
+  const double start = by_rate ? block.value - length * last : signal.value(begin);
+  const double goal = by_rate ? block.value : signal.value(end);
+  const bool varies = by_rate && first != last;
+  if (varies || signal.next_corner(begin) < end - kCorner ||
+      std::abs(start - state.motion) > still || std::abs(goal - block.value) > still) {
+    return false;
+  }
+  commanded_.push_back({actuator, goal, last});
+  const double off = length * (row_velocity(run_.world, block.row) - first);
+  return is_held(actuator) && std::abs(off) <= still;
+}
+
+void Midpoint::aim_at_middle() {
+  for (const Commanded& own : commanded_) {
+    const double start = run_.actuation.states()[own.actuator].motion;
+    run_.world.problem().actuators[own.actuator].value = 0.5 * (start + own.goal);
+  }
+}
+
+bool Midpoint::keeps_commands() const {
+  return std::ranges::all_of(commanded_, [&](auto& own) { return is_held(own.actuator); });
+}
+
+std::span<const HeldRate> Midpoint::held_rates() {
+  held_rates_.clear();
+  for (const Commanded& own : commanded_) {
+    const step::ActuatorBlock& block = run_.world.problem().actuators[own.actuator];
+    if (is_held(own.actuator)) held_rates_.push_back({block.row, own.rate, block.motion_scale});
+  }
+  return held_rates_;
+}
 
 void Midpoint::solve(Substep& substep, double half) {
   std::ranges::fill(widened_, 0.0);  // where an earlier part ended with an error
@@ -119,6 +197,12 @@ double Midpoint::correct() {
     block.motion -= 0.5 * off;
     worst = std::max(worst, std::abs(off) * block.motion_scale);
   }
+  for (const Commanded& own : commanded_) {
+    step::ActuatorBlock& block = world.problem().actuators[own.actuator];
+    const double off = delta[block.row] - own.goal;
+    block.value -= 0.5 * off;
+    worst = std::max(worst, std::abs(off) * block.motion_scale);
+  }
   for (const step::ContactBlock& block : world.problem().contacts) {
     const int row = world.numbering().model_row_of(block.row);
     const auto own = static_cast<std::size_t>(row);
@@ -160,6 +244,9 @@ double Midpoint::opening(const step::ContactBlock& block, double by_row) const {
 void Midpoint::release() {
   World& world = run_.world;
   for (step::BilateralBlock& block : world.problem().bilaterals) block.motion = 0.0;
+  for (const Commanded& own : commanded_) {
+    world.problem().actuators[own.actuator].value = own.goal;
+  }
   for (const step::ContactBlock& block : world.problem().contacts) {
     const int row = world.numbering().model_row_of(block.row);
     double& widened = widened_[static_cast<std::size_t>(row)];

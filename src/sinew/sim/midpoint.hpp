@@ -2,7 +2,11 @@
 /// The two halves of a step of the midpoint rule.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <vector>
+
+#include "sinew/sim/impact.hpp"
 
 namespace sinew::step {
 struct ContactBlock;
@@ -27,10 +31,29 @@ class Substep;
 /// solution, and its gap at the end is measured between the surfaces. With the surface points and
 /// the normal at the start, the gap would be wrong by v w h^2 for a slip velocity v and an angular
 /// velocity w, and the point would strike again with the velocity v w h.
+///
+/// A commanded motion c(t) of bodies with few coordinates is a constraint that depends on time:
+/// the first half ends at the mean of the motion at the start and c at the end, corrected as for
+/// joints. Its velocity 2 d/h - v_start differs from c' at the end by -h^2 c'''/6, and would do so
+/// with alternating sign from step to step; Impact::hold() therefore gives it c'. The impulse that
+/// this takes is part of the mean effort of the step, M (v_end - v_start)/h. A deformable body
+/// would keep vibrations of its mesh, which the midpoint rule does not damp.
 class Midpoint {
  public:
   /// @param run must outlive it.
   explicit Midpoint(Run& run);
+  /// Looks at the commanded motions of a part. Call when the step's problem has the commands of its
+  /// end, and its rows are those of its start. @param begin,length s, of the part.
+  /// @return whether each of them is a smooth function of time in the part, is held by rows of
+  /// bodies with few coordinates, and moves with the commanded velocity at the start.
+  bool take_commands(double begin, double length);
+  bool has_commands() const { return !commanded_.empty(); }
+  /// Commands the motions of the middle. Call when the problem has the commands of the middle.
+  void aim_at_middle();
+  /// Whether the commanded motions are held at the end of the first half, as they were before.
+  bool keeps_commands() const;
+  /// The velocities at the end of the part of the commanded motions that are held there.
+  std::span<const HeldRate> held_rates();
   /// Solves the first half. @param substep begun for this half. @param half s, its length.
   void solve(Substep& substep, double half);
   /// Makes the second half. Call after solve(), and Substep::end_as_midpoint() afterwards.
@@ -48,6 +71,15 @@ class Midpoint {
   void turn_to_end();
 
  private:
+  // A commanded motion that passes through the present one.
+  struct Commanded {
+    std::size_t actuator = 0;
+    double goal = 0.0;  // m or rad, at the end of the part
+    double rate = 0.0;  // of c there
+  };
+  bool is_held(std::size_t actuator) const;
+  bool has_few_coordinates(int row) const;
+  bool take_command(std::size_t actuator, double begin, double length);
   void place(double time);
   bool turn_points();
   double correct();
@@ -58,6 +90,8 @@ class Midpoint {
   Run& run_;
   std::vector<double> widened_;  // (rows,) m, added to the gaps of closed points
   std::vector<char> turned_;     // (rows,) normal rows of points that turn() updated
+  std::vector<Commanded> commanded_;
+  std::vector<HeldRate> held_rates_;
   double false_work_ = 0.0, false_work_rounding_ = 0.0;  // J
 };
 

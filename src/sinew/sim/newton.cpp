@@ -30,6 +30,8 @@ constexpr int kIdle = 4;
 // tried again in a step after this many refusals.
 constexpr double kContraction = 0.25;
 constexpr int kMostRefused = 2;
+// Smaller first motions, relative to the robot's size, are expected to leave no residual.
+constexpr double kSmall = 1e-6;
 // An iteration makes progress if it lowers the merit below this fraction of the lowest so far.
 constexpr double kProgress = 0.9;
 
@@ -57,13 +59,32 @@ class NewtonSolver {
       report_.whole_move += report_.motion.largest_move;
       watch_.count(report_.relative_residual);
       if (moved != NewtonStatus::converged) return finish(moved);
-      if (is_only_descending() || is_idle()) break;
+      if (is_only_descending() || is_idle() || has_chosen_too_often()) break;
+      const bool chosen = may_hold_choice() && report_.law == step::LawStatus::solved;
+      if (chosen && !converged_ && lags_little(settings_.choice)) hold_choice();
     }
     const bool done = converged_ || (idle_ > 0 && is_within_stalled_tolerance());
     return finish(done ? NewtonStatus::converged : NewtonStatus::iteration_limit);
   }
 
  private:
+  bool has_chosen_too_often() const {
+    return controller_ != nullptr && settings_.max_choices > 0 &&
+           report_.iterations >= settings_.max_choices;
+  }
+
+  bool may_hold_choice() const { return controller_ != nullptr && settings_.choice.residual > 0.0; }
+
+  // A controller aims at its target along one linearisation; the next step corrects what the robot
+  // makes of it. Choosing again in later iterations of this step would need W of each of their
+  // states, hence new factors.
+  void hold_choice() {
+    for (step::ActuatorBlock& block : world_.problem().actuators) {
+      if (block.owned) block.command_effort(effort_[static_cast<std::size_t>(block.row)]);
+    }
+    controller_ = nullptr;
+  }
+
   bool is_idle() {
     const double left = report_.relative_residual + report_.violation / world_.problem().size;
     lost_ = left < kProgress * lowest_ ? 0 : lost_ + 1;
@@ -87,17 +108,19 @@ class NewtonSolver {
     clock_.mark(Stage::rows);
   }
 
-  // Whether the next iteration may use the factor of the last condensation. A controller needs W of
-  // the present state. New factors need fewer iterations: near their limit, none is kept.
+  // Whether the next iteration may use the factor of the last condensation. A controller that
+  // chooses needs W of the present state. New factors need fewer iterations: near their limit, none
+  // is kept.
   bool may_keep_factor() const {
-    return settings_.keeps_factor && controller_ == nullptr && derivative_ &&
+    return settings_.keeps_factor && (controller_ == nullptr || may_hold_choice()) && derivative_ &&
            refused_ < kMostRefused && 4 * report_.iterations < settings_.max_iterations;
   }
 
   // Proposes a motion that obeys the laws.
   NewtonStatus propose() {
     before_ = moved_;
-    if (report_.iterations > 0 && full_step_ && may_keep_factor() && propose_again()) {
+    const bool may_keep = full_step_ && controller_ == nullptr && may_keep_factor();
+    if (report_.iterations > 0 && may_keep && propose_again()) {
       return NewtonStatus::converged;
     }
     kept_ = false;
@@ -162,10 +185,10 @@ class NewtonSolver {
   // A residual says little about the distance to the solution: a small linearised rotation
   // stretches a slender robot and causes large axial forces, but the motion that removes them is of
   // second order in the rotation.
-  bool lags_little() const {
+  bool lags_little(const Lag& lag) const {
     const double left = report_.motion.largest_move * report_.relative_residual;
-    return full_step_ && derivative_ && report_.relative_residual <= settings_.lag.residual &&
-           left <= settings_.lag.move * world_.problem().size;
+    return full_step_ && derivative_ && report_.relative_residual <= lag.residual &&
+           left <= lag.move * world_.problem().size;
   }
 
   // Whether the last full step did not reduce the residual, or moved nothing beyond rounding.
@@ -185,8 +208,9 @@ class NewtonSolver {
     const double tolerance = settings_.strict && !derivative_
                                  ? std::min(settings_.tolerance, kRoundedResidual)
                                  : settings_.tolerance;
-    return report_.relative_residual <= tolerance || at_rest ||
-           (is_spent() && report_.residual <= world_.bodies().rounding_floor()) || lags_little();
+    // The floor is last, since it takes the sums of the matrix.
+    return report_.relative_residual <= tolerance || at_rest || lags_little(settings_.lag) ||
+           (is_spent() && report_.residual <= world_.bodies().rounding_floor());
   }
 
   NewtonStatus move() {
@@ -221,9 +245,12 @@ class NewtonSolver {
   // is about to be linearised. A wrong guess costs time only.
   bool needs_matrix(bool full_step) const {
     if (!full_step || !may_keep_factor()) return true;
+    // The residual before the first motion says nothing of what commands and choices have changed.
+    const bool first = report_.iterations == 0;
     const double shrinks = kept_ && before_ > 0.0 ? report_.motion.largest_move / before_ : 1.0;
-    const bool ends =
-        settings_.lag.residual > 0.0 || shrinks * report_.relative_residual <= settings_.tolerance;
+    const bool small = report_.motion.largest_move <= kSmall * world_.problem().size;
+    const bool ends = settings_.lag.residual > 0.0 ||
+                      (first ? small : shrinks * report_.relative_residual <= settings_.tolerance);
     return ends && world_.bodies().keep_linearisation();
   }
 

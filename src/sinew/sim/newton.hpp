@@ -37,6 +37,11 @@ struct NewtonSettings {
   bool strict = false;
   /// Whether later iterations may keep the factor of an earlier one.
   bool keeps_factor = false;
+  /// With a controller: once the error of an iteration with its choice is within these bounds, the
+  /// efforts that it chose are held in all later iterations; 0: it chooses in every iteration.
+  Lag choice = {};
+  /// The search ends after this many iterations in which a controller chose; 0: no limit.
+  int max_choices = 0;
   /// The search ends after this many iterations if each of them found the exact tangent indefinite;
   /// 0: no limit.
   int max_indefinite = 0;

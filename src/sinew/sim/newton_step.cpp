@@ -214,9 +214,15 @@ std::string NewtonStep::describe(const NewtonReport& result, const NewtonSetting
 }
 
 std::string NewtonStep::remedy(NewtonStatus status) const {
-  const std::string common = run_.model->step().dynamic()
-                                 ? "take a smaller time step, or change commands more slowly"
-                                 : "change commands more slowly";
+  const bool dynamic = run_.model->step().dynamic();
+  std::string common = dynamic ? "take a smaller time step, or change commands more slowly"
+                               : "change commands more slowly";
+  // Guides that are about to slide can change their state in every iteration.
+  if (!dynamic && !follows() && !run_.model->guides().empty()) {
+    common +=
+        "; with friction of cables, `solver: {equilibrium: following}` (sim.follow() in Python) "
+        "lets a step end before every guide has settled";
+  }
   if (status != NewtonStatus::inverted) return common;
   return common +
          "; if that does not help, the robot cannot bear the command or load: lessen it, "
@@ -228,7 +234,14 @@ NewtonReport NewtonStep::search(double time_step) {
   const bool steered = run_.controller != nullptr;
   if (!run_.model->step().dynamic()) whole.max_indefinite = kIndefinite;
   if (!run_.model->step().dynamic() && !steered) whole.max_idle = max_idle(*run_.model);
-  if (steered) whole.max_iterations = std::min(whole.max_iterations, kSteeredIterations);
+  if (steered) {
+    whole.max_choices = kSteeredIterations;
+    if (run_.model->step().dynamic() || follows()) {
+      whole.max_iterations = std::min(whole.max_iterations, kSteeredIterations);
+    } else {
+      whole.choice = kLag;
+    }
+  }
   if (!run_.model->step().dynamic() && !steered) {
     if (const auto held = hold_motors(time_step)) return *held;
   }
