@@ -187,6 +187,13 @@ def test_every_choice_has_a_certificate(beside_a_wall, friction):
     assert plain.state_hash == sim.state_hash
 
 
+def test_a_flat_optimum_is_stationary(beside_a_wall):
+    # Efforts that the wall and the friction of its points leave undetermined may differ without any gain.
+    sim, ik = steer(beside_a_wall, targets={"tip": [0.0035, 0.002, 0.079]}, certify=True)
+    assert ik.status == "on-target"
+    assert ik.certificate["stationarity"] != "none" and ik.certificate["best_nearby"]
+
+
 def between_pads(motor):
     """A block of 100 g slides between a wall and a pad. A motor presses the pad with 0.5 N; 1.09 N would hold the block."""
     motor = {"type": "linear-motor", "joint": "press", "command": {"force": 0.5}, "limits": {"force": {"min": 0.0, **motor}}}

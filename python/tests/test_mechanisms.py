@@ -220,10 +220,10 @@ def test_friction_holds_a_block(steps):
     assert np.abs(force) == pytest.approx([0, 0, 0.2 * GRAVITY], abs=1e-4)
 
 
-@pytest.mark.parametrize("angle, friction, words", [(0.3, 0.1, "moves freely"), (0.0, 0.0, "freely")])
-def test_what_slides_is_named(angle, friction, words):
+@pytest.mark.parametrize("friction", [0.1, 0.0])
+def test_what_slides_is_named(friction):
     for act in ("step", "solve_static"):
-        sim = sinew.load(sloped(angle, friction))
-        with pytest.raises(sinew.Error, match=f"body 'b' .*{words}"):
+        sim = sinew.load(sloped(0.3, friction))
+        with pytest.raises(sinew.Error, match="body 'b' .*moves freely"):
             getattr(sim, act)()
-        assert np.abs(sim.body("b").position - np.array(sloped(angle, friction)["bodies"]["b"]["pose"]["position"])).max() < 1e-12
+        assert np.abs(sim.body("b").position - np.array(sloped(0.3, friction)["bodies"]["b"]["pose"]["position"])).max() < 1e-12

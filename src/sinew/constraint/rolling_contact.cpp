@@ -1,10 +1,126 @@
 // Contact points of a rigid body's shape, which follow the place where the shapes touch.
 #include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
 
+#include "sinew/collision/principal_frame.hpp"
+#include "sinew/collision/touching_points.hpp"
 #include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/shape_contact.hpp"
 
 namespace sinew::constraint {
+
+namespace {
+
+// The gap of an idle point, m: beyond anything that could touch.
+constexpr double kIdle = 1e6;
+
+// Cosine of the largest angle by which frames turn steadily in a step.
+constexpr double kSameNormal = 0.9;
+
+constexpr std::size_t kMost = collision::TouchingPoints::kMax;
+
+// Index of the rows of each found point: those of the nearest point before, the nearest pair first,
+// then the first unused ones. @param before (3,) m, where the points are that had rows before.
+std::array<std::size_t, kMost> rows_for(const collision::TouchingPoints& found,
+                                        const std::array<std::optional<Vector3>, kMost>& before) {
+  std::array<std::size_t, kMost> rows{};
+  std::array<bool, kMost> placed{}, taken{};
+  for (std::size_t rounds = 0; rounds < found.size(); ++rounds) {
+    double nearest = std::numeric_limits<double>::infinity();
+    std::size_t point = kMost, row = kMost;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      for (std::size_t k = 0; k < kMost; ++k) {
+        if (placed[i] || taken[k] || !before[k]) continue;
+        const double distance = (found[i].on_first - *before[k]).squaredNorm();
+        if (!(distance < nearest)) continue;
+        nearest = distance;
+        point = i;
+        row = k;
+      }
+    }
+    if (point == kMost) break;
+    rows[point] = row;
+    placed[point] = taken[row] = true;
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (placed[i]) continue;
+    rows[i] = static_cast<std::size_t>(std::ranges::find(taken, false) - taken.begin());
+    taken[rows[i]] = true;
+  }
+  return rows;
+}
+
+// A frame with this normal. Tangents that jump, as those of a normal along an axis do with
+// rounding, are replaced by those of the frame before, whose efforts go on.
+Matrix3 frame_after(const Matrix3& before, const Vector3& normal) {
+  Matrix3 frame = collision::tangent_frame(normal);
+  const bool turned = !(normal.dot(before.col(0)) > kSameNormal);
+  if (turned || frame.col(1).dot(before.col(1)) > kSameNormal) return frame;
+  frame.col(1) = (before.col(1) - normal.dot(before.col(1)) * normal).normalized();
+  frame.col(2) = normal.cross(frame.col(1));
+  return frame;
+}
+
+}  // namespace
+
+// If the motion of the surface is prescribed, the frames of the points move with it. Which corner
+// of a face is found first may change with rounding: each point keeps the rows of the one that was
+// nearest, since their efforts are its forces.
+void ShapeContact::find_points(const Configuration& configuration, const Eigen::Isometry3d& start,
+                               const Eigen::Isometry3d& end, mechanics::RowValues& values) const {
+  const Eigen::Isometry3d carry = end * start.inverse();
+  const collision::TouchingPoints found = collision::touching_points(
+      collision::moved(own_->shape, own_->pose(configuration)), collision::moved(surface_, start),
+      std::numeric_limits<double>::infinity());
+  std::array<std::optional<Vector3>, kMost> before;
+  for (std::size_t k = 0; k < size(); ++k) {
+    const std::size_t at = entry(k, 1);
+    if (!values.arm[at].isZero(0.0)) before[k] = own_->watched(configuration, at, values);
+  }
+  const auto rows_of = rows_for(found, before);
+  std::array<bool, kMost> used{};
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const std::size_t k = rows_of[i];
+    used[k] = true;
+    const Vector3 normal = carry.linear() * found[i].normal;
+    const Matrix3 turned =
+        before[k] ? frame_after(frame(k, values), normal) : collision::tangent_frame(normal);
+    set_frame(k, carry * found[i].on_first, turned, found[i].gap, values);
+    roll_from(k, configuration, found[i], start, end, values);
+  }
+  for (std::size_t k = 0; k < size(); ++k) {
+    if (!used[k] && !idle(k, values)) put_away(k, values);
+  }
+}
+
+// An idle point keeps this state, without a lever on either body, since the saved state of its rows
+// does not tell when it became idle.
+void ShapeContact::put_away(std::size_t point, mechanics::RowValues& values) const {
+  set_frame(point, Vector3::Zero(), collision::tangent_frame(Vector3::UnitZ()), kIdle, values);
+  values.delta.segment<3>(row(point)) = values.reference.segment<3>(row(point));
+  rolling_of(point, values).used = false;
+  const auto clear = [&](std::size_t centre, const Vector3& direction) {
+    values.direction[centre] = direction;
+    values.direction[centre + 1] = values.arm[centre] = values.lever[centre] = Vector3::Zero();
+  };
+  for (int j = 0; j < 3; ++j) {
+    const Vector3 along = values.direction[entry(point, j)];
+    clear(entry(point, j), along);
+    if (carrier_) clear(entry(point, j) + own_entries(), -along);
+  }
+}
+
+bool ShapeContact::idle(std::size_t point, const mechanics::RowValues& values) const {
+  return own_ && values.reference[row(point)] == kIdle;
+}
+
+// After load(), as in a step, a point without a lever is idle: put_away().
+bool ShapeContact::has_place(std::size_t point, const mechanics::RowValues& values) const {
+  if (!own_) return true;
+  return !values.arm.empty() && !idle(point, values) && !values.arm[entry(point, 1)].isZero(0.0);
+}
 
 ShapePlace ShapeContact::place_of(const RigidSide& side, const Configuration& configuration) const {
   const Eigen::Isometry3d pose = side.pose(configuration);

@@ -14,13 +14,6 @@
 
 namespace sinew::constraint {
 
-namespace {
-
-// The gap of an idle point, m: beyond anything that could touch.
-constexpr double kIdle = 1e6;
-
-}  // namespace
-
 // Entries of a row: the point, or the centre and orientation of its body; then those of the
 // carrier.
 ShapeContact::ShapeContact(std::string name, std::vector<mechanics::MaterialPoint> points,
@@ -72,50 +65,6 @@ void ShapeContact::begin_step(const Configuration& configuration, const Eigen::I
     place(i, carried, approach(carried, towards, end), values);
     if (carrier_) watch(configuration, i, at, values);
   }
-}
-
-// If the motion of the surface is prescribed, the frames of the points move with it.
-void ShapeContact::find_points(const Configuration& configuration, const Eigen::Isometry3d& start,
-                               const Eigen::Isometry3d& end, mechanics::RowValues& values) const {
-  const Eigen::Isometry3d carry = end * start.inverse();
-  const collision::TouchingPoints found = collision::touching_points(
-      collision::moved(own_->shape, own_->pose(configuration)), collision::moved(surface_, start),
-      std::numeric_limits<double>::infinity());
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    const Vector3 normal = carry.linear() * found[k].normal;
-    set_frame(k, carry * found[k].on_first, collision::tangent_frame(normal), found[k].gap, values);
-    roll_from(k, configuration, found[k], start, end, values);
-  }
-  for (std::size_t k = found.size(); k < size(); ++k) {
-    if (!idle(k, values)) put_away(k, values);
-  }
-}
-
-// An idle point keeps this state, without a lever on either body, since the saved state of its rows
-// does not tell when it became idle.
-void ShapeContact::put_away(std::size_t point, mechanics::RowValues& values) const {
-  set_frame(point, Vector3::Zero(), collision::tangent_frame(Vector3::UnitZ()), kIdle, values);
-  values.delta.segment<3>(row(point)) = values.reference.segment<3>(row(point));
-  rolling_of(point, values).used = false;
-  const auto clear = [&](std::size_t centre, const Vector3& direction) {
-    values.direction[centre] = direction;
-    values.direction[centre + 1] = values.arm[centre] = values.lever[centre] = Vector3::Zero();
-  };
-  for (int j = 0; j < 3; ++j) {
-    const Vector3 along = values.direction[entry(point, j)];
-    clear(entry(point, j), along);
-    if (carrier_) clear(entry(point, j) + own_entries(), -along);
-  }
-}
-
-bool ShapeContact::idle(std::size_t point, const mechanics::RowValues& values) const {
-  return own_ && values.reference[row(point)] == kIdle;
-}
-
-// After load(), as in a step, a point without a lever is idle: put_away().
-bool ShapeContact::has_place(std::size_t point, const mechanics::RowValues& values) const {
-  if (!own_) return true;
-  return !values.arm.empty() && !idle(point, values) && !values.arm[entry(point, 1)].isZero(0.0);
 }
 
 // For a material point beside a rigid body. The gap's row watches the centre of curvature, which

@@ -64,6 +64,28 @@ std::string describe_part(const mechanics::BodyModel& body, const Points& at, co
 
 }  // namespace
 
+double condense_nearly_at_rest(StaticSearch& search) {
+  Run& run = search.run();
+  Bodies& bodies = run.world.bodies();
+  const auto size = static_cast<Eigen::Index>(bodies.size());
+  if (size == 0) return 0.0;
+  const VectorX test = scattered(size);
+  const double mass = search.mass_along(test) / test.squaredNorm();
+  search.begin();
+  search.linearise();
+  bodies.residual(run.effort);
+  const double stiffness = std::max(bodies.rounding_floor() / kEpsilon, bodies.force_scale()) /
+                           (run.model->size() * std::sqrt(static_cast<double>(size)));
+  if (!(mass > 0.0) || !(stiffness > 0.0)) return 0.0;
+  double sigma = kShift * stiffness / mass;
+  for (int tries = 0; tries < kShiftTries; ++tries, sigma *= kLargerShift) {
+    search.begin();
+    search.linearise(search.overdamped(sigma));
+    if (run.world.condense() != linalg::FactorStatus::singular) return sigma;
+  }
+  return 0.0;
+}
+
 FreeMotion::FreeMotion(StaticSearch& search) {
   motion_ = find(search);
   if (motion_.size() > 0) describe(search, motion_);
@@ -75,22 +97,14 @@ VectorX FreeMotion::find(StaticSearch& search) {
   Bodies& bodies = world.bodies();
   const auto size = static_cast<Eigen::Index>(bodies.size());
   if (size == 0) return {};
-  VectorX y = scattered(size);
-  const double mass = search.mass_along(y) / y.squaredNorm();
   search.begin();
   search.linearise();
   VectorX force;
   bodies.imbalance(run.effort, force);
-  const double stiffness = std::max(bodies.rounding_floor() / kEpsilon, bodies.force_scale()) /
-                           (run.model->size() * std::sqrt(static_cast<double>(size)));
-  if (!(mass > 0.0) || !(stiffness > 0.0)) return {};
-  double sigma = kShift * stiffness / mass;
-  for (int tries = 0; tries < kShiftTries; ++tries, sigma *= kLargerShift) {
-    search.begin();
-    search.linearise(search.overdamped(sigma));
-    if (world.condense() != linalg::FactorStatus::singular) break;
-    if (tries + 1 == kShiftTries) return {};
-  }
+  const double forces = bodies.force_scale();
+  const double sigma = condense_nearly_at_rest(search);
+  if (sigma == 0.0) return {};
+  VectorX y = scattered(size);
   HeldMotions motions(world, held_rows(world, run.effort));
   double curvature = 0.0;  // y^T (K + sigma M) y / y^T y, since T x = y satisfies H y = 0
   for (int k = 0; k < kPowers; ++k) {
@@ -100,15 +114,21 @@ VectorX FreeMotion::find(StaticSearch& search) {
     curvature = x.dot(y) / y.squaredNorm();
   }
   // Among several free motions, the one in which forces that do not balance drive the robot.
-  if (force.norm() > kDrives * bodies.force_scale()) {
-    VectorX driven;
+  VectorX driven;
+  double driven_curvature = 0.0;
+  if (force.norm() > kDrives * forces) {
     motions.solve(force.normalized(), driven);
-    const double driven_curvature = force.normalized().dot(driven) / driven.squaredNorm();
-    if (driven_curvature <= 2.0 * curvature) y = driven;
+    driven_curvature = force.normalized().dot(driven) / driven.squaredNorm();
   }
-  y /= y.cwiseAbs().maxCoeff();
-  const double inertia = sigma * search.mass_along(y) / y.squaredNorm();
-  exists_ = std::abs(curvature) <= 4.0 * inertia;
+  const auto is_free = [&](VectorX& motion, double stiffness) {
+    if (motion.size() == 0 || !motion.allFinite()) return false;
+    motion /= motion.cwiseAbs().maxCoeff();
+    const double inertia = sigma * search.mass_along(motion) / motion.squaredNorm();
+    return std::abs(stiffness) <= 4.0 * inertia;
+  };
+  exists_ = true;
+  if (is_free(driven, driven_curvature)) return driven;
+  exists_ = is_free(y, curvature);
   return exists_ ? y : VectorX();
 }
 
@@ -142,7 +162,8 @@ void FreeMotion::describe(StaticSearch& search, const VectorX& motion) {
   std::size_t named = 0;
   for (std::size_t b = 0; b < before.size(); ++b) {
     if (moved[b].rows() == 0 || !(moved[b].rowwise().norm().maxCoeff() > kMoves * most)) continue;
-    if (named++ == kMostNames) break;
+    moving_.push_back(b);
+    if (named++ >= kMostNames) continue;
     text_ += (text_.empty() ? "" : "; ") +
              describe_part(bodies.all()[b]->model(), before[b], moved[b], kMoves * most);
   }

@@ -2,6 +2,7 @@
 /// A motion of the robot that nothing resists: it names what makes a tangent singular.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,12 @@
 namespace sinew::sim {
 
 class StaticSearch;
+
+/// Linearises at the present state with the tangent A + sigma M and condenses it. The inertia M
+/// makes A regular where bodies move freely; sigma is so small that it matters to neutral motions
+/// only. Begins a motion.
+/// @return sigma, 1/s^2; 0 if there is no mass, or if the tangent stays singular.
+double condense_nearly_at_rest(StaticSearch& search);
 
 /// Searches a motion v != 0 with v^T K v = 0, where K is the tangent at the present state on the
 /// motions that held rows (joints, commanded cables, touching points) leave free. K may be
@@ -28,6 +35,8 @@ class FreeMotion {
   /// Whether it moves the centre of a body, or deforms it. If not, bodies only turn about their
   /// own centres of mass, on which weight and contact at a sphere do no work: a ball in a bowl.
   bool moves_centres() const { return moves_centres_; }
+  /// Indices of the bodies that move.
+  const std::vector<std::size_t>& moving() const { return moving_; }
   /// (all bodies' size(),), scaled to a largest entry of 1; empty if there is none.
   const VectorX& motion() const { return motion_; }
   /// Names the bodies and nodes that move, and how: "body 'bar' turns freely about the axis through
@@ -41,6 +50,7 @@ class FreeMotion {
   void describe(StaticSearch& search, const VectorX& motion);
 
   VectorX motion_;
+  std::vector<std::size_t> moving_;
   bool exists_ = false, moves_centres_ = false;
   std::string text_;
   std::vector<BodyMotion> bodies_;

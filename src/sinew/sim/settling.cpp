@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/contact.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/sim/free_motion.hpp"
 #include "sinew/sim/run.hpp"
@@ -24,10 +25,11 @@ constexpr int kMaxSurfaceRounds = 60;
 constexpr int kMaxDepartures = 6;
 constexpr double kDisturbance = 1e-2;
 constexpr double kLargerDisturbance = 2.0;
-// Displacement of a neutral equilibrium, relative to the robot's size, and the part of it that may
-// be left if it is stable.
+// Displacement of a neutral equilibrium, relative to the robot's size, and the multiples of it that
+// are left after a return and after a departure.
 constexpr double kPush = 2e-3;
 constexpr double kReturned = 0.5;
+constexpr double kLeft = 2.0;
 
 }  // namespace
 
@@ -58,36 +60,33 @@ void Settling::follow_surfaces() {
   }
 }
 
+// The tangent at the present state, not at the last iterate. Neutral motions of a loose robot,
+// whose stiffness is rounding, get a little inertia, so that they do not count as unstable.
+// @return whether it is regular.
+bool Settling::condense() {
+  if (run_.model->is_loose()) return condense_nearly_at_rest(search_) > 0.0;
+  search_.begin();
+  search_.linearise();
+  return run_.world.condense() != linalg::FactorStatus::singular;
+}
+
 // Moves from the present linearised equilibrium to a stable one.
 void Settling::settle() {
   double disturbance = kDisturbance;
   StaticReport& report = search_.report();
-  State rest;  // before the first departure
-  NewtonReport last;
   for (int departures = 0;; ++departures) {
-    // Needs the tangent at this state, not at the last iterate.
-    search_.begin();
-    search_.linearise();
     report.stable = true;
     report.negative_pivots = 0;
-    if (run_.world.condense() == linalg::FactorStatus::singular) return require_held();
+    if (!condense()) return require_held();
     const bool unsymmetric = run_.world.inertia().unsymmetric;
+    const bool has_contacts = !run_.model->contacts().empty();
     const Stability stability(run_.world, run_.effort);
     report.negative_pivots = stability.negative_pivots();
     report.stable = report.negative_pivots == 0;
     if (report.stable || search_.settings().stability == StabilityChoice::any) return;
-    if (departures == 0) {
-      run_.keep(rest);
-      last = search_.last();
-    }
     const auto ended = departures < kMaxDepartures ? motion_.leave(stability, disturbance)
                                                    : OverdampedMotion::End::failed;
     if (ended == OverdampedMotion::End::failed) {
-      if (run_.model->is_loose()) {  // neutral motions may count as unstable
-        run_.restore(rest);
-        search_.put_back(last);
-        require_held();
-      }
       fail(run_, ErrorKind::not_converged,
            fmt::format("the equilibrium is unstable in {} direction{} (negative pivots of the "
                        "exact tangent), and none that is stable was found from it in {} steps "
@@ -96,8 +95,10 @@ void Settling::settle() {
                        report.relaxation_steps),
            "approach the load through time steps, or ask for any equilibrium, stable or not");
     }
-    // With a potential, the motion cannot return by itself: a step was too long.
-    if (ended == OverdampedMotion::End::returned && unsymmetric) {
+    // With a potential, the motion cannot return by itself: a step was too long. The tangent at
+    // points that touch is that of material points, and not of the curved surfaces.
+    const bool may_return = unsymmetric || (run_.model->is_loose() && has_contacts);
+    if (ended == OverdampedMotion::End::returned && may_return) {
       report.stable = true;
       return;
     }
@@ -106,9 +107,25 @@ void Settling::settle() {
   }
 }
 
+void Settling::require_held() {
+  for (int departures = 0; leave_unheld(); ++departures) {
+    if (departures == kMaxDepartures) {
+      fail(run_, ErrorKind::not_converged,
+           "the bodies roll and slide from one unstable equilibrium to the next",
+           "approach the load through time steps, or choose a dynamic integrator");
+    }
+    follow_surfaces();
+    settle();
+  }
+  search_.begin();  // the tangent at rest, for queries
+  search_.linearise();
+  run_.world.condense();
+}
+
 // Points that slid until the robot came to rest may hold it by less than all of their friction,
 // which a solution from rest tells.
-void Settling::require_held() {
+// @return whether the equilibrium was unstable, and left for another one.
+bool Settling::leave_unheld() {
   if (!run_.model->contacts().empty()) {
     State rest;
     run_.keep(rest);
@@ -119,20 +136,34 @@ void Settling::require_held() {
     }
   }
   const FreeMotion free(search_);
-  if (free.exists() && free.moves_centres() && !returns(free.motion())) {
+  if (!free.exists() || !free.moves_centres()) return false;
+  const Pushed pushed = run_.model->contacts().empty() ? Pushed::stays : push(free.motion());
+  if (pushed == Pushed::leaves) return true;
+  if (pushed == Pushed::returns) return false;
+  const auto rests = [&](std::size_t body) { return touches(body); };
+  if (!run_.model->is_loose() || !std::ranges::all_of(free.moving(), rests)) {
     fail_free(run_, free, "the equilibrium is neutral",
               "hold it by a fixed region, a joint, a cable, friction or a contact, or choose a "
               "dynamic integrator");
   }
-  search_.begin();  // the tangent at rest, for queries
-  search_.linearise();
-  run_.world.condense();
+  return false;
 }
 
-// The tangent does not contain the curvature of surfaces that touch: a ball at the bottom of a bowl
-// has none. Displaced along its motion, it rolls back.
-bool Settling::returns(const VectorX& motion) {
-  if (run_.model->contacts().empty()) return false;
+// Whether a contact presses on a body.
+bool Settling::touches(std::size_t body) const {
+  const auto index = static_cast<int>(body);
+  for (const constraint::Contact* contact : run_.world.contacts().planes().contacts()) {
+    if (contact->body() != index && contact->other_body() != index) continue;
+    for (std::size_t k = 0; k < contact->size(); ++k) {
+      if (run_.effort[static_cast<std::size_t>(contact->row(k))] > 0.0) return true;
+    }
+  }
+  return false;
+}
+
+// Displaces an equilibrium along a motion, and lets it go unless the next place is an equilibrium,
+// too. The state then is what it was, unless it left.
+Settling::Pushed Settling::push(const VectorX& motion) {
   State rest;
   run_.keep(rest);
   const NewtonReport last = search_.last();
@@ -142,12 +173,22 @@ bool Settling::returns(const VectorX& motion) {
   bodies.propose_motion(motion);
   bodies.apply_motion(kPush * run_.model->size());
   const double pushed = motion_.moved_since(at);
-  motion_.relax_from_here();
-  const bool back = motion_.moved_since(at) < kReturned * pushed;
+  State displaced;
+  run_.keep(displaced);
+  bool found = search_.equilibrate(0.0, max_idle(*run_.model));
+  if (!found || motion_.moved_since(at) > kLeft * pushed) {
+    run_.restore(displaced);
+    found = motion_.relax_from_here();
+  }
+  const double moved = motion_.moved_since(at);
+  if (moved > kLeft * pushed) {
+    if (found) return Pushed::leaves;
+    fail_if_free(search_, "there is no equilibrium, since nothing holds a part");
+  }
   run_.restore(rest);
   search_.put_back(last);
   search_.begin();
-  return back;
+  return moved < kReturned * pushed ? Pushed::returns : Pushed::stays;
 }
 
 }  // namespace sinew::sim

@@ -26,12 +26,21 @@ class Settling {
   /// Moves from the present equilibrium to a stable one, unless the settings accept any.
   /// Throws Error(not-converged), and what require_held() throws if the tangent is singular.
   void settle();
-  /// Throws Error(singular-matrix) if the present equilibrium is neutral: it has a free motion that
-  /// moves a body, and not only turns it about its centre of mass.
+  /// Judges the free motion of the present equilibrium of a loose robot, if it has one that moves a
+  /// body and not only turns it about its centre of mass. The tangent does not contain the
+  /// curvature of surfaces that touch, so the motion tells: a small displacement along it returns
+  /// (a ball in a bowl), stays, or leaves (a ball on a ball), after which this looks for the next
+  /// equilibrium. A neutral one of bodies that touch others is an equilibrium at any place, and
+  /// stands where it is, as it would with the least friction.
+  /// Throws Error(singular-matrix) in any other neutral equilibrium.
   void require_held();
 
  private:
-  bool returns(const VectorX& motion);
+  enum class Pushed { returns, stays, leaves };
+  Pushed push(const VectorX& motion);
+  bool condense();
+  bool leave_unheld();
+  bool touches(std::size_t body) const;
 
   Run& run_;
   StaticSearch& search_;

@@ -83,7 +83,8 @@ class Certifier {
     return std::ranges::find(between_, block, &Between::block);
   }
 
-  // Whether the best choice that keeps all these blocks at both limits is the choice that was made.
+  // Whether the best choice that keeps all these blocks at both limits is the choice that was made,
+  // or one that is no better: where the objective is flat, choices differ by more than rounding.
   bool stays(const Response& response, double Between::*multiplier) {
     std::vector<double> choice = own_;
     if (controller_.choose(problem_, response, Guards::tight, choice) == LawStatus::failed) {
@@ -105,7 +106,14 @@ class Certifier {
       most = std::max(
           most, std::abs(choice[k] - own_[k]) * std::sqrt(std::abs(problem_.compliance(row, row))));
     }
-    return most <= kStays * size_;
+    return most <= kStays * size_ || !gains();
+  }
+
+  // Whether the controller's last choice is better than the one that was made.
+  bool gains() const {
+    const double value =
+        controller_.merit(problem_, motion_of(problem_, effort_), own_, effort_).value;
+    return value - controller_.foreseen() > controller_.negligible_gain() + kGain * std::abs(value);
   }
 
   Response beyond(unsigned which) const {
@@ -144,14 +152,11 @@ class Certifier {
   }
 
   bool no_piece_leads_on() {
-    const double value =
-        controller_.merit(problem_, motion_of(problem_, effort_), own_, effort_).value;
     for (unsigned which = 0; which < 1U << between_.size(); ++which) {
       const Response piece = beyond(which);
       std::vector<double> choice = own_;
       if (controller_.choose(problem_, piece, Guards::kept, choice) == LawStatus::failed) continue;
-      const double gain = value - controller_.foreseen();
-      if (gain > controller_.negligible_gain() + kGain * std::abs(value)) return false;
+      if (gains()) return false;
     }
     return true;
   }
