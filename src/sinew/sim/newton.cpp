@@ -31,7 +31,7 @@ constexpr int kIdle = 4;
 constexpr double kContraction = 0.25;
 constexpr int kMostRefused = 2;
 // Smaller first motions, relative to the robot's size, are expected to leave no residual.
-constexpr double kSmall = 1e-6;
+constexpr double kTiny = 1e-6;
 // An iteration makes progress if it lowers the merit below this fraction of the lowest so far.
 constexpr double kProgress = 0.9;
 
@@ -248,7 +248,7 @@ class NewtonSolver {
     // The residual before the first motion says nothing of what commands and choices have changed.
     const bool first = report_.iterations == 0;
     const double shrinks = kept_ && before_ > 0.0 ? report_.motion.largest_move / before_ : 1.0;
-    const bool small = report_.motion.largest_move <= kSmall * world_.problem().size;
+    const bool small = report_.motion.largest_move <= kTiny * world_.problem().size;
     const bool ends = settings_.lag.residual > 0.0 ||
                       (first ? small : shrinks * report_.relative_residual <= settings_.tolerance);
     return ends && world_.bodies().keep_linearisation();
