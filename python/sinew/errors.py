@@ -70,7 +70,11 @@ class Error(Exception):
 
 
 class SinewWarning(UserWarning):
-    """Issued by load() for every notice of level "warning"."""
+    """Issued by load() for every notice of level "warning", and by runs for what they show about their scene."""
+
+
+class StepWarning(SinewWarning):
+    """Issued for the first step with each flag, for example command-not-reached."""
 
 
 class Notice(NamedTuple):

@@ -43,8 +43,9 @@ sim::Watched look_for_signals(sim::Simulation& simulation) {
 // step.
 void lend_factors(sim::Simulation& simulation) { simulation.world().bodies().release(); }
 
-void issue_warning(const std::string& message) {
-  const pybind11::object kind = pybind11::module_::import("sinew.errors").attr("SinewWarning");
+// @param category a class of sinew.errors.
+void issue_warning(const std::string& message, const char* category = "SinewWarning") {
+  const pybind11::object kind = pybind11::module_::import("sinew.errors").attr(category);
   if (PyErr_WarnEx(kind.ptr(), message.c_str(), 1) != 0) throw pybind11::error_already_set();
 }
 
@@ -159,7 +160,7 @@ void Session::warn() {
     const std::string message = fmt::format(
         "the step to t = {:g} s is {}; {}", flagged.first, sim::step_status_name(status),
         sim::step_status_remedy(status, simulation_.model().step()));
-    issue_warning(message);
+    issue_warning(message, "StepWarning");
   }
 }
 

@@ -37,6 +37,17 @@ def test_dead_loads_sum_to_what_the_scene_says():
     np.testing.assert_allclose(total(sim), [expected[0], expected[1] - 0.1, -0.4], rtol=1e-9)
 
 
+@pytest.mark.parametrize("heading", ["factor", "factor [1]"])
+def test_a_factor_of_a_table_has_no_unit(tmp_path, heading):
+    (tmp_path / "shake.csv").write_text(f"time [s],{heading}\n0,0\n1,2\n")
+    load = {"type": "acceleration", "body": "beam", "acceleration": "0 3 0 m/s^2",
+            "factor": {"file": str(tmp_path / "shake.csv"), "column": "factor"}}
+    assert scene({"shaker": load}, time_step="0.5 s").load("shaker").factor == 0.0
+    sim = scene({"shaker": load}, time_step="0.5 s")
+    sim.step()
+    np.testing.assert_allclose(total(sim), [0.0, 3 * 1000 * 0.1 * 0.02 * 0.02, 0.0], rtol=1e-12, atol=1e-15)
+
+
 def test_pressure_follows_its_faces():
     sim = scene({"wind": {"type": "pressure", "body": "beam", "surface": {"set": "z_max"}, "pressure": "100 Pa"}})
     sim.step()

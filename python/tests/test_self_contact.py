@@ -66,6 +66,6 @@ def test_the_arm_curls_up_whatever_the_rounding(change):
         assert not sim.report.flagged
         if first is None and touch.normal_force > 0.0:
             first = sim.time
-        assert touch.normal_force < 0.2 and touch.gap > -1e-8
+        assert touch.normal_force < 0.2 and not touch.gap < -1e-8  # NaN where nothing is near
     assert 2.5 < first < 2.75
     assert 1e3 * sim.effector("tip").position == pytest.approx([41.5, 0.0, 26.0], abs=1.0)

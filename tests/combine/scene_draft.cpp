@@ -243,13 +243,13 @@ class Drafter {
     }
   }
 
-  // The element of a body; empty: the default of its material. An estimator repeats every step,
-  // which would take minutes with 800 quadratic nodes around a chamber.
-  std::string element_of(const Body& body) const {
+  // The element of a body; empty: the default of its material. An estimator repeats every step, and
+  // Eigen factorises slowly: both would take minutes with hundreds of quadratic nodes.
+  std::string element_of() const {
     const bool patches = of("material") != "saint-venant-kirchhoff";
     const bool quadratic = hyperelastic() && (!has("element") || of("element") == "tet10");
-    const bool large = body.shape.mesh.find("chambered") != std::string::npos;
-    if (quadratic && large && has("estimator")) return patches ? "tet4-patch" : "tet4";
+    const bool slow = has("estimator") || of("factorisation") != "block";
+    if (quadratic && slow) return patches ? "tet4-patch" : "tet4";
     const bool fits = of("element") != "tet4-patch" || patches;
     const bool named = has("element") && fits && (hyperelastic() || of("element") == "tet4");
     return named ? of("element") : "";
@@ -262,7 +262,7 @@ class Drafter {
     std::string text =
         fmt::format("type: fem, mesh: {}, material: {}, density: 1000 kg/m^3, mass_matrix: {}, {}",
                     body.shape.mesh, material(), of("mass_matrix"), held);
-    const std::string element = element_of(body);
+    const std::string element = element_of();
     if (!element.empty()) text += ", element: " + element;
     if (has("damping")) text += ", damping: {mass: 0.5 1/s, stiffness: 1 ms}";
     if (has("initial_velocity") && dynamic()) {

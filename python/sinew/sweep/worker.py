@@ -17,7 +17,7 @@ from typing import Any, NamedTuple, Optional
 import numpy as np
 
 from .. import _core, scene
-from ..errors import Error, SinewWarning
+from ..errors import Error, StepWarning
 from .child import Child
 from .samples import Axis, Value
 
@@ -172,7 +172,7 @@ class Runner:
             with warnings.catch_warnings(record=True) as told:
                 warnings.simplefilter("always")
                 outputs = self._called(index, values) if self.job.function else self._simulated(values)
-            remarks = [str(one.message) for one in told if issubclass(one.category, SinewWarning)]
+            remarks = [str(one.message) for one in told if issubclass(one.category, StepWarning)]
             remarks = [] if self.job.function else remarks
             status, error = ("flagged", "; ".join(remarks)) if remarks else ("done", "")
         except (Exception, SystemExit) as problem:  # a function may call sys.exit()

@@ -31,7 +31,8 @@ Table read_scaled(const Fields& fields, int columns, Eigen::Index first,
 bool has_unit(const Fields& fields, const Table& table, Eigen::Index column) {
   const Key* key = fields.table().find("unit");
   const Dimension expected = key != nullptr ? key->forms.front().dimension : dimension::kNone;
-  return fields.find("unit") != nullptr || heading_unit(table, column, expected).has_value();
+  const bool written = key != nullptr && fields.find("unit") != nullptr;
+  return written || heading_unit(table, column, expected).has_value();
 }
 
 // The column with the heading "NAME" or "NAME [unit]".
