@@ -280,6 +280,8 @@ test('a run goes back, and takes another way from there', async (t) => {
   const line = await page.evaluate(() => window.sinewView.timeline());
   assert.ok(line.shown === line.latest && line.oldest === 0);
   const slider = page.locator('[aria-label="Moment of the run"]');
+  // The page may be drawn later than the frame arrives; until then, the slider ends earlier.
+  await page.waitForFunction((latest) => document.querySelector('[aria-label="Moment of the run"]').max === String(latest), line.latest);
   await slider.fill('10');
   const back = await until(page, (s) => s.step === 40);
   assert.equal(back.time, 0.4);
