@@ -71,7 +71,7 @@ TouchedBlocks::Pair TouchedBlocks::reach(int first, int second) const {
 }
 
 std::size_t TouchedBlocks::bytes() const {
-  std::size_t total = pairs_.capacity() * sizeof(pairs_[0]);
+  std::size_t total = pairs_.capacity() * sizeof(std::vector<Pair>);
   for (const auto& own : pairs_) {
     total += own.capacity() * sizeof(Pair);
     for (const Pair& pair : own) total += pair.targets.capacity() * sizeof(Target);
