@@ -114,11 +114,20 @@ def test_a_spring_that_closes_on_itself_says_how_far_it_is_open(tmp_path):
     own = sim.body("u")
     middle = nodes[cells].mean(axis=1)
     legs = [triangles_of(own.hexahedra[(middle[:, 2] > 12) & ((middle[:, 0] > 8) == side)]) for side in (False, True)]
-    contact, seen = sim.contact("self"), set()
-    for _ in range(9):
+
+    def distance():
         here = own.positions
-        actual = min(sinew.collision.Surface(here, legs[b]).nearest(here[np.unique(legs[a])]).distances.min() for a, b in ((0, 1), (1, 0)))
-        assert is_right(contact, actual, 2e-5), (contact.gap, contact.gap_above, actual)
+        return min(sinew.collision.Surface(here, legs[b]).nearest(here[np.unique(legs[a])]).distances.min() for a, b in ((0, 1), (1, 0)))
+
+    follow_until_touch(sim, sim.contact("self"), distance, 2e-5, 9)
+
+
+def follow_until_touch(sim, contact, distance, within, steps):
+    """The gap of a contact is right in every step until it has a force; it is unknown at first, and known at last."""
+    seen = set()
+    for _ in range(steps):
+        actual = distance()
+        assert is_right(contact, actual, within), (contact.gap, contact.gap_above, actual)
         seen.add(math.isnan(contact.gap))
         if contact.normal_force > 0.0:
             break
@@ -173,15 +182,7 @@ def test_rigid_meshes_say_how_far_they_are(tmp_path):
     part = lambda name, **more: {"type": "rigid", "mesh": {"file": str(tmp_path / f"{name}.stl"), "unit": "mm"}, "density": 1000.0, **more}
     sim = make({"low": part("low", fixed=True), "top": part("top", pose={"position": "3 4 25 mm"})},
                {"drop": {"between": ["top", "low"]}})
-    drop, seen = sim.contact("drop"), set()
-    for _ in range(30):
-        actual = sim.body("top").position[2] - 0.01
-        assert is_right(drop, actual, 1e-6), (drop.gap, drop.gap_above, actual)
-        seen.add(math.isnan(drop.gap))
-        if drop.normal_force > 0.0:
-            break
-        sim.step()
-    assert seen == {True, False} and drop.normal_force > 0.0
+    follow_until_touch(sim, sim.contact("drop"), lambda: sim.body("top").position[2] - 0.01, 1e-6, 30)
 
 
 def test_sweeps_and_plots_take_gaps_that_are_not_known(tmp_path):

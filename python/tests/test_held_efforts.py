@@ -35,6 +35,13 @@ def cable(command):
     return {"c": {"type": "cable", "body": "b", "points": points, "command": command}}
 
 
+def swing_torques(steps):
+    """I a, and with it the moment of the weight, of a bar that swings by 0.5 sin(2 pi t), at the ends of steps of 1 ms."""
+    angle = 0.5 * np.sin(2 * np.pi * 1e-3 * np.arange(1, steps + 1))
+    inertial = -INERTIA * (2 * np.pi) ** 2 * angle
+    return inertial, inertial + MASS * G * LENGTH / 2 * np.sin(angle)
+
+
 @pytest.mark.parametrize("integrator", ["backward-euler", "bdf2", alpha(0.8), alpha(0.95), "event-driven"])
 def test_the_torque_of_a_motor_that_follows_a_sine(integrator):
     """Newton-Euler about the hinge: I a + m g L/2 sin(angle)."""
@@ -43,10 +50,7 @@ def test_the_torque_of_a_motor_that_follows_a_sine(integrator):
     for _ in range(1200):
         sim.step()
         torque.append(sim.actuator("m").torque)
-    t = 1e-3 * np.arange(1, 1201)
-    angle = 0.5 * np.sin(2 * np.pi * t)
-    inertial = -INERTIA * (2 * np.pi) ** 2 * angle
-    exact = inertial + MASS * G * LENGTH / 2 * np.sin(angle)
+    inertial, exact = swing_torques(1200)
     error = np.abs(np.array(torque) - exact)[600:].max()
     if integrator == "backward-euler":  # its acceleration is that of a step before: w h
         assert error < 1.3 * 2 * np.pi * 1e-3 * np.abs(inertial).max()
@@ -105,10 +109,7 @@ def test_event_driven_commands_of_a_script_in_every_step():
         sim.actuator("m").angle = 0.5 * np.sin(2 * np.pi * 1e-3 * k)
         sim.step()
         torque.append(sim.actuator("m").torque)
-    t = 1e-3 * np.arange(1, 1001)
-    angle = 0.5 * np.sin(2 * np.pi * t)
-    inertial = -INERTIA * (2 * np.pi) ** 2 * angle
-    exact = inertial + MASS * G * LENGTH / 2 * np.sin(angle)
+    inertial, exact = swing_torques(1000)
     error = np.abs(np.array(torque) - exact)[500:].max()
     assert error < 1.3 * 2 * np.pi * 1e-3 * np.abs(inertial).max()  # of backward Euler
 
