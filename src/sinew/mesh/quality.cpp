@@ -35,6 +35,14 @@ double longest_edge(const Corners& x) {
   return longest;
 }
 
+double mean_edge(const Mesh& mesh, double volume) {
+  const auto tetrahedra =
+      static_cast<double>(std::max(mesh.tetrahedra.size(), mesh.quadratic.size()));
+  const double shares =
+      tetrahedra / (6.0 * std::sqrt(2.0)) + static_cast<double>(mesh.hexahedra.size());
+  return std::cbrt(volume / shares);
+}
+
 double element_size(const Mesh& mesh, int element) {
   const auto mean = [&](const auto& nodes, const auto& edges) {
     double sum = 0.0;

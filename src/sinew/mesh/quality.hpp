@@ -32,6 +32,10 @@ double radius_ratio(const Corners& corners);
 /// The six dihedral angles, rad: 0 and pi for a flat tetrahedron, 70.53 degrees for a regular one.
 std::array<double, 6> dihedral_angles(const Corners& corners);
 
+/// Edge of a regular tetrahedron, or of a cube, with the mean volume of the elements, m.
+/// @param volume m^3, of all elements.
+double mean_edge(const Mesh& mesh, double volume);
+
 /// Total volume of all tetrahedra and hexahedra, m^3.
 double volume(const Mesh& mesh);
 

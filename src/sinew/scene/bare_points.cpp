@@ -9,6 +9,7 @@
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mesh/quality.hpp"
 #include "sinew/scene/build_parts.hpp"
 
 namespace sinew::scene {
@@ -33,8 +34,7 @@ std::optional<Notice> bare_points_notice(const ActuatorDescription& actuator,
   const mesh::Mesh& mesh = body.mesh();
   const double modulus = fem::stiffest_modulus(own->settings().elements);
   const double volume = own->elements().volume();
-  const double edge =
-      std::cbrt(6.0 * std::sqrt(2.0) * volume / static_cast<double>(mesh.quadratic.size()));
+  const double edge = mesh::mean_edge(mesh, volume);
   const Vector3 extent = mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff();
   const double size = extent.norm();
   const double most = cable.settings.tension.max;

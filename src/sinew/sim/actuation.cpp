@@ -246,4 +246,10 @@ void hold_efforts(std::span<step::ActuatorBlock> blocks, std::span<const double>
   }
 }
 
+void command_efforts(std::span<step::ActuatorBlock> blocks, std::span<const double> effort) {
+  for (step::ActuatorBlock& block : blocks) {
+    if (block.owned) block.command_effort(effort[static_cast<std::size_t>(block.row)]);
+  }
+}
+
 }  // namespace sinew::sim

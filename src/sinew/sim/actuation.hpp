@@ -103,5 +103,8 @@ bool keeps_motor_limits(const Model& model, std::span<const step::ActuatorBlock>
 /// Holds the actuators of a controller at the efforts that it chose last.
 /// @param blocks of a step. @param effort (rows,) N or Pa.
 void hold_efforts(std::span<step::ActuatorBlock> blocks, std::span<const double> effort);
+/// Commands the efforts that the controller chose last, within the present limits.
+/// @param blocks of a step. @param effort (rows,) N or Pa.
+void command_efforts(std::span<step::ActuatorBlock> blocks, std::span<const double> effort);
 
 }  // namespace sinew::sim

@@ -1,7 +1,6 @@
 #include "sinew/sim/cable_path.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -14,6 +13,7 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mesh/quality.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
@@ -38,15 +38,6 @@ double thickness_of(const mesh::Mesh& mesh) {
   const Matrix3 axes = Eigen::SelfAdjointEigenSolver<Matrix3>(covariance).eigenvectors();
   const Points along = nodes * axes;
   return (along.colwise().maxCoeff() - along.colwise().minCoeff()).minCoeff();
-}
-
-// m: the edge of a regular tetrahedron, or of a cube, with the mean volume of the elements.
-double edge_of(const mesh::Mesh& mesh, double volume) {
-  const double tetrahedra =
-      static_cast<double>(std::max(mesh.tetrahedra.size(), mesh.quadratic.size()));
-  const double shares =
-      tetrahedra / (6.0 * std::sqrt(2.0)) + static_cast<double>(mesh.hexahedra.size());
-  return std::cbrt(volume / shares);
 }
 
 double size_of(const mesh::Mesh& mesh) {
@@ -127,7 +118,7 @@ CablePath::CablePath(const Simulation& simulation, const constraint::Cable& cabl
     Place& ball = balls.emplace_back();
     if (in_world || own == nullptr) continue;
     const mesh::Mesh& mesh = model.body(body).mesh();
-    const double side = edge_of(mesh, own->elements().volume());
+    const double side = mesh::mean_edge(mesh, own->elements().volume());
     edge = std::max(edge, side);
     size = std::max(size, size_of(mesh));
     ball = {body, embedder(body).spread(rest.row(i), side, mesh::Outside::nearest, "cable")};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/sim/actuation.hpp"
 #include "sinew/sim/stage_clock.hpp"
 #include "sinew/sim/step_watch.hpp"
 #include "sinew/sim/world.hpp"
@@ -79,9 +80,7 @@ class NewtonSolver {
   // makes of it. Choosing again in later iterations of this step would need W of each of their
   // states, hence new factors.
   void hold_choice() {
-    for (step::ActuatorBlock& block : world_.problem().actuators) {
-      if (block.owned) block.command_effort(effort_[static_cast<std::size_t>(block.row)]);
-    }
+    command_efforts(world_.problem().actuators, effort_);
     controller_ = nullptr;
   }
 

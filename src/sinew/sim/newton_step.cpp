@@ -298,9 +298,7 @@ NewtonReport NewtonStep::hold_choice(const NewtonReport& chosen, double time_ste
   NewtonSettings held = settings(time_step);
   const int few = std::min(held.max_iterations, kSteeredIterations);
   if (!dynamic) held.max_iterations = few;
-  for (step::ActuatorBlock& block : run_.world.problem().actuators) {
-    if (block.owned) block.command_effort(run_.effort[static_cast<std::size_t>(block.row)]);
-  }
+  command_efforts(run_.world.problem().actuators, run_.effort);
   NewtonReport result = run_.newton(nullptr, held);
   int tried = chosen.iterations + result.iterations;
   if (!dynamic && goes_on(result)) {
