@@ -33,6 +33,7 @@ double radius_ratio(const Corners& corners);
 std::array<double, 6> dihedral_angles(const Corners& corners);
 
 /// Edge of a regular tetrahedron, or of a cube, with the mean volume of the elements, m.
+/// @param mesh Of elements of one type or of several.
 /// @param volume m^3, of all elements.
 double mean_edge(const Mesh& mesh, double volume);
 
