@@ -295,9 +295,28 @@ such as the dent around a point load.
           "load_forces",
           [](const Body& self) {
             const Session::Use use(*self.session);
-            return reading(fem::of_elements<mechanics::TakesLoads>(body(self)).load_forces());
+            return reading(fem::of_elements<fem::HasMaterial>(body(self)).load_forces());
           },
-          "(n, 3) ndarray: forces of the scene's loads on all nodes (N) in the last step.");
+          "(n, 3) ndarray: forces of the scene's loads on all nodes of a finite-element body (N) "
+          "in "
+          "the last step.")
+      .def_property_readonly(
+          "load_force",
+          [](const Body& self) {
+            const Session::Use use(*self.session);
+            const auto* loaded = mechanics::as<mechanics::TakesLoads>(body(self));
+            return reading(loaded == nullptr ? Vector3(Vector3::Zero()) : loaded->load_force());
+          },
+          "(3,) ndarray: sum of the forces of the scene's loads on it (N) in the last step.")
+      .def_property_readonly(
+          "load_moment",
+          [](const Body& self) {
+            const Session::Use use(*self.session);
+            return reading(rigid(self, "load_moment").load_moment());
+          },
+          "(3,) ndarray: moment of the scene's loads on a rigid body about its centre of mass (N "
+          "m) "
+          "in the last step. Raises as `position`.");
 }
 
 // Element nodes (m, k), with k nodes each.

@@ -11,7 +11,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
-#include "sinew/fem/loads.hpp"
+#include "sinew/mechanics/loads.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mechanics/step_system.hpp"
@@ -52,7 +52,7 @@ class LoadTest : public ::testing::TestWithParam<Kind> {
     Points forces, drag;
     MatrixX symmetric, rest;
   };
-  Result evaluate(const fem::LoadSet& loads, const Points& x, const Points& v, const Points& a,
+  Result evaluate(const mechanics::LoadSet& loads, const Points& x, const Points& v, const Points& a,
                   double rate, double second) const {
     const Eigen::Index n = x.rows();
     Result r{Points::Zero(n, 3), Points::Zero(n, 3), MatrixX::Zero(3 * n, 3 * n),
@@ -78,8 +78,8 @@ class LoadTest : public ::testing::TestWithParam<Kind> {
 TEST_P(LoadTest, StiffnessOfPressureIsTheDerivativeOfItsForces) {
   std::vector<mesh::Face> some(faces_.begin(),
                                faces_.begin() + static_cast<long>(faces_.size() / 3));
-  const fem::LoadSet loads(
-      {fem::PressureLoad{.faces = some, .pressure = 300.0, .gradient = {2e3, -1e3, 4e3}}},
+  const mechanics::LoadSet loads(
+      {mechanics::PressureLoad{.faces = some, .pressure = 300.0, .gradient = {2e3, -1e3, 4e3}}},
       mesh_.nodes);
   EXPECT_TRUE(loads.is_open());
   const Points x = wobbled(mesh_.nodes, 5, 1e-3), none = Points::Zero(x.rows(), 3);
@@ -100,14 +100,14 @@ TEST_P(LoadTest, StiffnessOfPressureIsTheDerivativeOfItsForces) {
 // water.
 TEST_P(LoadTest, WaterRoundABodyCarriesTheWaterItDisplaces) {
   const Vector3 weight_density(0.0, 0.0, -9810.0);
-  const fem::LoadSet loads({fem::PressureLoad{.faces = faces_, .gradient = weight_density}},
+  const mechanics::LoadSet loads({mechanics::PressureLoad{.faces = faces_, .gradient = weight_density}},
                            mesh_.nodes);
   EXPECT_FALSE(loads.is_open());
   const Points x = wobbled(mesh_.nodes, 7, 5e-4), none = Points::Zero(x.rows(), 3);
   const Result here = evaluate(loads, x, none, none, 0.0, 0.0);
   EXPECT_LT(here.rest.cwiseAbs().maxCoeff(), 1e-9 * here.symmetric.cwiseAbs().maxCoeff());
   // The volume, by the divergence theorem from a unit pressure gradient along x.
-  const fem::LoadSet unit({fem::PressureLoad{.faces = faces_, .gradient = Vector3::UnitX()}},
+  const mechanics::LoadSet unit({mechanics::PressureLoad{.faces = faces_, .gradient = Vector3::UnitX()}},
                           mesh_.nodes);
   const double volume = -evaluate(unit, x, none, none, 0.0, 0.0).forces.col(0).sum();
   EXPECT_NEAR(volume, 0.04 * 0.03 * 0.02, 0.05 * 0.04 * 0.03 * 0.02);
@@ -124,8 +124,8 @@ TEST_P(LoadTest, WaterRoundABodyCarriesTheWaterItDisplaces) {
 }
 
 TEST_P(LoadTest, DampingOfWaterIsTheDerivativeOfItsDrag) {
-  const fem::LoadSet loads(
-      {fem::WaterLoad{.faces = faces_, .tangential_drag = 0.3, .velocity = {0.1, 0.0, -0.05}}},
+  const mechanics::LoadSet loads(
+      {mechanics::WaterLoad{.faces = faces_, .tangential_drag = 0.3, .velocity = {0.1, 0.0, -0.05}}},
       mesh_.nodes);
   const Points v = wobbled(Points::Zero(mesh_.nodes.rows(), 3), 8, 0.2);
   const Points a = wobbled(Points::Zero(mesh_.nodes.rows(), 3), 9, 2.0);
@@ -152,8 +152,8 @@ INSTANTIATE_TEST_SUITE_P(Elements, LoadTest,
 TEST(Water, CylinderHasTheDragAndInertiaOfItsWidth) {
   const mesh::Mesh mesh = mesh::cylinder({.radius = 0.01, .height = 0.2, .rings = 5, .layers = 40});
   const auto faces = mesh::boundary_faces(mesh);
-  const fem::LoadSet loads(
-      {fem::WaterLoad{
+  const mechanics::LoadSet loads(
+      {mechanics::WaterLoad{
           .faces = faces, .normal_drag = 0.9, .tangential_drag = 0.0, .added_mass = 1.0}},
       mesh.nodes);
   const Eigen::Index n = mesh.nodes.rows();

@@ -45,7 +45,7 @@ void BodyLoads::find_rates(const mechanics::LinearisationRequest& request) {
 }
 
 void BodyLoads::linearise(const mechanics::LinearisationRequest& request) {
-  const LoadSet& loads = state_.model.loads();
+  const mechanics::LoadSet& loads = state_.model.loads();
   if (loads.empty()) return;
   const auto& weights = request.weights;
   forces_.setZero();
@@ -58,7 +58,7 @@ void BodyLoads::linearise(const mechanics::LinearisationRequest& request) {
     const auto i = free[static_cast<std::size_t>(a)], j = free[static_cast<std::size_t>(b)];
     if (i >= 0 && j >= 0) blocks.push_back({i, j, block});
   };
-  LoadSet::AddBlock rest;
+  mechanics::LoadSet::AddBlock rest;
   const bool of_statics = !weights.dynamic() || weights.time_step == 0.0;
   if (loads.is_open() && of_statics && request.tangent == mechanics::Tangent::exact) {
     rest = [&](NodeId a, NodeId b, const Matrix3& block) { keep(unsymmetric_, a, b, block); };

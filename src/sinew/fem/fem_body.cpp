@@ -120,6 +120,8 @@ void FemBody::set_load_factor(int load, double factor) {
   state_->load_factors[static_cast<std::size_t>(load)] = factor;
 }
 
+Vector3 FemBody::load_force() const { return step_->load_forces().colwise().sum().transpose(); }
+
 Points FemBody::load_forces() const { return step_->load_forces(); }
 
 const HasElements& FemBody::material() const { return state_->model; }

@@ -62,6 +62,7 @@ class FemBody : public mechanics::Body,
   Carried carried(int site, const mechanics::Patch* patch) const override;
 
   void set_load_factor(int load, double factor) override;
+  Vector3 load_force() const override;
   Points load_forces() const override;
 
   const HasElements& material() const override;

@@ -98,7 +98,20 @@ int FemBodyModel::attach_surface() {
   return surface_site_;
 }
 
-int FemBodyModel::add_load(Load load) {
+mechanics::DeadLoad FemBodyModel::inertial_load(const Vector3& acceleration) {
+  const VectorX& mass = elements().load_mass();
+  mechanics::DeadLoad load;
+  for (NodeId node = 0; node < static_cast<NodeId>(mass.size()); ++node) {
+    if (mass[node] != 0.0) load.nodes.push_back(node);
+  }
+  load.forces.resize(static_cast<Eigen::Index>(load.nodes.size()), 3);
+  for (std::size_t i = 0; i < load.nodes.size(); ++i) {
+    load.forces.row(static_cast<Eigen::Index>(i)) = mass[load.nodes[i]] * acceleration.transpose();
+  }
+  return load;
+}
+
+int FemBodyModel::add_load(mechanics::Load load) {
   added_loads_.push_back(std::move(load));
   return static_cast<int>(added_loads_.size()) - 1;
 }
@@ -134,7 +147,7 @@ void FemBodyModel::finish(int body, const mechanics::RowPattern& rows,
                           const linalg::FactorisationSettings& settings) {
   body_ = body;
   world_rows_ = rows;
-  loads_ = std::make_unique<const LoadSet>(std::move(added_loads_), mesh().nodes);
+  loads_ = std::make_unique<const mechanics::LoadSet>(std::move(added_loads_), mesh().nodes);
   linalg::check_settings(settings);  // plans are made later
   factorisation_ = settings;
   rows_.clear();

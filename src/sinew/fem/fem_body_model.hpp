@@ -11,8 +11,8 @@
 
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/fem/has_elements.hpp"
-#include "sinew/fem/loads.hpp"
 #include "sinew/linalg/factorisation.hpp"
+#include "sinew/mechanics/bears_loads.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 
@@ -38,6 +38,7 @@ struct FemSystem {
 class FemBodyModel final : public mechanics::BodyModel,
                            public mechanics::HasSurface,
                            public mechanics::MayHaveBase,
+                           public mechanics::BearsLoads,
                            public HasElements {
  public:
   /// Throws the errors of FemModel, and Error: out-of-range (negative damping, mass that is not
@@ -66,7 +67,14 @@ class FemBodyModel final : public mechanics::BodyModel,
   bool is_loaded() const override;
   mesh::EmbeddedPoint locate(const Vector3& rest_position, mesh::Outside outside,
                              const std::string& what) const override;
-  int add_load(Load load) override;
+  const mesh::Mesh& load_mesh() const override { return mesh(); }
+  mesh::EmbeddedPoint carry(const Vector3& rest_position, mesh::Outside outside,
+                            const std::string& what) override {
+    return locate(rest_position, outside, what);
+  }
+  mechanics::DeadLoad inertial_load(const Vector3& acceleration) override;
+  const Vector3& gravity() const override { return settings_.gravity; }
+  int add_load(mechanics::Load load) override;
   void finish(int body, const mechanics::RowPattern& rows,
               std::span<const mechanics::StiffnessPair> stiffness_pairs,
               const linalg::FactorisationSettings& settings) override;
@@ -86,7 +94,8 @@ class FemBodyModel final : public mechanics::BodyModel,
   /// (3,) N: weight of a mesh node.
   Vector3 weight(NodeId node) const { return elements().load_mass()[node] * settings_.gravity; }
   int mass_point(std::size_t mass) const override { return mass_points_[mass]; }
-  const LoadSet& loads() const override { return *loads_; }
+  /// All loads. Only after finish().
+  const mechanics::LoadSet& loads() const { return *loads_; }
   const Attachment& attachment(int point) const override {
     return attachments_[static_cast<std::size_t>(point)];
   }
@@ -116,8 +125,8 @@ class FemBodyModel final : public mechanics::BodyModel,
   std::shared_ptr<const collision::SurfaceTopology> surface_;
   std::shared_ptr<const mechanics::SurfaceTrace> surface_trace_;
   std::vector<int> mass_points_;
-  std::vector<Load> added_loads_;  // until finish()
-  std::unique_ptr<const LoadSet> loads_;
+  std::vector<mechanics::Load> added_loads_;  // until finish()
+  std::unique_ptr<const mechanics::LoadSet> loads_;
 
   int body_ = -1;
   std::vector<std::int32_t> rows_;

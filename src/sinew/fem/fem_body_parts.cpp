@@ -16,16 +16,6 @@ void add(ValueHash& hash, const std::vector<mesh::Face>& faces) {
   for (const mesh::Face& face : faces) hash.add(face.node, face.middle);
 }
 
-void add(ValueHash& hash, const DeadLoad& load) { hash.add(load.nodes, load.forces); }
-void add(ValueHash& hash, const PressureLoad& load) {
-  add(hash, load.faces);
-  hash.add(load.pressure, load.gradient, load.level, load.only_positive);
-}
-void add(ValueHash& hash, const WaterLoad& load) {
-  add(hash, load.faces);
-  hash.add(load.density, load.normal_drag, load.tangential_drag, load.added_mass, load.velocity);
-}
-
 }  // namespace
 
 std::vector<NamedHash> FemBodyModel::parts() const {
@@ -77,10 +67,7 @@ std::uint64_t FemBodyModel::site_hash(int site) const {
 }
 
 std::uint64_t FemBodyModel::load_hash(int load) const {
-  ValueHash hash;
-  std::visit([&](const auto& kind) { add(hash, kind); },
-             loads_->loads()[static_cast<std::size_t>(load)]);
-  return hash.value();
+  return mechanics::hash_of(loads_->loads()[static_cast<std::size_t>(load)]);
 }
 
 }  // namespace sinew::fem

@@ -9,14 +9,12 @@
 #include <vector>
 
 #include "sinew/core/types.hpp"
-#include "sinew/fem/loads.hpp"
 #include "sinew/mesh/embedding.hpp"
 
 namespace sinew::fem {
 
 class FemModel;
 struct FemBodySettings;
-class LoadSet;
 
 /// Nodes and weights of an attached point: x = sum weights x_node.
 struct Attachment {
@@ -37,12 +35,6 @@ class HasElements {
   /// Nodes and weights of any point, without attaching it. Throws as attach() does.
   virtual mesh::EmbeddedPoint locate(const Vector3& rest_position, mesh::Outside outside,
                                      const std::string& what) const = 0;
-  /// Adds a load and returns its number in loads(). Building only.
-  virtual int add_load(Load load) = 0;
-  /// All loads. Only after finish().
-  virtual const LoadSet& loads() const = 0;
-  /// Hash of a load, by its number.
-  virtual std::uint64_t load_hash(int load) const = 0;
   /// Attached point of a point mass, by its position in the settings.
   virtual int mass_point(std::size_t mass) const = 0;
 };

@@ -12,7 +12,7 @@ class ElementHistory;
 class HasElements;
 
 /// A body that consists of finite elements: mechanics::as<const HasMaterial>(body). Positions and
-/// forces are those of mechanics::Body, TakesForces and TakesLoads.
+/// external forces are those of mechanics::Body and TakesForces.
 class HasMaterial {
  public:
   virtual ~HasMaterial() = default;
@@ -20,6 +20,7 @@ class HasMaterial {
   virtual const HasElements& material() const = 0;
   virtual const Points& positions() const = 0;
   virtual const Points& external_forces() const = 0;
+  /// (n, 3) N: forces of the loads on all nodes, from the last linearisation.
   virtual Points load_forces() const = 0;
   /// Strain history of its elements.
   virtual const ElementHistory& history() const = 0;

@@ -38,12 +38,16 @@ void CholeskyFactor::solve_columns(const Eigen::Ref<const MatrixX>& b,
   if (x.size() > 0) llt_.solveInPlace(x);
 }
 
-void SymmetricPivots::compute(const MatrixX& a) { ldlt_.compute(a); }
-
-int SymmetricPivots::negative() const {
-  return static_cast<int>((ldlt_.vectorD().array() < 0.0).count());
+void SymmetricPivots::compute(const MatrixX& a) {
+  ldlt_.compute(a);
+  negative_ = 0;
+  vanishes_ = false;
+  if ((ldlt_.vectorD().array() > 0.0).all()) return;
+  spectrum_.compute(a);
+  const VectorX& values = spectrum_.values();
+  const double rounding = static_cast<double>(values.size()) * kEpsilon;
+  negative_ = static_cast<int>((values.array() < 0.0).count());
+  vanishes_ = !(values.cwiseAbs().minCoeff() > rounding * values.cwiseAbs().maxCoeff());
 }
-
-bool SymmetricPivots::vanishes() const { return (ldlt_.vectorD().array() == 0.0).any(); }
 
 }  // namespace sinew::linalg

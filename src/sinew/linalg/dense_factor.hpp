@@ -47,21 +47,6 @@ class CholeskyFactor {
   Eigen::LLT<MatrixX> llt_;
 };
 
-/// Inertia of a symmetric matrix: D of P A P^T = L D L^T with diagonal pivoting has as many
-/// negative entries as A has negative eigenvalues (Sylvester's law of inertia).
-class SymmetricPivots {
- public:
-  explicit SymmetricPivots(Eigen::Index size = 0) : ldlt_(size) {}
-
-  /// @param a (size, size); its lower triangle is read.
-  void compute(const MatrixX& a);
-  int negative() const;   ///< number of negative pivots
-  bool vanishes() const;  ///< whether a pivot is zero: A is singular
-
- private:
-  Eigen::LDLT<MatrixX> ldlt_;
-};
-
 /// Eigenvalues and eigenvectors of a symmetric matrix.
 class SymmetricSpectrum {
  public:
@@ -75,6 +60,24 @@ class SymmetricSpectrum {
 
  private:
   Eigen::SelfAdjointEigenSolver<MatrixX> solver_;
+};
+
+/// Inertia of a symmetric matrix. With diagonal pivoting, P A P^T = L D L^T has positive D if A is
+/// positive definite. Else it may break down, as for [0 1; 1 0], and the eigenvalues are computed.
+class SymmetricPivots {
+ public:
+  explicit SymmetricPivots(Eigen::Index size = 0) : ldlt_(size), spectrum_(size) {}
+
+  /// @param a (size, size); its lower triangle is read.
+  void compute(const MatrixX& a);
+  int negative() const { return negative_; }   ///< number of negative eigenvalues
+  bool vanishes() const { return vanishes_; }  ///< whether A is singular to rounding
+
+ private:
+  Eigen::LDLT<MatrixX> ldlt_;
+  SymmetricSpectrum spectrum_;
+  int negative_ = 0;
+  bool vanishes_ = false;
 };
 
 /// Pseudo-inverse of a symmetric matrix.

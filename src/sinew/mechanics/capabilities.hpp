@@ -98,8 +98,8 @@ class TakesLoads {
   /// Sets the factor of a load; 1 unless set. An input. @param load its number on the body.
   /// @param factor multiplies the load; of either sign.
   virtual void set_load_factor(int load, double factor) = 0;
-  /// (n, 3) N: forces of the loads on all nodes, from the last linearisation.
-  virtual Points load_forces() const = 0;
+  /// (3,) N: sum of the forces of the loads, from the last linearisation.
+  virtual Vector3 load_force() const = 0;
 };
 
 /// A body model with rigid parts, such as the sections of an arm.
@@ -179,6 +179,8 @@ class HasPose {
   virtual Matrix3 axes() const = 0;              ///< columns: axes of its own frame, in the world
   virtual Vector3 linear_velocity() const = 0;   ///< (3,) m/s, of the centre of mass
   virtual Vector3 angular_velocity() const = 0;  ///< (3,) rad/s, in world axes
+  /// (3,) N m: moment of its loads about its centre of mass, from the last linearisation.
+  virtual Vector3 load_moment() const = 0;
   /// Writes the state of the body with another pose, at zero velocity.
   /// @param origin (3,) m. @param axes unit quaternion.
   /// @param state (state_size(),) see Body::save_state().

@@ -87,7 +87,10 @@ Place3 place_of(const PlaneRegion& plane, const std::string& what) {
 }
 
 std::vector<NodeId> nodes_at(const Mesh& mesh, const Place3& place, const std::string& what) {
-  const std::vector<char> used = used_nodes(mesh);
+  std::vector<char> used = used_nodes(mesh);
+  if (std::ranges::find(used, 1) == used.end()) {  // a surface alone
+    for (const NodeId node : outer_nodes(mesh)) used[static_cast<std::size_t>(node)] = 1;
+  }
   Eigen::AlignedBox3d bounds;
   for (NodeId node = 0; node < mesh.node_count(); ++node) {
     if (used[static_cast<std::size_t>(node)] != 0) bounds.extend(Vector3(mesh.nodes.row(node)));

@@ -89,6 +89,13 @@ void RigidBody::set_base_rate(const Vector3& linear, const Vector3& angular) {
   if (model_.has_base()) state_->rate << linear, model_.turning_radius() * angular;
 }
 
+void RigidBody::set_load_factor(int load, double factor) {
+  state_->load_factors[static_cast<std::size_t>(load)] = factor;
+}
+
+Vector3 RigidBody::load_force() const { return step_->loads().force; }
+Vector3 RigidBody::load_moment() const { return step_->loads().moment; }
+
 Matrix3 RigidBody::rotation(int) const { return state_->pose.rotation.toRotationMatrix(); }
 
 Vector3 RigidBody::origin() const {

@@ -23,6 +23,7 @@ class RigidBody : public mechanics::Body,
                   public mechanics::HasBase,
                   public mechanics::HasRigidBase,
                   public mechanics::HasPose,
+                  public mechanics::TakesLoads,
                   public mechanics::HasSurfaceNodes {
  public:
   /// @param model must outlive the body. @param histories see mechanics::BodyModel::create().
@@ -52,6 +53,10 @@ class RigidBody : public mechanics::Body,
   Carried carried(int site, const mechanics::Patch* patch) const override;
   void follow_base() override;
   void set_base_rate(const Vector3& linear, const Vector3& angular) override;
+
+  void set_load_factor(int load, double factor) override;
+  Vector3 load_force() const override;
+  Vector3 load_moment() const override;
 
   Matrix3 rotation(int orientation) const override;
   Vector3 origin() const override;

@@ -13,6 +13,7 @@
 #include "sinew/linalg/dense.hpp"
 #include "sinew/mechanics/surface_trace.hpp"
 #include "sinew/mesh/embedding.hpp"
+#include "sinew/mesh/patch.hpp"
 #include "sinew/rigid/rigid_body.hpp"
 
 namespace sinew::rigid {
@@ -205,6 +206,79 @@ void RigidBodyModel::finish(int body, const mechanics::RowPattern& rows,
                             std::span<const mechanics::StiffnessPair>,
                             const linalg::FactorisationSettings&) {
   own_rows_ = mechanics::OwnRows(body, rows, surface_site_);
+  std::vector<mechanics::Load> on_faces;
+  for (const int load : face_load_numbers_) {
+    on_faces.push_back(added_loads_[static_cast<std::size_t>(load)]);
+  }
+  if (on_faces.empty()) return;
+  face_loads_ = std::make_unique<const mechanics::LoadSet>(std::move(on_faces), load_mesh().nodes);
+}
+
+const mesh::Mesh& RigidBodyModel::load_mesh() const {
+  if (load_mesh_ != nullptr) return *load_mesh_;
+  const mesh::Surface surface = loaded_triangles(settings_.shape);
+  load_mesh_ = std::make_unique<mesh::Mesh>();
+  load_mesh_->name = name();
+  load_mesh_->nodes = moved(surface.nodes, shape_axes(), shape_origin());
+  load_mesh_->triangles = surface.triangles;
+  return *load_mesh_;
+}
+
+mesh::EmbeddedPoint RigidBodyModel::carry(const Vector3& rest_position, mesh::Outside outside,
+                                          const std::string& what) {
+  check_inside(rest_position, outside, what);
+  const auto number = load_mesh().node_count() + static_cast<NodeId>(load_points_.size());
+  load_points_.push_back(rest_position);
+  return {.nodes = {number}, .weights = {1.0}};
+}
+
+mechanics::DeadLoad RigidBodyModel::inertial_load(const Vector3& acceleration) {
+  mechanics::DeadLoad load;
+  load.nodes = {load_mesh().node_count() + static_cast<NodeId>(load_points_.size())};
+  load.forces = mass() * acceleration.transpose();
+  load_points_.push_back(centre());
+  return load;
+}
+
+// A dead load has one direction: its resultant acts at the mean of its points, weighted by the
+// forces.
+int RigidBodyModel::add_load(mechanics::Load load) {
+  const auto number = static_cast<int>(added_loads_.size());
+  PointForce resultant;
+  if (const auto* dead = std::get_if<mechanics::DeadLoad>(&load)) {
+    const NodeId on_mesh = load_mesh().node_count();
+    double sum = 0.0;
+    for (std::size_t i = 0; i < dead->nodes.size(); ++i) {
+      const Vector3 force = dead->forces.row(static_cast<Eigen::Index>(i)).transpose();
+      const NodeId node = dead->nodes[i];
+      const Vector3 at = node < on_mesh ? Vector3(load_mesh().nodes.row(node).transpose())
+                                        : load_points_[static_cast<std::size_t>(node - on_mesh)];
+      resultant.force += force;
+      resultant.arm += force.norm() * (at - centre());
+      sum += force.norm();
+    }
+    if (sum > 0.0) resultant.arm /= sum;
+  } else {
+    face_load_numbers_.push_back(number);
+  }
+  point_forces_.push_back(resultant);
+  added_loads_.push_back(std::move(load));
+  return number;
+}
+
+bool RigidBodyModel::is_open(int load) const {
+  const auto* pressure =
+      std::get_if<mechanics::PressureLoad>(&added_loads_[static_cast<std::size_t>(load)]);
+  return pressure != nullptr && !mesh::open_loops(pressure->faces).empty();
+}
+
+std::uint64_t RigidBodyModel::load_hash(int load) const {
+  const auto k = static_cast<std::size_t>(load);
+  const auto& [force, arm] = point_forces_[k];
+  if (std::holds_alternative<mechanics::DeadLoad>(added_loads_[k])) {
+    return ValueHash().add(force, arm).value();
+  }
+  return mechanics::hash_of(added_loads_[k]);
 }
 
 std::vector<NamedHash> RigidBodyModel::parts() const {

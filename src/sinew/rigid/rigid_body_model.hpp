@@ -7,10 +7,12 @@
 #include <vector>
 
 #include "sinew/collision/surface_tree.hpp"
+#include "sinew/mechanics/bears_loads.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mechanics/own_rows.hpp"
 #include "sinew/mesh/mesh.hpp"
+#include "sinew/rigid/rigid_loads.hpp"
 #include "sinew/rigid/rigid_settings.hpp"
 
 namespace sinew::rigid {
@@ -20,7 +22,8 @@ class RigidBodyModel final : public mechanics::BodyModel,
                              public mechanics::AttachesOrientations,
                              public mechanics::HasShape,
                              public mechanics::HasSurface,
-                             public mechanics::MayHaveBase {
+                             public mechanics::MayHaveBase,
+                             public mechanics::BearsLoads {
  public:
   /// A site on the body.
   struct Attachment {
@@ -51,7 +54,9 @@ class RigidBodyModel final : public mechanics::BodyModel,
               const linalg::FactorisationSettings& settings) override;
   bool couples(int, int) const override { return true; }
   bool is_free() const override { return !settings_.fixed; }
-  bool is_loaded() const override { return mass() > 0.0 && settings_.gravity.norm() > 0.0; }
+  bool is_loaded() const override {
+    return load_count() > 0 || (mass() > 0.0 && settings_.gravity.norm() > 0.0);
+  }
   bool has_few_coordinates() const override { return true; }
   bool has_base() const override { return settings_.fixed; }
   std::vector<NamedHash> parts() const override;
@@ -90,6 +95,23 @@ class RigidBodyModel final : public mechanics::BodyModel,
   bool leaves_rows_out() const override { return true; }
   const mechanics::OwnRows& own_rows() const { return own_rows_; }
 
+  const mesh::Mesh& load_mesh() const override;
+  mesh::EmbeddedPoint carry(const Vector3& rest_position, mesh::Outside outside,
+                            const std::string& what) override;
+  mechanics::DeadLoad inertial_load(const Vector3& acceleration) override;
+  const Vector3& gravity() const override { return settings_.gravity; }
+  int add_load(mechanics::Load load) override;
+  std::uint64_t load_hash(int load) const override;
+  std::size_t load_count() const { return added_loads_.size(); }
+  /// (loads,) the dead ones; zero for the others.
+  const std::vector<PointForce>& point_forces() const { return point_forces_; }
+  /// The loads on faces of load_mesh(); none if there are none. After finish().
+  const mechanics::LoadSet* face_loads() const { return face_loads_.get(); }
+  /// Whether a load is a pressure on a surface with a border.
+  bool is_open(int load) const;
+  /// (face loads,) their numbers among all loads.
+  const std::vector<int>& face_load_numbers() const { return face_load_numbers_; }
+
  private:
   int add(const Attachment& attachment);
   Vector3 shape_origin() const;  // m, at rest, in the world
@@ -107,6 +129,12 @@ class RigidBodyModel final : public mechanics::BodyModel,
   int surface_site_ = -1;
   std::vector<Attachment> attachments_;
   mechanics::OwnRows own_rows_;
+  mutable std::unique_ptr<mesh::Mesh> load_mesh_;  // made when a load first asks for it
+  std::vector<Vector3> load_points_;               // m, numbered after the nodes of the mesh
+  std::vector<mechanics::Load> added_loads_;
+  std::vector<PointForce> point_forces_;
+  std::vector<int> face_load_numbers_;
+  std::unique_ptr<const mechanics::LoadSet> face_loads_;
 };
 
 }  // namespace sinew::rigid

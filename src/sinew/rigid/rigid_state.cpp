@@ -18,7 +18,8 @@ RigidPose RigidPose::moved(const Vector3& displacement, const Vector3& turn) con
 }
 
 RigidState::RigidState(const RigidBodyModel& owner, int histories)
-    : model(owner),
+    : load_factors(owner.load_count(), 1.0),
+      model(owner),
       history(static_cast<std::size_t>(histories), Vector6::Zero()),
       memory(owner.own_rows()) {
   restart();

@@ -19,6 +19,7 @@ namespace sinew::rigid {
 class RigidBodyModel;
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /// Position and rotation of a rigid body.
 struct RigidPose {
@@ -51,6 +52,7 @@ struct RigidState {
 
   /// Input of a fixed body: its displacement from rest when the next step begins.
   std::optional<mechanics::AffineField> asked;
+  std::vector<double> load_factors;  ///< (loads,) of the model; an input
   /// Moves a fixed body there.
   void follow_base();
 

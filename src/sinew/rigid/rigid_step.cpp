@@ -23,6 +23,7 @@ constexpr double kMinAcceleration = 1e-6;
 RigidStep::RigidStep(RigidState& state)
     : DenseStep(state.model.is_free() ? 6 : 0, state.model.own_rows(), state.memory),
       state_(state),
+      loads_(state),
       from_(state.pose) {}
 
 void RigidStep::begin_step() {
@@ -44,8 +45,9 @@ double RigidStep::form(const mechanics::LinearisationRequest& request, VectorX& 
   right.head<3>() = weight;
   matrix.setZero();
   if (request.weights.dynamic()) add_inertia(request.weights, right, matrix);
+  const double loads = loads_.add(request, right, matrix);
   const double least = kMinAcceleration * model.mass() * model.turning_radius();
-  return least + weight.norm() + (right.head<3>() - weight).norm() + right.tail<3>().norm();
+  return least + loads + weight.norm() + (right.head<3>() - weight).norm() + right.tail<3>().norm();
 }
 
 void RigidStep::add_inertia(const mechanics::StepWeights& weights, VectorX& right,
@@ -178,6 +180,7 @@ mechanics::StepEnd RigidStep::end_step(const mechanics::StepWeights& weights) {
   using Jump = mechanics::StepWeights::Jump;
   mechanics::StepEnd end;
   end.moved_from_outside = size() == 0 && !(state_.motion().isZero(0.0) && state_.rate.isZero(0.0));
+  if (size() > 0) loads_.count_work(weights, end);
   if (!weights.dynamic()) {
     state_.rate.setZero();
     for (Vector6& kept : state_.history) kept.setZero();

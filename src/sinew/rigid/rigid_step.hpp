@@ -3,13 +3,15 @@
 #pragma once
 
 #include "sinew/mechanics/dense_step.hpp"
+#include "sinew/rigid/rigid_loads.hpp"
 #include "sinew/rigid/rigid_state.hpp"
 
 namespace sinew::rigid {
 
 /// The step equations of a rigid body: the Newton-Euler equations at the end of the step, in world
 /// axes (Featherstone, Rigid Body Dynamics Algorithms, 2008, sec. 2.15),
-///   m a = m g + forces,   J alpha + omega x J omega = moments about the centre,   J = R J_0 R^T,
+///   m a = m g + loads + forces,   J alpha + omega x J omega = moments about the centre,   J = R
+///   J_0 R^T,
 /// where a and alpha are the integrator's combinations. The unknowns are the six numbers of a
 /// motion. A rotation by w after the rotation vector theta since the start of the step changes
 /// theta by D w (rotation_vector_rate), and J by [w] J - J [w]. The matrix is the exact derivative,
@@ -29,6 +31,9 @@ class RigidStep : public mechanics::DenseStep {
   mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;
   void scale_motion(double factor) override;
   void add_velocity(std::span<const double> change) override;
+  /// See RigidLoads::resultant().
+  const mechanics::Wrench& loads() const { return loads_.resultant(); }
+  std::size_t bytes() const override { return DenseStep::bytes() + loads_.bytes(); }
 
  private:
   double form(const mechanics::LinearisationRequest& request, VectorX& right,
@@ -43,6 +48,7 @@ class RigidStep : public mechanics::DenseStep {
   void add_inertia(const mechanics::StepWeights& weights, VectorX& right, MatrixX& matrix) const;
 
   RigidState& state_;
+  RigidLoads loads_;
   RigidPose from_;  // the pose from which the motion starts
 };
 

@@ -24,7 +24,8 @@ struct Overloaded : Visitors... {
 template <class... Visitors>
 Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
-constexpr int kCellsAcross = 8;  // cells across a round skin
+constexpr int kCellsAcross = 8;   // cells across a round skin
+constexpr int kLoadedSides = 24;  // the same where water or pressure acts
 constexpr int kSides = 48;  // sides of a polygon for a circle, 1 - cos(pi/48) = 0.2 % inside it
 
 Matrix3 diagonal(double x, double y, double z) { return Vector3(x, y, z).asDiagonal(); }
@@ -136,28 +137,29 @@ mesh::Surface triangles_of(const collision::Polyhedron& hull) {
 // Builds a surface from rings about z, from a pole or the centre of a lid below to one above.
 class Lathe {
  public:
-  Lathe() { add(Vector3::Zero()); }  // the lower end, placed by close()
+  // The lower end is placed by close().
+  explicit Lathe(int sides) : sides_(sides) { add(Vector3::Zero()); }
   void ring(double radius, double z) {
-    for (int k = 0; k < kSides; ++k) {
-      const double angle = 2.0 * pi * k / kSides;
+    for (int k = 0; k < sides_; ++k) {
+      const double angle = 2.0 * pi * k / sides_;
       add({radius * std::cos(angle), radius * std::sin(angle), z});
     }
-    const NodeId first = 1 + kSides * rings_++;
-    for (int k = 0; k < kSides; ++k) {
-      const NodeId a = first + k, b = first + (k + 1) % kSides;
+    const NodeId first = 1 + sides_ * rings_++;
+    for (int k = 0; k < sides_; ++k) {
+      const NodeId a = first + k, b = first + (k + 1) % sides_;
       if (rings_ == 1) {
         triangles_.push_back({0, b, a});
       } else {
-        triangles_.push_back({a - kSides, b - kSides, b});
-        triangles_.push_back({a - kSides, b, a});
+        triangles_.push_back({a - sides_, b - sides_, b});
+        triangles_.push_back({a - sides_, b, a});
       }
     }
   }
   mesh::Surface close(double low, double high) {
     nodes_[0] = low * Vector3::UnitZ();
     const auto top = static_cast<NodeId>(nodes_.size());
-    for (int k = 0; k < kSides; ++k) {
-      triangles_.push_back({top - kSides + k, top - kSides + (k + 1) % kSides, top});
+    for (int k = 0; k < sides_; ++k) {
+      triangles_.push_back({top - sides_ + k, top - sides_ + (k + 1) % sides_, top});
     }
     add(high * Vector3::UnitZ());
     mesh::Surface result;
@@ -174,29 +176,43 @@ class Lathe {
 
   std::vector<Vector3> nodes_;
   std::vector<mesh::Triangle> triangles_;
+  int sides_;
   NodeId rings_ = 0;
 };
 
 // A ball that is cut in the middle and pulled apart by a length.
-mesh::Surface round_surface(double radius, double length) {
-  Lathe lathe;
-  constexpr int kBelow = kSides / 4;  // rings of half a ball, including its equator
+mesh::Surface round_surface(double radius, double length, int sides) {
+  Lathe lathe(sides);
+  const int below = sides / 4;  // rings of half a ball, including its equator
   const auto ring = [&](int k, double z) {
-    const double angle = 0.5 * pi * k / kBelow;
+    const double angle = 0.5 * pi * k / below;
     lathe.ring(radius * std::cos(angle), z + radius * std::sin(angle));
   };
-  for (int k = 1 - kBelow; k <= 0; ++k) ring(k, -0.5 * length);
-  for (int k = length > 0.0 ? 0 : 1; k < kBelow; ++k) ring(k, 0.5 * length);
+  for (int k = 1 - below; k <= 0; ++k) ring(k, -0.5 * length);
+  for (int k = length > 0.0 ? 0 : 1; k < below; ++k) ring(k, 0.5 * length);
   const double end = radius + 0.5 * length;
   return lathe.close(-end, end);
 }
 
-mesh::Surface drum_surface(const Cylinder& cylinder) {
-  Lathe lathe;
+mesh::Surface drum_surface(const Cylinder& cylinder, int sides) {
+  Lathe lathe(sides);
   const double end = 0.5 * cylinder.height;
   lathe.ring(cylinder.radius, -end);
   lathe.ring(cylinder.radius, end);
   return lathe.close(-end, end);
+}
+
+mesh::Surface triangles_around(const Shape& shape, int sides) {
+  const Overloaded convert{
+      [](const Box& box) { return mesh::boundary_surface(mesh_of(box)); },
+      [&](const Sphere& sphere) { return round_surface(sphere.radius, 0.0, sides); },
+      [&](const Capsule& capsule) { return round_surface(capsule.radius, capsule.length, sides); },
+      [&](const Cylinder& cylinder) { return drum_surface(cylinder, sides); },
+      [](const Solid& solid) {
+        return solid.hull != nullptr ? triangles_of(*solid.hull) : *solid.surface;
+      },
+  };
+  return std::visit(convert, shape);
 }
 
 }  // namespace
@@ -244,17 +260,24 @@ collision::Shape placed(const Shape& shape, const Vector3& position, const Matri
   return collision::moved(solid(shape), pose);
 }
 
-mesh::Surface bounding_triangles(const Shape& shape) {
-  const Overloaded convert{
-      [](const Box& box) { return mesh::boundary_surface(mesh_of(box)); },
-      [](const Sphere& sphere) { return round_surface(sphere.radius, 0.0); },
-      [](const Capsule& capsule) { return round_surface(capsule.radius, capsule.length); },
-      [](const Cylinder& cylinder) { return drum_surface(cylinder); },
-      [](const Solid& solid) {
-        return solid.hull != nullptr ? triangles_of(*solid.hull) : *solid.surface;
-      },
-  };
-  return std::visit(convert, shape);
+mesh::Surface bounding_triangles(const Shape& shape) { return triangles_around(shape, kSides); }
+
+mesh::Surface loaded_triangles(const Shape& shape) {
+  if (const auto* solid = std::get_if<Solid>(&shape)) return *solid->surface;
+  mesh::Surface surface = triangles_around(shape, kLoadedSides);
+  if (std::holds_alternative<Box>(shape)) return surface;
+  const auto node = [&](NodeId n) -> Vector3 { return surface.nodes.row(n).transpose(); };
+  double inscribed = 0.0;
+  for (const auto& [a, b, c] : surface.triangles) {
+    inscribed += node(a).dot(node(b).cross(node(c))) / 6.0;
+  }
+  const double ratio = mass_properties(shape, 1.0).mass / inscribed;
+  if (std::holds_alternative<Sphere>(shape)) {
+    surface.nodes *= std::cbrt(ratio);
+  } else {
+    surface.nodes.leftCols<2>() *= std::sqrt(ratio);
+  }
+  return surface;
 }
 
 double smooth_radius(const Shape& shape) {

@@ -62,6 +62,10 @@ collision::Shape placed(const Shape& shape, const Vector3& position, const Matri
 /// with it. The corners on round shapes lie on the surface, and the triangles up to 0.2 % of the
 /// radius below it.
 mesh::Surface bounding_triangles(const Shape& shape);
+/// The triangles on which pressure and water act, in the shape's own frame. Polygons
+/// with 24 sides stand for circles, widened so that the exact volume is enclosed: buoyancy is
+/// exact.
+mesh::Surface loaded_triangles(const Shape& shape);
 /// Radius of a ball or capsule, m; 0 for shapes with edges.
 double smooth_radius(const Shape& shape);
 

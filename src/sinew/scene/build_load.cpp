@@ -1,7 +1,11 @@
+#include <algorithm>
 #include <numbers>
+#include <vector>
 
 #include "sinew/core/error.hpp"
+#include "sinew/mechanics/bears_loads.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/patch.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/sim/load_settings.hpp"
@@ -48,12 +52,9 @@ namespace {
 
 // The connected surface with the outermost node. It excludes the surfaces of internal voids.
 std::vector<mesh::Face> outer_surface(const mesh::Mesh& mesh, const std::string& what) {
-  const auto used = mesh::used_nodes(mesh);
-  Eigen::Index outermost = 0;
-  for (Eigen::Index i = 0; i < mesh.nodes.rows(); ++i) {
-    const bool farther = mesh.nodes(i, 0) > mesh.nodes(outermost, 0);
-    if (used[static_cast<std::size_t>(i)] && farther) outermost = i;
-  }
+  const std::vector<NodeId> outer = mesh::outer_nodes(mesh);
+  const NodeId outermost = *std::ranges::max_element(
+      outer, [&](NodeId a, NodeId b) { return mesh.nodes(a, 0) < mesh.nodes(b, 0); });
   return mesh::grow_patch(mesh, mesh.nodes.row(outermost).transpose(), std::numbers::pi, what);
 }
 
@@ -61,14 +62,16 @@ std::vector<mesh::Face> outer_surface(const mesh::Mesh& mesh, const std::string&
 
 void add_load(sim::ModelBuilder& builder, const LoadDescription& load, const BodyOf& body_of) {
   const auto [body, model] = body_of(load.body);
-  const mesh::Mesh& mesh = model->mesh();
+  const auto* bears = mechanics::as<const mechanics::BearsLoads>(*model);
   sim::LoadSettings settings;
   settings.name = load.name;
   settings.place = load.place;
   settings.body = body;
   settings.outside = load.outside;
   settings.factor = load.factor;
-  const auto faces = [&] {
+  const auto faces = [&]() -> std::vector<mesh::Face> {
+    if (bears == nullptr) return {};  // the builder refuses the body
+    const mesh::Mesh& mesh = bears->load_mesh();
     return load.surface ? faces_of(*load.surface, mesh) : outer_surface(mesh, load.name);
   };
   switch (load.type) {

@@ -9,6 +9,9 @@
 #include "sinew/constraint/chamber.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/has_elements.hpp"
+#include "sinew/mechanics/bears_loads.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/add_parts.hpp"
 #include "sinew/sim/attach.hpp"
 #include "sinew/sim/chamber_settings.hpp"
@@ -63,7 +66,8 @@ void add_liquid_weight(ModelData& data, const ChamberSettings& settings) {
                 "surface of its own",
                 "name the chamber by a point inside, a patch or a region, or leave `density` out");
   }
-  fem::HasElements& body = find_elements(data, settings.body, settings.place, "liquid");
+  find_elements(data, settings.body, settings.place, "liquid");
+  auto& body = *mechanics::as<mechanics::BearsLoads>(data.body(settings.body));
   body.add_load(hydrostatic(body, *faces, settings.liquid->density, std::nullopt));
 }
 

@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body_settings.hpp"
-#include "sinew/fem/fem_model.hpp"
-#include "sinew/fem/has_elements.hpp"
+#include "sinew/mechanics/bears_loads.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/line_cuts.hpp"
 #include "sinew/sim/add_parts.hpp"
 #include "sinew/sim/find_body.hpp"
@@ -33,17 +33,17 @@ constexpr std::array<std::array<double, 2>, 3> kGauss = {
 /// Makes the loads of one entry; there are two if both pressure and motion matter.
 class LoadMaker {
  public:
-  LoadMaker(const fem::HasElements& body, const LoadSettings& settings)
+  LoadMaker(mechanics::BearsLoads& body, const LoadSettings& settings)
       : body_(body), settings_(settings) {}
 
-  std::vector<fem::Load> operator()(const PointLoadSettings& load) {
+  std::vector<mechanics::Load> operator()(const PointLoadSettings& load) {
     spread(load.point, load.force, "the point");
     return {dead()};
   }
 
   // Integrates element by element, where the shape functions along the line are polynomials, of
   // degree 3 at most in undistorted elements; three Gauss points are exact to degree 5.
-  std::vector<fem::Load> operator()(const LineLoadSettings& load) {
+  std::vector<mechanics::Load> operator()(const LineLoadSettings& load) {
     if (load.points.rows() < 2) {
       throw Error(ErrorKind::too_few_points, settings_.place,
                   fmt::format("a line needs two points, got {}", load.points.rows()),
@@ -60,27 +60,23 @@ class LoadMaker {
     return {dead()};
   }
 
-  std::vector<fem::Load> operator()(const SurfaceLoadSettings& load) {
-    const Points forces = fem::traction_forces(mesh().nodes, load.faces, load.traction);
+  std::vector<mechanics::Load> operator()(const SurfaceLoadSettings& load) {
+    const Points forces = mechanics::traction_forces(mesh().nodes, load.faces, load.traction);
     for (NodeId node = 0; node < static_cast<NodeId>(forces.rows()); ++node) {
       if (!forces.row(node).isZero(0.0)) forces_[node] = forces.row(node).transpose();
     }
     return {dead()};
   }
 
-  std::vector<fem::Load> operator()(const BodyLoadSettings& load) {
-    const VectorX& mass = body_.elements().load_mass();
-    for (NodeId node = 0; node < static_cast<NodeId>(mass.size()); ++node) {
-      if (mass[node] != 0.0) forces_[node] = mass[node] * load.acceleration;
-    }
-    return {dead()};
+  std::vector<mechanics::Load> operator()(const BodyLoadSettings& load) {
+    return {body_.inertial_load(load.acceleration)};
   }
 
-  std::vector<fem::Load> operator()(const PressureLoadSettings& load) {
-    return {fem::PressureLoad{.faces = load.faces, .pressure = 1.0}};
+  std::vector<mechanics::Load> operator()(const PressureLoadSettings& load) {
+    return {mechanics::PressureLoad{.faces = load.faces, .pressure = 1.0}};
   }
 
-  std::vector<fem::Load> operator()(const WaterSettings& water) {
+  std::vector<mechanics::Load> operator()(const WaterSettings& water) {
     const std::vector<std::pair<const char*, double>> numbers{
         {"density", water.density},
         {"normal_drag", water.normal_drag},
@@ -92,16 +88,16 @@ class LoadMaker {
                   "give zero or more");
     }
     return {hydrostatic(body_, water.faces, water.density, water.level),
-            fem::WaterLoad{.faces = water.faces,
-                           .density = water.density,
-                           .normal_drag = water.normal_drag,
-                           .tangential_drag = water.tangential_drag,
-                           .added_mass = water.added_mass,
-                           .velocity = water.velocity}};
+            mechanics::WaterLoad{.faces = water.faces,
+                                 .density = water.density,
+                                 .normal_drag = water.normal_drag,
+                                 .tangential_drag = water.tangential_drag,
+                                 .added_mass = water.added_mass,
+                                 .velocity = water.velocity}};
   }
 
  private:
-  const mesh::Mesh& mesh() const { return *body_.settings().mesh; }
+  const mesh::Mesh& mesh() const { return body_.load_mesh(); }
 
   // A piece within one element. Outside the mesh, the nearest element is used, which may change
   // along the piece.
@@ -118,8 +114,8 @@ class LoadMaker {
   }
 
   mesh::EmbeddedPoint locate(const Vector3& point, const char* what) const {
-    return body_.locate(point, settings_.outside,
-                        fmt::format("{} of load '{}'", what, settings_.name));
+    return body_.carry(point, settings_.outside,
+                       fmt::format("{} of load '{}'", what, settings_.name));
   }
 
   void spread(const Vector3& point, const Vector3& force, const char* what) {
@@ -130,8 +126,8 @@ class LoadMaker {
     }
   }
 
-  fem::DeadLoad dead() const {
-    fem::DeadLoad load;
+  mechanics::DeadLoad dead() const {
+    mechanics::DeadLoad load;
     load.forces.resize(static_cast<Eigen::Index>(forces_.size()), 3);
     for (const auto& [node, force] : forces_) {
       load.forces.row(static_cast<Eigen::Index>(load.nodes.size())) = force.transpose();
@@ -140,7 +136,7 @@ class LoadMaker {
     return load;
   }
 
-  const fem::HasElements& body_;
+  mechanics::BearsLoads& body_;
   const LoadSettings& settings_;
   std::map<NodeId, Vector3> forces_;
 };
@@ -149,11 +145,15 @@ class LoadMaker {
 
 int add_load(ModelData& data, const LoadSettings& settings) {
   check_new_name(data.loads, &LoadModel::name, "loads", settings.name, settings.place);
-  fem::HasElements& body = find_elements(data, settings.body, settings.place, "loads");
+  auto* body = mechanics::as<mechanics::BearsLoads>(find_body(data, settings.body, settings.place));
+  if (body == nullptr) {
+    throw Error(ErrorKind::wrong_type, settings.place, "this body takes no loads",
+                "name a finite-element or a rigid body");
+  }
   try {
     LoadModel load{settings.name, settings.body, {}, settings.factor};
-    for (fem::Load& part : std::visit(LoadMaker(body, settings), settings.load)) {
-      load.numbers.push_back(body.add_load(std::move(part)));
+    for (mechanics::Load& part : std::visit(LoadMaker(*body, settings), settings.load)) {
+      load.numbers.push_back(body->add_load(std::move(part)));
     }
     data.loads.push_back(std::move(load));
     return static_cast<int>(data.loads.size()) - 1;

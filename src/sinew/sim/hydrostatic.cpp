@@ -1,20 +1,20 @@
 #include "sinew/sim/hydrostatic.hpp"
 
-#include "sinew/fem/fem_body_settings.hpp"
-#include "sinew/fem/has_elements.hpp"
+#include "sinew/mechanics/bears_loads.hpp"
 
 namespace sinew::sim {
 
-fem::PressureLoad hydrostatic(const fem::HasElements& body, const std::vector<mesh::Face>& faces,
-                              double density, std::optional<double> level) {
-  const Vector3& gravity = body.settings().gravity;
-  fem::PressureLoad load{.faces = faces, .gradient = density * gravity};
+mechanics::PressureLoad hydrostatic(const mechanics::BearsLoads& body,
+                                    const std::vector<mesh::Face>& faces, double density,
+                                    std::optional<double> level) {
+  const Vector3& gravity = body.gravity();
+  mechanics::PressureLoad load{.faces = faces, .gradient = density * gravity};
   if (level && !gravity.isZero(0.0)) {
     load.level = -*level * gravity.normalized();
     load.only_positive = true;
     return load;
   }
-  const Points& nodes = body.settings().mesh->nodes;
+  const Points& nodes = body.load_mesh().nodes;
   double count = 0.0;
   for (const mesh::Face& face : faces) {
     for (const NodeId node : face.nodes()) {

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "sinew/fem/loads.hpp"
+#include "sinew/mechanics/loads.hpp"
 
-namespace sinew::fem {
-class HasElements;
+namespace sinew::mechanics {
+class BearsLoads;
 }
 
 namespace sinew::sim {
@@ -17,7 +17,8 @@ namespace sinew::sim {
 /// faces: a uniform pressure would only compress the body.
 /// @param body with the faces. @param faces of its mesh. @param density kg/m^3.
 /// @param level m, height against gravity.
-fem::PressureLoad hydrostatic(const fem::HasElements& body, const std::vector<mesh::Face>& faces,
-                              double density, std::optional<double> level);
+mechanics::PressureLoad hydrostatic(const mechanics::BearsLoads& body,
+                                    const std::vector<mesh::Face>& faces, double density,
+                                    std::optional<double> level);
 
 }  // namespace sinew::sim

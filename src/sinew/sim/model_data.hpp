@@ -105,7 +105,7 @@ struct MassModel {
 struct LoadModel {
   std::string name;
   int body = 0;
-  std::vector<int> numbers;  ///< indices in fem::HasElements::loads()
+  std::vector<int> numbers;  ///< of mechanics::BearsLoads::add_load()
   Signal factor;
 };
 

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/constraint.hpp"
-#include "sinew/fem/has_elements.hpp"
+#include "sinew/mechanics/bears_loads.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/model_data.hpp"
@@ -57,8 +57,8 @@ std::uint64_t actuator_hash(const ModelData& data, std::size_t index) {
 
 std::uint64_t load_hash(const ModelData& data, const LoadModel& load) {
   ValueHash hash;
-  const auto* elements = mechanics::as<const fem::HasElements>(data.body(load.body));
-  for (const int number : load.numbers) hash.add(load.body, elements->load_hash(number));
+  const auto* body = mechanics::as<const mechanics::BearsLoads>(data.body(load.body));
+  for (const int number : load.numbers) hash.add(load.body, body->load_hash(number));
   return hash.value();
 }
 

@@ -86,8 +86,8 @@ void Surroundings::apply(std::size_t load, double factor) {
   applied_[load] = factor;
   const LoadModel& model = model_.loads()[load];
   for (const int number : model.numbers) {
-    fem::of_elements<mechanics::TakesLoads>(body_of(bodies_, model.body))
-        .set_load_factor(number, factor);
+    mechanics::as<mechanics::TakesLoads>(body_of(bodies_, model.body))
+        ->set_load_factor(number, factor);
   }
 }
 

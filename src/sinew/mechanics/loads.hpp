@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -14,7 +15,7 @@
 #include "sinew/mechanics/integrator.hpp"
 #include "sinew/mesh/topology.hpp"
 
-namespace sinew::fem {
+namespace sinew::mechanics {
 
 /// Nodal forces of constant direction and magnitude, at a load factor of 1.
 struct DeadLoad {
@@ -50,6 +51,8 @@ struct WaterLoad {
 };
 
 using Load = std::variant<DeadLoad, PressureLoad, WaterLoad>;
+/// Hash of everything that a load depends on.
+std::uint64_t hash_of(const Load& load);
 
 /// Shape functions of a face and the weight at one quadrature point; see face_points().
 struct FacePoint {
@@ -58,7 +61,8 @@ struct FacePoint {
 };
 
 /// Quadrature points of a face of three, four or six nodes. The rule is exact for the pressure of a
-/// liquid on a flat or bilinear face, and of degree 6 on a quadratic one.
+/// liquid on a flat or bilinear face, and of degree 6 on a quadratic one. Where the surface of the
+/// liquid cuts a flat triangle, the wet part is integrated exactly, too.
 const std::vector<FacePoint>& face_points(const mesh::Face& face);
 /// Nodes of a face: the corners and, for a quadratic triangle, the middle nodes.
 class FaceNodes {
@@ -85,6 +89,15 @@ struct LoadState {
   const Points& accelerations;  ///< (n, 3) m/s^2
   double velocity_rate = 0.0;   ///< 1/s: d(velocity)/d(motion)
   double acceleration_rate = 0.0;  ///< 1/s^2: d(acceleration)/d(motion)
+};
+
+/// The force at a quadrature point of a face.
+struct PointAction {
+  Vector3 at = Vector3::Zero();       ///< m
+  Vector3 turning = Vector3::Zero();  ///< N, turns with the face
+  Vector3 steady = Vector3::Zero();   ///< N
+  Vector3 drag = Vector3::Zero();     ///< N, only dissipates energy
+  Matrix3 slope = Matrix3::Zero();    ///< N/m: -d(force)/d(position), without that turning
 };
 
 /// All loads of a body. Immutable, and shared by simulations.
@@ -114,6 +127,11 @@ class LoadSet {
   ///   sum to zero if the faces are closed or end at fixed nodes.
   void evaluate(const LoadState& state, const std::vector<double>& factors, Points& forces,
                 Points& drag, const AddBlock& symmetric, const AddBlock& rest) const;
+  /// Visits the forces on faces point by point, without their distribution to nodes: for bodies
+  /// that do not deform. Dead loads are not visited.
+  /// @param state,factors as for evaluate(). @param visit called for each point.
+  void visit_points(const LoadState& state, const std::vector<double>& factors,
+                    const std::function<void(const PointAction&)>& visit) const;
 
  private:
   std::vector<Load> loads_;
@@ -121,4 +139,4 @@ class LoadSet {
   bool moves_ = false, open_ = false;
 };
 
-}  // namespace sinew::fem
+}  // namespace sinew::mechanics

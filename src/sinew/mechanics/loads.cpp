@@ -1,4 +1,4 @@
-#include "sinew/fem/loads.hpp"
+#include "sinew/mechanics/loads.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,25 +9,27 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/named_hash.hpp"
 #include "sinew/core/rotation.hpp"
 #include "sinew/mesh/patch.hpp"
 
-namespace sinew::fem {
+namespace sinew::mechanics {
 
 namespace {
 
+FacePoint linear_point(double r, double s, double weight) {
+  FacePoint p;
+  p.shape = {1.0 - r - s, r, s};
+  p.along = {-1.0, 1.0, 0.0};
+  p.across = {-1.0, 0.0, 1.0};
+  p.weight = weight;
+  return p;
+}
+
 std::vector<FacePoint> triangle_rule() {
-  std::vector<FacePoint> points;
-  for (int k = 0; k < 3; ++k) {
-    FacePoint p;
-    p.shape = {1.0 / 6.0, 1.0 / 6.0, 1.0 / 6.0};
-    p.shape[static_cast<std::size_t>(k)] = 2.0 / 3.0;
-    p.along = {-1.0, 1.0, 0.0};
-    p.across = {-1.0, 0.0, 1.0};
-    p.weight = 1.0 / 6.0;
-    points.push_back(p);
-  }
-  return points;
+  constexpr double kNear = 2.0 / 3.0, kFar = 1.0 / 6.0;
+  return {linear_point(kFar, kFar, kFar), linear_point(kNear, kFar, kFar),
+          linear_point(kFar, kNear, kFar)};
 }
 
 std::vector<FacePoint> quadrilateral_rule() {
@@ -85,6 +87,33 @@ std::vector<FacePoint> quadratic_rule() {
   return points;
 }
 
+// Quadrature points of the part of a flat triangle in which a linear pressure is positive. Its
+// boundary moves with the triangle, but the pressure vanishes there.
+// @param pressure at the corners, of both signs. @param points receives them.
+void wet_points(const std::array<double, 3>& pressure, std::vector<FacePoint>& points) {
+  const std::array<Eigen::Vector2d, 3> corner{Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(1.0, 0.0),
+                                              Eigen::Vector2d(0.0, 1.0)};
+  std::array<Eigen::Vector2d, 4> wet;
+  std::size_t corners = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    const double here = pressure[k], there = pressure[next];
+    if (here > 0.0) wet[corners++] = corner[k];
+    if ((here > 0.0) != (there > 0.0)) {
+      wet[corners++] = corner[k] + here / (here - there) * (corner[next] - corner[k]);
+    }
+  }
+  points.clear();
+  for (std::size_t k = 1; k + 1 < corners; ++k) {
+    const Eigen::Vector2d a = wet[k] - wet[0], b = wet[k + 1] - wet[0];
+    const double area = a.x() * b.y() - a.y() * b.x();
+    for (const FacePoint& own : face_points({.node = {0, 1, 2, -1}})) {
+      const Eigen::Vector2d at = wet[0] + own.shape[1] * a + own.shape[2] * b;
+      points.push_back(linear_point(at.x(), at.y(), own.weight * area));
+    }
+  }
+}
+
 // Position, tangents and area vector of a face at a quadrature point.
 struct FaceGeometry {
   FaceGeometry(const Points& positions, const FaceNodes& nodes, const FacePoint& point) {
@@ -134,23 +163,46 @@ class FaceStiffness {
   std::array<Matrix3, 36> blocks_;
 };
 
+// Quadrature points of a face under a pressure. @param wet scratch for a face cut by the surface of
+// the liquid.
+const std::vector<FacePoint>& points_under(const PressureLoad& load, const mesh::Face& face,
+                                           const Points& positions, std::vector<FacePoint>& wet) {
+  const FaceNodes nodes(face);
+  if (!load.only_positive || nodes.size() != 3) return face_points(face);
+  std::array<double, 3> at{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3 corner = positions.row(nodes[k]).transpose();
+    at[k] = load.pressure + load.gradient.dot(corner - load.level);
+  }
+  const auto [least, most] = std::ranges::minmax(at);
+  if (least > 0.0 || !(most > 0.0)) return face_points(face);
+  wet_points(at, wet);
+  return wet;
+}
+
+struct Pressed {
+  double pressure = 0.0;               // Pa
+  Vector3 gradient = Vector3::Zero();  // Pa/m
+};
+
+Pressed pressed_at(const PressureLoad& load, double factor, const Vector3& at) {
+  const double pressure = load.pressure + load.gradient.dot(at - load.level);
+  if (load.only_positive && pressure <= 0.0) return {};
+  return {factor * pressure, factor * load.gradient};
+}
+
 // f_a = -integral of N_a p n dA; with n dA = x_r x x_s dr ds (Belytschko, Liu & Moran 2000, 4.9.3)
 //   -df_a/dx_b = N_a (p (N_b,s [x_r]x - N_b,r [x_s]x) + N_b (x_r x x_s) grad p^T).
 void press(const PressureLoad& load, double factor, const Points& positions, Points& forces,
            const LoadSet::AddBlock& symmetric, const LoadSet::AddBlock& rest) {
   if (factor == 0.0) return;
+  std::vector<FacePoint> wet;
   for (const mesh::Face& face : load.faces) {
     const FaceNodes nodes(face);
     FaceStiffness stiffness(nodes.size());
-    for (const FacePoint& point : face_points(face)) {
+    for (const FacePoint& point : points_under(load, face, positions, wet)) {
       const FaceGeometry now(positions, nodes, point);
-      double pressure = load.pressure + load.gradient.dot(now.at - load.level);
-      Vector3 gradient = factor * load.gradient;
-      if (load.only_positive && pressure <= 0.0) {
-        pressure = 0.0;
-        gradient.setZero();
-      }
-      pressure *= factor;
+      const auto [pressure, gradient] = pressed_at(load, factor, now.at);
       const Matrix3 along = cross_matrix(now.along), across = cross_matrix(now.across);
       for (std::size_t a = 0; a < nodes.size(); ++a) {
         const double share = point.weight * point.shape[a];
@@ -166,45 +218,59 @@ void press(const PressureLoad& load, double factor, const Points& positions, Poi
   }
 }
 
-// Derivatives with respect to velocity and acceleration are exact. The derivative with respect to
-// rotation and growth of the face is omitted, which costs Newton iterations but no accuracy.
+// Forces of water per area, Pa, and their -d/d(position), Pa/m. Derivatives with respect to
+// velocity and acceleration are exact. The derivative with respect to rotation and growth of the
+// face is omitted, which costs Newton iterations but no accuracy.
+struct Resistance {
+  Vector3 drag = Vector3::Zero(), inertia = Vector3::Zero();
+  Matrix3 slope = Matrix3::Zero();
+};
+
+// @param thickness m, of the face times the load's added_mass. @param normal of the face.
+Resistance resistance_at(const WaterLoad& load, double thickness, double factor,
+                         const LoadState& state, const FaceNodes& nodes, const FacePoint& point,
+                         const Vector3& normal) {
+  const double dynamic = 0.5 * factor * load.density;
+  const Vector3 velocity = interpolate(state.velocities, nodes, point) - load.velocity;
+  const Vector3 acceleration = interpolate(state.accelerations, nodes, point);
+  const double across = velocity.dot(normal);
+  const Vector3 slip = velocity - across * normal;
+  const double speed = slip.norm();
+  const Matrix3 both = normal * normal.transpose();
+  Matrix3 damping = dynamic * 2.0 * load.normal_drag * std::abs(across) * both;
+  if (speed > 0.0) {
+    damping += dynamic * load.tangential_drag *
+               (speed * (Matrix3::Identity() - both) + slip * slip.transpose() / speed);
+  }
+  const double mass = factor * load.density * thickness;
+  Resistance result;
+  result.drag = -dynamic * (load.normal_drag * std::abs(across) * across * normal +
+                            load.tangential_drag * speed * slip) -
+                damping * interpolate(state.velocity_gaps, nodes, point);
+  result.inertia = -mass * acceleration.dot(normal) * normal;
+  result.slope = state.velocity_rate * damping + state.acceleration_rate * mass * both;
+  return result;
+}
+
 void resist(const WaterLoad& load, const std::vector<double>& thickness, double factor,
             const LoadState& state, Points& forces, Points& drag,
             const LoadSet::AddBlock& symmetric) {
   if (factor == 0.0) return;
-  const double dynamic = 0.5 * factor * load.density;
   for (std::size_t f = 0; f < load.faces.size(); ++f) {
-    const mesh::Face& face = load.faces[f];
-    const FaceNodes nodes(face);
+    const FaceNodes nodes(load.faces[f]);
     FaceStiffness stiffness(nodes.size());
-    for (const FacePoint& point : face_points(face)) {
+    for (const FacePoint& point : face_points(load.faces[f])) {
       const FaceGeometry now(state.positions, nodes, point);
       const double area = now.area.norm();
       if (!(area > 0.0)) continue;
-      const Vector3 normal = now.area / area;
-      const Vector3 velocity = interpolate(state.velocities, nodes, point) - load.velocity;
-      const Vector3 acceleration = interpolate(state.accelerations, nodes, point);
-      const double across = velocity.dot(normal);
-      const Vector3 slip = velocity - across * normal;
-      const double speed = slip.norm();
-      const Matrix3 both = normal * normal.transpose();
-      Vector3 resistance = dynamic * (load.normal_drag * std::abs(across) * across * normal +
-                                      load.tangential_drag * speed * slip);
-      Matrix3 damping = dynamic * 2.0 * load.normal_drag * std::abs(across) * both;
-      if (speed > 0.0) {
-        damping += dynamic * load.tangential_drag *
-                   (speed * (Matrix3::Identity() - both) + slip * slip.transpose() / speed);
-      }
-      resistance += damping * interpolate(state.velocity_gaps, nodes, point);
-      const double mass = factor * load.density * thickness[f];
-      const Matrix3 slope = state.velocity_rate * damping + state.acceleration_rate * mass * both;
-      const Vector3 inertia = mass * acceleration.dot(normal) * normal;
+      const Resistance own =
+          resistance_at(load, thickness[f], factor, state, nodes, point, now.area / area);
       for (std::size_t a = 0; a < nodes.size(); ++a) {
         const double share = point.weight * point.shape[a] * area;
-        forces.row(nodes[a]) -= share * inertia.transpose();
-        drag.row(nodes[a]) -= share * resistance.transpose();
+        forces.row(nodes[a]) += share * own.inertia.transpose();
+        drag.row(nodes[a]) += share * own.drag.transpose();
         for (std::size_t b = 0; b < nodes.size(); ++b) {
-          stiffness(a, b) += share * point.shape[b] * slope;
+          stiffness(a, b) += share * point.shape[b] * own.slope;
         }
       }
     }
@@ -263,7 +329,27 @@ std::vector<double> half_thickness(const std::vector<mesh::Face>& faces, const P
   return result;
 }
 
+void add(ValueHash& hash, const std::vector<mesh::Face>& faces) {
+  for (const mesh::Face& face : faces) hash.add(face.node, face.middle);
+}
+
+void add(ValueHash& hash, const DeadLoad& load) { hash.add(load.nodes, load.forces); }
+void add(ValueHash& hash, const PressureLoad& load) {
+  add(hash, load.faces);
+  hash.add(load.pressure, load.gradient, load.level, load.only_positive);
+}
+void add(ValueHash& hash, const WaterLoad& load) {
+  add(hash, load.faces);
+  hash.add(load.density, load.normal_drag, load.tangential_drag, load.added_mass, load.velocity);
+}
+
 }  // namespace
+
+std::uint64_t hash_of(const Load& load) {
+  ValueHash hash;
+  std::visit([&](const auto& kind) { add(hash, kind); }, load);
+  return hash.value();
+}
 
 const std::vector<FacePoint>& face_points(const mesh::Face& face) {
   static const std::vector<FacePoint> triangle = triangle_rule(),
@@ -324,4 +410,42 @@ void LoadSet::evaluate(const LoadState& state, const std::vector<double>& factor
   }
 }
 
-}  // namespace sinew::fem
+void LoadSet::visit_points(const LoadState& state, const std::vector<double>& factors,
+                           const std::function<void(const PointAction&)>& visit) const {
+  std::vector<FacePoint> wet;
+  for (std::size_t k = 0; k < loads_.size(); ++k) {
+    if (factors[k] == 0.0) continue;
+    if (const auto* load = std::get_if<PressureLoad>(&loads_[k])) {
+      for (const mesh::Face& face : load->faces) {
+        const FaceNodes nodes(face);
+        for (const FacePoint& point : points_under(*load, face, state.positions, wet)) {
+          const FaceGeometry now(state.positions, nodes, point);
+          const auto [pressure, gradient] = pressed_at(*load, factors[k], now.at);
+          visit({.at = now.at,
+                 .turning = -point.weight * pressure * now.area,
+                 .slope = point.weight * now.area * gradient.transpose()});
+        }
+      }
+      continue;
+    }
+    const auto* water = std::get_if<WaterLoad>(&loads_[k]);
+    if (water == nullptr || !(state.velocity_rate > 0.0)) continue;
+    for (std::size_t f = 0; f < water->faces.size(); ++f) {
+      const FaceNodes nodes(water->faces[f]);
+      for (const FacePoint& point : face_points(water->faces[f])) {
+        const FaceGeometry now(state.positions, nodes, point);
+        const double area = now.area.norm();
+        if (!(area > 0.0)) continue;
+        const Resistance own = resistance_at(*water, thickness_[k][f], factors[k], state, nodes,
+                                             point, now.area / area);
+        const double share = point.weight * area;
+        visit({.at = now.at,
+               .steady = share * own.inertia,
+               .drag = share * own.drag,
+               .slope = share * own.slope});
+      }
+    }
+  }
+}
+
+}  // namespace sinew::mechanics
