@@ -50,7 +50,7 @@ def inspect(friction):
         status = ik.step()
         spent = time.process_time() - start
         contact = sim.contact("tube")
-        states = np.array(contact.states)
+        states = np.array(contact.states, dtype=str)  # may be empty
         rows.append((sim.time, ik.error, spent, len(sim.contact_problem().friction), np.sum(states == "stick"),
                      np.sum(states == "slip"), contact.normal_force, contact.gap, status == "on-target"))  # fmt: skip
     return np.array(rows, dtype=float), sim

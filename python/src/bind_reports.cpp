@@ -84,6 +84,9 @@ void bind_step_report(py::module_& module) {
           "substeps", &StepReport::substeps,
           "int: number of parts of the step; more than 1 if the whole step found no solution, or "
           "in adaptive steps.")
+      .def_readonly("retries", &StepReport::retries,
+                    "int: number of parts of the step that failed and were made again, shorter or "
+                    "with another choice of a controller.")
       .def_readonly(
           "impacts", &StepReport::impacts,
           "int: number of instants of impact in the step; only with the integrator 'event-driven'.")

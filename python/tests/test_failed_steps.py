@@ -79,6 +79,48 @@ def test_keep_going_marks_what_follows(tmp_path):
         assert other.report.status == "solved"
 
 
+def arm(**more):
+    """A constant-curvature arm whose cable and commanded bend jump."""
+    return {
+        "sinew": 1, "time_step": 5e-3, "integrator": "bdf2",
+        "bodies": {"arm": {"type": "pcc", "segments": [
+            {"length": 0.03, "mass": 0.01, "stiffness": 0.02, "damping": 2e-4, "bending": "spatial"},
+            {"length": 0.03, "mass": 0.01, "stiffness": 0.02, "damping": 2e-4}]}},
+        "actuators": {"pull": {"type": "cable", "body": "arm", "pull": "world", "outside": "nearest",
+                               "points": [[0.006, -0.002, -0.003], [0.006, -0.0018, -0.03], [0.0048, -0.002, -0.057]],
+                               "command": {"tension": {"steps": [[0, 0], [0.02, 0.3]]}}},
+                      "twist": {"type": "torque", "body": "arm", "segment": 1,
+                                "command": {"angle": {"steps": [[0, 0], ["20 ms", "12 deg"]]}}}},
+        **more}
+
+
+@pytest.mark.parametrize("solver", [{"method": "one-linearisation", "adaptive": {"tolerance": 1e-3, "smallest": 2.5e-3}},
+                                    {"method": "one-linearisation", "adaptive": {"tolerance": 1e-3, "smallest": 1e-5}},
+                                    {"adaptive": {"tolerance": 1e-3, "smallest": 1e-5}}, {"max_iterations": 2}])
+def test_keep_going_changes_nothing_before_a_step_that_fails(solver):
+    """A step is divided as without it, and no part that failed is hidden by a later one that did not."""
+    runs = []
+    for keep_going in (False, True):
+        sim = sinew.load(arm(solver=solver))
+        states, error = [], None
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", sinew.SinewWarning)
+            for _ in range(12):
+                try:
+                    sim.step(keep_going=keep_going)
+                except sinew.RunError as failure:
+                    error = failure
+                    break
+                states.append((sim.state(), sim.report.substeps, sim.report.status))
+        runs.append((states, error))
+    (stopped, error), (kept, _) = runs
+    assert kept[:len(stopped)] == stopped
+    if error is not None:
+        assert kept[len(stopped)][2] in ("not-in-equilibrium", "unphysical")
+        assert all(status in ("after-failure", "not-in-equilibrium", "unphysical") for *_, status in kept[len(stopped):])
+    assert (error is not None) == ("method" in solver)
+
+
 def test_a_sample_of_a_sweep_fails(tmp_path):
     table = sinew.sweep.run(tube({"pressure": 0.0}), vary={"actuators.air.command.pressure": [2e3, 60e3]}, measure=["air.volume_growth"],
                             duration=0.2, out=tmp_path, workers=1)

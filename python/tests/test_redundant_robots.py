@@ -12,6 +12,7 @@ import sinew
 from scipy.optimize import lsq_linear
 
 EPSILON = 1e-3
+SMALL = 0.03  # of motions after which one linearisation leaves little of the forces out of balance
 SIZE = (0.02, 0.02, 0.06)
 BLOCK = {"shape": "block", "length": SIZE[0], "width": SIZE[1], "height": SIZE[2], "element_size": 0.02}
 
@@ -42,14 +43,14 @@ def line(x, y, top=SIZE[2]):
     return [[x, y, z] for z in np.linspace(0.0, top, 3)]
 
 
-def random_robot(rng, walls):
-    """The scene, the actuators of the controller, and its targets and weights."""
+def random_robot(rng, walls, size=1.0):
+    """The scene, the actuators of the controller, and its targets and weights. Limits of efforts and motions to targets are multiplied by `size`."""
     sides = {"east": (0.017, 0.01), "north": (0.01, 0.017), "west": (0.003, 0.01), "south": (0.01, 0.003)}
     owned, beside = {}, {}
 
     def cable(points, **keys):
         return {"type": "cable", "body": "b", "points": points,
-                "limits": {"tension": {"min": 0.0, "max": float(rng.uniform(0.2, 5.0))}}, **keys}
+                "limits": {"tension": {"min": 0.0, "max": size * float(rng.uniform(0.2, 5.0))}}, **keys}
 
     for name in rng.permutation(list(sides))[:rng.integers(2, 5)]:
         owned[str(name)] = cable(line(*sides[str(name)]))
@@ -60,10 +61,10 @@ def random_robot(rng, walls):
     if rng.random() < 0.3:
         owned["force"] = {"type": "force", "body": "b", "point": [0.01, 0.01, 0.06],
                           "direction": rng.normal(size=3).tolist(),
-                          "limits": {"force": {"min": -0.5, "max": 0.5}}}
+                          "limits": {"force": {"min": -0.5 * size, "max": 0.5 * size}}}
     for k in range(rng.integers(0, 3)):
         owned[f"chamber{k}"] = {"type": "chamber", "body": "b", "surface": {"file": walls[k]},
-                                "limits": {"pressure": {"min": 0.0, "max": float(rng.uniform(2e3, 3e4))}}}
+                                "limits": {"pressure": {"min": 0.0, "max": size * float(rng.uniform(2e3, 3e4))}}}
     for k in range(rng.integers(0, 3)):
         beside[f"spring{k}"] = {"type": "spring", "body": "b", "points": line(*rng.uniform(0.003, 0.017, 2)),
                                 "stiffness": float(rng.uniform(10.0, 500.0))}
@@ -74,7 +75,7 @@ def random_robot(rng, walls):
     effectors = {"tip": {"body": "b", "point": [0.01, 0.01, 0.06]}}
     if rng.random() < 0.5:
         effectors["middle"] = {"body": "b", "point": [0.01, 0.01, 0.03], "directions": [[1, 0, 0], [0, 0, 1]]}
-    targets = {name: (np.array(e["point"]) + rng.normal(scale=0.005, size=3)).tolist() for name, e in effectors.items()}
+    targets = {name: (np.array(e["point"]) + size * rng.normal(scale=0.005, size=3)).tolist() for name, e in effectors.items()}
     rows = {"tip": 3, "middle": 2}
     weights = {name: np.where(rng.random(rows[name]) < 0.2, 0.0, rng.uniform(0.1, 2.0, rows[name])).tolist()
                for name in effectors}
@@ -144,28 +145,31 @@ class Program:
 
     def solve(self):
         a, b = self.least_squares()
-        scale = np.linalg.norm(a, axis=0)
-        found = lsq_linear(a / scale, -b, (self.low * scale, self.high * scale), method="bvls", tol=1e-15, max_iter=500)
+        scale = np.linalg.norm(a, axis=0) / SMALL  # the solver's tolerances are absolute
+        limits = (self.low * scale, self.high * scale)
+        found = lsq_linear(a / (scale * SMALL), -b / SMALL, limits, method="bvls", tol=1e-15, max_iter=500)
         return found.x / scale
 
 
 def compare(seed, walls):
-    """Relative differences of objectives and efforts, and relative violation of limits."""
+    """Relative differences of objectives and efforts, and relative violation of limits. None where the choice led to no solution, as
+    for some small blocks under large forces, so that the step was made with other efforts."""
     rng = np.random.default_rng(seed)
-    scene, owned, targets, weights = random_robot(rng, walls)
+    # One linearisation of motions this small leaves less than a tenth of the forces out of balance in nearly all robots.
+    scene, owned, targets, weights = random_robot(rng, walls, size=SMALL)
     sim = sinew.load(scene)
-    # What is compared are the efforts that a linearisation leads to, not the states that one linearisation ends in: of small
-    # blocks under large forces, some leave more than a tenth of the forces out of balance.
     sim.step(keep_going=True)  # commands take effect in this step
     settings = {"targets": targets, "weights": weights, "actuators": owned, "epsilon": EPSILON,
                 "regularisation": "effort"}
     if seed % 2:
-        moved = {name: (np.array(at) + 0.003).tolist() for name, at in targets.items()}
+        moved = {name: (np.array(at) + 0.003 * SMALL).tolist() for name, at in targets.items()}
         with sinew.InverseController(sim, **{**settings, "targets": moved}):
             sim.step(5, keep_going=True)
     program = Program(sim, scene, owned, targets, weights)
     ik = sinew.InverseController(sim, **settings)
     sim.step(keep_going=True)
+    if sim.report.choice_held or sim.report.retries > 0 or sim.report.status in ("not-in-equilibrium", "after-failure"):
+        return None
     ours, theirs = np.array([ik.efforts[ik.actuators.index(name)] for name in owned]), program.solve()
     a, b = program.least_squares()
     objective = [0.5 * np.sum((a @ x + b) ** 2) for x in (ours, theirs)]
@@ -176,7 +180,9 @@ def compare(seed, walls):
 
 @pytest.mark.filterwarnings("ignore:the step to")  # about residuals of one linearisation
 def test_efforts_are_those_of_an_independent_solver(walls):
-    objective, effort, outside = np.array([compare(seed, walls) for seed in range(1000)]).T
+    found = [compare(seed, walls) for seed in range(1000)]
+    objective, effort, outside = np.array([numbers for numbers in found if numbers is not None]).T
+    assert len(effort) >= 950
     assert np.abs(objective).max() < 1e-12
     assert outside.max() < 1e-12
     # Twins differ by 1e-9 of the objective only: in one case, BVLS takes a gradient of 3e-19 for zero.

@@ -123,6 +123,7 @@ class Drafter {
     add_mass();
     add_membrane();
     add_contact();
+    add_loads_of_rigid_bodies();
     add_effector();
     add_probe();
     add_sensor();
@@ -533,6 +534,27 @@ class Drafter {
          {"pressure", where + ", pressure: {ramp: {to: 50 Pa, duration: 30 ms}}"},
          {"water", ", density: 1000 kg/m^3, velocity: 0.1 0 0 m/s"}});
     add("loads", "load", fmt::format("{{type: {}, body: <{}>{}}}", of("load"), on->id, what));
+  }
+
+  // The same kind of load as that of the deformable body. A pressure on a part of a rigid body has
+  // no equilibria, and water as dense as the body would leave it neutral.
+  void add_loads_of_rigid_bodies() {
+    if (symmetric_ || sections_["loads"].empty()) return;
+    std::string what;
+    if (of("load") == "force") {
+      what = "point: 20 5 -5 mm, force: 0.01 0 -0.02 N, outside: nearest";
+    } else if (of("load") == "acceleration") {
+      what = "acceleration: 0.5 0 1 m/s^2, factor: {sine: {amplitude: 1, period: 80 ms}}";
+    } else if (of("load") == "water") {
+      what = "density: 800 kg/m^3, velocity: 0.1 0 0 m/s";
+    } else {
+      return;
+    }
+    for (const auto& [id, text] : sections_["bodies"]) {
+      if (text.find("type: rigid") == std::string::npos) continue;
+      if (text.find("plane:") != std::string::npos) continue;
+      add("loads", "on_" + id, fmt::format("{{type: {}, body: <{}>, {}}}", of("load"), id, what));
+    }
   }
 
   void add_mass() {

@@ -132,7 +132,7 @@ std::string StepCheck::check_rest(int number) {
                      simulation_.model().body(number).name(), reaction, sum_of_norms(applied));
 }
 
-// kg m/s, of a body on which only weight, contacts and damping act from outside.
+// kg m/s, of a body on which only weight, loads, contacts and damping act from outside.
 std::optional<Vector3> StepCheck::momentum(int number) const {
   const mechanics::Body& body = simulation_.body(number);
   const mechanics::RowPattern& rows = simulation_.model().rows();
@@ -182,6 +182,7 @@ std::string StepCheck::check_motion(int number) {
   } else {
     const auto& rigid = dynamic_cast<const rigid::RigidBodyModel&>(body.model());
     add(rigid.mass() * rigid.settings().gravity);
+    add(mechanics::as<const mechanics::TakesLoads>(body)->load_force());
   }
   const auto contacts = simulation_.world().contacts().planes().contacts();
   for (std::size_t c = 0; c < contacts.size(); ++c) {

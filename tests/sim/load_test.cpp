@@ -11,9 +11,10 @@
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
-#include "sinew/mechanics/loads.hpp"
+#include "sinew/fem/has_material.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mechanics/loads.hpp"
 #include "sinew/mechanics/step_system.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/patch.hpp"
@@ -52,8 +53,8 @@ class LoadTest : public ::testing::TestWithParam<Kind> {
     Points forces, drag;
     MatrixX symmetric, rest;
   };
-  Result evaluate(const mechanics::LoadSet& loads, const Points& x, const Points& v, const Points& a,
-                  double rate, double second) const {
+  Result evaluate(const mechanics::LoadSet& loads, const Points& x, const Points& v,
+                  const Points& a, double rate, double second) const {
     const Eigen::Index n = x.rows();
     Result r{Points::Zero(n, 3), Points::Zero(n, 3), MatrixX::Zero(3 * n, 3 * n),
              MatrixX::Zero(3 * n, 3 * n)};
@@ -100,15 +101,15 @@ TEST_P(LoadTest, StiffnessOfPressureIsTheDerivativeOfItsForces) {
 // water.
 TEST_P(LoadTest, WaterRoundABodyCarriesTheWaterItDisplaces) {
   const Vector3 weight_density(0.0, 0.0, -9810.0);
-  const mechanics::LoadSet loads({mechanics::PressureLoad{.faces = faces_, .gradient = weight_density}},
-                           mesh_.nodes);
+  const mechanics::LoadSet loads(
+      {mechanics::PressureLoad{.faces = faces_, .gradient = weight_density}}, mesh_.nodes);
   EXPECT_FALSE(loads.is_open());
   const Points x = wobbled(mesh_.nodes, 7, 5e-4), none = Points::Zero(x.rows(), 3);
   const Result here = evaluate(loads, x, none, none, 0.0, 0.0);
   EXPECT_LT(here.rest.cwiseAbs().maxCoeff(), 1e-9 * here.symmetric.cwiseAbs().maxCoeff());
   // The volume, by the divergence theorem from a unit pressure gradient along x.
-  const mechanics::LoadSet unit({mechanics::PressureLoad{.faces = faces_, .gradient = Vector3::UnitX()}},
-                          mesh_.nodes);
+  const mechanics::LoadSet unit(
+      {mechanics::PressureLoad{.faces = faces_, .gradient = Vector3::UnitX()}}, mesh_.nodes);
   const double volume = -evaluate(unit, x, none, none, 0.0, 0.0).forces.col(0).sum();
   EXPECT_NEAR(volume, 0.04 * 0.03 * 0.02, 0.05 * 0.04 * 0.03 * 0.02);
   const Vector3 force = here.forces.colwise().sum().transpose();
@@ -125,7 +126,8 @@ TEST_P(LoadTest, WaterRoundABodyCarriesTheWaterItDisplaces) {
 
 TEST_P(LoadTest, DampingOfWaterIsTheDerivativeOfItsDrag) {
   const mechanics::LoadSet loads(
-      {mechanics::WaterLoad{.faces = faces_, .tangential_drag = 0.3, .velocity = {0.1, 0.0, -0.05}}},
+      {mechanics::WaterLoad{
+          .faces = faces_, .tangential_drag = 0.3, .velocity = {0.1, 0.0, -0.05}}},
       mesh_.nodes);
   const Points v = wobbled(Points::Zero(mesh_.nodes.rows(), 3), 8, 0.2);
   const Points a = wobbled(Points::Zero(mesh_.nodes.rows(), 3), 9, 2.0);
@@ -231,7 +233,7 @@ TEST(Pressure, OpenSurfaceConvergesQuadraticallyInStatics) {
   const double tip = (simulation.body(0).positions() - mesh->nodes).col(2).minCoeff();
   EXPECT_LT(tip, -0.02);  // large: the load rotates with the beam
   // The top has rotated towards +x, so the pressure on it acts towards -x.
-  const Vector3 load = mechanics::as<mechanics::TakesLoads>(simulation.body(0))
+  const Vector3 load = mechanics::as<fem::HasMaterial>(simulation.body(0))
                            ->load_forces()
                            .colwise()
                            .sum()
@@ -258,10 +260,9 @@ std::array<double, 2> clip(const Eigen::Matrix<double, 3, 4>& x, const Vector3& 
 
 // Load forces, evaluated by a linearisation at rest.
 Points forces_of_the_load(Simulation& simulation) {
-  auto& body = *mechanics::as<mechanics::TakesLoads>(simulation.body(0));
-  body.set_load_factor(0, 1.0);
+  mechanics::as<mechanics::TakesLoads>(simulation.body(0))->set_load_factor(0, 1.0);
   simulation.body(0).system().linearise({});
-  return body.load_forces();
+  return mechanics::as<fem::HasMaterial>(simulation.body(0))->load_forces();
 }
 
 // A line through 200 cells. In every tetrahedron that it crosses, the integral of the linear shape

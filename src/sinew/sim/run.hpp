@@ -100,8 +100,9 @@ struct Run {
   double now = 0.0;  ///< s, end of the current substep
   /// Whether the state descends from a failed step (is_failure()).
   bool failed = false;
-  bool keeps_going = false;  ///< whether steps that fail are kept, see Simulation::step()
-  State before;              ///< state before the current substep or search
+  bool keeps_going =
+      false;     ///< whether the present step failed and is kept, see Simulation::step()
+  State before;  ///< state before the current substep or search
   StepReport report;
   Sensors sensors;
   Estimators estimators;

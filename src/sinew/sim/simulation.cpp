@@ -44,7 +44,20 @@ double Simulation::time() const { return run_->time(); }
 std::int64_t Simulation::steps() const { return run_->steps; }
 
 const StepReport& Simulation::step(OnFailure on_failure) {
-  run_->keeps_going = on_failure == OnFailure::keep_going;
+  try {
+    make_step();
+  } catch (const Error& failure) {
+    if (on_failure != OnFailure::keep_going || !failure.is_run_failure()) throw;
+    keep_failed_step();
+  }
+  run_->sensors.advance(*run_);
+  run_->estimators.advance(*run_);
+  return run_->report;
+}
+
+// Makes a step again that failed although everything was tried, and keeps where it ends.
+void Simulation::keep_failed_step() {
+  run_->keeps_going = true;
   try {
     make_step();
   } catch (...) {
@@ -52,9 +65,6 @@ const StepReport& Simulation::step(OnFailure on_failure) {
     throw;
   }
   run_->keeps_going = false;
-  run_->sensors.advance(*run_);
-  run_->estimators.advance(*run_);
-  return run_->report;
 }
 
 void Simulation::make_step() {

@@ -229,6 +229,7 @@ class Simulation {
 
  private:
   void make_step();
+  void keep_failed_step();
   void step_by_command();
   bool make_same_step();
   void require_free(const step::WithMemory* newcomer) const;

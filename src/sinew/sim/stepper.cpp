@@ -67,6 +67,7 @@ void Stepper::step() {
 void Stepper::make() {
   divided_ = false;
   if (run_.model->step().event_driven()) return step_by_events();
+  if (run_.keeps_going) return step_as_it_is();
   if (run_.model->step().adaptive) return step_adaptively();
   step_in_parts();
 }
@@ -149,6 +150,12 @@ void Stepper::step_in_parts() {
     ++run_.report.retries;
   }
   go_on_in_parts(length, next);
+}
+
+// A step that failed in all of its parts is made once as a whole: it may end anywhere.
+void Stepper::step_as_it_is() {
+  const double whole = run_.model->step().time_step;
+  run_.report.error = substep(static_cast<double>(run_.steps + 1) * whole, whole, false);
 }
 
 // Length of the first part, as a fraction of the step: a power of two.
@@ -283,7 +290,8 @@ void Stepper::judge() {
   if (cavitates()) raise(StepStatus::cavitates);
   if (report.scale < 1.0) raise(StepStatus::cut_back);
   if (report.violation > kReached * run_.model->size()) raise(StepStatus::command_not_reached);
-  report.balanced = is_balanced(run_) && (run_.model->step().dynamic() || reactions_balance(run_));
+  report.balanced = !run_.keeps_going && is_balanced(run_) &&
+                    (run_.model->step().dynamic() || reactions_balance(run_));
   if (!report.balanced) raise(failure_status(run_));
   if (run_.failed) raise(StepStatus::after_failure);
   if (run_.model->step().dynamic()) watch_energy();

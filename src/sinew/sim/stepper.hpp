@@ -38,6 +38,7 @@ class Stepper {
   bool hold_back();
   void undo(bool opened_ledger);
   void step_in_parts();
+  void step_as_it_is();
   double first_part() const;
   void go_on_in_parts(double length, double next);
   Part whole_step(double begin);
