@@ -377,6 +377,18 @@ double NewtonStep::correction() {
   return run_.world.correction(run_.correction_solver, run_.effort);
 }
 
+// Contacts may change in every step, and with them the correction.
+double NewtonStep::correction(const NewtonReport& result) {
+  const double move = result.motion.largest_move;
+  if (run_.model->contacts().empty()) {
+    const auto known = run_.correction.estimate(result.residual, move);
+    if (known && 2.0 * *known < move) return *known;
+  }
+  const double measured = correction();
+  run_.correction.take(measured, result.residual, move);
+  return measured;
+}
+
 // In dynamics, the moves of the iterations alone give a bound, since a solution of the law for it
 // would cost more than it tells: the tolerance is narrow.
 void NewtonStep::bound_distance(const NewtonReport& result) {
@@ -386,7 +398,7 @@ void NewtonStep::bound_distance(const NewtonReport& result) {
   const bool stayed = result.motion.largest_move == 0.0;
   const bool known = std::isfinite(result.distance) && (stayed || !report.following);
   if (run_.model->step().dynamic() || known) return;
-  report.distance = distance_bound(correction(), result.motion.largest_move,
+  report.distance = distance_bound(correction(result), result.motion.largest_move,
                                    result.relative_residual, run_.world.problem().size);
 }
 

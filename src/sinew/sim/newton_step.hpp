@@ -48,6 +48,7 @@ class NewtonStep {
   bool must_settle() const;
   bool is_near(NewtonReport& result);
   double correction();
+  double correction(const NewtonReport& result);
   void bound_distance(const NewtonReport& result);
   bool is_usable(const NewtonReport& result) const;
   bool solves(const NewtonReport& result);

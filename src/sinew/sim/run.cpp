@@ -121,6 +121,7 @@ void Run::restart() {
   failed = false;
   ledger = {};
   last_step = next_step = 0.0;
+  correction = {};
   steps = 0;
   finish_step();
   if (step::WithMemory* one = attached()) one->forget();

@@ -78,6 +78,7 @@ void Run::keep(State& state) const {
   const std::vector<char>& afresh = world.bodies().afresh();
   state.afresh.clear();
   if (world.bodies().any_afresh()) state.afresh.assign(afresh.begin(), afresh.end());
+  state.correction = correction.numbers();
   state.next_step = next_step;
   state.steps = steps;
   sensors.save(state.sensors);
@@ -103,6 +104,7 @@ void Run::restore(const State& state) {
   std::vector<char>& afresh = world.bodies().afresh();
   std::ranges::fill(afresh, 0);
   std::ranges::transform(state.afresh, afresh.begin(), [](double on) { return on != 0.0; });
+  correction = MeasuredCorrection(state.correction);
   next_step = state.next_step;
   steps = state.steps;
   if (!sensors.load(state.sensors)) sensors.restart(*this);

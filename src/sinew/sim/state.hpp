@@ -50,6 +50,7 @@ struct State {
   std::vector<double> estimators;  ///< memory of the estimators, see Estimators; empty without
   /// (bodies,) see Bodies::afresh(); empty if all start afresh, as `last_step` tells, or none.
   std::vector<double> afresh;
+  std::vector<double> correction;  ///< see MeasuredCorrection; empty: none
   EnergyLedger ledger;
   double volume_ratio = 1.0;  ///< min det F
   double failed = 0.0;        ///< 1 if it descends from a failed step, see is_failure()
@@ -94,6 +95,7 @@ struct State {
     visitor("estimators", state.estimators);
     visitor("failure", state.failed);
     visitor("afresh", state.afresh);
+    visitor("correction", state.correction);
   }
 
   /// Hash of the bits of all numbers and the count of steps: equal states have equal hashes.
