@@ -28,6 +28,7 @@ FemStep::FemStep(FemState& state, ThreadPool& pool, bool with_geometric_stiffnes
       loads_(state),
       rows_(state.model),
       touched_blocks_(state.model),
+      turns_(state.model.elements()),
       inertia_(state) {
   const FemBodyModel& model = state.model;
   const auto nodes = model.elements().free_nodes();
@@ -111,6 +112,8 @@ mechanics::Inertia FemStep::condense() {
   inertia.status = workspace.factorisation->factorise(workspace.assembly.matrix(), workspace.border,
                                                       span_of(right_));
   content_ = Content::right;
+  turned_ = false;
+  turns_.start(state_.positions);
   inertia.negative_pivots = workspace.factorisation->negative_pivots();
   inertia.unsymmetric = !loads_.unsymmetric().empty();
   return inertia;
@@ -157,10 +160,13 @@ void FemStep::lessen(std::span<const double> force) {
 
 // Rows that are not in the border, and unsymmetric terms, need a solution for every right-hand
 // side.
-void FemStep::renew(std::span<const double> effort) {
+void FemStep::renew(std::span<const double> effort, bool turned) {
   linalg::Factorisation& factor = *elements_.active().factorisation;
   find_imbalance(effort);
+  turned_ = turned && loads_.unsymmetric().empty();
+  if (turned_) turns_.measure(state_.positions);
   if (!rows_.has_transient() && loads_.unsymmetric().empty()) {
+    if (turned_) turns_.turn_back(imbalance_);
     factor.renew(span_of(imbalance_));
     const auto own = rows_.fixed_effort(effort);
     base_effort_.assign(own.begin(), own.end());
@@ -173,7 +179,9 @@ void FemStep::renew(std::span<const double> effort) {
 
 void FemStep::solve_for_imbalance() {
   linalg::Factorisation& factor = *elements_.active().factorisation;
+  if (turned_) turns_.turn_back(imbalance_);
   factor.solve(span_of(imbalance_), span_of(motion_));
+  if (turned_) turns_.turn(motion_);
   correct_for_unsymmetric();
 }
 
@@ -192,6 +200,7 @@ void FemStep::solve_motion(std::span<const double> effort) {
     effort_change_.resize(own.size());
     for (std::size_t k = 0; k < own.size(); ++k) effort_change_[k] = own[k] - base_effort_[k];
     factor.solve_with_effort(effort_change_, span_of(motion_));
+    if (turned_) turns_.turn(motion_);
   } else if (content_ == Content::right && in_border) {
     factor.solve_with_effort(rows_.fixed_effort(effort), span_of(motion_));
     correct_for_unsymmetric();
@@ -361,7 +370,7 @@ std::size_t FemStep::bytes() const {
   const Eigen::Index numbers =
       right_.size() + motion_.size() + from_.size() + imbalance_.size() + lessening_.size();
   return sizeof(double) * static_cast<std::size_t>(numbers) + inertia_.bytes() + elements_.bytes() +
-         touched_blocks_.bytes();
+         touched_blocks_.bytes() + turns_.bytes();
 }
 
 }  // namespace sinew::fem

@@ -7,6 +7,7 @@
 #include "sinew/fem/body_rows.hpp"
 #include "sinew/fem/fem_state.hpp"
 #include "sinew/fem/inertia_forces.hpp"
+#include "sinew/fem/node_turns.hpp"
 #include "sinew/fem/touched_blocks.hpp"
 #include "sinew/mechanics/step_system.hpp"
 
@@ -37,7 +38,7 @@ class FemStep : public mechanics::StepSystem {
   double rounding_floor() const override;
   void lessen(std::span<const double> force) override;
 
-  void renew(std::span<const double> effort) override;
+  void renew(std::span<const double> effort, bool turned) override;
   void solve_motion(std::span<const double> effort) override;
   void add_row_motions(std::span<const int> problem_row, VectorX& row_motion) const override;
   double proposed_move() const override { return motion_.cwiseAbs().maxCoeff(); }
@@ -83,6 +84,8 @@ class FemStep : public mechanics::StepSystem {
   BodyLoads loads_;
   BodyRows rows_;
   TouchedBlocks touched_blocks_;
+  NodeTurns turns_;      // since the factorisation
+  bool turned_ = false;  // whether the factor is used at a later state, with these
   InertiaForces inertia_;
   mechanics::Tangent tangent_ = mechanics::Tangent::corotated;  // of the last linearisation
   bool first_linearisation_ = true;

@@ -244,7 +244,7 @@ void DenseStep::solve_motion(std::span<const double> effort) {
   depart();
 }
 
-void DenseStep::renew(std::span<const double> effort) {
+void DenseStep::renew(std::span<const double> effort, bool) {
   find_imbalance(effort);
   if (motion_.size() > 0) decomposed_.solve(scratch_, motion_);
 }

@@ -30,7 +30,7 @@ class DenseStep : public StepSystem {
   double force_scale() const final { return force_scale_; }
   void lessen(std::span<const double> force) final;
 
-  void renew(std::span<const double> effort) final;
+  void renew(std::span<const double> effort, bool turned) final;
   void solve_motion(std::span<const double> effort) final;
   void add_row_motions(std::span<const int> problem_row, VectorX& row_motion) const final;
   Vector3 proposed_motion(int site) const final;

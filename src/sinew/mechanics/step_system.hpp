@@ -150,7 +150,10 @@ class StepSystem {
   /// solve_motion() computes dq = A^-1 (b + H^T effort + H^T (effort' - effort)) for other efforts
   /// effort'; the last H may be that of the factorisation. Overwrites the proposed motion.
   /// @param effort (all rows,) N, of the present state.
-  virtual void renew(std::span<const double> effort) = 0;
+  /// @param turned whether A is turned with the material since the factorisation, where a body
+  ///   deforms: closer to the present A, and no longer the one of which the bound of a distance is
+  ///   an estimate.
+  virtual void renew(std::span<const double> effort, bool turned) = 0;
   /// Adds H A^-1 (b + H^T effort) of the last renew() to the motions of the problem's rows.
   /// @param problem_row see add_compliance(). @param row_motion (rows of the problem,).
   virtual void add_row_motions(std::span<const int> problem_row, VectorX& row_motion) const = 0;

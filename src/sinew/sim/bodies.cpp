@@ -139,8 +139,8 @@ void Bodies::solve_motion(std::span<const double> effort) {
   for (auto* system : systems_) system->solve_motion(effort);
 }
 
-void Bodies::renew(std::span<const double> effort) {
-  for (auto* system : systems_) system->renew(effort);
+void Bodies::renew(std::span<const double> effort, bool turned) {
+  for (auto* system : systems_) system->renew(effort, turned);
 }
 
 void Bodies::add_row_motions(std::span<const int> problem_row, VectorX& row_motion) const {

@@ -61,7 +61,7 @@ class Bodies {
   void lessen(std::span<const double> force);
 
   void solve_motion(std::span<const double> effort);
-  void renew(std::span<const double> effort);
+  void renew(std::span<const double> effort, bool turned);
   void add_row_motions(std::span<const int> problem_row, VectorX& row_motion) const;
   /// Largest change of any coordinate in the proposed motion, m.
   double proposed_move() const;

@@ -14,16 +14,17 @@ namespace sinew::sim {
 class MeasuredCorrection {
  public:
   MeasuredCorrection() = default;
-  /// @param numbers from numbers().
+  /// @param numbers from save().
   explicit MeasuredCorrection(const std::vector<double>& numbers) {
     if (numbers.size() == 4) {
       correction_ = numbers[0], residual_ = numbers[1], move_ = numbers[2], age_ = numbers[3];
     }
   }
-  /// The measurement as part of the state; empty if there is none.
-  std::vector<double> numbers() const {
-    if (!(correction_ > 0.0)) return {};
-    return {correction_, residual_, move_, age_};
+  /// Writes the measurement as part of the state; empty if there is none.
+  void save(std::vector<double>& numbers) const {
+    numbers.clear();
+    numbers.reserve(4);  // later steps allocate nothing
+    if (correction_ > 0.0) numbers.assign({correction_, residual_, move_, age_});
   }
 
   /// m, the correction estimated after a step; none: measure it.

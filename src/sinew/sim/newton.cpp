@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sinew/sim/actuation.hpp"
 #include "sinew/sim/stage_clock.hpp"
@@ -30,6 +31,8 @@ constexpr int kIdle = 4;
 // A factor is kept while motions shrink to this fraction from one iteration to the next. It is not
 // tried again in a step after this many refusals.
 constexpr double kContraction = 0.25;
+// Largest part of the residual that two motions with a kept factor may leave.
+constexpr double kRemoved = 0.1;
 constexpr int kMostRefused = 2;
 // Smaller first motions, relative to the robot's size, are expected to leave no residual.
 constexpr double kTiny = 1e-6;
@@ -130,13 +133,16 @@ class NewtonSolver {
                                                   : NewtonStatus::converged;
   }
 
-  // The same with the last factor. Refuses a motion that has not become much smaller: a new factor
-  // then costs less than the iterations that it saves.
+  // The same with the last factor, which is used where the material has turned since (see
+  // fem::NodeTurns). The error of these rotations makes axial forces of a slender robot bend it,
+  // and bending stretch it: motions shrink by q in every second iteration. A motion is refused if
+  // more than about four would have to follow, since a new factor costs less than these.
   bool propose_again() {
     const step::LawStatus law = world_.solve_step_again(solver_, effort_, clock_);
-    const bool contracts =
-        law != step::LawStatus::failed &&
-        world_.bodies().proposed_move() <= kContraction * report_.motion.largest_move;
+    const double most =
+        std::min(kContraction, std::sqrt(settings_.tolerance / report_.relative_residual));
+    const bool shrinks = world_.bodies().proposed_move() <= most * report_.motion.largest_move;
+    const bool contracts = law != step::LawStatus::failed && (shrinks || removes());
     if (contracts) {
       report_.law = law;
       kept_ = true;
@@ -146,6 +152,10 @@ class NewtonSolver {
     ++refused_;
     return false;
   }
+
+  // Whether the last two motions, one of them with a kept factor, have removed most of the
+  // residual.
+  bool removes() const { return kept_ && report_.residual <= kRemoved * residual_before_last_; }
 
   // The exact tangent may be indefinite far from equilibrium; the projected one is not. If the
   // tangent has an unsymmetric part (pressure on an open surface that has curled up), its symmetric
@@ -215,6 +225,7 @@ class NewtonSolver {
   NewtonStatus move() {
     const double before = merit();
     const double residual_before = report_.residual;
+    residual_before_last_ = std::exchange(residual_before_, residual_before);
     bool inverted = false;
     double scale = 1.0;
     for (int halving = 0; halving <= kMaxHalvings; ++halving, scale *= 0.5) {
@@ -266,7 +277,7 @@ class NewtonSolver {
       idle_ = 0;
     } else if (!kept_) {
       ++idle_;
-    } else {
+    } else if (!removes()) {
       refused_ = kMostRefused;
     }
     return idle_ >= kIdle && !kept_ && is_within_stalled_tolerance();
@@ -280,9 +291,9 @@ class NewtonSolver {
     report_.motion.volume = report_.sanity.volume;
     const bool lost = status == NewtonStatus::converged && !report_.sanity.sound();
     report_.status = lost ? NewtonStatus::unphysical : status;
-    // The moves with a kept factor shrink at least by kContraction: the others add up to less than
-    // the last one.
-    if (status == NewtonStatus::converged && kept_ && moved_ > 0.0) report_.distance = moved_;
+    // With a kept factor, a motion may be followed by one as large, before the others shrink by
+    // kContraction or more.
+    if (status == NewtonStatus::converged && kept_ && moved_ > 0.0) report_.distance = 2.0 * moved_;
     return report_;
   }
 
@@ -302,10 +313,11 @@ class NewtonSolver {
   bool kept_ = false;                  // whether the last motion used an earlier factor
   int refused_ = 0;                    // motions with an earlier factor that were refused
   double moved_ = 0.0, before_ = 0.0;  // m, the last full moves; 0: not a full step
-  double best_ = INFINITY;             // relative residual
-  int idle_ = 0;                       // iterations since
-  double lowest_ = kInfinity;          // merit
-  int lost_ = 0;                       // iterations since without progress
+  double residual_before_ = 0.0, residual_before_last_ = 0.0;  // N, before the last two motions
+  double best_ = INFINITY;                                     // relative residual
+  int idle_ = 0;                                               // iterations since
+  double lowest_ = kInfinity;                                  // merit
+  int lost_ = 0;                                               // iterations since without progress
 };
 
 }  // namespace

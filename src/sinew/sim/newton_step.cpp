@@ -47,6 +47,10 @@ constexpr double kShare = 0.01;
 // A step that passes unstable states and moves this many times as far as its first iteration has
 // left its branch.
 constexpr double kSnap = 5.0;
+// The same without having seen an unstable state: iterations may leap over them.
+constexpr double kLeap = 20.0;
+// Smaller motions, relative to the robot's size, reach no other branch.
+constexpr double kSeen = 1e-3;
 
 bool converged(const NewtonReport& result) { return result.status == NewtonStatus::converged; }
 
@@ -400,6 +404,8 @@ void NewtonStep::bound_distance(const NewtonReport& result) {
   if (run_.model->step().dynamic() || known) return;
   report.distance = distance_bound(correction(result), result.motion.largest_move,
                                    result.relative_residual, run_.world.problem().size);
+  // Moves with a turned factor tell of errors that the factor without its turns does not see.
+  if (std::isfinite(result.distance)) report.distance = std::max(report.distance, result.distance);
 }
 
 // Removes the residual at the start of the step gradually, as in statics (static_solver.cpp), with
@@ -476,7 +482,9 @@ NewtonReport NewtonStep::descend(double time_step, int iterations) {
 bool NewtonStep::snaps(const NewtonReport& result) const {
   if (run_.model->step().dynamic() || !converged(result)) return false;
   if (descended_ || part_snapped_) return true;
-  return result.tangent_fallbacks > 0 && result.whole_move > kSnap * result.first_move;
+  const double most = result.tangent_fallbacks > 0 ? kSnap : kLeap;
+  return result.whole_move > most * result.first_move &&
+         result.whole_move > kSeen * run_.model->size();
 }
 
 ErrorKind NewtonStep::kind_of(const NewtonReport& result) {

@@ -78,7 +78,7 @@ void Run::keep(State& state) const {
   const std::vector<char>& afresh = world.bodies().afresh();
   state.afresh.clear();
   if (world.bodies().any_afresh()) state.afresh.assign(afresh.begin(), afresh.end());
-  state.correction = correction.numbers();
+  correction.save(state.correction);
   state.next_step = next_step;
   state.steps = steps;
   sensors.save(state.sensors);

@@ -141,7 +141,7 @@ step::LawStatus World::solve_step(step::StepSolver& solver, step::Controller* co
 step::LawStatus World::solve_step_again(step::StepSolver& solver, std::span<double> effort,
                                         StageClock& clock) {
   effort_before_.assign(effort.begin(), effort.end());
-  renew_free_motion(effort_before_);
+  renew_free_motion(effort_before_, true);
   clock.mark(Stage::correction);
   return solve_laws(solver, nullptr, true, effort, clock);
 }
@@ -151,8 +151,8 @@ step::LawStatus World::solve_step_again(step::StepSolver& solver, std::span<doub
 //   dq = A^-1 (b + H^T lambda'),   H dq = H A^-1 (b + H^T lambda) + W (lambda' - lambda),
 // so delta_free = delta + H A^-1 (b + H^T lambda) - W lambda. W = H A^-1 H^T holds for the earlier
 // H only, which changes the rate of convergence, not the limit lambda' = lambda.
-void World::renew_free_motion(std::span<const double> effort) {
-  bodies_.renew(effort);
+void World::renew_free_motion(std::span<const double> effort, bool turned) {
+  bodies_.renew(effort, turned);
   problem_.delta_free = problem_.delta;
   bodies_.add_row_motions(numbering_.problem_rows(), problem_.delta_free);
   numbering_.gather_efforts(effort, scratch_);
@@ -161,7 +161,7 @@ void World::renew_free_motion(std::span<const double> effort) {
 
 double World::correction(step::DirectSolver& solver, std::span<const double> effort) {
   held_free_ = problem_.delta_free;
-  renew_free_motion(effort);
+  renew_free_motion(effort, false);
   const step::LawStatus status = solver.solve(problem_, scratch_);
   trial_.assign(effort.begin(), effort.end());
   numbering_.scatter_efforts(scratch_, trial_);
@@ -192,7 +192,7 @@ step::LawStatus World::solve_laws(step::StepSolver& solver, step::Controller* co
     bodies_.solve_motion(effort);
     clock.mark(Stage::correction);
     const bool found = correct_contacts(looks, clock);
-    if (found && again) renew_free_motion(effort_before_);
+    if (found && again) renew_free_motion(effort_before_, true);
     mended = found || looks;
     looks = looks && found;
   }

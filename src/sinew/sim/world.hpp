@@ -154,7 +154,7 @@ class World {
                              std::span<double> effort, StageClock& clock);
   void number_rows();
   void form_compliance();
-  void renew_free_motion(std::span<const double> effort);
+  void renew_free_motion(std::span<const double> effort, bool turned);
 
   std::shared_ptr<const Model> model_;
   Bodies bodies_;
