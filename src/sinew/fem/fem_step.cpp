@@ -149,8 +149,8 @@ mechanics::Wrench FemStep::unbalanced(std::span<const double> effort, const Vect
 double FemStep::rounding_floor() const {
   const SystemWorkspace& workspace = elements_.active();
   return fem::rounding_floor(workspace.system.elements->pattern(), workspace.assembly.matrix(),
-                             state_.model.elements().held(),
-                             state_.positions.cwiseAbs().maxCoeff());
+                             state_.model.elements().held(), state_.positions.cwiseAbs().maxCoeff(),
+                             row_sums_);
 }
 
 void FemStep::lessen(std::span<const double> force) {

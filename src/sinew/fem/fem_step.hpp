@@ -96,6 +96,7 @@ class FemStep : public mechanics::StepSystem {
   VectorX from_;       // positions at which motion_ starts, m
   VectorX lessening_;  // N
   bool lessens_ = false;
+  mutable VectorX row_sums_;  // of rounding_floor(), scratch
   // What b the factor contains: right_; right_ + H^T base_effort_; another one.
   enum class Content { right, imbalance, other };
   Content content_ = Content::other;

@@ -12,8 +12,8 @@ namespace sinew::fem {
 // inertia M (x - x_start)/h^2 has errors of eps M/h^2 |x|. Both are within this bound, since A
 // contains K and M/h^2.
 double rounding_floor(const linalg::BlockPattern& pattern, std::span<const double> matrix,
-                      std::span<const std::int32_t> held, double largest) {
-  VectorX sum = VectorX::Zero(3 * static_cast<Eigen::Index>(pattern.nodes));
+                      std::span<const std::int32_t> held, double largest, VectorX& sum) {
+  sum.setZero(3 * static_cast<Eigen::Index>(pattern.nodes));
   for (std::int32_t j = 0; j < pattern.nodes; ++j) {
     const auto column = static_cast<std::size_t>(j);
     for (auto b = pattern.column_start[column]; b < pattern.column_start[column + 1]; ++b) {
