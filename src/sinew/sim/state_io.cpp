@@ -41,7 +41,7 @@ constexpr std::array<std::pair<std::string_view, std::uint32_t>, 12> kIntroduced
      {"energy gained", 11},
      {"failure", 11},
      {"afresh", 11},
-     {"correction", 11}}};
+     {"correction", 12}}};
 
 bool lacks(std::uint32_t version, std::string_view part) {
   return std::ranges::any_of(kIntroduced, [&](const auto& introduced) {
