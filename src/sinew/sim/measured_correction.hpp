@@ -37,7 +37,7 @@ class MeasuredCorrection {
     if (!(correction_ > 0.0) || !steady || ++age_ > kSteps) return {};
     return correction_ * residual / residual_;
   }
-  /// Takes a measured correction, m. @param residual,move as for estimate().
+  /// Takes a measured correction. @param correction m. @param residual,move as for estimate().
   void take(double correction, double residual, double move) {
     correction_ = correction, residual_ = residual, move_ = move, age_ = 0.0;
   }

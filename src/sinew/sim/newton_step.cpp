@@ -117,6 +117,7 @@ void NewtonStep::solve(double time_step) {
   const JointConflict conflict = find_conflict(result, time_step);
   const bool usable = !conflict.opens && is_usable(result);
   if (usable && (run_.keeps_going || is_balanced(run_))) return;
+  if (run_.keeps_going && stays_where_it_was(time_step)) return;
   if (!conflict.text.empty()) fail_joints(run_, conflict);
   if (result.status == NewtonStatus::law_failed) fail_law(run_);
   const std::string text = describe(result, settings(time_step));
@@ -342,9 +343,25 @@ NewtonReport NewtonStep::stay(double time_step) {
   return result;
 }
 
+// Whether a quasi-static step that fails, and whose end cannot be evaluated, may end at the last
+// one.
+bool NewtonStep::stays_where_it_was(double time_step) {
+  if (run_.model->step().dynamic() || must_settle()) return false;
+  const NewtonReport start = return_to_start(time_step);
+  take_report(start);
+  return is_usable(start);
+}
+
 // Returns to the end of the last step, for a robot that was about to buckle and from where Newton's
 // method fails: it is as near to equilibrium as it was then.
 NewtonReport NewtonStep::remain(double time_step, const NewtonReport& failed) {
+  NewtonReport result = return_to_start(time_step);
+  result.iterations = failed.iterations;
+  return is_near(result) ? result : failed;
+}
+
+// Linearises at the end of the last step, with its efforts.
+NewtonReport NewtonStep::return_to_start(double time_step) {
   run_.restore(run_.before);
   run_.begin_world(time_step);
   World& world = run_.world;
@@ -353,14 +370,13 @@ NewtonReport NewtonStep::remain(double time_step, const NewtonReport& failed) {
   world.form_rows(run_.effort, how.geometric);
   NewtonReport result;
   result.status = NewtonStatus::stalled;
-  result.iterations = failed.iterations;
   result.residual = world.bodies().residual(run_.effort);
   result.relative_residual = result.residual / (world.bodies().force_scale() + 1e-300);
   result.violation = world.violation(run_.effort, result.law);
   result.motion.finite = true;
   result.sanity = examine(world, run_.effort);
   result.motion.volume = result.sanity.volume;
-  return is_near(result) ? result : failed;
+  return result;
 }
 
 // Whether the present state, which is linearised, is as near to an equilibrium with the present

@@ -42,6 +42,8 @@ class NewtonStep {
   std::optional<NewtonReport> hold_motors(double time_step);
   NewtonReport hold_choice(const NewtonReport& chosen, double time_step);
   NewtonReport stay(double time_step);
+  NewtonReport return_to_start(double time_step);
+  bool stays_where_it_was(double time_step);
   NewtonReport remain(double time_step, const NewtonReport& failed);
   NewtonReport approach(double time_step);
   NewtonReport descend(double time_step, int iterations);
