@@ -42,7 +42,8 @@ struct PressureLoadSettings {
   std::vector<mesh::Face> faces;
 };
 
-/// Water around a body: buoyancy under the body's gravity, drag and added mass, see mechanics::WaterLoad.
+/// Water around a body: buoyancy under the body's gravity, drag and added mass, see
+/// mechanics::WaterLoad.
 struct WaterSettings {
   std::vector<mesh::Face> faces;
   double density = 1000.0;             ///< kg/m^3, > 0
