@@ -298,8 +298,7 @@ such as the dent around a point load.
             return reading(fem::of_elements<fem::HasMaterial>(body(self)).load_forces());
           },
           "(n, 3) ndarray: forces of the scene's loads on all nodes of a finite-element body (N) "
-          "in "
-          "the last step.")
+          "in the last step.")
       .def_property_readonly(
           "load_force",
           [](const Body& self) {
@@ -314,9 +313,8 @@ such as the dent around a point load.
             const Session::Use use(*self.session);
             return reading(rigid(self, "load_moment").load_moment());
           },
-          "(3,) ndarray: moment of the scene's loads on a rigid body about its centre of mass (N "
-          "m) "
-          "in the last step. Raises as `position`.");
+          "(3,) ndarray: moment of the scene's loads on a rigid body about its centre of mass in "
+          "the last step (N m). Raises as `position`.");
 }
 
 // Element nodes (m, k), with k nodes each.

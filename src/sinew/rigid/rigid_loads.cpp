@@ -6,6 +6,7 @@
 #include "sinew/core/rotation.hpp"
 #include "sinew/linalg/positive_part.hpp"
 #include "sinew/rigid/rigid_body_model.hpp"
+#include "sinew/rigid/rigid_nodes.hpp"
 
 namespace sinew::rigid {
 
@@ -91,8 +92,8 @@ void RigidLoads::find_rates(const mechanics::LinearisationRequest& request) {
   const Vector6 about = request.iterating ? now : state_.rate;
   const Vector6 acceleration = state_.combine(request.weights.acceleration);
   const Vector3 spin = now.tail<3>() / state_.model.turning_radius();
-  for (Eigen::Index i = 0; i < arms_.rows(); ++i) {
-    const Vector3 arm = arms_.row(i).transpose();
+  for (Eigen::Index i = 0; i < positions_.rows(); ++i) {
+    const Vector3 arm = positions_.row(i).transpose() - state_.pose.centre;
     rates_.row(i) = rate_at(about, arm).transpose();
     gaps_.row(i) = rate_at(now - about, arm).transpose();
     accelerations_.row(i) = (rate_at(acceleration, arm) + spin.cross(spin.cross(arm))).transpose();
@@ -103,20 +104,18 @@ void RigidLoads::evaluate_faces(const mechanics::LinearisationRequest& request) 
   const RigidBodyModel& model = state_.model;
   const mechanics::LoadSet& loads = *model.face_loads();
   const Points& rest = model.load_mesh().nodes;
-  arms_ = (rest.rowwise() - model.centre().transpose()) *
-          state_.pose.rotation.toRotationMatrix().transpose();
-  positions_ = arms_.rowwise() + state_.pose.centre.transpose();
+  place_nodes(model, rest, state_.pose, positions_);
   for (Points* of_nodes : {&rates_, &gaps_, &accelerations_}) of_nodes->setZero(rest.rows(), 3);
   const auto& weights = request.weights;
   if (!weights.dynamic()) refuse_open_pressure();
   if (loads.moves() && weights.dynamic()) find_rates(request);
-  std::vector<double> factors;
+  factors_.clear();
   for (const int load : model.face_load_numbers()) {
-    factors.push_back(state_.load_factors[static_cast<std::size_t>(load)]);
+    factors_.push_back(state_.load_factors[static_cast<std::size_t>(load)]);
   }
   loads.visit_points({positions_, rates_, gaps_, accelerations_, weights.velocity.motion,
                       weights.acceleration.motion},
-                     factors, [&](const mechanics::PointAction& action) {
+                     factors_, [&](const mechanics::PointAction& action) {
                        const Vector3 arm = action.at - state_.pose.centre;
                        turning_.add(action.turning, arm);
                        steady_.add(action.steady, arm);
@@ -164,7 +163,7 @@ void RigidLoads::count_work(const mechanics::StepWeights& weights, mechanics::St
 
 std::size_t RigidLoads::bytes() const {
   Eigen::Index numbers = 0;
-  for (const Points* of_nodes : {&arms_, &positions_, &rates_, &gaps_, &accelerations_}) {
+  for (const Points* of_nodes : {&positions_, &rates_, &gaps_, &accelerations_}) {
     numbers += of_nodes->size();
   }
   return sizeof(double) * static_cast<std::size_t>(numbers);

@@ -23,12 +23,12 @@ struct PointForce {
 /// where s is the turning radius, and A as
 ///   J_i^T K_i J_i,   K_i = -d f_i/d x_i,
 ///   -[f_i] [r_i]/s^2 for rotations, since the moment r x f changes with r (see RigidStep), or, for
-///   a force that turns with the body, [f_i]/s (forces) and [r_i x f_i]/s^2 (moments). Iterations
-///   take a
-/// symmetric A: that of all forces on the body is exact at a solution if they have a potential, and
-/// motions that joints leave free are judged by it. The derivative of rates with respect
-/// to a rotation within the step is taken to be that of its start, which costs iterations but no
-/// accuracy.
+///   a force that turns with the body, [f_i]/s (forces) and [r_i x f_i]/s^2 (moments).
+///
+/// Iterations take a symmetric A: that of all forces on the body is exact at a solution if they
+/// have a potential, and motions that joints leave free are judged by it. The derivative of rates
+/// with respect to a rotation within the step is taken to be that of its start, which costs
+/// iterations but no accuracy.
 class RigidLoads {
  public:
   /// @param state must outlive this.
@@ -75,7 +75,8 @@ class RigidLoads {
   mechanics::Wrench resultant_;
   Matrix6 stiffness_ = Matrix6::Zero();
   Sum steady_, turning_, drag_;  // of forces that keep their direction, or turn with the body
-  Points arms_, positions_;      // (n, 3) m, of the nodes of faces
+  std::vector<double> factors_;  // of the loads on faces
+  Points positions_;             // (n, 3) m, of the nodes of faces
   Points rates_, gaps_, accelerations_;  // (n, 3)
 };
 

@@ -10,8 +10,8 @@ namespace sinew::rigid {
 
 /// The step equations of a rigid body: the Newton-Euler equations at the end of the step, in world
 /// axes (Featherstone, Rigid Body Dynamics Algorithms, 2008, sec. 2.15),
-///   m a = m g + loads + forces,   J alpha + omega x J omega = moments about the centre,   J = R
-///   J_0 R^T,
+///   m a = m g + loads + forces,   J alpha + omega x J omega = moments about the centre,
+///   J = R J_0 R^T,
 /// where a and alpha are the integrator's combinations. The unknowns are the six numbers of a
 /// motion. A rotation by w after the rotation vector theta since the start of the step changes
 /// theta by D w (rotation_vector_rate), and J by [w] J - J [w]. The matrix is the exact derivative,
