@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -96,6 +97,9 @@ class Assembly {
   /// it is accepted.
   /// @param positions (n, 3) m, as for evaluate().
   VolumeMeasure measure_volume(const Points& positions);
+  /// The largest stretch at the positions of the last evaluate(), or an upper bound of it; none if
+  /// that does not tell: measure it. Costs nothing.
+  std::optional<StretchMeasure> evaluated_stretch() const;
   /// Computes the largest stretch (largest_stretch()), at about the same cost; leaves the results
   /// of evaluate() as they are. @param positions (n, 3) m, as for evaluate().
   StretchMeasure measure_stretch(const Points& positions);

@@ -42,52 +42,48 @@ struct Block {
   }
 };
 
-/// sum h_a h_b^T over contributions begin .. end-1.
-template <int record>
-SINEW_INLINE Block outer_products(const GatherLists& lists, std::int32_t begin, std::int32_t end,
-                                  const double* records) {
-  Block sum;
-  for (std::int32_t k = begin; k < end; ++k) {
-    const std::uint32_t code = lists.contributions[static_cast<std::size_t>(k)];
-    const double* at = records + std::size_t{record} * (code >> 4);
-    sum.add_product(load_quad(at + (code & 12)), at + 4 * (code & 3));
-  }
-  return sum;
+/// += h_a h_b^T of the contribution `code` of an element with this record.
+SINEW_INLINE void add_outer_product(const double* record, std::uint32_t code, Block& sum) {
+  sum.add_product(load_quad(record + (code & 12)), record + 4 * (code & 3));
 }
 
-/// sum (kappa/mu) ((h_a . p_b) G - p_b p_a^T) over contributions begin .. end-1.
-SINEW_INLINE Block rotation_terms(const GatherLists& lists, std::int32_t begin, std::int32_t end,
-                                  const double* records) {
-  Block sum;
-  for (std::int32_t k = begin; k < end; ++k) {
-    const std::uint32_t code = lists.contributions[static_cast<std::size_t>(k)];
-    const double* at = records + std::size_t{kExactRecord} * (code >> 4);
-    const double pair = at[kPairPosition[code & 15]];
-    const Quad p = load_quad(at + kStretchedPosition + 4 * (code & 3)) * at[kKappaPosition];
-    sum.add_product(p, at + kStretchedPosition + (code & 12));
-    for (int c = 0; c < 3; ++c) sum.column[c] += pair * load_quad(at + kColumnsPosition + 4 * c);
+/// += (kappa/mu) ((h_a . p_b) G - p_b p_a^T), in two sums that do not wait for each other.
+SINEW_INLINE void add_rotation_terms(const double* record, std::uint32_t code, Block& sum,
+                                     Block& other) {
+  const double pair = record[kPairPosition[code & 15]];
+  const Quad p = load_quad(record + kStretchedPosition + 4 * (code & 3)) * record[kKappaPosition];
+  sum.add_product(p, record + kStretchedPosition + (code & 12));
+  for (int c = 0; c < 3; ++c) {
+    other.column[c] += pair * load_quad(record + kColumnsPosition + 4 * c);
   }
-  return sum;
 }
 
-/// K without its constant diagonal part, which K of Tangent::rates does not have.
+/// K without its constant diagonal part, which K of Tangent::rates does not have. One loop over
+/// contributions forms all of its terms: blocks have few, and the ends of loops are mispredicted.
 template <Tangent tangent>
 SINEW_INLINE Block gather_block(const GatherLists& lists, std::size_t visit,
                                 const double* records) {
-  constexpr int kRecord = tangent == Tangent::exact ? kExactRecord : kCorotatedRecord;
-  const std::int32_t first = lists.contribution_start[visit];
+  constexpr std::size_t kRecord = tangent == Tangent::exact ? kExactRecord : kCorotatedRecord;
+  std::int32_t k = lists.contribution_start[visit];
   Block result;
-  if constexpr (tangent == Tangent::exact) {
-    result = rotation_terms(lists, first, lists.contribution_start[visit + 1], records);
-  }
-  std::int32_t begin = first;
+  Block turning, stretching;
   for (std::int32_t r = lists.run_start[visit]; r < lists.run_start[visit + 1]; ++r) {
     const ContributionRun& run = lists.runs[static_cast<std::size_t>(r)];
-    const Block products = outer_products<kRecord>(lists, begin, run.end, records);
+    Block products;
+    for (; k < run.end; ++k) {
+      const std::uint32_t code = lists.contributions[static_cast<std::size_t>(k)];
+      const double* const record = records + kRecord * (code >> 4);
+      add_outer_product(record, code, products);
+      if constexpr (tangent == Tangent::exact)
+        add_rotation_terms(record, code, turning, stretching);
+    }
     result.add(run.ratio, products);
     if constexpr (tangent != Tangent::exact) result.add_transposed(products);
     if constexpr (tangent == Tangent::rates) result.add_trace(products);
-    begin = run.end;
+  }
+  if constexpr (tangent == Tangent::exact) {
+    result.add(1.0, turning);
+    result.add(1.0, stretching);
   }
   return result;
 }

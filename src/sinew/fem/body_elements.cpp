@@ -133,7 +133,9 @@ mechanics::SmallestVolume BodyElements::smallest_volume() {
 }
 
 mechanics::LargestStretch BodyElements::largest_stretch() {
-  const auto [stretch, element] = active_->assembly.measure_stretch(state_.positions);
+  Assembly& assembly = active_->assembly;
+  const auto known = active_->present ? assembly.evaluated_stretch() : std::nullopt;
+  const auto [stretch, element] = known ? *known : assembly.measure_stretch(state_.positions);
   return {stretch, element};
 }
 

@@ -104,6 +104,10 @@ SINEW_INLINE void store_exact(const NodeVectors& h, const material::ExactTangent
   for (int k = 0; k < kExactRecord; k += 8) store_records(rows + k, records + k, kExactRecord);
 }
 
+struct Minima {
+  LaneMinimum volume, stretch;  // of BatchMeasures
+};
+
 /// F^-T, which maps gradients to the current shape. The determinant counts as at least 0.1, for
 /// crushed elements.
 SINEW_INLINE Lanes3x3 to_present(const Lanes3x3& f) {
@@ -119,7 +123,7 @@ SINEW_INLINE Lanes3x3 to_present(const Lanes3x3& f) {
 
 template <Law law, Tangent tangent>
 void evaluate(const ElementBatches& elements, int begin, int end, const double* points,
-              const ElementOutput& output, LaneMinimum& minimum) {
+              const ElementOutput& output, Minima& minima) {
   for (std::int64_t b = begin; b < end; ++b) {
     const BatchConstants& batch = elements.constants[static_cast<std::size_t>(b)];
     const material::LaneModuli moduli{row(batch.mu), row(batch.lambda)};
@@ -129,7 +133,8 @@ void evaluate(const ElementBatches& elements, int begin, int end, const double* 
     on_gradients(response.stress, batch, volume)
         .store(output.forces + kForceRecord * kLanes * b, kForceRecord);
     output.energy[b] = sum(volume * response.energy);
-    minimum.see(response.determinant, b);
+    minima.volume.see(response.determinant, b);
+    minima.stretch.see(-squared_norm(f), b);
     if constexpr (tangent == Tangent::rates && law == Law::corotational) {
       on_gradients(to_present(f), batch, row(batch.root))
           .store(output.records + kCorotatedRecord * kLanes * b, kCorotatedRecord);
@@ -149,36 +154,37 @@ void evaluate(const ElementBatches& elements, int begin, int end, const double* 
 
 template <Tangent tangent>
 void evaluate_laws(const ElementBatches& elements, int begin, int end, const double* points,
-                   const ElementOutput& output, LaneMinimum& minimum) {
+                   const ElementOutput& output, Minima& minima) {
   const int linear = elements.linear_batches;
   const int split = begin > linear ? begin : (end < linear ? end : linear);
-  evaluate<Law::linear, tangent>(elements, begin, split, points, output, minimum);
-  evaluate<Law::corotational, tangent>(elements, split, end, points, output, minimum);
+  evaluate<Law::linear, tangent>(elements, begin, split, points, output, minima);
+  evaluate<Law::corotational, tangent>(elements, split, end, points, output, minima);
 }
 
 }  // namespace
 
-SmallestRatio evaluate_batches(const ElementBatches& elements, int begin, int end,
+BatchMeasures evaluate_batches(const ElementBatches& elements, int begin, int end,
                                const double* points, Tangent tangent, const ElementOutput& output) {
-  LaneMinimum minimum;
+  Minima minima;
   switch (tangent) {
     case Tangent::none:
-      evaluate_laws<Tangent::none>(elements, begin, end, points, output, minimum);
+      evaluate_laws<Tangent::none>(elements, begin, end, points, output, minima);
       break;
     case Tangent::corotated:
-      evaluate_laws<Tangent::corotated>(elements, begin, end, points, output, minimum);
+      evaluate_laws<Tangent::corotated>(elements, begin, end, points, output, minima);
       break;
     case Tangent::rates:
-      evaluate_laws<Tangent::rates>(elements, begin, end, points, output, minimum);
+      evaluate_laws<Tangent::rates>(elements, begin, end, points, output, minima);
       break;
     case Tangent::projected:
-      evaluate_laws<Tangent::projected>(elements, begin, end, points, output, minimum);
+      evaluate_laws<Tangent::projected>(elements, begin, end, points, output, minima);
       break;
     case Tangent::exact:
-      evaluate_laws<Tangent::exact>(elements, begin, end, points, output, minimum);
+      evaluate_laws<Tangent::exact>(elements, begin, end, points, output, minima);
       break;
   }
-  return smallest(minimum, elements.tetrahedron, 0);
+  return {smallest(minima.volume, elements.tetrahedron, 0),
+          smallest(minima.stretch, elements.tetrahedron, 0)};
 }
 
 SmallestRatio measure_batches(const ElementBatches& elements, int begin, int end,

@@ -39,6 +39,12 @@ struct SmallestRatio {
   std::int32_t slot;
 };
 
+/// What evaluate_batches() measures.
+struct BatchMeasures {
+  SmallestRatio volume;   ///< det F; minus infinity if a position is not finite
+  SmallestRatio stretch;  ///< -|F|^2: |F| bounds the principal stretches
+};
+
 /// Output arrays of a batch. Record arrays are 64-byte aligned.
 struct ElementOutput {
   double* forces;   ///< kForceRecord per slot
@@ -50,8 +56,7 @@ struct ElementOutput {
 /// @param elements,begin,end which batches.
 /// @param points (n, 4) m, positions padded to four.
 /// @param tangent,output which derivative, and the arrays to write.
-/// @return the smallest det F; minus infinity if a position is not finite.
-SmallestRatio evaluate_batches(const ElementBatches& elements, int begin, int end,
+BatchMeasures evaluate_batches(const ElementBatches& elements, int begin, int end,
                                const double* points, Tangent tangent, const ElementOutput& output);
 
 /// Computes only the smallest det F of batches begin .. end-1.

@@ -56,14 +56,23 @@ NodeTurns::NodeTurns(const FemModel& model) {
   // A component that is held must not be mixed with the others.
   for (const std::int32_t dof : model.held()) element_of_[static_cast<std::size_t>(dof / 3)] = -1;
   rotations_.assign(elements_.size(), Matrix3::Identity());
+  start_inverse_ = rotations_;
 }
 
-void NodeTurns::start(const Points& positions) { start_ = positions; }
+void NodeTurns::start(const Points& positions) {
+  start_ = positions;
+  measures_ = false;
+}
 
 void NodeTurns::measure(const Points& positions) {
+  if (!measures_) {
+    for (std::size_t e = 0; e < elements_.size(); ++e) {
+      start_inverse_[e] = edges(start_, elements_[e]).inverse();
+    }
+    measures_ = true;
+  }
   for (std::size_t e = 0; e < elements_.size(); ++e) {
-    const Matrix3 before = edges(start_, elements_[e]), now = edges(positions, elements_[e]);
-    rotations_[e] = rotation_of(now * before.inverse());
+    rotations_[e] = rotation_of(edges(positions, elements_[e]) * start_inverse_[e]);
   }
 }
 
@@ -85,7 +94,7 @@ void NodeTurns::turn(VectorX& v) const {
 
 std::size_t NodeTurns::bytes() const {
   return sizeof(double) * static_cast<std::size_t>(start_.size()) +
-         sizeof(Matrix3) * rotations_.size();
+         2 * sizeof(Matrix3) * rotations_.size();
 }
 
 }  // namespace sinew::fem

@@ -35,9 +35,11 @@ class NodeTurns {
 
  private:
   std::vector<std::array<NodeId, 4>> elements_;  // four nodes of each element that is used
-  std::vector<int> element_of_;     // (free nodes,) index in elements_; -1: the node does not turn
-  Points start_;                    // (n, 3) m
-  std::vector<Matrix3> rotations_;  // (elements_,)
+  std::vector<int> element_of_;  // (free nodes,) index in elements_; -1: the node does not turn
+  Points start_;                 // (n, 3) m
+  bool measures_ = false;        // whether the next are known for start_
+  std::vector<Matrix3> start_inverse_;  // (elements_,) of the edges there, 1/m
+  std::vector<Matrix3> rotations_;      // (elements_,)
 };
 
 }  // namespace sinew::fem

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "sinew/sim/actuation.hpp"
@@ -208,7 +209,7 @@ class NewtonSolver {
 
   // If rounding keeps the residual above the tolerance, the solution is final when a full step
   // moves nothing beyond rounding, or no longer reduces a residual at its rounding floor.
-  bool converged() const {
+  bool converged() {
     const double size = world_.problem().size;
     if (!(report_.violation <= std::max(settings_.motion_tolerance, kRounding) * size))
       return false;
@@ -219,7 +220,13 @@ class NewtonSolver {
                                  : settings_.tolerance;
     // The floor is last, since it takes the sums of the matrix.
     return report_.relative_residual <= tolerance || at_rest || lags_little(settings_.lag) ||
-           (is_spent() && report_.residual <= world_.bodies().rounding_floor());
+           (is_spent() && report_.residual <= rounding_floor());
+  }
+
+  // It takes the sums of the matrix, which hardly changes within a step.
+  double rounding_floor() {
+    if (!floor_) floor_ = world_.bodies().rounding_floor();
+    return *floor_;
   }
 
   NewtonStatus move() {
@@ -314,6 +321,7 @@ class NewtonSolver {
   int refused_ = 0;                    // motions with an earlier factor that were refused
   double moved_ = 0.0, before_ = 0.0;  // m, the last full moves; 0: not a full step
   double residual_before_ = 0.0, residual_before_last_ = 0.0;  // N, before the last two motions
+  std::optional<double> floor_;                                // N, see rounding_floor()
   double best_ = INFINITY;                                     // relative residual
   int idle_ = 0;                                               // iterations since
   double lowest_ = kInfinity;                                  // merit
