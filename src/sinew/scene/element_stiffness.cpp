@@ -129,7 +129,7 @@ double mean_motion(const Points& field, Eigen::Index nodes) {
 class Comparison {
  public:
   /// Throws what build() throws. @param scene,model to be compared. @param bodies indices of those
-  /// that get quadratic elements.
+  /// that get quadratic elements if something acts on them.
   Comparison(const SceneDescription& scene, const sim::Model& model,
              const std::vector<std::size_t>& bodies) {
     SceneDescription own = only_acting(scene);
@@ -139,8 +139,14 @@ class Comparison {
       if (elements == nullptr) continue;
       meshes[own.bodies[b].name] = {elements->settings().mesh, elements->settings().embedder};
     }
-    linear_ = build(own, meshes).model;
+    const auto linear = build(own, meshes).model;
     for (const std::size_t b : bodies) {
+      const int body = static_cast<int>(b);
+      if (auto fields = sim::rest_fields(linear, body); !fields.empty()) linear_[body] = fields;
+    }
+    if (linear_.empty()) return;
+    for (const std::size_t b : bodies) {
+      if (!linear_.contains(static_cast<int>(b))) continue;
       BodyDescription& body = own.bodies[b];
       SharedMesh& mesh = meshes[body.name];
       mesh = {std::make_shared<const mesh::Mesh>(
@@ -155,12 +161,12 @@ class Comparison {
 
   /// The factor of the cause for which it is farthest from 1; none if nothing acts on the body.
   std::optional<Excess> excess(int body) const {
-    const auto linear = sim::rest_fields(linear_, body);
-    const auto quadratic = sim::rest_fields(quadratic_, body);
+    const auto linear = linear_.find(body);
     std::optional<Excess> worst;
-    for (const sim::RestField& soft : quadratic) {
-      const auto stiff = std::ranges::find(linear, soft.cause, &sim::RestField::cause);
-      if (stiff == linear.end()) continue;
+    if (linear == linear_.end()) return worst;
+    for (const sim::RestField& soft : sim::rest_fields(quadratic_, body)) {
+      const auto stiff = std::ranges::find(linear->second, soft.cause, &sim::RestField::cause);
+      if (stiff == linear->second.end()) continue;
       const Eigen::Index nodes = stiff->nodes.rows();
       const double factor = mean_motion(soft.nodes, nodes) / mean_motion(stiff->nodes, nodes);
       const Excess own{.factor = factor, .cause = soft.cause};
@@ -170,7 +176,8 @@ class Comparison {
   }
 
  private:
-  std::shared_ptr<const sim::Model> linear_, quadratic_;
+  std::map<int, std::vector<sim::RestField>> linear_;  // of the bodies on which something acts
+  std::shared_ptr<const sim::Model> quadratic_;
 };
 
 Excess as_one_beam(const BodyDescription& body, const mesh::Mesh& mesh) {
