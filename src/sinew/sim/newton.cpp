@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sinew/sim/actuation.hpp"
+#include "sinew/sim/kept_factors.hpp"
 #include "sinew/sim/stage_clock.hpp"
 #include "sinew/sim/step_watch.hpp"
 #include "sinew/sim/world.hpp"
@@ -115,15 +116,20 @@ class NewtonSolver {
   // chooses needs W of the present state. New factors need fewer iterations: near their limit, none
   // is kept.
   bool may_keep_factor() const {
-    return settings_.keeps_factor && (controller_ == nullptr || may_hold_choice()) && derivative_ &&
-           refused_ < kMostRefused && 4 * report_.iterations < settings_.max_iterations;
+    return settings_.kept_factors != nullptr && (controller_ == nullptr || may_hold_choice()) &&
+           derivative_ && refused_ < kMostRefused &&
+           4 * report_.iterations < settings_.max_iterations;
+  }
+
+  bool pays() const {
+    return settings_.kept_factors->pays(report_.relative_residual, settings_.tolerance);
   }
 
   // Proposes a motion that obeys the laws.
   NewtonStatus propose() {
     before_ = moved_;
     const bool may_keep = full_step_ && controller_ == nullptr && may_keep_factor();
-    if (report_.iterations > 0 && may_keep && propose_again()) {
+    if (report_.iterations > 0 && may_keep && pays() && propose_again()) {
       return NewtonStatus::converged;
     }
     kept_ = false;
@@ -150,6 +156,7 @@ class NewtonSolver {
       return true;
     }
     std::ranges::copy(world_.efforts_before(), effort_.begin());
+    left_ = 1.0;
     ++refused_;
     return false;
   }
@@ -249,6 +256,8 @@ class NewtonSolver {
       full_step_ = halving == 0;
       stagnant_ = full_step_ && report_.residual > kLessened * residual_before;
       moved_ = full_step_ ? report_.motion.largest_move : 0.0;
+      if (kept_) measure_kept(residual_before);
+      if (report_.iterations == 0) next_ = report_.relative_residual;
       converged_ = converged();
       if (!converged_ && !(after < kMeritGrowth * before)) continue;
       converged_ = converged_ || has_stalled();
@@ -257,11 +266,20 @@ class NewtonSolver {
     return inverted ? NewtonStatus::inverted : NewtonStatus::stalled;
   }
 
+  // The mean over the motions with a kept factor: they may shrink in every second one only.
+  void measure_kept(double residual_before) {
+    if (kept_count_++ == 0) kept_from_ = residual_before;
+    left_ = full_step_ ? std::pow(report_.residual / kept_from_, 1.0 / kept_count_) : 1.0;
+  }
+
   // Without an iteration, the report is that of the state at the start.
   // Whether the next iteration, or the next step, is expected to need the matrix at the state that
   // is about to be linearised. A wrong guess costs time only.
   bool needs_matrix(bool full_step) const {
     if (!full_step || !may_keep_factor()) return true;
+    if (report_.iterations == 0 && !settings_.kept_factors->will_pay(settings_.tolerance)) {
+      return true;
+    }
     // The residual before the first motion says nothing of what commands and choices have changed.
     const bool first = report_.iterations == 0;
     const double shrinks = kept_ && before_ > 0.0 ? report_.motion.largest_move / before_ : 1.0;
@@ -294,6 +312,7 @@ class NewtonSolver {
     // A singular matrix gives no compliance by which the laws could be measured.
     if (report_.iterations == 0 && status == NewtonStatus::singular) measure_residual();
     if (report_.iterations == 0 && status != NewtonStatus::singular) merit();
+    if (settings_.kept_factors != nullptr) settings_.kept_factors->take(left_, next_);
     report_.sanity = examine(world_, effort_);
     report_.motion.volume = report_.sanity.volume;
     const bool lost = status == NewtonStatus::converged && !report_.sanity.sound();
@@ -319,6 +338,9 @@ class NewtonSolver {
   bool has_matrix_ = false;            // whether the last linearisation included the matrix
   bool kept_ = false;                  // whether the last motion used an earlier factor
   int refused_ = 0;                    // motions with an earlier factor that were refused
+  double left_ = 0.0, next_ = 0.0;     // see KeptFactors::take()
+  double kept_from_ = 0.0;             // N, residual before the first motion with a kept factor
+  int kept_count_ = 0;                 // such motions
   double moved_ = 0.0, before_ = 0.0;  // m, the last full moves; 0: not a full step
   double residual_before_ = 0.0, residual_before_last_ = 0.0;  // N, before the last two motions
   std::optional<double> floor_;                                // N, see rounding_floor()

@@ -19,6 +19,7 @@ class StepSolver;
 
 namespace sinew::sim {
 
+class KeptFactors;
 class StageClock;
 class StepWatch;
 class World;
@@ -35,8 +36,9 @@ struct NewtonSettings {
   /// Whether a solution found with another matrix than the derivative must have a small residual,
   /// since a matrix larger than the derivative gives small motions even far from an equilibrium.
   bool strict = false;
-  /// Whether later iterations may keep the factor of an earlier one.
-  bool keeps_factor = false;
+  /// Whether later iterations may keep the factor of an earlier one, and how well that served in
+  /// earlier searches; null: they may not. Updated at the end.
+  KeptFactors* kept_factors = nullptr;
   /// With a controller: once the error of an iteration with its choice is within these bounds, the
   /// efforts that it chose are held in all later iterations; 0: it chooses in every iteration.
   Lag choice = {};

@@ -94,11 +94,14 @@ NewtonSettings NewtonStep::settings(double time_step) const {
   if (follows()) result.lag = kLag;
   if (lasts && !step.tolerance) result.stalled_tolerance = kStalledTolerance;
   result.strict = !step.tolerance;
-  // With contacts, every iteration may find points and change their states, which needs W anew.
   // In dynamics, efforts that hold a motion inherit its error times M/h^2: the last iterations of
   // Newton's method leave much less of it than the tolerance, those with an old factor just less.
-  result.keeps_factor = run_.model->contacts().empty() && !step.dynamic();
+  if (!step.dynamic() || !holds_motion()) result.kept_factors = &run_.kept_factors;
   return result;
+}
+
+bool NewtonStep::holds_motion() const {
+  return std::ranges::any_of(run_.world.problem().actuators, &step::ActuatorBlock::holds_motion);
 }
 
 NewtonSettings NewtonStep::settings_of_part(double time_step) const {

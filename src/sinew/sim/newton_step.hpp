@@ -33,6 +33,7 @@ class NewtonStep {
 
  private:
   bool follows() const;
+  bool holds_motion() const;
   NewtonSettings settings(double time_step) const;
   NewtonSettings settings_of_part(double time_step) const;
   std::string describe(const NewtonReport& result, const NewtonSettings& how) const;

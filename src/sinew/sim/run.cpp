@@ -122,6 +122,7 @@ void Run::restart() {
   ledger = {};
   last_step = next_step = 0.0;
   correction = {};
+  kept_factors = {};
   steps = 0;
   finish_step();
   if (step::WithMemory* one = attached()) one->forget();

@@ -9,6 +9,7 @@
 #include "sinew/core/thread_pool.hpp"
 #include "sinew/sim/actuation.hpp"
 #include "sinew/sim/estimators.hpp"
+#include "sinew/sim/kept_factors.hpp"
 #include "sinew/sim/measured_correction.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/sensors.hpp"
@@ -98,6 +99,7 @@ struct Run {
   double next_step = 0.0;  ///< s, length to try for the next substep; 0: the whole step
   bool follows = false;    ///< see Simulation::follow()
   MeasuredCorrection correction;
+  KeptFactors kept_factors;
   double volume_ratio = 1.0;
   double now = 0.0;  ///< s, end of the current substep
   /// Whether the state descends from a failed step (is_failure()).

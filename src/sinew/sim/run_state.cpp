@@ -79,6 +79,7 @@ void Run::keep(State& state) const {
   state.afresh.clear();
   if (world.bodies().any_afresh()) state.afresh.assign(afresh.begin(), afresh.end());
   correction.save(state.correction);
+  kept_factors.save(state.kept_factors);
   state.next_step = next_step;
   state.steps = steps;
   sensors.save(state.sensors);
@@ -105,6 +106,7 @@ void Run::restore(const State& state) {
   std::ranges::fill(afresh, 0);
   std::ranges::transform(state.afresh, afresh.begin(), [](double on) { return on != 0.0; });
   correction = MeasuredCorrection(state.correction);
+  kept_factors = KeptFactors(state.kept_factors);
   next_step = state.next_step;
   steps = state.steps;
   if (!sensors.load(state.sensors)) sensors.restart(*this);

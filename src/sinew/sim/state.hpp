@@ -50,7 +50,8 @@ struct State {
   std::vector<double> estimators;  ///< memory of the estimators, see Estimators; empty without
   /// (bodies,) see Bodies::afresh(); empty if all start afresh, as `last_step` tells, or none.
   std::vector<double> afresh;
-  std::vector<double> correction;  ///< see MeasuredCorrection; empty: none
+  std::vector<double> correction;    ///< see MeasuredCorrection; empty: none
+  std::vector<double> kept_factors;  ///< see KeptFactors; empty: nothing is known
   EnergyLedger ledger;
   double volume_ratio = 1.0;  ///< min det F
   double failed = 0.0;        ///< 1 if it descends from a failed step, see is_failure()
@@ -96,6 +97,7 @@ struct State {
     visitor("failure", state.failed);
     visitor("afresh", state.afresh);
     visitor("correction", state.correction);
+    visitor("kept factors", state.kept_factors);
   }
 
   /// Hash of the bits of all numbers and the count of steps: equal states have equal hashes.

@@ -29,7 +29,7 @@ constexpr std::string_view kMagic = "SINEWST\n";
 constexpr std::size_t kWord = 8;
 
 // What older versions lack, and the first version with it.
-constexpr std::array<std::pair<std::string_view, std::uint32_t>, 12> kIntroduced = {
+constexpr std::array<std::pair<std::string_view, std::uint32_t>, 13> kIntroduced = {
     {{"joints", 7},
      {"points", 8},
      {"sensors", 9},
@@ -41,7 +41,8 @@ constexpr std::array<std::pair<std::string_view, std::uint32_t>, 12> kIntroduced
      {"energy gained", 11},
      {"failure", 11},
      {"afresh", 11},
-     {"correction", 12}}};
+     {"correction", 12},
+     {"kept factors", 13}}};
 
 bool lacks(std::uint32_t version, std::string_view part) {
   return std::ranges::any_of(kIntroduced, [&](const auto& introduced) {
