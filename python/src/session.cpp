@@ -173,7 +173,7 @@ void Session::note_pressure(const std::string& what, const sim::Signal& signal) 
 }
 
 void Session::warn_units() {
-  const UsualRange& range = *usual_range(dimension::kPressure);
+  const UsualRange& range = *usual_range(Usual::pressure);
   for (auto& [what, told] : pressures_) {
     if (told.warned || !is_unusual(range, told.largest)) continue;
     told.warned = true;

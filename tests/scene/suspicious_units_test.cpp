@@ -96,6 +96,43 @@ TEST(SuspiciousUnits, FilesOfSignalsCount) {
   EXPECT_EQ(notices("0,0\n1,30e3\n"), 0U);
 }
 
+// Quantities that share a dimension differ in their usual size.
+TEST(SuspiciousUnits, ANumberIsJudgedByWhatItIs) {
+  const auto text = [](const std::string& load) {
+    std::string all = kChambers;
+    for (const auto& [word, value] :
+         Edits{{"MODULUS", "1 MPa"}, {"DENSITY", "1070"}, {"COMMAND", "0"}, {"MASS", "1 g"}}) {
+      all.replace(all.find(word), word.size(), value);
+    }
+    std::string told;
+    const SceneDescription found = parse_scene_text(all + load, "scene.yaml", {}, Files::ignore);
+    for (const Notice& notice : found.notices) told += notice.text() + "\n";
+    return told;
+  };
+  const auto line = [&](const std::string& force) {
+    return text(
+        "loads: {l: {type: line, body: finger, points: [6 0 0 mm, 6 0 50 mm], "
+        "force_per_length: [0, 0, " +
+        force + "]}}\n");
+  };
+  EXPECT_EQ(line("-0.5"), "");
+  EXPECT_EQ(line("0.01"), "");
+  EXPECT_THAT(line("1e-5"), HasSubstr("is little for a force per length"));
+  EXPECT_THAT(line("1e-5"), HasSubstr("N/mm"));
+  const auto traction = [&](const std::string& stress) {
+    return text("loads: {l: {type: traction, body: finger, surface: {set: top}, traction: [" +
+                stress + ", 0, 0]}}\n");
+  };
+  EXPECT_EQ(traction("100"), "");
+  EXPECT_THAT(traction("0.1"), HasSubstr("is little for a force per area"));
+  EXPECT_THAT(
+      text("loads: {l: {type: pressure, body: finger, surface: {set: top}, pressure: 30}}\n"),
+      HasSubstr("is little for a pressure;"));
+  EXPECT_THAT(text("membranes: {m: {body: finger, surface: {set: top}, thickness: 0.1 mm, "
+                   "young_modulus: 30}}\n"),
+              HasSubstr("is little for a modulus;"));
+}
+
 TEST(SuspiciousUnits, OverridesCount) {
   SceneDescription plain = scene("450 kPa", "1070", "0", "5 g");
   Node tree = plain.tree;

@@ -12,6 +12,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/quantity.hpp"
+#include "sinew/core/usual_range.hpp"
 
 namespace sinew::scene {
 
@@ -55,6 +56,7 @@ struct Choice {
 struct Form {
   Shape shape = Shape::text;
   Dimension dimension{};        ///< quantity, samples
+  Usual usual = Usual::none;    ///< quantity, samples: what it is, by which its size is judged
   std::string unit;             ///< a customary unit of the dimension, for examples
   int min_count = 1;            ///< of the numbers of a quantity, or the items of a list
   int max_count = 1;            ///< see min_count

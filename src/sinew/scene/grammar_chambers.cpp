@@ -69,7 +69,7 @@ std::shared_ptr<const KeyTable> gas_table() {
                       "volume to the power of the exponent is constant.",
        .keys = {
            {.name = "ambient_pressure",
-            .forms = {quantity(stress(), positive())},
+            .forms = {quantity(pressure(), positive())},
             .example = "101.325 kPa",
             .description = "Absolute ambient pressure, also the filling pressure at rest. Default: "
                            "the `ambient_pressure` of the chamber."},
@@ -91,7 +91,7 @@ std::shared_ptr<const KeyTable> liquid_table() {
       {.name = "liquid of a chamber",
        .description = "A nearly incompressible filling.",
        .keys = {{.name = "bulk_modulus",
-                 .forms = {quantity(stress(), positive())},
+                 .forms = {quantity(elastic_modulus(), positive())},
                  .example = "2.2 GPa",
                  .default_text = "2.2 GPa",
                  .description = "Bulk modulus of the liquid; water by default."},
@@ -137,7 +137,8 @@ std::shared_ptr<const KeyTable> helical_table() {
                        "A helical spring: stiffness G d^4/(8 n D^3) with wire diameter d, mean "
                        "diameter D and n coils.",
                    .keys = coil_keys()};
-  helical.keys.push_back(coil("shear_modulus", stress(), "79 GPa", "Shear modulus of the wire."));
+  helical.keys.push_back(
+      coil("shear_modulus", elastic_modulus(), "79 GPa", "Shear modulus of the wire."));
   return make_table(std::move(helical));
 }
 
@@ -157,9 +158,9 @@ std::shared_ptr<const KeyTable> wire_table() {
                     "temperature with hysteresis.",
                 .keys = coil_keys()};
   for (Key& key :
-       std::vector<Key>{positive_key("martensite_modulus", stress(), "14.1 GPa", "14.1 GPa",
-                                     "Shear modulus when cold."),
-                        positive_key("austenite_modulus", stress(), "24.7 GPa", "24.7 GPa",
+       std::vector<Key>{positive_key("martensite_modulus", elastic_modulus(), "14.1 GPa",
+                                     "14.1 GPa", "Shear modulus when cold."),
+                        positive_key("austenite_modulus", elastic_modulus(), "24.7 GPa", "24.7 GPa",
                                      "Shear modulus when hot."),
                         positive_key("heat_capacity", heat_capacity(), "0.1 J/K", "0.1 J/K",
                                      "Heat capacity of the wire."),
@@ -237,7 +238,7 @@ std::shared_ptr<const KeyTable> chamber_table() {
             .description = "Adds the stiffness of the loaded surface to every step; static "
                            "solutions always have it."},
            {.name = "ambient_pressure",
-            .forms = {quantity(stress(), positive())},
+            .forms = {quantity(pressure(), positive())},
             .example = "101.325 kPa",
             .default_text = "101.325 kPa",
             .description =
@@ -257,7 +258,7 @@ std::shared_ptr<const KeyTable> chamber_table() {
            outside_key()},
       .alternatives = {{{"gas", "liquid"}, false}}};
   DriveWords words{.kind = "chamber", .type = sim::ActuatorType::chamber};
-  words.effort_measure = stress();
+  words.effort_measure = pressure();
   words.effort_rate = pressure_rate();
   words.effort_range = any();
   words.effort_example = "50 kPa";

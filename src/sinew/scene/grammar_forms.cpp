@@ -8,8 +8,12 @@ Measure time() { return {dimension::kTime, "s"}; }
 Measure angle() { return {dimension::kNone, "rad"}; }
 Measure acceleration() { return {dimension::kAcceleration, "m/s^2"}; }
 Measure stress() { return {dimension::kPressure, "Pa"}; }
-Measure mass() { return {dimension::kMass, "kg"}; }
-Measure density() { return {dimension::kDensity, "kg/m^3"}; }
+Measure pressure() { return {dimension::kPressure, "Pa", Usual::pressure}; }
+Measure elastic_modulus() { return {dimension::kPressure, "Pa", Usual::modulus}; }
+Measure force_per_area() { return {dimension::kPressure, "Pa", Usual::force_per_area}; }
+Measure energy_per_volume() { return {dimension::kPressure, "Pa", Usual::energy_per_volume}; }
+Measure mass() { return {dimension::kMass, "kg", Usual::mass}; }
+Measure density() { return {dimension::kDensity, "kg/m^3", Usual::density}; }
 Measure inertia() { return {Dimension{2, 1, 0}, "kg m^2"}; }
 Measure force() { return {dimension::kForce, "N"}; }
 Measure frequency() { return {dimension::kFrequency, "1/s"}; }
@@ -24,7 +28,8 @@ Measure volume() { return {dimension::kVolume, "m^3"}; }
 Measure volume_rate() { return {dimension::kVolumeRate, "m^3/s"}; }
 Measure pressure_rate() { return {dimension::kPressureRate, "Pa/s"}; }
 Measure conductance() { return {dimension::kConductance, "m^3/(s Pa)"}; }
-Measure stiffness() { return {dimension::kStiffness, "N/m"}; }
+Measure stiffness() { return {dimension::kStiffness, "N/m", Usual::stiffness}; }
+Measure force_per_length() { return {dimension::kStiffness, "N/m", Usual::force_per_length}; }
 Measure damper() { return {dimension::kDamping, "N s/m"}; }
 Measure power() { return {dimension::kPower, "W"}; }
 Measure temperature() { return {dimension::kTemperature, "K"}; }
@@ -45,6 +50,7 @@ Form quantity(const Measure& measure, Range range) {
   Form form;
   form.shape = Shape::quantity;
   form.dimension = measure.dimension;
+  form.usual = measure.usual;
   form.unit = measure.unit;
   form.range = range;
   return form;

@@ -16,17 +16,22 @@ namespace sinew::scene::forms {
 
 inline constexpr int kAnyNumber = 1 << 20;
 
-/// A dimension with a customary unit.
+/// A dimension with a customary unit, and what has it if that is of usual size.
 struct Measure {
   Dimension dimension;
   const char* unit;
+  Usual usual = Usual::none;
 };
 Measure plain_number();
 Measure length();
 Measure time();
 Measure angle();
 Measure acceleration();
-Measure stress();
+Measure stress();  ///< of any size
+Measure pressure();
+Measure elastic_modulus();
+Measure force_per_area();
+Measure energy_per_volume();
 Measure mass();
 Measure density();
 Measure inertia();
@@ -44,6 +49,7 @@ Measure volume_rate();
 Measure pressure_rate();
 Measure conductance();
 Measure stiffness();
+Measure force_per_length();
 Measure damper();
 Measure power();
 Measure temperature();

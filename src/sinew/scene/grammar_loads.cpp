@@ -54,23 +54,24 @@ std::shared_ptr<const KeyTable> force_load_table() {
 }
 
 std::shared_ptr<const KeyTable> line_table() {
-  return load_table(
-      "line", "A force of fixed direction spread evenly along a line in the body.",
-      {{.name = "points",
-        .forms = {table(point_file_table()), list({vector(length())}, 2)},
-        .example = "[0 0 0 mm, 0 0 100 mm]",
-        .description = "The line, in the mesh at rest.",
-        .required = true},
-       vector_key("force_per_length", stiffness(), "0 0 -2 N/m", "Force per length at rest."),
-       outside_key(),
-       factor_key()});
+  return load_table("line", "A force of fixed direction spread evenly along a line in the body.",
+                    {{.name = "points",
+                      .forms = {table(point_file_table()), list({vector(length())}, 2)},
+                      .example = "[0 0 0 mm, 0 0 100 mm]",
+                      .description = "The line, in the mesh at rest.",
+                      .required = true},
+                     vector_key("force_per_length", force_per_length(), "0 0 -2 N/m",
+                                "Force per length at rest."),
+                     outside_key(),
+                     factor_key()});
 }
 
 std::shared_ptr<const KeyTable> traction_table() {
   return load_table(
       "traction", "A force of fixed direction spread evenly over faces.",
       {surface_key("The faces.", true),
-       vector_key("traction", stress(), "0 0 -100 Pa", "Force per area at rest."), factor_key()});
+       vector_key("traction", force_per_area(), "0 0 -100 Pa", "Force per area at rest."),
+       factor_key()});
 }
 
 std::shared_ptr<const KeyTable> acceleration_table() {
@@ -86,7 +87,7 @@ std::shared_ptr<const KeyTable> pressure_load_table() {
                     "its stiffness; static solutions use all of it.",
                     {surface_key("The faces; pressure pushes into the body.", true),
                      {.name = "pressure",
-                      .forms = {quantity(stress()), table(signal_table(stress(), "1 kPa"))},
+                      .forms = {quantity(pressure()), table(signal_table(pressure(), "1 kPa"))},
                       .example = "1 kPa",
                       .description = "Pressure, constant or over time.",
                       .required = true}});
@@ -166,7 +167,7 @@ Form membrane_form() {
                  .description = "Thickness.",
                  .required = true},
                 {.name = "young_modulus",
-                 .forms = {quantity(stress(), positive())},
+                 .forms = {quantity(elastic_modulus(), positive())},
                  .example = "2 GPa",
                  .description = "Young's modulus.",
                  .required = true},

@@ -21,7 +21,7 @@ Key modulus(const char* name, const char* example, const char* description, bool
             bool any_sign = false) {
   const Range range = any_sign ? any() : material_range(0.0);
   return {.name = name,
-          .forms = {quantity(stress(), range)},
+          .forms = {quantity(elastic_modulus(), range)},
           .example = example,
           .description = description,
           .required = required};
@@ -71,7 +71,7 @@ std::shared_ptr<const KeyTable> softening_table() {
                  .description = "Maximum softening: the fraction 1 - 1/r of the stress remains.",
                  .required = true},
                 {.name = "m",
-                 .forms = {quantity(stress(), non_negative())},
+                 .forms = {quantity(energy_per_volume(), non_negative())},
                  .example = "500 Pa",
                  .description = "Energy scale of the drop below Wm, J/m^3.",
                  .required = true},
@@ -138,7 +138,7 @@ Choice small_strain(const char* word, const char* description) {
 
 std::vector<Key> ogden_keys() {
   constexpr int kMaxTerms = 6;
-  Form moduli = quantity(stress(), any());
+  Form moduli = quantity(elastic_modulus(), any());
   moduli.max_count = kMaxTerms;
   return {
       {.name = "mu",

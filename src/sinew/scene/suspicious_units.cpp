@@ -19,7 +19,7 @@ namespace {
 // Sections whose numbers are noise, tolerances and settings of solvers.
 constexpr std::array kOther = {"sensors", "estimators", "probes", "solver", "record"};
 
-// The largest number of a dimension in a map.
+// The largest number of a quantity in a map.
 struct Largest {
   double value = 0.0;  // SI
   bool bare = false;   // written without a unit
@@ -78,7 +78,7 @@ class Finder {
   }
 
   static void take(const Node& node, const Form& form, Group& group) {
-    const UsualRange* range = usual_range(form.dimension);
+    const UsualRange* range = usual_range(form.usual);
     if (range == nullptr) return;
     double largest = 0.0;
     for (const double value : read_numbers(node, form))
@@ -92,7 +92,7 @@ class Finder {
     const Key* unit = table.find("unit");
     const Node* file = map.find("file");
     if (unit == nullptr || file == nullptr || context_.files == Files::ignore) return;
-    const UsualRange* range = usual_range(unit->forms.front().dimension);
+    const UsualRange* range = usual_range(unit->forms.front().usual);
     if (range == nullptr) return;
     const TimeTable values = read_time_table(Fields(map, form), 1, context_);
     if (values.values.size() == 0) return;

@@ -10,10 +10,11 @@
 
 namespace sinew::scene {
 
-/// Finds pressures, moduli, densities, stiffnesses and masses that are written without a unit, are
-/// hence in SI units, and are far from those of robots: `pressure: 30` is 30 Pa. Of the numbers of
-/// one dimension in a map, such as the ends of a ramp or the moduli of a law, the largest counts.
-/// Files of signals count with their values, unless their headings or the scene have units.
+/// Finds numbers whose size is usual (core/usual_range.hpp), such as pressures, that are written
+/// without a unit, are hence in SI units, and are far from those of robots: `pressure: 30` is 30
+/// Pa. Of the numbers of one quantity in a map, such as the ends of a ramp or the moduli of a law,
+/// the largest counts. Files of signals count with their values, unless their headings or the scene
+/// have units.
 /// @param tree of a scene that check_scene() accepted. @param context of its files.
 std::vector<Notice> suspicious_units(const Node& tree, const ReadContext& context);
 
