@@ -9,6 +9,7 @@
 #include "sinew/constraint/configuration.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/row_efforts.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 
@@ -80,7 +81,8 @@ void tell(const Actuator& self, const char* what, const py::object& value) {
 
 double effort(const Actuator& self, const char* what) {
   if (std::string_view(model(self).words().effort.name) != what) fail_type(self, what);
-  return read(self, [](const sim::ActuatorState& state) { return state.effort; });
+  const Session::Use use(*self.session);
+  return sim::end_effort(self.session->simulation(), model(self).row);
 }
 
 double motion(const Actuator& self, const char* what) {
@@ -267,7 +269,7 @@ void bind_measures(py::class_<Actuator>& type) {
           [](const Actuator& self) {
             const constraint::Cable& found = cable(self, "tensions");
             const Session::Use use(*self.session);
-            const auto values = found.tensions(self.session->simulation().efforts());
+            const auto values = found.tensions(sim::end_efforts(self.session->simulation()));
             return read_only(Array(static_cast<py::ssize_t>(values.size()), values.data()));
           },
           "(n - 1,) ndarray: tension of every segment of a cable, starting at the pull point (N). "

@@ -226,6 +226,7 @@ void FemStep::solve(std::span<const double> right, std::span<double> result) {
 
 void FemStep::propose_motion(std::span<const double> motion) {
   std::ranges::copy(motion, motion_.data());
+  content_ = Content::other;  // the factor contains another motion
   leave_from_here();
 }
 
@@ -287,6 +288,18 @@ mechanics::MotionReport FemStep::apply_motion(double scale) {
   report.finite = std::isfinite(sum) && sum < blow_up_;
   elements_.moved();
   return report;
+}
+
+void FemStep::find_acceleration(const mechanics::StepWeights& weights,
+                                std::span<double> acceleration) {
+  state_.combine(weights.acceleration, imbalance_);
+  std::copy_n(imbalance_.data(), imbalance_.size(), acceleration.data());
+}
+
+void FemStep::apply_mass(std::span<const double> motion, std::span<double> result) {
+  state_.model.elements().apply_mass(motion, result);
+  for (const std::int32_t held : state_.model.elements().held())
+    result[static_cast<std::size_t>(held)] = 0.0;
 }
 
 mechanics::StepEnd FemStep::end_step(const mechanics::StepWeights& weights) {

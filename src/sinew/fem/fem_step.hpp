@@ -50,6 +50,9 @@ class FemStep : public mechanics::StepSystem {
   mechanics::MotionReport apply_motion(double scale) override;
   mechanics::SmallestVolume smallest_volume() override { return elements_.smallest_volume(); }
   mechanics::LargestStretch largest_stretch() override { return elements_.largest_stretch(); }
+  void find_acceleration(const mechanics::StepWeights& weights,
+                         std::span<double> acceleration) override;
+  void apply_mass(std::span<const double> motion, std::span<double> result) override;
   mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;
   bool keeps_linearisation() const override;
   void release() override { elements_.release(); }

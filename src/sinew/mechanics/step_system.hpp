@@ -183,6 +183,11 @@ class StepSystem {
   /// The largest stretch in the current state, or an upper bound of it that is at most
   /// kSaneStretch.
   virtual LargestStretch largest_stretch() { return {}; }
+  /// The acceleration at the end of the step. Call before end_step(). @param weights of the step.
+  /// @param acceleration (size(),) m/s^2, overwritten.
+  virtual void find_acceleration(const StepWeights& weights, std::span<double> acceleration) = 0;
+  /// M times a motion, with M at the current state. @param motion,result (size(),).
+  virtual void apply_mass(std::span<const double> motion, std::span<double> result) = 0;
   virtual StepEnd end_step(const StepWeights& weights) = 0;
   /// Whether a linearisation at the end of a step with iterations serves the next step, so that it
   /// costs nothing to evaluate the matrix there.

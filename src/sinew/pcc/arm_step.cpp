@@ -91,6 +91,18 @@ mechanics::MotionReport ArmStep::apply_motion(double scale) {
   return report;
 }
 
+void ArmStep::find_acceleration(const mechanics::StepWeights& weights,
+                                std::span<double> acceleration) {
+  state_.combine(weights.acceleration, acceleration_);
+  std::ranges::copy(acceleration_, acceleration.data());
+}
+
+void ArmStep::apply_mass(std::span<const double> motion, std::span<double> result) {
+  const auto count = static_cast<Eigen::Index>(size());
+  Eigen::Map<VectorX>(result.data(), count).noalias() =
+      equations_.mass_matrix(state_.q) * Eigen::Map<const VectorX>(motion.data(), count);
+}
+
 mechanics::StepEnd ArmStep::end_step(const mechanics::StepWeights& weights) {
   pose_.moved();
   mechanics::StepEnd end;

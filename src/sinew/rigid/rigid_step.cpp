@@ -176,6 +176,23 @@ mechanics::MotionReport RigidStep::apply_motion(double scale) {
   return report;
 }
 
+void RigidStep::find_acceleration(const mechanics::StepWeights& weights,
+                                  std::span<double> acceleration) {
+  if (size() == 0) return;
+  Eigen::Map<Vector6>(acceleration.data()) = state_.combine(weights.acceleration);
+}
+
+void RigidStep::apply_mass(std::span<const double> motion, std::span<double> result) {
+  if (size() == 0) return;
+  const RigidBodyModel& model = state_.model;
+  const Matrix3 turned = state_.pose.rotation.toRotationMatrix();
+  const Eigen::Map<const Vector6> from(motion.data());
+  Eigen::Map<Vector6> to(result.data());
+  to.head<3>() = model.mass() * from.head<3>();
+  to.tail<3>() = turned * model.inertia() * turned.transpose() * from.tail<3>() /
+                 (model.turning_radius() * model.turning_radius());
+}
+
 mechanics::StepEnd RigidStep::end_step(const mechanics::StepWeights& weights) {
   using Jump = mechanics::StepWeights::Jump;
   mechanics::StepEnd end;

@@ -28,6 +28,9 @@ class RigidStep : public mechanics::DenseStep {
   double rounding_floor() const override;
   double proposed_move() const override;
   mechanics::MotionReport apply_motion(double scale) override;
+  void find_acceleration(const mechanics::StepWeights& weights,
+                         std::span<double> acceleration) override;
+  void apply_mass(std::span<const double> motion, std::span<double> result) override;
   mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;
   void scale_motion(double factor) override;
   void add_velocity(std::span<const double> change) override;

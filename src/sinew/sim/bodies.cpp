@@ -224,6 +224,22 @@ void Bodies::release() {
   for (auto* system : systems_) system->release();
 }
 
+void Bodies::find_acceleration(const mechanics::StepWeights& weights, VectorX& acceleration) {
+  std::span<double> to(acceleration.data(), static_cast<std::size_t>(acceleration.size()));
+  for_each_part(systems_, to, [&](auto& system, std::span<double> part) {
+    system.find_acceleration(weights, part);
+  });
+}
+
+void Bodies::apply_mass(const VectorX& motion, VectorX& result) {
+  result.resize(motion.size());
+  std::span<double> to(result.data(), static_cast<std::size_t>(result.size()));
+  for_each_part(systems_, numbers(motion), [&](auto& system, std::span<const double> part) {
+    system.apply_mass(part, to.first(part.size()));
+    to = to.subspan(part.size());
+  });
+}
+
 double Bodies::end_step(const mechanics::StepWeights& weights,
                         const std::optional<mechanics::StepWeights>& afresh) {
   double worst = 0.0;

@@ -85,6 +85,9 @@ class Bodies {
   const std::vector<char>& afresh() const { return afresh_; }
   /// Whether the integrator of any body starts afresh.
   bool any_afresh() const;
+  /// See mechanics::StepSystem; (all bodies' size(),).
+  void find_acceleration(const mechanics::StepWeights& weights, VectorX& acceleration);
+  void apply_mass(const VectorX& motion, VectorX& result);
   /// The largest error estimate of any body, m. @param weights of the step.
   /// @param afresh those of the bodies whose integrator started afresh.
   double end_step(const mechanics::StepWeights& weights,

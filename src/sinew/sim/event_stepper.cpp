@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/core/error.hpp"
+#include "sinew/sim/end_efforts.hpp"
 #include "sinew/sim/row_motions.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/step_failure.hpp"
@@ -124,6 +125,7 @@ double EventStepper::advance(double time, double left) {
     const double free = points_.free_length(length, run_.report.substeps);
     if (free >= length && !points_.found_rest()) {
       hold(time + length, length);
+      if (carried_on_) find_end_efforts(length);
       return length;
     }
     ++run_.report.retries;
@@ -161,6 +163,11 @@ void EventStepper::hold(double time, double length) {
   if (!joins && !drifts && commanded.empty()) return;
   impact_.hold(commanded, length);
   run_.finish_step();
+}
+
+void EventStepper::find_end_efforts(double length) {
+  run_.world.end_efforts().follow_midpoint(run_.world, run_.effort, start_.efforts, length,
+                                           start_.last_step);
 }
 
 // Points with negligible rebounds stay closed: the impact is repeated as inelastic.

@@ -52,6 +52,7 @@ class EventStepper {
   bool turns_too_far(double length);
   void rest(double time);
   void hold(double time, double length);
+  void find_end_efforts(double length);
   [[noreturn]] void give_up(const char* what);
 
   Run& run_;

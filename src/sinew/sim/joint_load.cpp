@@ -1,11 +1,14 @@
 #include "sinew/sim/joint_load.hpp"
 
+#include <array>
+
 #include <Eigen/Geometry>
 
 #include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/joint.hpp"
 #include "sinew/constraint/tie.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/row_efforts.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/world.hpp"
 
@@ -20,19 +23,22 @@ JointLoad load_of(const Simulation& simulation, const constraint::Tie& tie) {
   for (const auto& pair : tie.pairs()) load.centre += configuration.position(pair.first);
   load.centre /= static_cast<double>(tie.pairs().size());
   for (std::size_t k = 0; k < tie.pairs().size(); ++k) {
-    const Eigen::Map<const Vector3> force(simulation.efforts().data() + tie.row(k));
+    const Vector3 force{end_effort(simulation, tie.row(k)), end_effort(simulation, tie.row(k) + 1),
+                        end_effort(simulation, tie.row(k) + 2)};
     load.force += force;
-    load.moment +=
-        (configuration.position(tie.pairs()[k].first) - load.centre).cross(Vector3(force));
+    load.moment += (configuration.position(tie.pairs()[k].first) - load.centre).cross(force);
   }
   return load;
 }
 
 JointLoad load_of(const Simulation& simulation, const constraint::Joint& joint) {
   const constraint::Configuration& configuration = simulation.configuration();
-  const auto own = joint.load(
-      configuration, simulation.efforts().subspan(static_cast<std::size_t>(joint.first_row()),
-                                                  static_cast<std::size_t>(joint.row_count())));
+  std::array<double, 6> effort{};
+  const auto held = std::span(effort).first(static_cast<std::size_t>(joint.row_count()));
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    held[k] = end_effort(simulation, joint.first_row() + static_cast<int>(k));
+  }
+  const auto own = joint.load(configuration, held);
   const constraint::JointFrames frames = joint.place().frames(configuration);
   return {frames.origin[1], own.force, own.moment, joint.gap(configuration)};
 }
@@ -40,8 +46,7 @@ JointLoad load_of(const Simulation& simulation, const constraint::Joint& joint) 
 // 0 without a constraint.
 double effort_of(const Simulation& simulation, int constraint) {
   if (constraint < 0) return 0.0;
-  const int row = simulation.model().constraint(constraint).first_row();
-  return simulation.efforts()[static_cast<std::size_t>(row)];
+  return end_effort(simulation, simulation.model().constraint(constraint).first_row());
 }
 
 }  // namespace

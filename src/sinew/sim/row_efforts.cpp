@@ -4,13 +4,28 @@
 
 #include "sinew/constraint/constraint.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/end_efforts.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/world.hpp"
 
 namespace sinew::sim {
 
+double end_effort(const Simulation& simulation, int row) {
+  return simulation.efforts()[static_cast<std::size_t>(row)] +
+         simulation.world().end_efforts().change(row);
+}
+
+std::vector<double> end_efforts(const Simulation& simulation) {
+  std::vector<double> all(simulation.efforts().begin(), simulation.efforts().end());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    all[k] += simulation.world().end_efforts().change(static_cast<int>(k));
+  }
+  return all;
+}
+
 RowEfforts split_efforts(const Simulation& simulation) {
-  const std::span<const double> all = simulation.efforts();
+  const std::vector<double> all = end_efforts(simulation);
   const std::vector<double> none(all.size(), 0.0);
   RowEfforts result{none, none};
   const Model& model = simulation.model();

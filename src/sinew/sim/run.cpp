@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "sinew/sim/commander.hpp"
+#include "sinew/sim/end_efforts.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/step/controller.hpp"
 
@@ -63,6 +64,7 @@ std::optional<mechanics::StepWeights> Run::weights_afresh(double time_step) cons
 
 void Run::forget_history() {
   last_step = 0.0;
+  world.end_efforts().clear();
   std::ranges::fill(world.bodies().afresh(), 0);
 }
 
@@ -123,6 +125,7 @@ void Run::restart() {
   last_step = next_step = 0.0;
   correction = {};
   kept_factors = {};
+  world.end_efforts().clear();
   steps = 0;
   finish_step();
   if (step::WithMemory* one = attached()) one->forget();

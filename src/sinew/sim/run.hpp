@@ -92,7 +92,7 @@ struct Run {
   Commander* commander = nullptr;          ///< attached; gives commands before steps
   Actuation actuation;
   Surroundings surroundings;
-  std::vector<double> effort;  ///< (rows,) N or Pa
+  std::vector<double> effort;  ///< (rows,) N or Pa, of the equation of the last step
   WorkLedger ledger;
   std::int64_t steps = 0;  ///< since the start
   double last_step = 0.0;  ///< s, length of the last substep; 0: the integrator starts afresh

@@ -10,6 +10,7 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/end_efforts.hpp"
 #include "sinew/sim/inputs.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/step/controller.hpp"
@@ -41,6 +42,11 @@ void check_state(const Run& run, const State& state) {
               state.frames.size());
   if (!state.afresh.empty()) {
     check_count("restarts of the state", bodies.size(), state.afresh.size());
+  }
+  const std::size_t coordinates = run.world.bodies().size();
+  if (!EndEfforts::is_size(state.end_efforts.size(), run.effort.size(), coordinates)) {
+    check_count("efforts at the end of the state's step", 1 + 2 * run.effort.size() + coordinates,
+                state.end_efforts.size());
   }
   check_count("joints of the state", run.world.joints().values().size(), state.joints.size());
 }
@@ -80,6 +86,7 @@ void Run::keep(State& state) const {
   if (world.bodies().any_afresh()) state.afresh.assign(afresh.begin(), afresh.end());
   correction.save(state.correction);
   kept_factors.save(state.kept_factors);
+  world.end_efforts().save(state.end_efforts);
   state.next_step = next_step;
   state.steps = steps;
   sensors.save(state.sensors);
@@ -107,6 +114,7 @@ void Run::restore(const State& state) {
   std::ranges::transform(state.afresh, afresh.begin(), [](double on) { return on != 0.0; });
   correction = MeasuredCorrection(state.correction);
   kept_factors = KeptFactors(state.kept_factors);
+  world.end_efforts().load(state.end_efforts, effort.size(), world.bodies().size());
   next_step = state.next_step;
   steps = state.steps;
   if (!sensors.load(state.sensors)) sensors.restart(*this);

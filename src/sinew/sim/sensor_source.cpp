@@ -7,6 +7,7 @@
 #include "sinew/core/rotation.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/sim/contact_reader.hpp"
+#include "sinew/sim/end_efforts.hpp"
 #include "sinew/sim/run.hpp"
 
 namespace sinew::sim {
@@ -104,7 +105,9 @@ void AccelerometerSource::read(const Run& run, std::span<const double> memory,
 
 void EffortSource::read(const Run& run, std::span<const double> /*memory*/,
                         std::span<double> values) const {
-  values[0] = factor_ * actuator_of(run, actuator_).effort;
+  const int row = run.model->actuators()[static_cast<std::size_t>(actuator_)].row;
+  values[0] =
+      factor_ * (run.effort[static_cast<std::size_t>(row)] + run.world.end_efforts().change(row));
 }
 
 void MotionSource::read(const Run& run, std::span<const double> /*memory*/,

@@ -21,6 +21,7 @@
 #include "sinew/sim/joint_load.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/observables.hpp"
+#include "sinew/sim/row_efforts.hpp"
 #include "sinew/sim/sensor_source.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
@@ -134,10 +135,10 @@ void add_actuators(Observables& list) {
     add(actuator.words().motion, "", role(CommandKind::motion));
     const std::vector<CommandKind> kinds = command_kinds(actuator);
     for (const CommandKind kind : kinds) add(actuator.quantity(kind), "_command", role(kind));
-    list.add(std::move(parts), [&simulation, kinds, i](std::span<double> all) {
+    list.add(std::move(parts), [&simulation, kinds, i, row = actuator.row](std::span<double> all) {
       Numbers to(all);
       const auto index = static_cast<int>(i);
-      to.put(simulation.actuator(index).effort);
+      to.put(end_effort(simulation, row));
       to.put(simulation.actuator(index).motion);
       for (const CommandKind kind : kinds) to.put(commanded(simulation, index, kind));
     });

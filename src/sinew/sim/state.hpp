@@ -26,10 +26,13 @@ struct EnergyLedger {
   double through = 0.0;  ///< J, sum of the sizes of all work in the present window
   double settled = 0.0;  ///< J, what was gained before the present window
   double gained = 0.0;   ///< J, excess of gain over what the integrator may cause, one step ago
+  /// J: dissipation by damping and drag since then that `dissipated` counts beyond that of the
+  /// damping force at the end of each step in its motion, see WorkLedger::gained().
+  double doubtful = 0.0;
 
   double put_in() const { return actuators + outside - dissipated; }
   /// Restarts the monitoring with the next step.
-  void restart() { begun = start = largest = through = settled = gained = 0.0; }
+  void restart() { begun = start = largest = through = settled = gained = doubtful = 0.0; }
   bool operator==(const EnergyLedger&) const = default;
 };
 
@@ -52,6 +55,7 @@ struct State {
   std::vector<double> afresh;
   std::vector<double> correction;    ///< see MeasuredCorrection; empty: none
   std::vector<double> kept_factors;  ///< see KeptFactors; empty: nothing is known
+  std::vector<double> end_efforts;   ///< see EndEfforts; empty: those of the step's equation
   EnergyLedger ledger;
   double volume_ratio = 1.0;  ///< min det F
   double failed = 0.0;        ///< 1 if it descends from a failed step, see is_failure()
@@ -88,6 +92,7 @@ struct State {
     visitor("energy through", state.ledger.through);
     visitor("energy settled", state.ledger.settled);
     visitor("energy gained", state.ledger.gained);
+    visitor("doubtful dissipation", state.ledger.doubtful);
     visitor("volume ratio", state.volume_ratio);
     visitor("residual", state.residual);
     visitor("last step", state.last_step);
@@ -98,6 +103,7 @@ struct State {
     visitor("afresh", state.afresh);
     visitor("correction", state.correction);
     visitor("kept factors", state.kept_factors);
+    visitor("end efforts", state.end_efforts);
   }
 
   /// Hash of the bits of all numbers and the count of steps: equal states have equal hashes.

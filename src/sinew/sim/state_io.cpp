@@ -29,7 +29,7 @@ constexpr std::string_view kMagic = "SINEWST\n";
 constexpr std::size_t kWord = 8;
 
 // What older versions lack, and the first version with it.
-constexpr std::array<std::pair<std::string_view, std::uint32_t>, 13> kIntroduced = {
+constexpr std::array<std::pair<std::string_view, std::uint32_t>, 15> kIntroduced = {
     {{"joints", 7},
      {"points", 8},
      {"sensors", 9},
@@ -42,7 +42,9 @@ constexpr std::array<std::pair<std::string_view, std::uint32_t>, 13> kIntroduced
      {"failure", 11},
      {"afresh", 11},
      {"correction", 12},
-     {"kept factors", 13}}};
+     {"kept factors", 13},
+     {"end efforts", 14},
+     {"doubtful dissipation", 14}}};
 
 bool lacks(std::uint32_t version, std::string_view part) {
   return std::ranges::any_of(kIntroduced, [&](const auto& introduced) {

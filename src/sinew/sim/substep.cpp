@@ -6,8 +6,10 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/sim/connected_bodies.hpp"
+#include "sinew/sim/end_efforts.hpp"
 #include "sinew/sim/linear_step.hpp"
 #include "sinew/sim/newton_step.hpp"
+#include "sinew/sim/row_motions.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/step_failure.hpp"
 #include "sinew/sim/step_verdict.hpp"
@@ -22,6 +24,23 @@ namespace {
 constexpr double kRounding = 1e-12;
 // A controller chooses at most this often again after its choice has failed.
 constexpr int kMostFailures = 5;
+// A held motion is slowed, not merely accelerated, if it loses more than this part of its velocity.
+constexpr double kSlows = 0.1;
+
+// Whether an actuator or a limit of a joint may stop a motion that it did not hold before.
+bool may_catch(const step::ActuatorBlock& block) {
+  if (block.row < 0 || block.owned || block.drive != nullptr) return false;
+  if (block.kind == step::CommandKind::motion) {
+    return std::isfinite(block.effort_min) || std::isfinite(block.effort_max);
+  }
+  return std::isfinite(block.motion_min) || std::isfinite(block.motion_max);
+}
+
+// Whether it does not hold its motion: a slack cable, a stalled motor, a limit that is not reached.
+bool is_idle(const step::ActuatorBlock& block, double effort) {
+  if (block.kind != step::CommandKind::motion) return effort == block.value;
+  return effort <= block.effort_min || effort >= block.effort_max;
+}
 
 // Whether a smaller motion may not fail.
 bool is_too_far(const Error& failure) {
@@ -115,15 +134,56 @@ void Substep::solve_once(double time_step) {
 }
 
 bool Substep::may_start_afresh() const {
-  return !run_.model->contacts().empty() &&
-         mechanics::history_count(run_.model->step().integrator) > 0;
+  if (mechanics::history_count(run_.model->step().integrator) == 0) return false;
+  return !run_.model->contacts().empty() ||
+         std::ranges::any_of(run_.world.problem().actuators, &may_catch);
 }
 
 void Substep::mark_stopped(double time_step) {
   const bool alpha = run_.model->step().integrator == mechanics::Integrator::generalized_alpha;
   run_.world.mark_turning_back(time_step, marks_);
   if (alpha) run_.world.contacts().mark_stopped(run_.effort, marks_);
+  mark_caught(time_step);
   spread_marks();
+}
+
+// Marks bodies that a cable that becomes taut, or a limit of a joint, stops in this part. Friction
+// of joints, a commanded motion after the actuators, brings them to rest without a jump.
+void Substep::mark_caught(double time_step) {
+  const std::vector<step::ActuatorBlock>& blocks = run_.world.problem().actuators;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const step::ActuatorBlock& block = blocks[i];
+    const bool brakes =
+        i >= run_.model->actuators().size() && block.kind == step::CommandKind::motion;
+    if (brakes || !may_catch(block)) continue;
+    const int row = run_.world.numbering().model_row_of(block.row);
+    const auto k = static_cast<std::size_t>(row);
+    if (is_idle(block, run_.effort[k])) continue;
+    // What starts from rest stops nothing.
+    const bool moves = run_.last_step > 0.0 || row_velocity(run_.world, row) != 0.0;
+    const bool catches = moves && is_idle(block, run_.before.efforts[k]);
+    if (catches || still_stops(i, row, time_step)) mark_row(row);
+  }
+}
+
+// A stop takes two steps: in the first one, the motion ends at the limit, and its velocity d/h is
+// what is left of the way; the second one takes that away. Whether the present step is of backward
+// Euler, and slows a motion that is held.
+bool Substep::still_stops(std::size_t block, int row, double time_step) const {
+  if (run_.last_step > 0.0 && !run_.world.bodies().any_afresh()) return false;
+  const bool commanded = block < run_.model->actuators().size();
+  const double way = commanded ? run_.world.delta()[row] - run_.before.motions[block] : 0.0;
+  const double before = row_velocity(run_.world, row), now = way / time_step;
+  return std::abs(before - now) > kSlows * std::abs(before) && std::abs(now) < std::abs(before);
+}
+
+void Substep::mark_row(int row) {
+  const mechanics::RowPattern& pattern = run_.model->rows();
+  const auto k = static_cast<std::size_t>(row);
+  for (std::int32_t e = pattern.row_start[k]; e < pattern.row_start[k + 1]; ++e) {
+    const std::int32_t body = pattern.site[static_cast<std::size_t>(e)].body;
+    if (body >= 0) marks_[static_cast<std::size_t>(body)] = 1;
+  }
 }
 
 // Whether a body is marked whose formula reaches back in this part.
@@ -144,9 +204,10 @@ void Substep::spread_marks() {
 // Generalized-alpha uses the acceleration of the previous step. At a point that is stopped, this is
 // an impulse instead, and the point would rebound with twice the energy. Such a step is repeated
 // with backward Euler, v = d/h, for the bodies that the impulse reaches, and so is the next one,
-// whose acceleration is the first that can be used. A step of any multistep formula is also
-// repeated if a point with kinetic friction comes to rest: its velocity would reverse before static
-// friction can hold it.
+// whose acceleration is the first that can be used. The same holds for any multistep formula where
+// a cable becomes taut or a joint reaches its limit: in BDF2, v = (3 d - d_before)/(2 h) is a
+// rebound. A step of any multistep formula is also repeated if a point with kinetic friction comes
+// to rest: its velocity would reverse before static friction can hold it.
 void Substep::solve_afresh(double time_step) {
   run_.go_back();
   std::vector<char>& afresh = run_.world.bodies().afresh();
@@ -229,12 +290,24 @@ void Substep::repeat_afresh(double time_step) {
 
 double Substep::end_once(double time_step) {
   const Quadrature quadrature = run_.quadrature();
+  find_end_efforts(time_step);
   const double error =
       run_.world.bodies().end_step(run_.step_weights(time_step), run_.weights_afresh(time_step));
   run_.last_step = time_step;
   if (may_start_afresh()) start_afresh();
   count(quadrature, time_step);
   return error;
+}
+
+// Of the formulas that Substep ends, only backward Euler has other efforts at the end of a step.
+// The step in which a multistep formula starts is one, too, but has no other before it.
+void Substep::find_end_efforts(double time_step) {
+  const mechanics::Integrator integrator = run_.model->step().integrator;
+  const bool euler = integrator == mechanics::Integrator::backward_euler ||
+                     integrator == mechanics::Integrator::event_driven;
+  if (!euler) return run_.world.end_efforts().clear();
+  run_.world.end_efforts().follow_backward_euler(run_.world, run_.effort,
+                                                 run_.step_weights(time_step), run_.last_step);
 }
 
 // After a jump of its velocity or friction, a multistep formula restarts: a formula that reaches

@@ -2,6 +2,7 @@
 /// One solution of a step's equation, over the whole time step or a part of it.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "sinew/sim/work_ledger.hpp"
@@ -49,9 +50,13 @@ class Substep {
   void begin_again(double time_step);
   bool may_start_afresh() const;
   void mark_stopped(double time_step);
+  void mark_caught(double time_step);
+  bool still_stops(std::size_t block, int row, double time_step) const;
+  void mark_row(int row);
   bool marks_others() const;
   void spread_marks();
   double end_once(double time_step);
+  void find_end_efforts(double time_step);
   void start_afresh();
   void end_zones();
   bool lands() const;

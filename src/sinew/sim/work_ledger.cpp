@@ -87,7 +87,9 @@ void WorkLedger::count_bodies(const World& world, const Step& step) {
   }
   if (step.dynamic && step.quadrature == Quadrature::trapezoid) {
     outside = 0.5 * step.length * (sums_.power + power);
+    const double by_force = damped;
     damped = 0.5 * step.length * (sums_.damping + damping);
+    sums_.doubtful += damped - by_force;
   }
   sums_.outside += outside;
   sums_.dissipated += damped;
@@ -142,7 +144,8 @@ void WorkLedger::open(const mechanics::Energies& now) {
 
 double WorkLedger::gained(const mechanics::Energies& now) {
   sums_.largest = std::max(sums_.largest, now.strain + now.kinetic);
-  return now.total() - sums_.put_in() - sums_.start;
+  const double gain = now.total() - sums_.put_in() - sums_.start;
+  return std::min(gain, gain - sums_.doubtful);
 }
 
 bool WorkLedger::is_excessive(double gain, double nothing) {

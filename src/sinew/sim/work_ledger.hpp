@@ -66,7 +66,12 @@ class WorkLedger {
   void restart() { sums_.restart(); }
   /// The same after the bodies were put to rest.
   void rest();
-  /// J: growth of the stored energy beyond the work done since open().
+  /// J: growth of the stored energy beyond the work done since open(), with the smaller of two
+  /// dissipations by damping C. Where velocities are smooth, the trapezoidal rule
+  ///   h/2 (v_0.C v_0 + v_1.C v_1)   and   C v_1.d
+  /// differ by h/4 (v_1.C v_1 - v_0.C v_0) and terms of third order, which do not add up. After a
+  /// jump of an effort or a command, the velocities of a multistep formula change sign from step to
+  /// step, v_1 is not d/h, and the former dissipates energy that the robot never had.
   double gained(const mechanics::Energies& now);
   /// Whether a gain exceeds what the integrator may cause: a fraction of the energy that was stored
   /// or went through. Work adds up for ever in a driven motion, and so do the integrator's errors;

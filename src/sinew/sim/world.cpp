@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sinew/constraint/cable.hpp"
+#include "sinew/sim/end_efforts.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/stage_clock.hpp"
 #include "sinew/sim/standing_blocks.hpp"
@@ -31,11 +32,14 @@ World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
       joints_(*model_),
       problem_(standing_blocks(*model_, joints_.block_count())),
       contacts_(*model_, configuration_, bodies_.systems(), bodies_.afresh(), rows_, pool),
-      stiffness_(*model_, configuration_, bodies_.systems(), problem_) {
+      stiffness_(*model_, configuration_, bodies_.systems(), problem_),
+      end_efforts_(std::make_unique<EndEfforts>()) {
   number_rows();
   contacts_.planes().find_points(contacts_.reach(0.0), 0.0, {});
   place_contacts(0.0, 0.0);
 }
+
+World::~World() = default;
 
 void World::place_contacts(double from, double to) {
   contacts_.planes().place(from, to);

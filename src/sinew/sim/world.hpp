@@ -26,6 +26,7 @@ class StepSolver;
 
 namespace sinew::sim {
 
+class EndEfforts;
 class StageClock;
 
 /// Bodies, rows and step problem of one simulation, below the level of commands and laws. Allocates
@@ -34,6 +35,7 @@ class World {
  public:
   /// @param model shared. @param pool must outlive the world.
   World(std::shared_ptr<const Model> model, ThreadPool& pool);
+  ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
@@ -142,6 +144,10 @@ class World {
   Bodies& bodies() { return bodies_; }
   const Bodies& bodies() const { return bodies_; }
 
+  /// What efforts at the end of the last step differ from those of its equation.
+  EndEfforts& end_efforts() { return *end_efforts_; }
+  const EndEfforts& end_efforts() const { return *end_efforts_; }
+
   /// Returns all bodies to rest and surfaces to their initial poses, as after construction.
   void restart();
   std::size_t bytes() const;
@@ -171,6 +177,7 @@ class World {
   std::vector<double> effort_before_;      // (rows,) N, of the last step or iteration
   linalg::AlignedNumbers problem_effort_;  // (rows of the problem,) N, of the last solution
   linalg::AlignedNumbers scratch_;         // (rows of the problem,)
+  std::unique_ptr<EndEfforts> end_efforts_;
   // For correction():
   VectorX held_free_;
   std::vector<double> trial_;  // (rows,) N
