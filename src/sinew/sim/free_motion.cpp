@@ -19,8 +19,11 @@ namespace sinew::sim {
 namespace {
 
 // sigma M relative to the stiffness of the elements: above rounding, and below the softest bending
-// of slender bodies, (h/L)^4 of it.
-constexpr double kShift = 1e-11;
+// of slender bodies, (h/L)^4 of it. Also relative to the loads over the size of the robot, which
+// are the stiffness of bodies without elements: a motion of this size that is less stiff changes no
+// force that matters, and a smaller inertia would exceed the compliance of held rows so far that
+// they could not be told from redundant ones.
+constexpr double kShift = 1e-11, kShiftOfLoads = 1e-7;
 // A sigma that is lost in rounding makes the shifted matrix singular, too.
 constexpr double kLargerShift = 100.0;
 constexpr int kShiftTries = 4;
@@ -74,10 +77,10 @@ double condense_nearly_at_rest(StaticSearch& search) {
   search.begin();
   search.linearise();
   bodies.residual(run.effort);
-  const double stiffness = std::max(bodies.rounding_floor() / kEpsilon, bodies.force_scale()) /
-                           (run.model->size() * std::sqrt(static_cast<double>(size)));
-  if (!(mass > 0.0) || !(stiffness > 0.0)) return 0.0;
-  double sigma = kShift * stiffness / mass;
+  const double forces =
+      std::max(kShift * bodies.rounding_floor() / kEpsilon, kShiftOfLoads * bodies.force_scale());
+  if (!(mass > 0.0) || !(forces > 0.0)) return 0.0;
+  double sigma = forces / (run.model->size() * std::sqrt(static_cast<double>(size)) * mass);
   for (int tries = 0; tries < kShiftTries; ++tries, sigma *= kLargerShift) {
     search.begin();
     search.linearise(search.overdamped(sigma));

@@ -14,6 +14,7 @@ namespace {
 // Steps follow the motion approximately; near its end, Newton's method takes over.
 constexpr double kRelaxationTolerance = 1e-4;
 constexpr int kMaxIterationsOfStep = 12;
+constexpr int kStandingSteps = 2, kStandingTries = 4;
 constexpr int kFewIterations = 4;
 constexpr int kManyIterations = 8;
 constexpr double kLighter = 0.25;  // factor of sigma after an easy step
@@ -85,6 +86,24 @@ bool OverdampedMotion::relax_from_here() {
   return relax(sigma, 0.0) == End::arrived;
 }
 
+// The first step closes gaps that are open by rounding, and the second begins without them.
+bool OverdampedMotion::stand() {
+  double sigma = sigma_of_loads();
+  const NewtonReport last = search_.last();
+  run_.keep(sound_);
+  for (int tries = 0; sigma > 0.0 && tries < kStandingTries; ++tries, sigma *= kHeaviest) {
+    bool stands = true;
+    for (int round = 0; stands && round < kStandingSteps; ++round) {
+      stands = search_.step(search_.overdamped(sigma), search_.settings().tolerance,
+                            kMaxIterationsOfStep);
+    }
+    if (stands && search_.rests()) return true;
+    run_.restore(sound_);
+  }
+  search_.put_back(last);
+  return false;
+}
+
 // In the Newton direction, the inertia exceeds the curvature. A singular tangent has no such
 // direction, and that of a loose robot may be the one of its anchors: along the forces, the first
 // step then moves by a small part of the robot's size.
@@ -95,13 +114,13 @@ double OverdampedMotion::first_sigma() {
   search_.linearise();
   const std::vector<double> before = run_.effort;
   const bool singular = world.condense() == linalg::FactorStatus::singular;
-  if (!singular &&
-      world.solve_step(run_.solver, nullptr, run_.effort, run_.clock) == LawStatus::failed) {
-    run_.effort = before;
-  }
+  const bool lawless = !singular && world.solve_step(run_.solver, nullptr, run_.effort,
+                                                     run_.clock) == LawStatus::failed;
+  if (lawless) run_.effort = before;
   VectorX imbalance, direction;
   bodies.imbalance(run_.effort, imbalance);
   run_.effort = before;
+  if (lawless && run_.model->is_loose()) return sigma_of_loads();
   if (!(imbalance.norm() > 0.0)) return 0.0;
   double along_forces = kInfinity;
   if (singular || run_.model->is_loose()) {
@@ -116,6 +135,19 @@ double OverdampedMotion::first_sigma() {
   if (!(mass > 0.0)) return 0.0;
   const double curved = kFirstInertia * std::abs(direction.dot(imbalance)) / mass;
   return std::min(curved, along_forces);
+}
+
+// Forces that act on rigid bodies at a distance from their centres have a stiffness of their size
+// over a length, of either sign, and the laws of contacts have no solution by a tangent that is
+// indefinite. This inertia is of the same order.
+double OverdampedMotion::sigma_of_loads() {
+  Bodies& bodies = run_.world.bodies();
+  const VectorX test = scattered(static_cast<Eigen::Index>(bodies.size()));
+  const double mass = search_.mass_along(test) / test.squaredNorm();
+  search_.begin();
+  search_.linearise();
+  bodies.residual(run_.effort);
+  return mass > 0.0 ? kFirstInertia * bodies.force_scale() / (run_.model->size() * mass) : 0.0;
 }
 
 // Whether the displacements since `before` are against those of the step before, which they
@@ -140,6 +172,7 @@ OverdampedMotion::End OverdampedMotion::relax(double sigma, double near) {
   const double least = kLightest * sigma;
   const double largest = kRunsAway * run_.model->size();
   const std::vector<Points> start = positions();
+  const double still = search_.settings().tolerance * run_.model->size();
   double settled = kSettling * run_.model->size();
   double tolerance = kRelaxationTolerance;
   double moved_before = 0.0;
@@ -163,7 +196,7 @@ OverdampedMotion::End OverdampedMotion::relax(double sigma, double near) {
       return search_.equilibrate(0.0) ? End::returned : End::failed;
     }
     if (!(moved_since(start) < largest)) break;
-    const bool slows = moved < moved_before;
+    const bool slows = moved < moved_before || moved <= still;
     if (slows && moved < settled) {
       if (arrives()) return End::arrived;
       settled = kLater * moved;

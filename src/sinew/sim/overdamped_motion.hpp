@@ -26,6 +26,12 @@ class OverdampedMotion {
   /// Relaxes from the present state.
   /// @return whether it reached an equilibrium.
   bool relax_from_here();
+  /// Solves slow steps from an equilibrium, which do not move it: where contacts and ropes hold a
+  /// body by more forces than it needs, the law then chooses those of a body at rest, while those
+  /// of the motion that led here may be at their limits. With enough inertia, the matrix is
+  /// definite though the stiffness of the loads may not be.
+  /// @return whether it is an equilibrium with these forces; if not, the state is what it was.
+  bool stand();
   /// Leaves an unstable equilibrium along the direction of its lowest curvature.
   /// @param stability of the equilibrium. @param disturbance relative to the robot's size.
   End leave(const Stability& stability, double disturbance);
@@ -38,6 +44,7 @@ class OverdampedMotion {
   End relax(double sigma, double near);
   bool arrives();
   double first_sigma();
+  double sigma_of_loads();
   bool turns_back(const std::vector<Points>& before, std::vector<Points>& last) const;
 
   StaticSearch& search_;

@@ -11,6 +11,7 @@
 #include "sinew/sim/stability.hpp"
 #include "sinew/sim/static_search.hpp"
 #include "sinew/sim/step_failure.hpp"
+#include "sinew/sim/touching_surfaces.hpp"
 
 namespace sinew::sim {
 
@@ -19,6 +20,10 @@ namespace {
 // Tolerance on the gaps of touching points, relative to the robot's size.
 constexpr double kSurfaceTolerance = 1e-9;
 constexpr int kMaxSurfaceRounds = 60;
+// Rounds in succession that did not bring the planes of touching points closer by this factor,
+// after which they alternate.
+constexpr int kIdleRounds = 4;
+constexpr double kCloser = 0.5;
 
 // Maximum number of unstable equilibria that are left in succession, and the disturbances, relative
 // to the robot's size, which increase each time.
@@ -45,16 +50,26 @@ void fail_if_free(StaticSearch& search, const std::string& message) {
 Settling::Settling(StaticSearch& search, OverdampedMotion& motion)
     : run_(search.run()), search_(search), motion_(motion) {}
 
+// A vertex that is pressed onto an edge stands on both of its faces, which take turns: the
+// solutions then alternate by less than the overlap that a step leaves to the next one.
 void Settling::follow_surfaces() {
   const double tolerance =
       std::max(search_.settings().tolerance, kSurfaceTolerance) * run_.model->size();
   ContactPlanes& planes = run_.world.contacts().planes();
-  const auto off = [&] { return planes.drift(run_.effort, run_.now) > tolerance; };
-  for (int round = 0; round < kMaxSurfaceRounds; ++round) {
-    if (!off()) return;
-    if (!search_.equilibrate(0.0) && !motion_.relax_from_here()) break;
+  double overlap = 0.0, least = kInfinity;
+  for (const auto& touching : planes.surfaces()) {
+    overlap = std::max(overlap, touching->permitted_overlap());
   }
-  if (off() || search_.last().status != NewtonStatus::converged) {
+  double off = planes.drift(run_.effort, run_.now);
+  int idle = 0;
+  for (int round = 0; round < kMaxSurfaceRounds && off > tolerance; ++round) {
+    idle = off < kCloser * least ? 0 : idle + 1;
+    least = std::min(least, off);
+    if (idle >= kIdleRounds && off <= overlap) return;
+    if (!search_.equilibrate(0.0) && !motion_.relax_from_here()) break;
+    off = planes.drift(run_.effort, run_.now);
+  }
+  if (off > tolerance || search_.last().status != NewtonStatus::converged) {
     fail(run_, ErrorKind::not_converged, "points keep moving along a curved surface",
          "approach the load through time steps");
   }
@@ -74,16 +89,28 @@ bool Settling::condense() {
 void Settling::settle() {
   double disturbance = kDisturbance;
   StaticReport& report = search_.report();
+  const bool has_contacts = !run_.model->contacts().empty();
+  if (run_.model->is_loose() && has_contacts) motion_.stand();
   for (int departures = 0;; ++departures) {
     report.stable = true;
     report.negative_pivots = 0;
     if (!condense()) return require_held();
     const bool unsymmetric = run_.world.inertia().unsymmetric;
-    const bool has_contacts = !run_.model->contacts().empty();
     const Stability stability(run_.world, run_.effort);
     report.negative_pivots = stability.negative_pivots();
     report.stable = report.negative_pivots == 0;
     if (report.stable || search_.settings().stability == StabilityChoice::any) return;
+    // The tangent at points that touch lacks the turn of their levers, and a touch does not move
+    // what friction holds.
+    if (run_.model->is_loose() && sticks() && stability.mode().size() > 0) {
+      const Pushed pushed = push(stability.mode());
+      report.stable = pushed == Pushed::returns || pushed == Pushed::stays;
+      if (report.stable) return;
+      if (pushed == Pushed::leaves && departures < kMaxDepartures) {
+        follow_surfaces();
+        continue;
+      }
+    }
     const auto ended = departures < kMaxDepartures ? motion_.leave(stability, disturbance)
                                                    : OverdampedMotion::End::failed;
     if (ended == OverdampedMotion::End::failed) {
@@ -161,6 +188,17 @@ bool Settling::touches(std::size_t body) const {
   return false;
 }
 
+// Whether a contact with friction presses.
+bool Settling::sticks() const {
+  for (const constraint::Contact* contact : run_.world.contacts().planes().contacts()) {
+    if (!(contact->friction().sticking > 0.0)) continue;
+    for (std::size_t k = 0; k < contact->size(); ++k) {
+      if (run_.effort[static_cast<std::size_t>(contact->row(k))] > 0.0) return true;
+    }
+  }
+  return false;
+}
+
 // Displaces an equilibrium along a motion, and lets it go unless the next place is an equilibrium,
 // too. The state then is what it was, unless it left.
 Settling::Pushed Settling::push(const VectorX& motion) {
@@ -185,9 +223,11 @@ Settling::Pushed Settling::push(const VectorX& motion) {
     if (found) return Pushed::leaves;
     fail_if_free(search_, "there is no equilibrium, since nothing holds a part");
   }
+  const bool lost = moved > kLeft * pushed;
   run_.restore(rest);
   search_.put_back(last);
   search_.begin();
+  if (lost) return Pushed::lost;
   return moved < kReturned * pushed ? Pushed::returns : Pushed::stays;
 }
 

@@ -36,11 +36,12 @@ class Settling {
   void require_held();
 
  private:
-  enum class Pushed { returns, stays, leaves };
+  enum class Pushed { returns, stays, leaves, lost };
   Pushed push(const VectorX& motion);
   bool condense();
   bool leave_unheld();
   bool touches(std::size_t body) const;
+  bool sticks() const;
 
   Run& run_;
   StaticSearch& search_;

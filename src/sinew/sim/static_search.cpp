@@ -24,7 +24,7 @@ int max_idle(const Model& model) {
   return sticks ? kIdleInContact : kIdle;
 }
 
-void StaticSearch::begin() { run_.world.begin_step(run_.now, run_.now, run_.effort); }
+void StaticSearch::begin() { run_.world.begin_at_rest(run_.now, run_.effort); }
 
 mechanics::StepWeights StaticSearch::overdamped(double sigma) const {
   mechanics::StepWeights weights = rest_;
@@ -45,7 +45,7 @@ bool StaticSearch::equilibrate(double fraction, int max_idle) {
 bool StaticSearch::step(const mechanics::StepWeights& weights, double tolerance, int max_iterations,
                         int max_idle) {
   weights_ = weights;
-  begin();
+  run_.world.begin_step(run_.now, run_.now, run_.effort);
   NewtonSettings settings;
   settings.request = request(weights);
   settings.tolerance = settings.motion_tolerance = tolerance;

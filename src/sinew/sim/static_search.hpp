@@ -37,7 +37,7 @@ class StaticSearch {
   /// Puts back the report of a search whose state was restored.
   void put_back(const NewtonReport& last) { last_ = last; }
 
-  /// Begins a slow motion from the present state.
+  /// Begins a slow motion from the present state, with the contact points that it has.
   void begin();
   /// Linearises at the present state, at rest.
   void linearise() { linearise(rest_); }

@@ -28,6 +28,8 @@ constexpr double kSameFace = 0.9;
 // Unit normals that differ by less are equal.
 constexpr double kSameNormal = 1e-9;
 constexpr std::size_t kKeyMemory = 3;
+// Reach of the search that measures the drift of touching points, in separations.
+constexpr double kDriftReach = 1e3;
 
 Vector3 normal_of(const Points& nodes, const collision::Triangle& triangle) {
   const Vector3 corner = nodes.row(triangle[0]).transpose();
@@ -139,6 +141,18 @@ void TouchingSurfaces::begin_step(std::span<double> effort) {
   pass_forces_on(effort);
 }
 
+void TouchingSurfaces::begin_again() {
+  first_start_ = configuration_.surface_nodes(contact_.body());
+  second_start_ = configuration_.surface_nodes(contact_.other_body());
+  for (std::size_t k = 0; k < keys_.size(); ++k) {
+    contact_.measure(configuration_, k, rows_);
+    const int row = contact_.row(k);
+    rows_.offset.segment<2>(row + 1) -= rows_.delta.segment<2>(row + 1);
+    rows_.reference.segment<3>(row) = Vector3(rows_.delta[row], 0.0, 0.0);
+  }
+  clear_rest();
+}
+
 // Without them, the motion of the step would lead into each of these pairs again, and the law would
 // be solved again with their rows.
 void TouchingSurfaces::add_kept_edges() {
@@ -217,11 +231,13 @@ double TouchingSurfaces::proposed_gap(std::size_t point) const {
   return contact_.gap_at(first_end_, second_end_, point, rows_);
 }
 
+double TouchingSurfaces::permitted_overlap() const { return kOverlap * contact_.separation(); }
+
 bool TouchingSurfaces::add_overlaps() {
   if (!first_end_.allFinite() || !second_end_.allFinite()) return false;
   move_trees(first_end_, second_end_);
   find(0.0);
-  const double allowed = kOverlap * contact_.separation();
+  const double allowed = permitted_overlap();
   const std::size_t points = keys_.size();
   for (const Named& one : found_) {
     if (one.pair.distance >= -allowed || keys_.size() == contact_.size()) continue;
@@ -371,7 +387,14 @@ double TouchingSurfaces::drift(std::span<const double> effort) {
   const Points& first = configuration_.surface_nodes(contact_.body());
   const Points& second = configuration_.surface_nodes(contact_.other_body());
   move_trees(first, second);
-  find(1e3 * contact_.separation());
+  find(kDriftReach * contact_.separation());
+  before_.clear();
+  for (std::size_t k = 0; k < keys_.size(); ++k) {
+    if (effort[static_cast<std::size_t>(contact_.row(k))] > 0.0) {
+      before_.push_back({keys_[k], k, Vector3::Zero()});
+    }
+  }
+  add_kept_edges();
   double worst = 0.0;
   for (std::size_t k = 0; k < keys_.size(); ++k) {
     if (effort[static_cast<std::size_t>(contact_.row(k))] == 0.0) continue;

@@ -59,10 +59,15 @@ class TouchingSurfaces {
   /// them: in a contact that has become flat, neighbours of the crossing are as near.
   /// @param effort (rows,) N, in and out.
   void begin_step(std::span<double> effort);
+  /// Begins a motion from the present positions with the points of the last one, whose slip starts
+  /// here.
+  void begin_again();
   /// Computes the surfaces after a proposed motion. @param systems of the bodies.
   void propose(std::span<mechanics::StepSystem* const> systems);
   /// m: gap of a point's row after that motion.
   double proposed_gap(std::size_t point) const;
+  /// m: depth of overlaps that are left to the next step.
+  double permitted_overlap() const;
   /// Adds pairs that overlap after that motion and are not yet points.
   /// @return whether there were any.
   bool add_overlaps();

@@ -9,6 +9,7 @@
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/stage_clock.hpp"
 #include "sinew/sim/standing_blocks.hpp"
+#include "sinew/sim/touching_surfaces.hpp"
 #include "sinew/step/direct_solver.hpp"
 #include "sinew/step/step_solver.hpp"
 
@@ -51,6 +52,10 @@ void World::begin_contacts(double from, double to, std::span<double> effort, dou
   if (contacts_.empty()) return;
   const double far = std::max(reach, contacts_.wanted_reach(effort));
   contacts_.planes().find_points(contacts_.reach(far), ContactRows::ahead(to - from), effort);
+  choose_points(from, to, effort, reach);
+}
+
+void World::choose_points(double from, double to, std::span<double> effort, double reach) {
   place_contacts(from, to);
   contacts_.choose_active(effort, to - from, reach);
   number_rows();
@@ -59,6 +64,12 @@ void World::begin_contacts(double from, double to, std::span<double> effort, dou
 
 void World::begin_step(double from, double to, std::span<double> effort, double reach) {
   begin_contacts(from, to, effort, reach);
+  bodies_.begin_step();
+}
+
+void World::begin_at_rest(double at, std::span<double> effort) {
+  for (const auto& surfaces : contacts_.planes().surfaces()) surfaces->begin_again();
+  if (!contacts_.empty()) choose_points(at, at, effort, 0.0);
   bodies_.begin_step();
 }
 

@@ -46,6 +46,10 @@ class World {
   ///   points.
   /// @param reach m: points with a smaller gap are active, too.
   void begin_step(double from, double to, std::span<double> effort, double reach = 0.0);
+  /// Begins a motion from an equilibrium with the contact points of its solution. A new search may
+  /// name other points, and a point that it does not name loses its force.
+  /// @param at s, time of the surfaces' positions. @param effort (rows,) N, of the solution.
+  void begin_at_rest(double at, std::span<double> effort);
   /// Begins a query of the present state, which moves no base. The active contact points are those
   /// with which a step from here would begin. @param at s, time of the surfaces' positions.
   /// @param effort (rows,) N, see begin_step().
@@ -155,6 +159,7 @@ class World {
  private:
   void place_contacts(double from, double to);
   void begin_contacts(double from, double to, std::span<double> effort, double reach);
+  void choose_points(double from, double to, std::span<double> effort, double reach);
   bool correct_contacts(bool looks, StageClock& clock);
   step::LawStatus solve_laws(step::StepSolver& solver, step::Controller* controller, bool again,
                              std::span<double> effort, StageClock& clock);
