@@ -1,6 +1,7 @@
 #include "sinew/sim/settling.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -30,11 +31,16 @@ constexpr double kCloser = 0.5;
 constexpr int kMaxDepartures = 6;
 constexpr double kDisturbance = 1e-2;
 constexpr double kLargerDisturbance = 2.0;
+// Curvatures that are less negative, relative to the loads over the robot's size, are neutral.
+constexpr double kNeutralOfLoads = 1e-6;
 // Displacement of a neutral equilibrium, relative to the robot's size, and the multiples of it that
 // are left after a return and after a departure.
 constexpr double kPush = 2e-3;
 constexpr double kReturned = 0.5;
 constexpr double kLeft = 2.0;
+// A motion that has neither ended nor led farther than this multiple does not leave: a rod whose
+// round end presses on a wall turns about its axis without end.
+constexpr double kLost = 10.0;
 
 }  // namespace
 
@@ -100,8 +106,12 @@ void Settling::settle() {
     report.negative_pivots = stability.negative_pivots();
     report.stable = report.negative_pivots == 0;
     if (report.stable || search_.settings().stability == StabilityChoice::any) return;
-    // The tangent at points that touch lacks the turn of their levers, and a touch does not move
-    // what friction holds.
+    if (has_contacts && !descends(stability.mode())) {
+      report.stable = true;
+      report.negative_pivots = 0;
+      return;
+    }
+    // A touch does not move what friction holds.
     if (run_.model->is_loose() && sticks() && stability.mode().size() > 0) {
       const Pushed pushed = push(stability.mode());
       report.stable = pushed == Pushed::returns || pushed == Pushed::stays;
@@ -188,6 +198,16 @@ bool Settling::touches(std::size_t body) const {
   return false;
 }
 
+// Whether the curvature along a motion is negative by more than rounding, relative to the loads.
+bool Settling::descends(const VectorX& motion) {
+  if (motion.size() == 0) return true;
+  const double curvature = search_.curvature_along(motion);
+  Bodies& bodies = run_.world.bodies();
+  bodies.residual(run_.effort);
+  const double loads = bodies.force_scale() / run_.model->size();
+  return curvature < -kNeutralOfLoads * loads * motion.squaredNorm();
+}
+
 // Whether a contact with friction presses.
 bool Settling::sticks() const {
   for (const constraint::Contact* contact : run_.world.contacts().planes().contacts()) {
@@ -200,7 +220,8 @@ bool Settling::sticks() const {
 }
 
 // Displaces an equilibrium along a motion, and lets it go unless the next place is an equilibrium,
-// too. The state then is what it was, unless it left.
+// too: Newton's method also returns to an unstable one. The state then is what it was, unless it
+// left.
 Settling::Pushed Settling::push(const VectorX& motion) {
   State rest;
   run_.keep(rest);
@@ -214,16 +235,20 @@ Settling::Pushed Settling::push(const VectorX& motion) {
   State displaced;
   run_.keep(displaced);
   bool found = search_.equilibrate(0.0, max_idle(*run_.model));
-  if (!found || motion_.moved_since(at) > kLeft * pushed) {
+  const double searched = motion_.moved_since(at);
+  if (!found || searched > kLeft * pushed || searched < kReturned * pushed) {
     run_.restore(displaced);
+    int& steps = search_.report().relaxation_steps;
+    const int before = std::exchange(steps, 0);
     found = motion_.relax_from_here();
+    steps += before;
   }
   const double moved = motion_.moved_since(at);
   if (moved > kLeft * pushed) {
     if (found) return Pushed::leaves;
     fail_if_free(search_, "there is no equilibrium, since nothing holds a part");
   }
-  const bool lost = moved > kLeft * pushed;
+  const bool lost = !found && moved > kLost * pushed;
   run_.restore(rest);
   search_.put_back(last);
   search_.begin();

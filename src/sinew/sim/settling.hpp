@@ -42,6 +42,7 @@ class Settling {
   bool leave_unheld();
   bool touches(std::size_t body) const;
   bool sticks() const;
+  bool descends(const VectorX& motion);
 
   Run& run_;
   StaticSearch& search_;

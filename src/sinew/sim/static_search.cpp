@@ -78,6 +78,21 @@ bool StaticSearch::rests() {
   return true;
 }
 
+double StaticSearch::curvature_along(const VectorX& direction) {
+  Bodies& bodies = run_.world.bodies();
+  begin();
+  const double scale = kTestMotion * run_.model->size() / direction.cwiseAbs().maxCoeff();
+  bodies.propose_motion(direction);
+  VectorX ahead, behind;
+  for (const double sense : {1.0, -1.0}) {
+    bodies.apply_motion(sense * scale);
+    linearise();
+    bodies.imbalance(run_.effort, sense > 0.0 ? ahead : behind);
+  }
+  bodies.apply_motion(0.0);
+  return direction.dot(behind - ahead) / (2.0 * scale);
+}
+
 double StaticSearch::mass_along(const VectorX& direction) {
   Bodies& bodies = run_.world.bodies();
   begin();

@@ -58,6 +58,10 @@ class StaticSearch {
   /// d^T M d from the change of the residual by inertia in a small motion along d; kg m^2 or
   /// similar. Begins a motion. @param direction (all bodies' size(),).
   double mass_along(const VectorX& direction);
+  /// -d.dr/ds of the residual r with the present efforts in a motion s along d, N/m or similar.
+  /// It contains the turn of the levers of contact forces, which the tangent of a law of friction
+  /// leaves out (rigid::RigidStep). Begins a motion. @param direction (all bodies' size(),).
+  double curvature_along(const VectorX& direction);
 
  private:
   Run& run_;
