@@ -89,9 +89,34 @@ double condense_nearly_at_rest(StaticSearch& search) {
   return 0.0;
 }
 
+// The power method finds the motion of least inertia, the spin of a slender body about its axis,
+// before one that matters.
 FreeMotion::FreeMotion(StaticSearch& search) {
   motion_ = find(search);
   if (motion_.size() > 0) describe(search, motion_);
+  if (!exists_ || moves_centres_) return;
+  const FreeMotion first = *this;
+  const std::size_t most = 3 * search.run().world.bodies().all().size();
+  while (exists_ && !moves_centres_ && spins_.size() < most) {
+    leave_out_spins(motion_);
+    if (!(motion_.norm() > 0.0)) break;
+    spins_.push_back(motion_.normalized());
+    clear();
+    motion_ = find(search);
+    if (motion_.size() > 0) describe(search, motion_);
+  }
+  if (!moves_centres_) *this = first;
+}
+
+void FreeMotion::clear() {
+  moving_.clear();
+  bodies_.clear();
+  text_.clear();
+  exists_ = moves_centres_ = false;
+}
+
+void FreeMotion::leave_out_spins(VectorX& motion) const {
+  for (const VectorX& spin : spins_) motion -= spin.dot(motion) * spin;
 }
 
 VectorX FreeMotion::find(StaticSearch& search) {
@@ -108,19 +133,23 @@ VectorX FreeMotion::find(StaticSearch& search) {
   const double sigma = condense_nearly_at_rest(search);
   if (sigma == 0.0) return {};
   VectorX y = scattered(size);
+  leave_out_spins(y);
   HeldMotions motions(world, held_rows(world, run.effort));
   double curvature = 0.0;  // y^T (K + sigma M) y / y^T y, since T x = y satisfies H y = 0
   for (int k = 0; k < kPowers; ++k) {
     const VectorX x = y.normalized();
     motions.solve(x, y);
+    leave_out_spins(y);
     if (!y.allFinite() || !(y.norm() > 0.0)) return {};
     curvature = x.dot(y) / y.squaredNorm();
   }
   // Among several free motions, the one in which forces that do not balance drive the robot.
   VectorX driven;
   double driven_curvature = 0.0;
+  leave_out_spins(force);
   if (force.norm() > kDrives * forces) {
     motions.solve(force.normalized(), driven);
+    leave_out_spins(driven);
     driven_curvature = force.normalized().dot(driven) / driven.squaredNorm();
   }
   const auto is_free = [&](VectorX& motion, double stiffness) {

@@ -24,7 +24,8 @@ double condense_nearly_at_rest(StaticSearch& search);
 /// singular, so the search uses the shifted tangent, with T = (K + sigma M)^-1 and inertia M: the
 /// power method on T (Golub & Van Loan 2013, sec. 7.3) converges to the motions of least stiffness,
 /// and sigma is so small that only rounding lies below it. All motions are searched at once from a
-/// vector without symmetry, so the result is a combination of all free motions.
+/// vector without symmetry, so the result is a combination of all free motions of similar inertia.
+/// Bodies that only turn about their own centres are left out of the search if another one moves.
 class FreeMotion {
  public:
   /// @param search of the present state, which does not change; its bodies get linearised.
@@ -48,7 +49,10 @@ class FreeMotion {
  private:
   VectorX find(StaticSearch& search);
   void describe(StaticSearch& search, const VectorX& motion);
+  void clear();
+  void leave_out_spins(VectorX& motion) const;
 
+  std::vector<VectorX> spins_;  // motions that move no centre, orthonormal
   VectorX motion_;
   std::vector<std::size_t> moving_;
   bool exists_ = false, moves_centres_ = false;
