@@ -183,3 +183,35 @@ def test_a_picture_hangs_on_a_wall(steps, turn, friction):
     assert np.allclose(push + rope + weight, 0, atol=1e-5)
     assert np.allclose(np.cross(low - centre, push) + np.cross(tied - centre, rope), 0, atol=1e-6)
     assert np.hypot(push[1], push[2]) <= friction * push[0] + 1e-6
+
+
+PLANE = {k: v for k, v in rigid({"plane": {}}, 1.0, (0, 0, 0), fixed=True).items() if k != "mass"}
+
+
+@pytest.mark.parametrize("steps", [0, 2])
+@pytest.mark.parametrize("turn", TURNS)
+def test_a_rod_does_not_stand_on_its_round_end(steps, turn):
+    """Its centre is above that of the end, however little it leans. A spin about its axis is neutral and matters to nothing."""
+    rod = rigid({"capsule": {"radius": 0.01, "length": 0.1}}, 0.1, (0, 0, 0.06))
+    sim, world = load({"base": PLANE, "b": rod}, 0.5, turn=turn)
+    hold(sim, steps)
+    assert world.inv().apply(sim.body("b").position)[2] == pytest.approx(0.01, abs=1e-6)
+    assert np.allclose(force_on_b(sim, world), [0, 0, 0.1 * GRAVITY], atol=1e-5)
+
+
+@pytest.mark.parametrize("steps", [0, 2])
+@pytest.mark.parametrize("turn", TURNS)
+@pytest.mark.parametrize("height, stays", [(0.01, True), (0.08, True), (0.12, False)])
+def test_a_board_rocks_on_a_ball_that_is_larger_than_half_its_height(steps, turn, height, stays):
+    """Rolling by an angle raises its centre by (R - h/2) angle^2 / 2."""
+    ball = rigid({"sphere": {"radius": 0.05}}, 1.0, (0, 0, 0), fixed=True)
+    board = rigid({"box": [0.1, 0.1, height]}, 0.1, (0, 0, 0.05 + height / 2))
+    sim, world = load({"base": ball, "b": board}, 0.5, turn=turn)
+    if stays:
+        hold(sim, steps)
+        assert np.allclose(world.inv().apply(sim.body("b").position), [0, 0, 0.05 + height / 2], atol=1e-6)
+        assert np.allclose(force_on_b(sim, world), [0, 0, 0.1 * GRAVITY], atol=1e-5)
+    else:
+        with pytest.raises(sinew.Error, match="body 'b'") as caught:
+            hold(sim, steps)
+        assert caught.value.kind == "singular-matrix"

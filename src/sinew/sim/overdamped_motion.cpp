@@ -33,8 +33,6 @@ constexpr double kNearRest = 1e-5;  // of the robot's size per step
 // returned.
 constexpr double kBack = 0.1;
 constexpr double kSmall = 1e-6;  // of the robot's size: test motion for measurements
-// First motion along the forces where no tangent tells how far they reach, of the robot's size.
-constexpr double kFirstMove = 0.02;
 // Initial inertia relative to that at which the softest direction would be neutral.
 constexpr double kFirstInertia = 2.0;
 
@@ -79,8 +77,8 @@ OverdampedMotion::End OverdampedMotion::leave(const Stability& stability, double
   return relax(kFirstInertia * std::abs(curvature) / mass, kBack * disturbance);
 }
 
-bool OverdampedMotion::relax_from_here() {
-  const double sigma = first_sigma();
+bool OverdampedMotion::relax_from_here(double first) {
+  const double sigma = first_sigma(first);
   if (!(sigma > 0.0)) return false;
   left_.clear();
   return relax(sigma, 0.0) == End::arrived;
@@ -107,7 +105,7 @@ bool OverdampedMotion::stand() {
 // In the Newton direction, the inertia exceeds the curvature. A singular tangent has no such
 // direction, and that of a loose robot may be the one of its anchors: along the forces, the first
 // step then moves by a small part of the robot's size.
-double OverdampedMotion::first_sigma() {
+double OverdampedMotion::first_sigma(double first) {
   World& world = run_.world;
   Bodies& bodies = world.bodies();
   search_.begin();
@@ -125,7 +123,7 @@ double OverdampedMotion::first_sigma() {
   double along_forces = kInfinity;
   if (singular || run_.model->is_loose()) {
     if (!singular) bodies.solve(imbalance, direction);
-    const double far = kFirstMove * run_.model->size() / imbalance.cwiseAbs().maxCoeff();
+    const double far = first * run_.model->size() / imbalance.cwiseAbs().maxCoeff();
     along_forces = imbalance.squaredNorm() / (far * search_.mass_along(imbalance));
     if (singular || !(direction.norm() > 0.0)) return along_forces;
   } else {

@@ -23,9 +23,10 @@ class OverdampedMotion {
 
   /// @param search must outlive it.
   explicit OverdampedMotion(StaticSearch& search);
-  /// Relaxes from the present state.
+  /// Relaxes from the present state. @param first length of the first step along forces that no
+  /// tangent resists, relative to the robot's size.
   /// @return whether it reached an equilibrium.
-  bool relax_from_here();
+  bool relax_from_here(double first = kFirstMove);
   /// Solves slow steps from an equilibrium, which do not move it: where contacts and ropes hold a
   /// body by more forces than it needs, the law then chooses those of a body at rest, while those
   /// of the motion that led here may be at their limits. With enough inertia, the matrix is
@@ -43,7 +44,8 @@ class OverdampedMotion {
  private:
   End relax(double sigma, double near);
   bool arrives();
-  double first_sigma();
+  static constexpr double kFirstMove = 0.02;
+  double first_sigma(double first);
   double sigma_of_loads();
   bool turns_back(const std::vector<Points>& before, std::vector<Points>& last) const;
 

@@ -36,6 +36,8 @@ constexpr double kNeutralOfLoads = 1e-6;
 // Displacement of a neutral equilibrium, relative to the robot's size, and the multiples of it that
 // are left after a return and after a departure.
 constexpr double kPush = 2e-3;
+// First step of the motion from there, relative to it: it would overshoot a body that rocks.
+constexpr double kGentlePush = 0.1;
 constexpr double kReturned = 0.5;
 constexpr double kLeft = 2.0;
 // A motion that has neither ended nor led farther than this multiple does not leave: a rod whose
@@ -240,7 +242,7 @@ Settling::Pushed Settling::push(const VectorX& motion) {
     run_.restore(displaced);
     int& steps = search_.report().relaxation_steps;
     const int before = std::exchange(steps, 0);
-    found = motion_.relax_from_here();
+    found = motion_.relax_from_here(kGentlePush * kPush);
     steps += before;
   }
   const double moved = motion_.moved_since(at);
