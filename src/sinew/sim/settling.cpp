@@ -108,32 +108,16 @@ void Settling::settle() {
     report.negative_pivots = stability.negative_pivots();
     report.stable = report.negative_pivots == 0;
     if (report.stable || search_.settings().stability == StabilityChoice::any) return;
-    if (has_contacts && !descends(stability.mode())) {
-      report.stable = true;
-      report.negative_pivots = 0;
-      return;
-    }
-    // A touch does not move what friction holds.
-    if (run_.model->is_loose() && sticks() && stability.mode().size() > 0) {
-      const Pushed pushed = push(stability.mode());
-      report.stable = pushed == Pushed::returns || pushed == Pushed::stays;
-      if (report.stable) return;
-      if (pushed == Pushed::leaves && departures < kMaxDepartures) {
-        follow_surfaces();
-        continue;
-      }
+    const Pushed pushed = touch(stability.mode());
+    report.stable = pushed == Pushed::returns || pushed == Pushed::stays;
+    if (report.stable) return;
+    if (pushed == Pushed::leaves && departures < kMaxDepartures) {
+      follow_surfaces();
+      continue;
     }
     const auto ended = departures < kMaxDepartures ? motion_.leave(stability, disturbance)
                                                    : OverdampedMotion::End::failed;
-    if (ended == OverdampedMotion::End::failed) {
-      fail(run_, ErrorKind::not_converged,
-           fmt::format("the equilibrium is unstable in {} direction{} (negative pivots of the "
-                       "exact tangent), and none that is stable was found from it in {} steps "
-                       "of overdamped motion",
-                       report.negative_pivots, report.negative_pivots == 1 ? "" : "s",
-                       report.relaxation_steps),
-           "approach the load through time steps, or ask for any equilibrium, stable or not");
-    }
+    if (ended == OverdampedMotion::End::failed) fail_unstable();
     // With a potential, the motion cannot return by itself: a step was too long. The tangent at
     // points that touch is that of material points, and not of the curved surfaces.
     const bool may_return = unsymmetric || (run_.model->is_loose() && has_contacts);
@@ -144,6 +128,27 @@ void Settling::settle() {
     if (ended == OverdampedMotion::End::arrived) follow_surfaces();
     disturbance *= kLargerDisturbance;
   }
+}
+
+void Settling::fail_unstable() {
+  const StaticReport& report = search_.report();
+  fail(run_, ErrorKind::not_converged,
+       fmt::format("the equilibrium is unstable in {} direction{} (negative pivots of the "
+                   "exact tangent), and none that is stable was found from it in {} steps "
+                   "of overdamped motion",
+                   report.negative_pivots, report.negative_pivots == 1 ? "" : "s",
+                   report.relaxation_steps),
+       "approach the load through time steps, or ask for any equilibrium, stable or not");
+}
+
+// What a touch along a motion does to an equilibrium of a loose robot whose tangent says that it
+// descends: a tangent that lacks the levers of contacts, and does not know what friction holds.
+// Lost: the tangent is right, or the touch does not tell.
+Settling::Pushed Settling::touch(const VectorX& motion) {
+  const bool doubtful = run_.model->is_loose() && !run_.model->contacts().empty();
+  if (!doubtful || motion.size() == 0) return Pushed::lost;
+  if (!descends(motion)) return Pushed::stays;
+  return sticks() ? push(motion) : Pushed::lost;
 }
 
 void Settling::require_held() {
@@ -201,13 +206,13 @@ bool Settling::touches(std::size_t body) const {
 }
 
 // Whether the curvature along a motion is negative by more than rounding, relative to the loads.
+// @param motion with a largest entry of 1.
 bool Settling::descends(const VectorX& motion) {
-  if (motion.size() == 0) return true;
   const double curvature = search_.curvature_along(motion);
   Bodies& bodies = run_.world.bodies();
   bodies.residual(run_.effort);
   const double loads = bodies.force_scale() / run_.model->size();
-  return curvature < -kNeutralOfLoads * loads * motion.squaredNorm();
+  return curvature < -kNeutralOfLoads * loads;
 }
 
 // Whether a contact with friction presses.

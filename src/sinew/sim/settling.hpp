@@ -38,6 +38,8 @@ class Settling {
  private:
   enum class Pushed { returns, stays, leaves, lost };
   Pushed push(const VectorX& motion);
+  Pushed touch(const VectorX& motion);
+  [[noreturn]] void fail_unstable();
   bool condense();
   bool leave_unheld();
   bool touches(std::size_t body) const;
