@@ -10,7 +10,7 @@ namespace {
 // Searches after which a kept factor is tried again.
 constexpr double kSearches = 16.0;
 // Motions with a kept factor that cost as much as a new factor.
-constexpr double kMotions = 3.5;
+constexpr double kMotions = 4.5;
 // Smaller parts are chance.
 constexpr double kLeast = 1e-4;
 

@@ -7,9 +7,9 @@
 namespace sinew::sim {
 
 /// A motion with a kept factor leaves a part q of the residual, where a new factor leaves about its
-/// square. A kept factor pays while few such motions reach the tolerance: about three cost as much
-/// as a factor. How small q is depends on the robot and on how it moves, and changes little from
-/// step to step, so it is remembered, and measured again after some steps without one.
+/// square. A kept factor pays while few such motions reach the tolerance: four or five cost as
+/// much as a factor. How small q is depends on the robot and on how it moves, and changes little
+/// from step to step, so it is remembered, and measured again after some steps without one.
 class KeptFactors {
  public:
   KeptFactors() = default;
