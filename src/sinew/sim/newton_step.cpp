@@ -101,7 +101,9 @@ NewtonSettings NewtonStep::settings(double time_step) const {
 }
 
 bool NewtonStep::holds_motion() const {
-  return std::ranges::any_of(run_.world.problem().actuators, &step::ActuatorBlock::holds_motion);
+  const step::StepProblem& problem = run_.world.problem();
+  return !problem.bilaterals.empty() ||
+         std::ranges::any_of(problem.actuators, &step::ActuatorBlock::holds_motion);
 }
 
 NewtonSettings NewtonStep::settings_of_part(double time_step) const {

@@ -10,9 +10,9 @@ class Simulation;
 
 /// N or Pa: the effort of a row at the end of the last step, which readings and records show. In
 /// rows that hold a motion, it differs from the effort in the equation of the step, see EndEfforts.
-/// @param row of the model.
+/// @param simulation with the efforts. @param row of the model.
 double end_effort(const Simulation& simulation, int row);
-/// (rows,) the same of all rows.
+/// (rows,) the same of all rows. @param simulation with the efforts.
 std::vector<double> end_efforts(const Simulation& simulation);
 
 /// Efforts of all rows of H, N, N m or Pa, with zeros in the rows of other kinds. The rows of
