@@ -94,9 +94,12 @@ NewtonSettings NewtonStep::settings(double time_step) const {
   if (follows()) result.lag = kLag;
   if (lasts && !step.tolerance) result.stalled_tolerance = kStalledTolerance;
   result.strict = !step.tolerance;
+  // Where contacts hold a body by more forces than it needs, those of the law depend on the way to
+  // them, and a grip that is symmetric with new factors turns its body with kept ones.
   // In dynamics, efforts that hold a motion inherit its error times M/h^2: the last iterations of
   // Newton's method leave much less of it than the tolerance, those with an old factor just less.
-  if (!step.dynamic() || !holds_motion()) result.kept_factors = &run_.kept_factors;
+  const bool unique = run_.model->contacts().empty();
+  if (unique && (!step.dynamic() || !holds_motion())) result.kept_factors = &run_.kept_factors;
   return result;
 }
 
