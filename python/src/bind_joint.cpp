@@ -87,8 +87,7 @@ void bind_joint(py::module_& module) {
       .def_property_readonly(
           "force", [](const Joint& self) { return reading(load(self).force); },
           "(3,) ndarray: constraint force on the second body at the end of the last step (N), "
-          "without "
-          "motors, limits and friction.")
+          "without motors, limits and friction.")
       .def_property_readonly(
           "moment", [](const Joint& self) { return reading(load(self).moment); },
           "(3,) ndarray: constraint moment about `centre` on the second body (N m).")

@@ -53,9 +53,9 @@ struct Assembly::Workspace {
   bool started = false;                        // start_points are in use
   linalg::AlignedBuffer matrix;
   std::vector<double> forces;
-  std::vector<double> batch_energy;            // one per batch, those of solid groups last
-  std::vector<SmallestRatio> thread_ratios;    // one per thread, for batches, then for each group
-  std::vector<BatchMeasures> thread_measures;  // one per thread, of batches in evaluate()
+  std::vector<double> batch_energy;             // one per batch, those of solid groups last
+  std::vector<SmallestRatio> thread_ratios;     // one per thread, for batches, then for each group
+  std::vector<SmallestRatio> thread_stretches;  // one per thread, of batches in evaluate()
   std::vector<int> column_splits;
   double energy = 0.0;
   SmallestRatio smallest{1.0, 0};
@@ -115,7 +115,7 @@ Assembly::Assembly(std::shared_ptr<const FemModel> model, ThreadPool& pool)
   work_->batch_energy.resize(batches + solid_batches);
   work_->thread_ratios.resize(static_cast<std::size_t>(pool.size()) *
                               (1 + model_->solids().size()));
-  work_->thread_measures.resize(static_cast<std::size_t>(pool.size()));
+  work_->thread_stretches.resize(static_cast<std::size_t>(pool.size()));
   work_->column_splits = split_columns(*model_, pool.size());
 }
 
@@ -172,15 +172,16 @@ void Assembly::evaluate_elements(const Points& positions, Tangent tangent, bool 
   load_positions(positions);
   const SmallestRatio none{std::numeric_limits<double>::infinity(), -1};
   std::ranges::fill(work.thread_ratios, none);
-  std::ranges::fill(work.thread_measures, BatchMeasures{none, none});
+  std::ranges::fill(work.thread_stretches, none);
   const ElementBatches& elements = model_->elements();
   const ElementOutput output{records.forces, records.elements, work.batch_energy.data()};
   if (elements.batches() > 0) {
     pool_->for_range(elements.batches(), 1, [&](int begin, int end, int thread) {
       const auto own = static_cast<std::size_t>(thread);
-      work.thread_measures[own] =
+      const BatchMeasures measured =
           evaluate_batches(elements, begin, end, work.points.data(), tangent, output);
-      work.thread_ratios[own] = work.thread_measures[own].volume;
+      work.thread_ratios[own] = measured.volume;
+      work.thread_stretches[own] = measured.stretch;
     });
   }
   SmallestRatio* ratios = work.thread_ratios.data();
@@ -266,8 +267,8 @@ VolumeMeasure Assembly::measure_volume(const Points& positions) {
 std::optional<StretchMeasure> Assembly::evaluated_stretch() const {
   if (!model_->solids().empty()) return {};
   SmallestRatio found{0.0, -1};
-  for (const BatchMeasures& measures : work_->thread_measures) {
-    if (measures.stretch.value < found.value) found = measures.stretch;
+  for (const SmallestRatio& stretch : work_->thread_stretches) {
+    if (stretch.value < found.value) found = stretch;
   }
   const double bound = std::sqrt(-found.value);
   if (found.slot < 0 || !(bound <= mechanics::kSaneStretch)) return {};

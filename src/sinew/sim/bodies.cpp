@@ -25,6 +25,18 @@ std::span<const double> numbers(const VectorX& all) {
   return {all.data(), static_cast<std::size_t>(all.size())};
 }
 
+// Calls map(system, part, result) for every system with its parts of two concatenated vectors.
+template <class Map>
+void map_parts(std::span<mechanics::StepSystem* const> systems, const VectorX& from,
+               VectorX& result, Map&& map) {
+  result.resize(from.size());
+  std::span<double> to(result.data(), static_cast<std::size_t>(result.size()));
+  for_each_part(systems, numbers(from), [&](auto& system, std::span<const double> part) {
+    map(system, part, to.first(part.size()));
+    to = to.subspan(part.size());
+  });
+}
+
 }  // namespace
 
 Bodies::Bodies(const Model& model, ThreadPool& pool) {
@@ -154,12 +166,8 @@ double Bodies::proposed_move() const {
 }
 
 void Bodies::solve(const VectorX& right, VectorX& result) {
-  result.resize(right.size());
-  std::span<double> to(result.data(), static_cast<std::size_t>(result.size()));
-  for_each_part(systems_, numbers(right), [&](auto& system, std::span<const double> part) {
-    system.solve(part, to.first(part.size()));
-    to = to.subspan(part.size());
-  });
+  map_parts(systems_, right, result,
+            [](auto& system, auto part, auto to) { system.solve(part, to); });
 }
 
 void Bodies::propose_motion(const VectorX& motion) {
@@ -232,12 +240,8 @@ void Bodies::find_acceleration(const mechanics::StepWeights& weights, VectorX& a
 }
 
 void Bodies::apply_mass(const VectorX& motion, VectorX& result) {
-  result.resize(motion.size());
-  std::span<double> to(result.data(), static_cast<std::size_t>(result.size()));
-  for_each_part(systems_, numbers(motion), [&](auto& system, std::span<const double> part) {
-    system.apply_mass(part, to.first(part.size()));
-    to = to.subspan(part.size());
-  });
+  map_parts(systems_, motion, result,
+            [](auto& system, auto part, auto to) { system.apply_mass(part, to); });
 }
 
 double Bodies::end_step(const mechanics::StepWeights& weights,

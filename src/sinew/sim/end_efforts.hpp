@@ -56,6 +56,12 @@ class EndEfforts {
     return formula_ == Formula::other ? 0.0 : change_[static_cast<std::size_t>(row)];
   }
 
+  /// N or Pa: the effort of a row at the end of the step. @param effort (rows,) of its equation.
+  /// @param row of the model.
+  double at_end(std::span<const double> effort, int row) const {
+    return effort[static_cast<std::size_t>(row)] + change(row);
+  }
+
   /// Writes the state; empty after clear().
   void save(std::vector<double>& numbers) const;
   /// @param numbers from save(). @param rows of the model. @param coordinates of all bodies.

@@ -272,7 +272,6 @@ class NewtonSolver {
     left_ = full_step_ ? std::pow(report_.residual / kept_from_, 1.0 / kept_count_) : 1.0;
   }
 
-  // Without an iteration, the report is that of the state at the start.
   // Whether the next iteration, or the next step, is expected to need the matrix at the state that
   // is about to be linearised. A wrong guess costs time only.
   bool needs_matrix(bool full_step) const {
@@ -308,6 +307,7 @@ class NewtonSolver {
     return idle_ >= kIdle && !kept_ && is_within_stalled_tolerance();
   }
 
+  // Without an iteration, the report is that of the state at the start.
   NewtonReport finish(NewtonStatus status) {
     // A singular matrix gives no compliance by which the laws could be measured.
     if (report_.iterations == 0 && status == NewtonStatus::singular) measure_residual();

@@ -12,15 +12,12 @@
 namespace sinew::sim {
 
 double end_effort(const Simulation& simulation, int row) {
-  return simulation.efforts()[static_cast<std::size_t>(row)] +
-         simulation.world().end_efforts().change(row);
+  return simulation.world().end_efforts().at_end(simulation.efforts(), row);
 }
 
 std::vector<double> end_efforts(const Simulation& simulation) {
-  std::vector<double> all(simulation.efforts().begin(), simulation.efforts().end());
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    all[k] += simulation.world().end_efforts().change(static_cast<int>(k));
-  }
+  std::vector<double> all(simulation.efforts().size());
+  for (std::size_t k = 0; k < all.size(); ++k) all[k] = end_effort(simulation, static_cast<int>(k));
   return all;
 }
 

@@ -106,8 +106,7 @@ void AccelerometerSource::read(const Run& run, std::span<const double> memory,
 void EffortSource::read(const Run& run, std::span<const double> /*memory*/,
                         std::span<double> values) const {
   const int row = run.model->actuators()[static_cast<std::size_t>(actuator_)].row;
-  values[0] =
-      factor_ * (run.effort[static_cast<std::size_t>(row)] + run.world.end_efforts().change(row));
+  values[0] = factor_ * run.world.end_efforts().at_end(run.effort, row);
 }
 
 void MotionSource::read(const Run& run, std::span<const double> /*memory*/,
