@@ -210,6 +210,23 @@ def test_the_order_of_bodies_changes_nothing(at, mass, integrator):
         assert np.abs(one.body(name).positions - other.body(name).positions).max() < 1e-10
 
 
+@pytest.mark.filterwarnings("ignore:.*locking-element")
+@pytest.mark.parametrize("integrator", ["backward-euler", "bdf2", "event-driven"])
+@pytest.mark.parametrize(("at", "mass", "zone"), [("-15 -43.2535 45 mm", "2 g", 12), ("-14.2 -43 45 mm", "2 g", 12),
+                                                  ("-14.3 -42.9063 46 mm", "3.6 g", 20)])
+def test_no_point_overlaps_beyond_the_bound_in_a_solved_step(at, mass, zone, integrator):
+    """Twice 2e-4 of a zone, since the gaps of the law are linear."""
+    sim = struck_cylinder(["tube", "cube"], at, integrator, mass, aggregate=f"{zone} mm")
+    touched = 0
+    for _ in range(12):
+        sim.step()
+        assert sim.report.status == "solved"
+        gaps = np.array(sim.contact("floor").gaps)
+        touched += (np.array(sim.contact("floor").normal_forces) > 0).any()
+        assert np.nanmin(gaps, initial=0.0) >= -2.1 * 2e-4 * zone * 1e-3
+    assert touched > 5
+
+
 def test_what_has_no_zones_says_so():
     scene = pressed("5 mm")
     scene["bodies"]["pad"] = {"type": "rigid", "shape": {"box": "50 50 20 mm"}, "fixed": True,

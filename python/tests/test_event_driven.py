@@ -174,3 +174,24 @@ def test_a_step_that_looks_at_contacts_leaves_no_linearisation():
     with pytest.raises(sinew.Error, match="event-driven integration ended it"):
         sim.last_linearisation()
     assert sim.linearise(statics=False).rows == []
+
+
+@pytest.mark.parametrize("spin, step", [(10.0, 20e-3), (100.0, 20e-3), (400.0, 20e-3), (1000.0, 5e-3), (1000.0, 20e-3), (3000.0, 5e-3)])
+def test_hinges_hold_whatever_turns_in_a_step(spin, step):
+    """A double pendulum that turns by 0.2 to 20 rad in a step: its hinges stay where they are, and no step gains energy."""
+    def rod(at, turn, speed):
+        return {"type": "rigid", "shape": {"box": [0.2, 0.01, 0.01]}, "mass": 0.1, "pose": {"position": [at, 0, 0]},
+                "velocity": {"angular": [0, 0, turn], "linear": [0, speed, 0]}}
+
+    sim = sinew.load({
+        "sinew": 1, "time_step": step, "integrator": "event-driven", "gravity": [0, 0, -GRAVITY],
+        "bodies": {"near": rod(0.1, spin, 0.1 * spin), "far": rod(0.3, -spin, 0.1 * spin)},
+        "joints": {"ground": {"type": "hinge", "bodies": ["world", "near"], "point": [0, 0, 0], "axis": [0, 0, 1]},
+                   "elbow": {"type": "hinge", "bodies": ["near", "far"], "point": [0.2, 0, 0], "axis": [0, 0, 1]}}})
+    for _ in range(20):
+        sim.step()
+        assert not sim.report.flagged
+        near, far = sim.body("near"), sim.body("far")
+        elbow = 2.0 * np.array(near.position)
+        assert np.linalg.norm(near.position) == pytest.approx(0.1, abs=1e-8)
+        assert np.linalg.norm(far.position - elbow) == pytest.approx(0.1, abs=1e-8)

@@ -151,6 +151,18 @@ def test_a_rope_and_a_rough_wall_hold_a_rod(steps, reverse, turn, kind, friction
     hold(sim, steps, held)
 
 
+def test_the_forces_of_a_rod_depend_on_nothing_but_the_load():
+    """A rope and the corners of a square end hold it in more than one way: the least forces are those of any order and axes."""
+    pulls = []
+    for turn in TURNS:
+        for reverse in (False, True):
+            bodies, rope, _ = strut("square")
+            sim, _ = load(bodies, 0.8, turn=turn, reverse=reverse, rope=rope)
+            hold(sim, 0)
+            pulls.append([sim.actuator("rope").tension, *np.sort(sim.contact(list(sim.contacts)[0]).normal_forces)])
+    assert np.allclose(pulls, pulls[0], rtol=1e-9)
+
+
 def test_a_rod_follows_the_rope_that_holds_it():
     bodies, rope, _ = strut("square")
     sim, world = load(bodies, 0.8, rope=rope)

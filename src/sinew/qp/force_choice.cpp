@@ -176,7 +176,7 @@ bool ForceChoice::close_more(const ForcePart& part, const Eigen::Ref<const Vecto
   for (const int block : parts_.blocks(part)) {
     if (box(block) != nullptr || role_[at(block)] == Role::closed) continue;
     const int row = rows_of(*problem_, block).row;
-    if (motion(offset, x_, row) >= -scales_->rounding) continue;
+    if (motion(offset, x_, row) >= scales_->rounding) continue;
     role_[at(block)] = Role::closed;
     found = true;
   }

@@ -36,7 +36,8 @@ constexpr double kTouching = 1e-9;
 constexpr double kGentle = 1e-5;
 // Friction is static at points slower than this fraction of the fastest point.
 constexpr double kStays = 1e-6;
-// Rounds of a step in which overlapping surfaces get points, and zones redistribute their forces.
+// Rounds of a step in which overlapping surfaces get points, and of a solution of the law in which
+// zones redistribute their forces.
 constexpr int kMaxRounds = 20;
 
 // Motions of a point's rows without its own force.
@@ -137,7 +138,7 @@ double ContactRows::ahead(double time_step) {
 // Depends on the state alone, so a run continues from a saved state bit for bit.
 void ContactRows::choose_active(std::span<const double> effort, double time_step, double reach) {
   left_out_ = false;
-  rounds_left_ = zone_rounds_left_ = kMaxRounds;
+  rounds_left_ = kMaxRounds;
   if (has_zones()) rows_.groups.begin(rows_.active.size());
   const double near = std::max(kTaken * model_.size(), reach);
   for_each_point(true, [&](const constraint::Contact& contact, std::size_t k) {
@@ -368,6 +369,8 @@ void ContactRows::list(const RowNumbering& numbering,
     }
   }
 }
+
+void ContactRows::begin_solution() { zone_rounds_left_ = kMaxRounds; }
 
 bool ContactRows::correct(const step::StepProblem& problem, const RowNumbering& numbering,
                           const linalg::AlignedNumbers& effort) {
@@ -668,6 +671,9 @@ double ContactRows::max_penetration_without_force(std::span<const double> effort
 
 double ContactRows::max_penetration_left_out() const {
   double deepest = 0.0;
+  for (std::size_t i = 0; i < zones_.size() && !rows_.groups.empty(); ++i) {
+    if (zones_[i] && !strikes(i)) deepest = std::max(deepest, zones_[i]->excess(rows_));
+  }
   if (!left_out_) return deepest;
   for (std::size_t i = 0; i < zones_.size(); ++i) {
     const constraint::Contact& contact = *planes_.contacts()[i];

@@ -69,6 +69,8 @@ class ContactRows {
   /// Appends the blocks of the active points.
   void list(const RowNumbering& numbering, std::vector<step::ContactBlock>& blocks) const;
 
+  /// Begins a solution of the law in a step.
+  void begin_solution();
   /// Corrects the active set after a motion was solved and proposed:
   /// - A point that was left out becomes active if the motion leads it into its surface.
   /// - A point with a force from the tangent plane of a curved surface gets the plane of the path
@@ -152,7 +154,8 @@ class ContactRows {
   /// m, >= 0: largest penetration of the tangent plane by a point without a normal force.
   /// @param effort (rows,) N.
   double max_penetration_without_force(std::span<const double> effort) const;
-  /// The same for the points that were left out, from delta.
+  /// The same for the points that were left out, from delta. Zones count with what overlaps beyond
+  /// their bound.
   double max_penetration_left_out() const;
 
  private:
@@ -204,7 +207,7 @@ class ContactRows {
   bool left_out_ = false;                             // whether any point is left out
   int rounds_left_ = 0;                  // rounds in which overlapping surfaces may get points
   std::vector<double> gaps_, friction_;  // (points,) m, and coefficients, of one contact
-  int zone_rounds_left_ = 0;             // of a step, in which zones spread their forces anew
+  int zone_rounds_left_ = 0;             // in which zones may spread their forces anew
   std::vector<char> touched_;            // (rows,) normal rows with a force when the step began
   bool has_kinetic_ = false;             // some contact has two coefficients
   double still_ = 0.0;                   // m/s: what is slower stays

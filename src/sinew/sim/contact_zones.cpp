@@ -16,11 +16,14 @@ namespace {
 // forces of a stiff body are distributed, too. Below the last fraction of the size, rounding
 // dominates.
 constexpr double kTolerance = 2e-4, kOfDeflection = 0.01, kFloor = 1e-7;
-// Initial w, and its reduction if overlaps grow by the last factor.
-constexpr double kRelaxation = 0.7, kLess = 0.5, kGrows = 1.1;
+// Of these overlaps: the linearised gaps that meet the bound may end a little beyond it.
+constexpr double kBeyond = 2.0;
+// Initial w, its factor if overlaps grow by the third number, its factor otherwise, and the
+// largest. The approximate B is too stiff for most loads, but not for all.
+constexpr double kRelaxation = 1.0, kLess = 0.5, kGrows = 1.1, kMore = 1.3, kMost = 4.0;
 // a, relative to the distance of neighbouring points. Larger values make neighbours too similar.
 constexpr double kSpread = 0.2;
-constexpr int kSweeps = 10;
+constexpr int kSweeps = 40;
 // Smaller differences between weights, and between gaps relative to a zone's size, are ignored, so
 // rounding decides nothing.
 constexpr double kAlike = 1e-6;
@@ -120,6 +123,7 @@ void ContactZones::begin(std::span<const double> effort, std::span<const double>
     zone = {};
     zone.nearest = kInfinity;
     zone.relaxation = kRelaxation;
+    zone.allowed = tolerance();
   }
   for (std::size_t k = 0; k < contact_.size(); ++k) {
     weight_[k] = 0.0;
@@ -250,14 +254,15 @@ bool ContactZones::refine(std::span<const double> gaps, const step::StepProblem&
     const int row = zone.first < 0 ? -1 : numbering.problem_row_of(zone.first);
     const double force = row < 0 ? 0.0 : effort[static_cast<std::size_t>(row)];
     const double compliance = row < 0 ? 0.0 : problem.compliance(row, row);
-    const double allowed = std::min(kTolerance * size_, kOfDeflection * compliance * force);
-    if (!(zone.overlap > allowed)) {
+    zone.allowed = std::min(tolerance(), kOfDeflection * compliance * force);
+    if (!(zone.overlap > zone.allowed)) {
       zone.overlap = 0.0;  // if it grows, this is not because forces were redistributed
       continue;
     }
     found = true;
-    if (zone.overlap_before > 0.0 && zone.overlap > kGrows * zone.overlap_before) {
-      zone.relaxation *= kLess;
+    if (zone.overlap_before > 0.0) {
+      const bool grows = zone.overlap > kGrows * zone.overlap_before;
+      zone.relaxation = std::min(kMost, (grows ? kLess : kMore) * zone.relaxation);
     }
     points_.clear();
     for (int k = zone.begin; k >= 0; k = next_[static_cast<std::size_t>(k)]) {
@@ -267,6 +272,18 @@ bool ContactZones::refine(std::span<const double> gaps, const step::StepProblem&
   }
   if (found) group(rows);
   return found;
+}
+
+double ContactZones::excess(const mechanics::RowValues& rows) const {
+  double deepest = 0.0;
+  for (std::size_t k = 0; k < contact_.size(); ++k) {
+    if (contact_.idle(k, rows)) continue;
+    const double overlap = -rows.delta[contact_.row(k)];
+    if (!(overlap > kFloor * size_)) continue;
+    const Zone& zone = zones_[static_cast<std::size_t>(zone_of(k, rows))];
+    deepest = std::max(deepest, overlap - kBeyond * zone.allowed);
+  }
+  return deepest;
 }
 
 // Lists the points of each zone that have a force or overlap.

@@ -72,6 +72,9 @@ class ContactZones {
   bool refine(std::span<const double> gaps, const step::StepProblem& problem,
               const RowNumbering& numbering, const linalg::AlignedNumbers& effort,
               mechanics::RowValues& rows);
+  /// m: the largest overlap beyond twice what refine() lets remain, at the present gaps; 0 if none.
+  /// @param rows of the step.
+  double excess(const mechanics::RowValues& rows) const;
   /// At the end of a step: estimates the difference between the forces and those of single points.
   /// The normal part is a ZoneEstimate at the end of the step. Friction depends on history: the
   /// tangential differences of the steps are added up as long as a zone has a force and sticks, up
@@ -95,6 +98,7 @@ class ContactZones {
     double nearest = 0.0;  // m, smallest gap
     double overlap = 0.0;  // m, the largest
     double overlap_before = 0.0;
+    double allowed = 0.0;       // m, overlap that may remain
     double relaxation = 0.0;    // w
     int begin = -1;             // first of its points with a force or overlap, see next_
     int first = -1, last = -1;  // first and last row of its group

@@ -192,13 +192,14 @@ double EventStepper::move(double time, double length) {
   } else {
     substep_.solve(solved);
   }
-  carried_on_ = smooth && stays_smooth();
+  const bool stays = smooth && stays_smooth();
+  carried_on_ = stays && midpoint_.carry_on(substep_, solved);
   if (carried_on_) {
-    midpoint_.carry_on(substep_, solved);
     substep_.end_as_midpoint(length);
     return length;
   }
-  if (smooth && (midpoint_.has_turned() || midpoint_.has_commands())) solve_again(time, solved);
+  const bool again = stays || midpoint_.has_turned() || midpoint_.has_commands();
+  if (smooth && again) solve_again(time, solved);
   substep_.end(solved);
   return solved;
 }

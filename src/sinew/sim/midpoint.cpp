@@ -17,8 +17,9 @@ namespace sinew::sim {
 
 namespace {
 
-// Tolerance on held motions at the end of a step, relative to the robot's size.
-constexpr double kHeld = 1e-12;
+// Tolerance on held motions at the end of a step, relative to the robot's size, and what may be
+// left where rounds do not reach it.
+constexpr double kHeld = 1e-12, kDrift = 1e-8;
 // Smaller deviations of a motion from its command, relative to the robot's size, are rounding.
 constexpr double kOnCommand = 1e-9;
 // s: a corner this close to the end of a part is there.
@@ -121,14 +122,15 @@ void Midpoint::solve(Substep& substep, double half) {
   for (int turn = 0; turn < kTurns && turn_points(); ++turn) substep.solve(half);
 }
 
-void Midpoint::carry_on(Substep& substep, double half) {
+bool Midpoint::carry_on(Substep& substep, double half) {
   Bodies& bodies = run_.world.bodies();
-  const double middle = run_.now;
+  const double middle = run_.now, size = run_.model->size();
+  double off = 0.0;
   bodies.scale_motion(2.0);
   ContactPlanes& planes = run_.world.contacts().planes();
   planes.set_halved(false);
   place(middle + half);
-  for (int round = 0; correct() > kHeld * run_.model->size() && round < kMaxRounds; ++round) {
+  for (int round = 0; (off = correct()) > kHeld * size && round < kMaxRounds; ++round) {
     place(middle);
     bodies.scale_motion(0.5);
     planes.set_halved(true);
@@ -139,6 +141,7 @@ void Midpoint::carry_on(Substep& substep, double half) {
   }
   measure_false_work();
   release();
+  return off <= kDrift * size;
 }
 
 // Updates closed points to the surface points and normals at the present positions of the bodies;

@@ -57,8 +57,9 @@ class Midpoint {
   /// Solves the first half. @param substep begun for this half. @param half s, its length.
   void solve(Substep& substep, double half);
   /// Makes the second half. Call after solve(), and Substep::end_as_midpoint() afterwards.
-  /// @param substep,half as in solve().
-  void carry_on(Substep& substep, double half);
+  /// @param substep,half as in solve(). @return false if held motions are not met at the end of the
+  /// step; the state is then of no use.
+  bool carry_on(Substep& substep, double half);
   /// J: magnitude of the work of the normal forces of turned points in the last carry_on(). Their
   /// gaps did not change, so this work is spurious, an error of third order.
   double false_work() const { return false_work_; }

@@ -192,6 +192,7 @@ step::LawStatus World::solve_laws(step::StepSolver& solver, step::Controller* co
   // Each choice of a controller takes several solutions of the law. Most of the points that become
   // active between surfaces are also found at the efforts before the choice, with one solution per
   // round. The controller therefore chooses only when no more points are found there.
+  contacts_.begin_solution();
   bool looks = controller != nullptr && contacts_.may_find_points();
   step::LawStatus status = step::LawStatus::solved;
   for (bool mended = true; mended;) {
