@@ -1,6 +1,7 @@
 """Quasi-static steps that Newton's method does not solve at once: the loads are those of the end of the step."""
 
 import numpy as np
+import pytest
 import sinew
 
 
@@ -87,3 +88,36 @@ def test_a_slack_cable_cannot_keep_the_limit_of_its_displacement():
         assert sim.actuator("cable").tension == 0.0
         reached.append(sim.actuator("cable").displacement)
     assert max(reached) > 1.0e-3  # twice the limit
+
+
+def pulled_arm(element, model, friction, command, points=6):
+    """A slender arm, and a cable with friction off its axis that bends it."""
+    x = np.linspace(0.0, 95.0, points)
+    return {
+        "sinew": 1, "gravity": "0 0 0 m/s^2",
+        "bodies": {"arm": {"type": "fem", "element": element, "fixed": {"set": "x_min"},
+                           "mesh": {"shape": "block", "length": "95 mm", "width": "27 mm", "height": "12 mm", "element_size": "6 mm"},
+                           "material": {"model": model, "young_modulus": "72 kPa", "poisson_ratio": 0.42}}},
+        "actuators": {"cable": {"type": "cable", "body": "arm", "friction": friction, "command": command,
+                                "points": [f"{at} 20 10 mm" for at in x]}},
+    }  # fmt: skip
+
+
+@pytest.mark.filterwarnings("ignore:.*locking-element")
+@pytest.mark.parametrize("command", [{"displacement": "14 mm"}, {"tension": "0.5 N"}])
+@pytest.mark.parametrize("friction", [0.05, 0.3])
+@pytest.mark.parametrize("element, model", [("tet4", "corotational"), ("hex8", "neo-hookean")])
+def test_a_cable_slides_through_all_of_its_guides_in_one_step(element, model, friction, command):
+    """The limits of friction move with the robot: a guide that has slid may end inside its own by less than the tolerance."""
+    sim = sinew.load(pulled_arm(element, model, friction, command))
+    cable = sim.actuator("cable")
+    for _ in range(3):
+        sim.step()
+        assert sim.report.status == "solved"
+        assert sim.report.iterations <= 20
+    # Euler: all guides slide towards the pull. A guide within the tolerance of its limit is at it.
+    assert cable.wrap > 0.3
+    assert cable.tensions[0] / cable.tensions[-1] == pytest.approx(np.exp(friction * cable.wrap), rel=1e-4)
+    end = sim.body("arm").positions.copy()
+    sim.solve_static()
+    assert np.abs(sim.body("arm").positions - end).max() < 1e-5

@@ -228,14 +228,8 @@ std::string NewtonStep::describe(const NewtonReport& result, const NewtonSetting
 
 std::string NewtonStep::remedy(NewtonStatus status) const {
   const bool dynamic = run_.model->step().dynamic();
-  std::string common = dynamic ? "take a smaller time step, or change commands more slowly"
-                               : "change commands more slowly";
-  // Guides that are about to slide can change their state in every iteration.
-  if (!dynamic && !follows() && !run_.model->guides().empty()) {
-    common +=
-        "; with friction of cables, `solver: {equilibrium: following}` (sim.follow() in Python) "
-        "lets a step end before every guide has settled";
-  }
+  const std::string common = dynamic ? "take a smaller time step, or change commands more slowly"
+                                     : "change commands more slowly";
   if (status != NewtonStatus::inverted) return common;
   return common +
          "; if that does not help, the robot cannot bear the command or load: lessen it, "

@@ -10,10 +10,6 @@ namespace sinew::step {
 
 namespace {
 
-// Relative to the tension: friction within this of its limit is at it, since limits and tensions
-// are found together by iteration.
-constexpr double kAtLimit = 1e-9;
-
 // Violation of a commanded motion by `gap`: an effort at its lower limit allows a larger motion,
 // one at its upper limit a smaller one.
 double box_miss(double gap, bool at_lower, bool at_upper) {
@@ -62,6 +58,17 @@ double contact_miss(const StepProblem& problem, const ContactBlock& block,
   return scale * qp::cone_residual(force, motion, block.friction, scale);
 }
 
+// Distance from the graph of a guide's friction as a motion, with the robot's own compliance c:
+// c |f - [f - slip/c]|, [.] the nearest effort within the limits. A guide that slides may end just
+// inside limits that have moved with the robot; that is a small miss, however far it slid.
+double guide_miss(const StepProblem& problem, const CapstanBlock& block,
+                  const GuideTension& tension, double effort) {
+  const double own = problem.compliance(block.row, block.row);
+  if (!(own > 0.0)) return 0.0;
+  const double pulls = effort - (problem.delta[block.row] - block.held) / own;
+  return own * std::abs(effort - std::clamp(pulls, tension.lower(block), tension.upper(block)));
+}
+
 }  // namespace
 
 void ActuatorBlock::hold_effort(double effort) {
@@ -97,10 +104,7 @@ double violation(const StepProblem& problem, std::span<const double> effort, Law
     worst = std::max(worst, block.motion_scale * own);
   }
   for_each_guide(problem, effort, [&](const CapstanBlock& block, const GuideTension& tension) {
-    const double lost = of(block.row), blur = kAtLimit * tension.largest();
-    const bool at_lower = lost <= tension.lower(block) + blur;
-    const bool at_upper = lost >= tension.upper(block) - blur;
-    worst = std::max(worst, box_miss(problem.delta[block.row] - block.held, at_lower, at_upper));
+    worst = std::max(worst, guide_miss(problem, block, tension, of(block.row)));
   });
   for (const ContactBlock& block : problem.contacts) {
     worst = std::max(worst, contact_miss(problem, block, effort));
