@@ -72,7 +72,7 @@ BeamOptions soft() {
   BeamOptions options;
   options.young_modulus = 2e4;
   options.friction = 0.2;
-  options.step.max_iterations = 15;
+  options.step.max_iterations = 5;
   options.step.equilibrium = Equilibrium::following;
   return options;
 }

@@ -8,7 +8,7 @@ from suite.robots import SOLVER
 
 TITLE = "Contact with friction: a block on an incline, a slide and a dropped block"
 SETUP = """A rubber block of 40 x 40 x 20 mm, E = 1 MPa, 1000 kg/m^3, with damping, lies on a plane with mu = 0.5. Instead of
-the plane, gravity is inclined by theta. Backward Euler steps of 1 ms, one linearisation each. The speed of the block is the
+the plane, gravity is inclined by theta. Backward Euler steps of 1 ms. The speed of the block is the
 mean over its nodes (lumped masses), its acceleration the mean over the last 0.4 s of 1 s. Below tan theta = mu the block
 sticks, and its motion in the last 0.5 s is compared with zero.
 

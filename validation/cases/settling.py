@@ -8,7 +8,7 @@ from suite.robots import own_trunk
 
 TITLE = "A neo-Hookean trunk settles"
 SETUP = """The trunk of examples/trunk has a neo-Hookean material (E = 450 kPa, nu_0 = 0.45) and eight cables, no gravity, and
-backward Euler steps of 10 ms with one linearisation each. One long cable is pulled by 5, 10, 15 or 20 mm at its rate limit of
+backward Euler steps of 10 ms. One long cable is pulled by 5, 10, 15 or 20 mm at its rate limit of
 100 mm/s while the others are slack, without damping and with 0.1 s of stiffness damping. After 8 s the tip must be within
 0.05 mm of the equilibrium found by Newton's method, without lasting oscillation. With large pulls the cables' geometric
 stiffness matters; simulators without it have been seen to diverge here."""

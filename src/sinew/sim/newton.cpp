@@ -220,7 +220,7 @@ class NewtonSolver {
     const double size = world_.problem().size;
     if (!(report_.violation <= std::max(settings_.motion_tolerance, kRounding) * size))
       return false;
-    const bool at_rest = stagnant_ && report_.motion.largest_move <= kRounding * size &&
+    const bool at_rest = full_step_ && report_.motion.largest_move <= kRounding * size &&
                          report_.relative_residual <= kRoundedResidual;
     const double tolerance = settings_.strict && !derivative_
                                  ? std::min(settings_.tolerance, kRoundedResidual)
