@@ -121,3 +121,38 @@ def test_a_cable_slides_through_all_of_its_guides_in_one_step(element, model, fr
     end = sim.body("arm").positions.copy()
     sim.solve_static()
     assert np.abs(sim.body("arm").positions - end).max() < 1e-5
+
+
+def column(side, **more):
+    """A soft column that carries a block. Its own weight and the block's buckle it; nothing in it favours a side."""
+    return {
+        "sinew": 1, "gravity": "0 0 -9.81 m/s^2",
+        "bodies": {
+            "column": {"type": "fem", "material": "ecoflex-00-30", "density": 1050.0, "fixed": {"set": "z_min"},
+                       "position": [-side / 2, -side / 2, 0],
+                       "mesh": {"shape": "block", "length": side, "width": side, "height": 0.1, "element_size": side / 2}},
+            "block": {"type": "rigid", "shape": {"box": [side, side, side]}, "mass": 0.02, "pose": {"position": [0, 0, 0.1 + side / 2]}}},
+        "joints": {"top": {"type": "weld", "bodies": ["column", "block"], "points": [[0, 0, 0.1], [side / 4, 0, 0.1], [0, side / 4, 0.1]],
+                           "outside": "nearest"}},
+        "effectors": {"tip": {"body": "column", "point": [0, 0, 0.1], "outside": "nearest"}}, **more,
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("side", [0.018, 0.02])
+@pytest.mark.parametrize("wall", [False, True])
+def test_a_column_that_buckles_in_a_step_comes_to_rest(side, wall):
+    """From an unstable equilibrium, or past it; a wall may stop it on its way."""
+    scene = column(side)
+    if wall:
+        scene["bodies"]["wall"] = {"type": "rigid", "shape": {"plane": {}}, "fixed": True,
+                                   "pose": {"position": [-0.02, 0, 0], "rotation": {"axis": "y", "angle": "90 deg"}}}
+        scene["contacts"] = {"wall": {"between": ["column", "wall"]}}
+    sim = sinew.load(scene)
+    sim.step()
+    assert sim.report.status == "solved"
+    assert sim.report.snapped
+    there = np.array(sim.effector("tip").position)
+    assert np.linalg.norm(there[:2]) > 0.01
+    report = sim.solve_static()
+    assert report.stable
+    assert np.linalg.norm(np.array(sim.effector("tip").position) - there) < 1e-4

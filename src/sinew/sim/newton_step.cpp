@@ -12,6 +12,7 @@
 #include "sinew/sim/load_steps.hpp"
 #include "sinew/sim/rest_search.hpp"
 #include "sinew/sim/run.hpp"
+#include "sinew/sim/stability.hpp"
 #include "sinew/sim/static_search.hpp"
 #include "sinew/sim/step_failure.hpp"
 #include "sinew/sim/step_tolerances.hpp"
@@ -26,6 +27,8 @@ namespace {
 // (docs/solver.md).
 // Iterations with the projected tangent, which descend to a stable equilibrium if there is one.
 constexpr int kMaxDescents = 60;
+// The same before a step is given up that has nearly reached an equilibrium.
+constexpr int kMaxLongDescents = 300;
 // Smallest part of a quasi-static step, and smallest first part.
 constexpr double kMinPart = 1.0 / 64.0;
 constexpr double kMinFirstPart = 1.0 / 16.0;
@@ -118,8 +121,9 @@ NewtonSettings NewtonStep::settings_of_part(double time_step) const {
 // A state that is no solution is kept only if the caller asks for it (Run::keeps_going).
 void NewtonStep::solve(double time_step) {
   NewtonReport result = search(time_step);
-  if (must_settle() && converged(result))
+  if (converged(result) && (must_settle() || (descended_ && is_unstable(time_step)))) {
     RestSearch(run_, time_step).settle(settings(time_step), result);
+  }
   take_report(result);
   if (converged(result)) return bound_distance(result);
   const JointConflict conflict = find_conflict(result, time_step);
@@ -149,12 +153,18 @@ void NewtonStep::solve(double time_step) {
   if (!(reached_ > 0.0) && starts_singular(run_, time_step)) {
     fail_if_free(run_, result.status, time_step);
   }
-  fail_to_find(result, text, time_step);
+  fail_at_limit_point(result, time_step);
+  const bool buckles = tried_fallbacks_ > 0;
+  const std::string end = describe_end();
+  if (buckles && falls(result, time_step)) return;
+  fail(run_, kind_of(result), text + end,
+       buckles ? "command a motion (a volume_growth, a displacement) in place of an effort, use "
+                 "dynamics (`integrator: backward-euler`), or take smaller commands or loads"
+               : remedy(result.status));
 }
 
-// Says where the equilibria of a quasi-static step end.
-void NewtonStep::fail_to_find(const NewtonReport& result, const std::string& text,
-                              double time_step) {
+// Looks where the equilibria of a quasi-static step end.
+void NewtonStep::fail_at_limit_point(const NewtonReport& result, double time_step) {
   const std::vector<step::ActuatorBlock> goal = run_.world.problem().actuators;
   run_.restore(sound_);
   run_.begin_world(time_step);
@@ -163,20 +173,64 @@ void NewtonStep::fail_to_find(const NewtonReport& result, const std::string& tex
   const bool singular = run_.world.condense() == linalg::FactorStatus::singular;
   const std::string limit = singular ? "" : describe_limit_point(run_, goal);
   if (!limit.empty()) fail(run_, kind_of(result), limit, kLimitPointRemedy);
-  const bool buckles = tried_fallbacks_ > 0;
+}
+
+// Says where they end, at the last equilibrium on the way.
+std::string NewtonStep::describe_end() const {
   std::string end = fmt::format(
       "; the last equilibrium on the way is at {:.3g} % of this step's "
       "changes{}",
-      100.0 * reached_, describe_efforts(goal));
-  if (buckles) {
+      100.0 * reached_, describe_efforts(run_.world.problem().actuators));
+  if (tried_fallbacks_ > 0) {
     end +=
         ", and beyond it the exact tangent is indefinite: the robot buckles, collapses or snaps "
         "there";
   }
-  fail(run_, kind_of(result), text + end,
-       buckles ? "command a motion (a volume_growth, a displacement) in place of an effort, use "
-                 "dynamics (`integrator: backward-euler`), or take smaller commands or loads"
-               : remedy(result.status));
+  return end;
+}
+
+// Whether the present equilibrium is unstable, with what taut cables and contacts hold.
+bool NewtonStep::is_unstable(double time_step) {
+  if (run_.controller != nullptr) return false;  // which has no time to look
+  const NewtonSettings own = settings(time_step);
+  NewtonSettings whole = own;
+  whole.request.with_geometric_stiffness = true;
+  const auto condense = [&](const NewtonSettings& how, std::span<const int> geometric) {
+    run_.world.linearise(how.request);
+    run_.world.form_rows(run_.effort, geometric);
+    return run_.world.condense();
+  };
+  const auto status = condense(whole, run_.model->geometric_stiffness().all);
+  const bool unstable = status == linalg::FactorStatus::indefinite &&
+                        !run_.world.inertia().unsymmetric &&
+                        Stability(run_.world, run_.effort).negative_pivots() > 0;
+  if (!unstable) condense(own, own.geometric);  // which later queries read
+  return unstable;
+}
+
+// Beyond a buckling load, the projected tangent approaches an unstable equilibrium, slowly; a
+// symmetric robot does not pass it by itself.
+// @return whether the robot comes to rest as it falls from the start of the step, and from the
+// unstable equilibria that it meets; the step is then solved.
+bool NewtonStep::falls(const NewtonReport& failed, double time_step) {
+  RestSearch search(run_, time_step);
+  NewtonReport rest = failed;
+  if (failed.relative_residual <= kLag.residual) {
+    run_.restore(run_.before);
+    run_.begin_world(time_step);
+    rest = descend(time_step, kMaxLongDescents);
+  }
+  if (!converged(rest)) rest = search.relax(failed);
+  if (!converged(rest)) return false;
+  search.settle(settings(time_step), rest);
+  const int tried = failed.iterations + rest.iterations;
+  rest = run_.newton(nullptr, settings(time_step));  // by the step's own tolerance and tangent
+  if (!converged(rest)) return false;
+  rest.iterations += tried;
+  part_snapped_ = true;
+  take_report(rest);
+  bound_distance(rest);
+  return true;
 }
 
 // The commanded efforts that the last equilibrium has not reached: ", with 'air' at 11.9 of 12

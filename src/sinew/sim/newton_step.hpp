@@ -57,8 +57,10 @@ class NewtonStep {
   bool solves(const NewtonReport& result);
   bool snaps(const NewtonReport& result) const;
   static ErrorKind kind_of(const NewtonReport& result);
-  [[noreturn]] void fail_to_find(const NewtonReport& result, const std::string& text,
-                                 double time_step);
+  void fail_at_limit_point(const NewtonReport& result, double time_step);
+  std::string describe_end() const;
+  bool is_unstable(double time_step);
+  bool falls(const NewtonReport& failed, double time_step);
   std::string describe_efforts(std::span<const step::ActuatorBlock> goal) const;
   std::string describe_choice() const;
   JointConflict find_conflict(const NewtonReport& result, double time_step) const;
