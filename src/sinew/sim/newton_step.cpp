@@ -213,17 +213,17 @@ bool NewtonStep::is_unstable(double time_step) {
 // @return whether the robot comes to rest as it falls from the start of the step, and from the
 // unstable equilibria that it meets; the step is then solved.
 bool NewtonStep::falls(const NewtonReport& failed, double time_step) {
-  RestSearch search(run_, time_step);
   NewtonReport rest = failed;
   if (failed.relative_residual <= kLag.residual) {
     run_.restore(run_.before);
     run_.begin_world(time_step);
     rest = descend(time_step, kMaxLongDescents);
+    rest.iterations += failed.iterations;
   }
-  if (!converged(rest)) rest = search.relax(failed);
+  if (!converged(rest)) rest = RestSearch(run_, time_step).relax(rest);
   if (!converged(rest)) return false;
-  search.settle(settings(time_step), rest);
-  const int tried = failed.iterations + rest.iterations;
+  RestSearch(run_, time_step).settle(settings(time_step), rest);
+  const int tried = rest.iterations;
   rest = run_.newton(nullptr, settings(time_step));  // by the step's own tolerance and tangent
   if (!converged(rest)) return false;
   rest.iterations += tried;
