@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/material/instability.hpp"
 
 namespace sinew::material {
 
@@ -41,6 +42,8 @@ constexpr double kPsi = 6894.76;  // Pa
 // The manufacturer's 100 % modulus still exceeds the tensile curves of the silicones with a test at
 // small strain by a factor of 1.3 to 3.8.
 constexpr double kSoftBelow = 2.0;
+// A law is called too soft if a test at small strain gave more than this multiple of its modulus.
+constexpr double kSofter = 1.2;
 
 /// A test at small strain.
 struct SmallStrain {
@@ -55,6 +58,9 @@ NamedMaterial checked(NamedMaterial entry, const SmallStrain& test, const char* 
   entry.measured_modulus = test.modulus;
   entry.measured_by = test.source;
   entry.better = better;
+  const bool stable = instability(entry.energy).empty();  // others say that they are not
+  const bool soft = test.modulus > kSofter * entry.energy.young_modulus();
+  if (soft && stable) entry.soft_below = kSoftBelow;
   return entry;
 }
 
@@ -88,7 +94,7 @@ NamedMaterial tensile(const char* name, const char* trade_name, const std::vecto
                       density, 1.0, 4.0, tensile_source(rms, density), kTensileRemark + more}),
               test, better);
   entry.error = error;
-  entry.soft_below = test.modulus > 0.0 ? kSoftBelow : kSlackBelow;
+  if (test.modulus == 0.0) entry.soft_below = kSlackBelow;
   return entry;
 }
 
@@ -158,11 +164,11 @@ void add_ecoflex(std::vector<NamedMaterial>& list) {
       checked(finish({"ecoflex-00-30-mooney-rivlin", "Ecoflex 00-30", "mooney-rivlin",
                       mooney_rivlin(12.18e3, -33.3515), kDensity, 0.0, 0.0, kEcoflex30Source,
                       "Not a separate fit: C10 = mu_1/2 and C01 = -mu_2/2 of the Ogden law."}),
-              kEcoflex30));
+              kEcoflex30, "ecoflex-00-30-compression"));
   list.push_back(checked(finish({"ecoflex-00-30-neo-hookean", "Ecoflex 00-30", "neo-hookean",
                                  neo_hookean(2.0 * 12.18e3), kDensity, 0.0, 0.0, kEcoflex30Source,
                                  "Not a separate fit: C10 = mu_1/2 of the Ogden law."}),
-                         kEcoflex30));
+                         kEcoflex30, "ecoflex-00-30-compression"));
   list.push_back(tensile("ecoflex-00-30-tensile", "Ecoflex 00-30",
                          {{8.57318, 5.81546}, {13564.1, 2.22708}}, "0.34 kPa (0.4 %)", 0.04,
                          kDensity, kEcoflex30, "ecoflex-00-30-compression"));
