@@ -156,3 +156,35 @@ def test_a_column_that_buckles_in_a_step_comes_to_rest(side, wall):
     report = sim.solve_static()
     assert report.stable
     assert np.linalg.norm(np.array(sim.effector("tip").position) - there) < 1e-4
+
+
+def drooping(height, commands):
+    """A soft column with two cables inside that are reeled in: it droops, and the cables hold it where it would fall further."""
+    side = 0.0153
+    cables = {f"cable_{k}": {"type": "cable", "body": "column", "outside": "nearest",
+                             "points": [[0, y, z] for z in np.linspace(0.002, height - 0.002, 6)],
+                             "command": {"displacement": {"ramp": {"to": reeled, "duration": "100 ms"}}}}
+              for k, (y, reeled) in enumerate(zip((0.0061, -0.0061), commands))}
+    return {
+        "sinew": 1, "gravity": "0 0 -9.81 m/s^2", "time_step": "20 ms",
+        "bodies": {"column": {"type": "fem", "material": "ecoflex-00-30", "density": 1050.0, "fixed": {"set": "z_min"},
+                              "position": [-side / 2, -side / 2, 0],
+                              "mesh": {"shape": "block", "length": side, "width": side, "height": height, "element_size": side / 2}}},
+        "masses": {"tip": {"body": "column", "point": [0, 0, height], "mass": 0.005, "outside": "nearest"}},
+        "actuators": cables, "effectors": {"tip": {"body": "column", "point": [0, 0, height], "outside": "nearest"}},
+    }  # fmt: skip
+
+
+@pytest.mark.filterwarnings("ignore:.*(bare-points|strain-range)")
+@pytest.mark.parametrize("commands", [(0.0114, 0.0069), (0.02, 0.0), (0.015, 0.012)])
+def test_taut_cables_hold_what_would_fall_without_them(commands):
+    sim = sinew.load(drooping(0.1, commands))
+    for _ in range(6):
+        sim.step()
+        assert sim.report.status == "solved"
+    there = np.array(sim.effector("tip").position)
+    taut = [sim.actuator(name).tension > 0.0 for name in ("cable_0", "cable_1")]
+    assert any(taut)
+    report = sim.solve_static()
+    assert report.stable
+    assert np.linalg.norm(np.array(sim.effector("tip").position) - there) < 1e-5

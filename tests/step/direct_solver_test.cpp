@@ -361,6 +361,66 @@ TEST(Stabilised, CountsWithoutAnchors) {
   }
 }
 
+// A taut cable holds a robot that is unstable alone, as a hinge without limits would; it cannot
+// push.
+TEST(Brace, ATautCableHoldsWhatIsUnstableAlone) {
+  Random random(10);
+  for (int trial = 0; trial < 100; ++trial) {
+    const MatrixX root = random.matrix(4, 6);
+    MatrixX stiffness = root * root.transpose();
+    stiffness(0, 0) -= 1.5 / stiffness.inverse()(0, 0);  // negative along the cable's row
+    StepProblem problem;
+    problem.compliance = stiffness.inverse();
+    problem.delta_free = problem.delta = random.vector(4);
+    problem.actuators.push_back({.row = 0,
+                                 .effort_min = 0.0,
+                                 .effort_max = kInfinity,
+                                 .motion_min = -kInfinity,
+                                 .motion_max = kInfinity,
+                                 .kind = CommandKind::motion,
+                                 .value = random.uniform(-1.0, 1.0)});
+    ActuatorBlock& cable = problem.actuators.front();
+    std::vector<double> effort(4, 0.0);
+    EXPECT_FALSE(stabilised(problem, 1)) << trial;
+    EXPECT_FALSE(brace(problem, effort, 1)) << trial;  // slack
+    EXPECT_FALSE(cable.braced);
+    effort[0] = 1.0;
+    ASSERT_TRUE(brace(problem, effort, 1)) << trial;
+    EXPECT_FALSE(brace(problem, effort, 2)) << trial;  // one cable holds one direction
+    ASSERT_TRUE(brace(problem, effort, 1)) << trial;
+
+    // The tension is that of a bilateral row at this motion, if it pulls.
+    const double needed = (cable.value - problem.delta_free[0]) / problem.compliance(0, 0);
+    DirectSolver solver;
+    solver.begin_step();
+    const LawStatus status = solver.solve(problem, effort);
+    EXPECT_EQ(status, needed > 0.0 ? LawStatus::solved : LawStatus::failed) << trial;
+    if (needed > 0.0) EXPECT_NEAR(effort[0], needed, 1e-9 * needed) << trial;
+    release_braces(problem);
+    EXPECT_FALSE(stabilised(problem, 1)) << trial;
+  }
+}
+
+// A stop that is reached holds its motion, too, on its side of the command.
+TEST(Brace, AStopHoldsOnItsSide) {
+  const ActuatorBlock block{.row = 0,
+                            .effort_min = -10.0,
+                            .effort_max = 10.0,
+                            .motion_min = -1.0,
+                            .motion_max = 2.0,
+                            .kind = CommandKind::effort,
+                            .value = 3.0};
+  EXPECT_EQ(block.held(1.0), 2.0);
+  EXPECT_EQ(block.held(5.0), -1.0);
+  EXPECT_EQ(block.held(3.0), std::nullopt);
+  EXPECT_EQ(block.held(10.0), std::nullopt);
+  ActuatorBlock free = block;
+  free.motion_max = kInfinity;
+  EXPECT_EQ(free.held(1.0), std::nullopt);
+  free.owned = true;
+  EXPECT_EQ(free.held(5.0), std::nullopt);
+}
+
 // A row that moves nothing takes its commanded effort. If its motion is commanded and already
 // reached, it takes the smallest effort within its limits; otherwise the limit on that side, and
 // without a limit there is no solution.

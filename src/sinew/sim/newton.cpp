@@ -26,6 +26,9 @@ constexpr int kMaxHalvings = 12;
 // of its forces may then be rounding, too, if the laws are solved iteratively.
 constexpr double kRounding = 1e-11;
 constexpr double kRoundedResidual = 1e-7;
+// Further iterations for a tolerance that is asked for, once motions are rounding: a matrix larger
+// than the derivative may lower the residual slowly.
+constexpr int kAfterRest = 25;
 // An iteration that leaves more than this fraction of the residual no longer converges.
 constexpr double kLessened = 0.5;
 // Iterations without such a reduction after which the residual has stalled.
@@ -56,7 +59,7 @@ class NewtonSolver {
 
   NewtonReport run() {
     linearise(settings_.request.tangent, true);
-    for (report_.iterations = 0; report_.iterations < settings_.max_iterations;) {
+    while (report_.iterations < settings_.max_iterations + (rested_ ? kAfterRest : 0)) {
       if (converged_) return finish(NewtonStatus::converged);
       const NewtonStatus proposed = propose();
       if (proposed != NewtonStatus::converged) return finish(proposed);
@@ -69,7 +72,8 @@ class NewtonSolver {
       const bool chosen = may_hold_choice() && report_.law == step::LawStatus::solved;
       if (chosen && !converged_ && lags_little(settings_.choice)) hold_choice();
     }
-    const bool done = converged_ || (idle_ > 0 && is_within_stalled_tolerance());
+    const bool done =
+        converged_ || (rested_ && is_rounded()) || (idle_ > 0 && is_within_stalled_tolerance());
     return finish(done ? NewtonStatus::converged : NewtonStatus::iteration_limit);
   }
 
@@ -134,8 +138,14 @@ class NewtonSolver {
     }
     kept_ = false;
     if (!has_matrix_) linearise(settings_.request.tangent, true);
-    if (!condense()) return NewtonStatus::singular;
+    if (!condense(controller_ == nullptr)) return NewtonStatus::singular;
     report_.law = world_.solve_step(solver_, controller_, effort_, clock_);
+    if (braced_ && report_.law == step::LawStatus::failed) {  // something taut would become slack
+      std::ranges::copy(world_.efforts_before(), effort_.begin());
+      linearise(settings_.request.tangent, true);
+      if (!condense(false)) return NewtonStatus::singular;
+      report_.law = world_.solve_step(solver_, controller_, effort_, clock_);
+    }
     return report_.law == step::LawStatus::failed ? NewtonStatus::law_failed
                                                   : NewtonStatus::converged;
   }
@@ -168,11 +178,16 @@ class NewtonSolver {
   // The exact tangent may be indefinite far from equilibrium; the projected one is not. If the
   // tangent has an unsymmetric part (pressure on an open surface that has curled up), its symmetric
   // part may be indefinite at stable equilibria, which no other tangent can find.
-  bool condense() {
+  //
+  // @param may_brace whether what is taut may be supposed to stay so.
+  bool condense(bool may_brace) {
     auto status = world_.condense();
     ++report_.factorisations;
-    const bool stable = world_.is_stable() || (status == linalg::FactorStatus::indefinite &&
-                                               world_.inertia().unsymmetric);
+    bool stable = world_.is_stable() ||
+                  (status == linalg::FactorStatus::indefinite && world_.inertia().unsymmetric);
+    braced_ = !stable && may_brace && settings_.request.tangent == mechanics::Tangent::exact &&
+              world_.brace(effort_);
+    stable = stable || braced_;
     derivative_ =
         stable && settings_.request.tangent == mechanics::Tangent::exact && !world_.has_majorant();
     if (!stable && settings_.request.tangent == mechanics::Tangent::exact) {
@@ -214,20 +229,29 @@ class NewtonSolver {
            (full_step_ && report_.motion.largest_move <= kEpsilon * world_.problem().size);
   }
 
+  bool obeys_laws() const {
+    const double most = std::max(settings_.motion_tolerance, kRounding);
+    return report_.violation <= most * world_.problem().size;
+  }
+
+  // The residual is small enough to be that of rounding of positions.
+  bool is_rounded() const { return report_.relative_residual <= kRoundedResidual && obeys_laws(); }
+
   // If rounding keeps the residual above the tolerance, the solution is final when a full step
-  // moves nothing beyond rounding, or no longer reduces a residual at its rounding floor.
+  // moves nothing beyond rounding, or no longer reduces a residual at its rounding floor. A
+  // tolerance that is asked for holds as long as the iterations that remain lower the residual.
   bool converged() {
-    const double size = world_.problem().size;
-    if (!(report_.violation <= std::max(settings_.motion_tolerance, kRounding) * size))
-      return false;
-    const bool at_rest = full_step_ && report_.motion.largest_move <= kRounding * size &&
-                         report_.relative_residual <= kRoundedResidual;
+    if (!obeys_laws()) return false;
+    const bool at_rest = full_step_ && is_rounded() &&
+                         report_.motion.largest_move <= kRounding * world_.problem().size;
+    rested_ = rested_ || at_rest;
+    const bool final = settings_.strict || !(report_.residual < residual_before_);
     const double tolerance = settings_.strict && !derivative_
                                  ? std::min(settings_.tolerance, kRoundedResidual)
                                  : settings_.tolerance;
     // The floor is last, since it takes the sums of the matrix.
-    return report_.relative_residual <= tolerance || at_rest || lags_little(settings_.lag) ||
-           (is_spent() && report_.residual <= rounding_floor());
+    return report_.relative_residual <= tolerance || (at_rest && final) ||
+           lags_little(settings_.lag) || (is_spent() && report_.residual <= rounding_floor());
   }
 
   // It takes the sums of the matrix, which hardly changes within a step.
@@ -333,7 +357,9 @@ class NewtonSolver {
   NewtonReport report_;
   bool converged_ = false;             // after the last motion
   bool full_step_ = false;             // whether that motion was a full step
+  bool rested_ = false;                // whether a motion was rounding
   bool derivative_ = false;            // whether the condensed matrix was the derivative
+  bool braced_ = false;                // whether it is stable only if what is taut stays so
   bool stagnant_ = false;              // the last full step did not lessen the residual
   bool has_matrix_ = false;            // whether the last linearisation included the matrix
   bool kept_ = false;                  // whether the last motion used an earlier factor

@@ -440,7 +440,8 @@ NewtonReport NewtonStep::return_to_start(double time_step) {
 bool NewtonStep::is_near(NewtonReport& result) {
   if (!(result.relative_residual <= kLag.residual)) return false;
   World& world = run_.world;
-  if (world.condense() == linalg::FactorStatus::singular || !world.is_stable()) return false;
+  if (world.condense() == linalg::FactorStatus::singular) return false;
+  if (!world.is_stable() && !world.brace(run_.effort)) return false;
   const double left = correction();
   if (!(left <= kLag.move * world.problem().size)) return false;
   result.status = NewtonStatus::converged;

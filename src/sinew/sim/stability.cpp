@@ -12,27 +12,11 @@ namespace sinew::sim {
 
 namespace {
 
-// Relative difference below which an effort is at its limit.
-constexpr double kAtLimit = 1e-9;
 constexpr int kMaxDirections = 80;  // of Lanczos' method
 constexpr double kRitzTolerance = 1e-2;
 // A direction is neutral if a motion along it by the robot's size changes forces by at most this
 // multiple of their rounding error.
 constexpr double kNeutral = 10.0;
-
-bool same(double effort, double limit) {
-  if (!std::isfinite(limit)) return false;
-  return std::abs(effort - limit) <= kAtLimit * std::max(std::abs(effort), std::abs(limit));
-}
-
-// Whether a command or a limit of the motion holds the row rigidly.
-bool holds(const step::ActuatorBlock& range, double effort) {
-  if (range.kind == step::CommandKind::effort) return !same(effort, range.value);
-  if (range.kind != step::CommandKind::motion) return false;
-  const bool at_lower = effort <= range.effort_min || same(effort, range.effort_min);
-  const bool at_upper = effort >= range.effort_max || same(effort, range.effort_max);
-  return !at_lower && !at_upper;
-}
 
 }  // namespace
 
@@ -70,7 +54,7 @@ std::vector<step::HeldRow> held_rows(const step::StepProblem& problem,
     if (range.drive != nullptr) {
       const auto at = range.drive->respond(range.drive_step, problem.delta[range.row]);
       if (at.slope < 0.0) held.push_back({range.row, -1.0 / at.slope});
-    } else if (holds(range, effort[static_cast<std::size_t>(range.row)])) {
+    } else if (range.held(effort[static_cast<std::size_t>(range.row)])) {
       held.push_back({range.row, 0.0});
     }
   }

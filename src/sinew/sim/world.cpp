@@ -139,7 +139,14 @@ bool World::is_stable() const {
   return step::stabilised(problem_, inertia_.negative_pivots);
 }
 
+bool World::brace(std::span<const double> effort) {
+  if (inertia_.status == linalg::FactorStatus::singular) return false;
+  numbering_.gather_efforts(effort, scratch_);
+  return step::brace(problem_, scratch_, inertia_.negative_pivots);
+}
+
 linalg::FactorStatus World::condense() {
+  step::release_braces(problem_);
   stiffness_.add();
   inertia_ = bodies_.condense();
   if (inertia_.status != linalg::FactorStatus::singular) form_compliance();

@@ -96,6 +96,9 @@ class World {
   const mechanics::Inertia& inertia() const { return inertia_; }
   /// Whether the robot with its drives and held rows is stable according to its linearisation.
   bool is_stable() const;
+  /// Whether it is stable if what is taut stays so; the next solution then supposes that, see
+  /// step::brace(). Until the next condensation. @param effort (rows,) N.
+  bool brace(std::span<const double> effort);
   /// Whether A contains a majorant of the geometric stiffness, and is therefore not the derivative.
   bool has_majorant() const { return stiffness_.has_majorant(); }
 

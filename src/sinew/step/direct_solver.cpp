@@ -44,8 +44,16 @@ void DirectSolver::begin_step() {
 LawStatus DirectSolver::solve(const StepProblem& problem, std::span<double> effort) {
   sort(problem, effort);
   if (unreachable_ >= 0) return LawStatus::failed;
-  return problem.capstans.empty() ? solve_with_drives(problem, effort)
-                                  : solve_with_friction(problem, effort);
+  const LawStatus status = problem.capstans.empty() ? solve_with_drives(problem, effort)
+                                                    : solve_with_friction(problem, effort);
+  return braces_hold(problem, effort) ? status : LawStatus::failed;
+}
+
+// Whether every effort that holds a motion by assumption does so.
+bool DirectSolver::braces_hold(const StepProblem& problem, std::span<const double> effort) {
+  return std::ranges::all_of(problem.actuators, [&](const ActuatorBlock& block) {
+    return !block.braced || block.held(effort[static_cast<std::size_t>(block.row)]).has_value();
+  });
 }
 
 // Sorts rows into given, following and unknown ones. free_ is the motion due to the given ones.
@@ -104,6 +112,9 @@ void DirectSolver::sort_actuator(const StepProblem& problem, int index, std::spa
   if (block.row < 0) return;
   double& own = effort[static_cast<std::size_t>(block.row)];
   const bool moves = problem.compliance(block.row, block.row) != 0.0;
+  if (block.braced) {
+    if (const auto motion = block.held(own)) return followers_.add_held(block.row, *motion);
+  }
   if (!block.owned && block.drive != nullptr) {
     if (moves) return followers_.add_curve(block, problem.delta[block.row]);
     own = block.drive->respond(block.drive_step, problem.delta[block.row]).effort;

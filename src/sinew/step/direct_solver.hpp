@@ -77,6 +77,7 @@ class DirectSolver {
   void sort_actuator(const StepProblem& problem, int index, std::span<double> effort);
   Box box_of(const ActuatorBlock& block, int index) const;
   static double idle_effort(const Box& box, double gap);
+  static bool braces_hold(const StepProblem& problem, std::span<const double> effort);
   LawStatus solve_with_friction(const StepProblem& problem, std::span<double> effort);
   bool follow_tensions(const StepProblem& problem, std::span<const double> effort, double share);
   LawStatus solve_with_drives(const StepProblem& problem, std::span<double> effort);

@@ -10,6 +10,14 @@ namespace sinew::step {
 
 namespace {
 
+// Relative difference below which an effort is at its limit.
+constexpr double kAtLimit = 1e-9;
+
+bool at_limit(double effort, double limit) {
+  if (!std::isfinite(limit)) return false;
+  return std::abs(effort - limit) <= kAtLimit * std::max(std::abs(effort), std::abs(limit));
+}
+
 // Violation of a commanded motion by `gap`: an effort at its lower limit allows a larger motion,
 // one at its upper limit a smaller one.
 double box_miss(double gap, bool at_lower, bool at_upper) {
@@ -92,6 +100,16 @@ bool ActuatorBlock::holds_motion() const {
          std::isinf(effort_max);
 }
 
+std::optional<double> ActuatorBlock::held(double effort) const {
+  if (owned || drive != nullptr || kind == CommandKind::input) return {};
+  if (at_limit(effort, effort_min) || at_limit(effort, effort_max)) return {};
+  if (effort < effort_min || effort > effort_max) return {};
+  if (kind == CommandKind::motion) return value;
+  if (at_limit(effort, value)) return {};
+  const double stop = effort < value ? motion_max : motion_min;
+  return std::isfinite(stop) ? std::optional(stop) : std::nullopt;
+}
+
 double violation(const StepProblem& problem, std::span<const double> effort, LawStatus law) {
   const auto of = [&](int row) { return effort[static_cast<std::size_t>(row)]; };
   double worst = 0.0;
@@ -150,7 +168,7 @@ int negative_directions(int negative_pivots, int negative, std::span<const HeldR
 bool stabilised(const StepProblem& problem, int negative_pivots) {
   std::vector<HeldRow> held;
   for (const ActuatorBlock& block : problem.actuators) {
-    if (block.holds_motion()) held.push_back({block.row, 0.0});
+    if (block.braced || block.holds_motion()) held.push_back({block.row, 0.0});
     if (block.owned || block.drive == nullptr) continue;
     const auto at = block.drive->respond(block.drive_step, problem.delta[block.row]);
     if (at.slope < 0.0) held.push_back({block.row, -1.0 / at.slope});  // a flat one holds nothing
@@ -160,6 +178,23 @@ bool stabilised(const StepProblem& problem, int negative_pivots) {
   const auto own = held_compliance(problem, held);
   const int negative = linalg::spectral_inverse(own.matrix).negative;
   return negative_directions(negative_pivots, negative, held) <= 0;
+}
+
+bool brace(StepProblem& problem, std::span<const double> effort, int negative_pivots) {
+  bool any = false;
+  for (ActuatorBlock& block : problem.actuators) {
+    if (block.row < 0 || block.holds_motion()) continue;
+    const bool moves = problem.compliance(block.row, block.row) != 0.0;
+    block.braced = moves && block.held(effort[static_cast<std::size_t>(block.row)]).has_value();
+    any = any || block.braced;
+  }
+  if (any && stabilised(problem, negative_pivots)) return true;
+  release_braces(problem);
+  return false;
+}
+
+void release_braces(StepProblem& problem) {
+  for (ActuatorBlock& block : problem.actuators) block.braced = false;
 }
 
 }  // namespace sinew::step

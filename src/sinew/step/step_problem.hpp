@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -36,6 +37,9 @@ struct ActuatorBlock {
   const Drive* drive = nullptr;  ///< part of the model; determines the effort in this step
   Drive::Step drive_step{};      ///< arguments of the drive
   double motion_scale = 1.0;     ///< m per motion: 1; for a chamber, 1 over its area, 1/m^2
+  /// Whether the solution supposes that the effort stays strictly within its limits and the motion
+  /// is therefore held at held(), see brace().
+  bool braced = false;
 
   /// Replaces the law by a constant effort, whatever the limits. @param effort N or Pa.
   void hold_effort(double effort);
@@ -43,6 +47,9 @@ struct ActuatorBlock {
   void command_effort(double effort);
   /// Whether a motion is commanded without limits of effort.
   bool holds_motion() const;
+  /// The motion that this effort holds by a command or at a stop, if it is not at a limit.
+  /// @param effort N or Pa.
+  std::optional<double> held(double effort) const;
 };
 
 /// Coulomb friction of a cable at a point that it slides through. The effort of the row is the loss
@@ -169,5 +176,15 @@ int negative_directions(int negative_pivots, int negative, std::span<const HeldR
 /// Whether the robot is stable together with its drives and held rows, even if A is indefinite.
 /// @param problem of the step. @param negative_pivots of A.
 bool stabilised(const StepProblem& problem, int negative_pivots);
+
+/// Whether it is stable if taut cables and limits that are reached hold their motions, too. If so,
+/// marks these actuators as braced: DirectSolver then holds their motions, and fails if the efforts
+/// leave their limits. The laws' own problem has no unique solution where only these rows make it
+/// convex.
+/// @param problem of the step. @param effort (rows,) N, which tells what is taut.
+/// @param negative_pivots of A.
+bool brace(StepProblem& problem, std::span<const double> effort, int negative_pivots);
+/// Removes the marks.
+void release_braces(StepProblem& problem);
 
 }  // namespace sinew::step
