@@ -188,3 +188,16 @@ def test_taut_cables_hold_what_would_fall_without_them(commands):
     report = sim.solve_static()
     assert report.stable
     assert np.linalg.norm(np.array(sim.effector("tip").position) - there) < 1e-5
+
+
+@pytest.mark.parametrize("side", [0.018, 0.02, 0.022])
+def test_statics_find_where_a_column_falls(side):
+    """A motion with little inertia comes to a standstill at the upright, unstable equilibrium."""
+    sim = sinew.load(column(side))
+    report = sim.solve_static()
+    assert report.stable
+    there = np.array(sim.effector("tip").position)
+    assert np.linalg.norm(there[:2]) > 0.01
+    sim.step()
+    assert sim.report.status == "solved" and not sim.report.snapped
+    assert np.linalg.norm(np.array(sim.effector("tip").position) - there) < 1e-4

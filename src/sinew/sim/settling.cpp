@@ -93,6 +93,15 @@ bool Settling::condense() {
   return run_.world.condense() != linalg::FactorStatus::singular;
 }
 
+// With little inertia, an overdamped motion passes by an unstable equilibrium so slowly that it
+// ends there, where the tangent of Newton's method is not definite.
+bool Settling::leave_nearby() {
+  if (run_.model->is_loose() || !condense()) return false;
+  const Stability stability(run_.world, run_.effort);
+  return stability.negative_pivots() > 0 &&
+         motion_.leave(stability, kDisturbance) == OverdampedMotion::End::arrived;
+}
+
 // Moves from the present linearised equilibrium to a stable one.
 void Settling::settle() {
   double disturbance = kDisturbance;

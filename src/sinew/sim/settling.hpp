@@ -26,6 +26,9 @@ class Settling {
   /// Moves from the present equilibrium to a stable one, unless the settings accept any.
   /// Throws Error(not-converged), and what require_held() throws if the tangent is singular.
   void settle();
+  /// Moves from a state near an unstable equilibrium, at which a motion has come to a standstill,
+  /// to an equilibrium. @return whether the tangent there is unstable and the motion arrived.
+  bool leave_nearby();
   /// Judges the free motion of the present equilibrium of a loose robot, if it has one that moves a
   /// body and not only turns it about its centre of mass. The tangent does not contain the
   /// curvature of surfaces that touch, so the motion tells: a small displacement along it returns

@@ -125,7 +125,7 @@ void StaticSolver::approach() {
   blend(0.0);
   run_.world.homotopy().set_fraction(0.0);
   const JointConflict conflict = find_conflict();
-  if (!limit_point_ && motion_.relax_from_here()) return;
+  if (!limit_point_ && (motion_.relax_from_here() || settling_.leave_nearby())) return;
   if (!limit_point_ && !conflict.text.empty()) fail_joints(run_, conflict);
   if (!limit_point_) fail_if_free(search_, kNoEquilibrium);
   fail_to_find(known);
