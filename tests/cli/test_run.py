@@ -102,6 +102,47 @@ def test_a_step_that_fails_ends_the_run_and_its_record(tmp_path):
     assert below.returncode == WRONG and "below vacuum" in below.stderr
 
 
+COLUMN = """
+sinew: 1
+gravity: 0 0 -9.81 m/s^2
+time_step: 10 ms
+duration: 20 ms
+bodies:
+  column:
+    type: fem
+    mesh: {shape: block, length: 18 mm, width: 18 mm, height: 100 mm, element_size: 18 mm}
+    material: ecoflex-00-30
+    position: -9 -9 0 mm
+    fixed: [{set: z_min}]
+  block: {type: rigid, shape: {box: 18 18 18 mm}, mass: 20 g, pose: {position: 0 0 109 mm}}
+joints:
+  top: {type: weld, bodies: [column, block], points: ["0 0 100 mm", "4.5 0 100 mm", "0 4.5 100 mm"], outside: nearest}
+"""
+
+
+@pytest.mark.parametrize("which", ["converged", "following", "one linearisation", "dynamic", "snapped"])
+def test_the_summary_tells_the_largest_residual_and_distance_and_the_steps_that_snapped(scene, tmp_path, which):
+    """They are those of run.csv."""
+    more = {"following": CONTROL, "one linearisation": "solver: one-linearisation", "dynamic": "integrator: bdf2"}
+    (tmp_path / "column.yaml").write_text(COLUMN)
+    result = sinew("run", tmp_path / "column.yaml" if which == "snapped" else scene(more.get(which, "")), "--out", tmp_path / "o",
+                   *(["--set", "time_step=1ms"] if which == "one linearisation" else []))
+    assert result.returncode == DONE, result.stderr
+    told = dict(re.findall(r"^(\S.*?) {2,}(\S.*)$", result.stdout, re.MULTILINE))
+    rows = rows_of(tmp_path / "o" / "run.csv")[1:]
+    residuals, distances, snaps = (np.array([float(row[name]) for row in rows]) for name in ("relative_residual", "distance [m]", "snapped"))
+    assert float(told["largest relative residual"]) == pytest.approx(residuals.max(), rel=0.06) and residuals.max() > 0
+    number, unit, *how = told["largest distance to the solution"].split(maxsplit=2)
+    assert unit == "mm" and float(number) == pytest.approx(1e3 * np.nanmax(distances), rel=0.06)  # of two digits; nan: not bounded
+    assert how == {"following": ["(equilibrium: following)"], "one linearisation": ["(one linearisation)"]}.get(which, [])
+    assert residuals.max() <= {"converged": 1e-6, "snapped": 1e-6, "dynamic": 1e-8}.get(which, 0.1)
+    assert snaps.sum() == (which == "snapped")
+    assert told.get("steps that snapped to another branch") == ("1" if which == "snapped" else None)
+    # A snap is no flag.
+    assert {row["status"] for row in rows} == ({"solved"})
+    assert which == "following" or told["steps solved"] == str(len(rows))
+
+
 @pytest.mark.parametrize("step_ms", [4, 2])
 def test_the_energy_ledger_is_kept(tmp_path, step_ms):
     swing = ROOT / "examples" / "beam" / "swing.yaml"
