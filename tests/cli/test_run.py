@@ -102,6 +102,24 @@ def test_a_step_that_fails_ends_the_run_and_its_record(tmp_path):
     assert below.returncode == WRONG and "below vacuum" in below.stderr
 
 
+def test_a_volume_that_needs_less_than_vacuum_is_named(tmp_path):
+    """Steps that say `cavitates` are flagged, in the table, the summary and a warning; the run goes on to its end."""
+    (tmp_path / "tube.yaml").write_text(BALLOON.replace("90 kPa", "20 MPa").replace("inner_radius: 10 mm", "inner_radius: 6 mm")
+                                        .replace("pressure: {ramp: {to: 60 kPa", "volume_growth: {ramp: {to: -0.06 ml"))
+    for more, code in (([], FAILED), (["--keep-going"], DONE), (["--set", "actuators.air.ambient_pressure=2bar"], DONE)):
+        result = sinew("run", "tube.yaml", *more, "--out", "out", cwd=tmp_path)
+        assert result.returncode == code, result.stderr
+        rows = rows_of(tmp_path / "out" / "run.csv")[1:]
+        below = [float(row["air.pressure [Pa]"]) < (-2e5 if "2bar" in str(more) else -101325) for row in rows]
+        assert [row["status"] for row in rows] == ["cavitates" if one else "solved" for one in below]
+        assert len(rows) == 20 and 1 < sum(below) < 10 or "2bar" in str(more) and not any(below)
+        told = re.search(r"warning: (\d+) of 20 steps are cavitates, the first at t = (\S+) s; .*`ambient_pressure`", result.stderr)
+        assert (told is not None) == any(below)
+        if told:
+            assert int(told[1]) == sum(below) and float(told[2]) == pytest.approx(0.05 * (below.index(True) + 1))
+            assert re.search(rf"^steps cavitates +{sum(below)}$", result.stdout, re.MULTILINE), result.stdout
+
+
 COLUMN = """
 sinew: 1
 gravity: 0 0 -9.81 m/s^2
