@@ -177,7 +177,7 @@ py::array_t<bool> fixed(const Body& self) {
   for (std::size_t i = 0; i < free.size(); ++i) {
     mask.mutable_at(static_cast<py::ssize_t>(i)) = free[i] < 0;
   }
-  return mask;
+  return read_only(mask);
 }
 
 void move_base(const Body& self, const py::object& translation, const py::object& rotation,

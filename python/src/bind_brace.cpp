@@ -173,21 +173,22 @@ void bind_found(py::module_& module) {
           "fraction", [](const BraceOf& self) { return self.brace.point.fraction; },
           "float: position of the braced point, as a fraction of the segment's length.")
       .def_property_readonly(
-          "theta", [](const BraceOf& self) { return copy(self.brace.position); },
+          "theta", [](const BraceOf& self) { return reading(self.brace.position); },
           "(coordinates,) rad.")
       .def_property_readonly(
-          "torque", [](const BraceOf& self) { return copy(self.brace.torque); }, "(inputs,) N m.")
+          "torque", [](const BraceOf& self) { return reading(self.brace.torque); },
+          "(inputs,) N m.")
       .def_property_readonly(
           "turn", [](const BraceOf& self) { return self.brace.turn; },
           "float: rotation of the base, rad.")
       .def_property_readonly(
-          "place", [](const BraceOf& self) { return copy(self.brace.place); },
+          "place", [](const BraceOf& self) { return reading(self.brace.place); },
           "(3,) m: the braced point, on the object.")
       .def_property_readonly(
-          "normal", [](const BraceOf& self) { return copy(self.brace.normal); },
+          "normal", [](const BraceOf& self) { return reading(self.brace.normal); },
           "(3,): outward normal of the object.")
       .def_property_readonly(
-          "force", [](const BraceOf& self) { return copy(self.brace.force); },
+          "force", [](const BraceOf& self) { return reading(self.brace.force); },
           "(3,) N: force on the arm.")
       .def_property_readonly(
           "normal_force", [](const BraceOf& self) { return self.brace.normal_force; }, "float: N.")
@@ -195,7 +196,7 @@ void bind_found(py::module_& module) {
           "friction_force", [](const BraceOf& self) { return self.brace.friction_force; },
           "float: N.")
       .def_property_readonly(
-          "tip", [](const BraceOf& self) { return copy(self.brace.tip); }, "(3,) m.")
+          "tip", [](const BraceOf& self) { return reading(self.brace.tip); }, "(3,) m.")
       .def_property_readonly(
           "tip_error", [](const BraceOf& self) { return self.brace.tip_error; }, "float: m.")
       .def_property_readonly(
@@ -260,20 +261,20 @@ void bind_run(py::module_& module) {
           [](const BraceRun& self) { return std::string(plan::status_name(self.status)); },
           "str: 'held', 'slipped', 'no-contact' or 'not-planned'.")
       .def_property_readonly(
-          "times", [](const BraceRun& self) { return copy(self.times); }, "(steps + 1,) s.")
+          "times", [](const BraceRun& self) { return reading(self.times); }, "(steps + 1,) s.")
       .def_property_readonly(
-          "theta", [](const BraceRun& self) { return copy(self.position); },
+          "theta", [](const BraceRun& self) { return reading(self.position); },
           "(steps + 1, coordinates) rad.")
       .def_property_readonly(
-          "torque", [](const BraceRun& self) { return copy(self.torque); },
+          "torque", [](const BraceRun& self) { return reading(self.torque); },
           "(steps + 1, inputs) N m.")
       .def_property_readonly(
-          "tip", [](const BraceRun& self) { return copy(self.tip); }, "(steps + 1, 3) m.")
+          "tip", [](const BraceRun& self) { return reading(self.tip); }, "(steps + 1, 3) m.")
       .def_property_readonly(
-          "normal_force", [](const BraceRun& self) { return copy(self.normal_force); },
+          "normal_force", [](const BraceRun& self) { return reading(self.normal_force); },
           "(steps + 1,) N, at the braced point.")
       .def_property_readonly(
-          "friction_force", [](const BraceRun& self) { return copy(self.friction_force); },
+          "friction_force", [](const BraceRun& self) { return reading(self.friction_force); },
           "(steps + 1,) N, at the braced point.")
       .def_property_readonly(
           "contact_time", [](const BraceRun& self) { return self.contact_time; },
@@ -284,7 +285,7 @@ void bind_run(py::module_& module) {
       .def_property_readonly(
           "disturbed_from", [](const BraceRun& self) { return self.disturbed_from; }, "float: s.")
       .def_property_readonly(
-          "measured", [](const BraceRun& self) { return copy(self.measured); },
+          "measured", [](const BraceRun& self) { return reading(self.measured); },
           "(coordinates,) rad, at the replanning.")
       .def_property_readonly(
           "hold_force", [](const BraceRun& self) { return self.after.hold_force; },

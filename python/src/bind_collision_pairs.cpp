@@ -197,10 +197,10 @@ void bind_results(py::module_& module) {
   py::class_<Overlap>(module, "Overlap", "Result of overlap().")
       .def_readonly("volume", &Overlap::volume, "float: m^3.")
       .def_property_readonly(
-          "first_gradient", [](const Overlap& self) { return copy(self.first_gradient); },
+          "first_gradient", [](const Overlap& self) { return reading(self.first_gradient); },
           "(n, 3) ndarray: its derivative with respect to the first surface's nodes (m^2).")
       .def_property_readonly(
-          "second_gradient", [](const Overlap& self) { return copy(self.second_gradient); },
+          "second_gradient", [](const Overlap& self) { return reading(self.second_gradient); },
           "(n, 3) ndarray: its derivative with respect to the second surface's nodes (m^2).");
   py::class_<SurfaceImpacts>(module, "SurfaceImpacts", "Result of impacts().")
       .def_readonly("first_kinds", &SurfaceImpacts::first_kinds,

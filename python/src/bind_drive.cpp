@@ -127,11 +127,12 @@ Error
            py::arg("input_limits") = std::pair(-kInfinity, kInfinity),
            py::arg("volume_limits") = std::pair(-kInfinity, kInfinity))
       .def_property_readonly(
-          "a", [](const DriveCylinder& self) { return copy(MatrixX(self.a)); }, "(2, 2).")
+          "a", [](const DriveCylinder& self) { return reading(MatrixX(self.a)); }, "(2, 2).")
       .def_property_readonly(
-          "b", [](const DriveCylinder& self) { return copy(VectorX(self.b)); }, "(2,).")
+          "b", [](const DriveCylinder& self) { return reading(VectorX(self.b)); }, "(2,).")
       .def_property_readonly(
-          "c", [](const DriveCylinder& self) { return copy(VectorX(self.c.transpose())); }, "(2,).")
+          "c", [](const DriveCylinder& self) { return reading(VectorX(self.c.transpose())); },
+          "(2,).")
       .def_readonly("d", &DriveCylinder::d, "float.")
       .def_readonly("sample_time", &DriveCylinder::sample_time, "float: s.")
       .def_property_readonly(

@@ -101,8 +101,8 @@ Array support_forces(const Body& self) {
   const Session::Use use(*self.session);
   sim::Simulation& simulation = self.session->simulation();
   simulation.world().measure_delta();  // rows at the current state
-  return copy(fem::reactions(body(self), fem::element_states(body(self)), simulation.efforts(),
-                             simulation.world().rows(), simulation.model().rows(), self.index));
+  return reading(fem::reactions(body(self), fem::element_states(body(self)), simulation.efforts(),
+                                simulation.world().rows(), simulation.model().rows(), self.index));
 }
 
 }  // namespace
@@ -117,23 +117,24 @@ void bind_fields(py::module_& module, py::class_<Body>& type) {
   });
   type.def("_nodal_field_at", &nodal_field_at, py::arg("field"), py::arg("positions"));
   type.def_property_readonly(
-          "deformation_gradients",
-          of_elements([](const fem::ElementStates& s) { return tensors(s.deformation); }),
+          "deformation_gradients", of_elements([](const fem::ElementStates& s) {
+            return read_only(tensors(s.deformation));
+          }),
           "(m, 3, 3) ndarray: F = dx/dX of every element, tetrahedra before hexahedra, the mean "
           "over its integration points. See `sinew.fields` for strains.")
       .def_property_readonly(
           "piola_stresses",
-          of_elements([](const fem::ElementStates& s) { return tensors(s.piola); }),
+          of_elements([](const fem::ElementStates& s) { return read_only(tensors(s.piola)); }),
           "(m, 3, 3) ndarray: first Piola-Kirchhoff stress of every element (Pa), force per area "
           "at rest.")
       .def_property_readonly(
           "cauchy_stresses",
-          of_elements([](const fem::ElementStates& s) { return tensors(s.cauchy); }),
+          of_elements([](const fem::ElementStates& s) { return read_only(tensors(s.cauchy)); }),
           "(m, 3, 3) ndarray: Cauchy stress of every element (Pa), force per present area.")
       .def_property_readonly(
           "element_volumes", of_elements([](const fem::ElementStates& s) {
             const auto count = static_cast<Eigen::Index>(s.volume.size());
-            return copy(VectorX(Eigen::Map<const VectorX>(s.volume.data(), count)));
+            return reading(VectorX(Eigen::Map<const VectorX>(s.volume.data(), count)));
           }),
           "(m,) ndarray: volume of every element at rest (m^3).")
       .def("element_field", &element_field, py::arg("field"),

@@ -223,8 +223,8 @@ py::list trial_list(const std::vector<CylinderTrial>& trials) {
   for (const CylinderTrial& trial : trials) {
     py::dict entry;
     entry["nrmse"] = trial.nrmse;
-    entry["predicted"] = copy(trial.predicted);
-    entry["start"] = copy(VectorX(trial.start));
+    entry["predicted"] = reading(trial.predicted);
+    entry["start"] = reading(VectorX(trial.start));
     result.append(entry);
   }
   return result;
@@ -291,13 +291,13 @@ void bind_identify(py::module_& module) {
       .def_property_readonly("undetermined", &ParameterFit::undetermined,
                              "int: number of directions that the data do not determine.")
       .def_property_readonly(
-          "covariance", [](const ParameterFit& self) { return copy(self.covariance); },
+          "covariance", [](const ParameterFit& self) { return reading(self.covariance); },
           "(parameters, parameters); 0 for those without an interval.")
       .def_property_readonly(
-          "prediction", [](const ParameterFit& self) { return copy(self.prediction); },
+          "prediction", [](const ParameterFit& self) { return reading(self.prediction); },
           "(observations,): measured values, row by row.")
       .def_property_readonly(
-          "residual", [](const ParameterFit& self) { return copy(self.residual); },
+          "residual", [](const ParameterFit& self) { return reading(self.residual); },
           "(observations,): predicted minus measured values; nan for missing ones.")
       .def_readonly("cost", &ParameterFit::cost, "float: sum of squared residuals.")
       .def_readonly("start_cost", &ParameterFit::start_cost,

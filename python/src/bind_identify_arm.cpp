@@ -112,12 +112,13 @@ Error
            py::arg("inputs") = py::none(), py::kw_only(), py::arg("name") = "record")
       .def_readonly("name", &MotionRecord::name, "str.")
       .def_property_readonly(
-          "time", [](const MotionRecord& self) { return copy(self.time); }, "(samples,) s.")
+          "time", [](const MotionRecord& self) { return reading(self.time); }, "(samples,) s.")
       .def_property_readonly(
           "positions", [](const MotionRecord& self) { return by_segment(self.position); },
           "(samples, segments, 3) m.")
       .def_property_readonly(
-          "inputs", [](const MotionRecord& self) { return copy(self.input); }, "(samples, inputs).")
+          "inputs", [](const MotionRecord& self) { return reading(self.input); },
+          "(samples, inputs).")
       .def(
           "csv", [](const MotionRecord& self, bool torque) { return motion_csv(self, torque); },
           py::arg("torque") = false, R"(csv($self, torque=False)
@@ -168,10 +169,10 @@ time_step : float
           "predicted", [](const RecordFit& self) { return by_segment(self.predicted); },
           "(samples, segments, 3) m.")
       .def_property_readonly(
-          "theta", [](const RecordFit& self) { return copy(self.start.position); },
+          "theta", [](const RecordFit& self) { return reading(self.start.position); },
           "(coordinates,) rad: angles at its start.")
       .def_property_readonly(
-          "theta_dot", [](const RecordFit& self) { return copy(self.start.rate); },
+          "theta_dot", [](const RecordFit& self) { return reading(self.start.rate); },
           "(coordinates,) rad/s: rates at its start.")
       .def_readonly("nrmse", &RecordFit::nrmse, "float: NRMSE over all ends.")
       .def_readonly("mean_error", &RecordFit::mean_error, "float: mean distance of an end, m.")

@@ -23,10 +23,10 @@ void bind_sizes(PccArmClass& arm) {
           "length", [](const PccArm& self) { return self.arm->length(); },
           "float: length of the straight arm, m.")
       .def_property_readonly(
-          "stiffness", [](const PccArm& self) { return copy(self.arm->stiffness()); },
+          "stiffness", [](const PccArm& self) { return reading(self.arm->stiffness()); },
           "(coordinates,) N m; N/m for an extension.")
       .def_property_readonly(
-          "damping", [](const PccArm& self) { return copy(self.arm->damping()); },
+          "damping", [](const PccArm& self) { return reading(self.arm->damping()); },
           "(coordinates,) N m s; N s/m for an extension.");
 }
 

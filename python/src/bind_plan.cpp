@@ -146,15 +146,15 @@ the tolerances and clear of the obstacles; 'not-met-on-replay' if that motion mi
       .def_property_readonly("found", &Plan::found,
                              "bool: whether the status is solved or acceptable.")
       .def_property_readonly(
-          "times", [](const Plan& self) { return copy(self.knots.times); }, "(knots,) s.")
+          "times", [](const Plan& self) { return reading(self.knots.times); }, "(knots,) s.")
       .def_property_readonly(
-          "theta", [](const Plan& self) { return copy(self.knots.position); },
+          "theta", [](const Plan& self) { return reading(self.knots.position); },
           "(knots, coordinates) rad.")
       .def_property_readonly(
-          "theta_dot", [](const Plan& self) { return copy(self.knots.rate); },
+          "theta_dot", [](const Plan& self) { return reading(self.knots.rate); },
           "(knots, coordinates) rad/s.")
       .def_property_readonly(
-          "torque", [](const Plan& self) { return copy(self.knots.torque); },
+          "torque", [](const Plan& self) { return reading(self.knots.torque); },
           "(knots, inputs) N m.")
       .def_property_readonly("duration", &Plan::duration, "float: s.")
       .def_property_readonly(
@@ -205,19 +205,20 @@ its commands produce.)");
   using plan::Replay;
   py::class_<Replay>(module, "PlanReplay", "An arm's motion at equally spaced times.")
       .def_property_readonly(
-          "times", [](const Replay& self) { return copy(self.times); }, "(samples,) s.")
+          "times", [](const Replay& self) { return reading(self.times); }, "(samples,) s.")
       .def_property_readonly(
-          "theta", [](const Replay& self) { return copy(self.position); },
+          "theta", [](const Replay& self) { return reading(self.position); },
           "(samples, coordinates) rad.")
       .def_property_readonly(
-          "theta_dot", [](const Replay& self) { return copy(self.rate); },
+          "theta_dot", [](const Replay& self) { return reading(self.rate); },
           "(samples, coordinates) rad/s.")
       .def_property_readonly(
-          "torque", [](const Replay& self) { return copy(self.torque); }, "(samples, inputs) N m.")
+          "torque", [](const Replay& self) { return reading(self.torque); },
+          "(samples, inputs) N m.")
       .def_property_readonly(
-          "tip", [](const Replay& self) { return copy(self.tip); }, "(samples, 3) m.")
+          "tip", [](const Replay& self) { return reading(self.tip); }, "(samples, 3) m.")
       .def_property_readonly(
-          "tip_velocity", [](const Replay& self) { return copy(self.tip_velocity); },
+          "tip_velocity", [](const Replay& self) { return reading(self.tip_velocity); },
           "(samples, 3) m/s.")
       .def_property_readonly(
           "tip_error", [](const Replay& self) { return self.tip_error; },

@@ -43,7 +43,7 @@ std::vector<std::string> state_names(const ConeSolution& self) {
 void bind_qp(py::module_& module) {
   py::class_<ConeSolution>(module, "ConeSolution", "Result of solve_cones().")
       .def_property_readonly(
-          "x", [](const ConeSolution& self) { return copy(self.x); },
+          "x", [](const ConeSolution& self) { return reading(self.x); },
           "(3n,) efforts: normal and two tangents of each contact.")
       .def_property_readonly(
           "status",

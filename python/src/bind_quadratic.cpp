@@ -79,17 +79,17 @@ Error
 void bind_quadratic(py::module_& module) {
   py::class_<QpResult>(module, "QuadraticSolution", "Result of solve_quadratic().")
       .def_property_readonly(
-          "x", [](const QpResult& self) { return copy(self.x); }, "(n,) solution.")
+          "x", [](const QpResult& self) { return reading(self.x); }, "(n,) solution.")
       .def_property_readonly(
           "status",
           [](const QpResult& self) { return std::string(qp::qp_status_name(self.status)); },
           "'optimal', 'infeasible', 'unbounded', 'not-convex', 'iteration-limit' or 'not-finite'.")
       .def_property_readonly(
-          "bound_multiplier", [](const QpResult& self) { return copy(self.bound_multiplier); },
+          "bound_multiplier", [](const QpResult& self) { return reading(self.bound_multiplier); },
           "(n,) multipliers y of G x + g = y + C^T z: positive at a lower limit, negative at an "
           "upper one.")
       .def_property_readonly(
-          "row_multiplier", [](const QpResult& self) { return copy(self.row_multiplier); },
+          "row_multiplier", [](const QpResult& self) { return reading(self.row_multiplier); },
           "(m,) z, likewise.")
       .def_readonly("iterations", &QpResult::iterations, "int: changes of the active set.");
   module.def("solve_quadratic", solve_quadratic, py::arg("G"), py::arg("g"),

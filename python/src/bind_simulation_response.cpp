@@ -97,14 +97,14 @@ void bind_response(py::module_& module) {
           [](const NamedResponse& self) {
             py::dict result;
             for (std::size_t k = 0; k < self.effectors.size(); ++k) {
-              result[self.effectors[k].c_str()] = copy(self.response.effectors[k]);
+              result[self.effectors[k].c_str()] = reading(self.response.effectors[k]);
             }
             return result;
           },
           "dict: for each effector a (directions, actuators) ndarray, m/N (rad/N for orientations; "
           "per Pa for chambers, per N m for torques).")
       .def_property_readonly(
-          "W_aa", [](const NamedResponse& self) { return copy(self.response.actuators); },
+          "W_aa", [](const NamedResponse& self) { return reading(self.response.actuators); },
           "(actuators, actuators) ndarray: motions of the actuators, m/N (m^3/Pa, rad/(N m)). Not "
           "symmetric if anything slides.");
 }

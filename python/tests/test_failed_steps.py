@@ -162,6 +162,80 @@ def test_no_pressure_is_below_vacuum():
     assert caught.value.kind == "conflicting-keys"
 
 
+def stiff_tube(command=None, water=None, **more):
+    """A tube whose wall bears vacuum: 1 % of volume_growth needs 78 kPa. @param water its load. @param more of the chamber."""
+    scene = tube(command, gravity=[0, 0, -9.81])
+    scene["bodies"]["tube"]["mesh"]["inner_radius"] = 0.006
+    scene["bodies"]["tube"]["material"]["young_modulus"] = 20e6
+    scene["actuators"]["air"].update(more)
+    if water is not None:
+        scene["loads"] = {"sea": {"type": "water", "body": "tube", **water}}
+    return scene
+
+
+SHRINK = {"volume_growth": {"ramp": {"to": -6e-8, "duration": 1.0}}}  # to 139 kPa below ambient
+
+
+@pytest.mark.parametrize("integrator", ["quasi-static", "backward-euler", "bdf2", "event-driven"])
+@pytest.mark.parametrize("filling", ["none", "liquid"])
+def test_a_volume_that_needs_less_than_vacuum_is_named(integrator, filling):
+    """The step reaches it and says `cavitates`, which is a flag, no failure."""
+    more = {"liquid": {}} if filling == "liquid" else {}
+    command = {"liquid": SHRINK["volume_growth"]} if more else SHRINK
+    for ambient in (101325.0, 2e5):
+        sim = sinew.load({**stiff_tube(command, **more, ambient_pressure=ambient), "integrator": integrator})
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always", sinew.SinewWarning)
+            recorded = sim.run(duration=1.0)
+        pressure, status = recorded["air.pressure"][1:], recorded["status"][1:]
+        assert pressure[-1] == pytest.approx(-138.5e3, rel=0.01)
+        assert list(status) == ["cavitates" if p < -ambient else "solved" for p in pressure]
+        assert recorded["air.volume_growth"][-1] == pytest.approx(-6e-8, rel=0.01)
+        assert sim.report.flagged == (ambient < 2e5) and not sim.report.failed
+        assert any("cavitates" in str(one.message) and "ambient_pressure" in str(one.message) for one in told) == (ambient < 2e5)
+
+
+def test_a_chamber_deep_under_water_bears_its_head_too():
+    """Ten metres of water: 98 kPa. What the water wets has it on both sides, so pressures count from that of the water."""
+    surroundings = {"dry": None, "no level": {}, "deep": {"level": 10.0}, "dense": {"level": 10.0, "density": 2000.0}, "shallow": {"level": 0.02},
+                    "outside is wet": {"level": 10.0, "surface": {"set": "outer"}}}
+    vacuum = {name: sinew.load(stiff_tube(water=water)).actuator("air").limits["pressure"].min for name, water in surroundings.items()}
+    head = 1000 * 9.81 * (10 - 0.03)  # of the upper end of the tube
+    assert vacuum == pytest.approx({"dry": -101325, "no level": -101325, "deep": -101325 - head, "dense": -101325 - 2 * head,
+                                    "shallow": -101325, "outside is wet": -101325}, rel=1e-12)
+    # The key is the pressure of the air, and that of the gas in the chamber includes the head.
+    scene = stiff_tube(water={"level": 10.0}, ambient_pressure="95 kPa")
+    assert sinew.load(scene).actuator("air").limits["pressure"].min == pytest.approx(-95e3 - head)
+    for water, ambient in ((None, 101325), ({"level": 10.0}, 101325 + head)):
+        sim = sinew.load(stiff_tube({"gas": -1e-6}, water, gas={}))
+        air = sim.actuator("air")
+        rest = air.volume
+        sim.step()
+        assert air.pressure == pytest.approx(ambient * ((rest - 1e-6) / air.volume - 1), rel=1e-6)
+    # 150 kPa below the pressure around is a command for the deep tube, and no vacuum.
+    with pytest.raises(sinew.Error, match="below vacuum: the ambient pressure is 101.325 kPa"):
+        sinew.load(stiff_tube({"pressure": "-150 kPa"}))
+    with pytest.raises(sinew.Error, match="-200 kPa is below vacuum: the ambient pressure is 199.131 kPa"):
+        sinew.load(stiff_tube({"pressure": "-200 kPa"}, {"level": 10.0}))
+    growth = []
+    for command, water in (({"pressure": "-199 kPa"}, {"level": 10.0}), (SHRINK, {"level": 10.0})):
+        sim = sinew.load(stiff_tube(command, water))
+        sim.step(20)
+        assert sim.report.status == "solved"
+        growth.append((sim.actuator("air").pressure, sim.actuator("air").volume_growth / sim.actuator("air").volume))
+    assert growth[0][0] == pytest.approx(-199e3) and growth[0][1] == pytest.approx(-0.0267, rel=0.05)
+    # A chamber that only the outside of its body has in the water bears the head as a load, and its pressures count from the air.
+    outside = []
+    for load in ({"type": "water", "level": 10.0}, {"type": "pressure", "pressure": 1000 * 9.81 * (10 - 0.015)}):
+        scene = stiff_tube({"pressure": "-100 kPa"})
+        scene["loads"] = {"sea": {"body": "tube", "surface": {"set": "outer"}, **load}}
+        sim = sinew.load(scene)
+        sim.step(20)
+        assert sim.report.status == "solved"
+        outside.append(sim.actuator("air").volume_growth)
+    assert outside[0] == pytest.approx(outside[1], rel=1e-3)
+
+
 def module(integrator):
     """The chambered module: one chamber beside the axis."""
     return sinew.load({

@@ -277,6 +277,89 @@ def test_a_run_that_cannot_go_on_is_truncated(monkeypatch):
     assert same(observations[1], before[1])
 
 
+class Inflate(Task):
+    """Inflates a balloon: a tube whose pressure has a peak of 10 kPa."""
+
+    name = "inflate"
+    actions = ("pressure-increment", "pressure")
+    default_time_limit = 1.0
+
+    def described(self, folder):
+        return {
+            "sinew": 1, "time_step": 0.05,
+            "bodies": {"tube": {
+                "type": "fem", "element": "hex8", "density": 1000.0, "fixed": [{"set": "bottom"}, {"set": "top"}],
+                "mesh": {"shape": "hollow-cylinder", "inner_radius": 0.01, "outer_radius": 0.013, "height": 0.03, "element_size": 0.005},
+                "material": {"model": "neo-hookean", "young_modulus": 90e3, "poisson_ratio": 0.45}}},
+            "actuators": {"air": {"type": "chamber", "body": "tube", "surface": {"set": "inner"}, "cap": True,
+                                  "limits": {"pressure": {"min": 0.0, "max": 60e3, "rate": 96e3}}}}}
+
+    def randomised(self, material_scale, payload):
+        return {}
+
+    def measure_rest(self, robot):
+        return {}
+
+    def observation_names(self, robot):
+        return ["pressure / 10 kPa", "growth / 1 ml"]
+
+    def sense(self, episode, out):
+        air = episode.robot.actuators[0]
+        out[:] = air.pressure / 1e4, air.volume_growth / 1e-6
+
+    def reward(self, episode):
+        return episode.robot.actuators[0].volume_growth / 1e-6, False, {}
+
+
+class InflateMany(Inflate):
+    """The same, for all environments at once."""
+
+    name = "inflate-many"
+    observables = ("air.pressure", "air.volume_growth")
+    sense, reward = Task.sense, Task.reward
+
+    def sense_rows(self, episodes, read, out):
+        out[:] = read / [1e4, 1e-6]
+
+    def reward_rows(self, episodes, read, actions):
+        return read[:, 1] / 1e-6, np.zeros(len(read), bool), {}
+
+
+@pytest.mark.parametrize("task", [Inflate, InflateMany])
+def test_an_episode_that_inflates_a_chamber_past_its_peak_is_truncated(task):
+    """The reason is in info, the observation is that of the last solved state, and the next episode begins at rest."""
+    env = sinew.gym.make(task())
+    ends = []
+    for _ in range(2):
+        first, _ = env.reset(seed=0)
+        assert np.abs(first).max() < 1e-12
+        for steps in range(1, 21):
+            before = first
+            first, reward, terminated, truncated, info = env.step(np.ones(1, np.float32))
+            assert not terminated
+            if truncated:
+                break
+            assert "failure" not in info and "flagged" not in info
+            assert first[0] == pytest.approx(0.48 * steps, rel=1e-6) and reward == pytest.approx(first[1], rel=1e-6) and reward > before[1]
+        assert truncated and steps < 20, "before the time limit"
+        assert "chamber 'air' has no equilibrium" in info["failure"] and "limit point" in info["failure"] and "volume_growth" in info["failure"]
+        assert reward == -100.0 and np.array_equal(first, before) and first[1] < 100
+        ends.append((steps, first.tobytes()))
+    assert ends[0] == ends[1]
+    # Of two environments, only the one that fails ends.
+    envs = sinew.gym.make_vec(task(), 2)
+    envs.reset(seed=0)
+    for _ in range(ends[0][0] - 1):
+        *_, truncations, infos = envs.step(np.array([[1.0], [0.1]]))
+        assert not truncations.any()
+    observations, rewards, terminations, truncations, infos = envs.step(np.array([[1.0], [0.1]]))
+    assert truncations.tolist() == [True, False] and not terminations.any() and rewards[0] == -100.0 and rewards[1] > 0
+    assert "limit point" in infos["failure"][0] and infos["_failure"].tolist() == [True, False]
+    assert observations[0].tobytes() == ends[0][1]
+    observations, rewards, *_ = envs.step(np.array([[1.0], [0.1]]))
+    assert np.abs(observations[0]).max() < 1e-12 and rewards[1] > 0, "it begins anew"
+
+
 def test_environments_hold_no_factor_between_steps():
     for name in ("trunk-reach", "trunk-damp"):
         envs = sinew.gym.make_vec(name, 3, threads=2)

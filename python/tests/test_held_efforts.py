@@ -36,6 +36,61 @@ def cable(command):
     return {"c": {"type": "cable", "body": "b", "points": points, "command": command}}
 
 
+def held_scenes(radius):
+    """A robot for each row that can be held, and the name by which it is refused."""
+    integrator = alpha(radius)
+    weld = {"w": {"type": "weld", "bodies": ["world", "b"]}}
+    twist = {"sinew": 1, "integrator": integrator, "time_step": 1e-3,
+             "bodies": {"a": {"type": "pcc", "segments": [{"length": 0.03, "mass": 0.01, "stiffness": 0.02, "damping": 2e-4}]}},
+             "actuators": {"t": {"type": "torque", "body": "a", "segment": 0, "command": {"angle": 0.1}}}}
+    poke = {"f": {"type": "force", "body": "b", "point": [0.01, 0.01, 0.1], "direction": [1, 0, 0], "command": {"displacement": 1e-3}}}
+    return {"hinge": (bar(integrator, joints=HINGE), "joint 'j' holds"),
+            "weld": (bar(integrator, joints=weld), "joint 'w' holds"),
+            "motor": (bar(integrator, joints=HINGE, actuators=SWING), "joint 'j' holds"),
+            "cable": (block(integrator, actuators=cable({"displacement": 1e-3})), "the command of 'c' holds"),
+            "force of a commanded displacement": (block(integrator, actuators=poke), "the command of 'f' holds"),
+            "angle of a segment": (twist, "the command of 't' holds")}
+
+
+@pytest.mark.parametrize("row", held_scenes(1.0))
+def test_a_spectral_radius_above_0_95_is_refused_where_a_row_is_held(row):
+    for radius in (0.951, 1.0):
+        scene, words = held_scenes(radius)[row]
+        with pytest.raises(sinew.Error, match=rf"integrator\.spectral_radius: it is {radius:g}, but {words} a motion.*0\.95 or less") as caught:
+            sinew.load(scene)
+        assert caught.value.kind == "out-of-range"
+    sim = sinew.load(held_scenes(0.95)[row][0])
+    sim.step(2)
+    assert sim.report.status == "solved"
+
+
+def test_the_scene_names_the_place_of_the_radius(tmp_path):
+    path = tmp_path / "bar.yaml"
+    path.write_text("sinew: 1\nintegrator: {type: generalized-alpha, spectral_radius: 1}\n"
+                    "bodies: {b: {type: rigid, shape: {box: 20 20 300 mm}, mass: 200 g}}\n"
+                    "joints: {elbow: {type: ball, bodies: [world, b], point: 0 0 150 mm}}\n")
+    with pytest.raises(sinew.Error, match=r"bar\.yaml:2:\d+: integrator\.spectral_radius: it is 1, but joint 'elbow' holds a motion"):
+        sinew.load(path)
+
+
+def test_a_robot_without_held_rows_keeps_a_radius_of_one_until_a_motion_is_commanded():
+    """The refused command leaves the robot as it was; so does the commanded state of another robot, and a controller."""
+    sim = sinew.load(block(alpha(1.0), actuators=cable({"tension": 0.2}), effectors={"tip": {"body": "b", "point": [0.01, 0.01, 0.1]}}))
+    twin = sim.clone()
+    for one in (sim, twin):
+        one.step(20)
+        assert one.report.status == "solved"
+    with pytest.raises(sinew.Error, match="it is 1, but the command of 'c' holds a motion") as caught:
+        sim.actuator("c").displacement = 1e-3
+    assert caught.value.kind == "out-of-range"
+    with pytest.raises(sinew.Error, match="it is 1, but a controller holds a motion"):
+        sinew.InverseController(sim, targets={"tip": [0.012, 0.01, 0.1]})
+    sim.step(20)
+    twin.step(20)
+    assert sim.report.status == "solved" and sim.actuator("c").tension == pytest.approx(0.2)
+    assert np.array_equal(sim.body("b").positions, twin.body("b").positions)
+
+
 def swing_torques(steps):
     """I a, and with it the moment of the weight, of a bar that swings by 0.5 sin(2 pi t), at the ends of steps of 1 ms."""
     angle = 0.5 * np.sin(2 * np.pi * 1e-3 * np.arange(1, steps + 1))

@@ -52,6 +52,22 @@ def test_a_symmetric_grip_holds(integrator, width, factor):
     assert np.linalg.norm(cube.rotation[1:]) < 1e-9
 
 
+@pytest.mark.parametrize("integrator", ["backward-euler", "bdf2", "generalized-alpha"])
+@pytest.mark.parametrize("width", [20, 60])
+@pytest.mark.parametrize("factor", [1.02, 1.1, 2, 4])
+def test_a_symmetric_grip_holds_for_ten_seconds(integrator, width, factor):
+    """With large steps: in one of 50 ms, a cube that falls has fallen by 12 mm."""
+    text = GRIP.format(integrator=integrator, cube="cube", left="left", right="right", width=width, force=factor * NEEDED)
+    simulation = sinew.loads(text.replace("time_step: 5 ms", "time_step: 50 ms"))
+    cube = simulation.body("cube")
+    for _ in range(20):
+        simulation.step(10)
+        assert simulation.report.status == "solved"
+        assert np.abs(cube.position - [0, 0, 0.1]).max() < 1e-4
+        assert 2 * np.degrees(np.arcsin(np.linalg.norm(cube.rotation[1:]))) < 0.1
+    assert simulation.time == pytest.approx(10)
+
+
 def test_a_weak_grip_lets_the_cube_fall_straight():
     simulation = grip(0.8)
     for _ in range(15):  # 6 mm: the faces still overlap as at the start

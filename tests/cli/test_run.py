@@ -102,6 +102,65 @@ def test_a_step_that_fails_ends_the_run_and_its_record(tmp_path):
     assert below.returncode == WRONG and "below vacuum" in below.stderr
 
 
+def test_a_volume_that_needs_less_than_vacuum_is_named(tmp_path):
+    """Steps that say `cavitates` are flagged, in the table, the summary and a warning; the run goes on to its end."""
+    (tmp_path / "tube.yaml").write_text(BALLOON.replace("90 kPa", "20 MPa").replace("inner_radius: 10 mm", "inner_radius: 6 mm")
+                                        .replace("pressure: {ramp: {to: 60 kPa", "volume_growth: {ramp: {to: -0.06 ml"))
+    for more, code in (([], FAILED), (["--keep-going"], DONE), (["--set", "actuators.air.ambient_pressure=2bar"], DONE)):
+        result = sinew("run", "tube.yaml", *more, "--out", "out", cwd=tmp_path)
+        assert result.returncode == code, result.stderr
+        rows = rows_of(tmp_path / "out" / "run.csv")[1:]
+        below = [float(row["air.pressure [Pa]"]) < (-2e5 if "2bar" in str(more) else -101325) for row in rows]
+        assert [row["status"] for row in rows] == ["cavitates" if one else "solved" for one in below]
+        assert len(rows) == 20 and 1 < sum(below) < 10 or "2bar" in str(more) and not any(below)
+        told = re.search(r"warning: (\d+) of 20 steps are cavitates, the first at t = (\S+) s; .*`ambient_pressure`", result.stderr)
+        assert (told is not None) == any(below)
+        if told:
+            assert int(told[1]) == sum(below) and float(told[2]) == pytest.approx(0.05 * (below.index(True) + 1))
+            assert re.search(rf"^steps cavitates +{sum(below)}$", result.stdout, re.MULTILINE), result.stdout
+
+
+COLUMN = """
+sinew: 1
+gravity: 0 0 -9.81 m/s^2
+time_step: 10 ms
+duration: 20 ms
+bodies:
+  column:
+    type: fem
+    mesh: {shape: block, length: 18 mm, width: 18 mm, height: 100 mm, element_size: 18 mm}
+    material: ecoflex-00-30
+    position: -9 -9 0 mm
+    fixed: [{set: z_min}]
+  block: {type: rigid, shape: {box: 18 18 18 mm}, mass: 20 g, pose: {position: 0 0 109 mm}}
+joints:
+  top: {type: weld, bodies: [column, block], points: ["0 0 100 mm", "4.5 0 100 mm", "0 4.5 100 mm"], outside: nearest}
+"""
+
+
+@pytest.mark.parametrize("which", ["converged", "following", "one linearisation", "dynamic", "snapped"])
+def test_the_summary_tells_the_largest_residual_and_distance_and_the_steps_that_snapped(scene, tmp_path, which):
+    """They are those of run.csv."""
+    more = {"following": CONTROL, "one linearisation": "solver: one-linearisation", "dynamic": "integrator: bdf2"}
+    (tmp_path / "column.yaml").write_text(COLUMN)
+    result = sinew("run", tmp_path / "column.yaml" if which == "snapped" else scene(more.get(which, "")), "--out", tmp_path / "o",
+                   *(["--set", "time_step=1ms"] if which == "one linearisation" else []))
+    assert result.returncode == DONE, result.stderr
+    told = dict(re.findall(r"^(\S.*?) {2,}(\S.*)$", result.stdout, re.MULTILINE))
+    rows = rows_of(tmp_path / "o" / "run.csv")[1:]
+    residuals, distances, snaps = (np.array([float(row[name]) for row in rows]) for name in ("relative_residual", "distance [m]", "snapped"))
+    assert float(told["largest relative residual"]) == pytest.approx(residuals.max(), rel=0.06) and residuals.max() > 0
+    number, unit, *how = told["largest distance to the solution"].split(maxsplit=2)
+    assert unit == "mm" and float(number) == pytest.approx(1e3 * np.nanmax(distances), rel=0.06)  # of two digits; nan: not bounded
+    assert how == {"following": ["(equilibrium: following)"], "one linearisation": ["(one linearisation)"]}.get(which, [])
+    assert residuals.max() <= {"converged": 1e-6, "snapped": 1e-6, "dynamic": 1e-8}.get(which, 0.1)
+    assert snaps.sum() == (which == "snapped")
+    assert told.get("steps that snapped to another branch") == ("1" if which == "snapped" else None)
+    # A snap is no flag.
+    assert {row["status"] for row in rows} == ({"solved"})
+    assert which == "following" or told["steps solved"] == str(len(rows))
+
+
 @pytest.mark.parametrize("step_ms", [4, 2])
 def test_the_energy_ledger_is_kept(tmp_path, step_ms):
     swing = ROOT / "examples" / "beam" / "swing.yaml"

@@ -88,6 +88,65 @@ def test_a_long_step_in_the_view_can_be_ended(tmp_path):
         assert view.returncode == DONE
 
 
+def started(table, process, older=None):
+    """Waits for some rows in the table of a run, which is another file than the older one. @return the file."""
+    for _ in range(600):
+        if table.exists() and table.stat().st_ino != older and table.read_text().count("\n") > 6:  # including the header
+            return table.stat().st_ino
+        assert process.poll() is None
+        time.sleep(0.05)
+    raise AssertionError("the run writes no rows")
+
+
+def test_a_second_run_into_a_folder_is_refused_and_harms_nothing(scene, tmp_path):
+    """Whatever it would write, and whether the first run had replaced an older record or not."""
+    out = tmp_path / "o"
+    path = scene()
+    other = scene("gravity: 0 0 -1 m/s^2", name="other.yaml")
+    table = None
+    for _ in range(2):
+        with subprocess.Popen([os.path.abspath(PROGRAM), "run", str(path), "--duration", "1000s", "--out", str(out)],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as first:
+            table = started(out / "run.csv", first, table)
+            seconds = [sinew("run", other, "--out", out, *more) for more in ([], ["--vtk"], ["--quiet", "--duration", "20ms"])]
+            assert first.poll() is None
+            first.send_signal(signal.SIGINT)
+            assert first.communicate(timeout=60) and first.returncode == DONE
+        for second in seconds:
+            assert second.returncode == WRONG and second.stdout == ""
+            assert f"{out}: another run (process {first.pid}) is being recorded into this folder" in second.stderr
+        rows = rows_of(out / "run.csv")
+        with h5py.File(out / "run.h5") as file:
+            assert len(file["time"]) == len(rows) > 5
+            assert "-1" not in file["scene"][()].decode().split("bodies")[0]
+        assert [float(row["time [s]"]) for row in rows] == pytest.approx(0.01 * np.arange(len(rows)))
+        assert sorted(p.name for p in out.iterdir()) == ["run.csv", "run.h5", "scene.yaml"]
+    # Its record is, to the byte, that of a run that nobody disturbed.
+    assert sinew("run", path, "--duration", "50ms", "--out", tmp_path / "alone").returncode == DONE
+    alone = (tmp_path / "alone" / "run.csv").read_bytes()
+    assert (out / "run.csv").read_bytes().startswith(alone)
+    assert sinew("run", other, "--duration", "50ms", "--out", out).returncode == DONE, "the lock is gone"
+
+
+def test_a_killed_run_leaves_a_readable_record(scene, tmp_path):
+    out = tmp_path / "o"
+    with subprocess.Popen([os.path.abspath(PROGRAM), "run", str(scene()), "--duration", "1000s", "--out", str(out)],
+                          stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+        started(out / "run.csv", process)
+        time.sleep(1.0)  # run.h5 is flushed every half second
+        process.kill()
+        assert process.wait(timeout=60) == -signal.SIGKILL
+    rows = rows_of(out / "run.csv")
+    with h5py.File(out / "run.h5") as file:
+        frames = len(file["time"])
+        assert 5 < frames <= len(rows)
+        assert np.array_equal(file["time"][:], [float(row["time [s]"]) for row in rows[:frames]])
+        assert np.isfinite(file["positions/beam"][:]).all() and file["positions/beam"].shape[0] == frames
+    # The lock of a killed run is void.
+    assert sinew("run", scene(), "--duration", "50ms", "--out", out).returncode == DONE
+    assert len(rows_of(out / "run.csv")) == 6
+
+
 def test_a_run_that_fails_keeps_what_it_recorded(scene, tmp_path):
     # A force that no step can follow crushes a soft beam.
     path = scene(replace=("command: {displacement: {ramp: {from: 0 mm, to: 4 mm, start: 0 s, duration: 0.1 s}}}",

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <future>
 #include <thread>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -34,7 +35,10 @@ using namespace std::chrono_literals;
 
 /// A source and the frames it shows.
 struct Live {
-  explicit Live(const LiveSettings& settings) : source(robot(), settings) { source.start(watcher); }
+  explicit Live(const LiveSettings& settings, scene::Robot shown = robot())
+      : source(std::move(shown), settings) {
+    source.start(watcher);
+  }
   ~Live() { source.stop(); }
 
   Outcome ask(const Request& request) {
@@ -348,6 +352,25 @@ TEST(LiveSource, SaysWhyARunStoppedAndStartsAnew) {
   EXPECT_EQ(kind(live.ask(Reset{})), "");
   live.wait([&](const Frame& frame) { return frame.hash == start; });
   EXPECT_EQ(kind(live.ask(Step{3})), "");
+}
+
+TEST(LiveSource, ABalloonPastItsPeakStopsAtItsLastSolvedStateAndPlaysOnFromThere) {
+  Live live({.controller = "", .playing = false},
+            scene::build(scene::parse_scene_text(kBalloon, "balloon", {})));
+  EXPECT_EQ(kind(live.ask(SetCommand{"air", "pressure", 4.8e3})), "");
+  live.ask(Step{1});
+  const auto solved = live.at(1)->hash;
+  EXPECT_EQ(kind(live.ask(SetCommand{"air", "pressure", 60e3})), "");
+  EXPECT_EQ(kind(live.ask(Play{})), "");
+  live.wait([&](const Frame&) { return !live.watcher.status()["stopped"].is_null(); });
+  const auto message = live.watcher.status()["stopped"]["message"].get<std::string>();
+  EXPECT_NE(message.find("limit point"), std::string::npos) << message;
+  EXPECT_NE(message.find("volume_growth"), std::string::npos) << message;
+  EXPECT_EQ(live.at(1)->hash, solved) << "the last solved state is shown";
+  EXPECT_EQ(kind(live.ask(SetCommand{"air", "pressure", 3e3})), "");
+  EXPECT_EQ(kind(live.ask(Play{})), "");
+  live.wait([](const Frame& frame) { return frame.step > 3; });
+  EXPECT_TRUE(live.watcher.status()["stopped"].is_null());
 }
 
 TEST(LiveSource, RecordsEveryStepAndSavesAFile) {

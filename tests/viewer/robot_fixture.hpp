@@ -47,6 +47,21 @@ controllers:
       tip: {target: {polyline: {points: [60 10 10 mm, 60 10 12 mm], period: 1 s}}}
 )";
 
+/// A tube whose pressure has a peak of 10 kPa.
+inline constexpr const char* kBalloon = R"(sinew: 1
+time_step: 50 ms
+bodies:
+  tube:
+    type: fem
+    mesh: {shape: hollow-cylinder, inner_radius: 10 mm, outer_radius: 13 mm, height: 30 mm, element_size: 5 mm}
+    element: hex8
+    material: {model: neo-hookean, young_modulus: 90 kPa, poisson_ratio: 0.45}
+    density: 1000 kg/m^3
+    fixed: [{set: bottom}, {set: top}]
+actuators:
+  air: {type: chamber, body: tube, surface: {set: inner}, cap: true}
+)";
+
 inline scene::Robot robot() { return scene::build(scene::parse_scene_text(kScene, "test", {})); }
 
 /// A publisher that keeps the last frame and status.

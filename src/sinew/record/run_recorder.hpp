@@ -45,11 +45,11 @@ struct RecordSettings {
 /// per effector `tip.x [m]` and so on (`rx [rad]` for orientations); per contact its resultants;
 /// per effector that a controller steers `tip.target_x [m]` ... and `tip.error [m]`; then the
 /// energy ledger `strain_energy`, `kinetic_energy`, `gravity_energy` (relative to the height at
-/// rest), `actuator_work`, `outside_work` (loads and forces set from Python), `dissipation`
-/// (damping, drag, friction of cables) and `numerical_loss` (work minus dissipation minus the gain
-/// of the energies: the loss of the integrator, and work that moved a base), all `[J]`; `residual
-/// [N]`, `relative_residual`, `distance [m]` (StepReport), `iterations`, `substeps`, `scale` (of
-/// the motion, below 1 if a step was cut back), `smallest_volume_ratio`; with contacts
+/// rest), `actuator_work`, `outside_work` (loads, forces set from Python, moving bases),
+/// `dissipation` (damping, drag, friction of cables) and `numerical_loss` (work minus dissipation
+/// minus the gain of the energies: the loss of the integrator), all `[J]`; `residual [N]`,
+/// `relative_residual`, `distance [m]` (StepReport), `iterations`, `substeps`, `scale` (of the
+/// motion, below 1 if a step was cut back), `smallest_volume_ratio`; with contacts
 /// `contact_residual`, `contact_signorini [m]` and `contact_coulomb [m]`; with contact zones
 /// `contact_aggregation`; and as words `status` and, if the list has one, `controller`. The row at
 /// t = 0 is the initial state; its statuses are `start`.

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body_model.hpp"
@@ -25,6 +27,13 @@ mesh::Surface read_closed(const SurfaceDescription& surface, const BodyDescripti
   } catch (const Error& error) {
     throw error.at(surface.place);
   }
+}
+
+// Counts the pressures of a chamber from that of the water that wets its faces.
+void add_head(sim::ChamberSettings& chamber, double head) {
+  if (head <= 0.0) return;
+  const double air = chamber.gas ? chamber.gas->ambient_pressure : sim::kAtmosphere;
+  chamber.ambient_pressure = chamber.ambient_pressure.value_or(air) + head;
 }
 
 // Adds an actuator according to the settings of its type.
@@ -55,7 +64,10 @@ class Adder {
           read_closed(chamber.surface,
                       *std::ranges::find(scene_.bodies, actuator_.body, &BodyDescription::name));
     } else {
-      settings.surface = faces_of(chamber.surface, body_of_(actuator_.body).model->mesh());
+      const mechanics::BodyModel& body = *body_of_(actuator_.body).model;
+      std::vector<mesh::Face> faces = faces_of(chamber.surface, body.mesh());
+      add_head(settings, water_head(scene_, actuator_.body, body, faces));
+      settings.surface = std::move(faces);
     }
     builder_.add_chamber(settings);
   }

@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <numbers>
+#include <set>
 #include <vector>
 
 #include "sinew/core/error.hpp"
@@ -58,7 +61,46 @@ std::vector<mesh::Face> outer_surface(const mesh::Mesh& mesh, const std::string&
   return mesh::grow_patch(mesh, mesh.nodes.row(outermost).transpose(), std::numbers::pi, what);
 }
 
+std::vector<mesh::Face> faces_of(const LoadDescription& load, const mesh::Mesh& mesh) {
+  return load.surface ? faces_of(*load.surface, mesh) : outer_surface(mesh, load.name);
+}
+
+// Whether some faces of a mesh contain all of others, in any order of their nodes.
+bool contain(const std::vector<mesh::Face>& faces, const std::vector<mesh::Face>& others) {
+  const auto key = [](const mesh::Face& face) {
+    std::array<NodeId, 4> nodes = face.node;
+    std::ranges::sort(nodes);
+    return nodes;
+  };
+  std::set<std::array<NodeId, 4>> keys;
+  for (const mesh::Face& face : faces) keys.insert(key(face));
+  return std::ranges::all_of(others, [&](const auto& face) { return keys.contains(key(face)); });
+}
+
 }  // namespace
+
+double water_head(const SceneDescription& scene, const std::string& body,
+                  const mechanics::BodyModel& model, const std::vector<mesh::Face>& faces) {
+  const auto* bears = mechanics::as<const mechanics::BearsLoads>(model);
+  if (bears == nullptr) return 0.0;
+  const mesh::Mesh& mesh = bears->load_mesh();
+  const Vector3& gravity = bears->gravity();
+  double head = 0.0;
+  for (const LoadDescription& load : scene.loads) {
+    if (load.type != LoadDescription::Type::water || load.body != body || !load.water.level)
+      continue;
+    if (!contain(faces_of(load, mesh), faces)) continue;
+    double least = std::numeric_limits<double>::infinity();  // m^2/s^2, gravity times depth
+    for (const mesh::Face& face : faces) {
+      for (const NodeId node : face.nodes()) {
+        least = std::min(least, *load.water.level * gravity.norm() +
+                                    mesh.nodes.row(node).transpose().dot(gravity));
+      }
+    }
+    head += load.water.density * std::max(0.0, least) * std::max(0.0, load.factor.lowest());
+  }
+  return head;
+}
 
 void add_load(sim::ModelBuilder& builder, const LoadDescription& load, const BodyOf& body_of) {
   const auto [body, model] = body_of(load.body);
@@ -71,8 +113,7 @@ void add_load(sim::ModelBuilder& builder, const LoadDescription& load, const Bod
   settings.factor = load.factor;
   const auto faces = [&]() -> std::vector<mesh::Face> {
     if (bears == nullptr) return {};  // the builder refuses the body
-    const mesh::Mesh& mesh = bears->load_mesh();
-    return load.surface ? faces_of(*load.surface, mesh) : outer_surface(mesh, load.name);
+    return faces_of(load, bears->load_mesh());
   };
   switch (load.type) {
     case LoadDescription::Type::force:

@@ -128,6 +128,15 @@ void add_effector(sim::ModelBuilder& builder, const EffectorDescription& effecto
 /// @param body_of finds bodies.
 void add_load(sim::ModelBuilder& builder, const LoadDescription& load, const BodyOf& body_of);
 
+/// The pressure of water with a level on faces that it wets, all of them: without tension in their
+/// wall, the fluid behind them has this pressure more than the air above the water.
+/// @param scene with the loads. @param body,model the name of the body and the body itself.
+/// @param faces of its mesh.
+/// @return Pa, at the highest of the faces in the scene's pose, with the least factor of the load;
+/// 0 where no water wets them.
+double water_head(const SceneDescription& scene, const std::string& body,
+                  const mechanics::BodyModel& model, const std::vector<mesh::Face>& faces);
+
 /// A contact to be added.
 struct SceneContact {
   ContactDescription contact;

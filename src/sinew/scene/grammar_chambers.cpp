@@ -244,8 +244,10 @@ std::shared_ptr<const KeyTable> chamber_table() {
             .description =
                 "Absolute pressure at zero `pressure`. Pressures down to minus this, vacuum, are "
                 "possible: commands below are refused, and controllers stay above. In water "
-                "with a `level`, pressures count from that at the surface; without, from that "
-                "around the body, so add the water's head."},
+                "with a `level`, pressures count from that at the surface; where the water wets "
+                "the chamber's faces, as in a body that only `cap` closes, from that of the water "
+                "there, whose head is then added to this. In water without a level, pressures "
+                "count from that around the body, so add the water's head."},
            {.name = "gas",
             .forms = {table(gas_table())},
             .example = "{dead_volume: 5 ml}",
