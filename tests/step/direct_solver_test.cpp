@@ -395,7 +395,9 @@ TEST(Brace, ATautCableHoldsWhatIsUnstableAlone) {
     solver.begin_step();
     const LawStatus status = solver.solve(problem, effort);
     EXPECT_EQ(status, needed > 0.0 ? LawStatus::solved : LawStatus::failed) << trial;
-    if (needed > 0.0) EXPECT_NEAR(effort[0], needed, 1e-9 * needed) << trial;
+    if (needed > 0.0) {
+      EXPECT_NEAR(effort[0], needed, 1e-9 * needed) << trial;
+    }
     release_braces(problem);
     EXPECT_FALSE(stabilised(problem, 1)) << trial;
   }
