@@ -29,7 +29,7 @@ def sag(scene):
 def test_a_silicone_is_made_of_quadratic_tetrahedra_without_a_word():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        sim = sinew.load(beam("ecoflex-00-30"))
+        sim = sinew.load(beam("ecoflex-00-50"))
     assert sim.body("beam").elements == {"tet10": 144} and sim.notices == []
     assert len(sim.body("beam").quadratic_tetrahedra) == 144
 

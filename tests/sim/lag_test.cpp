@@ -144,14 +144,6 @@ TEST(Lag, AToleranceThatIsAskedForIsKept) {
   }
 }
 
-// Also with a matrix larger than the derivative, whose last motions are rounding long before the
-// residual meets the tolerance.
-TEST(Lag, AnExplicitToleranceIsKeptByAnyTangent) {
-  for (const auto tangent : {mechanics::Tangent::exact, mechanics::Tangent::projected}) {
-    EXPECT_LE(largest_residual({.tangent = tangent, .tolerance = 1e-11}), 1e-11);
-  }
-}
-
 TEST(Lag, OnlyAModelWithoutAWordFollowsWhenAsked) {
   for (const auto word : {std::optional<Equilibrium>(), std::optional(Equilibrium::converged),
                           std::optional(Equilibrium::following)}) {
