@@ -17,9 +17,9 @@ step within 5 % of its amplitude. Robots are drawn until 300 runs are right. No 
 these runs may.
 
 Runs that gain energy are soft bars that spin freely, with the generalized-alpha method, radii of 0.9 to 1 and 8 to 30 steps a turn:
-their steps are solved, and the method itself puts energy in. A run counts if its energy is twice that of the start for two steps; it should be
-flagged by then. Another 30 are soft beams that swing with one corotated linearisation in each step. It leaves most of the forces out of balance, and the run
-stops."""
+their steps are solved, and the method itself puts energy in. A run counts if its energy is twice that of the start for two steps; it
+should be flagged by then. Another 30 are soft beams that swing with one corotated linearisation in each step. It leaves most of the
+forces out of balance, and the run stops."""
 SOURCES = {"ledger": "work of the integrator's own quadrature, sim/work_ledger.hpp",
            "Simo": "J. C. Simo, N. Tarnow, The discrete energy-momentum method, ZAMP 43 (1992) 757-792: Newmark's method and its kin gain "
                    "energy in nonlinear elastodynamics",
