@@ -22,6 +22,7 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/sensor_set.hpp"
 #include "sinew/sim/sensor_source.hpp"
 
 #include "fields.hpp"
@@ -450,7 +451,7 @@ Description describe(const scene::Robot& robot, const sim::Observables& observab
   }
   const SignalKeys keys(observables);
   for (const auto& probe : model.probes()) probes.push_back(probe_json(keys, probe));
-  for (const sim::SensorModel& sensor : model.sensors()) {
+  for (const sim::SensorModel& sensor : sim::sensors_of(model)) {
     probes.push_back(sensor_json(keys, sensor));
   }
   Json contacts = Json::array();

@@ -11,6 +11,7 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/sensor_set.hpp"
 #include "sinew/sim/sensor_source.hpp"
 #include "sinew/sim/state.hpp"
 
@@ -115,7 +116,7 @@ void FrameMaker::fill_points(Frame& frame) {
     for (Eigen::Index k = 0; k < marks.rows(); ++k) put(frame.probes, marks.row(k).transpose());
   };
   for (const auto& probe : model.probes()) put_marks(probe);
-  for (const sim::SensorModel& sensor : model.sensors()) {
+  for (const sim::SensorModel& sensor : sim::sensors_of(model)) {
     if (const constraint::Probe* probe = sensor.source->probe()) put_marks(*probe);
   }
   // Rotations are not points.

@@ -30,6 +30,7 @@
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/sensor_set.hpp"
 #include "sinew/sim/state_io.hpp"
 
 #include "arguments.hpp"
@@ -255,7 +256,7 @@ Facts scene_facts(const InfoOptions& options) {
     facts.json["probes"].push_back(probe.name());
     facts.text += fmt::format("  probe {}: {}\n", probe.name(), probe.kind());
   }
-  for (const sim::SensorModel& sensor : model.sensors()) {
+  for (const sim::SensorModel& sensor : sim::sensors_of(model)) {
     facts.json["sensors"].push_back({{"name", sensor.name}, {"kind", sensor.kind}});
     facts.text += fmt::format("  sensor {}: {}\n", sensor.name, sensor.kind);
   }

@@ -4,6 +4,7 @@
 
 #include "sinew/constraint/contact.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/sensor_set.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -243,7 +244,7 @@ py::dict sensors(const Controller& self) {
   for (std::size_t k = 0; k < settings.tasks.size(); ++k) {
     const auto sensor = static_cast<std::size_t>(settings.feedback->sensors[k]);
     result[effector_name(self, settings.tasks[k]).c_str()] =
-        self.session->model().sensors()[sensor].name;
+        sim::sensors_of(self.session->model())[sensor].name;
   }
   return result;
 }

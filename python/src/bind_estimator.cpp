@@ -4,7 +4,9 @@
 
 #include "sinew/sim/estimator.hpp"
 #include "sinew/sim/estimator_model.hpp"
+#include "sinew/sim/estimators.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/sensor_set.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "arrays.hpp"
@@ -16,21 +18,22 @@ namespace sinew::python {
 namespace {
 
 const sim::EstimatorModel& model(const Estimator& self) {
-  return self.session->model().estimators()[static_cast<std::size_t>(self.index)];
+  return sim::estimators_of(self.session->model())[static_cast<std::size_t>(self.index)];
 }
 
 template <class Get>
 auto of_estimator(Get get) {
   return [get](const Estimator& self) {
     const Session::Use use(*self.session);
-    return get(self.session->simulation().estimator(self.index));
+    return get(sim::estimator_of(self.session->simulation(), self.index));
   };
 }
 
 py::list sensor_names(const Estimator& self) {
   py::list names;
   for (const sim::EstimatorSensor& sensor : model(self).sensors) {
-    names.append(self.session->model().sensors()[static_cast<std::size_t>(sensor.index)].name);
+    names.append(
+        sim::sensors_of(self.session->model())[static_cast<std::size_t>(sensor.index)].name);
   }
   return names;
 }
@@ -39,7 +42,7 @@ py::list sensor_names(const Estimator& self) {
 template <class Get>
 py::dict unknowns(const Estimator& self, sim::Unknown::Kind kind, Get get) {
   const Session::Use use(*self.session);
-  const VectorX mean = self.session->simulation().estimator(self.index).mean();
+  const VectorX mean = sim::estimator_of(self.session->simulation(), self.index).mean();
   py::dict all;
   Eigen::Index first = 0;
   for (const sim::Unknown& unknown : model(self).unknowns) {

@@ -7,7 +7,9 @@
 
 #include "sinew/sim/channel.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/sensor_set.hpp"
 #include "sinew/sim/sensor_source.hpp"
+#include "sinew/sim/sensors.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "arrays.hpp"
@@ -22,7 +24,7 @@ using sim::Channel;
 using sim::ChannelSettings;
 
 const sim::SensorModel& model(const Sensor& self) {
-  return self.session->model().sensors()[static_cast<std::size_t>(self.index)];
+  return sim::sensors_of(self.session->model())[static_cast<std::size_t>(self.index)];
 }
 
 // A number for one component, an array for several.
@@ -49,7 +51,7 @@ auto of_channel(Get get) {
   return [get](const Sensor& self) {
     const Session::Use use(*self.session);
     const sim::Simulation& simulation = self.session->simulation();
-    return get(simulation.sensor(self.index), simulation);
+    return get(sim::sensors_of(simulation).channel(self.index), simulation);
   };
 }
 
@@ -59,7 +61,7 @@ void feed(const Sensor& self, const py::object& value, const std::optional<doubl
   const Session::Use use(*self.session);
   sim::Simulation& simulation = self.session->simulation();
   try {
-    simulation.feed_sensor(self.index, time.value_or(simulation.time()), numbers);
+    sim::sensors_of(simulation).feed(self.index, time.value_or(simulation.time()), numbers);
   } catch (const Error& error) {
     throw Error(error.kind(), {.item = place}, error.message(), error.remedy());
   }
@@ -128,7 +130,7 @@ void bind_sensor_type(py::module_& module) {
           "true_value",
           [](const Sensor& self) {
             const Session::Use use(*self.session);
-            return to_python(self.session->simulation().sensor_truth(self.index));
+            return to_python(sim::sensors_of(self.session->simulation()).truth(self.index));
           },
           "float, or (size,) ndarray: present value without errors and delay.")
       .def("feed", &feed, py::arg("value"), py::arg("time") = py::none(),

@@ -5,7 +5,9 @@
 
 #include "sinew/constraint/probe.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/sim/estimator_model.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/sensor_set.hpp"
 
 #include "simulation_type.hpp"
 
@@ -14,10 +16,10 @@ namespace sinew::python {
 namespace {
 
 // The part with a name.
-template <class One>
-auto named(int (sim::Model::*index)(std::string_view) const) {
+template <class One, class Index>
+auto named(Index index) {
   return [index](const std::shared_ptr<Session>& self, const std::string& name) {
-    return One{{self, (self->model().*index)(name)}};
+    return One{{self, std::invoke(index, self->model(), name)}};
   };
 }
 
@@ -58,13 +60,13 @@ An effector by its name. Raises Error (unknown-name) with a suggestion.
 
 A probe by its name. Raises Error (unknown-name) with a suggestion.
 )")
-      .def("sensor", named<Sensor>(&sim::Model::sensor_index), py::arg("name"),
+      .def("sensor", named<Sensor>(&sim::sensor_index), py::arg("name"),
            R"(sensor($self, name)
 --
 
 A sensor by its name. Raises Error (unknown-name) with a suggestion.
 )")
-      .def("estimator", named<Estimator>(&sim::Model::estimator_index), py::arg("name"),
+      .def("estimator", named<Estimator>(&sim::estimator_index), py::arg("name"),
            R"(estimator($self, name)
 --
 
@@ -112,9 +114,10 @@ void bind_lists(SimulationType& type) {
                              "dict: all effectors by name, in the scene's order.")
       .def_property_readonly("probes", all<Probe>(&sim::Model::probes),
                              "dict: all probes by name, in the scene's order.")
-      .def_property_readonly("sensors", all<Sensor>(&sim::Model::sensors),
-                             "dict: all sensors by name, in the scene's order.")
-      .def_property_readonly("estimators", all<Estimator>(&sim::Model::estimators),
+      .def_property_readonly(
+          "sensors", all<Sensor>([](const sim::Model& model) { return sim::sensors_of(model); }),
+          "dict: all sensors by name, in the scene's order.")
+      .def_property_readonly("estimators", all<Estimator>(&sim::estimators_of),
                              "dict: all estimators by name, in the scene's order.")
       .def_property_readonly("masses", all<PointMass>(&sim::Model::masses),
                              "dict: all point masses by name, body by body.")

@@ -17,6 +17,7 @@
 #include "sinew/scene/scene.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/channel.hpp"
+#include "sinew/sim/sensors.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
 
@@ -180,7 +181,7 @@ TEST(ClosedLoop, HoldsWhileASensorIsSilent) {
   Trial run(with_sensor());
   run.attach(10.0, {1e-3, 0.0, 0.0});
   const Vector3 seen = run.tip();
-  run.simulation->feed_sensor(0, 0.0, {seen.data(), 3});
+  sim::sensors_of(*run.simulation).feed(0, 0.0, {seen.data(), 3});
   std::vector<InverseStatus> statuses;
   for (int k = 0; k < 14; ++k) {
     run.simulation->step();
@@ -196,7 +197,7 @@ TEST(ClosedLoop, HoldsWhileASensorIsSilent) {
   EXPECT_EQ(run.simulation->actuator(0).command.signal.value(0.0), command);
   EXPECT_LT((run.tip() - held).norm(), 1e-9);
   const Vector3 now = run.tip();
-  run.simulation->feed_sensor(0, run.simulation->time(), {now.data(), 3});
+  sim::sensors_of(*run.simulation).feed(0, run.simulation->time(), {now.data(), 3});
   run.simulation->step();
   EXPECT_EQ(run.loop->status(), InverseStatus::moving);
   EXPECT_TRUE(run.loop->conflict().empty());

@@ -18,6 +18,7 @@
 #include "sinew/sim/equilibrium_filter.hpp"
 #include "sinew/sim/estimator_filter.hpp"
 #include "sinew/sim/estimator_model.hpp"
+#include "sinew/sim/estimators.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/motion_filter.hpp"
 #include "sinew/sim/run.hpp"
@@ -55,11 +56,12 @@ TEST(Estimators, RefuseDamagedMemoryAndBeginAnewOtherwise) {
     for (int k = 0; k < 3; ++k) whole->step();
     const sim::State state = whole->state();
     other->restore(state);
-    EXPECT_EQ(other->estimator(0).mean(), whole->estimator(0).mean());
+    EXPECT_EQ(sim::estimator_of(*other, 0).mean(), sim::estimator_of(*whole, 0).mean());
     EXPECT_EQ(other->state(), state);
-    for (const std::size_t left : {state.estimators.size() - 1, state.estimators.size() / 2}) {
+    for (const std::size_t left :
+         {state.instruments.back().size() - 1, state.instruments.back().size() / 2}) {
       sim::State damaged = state;
-      damaged.estimators.resize(left);
+      damaged.instruments.back().resize(left);
       try {
         other->restore(damaged);
         ADD_FAILURE() << integrator << ": taken with " << left << " numbers";
@@ -67,12 +69,12 @@ TEST(Estimators, RefuseDamagedMemoryAndBeginAnewOtherwise) {
         EXPECT_EQ(error.kind(), ErrorKind::wrong_length);
         EXPECT_THAT(error.what(), testing::HasSubstr("damaged"));
       }
-      EXPECT_EQ(other->estimator(0).status(), sim::EstimatorStatus::not_started);
+      EXPECT_EQ(sim::estimator_of(*other, 0).status(), sim::EstimatorStatus::not_started);
     }
     sim::State without = state;
-    without.estimators.clear();
+    without.instruments.pop_back();
     other->restore(without);
-    EXPECT_EQ(other->estimator(0).status(), sim::EstimatorStatus::not_started);
+    EXPECT_EQ(sim::estimator_of(*other, 0).status(), sim::EstimatorStatus::not_started);
     EXPECT_EQ(other->steps(), state.steps);
   }
 }
@@ -83,10 +85,11 @@ TEST(Estimators, OfBothKindsAgreeAtRest) {
   const auto still = estimating("quasi-static"), moving = estimating("backward-euler");
   still->solve_static();
   moving->solve_static();
-  EXPECT_LT((still->estimator(0).mean() - moving->estimator(0).mean()).norm(),
-            5e-3 * still->estimator(0).deviation().norm());
-  EXPECT_LT((still->estimator(0).deviation() - moving->estimator(0).deviation()).norm(),
-            1e-2 * still->estimator(0).deviation().norm());
+  EXPECT_LT((sim::estimator_of(*still, 0).mean() - sim::estimator_of(*moving, 0).mean()).norm(),
+            5e-3 * sim::estimator_of(*still, 0).deviation().norm());
+  EXPECT_LT(
+      (sim::estimator_of(*still, 0).deviation() - sim::estimator_of(*moving, 0).deviation()).norm(),
+      1e-2 * sim::estimator_of(*still, 0).deviation().norm());
 }
 
 // A column of the blow pushes with 100 kN, for which the robot's step fails. The columns of the
@@ -95,7 +98,7 @@ TEST(Estimators, AStepOfWhichAColumnFailsIsNotMade) {
   const auto model = estimated("backward-euler",
                                ", blow: {force: {body: beam, point: 60 0 0 mm}, prior: 1000 kN}");
   const sim::Run run(model, 1);
-  sim::MotionFilter filter(model->estimators().front(), 1);
+  sim::MotionFilter filter(sim::estimators_of(*model).front(), 1);
   filter.restart(run);
   const sim::State start = filter.robot().state();
   filter.advance(run, 0.01);
@@ -106,8 +109,8 @@ TEST(Estimators, AStepOfWhichAColumnFailsIsNotMade) {
   EXPECT_EQ(filter.mean(), VectorX::Zero(6));
   sim::Simulation whole(model);
   whole.step();
-  EXPECT_EQ(whole.estimator(0).status(), sim::EstimatorStatus::no_equilibrium);
-  EXPECT_FALSE(whole.estimator(0).message().empty());
+  EXPECT_EQ(sim::estimator_of(whole, 0).status(), sim::EstimatorStatus::no_equilibrium);
+  EXPECT_FALSE(sim::estimator_of(whole, 0).message().empty());
 }
 
 // A marker a thousand kilometres away asks for a force that no equilibrium of the beam bears. The
@@ -115,7 +118,7 @@ TEST(Estimators, AStepOfWhichAColumnFailsIsNotMade) {
 TEST(Estimators, AFailedRoundAtRestKeepsTheLastOne) {
   for (const char* integrator : {"quasi-static", "backward-euler"}) {
     const auto model = estimated(integrator);
-    const sim::EstimatorModel& own = model->estimators().front();
+    const sim::EstimatorModel& own = sim::estimators_of(*model).front();
     const sim::Run run(model, 1);
     std::unique_ptr<sim::EstimatorFilter> filter;
     if (integrator == std::string("quasi-static")) {
@@ -147,7 +150,7 @@ TEST(Estimators, ShareTheMeshOfTheScene) {
   const auto settings = [](const sim::Model& of) -> const fem::FemBodySettings& {
     return mechanics::as<const fem::HasElements>(of.body(0))->settings();
   };
-  const sim::Model& known = *model->estimators().front().robot;
+  const sim::Model& known = *sim::estimators_of(*model).front().robot;
   EXPECT_EQ(settings(known).mesh, settings(*model).mesh);
   EXPECT_EQ(settings(known).embedder, settings(*model).embedder);
 }

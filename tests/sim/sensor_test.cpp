@@ -18,6 +18,7 @@
 #include "sinew/mesh/topology.hpp"
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/sensor_settings.hpp"
+#include "sinew/sim/sensors.hpp"
 
 #include "../support/allocation_guard.hpp"
 #include "shaped_block.hpp"
@@ -35,10 +36,10 @@ class SensorBlock : public ::testing::Test, public ShapedBlock {
     settings.name = name;
     settings.kind = name;
     settings.what = std::move(what);
-    builder_.add_sensor(settings);
+    add_sensor(builder_, settings);
   }
   std::vector<double> truth(const char* name) {
-    return simulation_->sensor_truth(simulation_->model().sensor_index(name));
+    return sensors_of(*simulation_).truth(sensor_index(simulation_->model(), name));
   }
   static Points line(double z) {
     Points corners(2, 3);

@@ -19,6 +19,7 @@
 #include "sinew/mesh/quality.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/channel.hpp"
+#include "sinew/sim/sensors.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
@@ -276,7 +277,8 @@ TEST(LiveSource, ShowsSensorsBesideProbes) {
   for (int k = 0; k < 4; ++k) state.step();
   const auto frame = state.frame({}, 1.0);
   const sim::Simulation& simulation = state.simulation();
-  EXPECT_EQ(number(*frame, "sensor.eye.measured_x"), simulation.sensor(0).value()[0]);
+  EXPECT_EQ(number(*frame, "sensor.eye.measured_x"),
+            sim::sensors_of(simulation).channel(0).value()[0]);
   EXPECT_EQ(number(*frame, "sensor.eye.true_x"), simulation.effector_value(0).x());
   EXPECT_EQ(number(*frame, "sensor.load.measured"), simulation.actuator(0).effort + 1.0);
   ASSERT_EQ(frame->probes.size(), 3 * (2 + 4 + 1u));

@@ -15,7 +15,8 @@
 #include "sinew/sim/channel.hpp"
 #include "sinew/sim/controlled_response.hpp"
 #include "sinew/sim/model.hpp"
-#include "sinew/sim/sensor_model.hpp"
+#include "sinew/sim/sensor_set.hpp"
+#include "sinew/sim/sensors.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::inverse {
@@ -73,7 +74,7 @@ void check_feedback(const sim::Model& model, const InverseSettings& settings) {
         "give one sensor for each effector");
   }
   for (std::size_t t = 0; t < settings.tasks.size(); ++t) {
-    const sim::SensorModel& sensor = model.sensors().at(at(feedback.sensors[t]));
+    const sim::SensorModel& sensor = sim::sensors_of(model).at(at(feedback.sensors[t]));
     check_kind(sensor, model.effector(settings.tasks[t].effector));
     check_rate(sensor, model.step().time_step, feedback.timeout);
   }
@@ -97,7 +98,7 @@ ClosedLoop::ClosedLoop(sim::Simulation& simulation, InverseSettings settings)
       weights.push_back(task.weight_by_priority(k));
     }
     const sim::ChannelSettings& channel =
-        model.sensors()[at(settings_.feedback->sensors[t])].channel;
+        sim::sensors_of(model)[at(settings_.feedback->sensors[t])].channel;
     longest = std::max(longest, channel.delay + settings_.feedback->timeout);
   }
   weights_ = Eigen::Map<VectorX>(weights.data(), std::ssize(weights));
@@ -132,7 +133,8 @@ bool ClosedLoop::note_silence() {
   const double now = simulation_.time();
   for (Eigen::Index t = 0; t < silent_.size(); ++t) {
     const sim::Channel& sensor =
-        simulation_.sensor(settings_.feedback->sensors[static_cast<std::size_t>(t)]);
+        sim::sensors_of(simulation_)
+            .channel(settings_.feedback->sensors[static_cast<std::size_t>(t)]);
     const double age = now - sensor.time();
     const double oldest =
         sensor.settings().delay + settings_.feedback->timeout + sim::Channel::kSameTime;
@@ -168,7 +170,8 @@ VectorX ClosedLoop::along(int task, const Vector3& difference) const {
 }
 
 double ClosedLoop::measured_error(int task) const {
-  const sim::Channel& sensor = simulation_.sensor(settings_.feedback->sensors[at(task)]);
+  const sim::Channel& sensor =
+      sim::sensors_of(simulation_).channel(settings_.feedback->sensors[at(task)]);
   if (!sensor.has_value()) return std::numeric_limits<double>::quiet_NaN();
   VectorX rows = along(task, difference(task, simulation_.time(), value_of(sensor)));
   for (Eigen::Index k = 0; k < rows.size(); ++k) {
@@ -184,7 +187,8 @@ VectorX ClosedLoop::error_now() const {
   const std::int64_t now = simulation_.steps(), kept = foreseen_.cols();
   for (std::size_t t = 0; t < settings_.tasks.size(); ++t) {
     const auto task = static_cast<int>(t);
-    const sim::Channel& sensor = simulation_.sensor(settings_.feedback->sensors[t]);
+    const sim::Channel& sensor =
+        sim::sensors_of(simulation_).channel(settings_.feedback->sensors[t]);
     const VectorX rows = along(task, difference(task, simulation_.time(), value_of(sensor)));
     auto own = error.segment(first_[t], rows.size());
     own = rows;
@@ -316,7 +320,7 @@ std::string ClosedLoop::conflict() const {
     if (silent_[t] == 0.0) continue;
     const int sensor = settings_.feedback->sensors[static_cast<std::size_t>(t)];
     text += fmt::format("{}'{}' {}", text.empty() ? "" : ", ",
-                        simulation_.model().sensors()[at(sensor)].name,
+                        sim::sensors_of(simulation_.model())[at(sensor)].name,
                         silent_[t] == kNever ? std::string("has delivered nothing yet")
                                              : fmt::format("is silent for {:.3g} s", silent_[t]));
   }

@@ -46,7 +46,7 @@ struct EffectorTask {
 
 /// Feedback settings of a ClosedLoop.
 struct Feedback {
-  std::vector<int> sensors;  ///< (tasks,) indices in Model::sensors(): the sensor of each effector
+  std::vector<int> sensors;  ///< (tasks,) indices in sim::sensors_of(): that of each effector
   double gain = 5.0;         ///< 1/s, > 0: without delay, an error decays as exp(-gain t)
   double integral = 0.0;     ///< 1/s^2, >= 0: gain of the time integral of the error
   /// s, > 0: all commands are held while a sample is older than its sensor's delay plus this.

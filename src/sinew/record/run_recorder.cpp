@@ -17,6 +17,7 @@
 #include "sinew/record/run_states.hpp"
 #include "sinew/record/run_table.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/sensor_set.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::record {
@@ -89,7 +90,7 @@ struct RunRecorder::Files {
     if (!model.probes().empty()) {
       probes.emplace(draft / "probes.csv", observables, TableKind::probes);
     }
-    if (!model.sensors().empty()) {
+    if (!sim::sensors_of(model).empty()) {
       sensors.emplace(draft / "sensors.csv", observables, TableKind::sensors);
     }
     if (settings.vtk) series.emplace(draft.path(), observables.simulation());

@@ -12,6 +12,7 @@
 #include "sinew/record/run_layout.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/sensor_set.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::record {
@@ -86,7 +87,7 @@ void RunStates::describe_owners() {
   for (const auto& probe : model.probes()) {
     file_.attribute("/probes/" + probe.name(), "kind", std::string_view(probe.kind()));
   }
-  for (const sim::SensorModel& sensor : model.sensors()) {
+  for (const sim::SensorModel& sensor : sim::sensors_of(model)) {
     file_.attribute("/sensors/" + sensor.name, "kind", std::string_view(sensor.kind));
     file_.attribute("/sensors/" + sensor.name, "observable", std::string_view(sensor.observable));
   }

@@ -12,7 +12,7 @@
 #include "sinew/scene/scene.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"
-#include "sinew/sim/sensor_model.hpp"
+#include "sinew/sim/sensor_set.hpp"
 
 namespace sinew::scene {
 
@@ -39,8 +39,7 @@ SceneController controller_of(const ControllerDescription& description, const si
     settings.tolerance = kMeasuredTolerance;
     settings.feedback = description.feedback;
     for (const std::string& name : description.sensors) {
-      const auto found = std::ranges::find(model.sensors(), name, &sim::SensorModel::name);
-      settings.feedback->sensors.push_back(static_cast<int>(found - model.sensors().begin()));
+      settings.feedback->sensors.push_back(sim::sensor_index(model, name));
     }
   }
   settings.regularisation = description.regularisation;

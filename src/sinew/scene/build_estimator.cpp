@@ -441,7 +441,7 @@ void add_estimator(sim::ModelBuilder& builder, const SceneDescription& scene,
     const auto same = std::ranges::find(scene.loads, load.name, &LoadDescription::name);
     settings.loads.push_back(static_cast<int>(same - scene.loads.begin()));
   }
-  builder.add_estimator(settings);
+  sim::add_estimator(builder, settings);
   check_response(scene, estimator, RestResponse(settings.robot));
 }
 

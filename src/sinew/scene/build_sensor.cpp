@@ -156,7 +156,7 @@ void add_sensor(sim::ModelBuilder& builder, const SensorSurroundings& surroundin
   settings.channel = sensor.channel;
   settings.record = sensor.record;
   settings.what = Measured(surroundings, sensor).what();
-  builder.add_sensor(settings);
+  sim::add_sensor(builder, settings);
 }
 
 }  // namespace sinew::scene

@@ -38,7 +38,7 @@
 #include "sinew/sim/force_settings.hpp"
 #include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/motor_settings.hpp"
-#include "sinew/sim/sensor_model.hpp"
+#include "sinew/sim/sensor_set.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/spring_line_settings.hpp"
 #include "sinew/sim/step_settings.hpp"

@@ -5,11 +5,12 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/whole.hpp"
-#include "sinew/sim/add_parts.hpp"
 #include "sinew/sim/estimator_model.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/model_data.hpp"
 #include "sinew/sim/new_name.hpp"
+#include "sinew/sim/sensor_set.hpp"
 #include "sinew/sim/sensor_source.hpp"
 
 namespace sinew::sim {
@@ -21,8 +22,9 @@ constexpr int kMaxLags = 100;
 
 EstimatorSensor sensor_of(const ModelData& data, const std::string& name, const Location& place,
                           const Model& robot) {
-  const auto found = std::ranges::find(data.sensors, name, &SensorModel::name);
-  if (found == data.sensors.end()) {
+  const std::vector<SensorModel>& sensors = sensors_of(data);
+  const auto found = std::ranges::find(sensors, name, &SensorModel::name);
+  if (found == sensors.end()) {
     throw Error(ErrorKind::unknown_name, place, fmt::format("there is no sensor '{}'", name),
                 "name a sensor of the scene");
   }
@@ -34,7 +36,7 @@ EstimatorSensor sensor_of(const ModelData& data, const std::string& name, const 
                 "give the sensor noise or a quantum: how exact it is");
   }
   EstimatorSensor sensor;
-  sensor.index = static_cast<int>(found - data.sensors.begin());
+  sensor.index = static_cast<int>(found - sensors.begin());
   const auto same = std::ranges::find(robot.effectors(), name, &EffectorModel::name);
   if (same != robot.effectors().end()) {
     sensor.effector = static_cast<int>(same - robot.effectors().begin());
@@ -48,8 +50,14 @@ EstimatorSensor sensor_of(const ModelData& data, const std::string& name, const 
 
 }  // namespace
 
-int add_estimator(ModelData& data, const EstimatorSettings& settings) {
-  check_new_name(data.estimators, &EstimatorModel::name, "estimators", settings.name,
+int add_estimator(ModelBuilder& builder, const EstimatorSettings& settings) {
+  ModelData& data = builder.data();
+  auto* set = data.instrument<EstimatorSet>();
+  if (set == nullptr) {
+    data.instruments.push_back(std::make_unique<EstimatorSet>());
+    set = data.instrument<EstimatorSet>();
+  }
+  check_new_name(set->estimators, &EstimatorModel::name, "estimators", settings.name,
                  settings.place);
   EstimatorModel estimator{settings.name, settings.robot, {}, settings.unknowns, settings.loads, 0,
                            settings.rank};
@@ -67,8 +75,8 @@ int add_estimator(ModelData& data, const EstimatorSettings& settings) {
     estimator.lags = std::max(estimator.lags, whole<int>(steps));
     estimator.sensors.push_back(sensor);
   }
-  data.estimators.push_back(std::move(estimator));
-  return static_cast<int>(data.estimators.size()) - 1;
+  set->estimators.push_back(std::move(estimator));
+  return static_cast<int>(set->estimators.size()) - 1;
 }
 
 }  // namespace sinew::sim

@@ -30,12 +30,10 @@ struct CableSettings;
 struct ChamberSettings;
 struct ContactSettings;
 struct EffectorSettings;
-struct EstimatorSettings;
 struct ForceSettings;
 struct LoadSettings;
 struct ModelData;
 struct ProbeSettings;
-struct SensorSettings;
 struct SpringLineSettings;
 struct TorqueSettings;
 struct JointSettings;
@@ -71,8 +69,5 @@ int add_weld(ModelData& data, const WeldSettings& settings);
 
 int add_effector(ModelData& data, const EffectorSettings& settings);
 int add_probe(ModelData& data, const ProbeSettings& settings);
-/// Call after adding what the sensor reads.
-int add_sensor(ModelData& data, const SensorSettings& settings);
-int add_estimator(ModelData& data, const EstimatorSettings& settings);
 
 }  // namespace sinew::sim

@@ -16,11 +16,12 @@
 #include "sinew/core/named_hash.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
-#include "sinew/sim/add_parts.hpp"
 #include "sinew/sim/attacher.hpp"
 #include "sinew/sim/electrodes.hpp"
+#include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/model_data.hpp"
 #include "sinew/sim/new_name.hpp"
+#include "sinew/sim/sensor_set.hpp"
 #include "sinew/sim/sensor_settings.hpp"
 #include "sinew/sim/sensor_source.hpp"
 
@@ -337,8 +338,9 @@ std::uint64_t stream_of(const std::string& name) { return ValueHash().add(name).
 
 }  // namespace
 
-int add_sensor(ModelData& data, const SensorSettings& settings) {
-  check_new_name(data.sensors, &SensorModel::name, "sensors", settings.name, settings.place);
+int add_sensor(ModelBuilder& builder, const SensorSettings& settings) {
+  ModelData& data = builder.data();
+  check_new_name(sensors_of(data), &SensorModel::name, "sensors", settings.name, settings.place);
   try {
     check_rate(settings, data.step.time_step);
     MakeSensor make(data, settings);
@@ -347,11 +349,16 @@ int add_sensor(ModelData& data, const SensorSettings& settings) {
     sensor.observable = make.observable.empty() ? settings.name + ".true" : make.observable;
     sensor.channel.stream = stream_of(settings.name);
     Channel checked(sensor.channel, sensor.source->size());
-    data.sensors.push_back(std::move(sensor));
+    auto* set = data.instrument<SensorSet>();
+    if (set == nullptr) {
+      data.instruments.push_back(std::make_unique<SensorSet>());
+      set = data.instrument<SensorSet>();
+    }
+    set->sensors.push_back(std::move(sensor));
   } catch (const Error& error) {
     throw error.at(settings.place);
   }
-  return static_cast<int>(data.sensors.size()) - 1;
+  return static_cast<int>(sensors_of(data).size()) - 1;
 }
 
 }  // namespace sinew::sim

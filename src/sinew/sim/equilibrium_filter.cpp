@@ -8,6 +8,7 @@
 #include "sinew/core/whole.hpp"
 #include "sinew/sim/estimator_model.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/sensor_set.hpp"
 #include "sinew/sim/sensor_source.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/step_response.hpp"
@@ -119,7 +120,7 @@ MatrixX EquilibriumFilter::sensitivity() {
   Eigen::Index first = 0;
   for (std::size_t k = 0; k < model().sensors.size(); ++k) {
     const EstimatorSensor& sensor = model().sensors[k];
-    const SensorSource* source = robot.sensors()[k].source.get();
+    const SensorSource* source = sensors_of(robot)[k].source.get();
     const auto row_of = [&](int actuator) {
       return robot.actuators()[static_cast<std::size_t>(actuator)].row;
     };

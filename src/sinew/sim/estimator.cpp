@@ -15,6 +15,8 @@
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/motion_filter.hpp"
 #include "sinew/sim/run.hpp"
+#include "sinew/sim/sensor_set.hpp"
+#include "sinew/sim/sensors.hpp"
 
 namespace sinew::sim {
 
@@ -95,7 +97,7 @@ void Estimator::correct(const Run& run) {
     const EstimatorSensor& sensor = model_.sensors[k];
     const auto size = static_cast<Eigen::Index>(sensor.size);
     const Eigen::Index own = std::exchange(first, first + size);
-    const Channel& channel = run.sensors.channel(sensor.index);
+    const Channel& channel = run.instruments.get<Sensors>().channel(sensor.index);
     if (!channel.fresh() || (channel.received() && channel.time() == used_[k])) continue;
     const int late = whole<int>(std::round((run.time() - channel.time()) / time_step), 0);
     used_[k] = channel.time();
@@ -117,7 +119,7 @@ void Estimator::correct(const Run& run) {
 void Estimator::note_silence(const Run& run) {
   for (std::size_t k = 0; k < silent_.size(); ++k) {
     const EstimatorSensor& sensor = model_.sensors[k];
-    const Channel& channel = run.sensors.channel(sensor.index);
+    const Channel& channel = run.instruments.get<Sensors>().channel(sensor.index);
     const double age = run.time() - (channel.has_value() ? channel.time() : 0.0);
     const bool late = age > sensor.delay + kSilentPeriods * sensor.period + Channel::kSameTime;
     const bool old = channel.has_value() && !channel.valid(run.time());
@@ -189,7 +191,7 @@ std::vector<std::string> Estimator::lost() const {
   std::vector<std::string> names;
   for (std::size_t k = 0; k < silent_.size(); ++k) {
     if (silent_[k] == 0.0) continue;
-    names.push_back(plant_.sensors()[static_cast<std::size_t>(model_.sensors[k].index)].name);
+    names.push_back(sensors_of(plant_)[static_cast<std::size_t>(model_.sensors[k].index)].name);
   }
   return names;
 }

@@ -9,6 +9,7 @@
 #include "sinew/sim/inputs.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/run.hpp"
+#include "sinew/sim/sensors.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state_numbers.hpp"
 
@@ -154,7 +155,7 @@ VectorX EstimatorFilter::readings() const {
   Eigen::Index first = 0;
   for (std::size_t k = 0; k < model_.sensors.size(); ++k) {
     const std::size_t size = model_.sensors[k].size;
-    robot_->read_sensor_truth(static_cast<int>(k), {all.data() + first, size});
+    sensors_of(*robot_).read_true(static_cast<int>(k), {all.data() + first, size});
     first += static_cast<Eigen::Index>(size);
   }
   return all;

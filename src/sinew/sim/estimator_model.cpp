@@ -6,8 +6,12 @@
 
 #include "sinew/constraint/effector.hpp"
 #include "sinew/core/axis_names.hpp"
+#include "sinew/core/named_hash.hpp"
 #include "sinew/core/rotation.hpp"
+#include "sinew/sim/estimators.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/named_index.hpp"
+#include "sinew/sim/run.hpp"
 
 namespace sinew::sim {
 
@@ -75,6 +79,35 @@ void EstimatorModel::take_exponentials(VectorX& mean, VectorX& deviation) const 
     }
     k += unknown.size();
   }
+}
+
+// Of the robots, sensors and unknowns.
+std::uint64_t EstimatorSet::hash() const {
+  ValueHash hash;
+  for (const EstimatorModel& one : estimators) {
+    hash.add(one.lags, one.robot->fingerprint(), one.unknowns.size());
+    for (const EstimatorSensor& sensor : one.sensors) hash.add(sensor.index, sensor.size);
+    for (const Unknown& unknown : one.unknowns) {
+      hash.add(unknown.first_actuator, unknown.size(), unknown.command_known);
+      if (unknown.kind == Unknown::Kind::stiffness) hash.add(unknown.body);
+    }
+  }
+  return hash.value();
+}
+
+std::unique_ptr<Instrument> EstimatorSet::start(const Run& run) const {
+  return std::make_unique<Estimators>(*this, run);
+}
+
+const std::vector<EstimatorModel>& estimators_of(const Model& model) {
+  static const std::vector<EstimatorModel> kNone;
+  const auto* set = model.instrument<const EstimatorSet>();
+  return set != nullptr ? set->estimators : kNone;
+}
+
+int estimator_index(const Model& model, std::string_view name) {
+  return index_of_name(estimators_of(model), name, "estimator",
+                       [](const auto& e) { return e.name; });
 }
 
 }  // namespace sinew::sim

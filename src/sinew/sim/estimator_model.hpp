@@ -4,14 +4,17 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
+#include "sinew/sim/instrument_model.hpp"
 
 namespace sinew::sim {
 
 class Model;
+class ModelBuilder;
 
 /// A quantity that an estimator estimates.
 struct Unknown {
@@ -39,7 +42,7 @@ struct Unknown {
 
 /// A sensor that an estimator uses.
 struct EstimatorSensor {
-  int index = 0;           ///< in Model::sensors() of the model with the estimator
+  int index = 0;           ///< in sensors_of() the model with the estimator
   int effector = -1;       ///< of the estimator's robot, for a marker or orientation; else -1
   double deviation = 0.0;  ///< standard deviation of one sample, in its unit, > 0
   double delay = 0.0;      ///< s
@@ -81,7 +84,22 @@ struct EstimatorModel {
   void take_exponentials(VectorX& mean, VectorX& deviation) const;
 };
 
-/// Settings for ModelBuilder::add_estimator(); sensors are given by name.
+/// The estimators of a model.
+class EstimatorSet : public InstrumentModel {
+ public:
+  std::uint64_t hash() const override;
+  std::unique_ptr<Instrument> start(const Run& run) const override;
+
+  std::vector<EstimatorModel> estimators;
+};
+
+/// The estimators of a model; an empty list if it has none. @param model with them.
+const std::vector<EstimatorModel>& estimators_of(const Model& model);
+/// Index in estimators_of(). Throws Error(unknown-name) with a suggestion.
+/// @param model with the estimator. @param name of the estimator.
+int estimator_index(const Model& model, std::string_view name);
+
+/// Settings for add_estimator(); sensors are given by name.
 struct EstimatorSettings {
   std::string name;
   Location place;
@@ -92,5 +110,11 @@ struct EstimatorSettings {
   std::vector<int> loads;
   int rank = 0;  ///< see EstimatorModel
 };
+
+/// Adds an estimator, after the sensors that it uses. @return its index.
+/// Throws Error: unknown-name (a sensor), out-of-range (a sensor without noise, or with a delay of
+/// more than 100 steps).
+/// @param builder of the model. @param settings of the estimator.
+int add_estimator(ModelBuilder& builder, const EstimatorSettings& settings);
 
 }  // namespace sinew::sim

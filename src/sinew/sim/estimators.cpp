@@ -1,64 +1,81 @@
 #include "sinew/sim/estimators.hpp"
 
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sinew/core/axis_names.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/core/named_hash.hpp"
 #include "sinew/sim/estimator_model.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/run.hpp"
 
 namespace sinew::sim {
 
-namespace {
-
-// Hash of the robots, sensors and unknowns of a saved state, as an integer that a double represents
-// exactly.
-double signature_of(const std::vector<EstimatorModel>& estimators) {
-  ValueHash hash;
-  for (const EstimatorModel& one : estimators) {
-    hash.add(one.lags, one.robot->fingerprint(), one.unknowns.size());
-    for (const EstimatorSensor& sensor : one.sensors) hash.add(sensor.index, sensor.size);
-    for (const Unknown& unknown : one.unknowns) {
-      hash.add(unknown.first_actuator, unknown.size(), unknown.command_known);
-      if (unknown.kind == Unknown::Kind::stiffness) hash.add(unknown.body);
-    }
+Estimators::Estimators(const EstimatorSet& set, const Run& run) : run_(run) {
+  for (const EstimatorModel& one : set.estimators) {
+    all_.emplace_back(one, *run.model, run.pool.size());
   }
-  return static_cast<double>(hash.value() >> 12);
 }
 
-}  // namespace
-
-Estimators::Estimators(const Model& model, int threads)
-    : signature_(signature_of(model.estimators())) {
-  for (const EstimatorModel& one : model.estimators()) all_.emplace_back(one, model, threads);
+void Estimators::begin() {
+  for (Estimator& one : all_) one.begin(run_);
 }
 
-void Estimators::begin(const Run& run) {
-  for (Estimator& one : all_) one.begin(run);
+void Estimators::advance() {
+  for (Estimator& one : all_) one.advance(run_);
 }
 
-void Estimators::advance(const Run& run) {
-  for (Estimator& one : all_) one.advance(run);
-}
-
-void Estimators::settle(const Run& run) {
-  for (Estimator& one : all_) one.settle(run);
+void Estimators::settle(Rest rest) {
+  if (rest == Rest::on_path) return;
+  for (Estimator& one : all_) one.settle(run_);
 }
 
 void Estimators::save(std::vector<double>& memory) const {
-  memory.clear();
-  if (all_.empty()) return;
-  memory.push_back(signature_);
   for (const Estimator& one : all_) one.save(memory);
 }
 
-bool Estimators::load(std::span<const double> memory) {
-  if (all_.empty()) return true;
-  if (memory.empty() || memory.front() != signature_) return false;
-  memory = memory.subspan(1);
+void Estimators::load(std::span<const double> memory) {
   bool good = true;
   for (Estimator& one : all_) good = good && one.load(memory);
-  if (good && memory.empty()) return true;
+  if (good && memory.empty()) return;
   throw Error(ErrorKind::wrong_length, {.item = "estimators of the state"},
               "their memory is damaged", "take the state from a simulation of the same model");
+}
+
+std::vector<Reading> Estimators::readings() const {
+  std::vector<Reading> all;
+  for (const Estimator& estimator : all_) {
+    const EstimatorModel& model = estimator.model();
+    std::vector<Observable> parts;
+    const auto add = [&](const Unknown& unknown, const char* of_it) {
+      const bool vector = unknown.size() == 3;
+      parts.push_back(
+          observable_of(ObservableKind::estimator, model.name, unknown.name + of_it, unknown.unit,
+                        vector ? std::vector<std::size_t>{3} : std::vector<std::size_t>{}));
+      if (!vector) return;
+      for (const char* axis : kAxisNames) {
+        parts.back().components.push_back(fmt::format("{}.{}", parts.back().name, axis));
+      }
+    };
+    for (const Unknown& unknown : model.unknowns) add(unknown, "");
+    for (const Unknown& unknown : model.unknowns) add(unknown, ".std");
+    parts.push_back(observable_of(ObservableKind::estimator, model.name, "status", ""));
+    for (int code = 0; code < kEstimatorStatuses; ++code) {
+      parts.back().words.push_back(
+          {code, estimator_status_name(static_cast<EstimatorStatus>(code))});
+    }
+    all.push_back({std::move(parts), [&estimator](std::span<double> numbers) {
+                     Numbers to(numbers);
+                     VectorX mean = estimator.mean(), deviation = estimator.deviation();
+                     estimator.model().take_exponentials(mean, deviation);
+                     for (const double component : mean) to.put(component);
+                     for (const double own : deviation) to.put(own);
+                     to.put(static_cast<double>(estimator.status()));
+                   }});
+  }
+  return all;
 }
 
 }  // namespace sinew::sim

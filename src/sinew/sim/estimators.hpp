@@ -6,32 +6,40 @@
 #include <vector>
 
 #include "sinew/sim/estimator.hpp"
+#include "sinew/sim/instruments.hpp"
 
 namespace sinew::sim {
 
-/// Updates the estimators during a run. Estimators only observe: the run is the same, bit for bit,
-/// with and without them.
-class Estimators {
- public:
-  /// @param model must outlive them. @param threads of each estimator's robot.
-  Estimators(const Model& model, int threads);
+class EstimatorSet;
+struct Run;
 
+/// Updates the estimators during a run, from its sensors.
+class Estimators : public Instrument {
+ public:
+  /// @param set must outlive them. @param run that they observe.
+  Estimators(const EstimatorSet& set, const Run& run);
+
+  /// @param index in estimators_of().
   const Estimator& at(int index) const { return all_[static_cast<std::size_t>(index)]; }
 
-  /// See Estimator.
-  void begin(const Run& run);
-  void advance(const Run& run);
-  void settle(const Run& run);
-
-  /// Writes the state of all estimators as finite numbers; nothing without estimators.
-  void save(std::vector<double>& memory) const;
-  /// Restores the state. @return whether it belongs to the same estimators; if not, call begin().
-  /// Throws Error(wrong-length) if it belongs to them but is incomplete.
-  bool load(std::span<const double> memory);
+  void begin() override;
+  void advance() override;
+  /// On a path, nothing is estimated: an estimator does not know that loads act partially.
+  void settle(Rest rest) override;
+  void save(std::vector<double>& memory) const override;
+  void load(std::span<const double> memory) override;
+  std::vector<Reading> readings() const override;
 
  private:
-  double signature_;  // tells sets of estimators apart in states
+  const Run& run_;
   std::vector<Estimator> all_;
 };
+
+/// An estimator of a simulation. Throws Error(unknown-name) if it has none.
+/// @param simulation with estimators. @param index in estimators_of().
+template <class Simulation>
+const Estimator& estimator_of(const Simulation& simulation, int index) {
+  return simulation.instruments().template get<Estimators>().at(index);
+}
 
 }  // namespace sinew::sim

@@ -18,26 +18,13 @@
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/instrument_model.hpp"
 #include "sinew/sim/model_parts.hpp"
+#include "sinew/sim/named_index.hpp"
 
 namespace sinew::sim {
 
 namespace {
-
-template <typename List, typename NameOf>
-int find_by_name(const List& list, std::string_view name, const char* what, NameOf name_of) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    if (name_of(list[i]) == name) return static_cast<int>(i);
-    names.push_back(name_of(list[i]));
-  }
-  const std::string near = nearest_word(name, names);
-  const std::string remedy = !near.empty()   ? fmt::format("did you mean '{}'?", near)
-                             : names.empty() ? fmt::format("the robot has no {}", what)
-                                             : fmt::format("there are: {}", fmt::join(names, ", "));
-  throw Error(ErrorKind::unknown_name, {.item = std::string(name)},
-              fmt::format("no {} is called '{}'", what, name), remedy);
-}
 
 std::uint64_t fingerprint_of(const std::vector<NamedHash>& parts) {
   ValueHash hash;
@@ -66,43 +53,35 @@ int Model::body_index(std::string_view name) const {
                 "this link is fixed and without geometry, so it is part of the world and no body",
                 "ask for a link with geometry or inertia, or add an effector where the link is");
   }
-  return find_by_name(data_.bodies, name, "body", [](const auto& b) { return b->name(); });
+  return index_of_name(data_.bodies, name, "body", [](const auto& b) { return b->name(); });
 }
 
 int Model::actuator_index(std::string_view name) const {
-  return find_by_name(data_.actuators, name, "actuator", [](const auto& a) { return a.name; });
+  return index_of_name(data_.actuators, name, "actuator", [](const auto& a) { return a.name; });
 }
 
 int Model::effector_index(std::string_view name) const {
-  return find_by_name(data_.effectors, name, "effector", [](const auto& e) { return e.name; });
+  return index_of_name(data_.effectors, name, "effector", [](const auto& e) { return e.name; });
 }
 
 int Model::contact_index(std::string_view name) const {
-  return find_by_name(data_.contacts, name, "contact", [](const auto& c) { return c.name; });
+  return index_of_name(data_.contacts, name, "contact", [](const auto& c) { return c.name; });
 }
 
 int Model::joint_index(std::string_view name) const {
-  return find_by_name(data_.joints, name, "joint", [](const auto& j) { return j.name; });
+  return index_of_name(data_.joints, name, "joint", [](const auto& j) { return j.name; });
 }
 
 int Model::load_index(std::string_view name) const {
-  return find_by_name(data_.loads, name, "load", [](const auto& l) { return l.name; });
+  return index_of_name(data_.loads, name, "load", [](const auto& l) { return l.name; });
 }
 
 int Model::mass_index(std::string_view name) const {
-  return find_by_name(data_.masses, name, "mass", [](const auto& m) { return m.name; });
+  return index_of_name(data_.masses, name, "mass", [](const auto& m) { return m.name; });
 }
 
 int Model::probe_index(std::string_view name) const {
-  return find_by_name(data_.probes, name, "probe", [](const auto& p) { return p->name(); });
-}
-
-int Model::sensor_index(std::string_view name) const {
-  return find_by_name(data_.sensors, name, "sensor", [](const auto& s) { return s.name; });
-}
-
-int Model::estimator_index(std::string_view name) const {
-  return find_by_name(data_.estimators, name, "estimator", [](const auto& e) { return e.name; });
+  return index_of_name(data_.probes, name, "probe", [](const auto& p) { return p->name(); });
 }
 
 const mechanics::BodyModel& Model::body(int index) const {

@@ -46,8 +46,8 @@ class Model {
   bool is_loose() const { return data_.loose; }
   const std::vector<CouplingModel>& couplings() const { return data_.couplings; }
   PartList<constraint::Probe> probes() const { return PartList(data_.probes); }
-  const std::vector<SensorModel>& sensors() const { return data_.sensors; }
-  const std::vector<EstimatorModel>& estimators() const { return data_.estimators; }
+  /// Sensors and estimators, in the order in which they observe.
+  PartList<InstrumentModel> instruments() const { return PartList(data_.instruments); }
   const mechanics::RowPattern& rows() const { return data_.rows; }
   const std::vector<mechanics::StiffnessPair>& stiffness_pairs() const {
     return data_.stiffness_pairs;
@@ -71,8 +71,6 @@ class Model {
   int load_index(std::string_view name) const;
   int mass_index(std::string_view name) const;
   int probe_index(std::string_view name) const;
-  int sensor_index(std::string_view name) const;
-  int estimator_index(std::string_view name) const;
 
   /// Further names of bodies: links that are part of them, with the index of the body, or kWorld.
   const std::map<std::string, int, std::less<>>& body_names() const { return data_.body_names; }
@@ -81,6 +79,11 @@ class Model {
   const mechanics::BodyModel& body(int index) const;
   const constraint::Constraint& constraint(int index) const;
   const constraint::Probe& probe(int index) const;
+  /// The instrument of a type; null if there is none.
+  template <class T>
+  const T* instrument() const {
+    return data_.instrument<T>();
+  }
   const constraint::Effector& effector(int index) const;
   const constraint::Contact& contact(int index) const;
   /// The constraint of a weld of points; null for other joints.

@@ -118,14 +118,6 @@ int ModelBuilder::add_probe(const ProbeSettings& settings) {
   return sim::add_probe(data_, settings);
 }
 
-int ModelBuilder::add_sensor(const SensorSettings& settings) {
-  return sim::add_sensor(data_, settings);
-}
-
-int ModelBuilder::add_estimator(const EstimatorSettings& settings) {
-  return sim::add_estimator(data_, settings);
-}
-
 std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSettings& settings) {
   check_held_radius(data_);
   hold_bodies(data_, places_);

@@ -27,11 +27,9 @@ struct CableSettings;
 struct ChamberSettings;
 struct ContactSettings;
 struct EffectorSettings;
-struct EstimatorSettings;
 struct ForceSettings;
 struct LoadSettings;
 struct ProbeSettings;
-struct SensorSettings;
 struct SpringLineSettings;
 struct TorqueSettings;
 struct JointSettings;
@@ -88,17 +86,6 @@ class ModelBuilder {
   int add_motor(const MotorSettings& settings);
   /// Throws Error: too-few-points, empty-region, point-outside-mesh, degenerate-orientation.
   int add_probe(const ProbeSettings& settings);
-  /// Call after adding actuators and contacts. Throws Error: as Channel does, out-of-range (a
-  /// period that is not a multiple of the time step, a position beyond the end of its line),
-  /// unknown-name, wrong-actuator-type, missing-key and conflicting-keys (the radius of a drum),
-  /// wrong-length, degenerate-orientation, too-few-points, point-outside-mesh, empty-region,
-  /// zero-volume.
-  int add_sensor(const SensorSettings& settings);
-
-  /// Call after adding sensors. Throws Error: unknown-name (a sensor), out-of-range (a sensor
-  /// without noise, or with a delay of more than 100 steps).
-  int add_estimator(const EstimatorSettings& settings);
-
   /// Plans the factorisation and returns the model; the builder is empty afterwards.
   /// @param settings of the factorisation.
   /// Throws Error(nothing-fixed) if the integrator is quasi-static and neither fixed nodes nor
@@ -106,6 +93,8 @@ class ModelBuilder {
   /// positive, Error(missing-mass) for dynamics without mass.
   std::shared_ptr<const Model> build(const linalg::FactorisationSettings& settings = {});
 
+  /// The parts so far, for functions that add parts of further kinds, such as add_sensor().
+  ModelData& data() { return data_; }
   /// A body that was added, by index.
   const mechanics::BodyModel& added_body(int index) const { return data_.body(index); }
 

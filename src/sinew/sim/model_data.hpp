@@ -16,8 +16,7 @@
 #include "sinew/mechanics/rows.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/base_motion.hpp"
-#include "sinew/sim/estimator_model.hpp"
-#include "sinew/sim/sensor_model.hpp"
+#include "sinew/sim/instrument_model.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/step_settings.hpp"
 
@@ -129,6 +128,14 @@ struct ModelData {
   const constraint::Constraint& constraint(int index) const {
     return *constraints[static_cast<std::size_t>(index)];
   }
+  /// The instrument of a type; null if there is none.
+  template <class T>
+  T* instrument() const {
+    for (const auto& one : instruments) {
+      if (auto* found = dynamic_cast<T*>(one.get())) return found;
+    }
+    return nullptr;
+  }
 
   std::vector<std::unique_ptr<mechanics::BodyModel>> bodies;
   std::map<std::string, int, std::less<>> body_names;  ///< further names of bodies; kWorld: none
@@ -141,8 +148,7 @@ struct ModelData {
   std::vector<AnchorModel> anchors;
   std::vector<CouplingModel> couplings;
   std::vector<std::unique_ptr<constraint::Probe>> probes;
-  std::vector<SensorModel> sensors;
-  std::vector<EstimatorModel> estimators;
+  std::vector<std::unique_ptr<InstrumentModel>> instruments;
   std::vector<BaseMotion> base_motions;
   std::vector<LoadModel> loads;
   std::vector<MassModel> masses;

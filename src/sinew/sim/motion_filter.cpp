@@ -29,7 +29,7 @@ State moved(const State& from, const VectorX& way) {
   for (auto& body : state.bodies) {
     for (double& number : body) number += way[next++];
   }
-  state.sensors.clear();
+  state.instruments.clear();
   return state;
 }
 

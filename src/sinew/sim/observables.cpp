@@ -17,16 +17,6 @@ namespace sinew::sim {
 
 void list_standard_observables(Observables& list);  // standard_observables.cpp
 
-std::size_t Observable::size() const {
-  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
-}
-
-std::string_view Observable::word(double number) const {
-  const auto found = std::ranges::find_if(
-      words, [&](const StatusWord& one) { return static_cast<double>(one.code) == number; });
-  return found == words.end() ? std::string_view() : found->word;
-}
-
 Observables::Observables(Simulation& simulation) : simulation_(&simulation) {
   gathering_ = true;
   list_standard_observables(*this);

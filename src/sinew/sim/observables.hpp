@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sinew/core/error.hpp"
+#include "sinew/sim/observable.hpp"
 #include "sinew/step/drive.hpp"
 
 namespace sinew::sim {
@@ -18,51 +19,6 @@ namespace sinew::sim {
 struct ActuatorModel;
 class Simulation;
 using step::CommandKind;
-
-/// The kind of part to which an observable belongs. The list is sorted by kind, in this order.
-enum class ObservableKind {
-  time,
-  body,           ///< positions and velocities of all nodes, coordinates of an arm
-  actuator,       ///< effort, motion and commands
-  effector,       ///< position or rotation
-  probe,          ///< measured value
-  sensor,         ///< measured and true value
-  contact_point,  ///< all points of a contact, and the pose of its surface
-  contact,        ///< resultant of a contact
-  joint,          ///< force, moment, gap and motion
-  estimator,      ///< unknowns, their standard deviations, and its status
-  controller,     ///< targets and errors
-  energy,         ///< of all bodies; evaluates their elements
-  ledger,         ///< work and losses since the first reading; evaluates the elements, too
-  report,         ///< numerical results of the last step
-  status,         ///< status word of the last step
-  timing,         ///< computing time: differs from run to run
-};
-
-/// A status word and the number that represents it.
-struct StatusWord {
-  int code = 0;
-  std::string_view word;
-};
-
-/// One observable quantity: a scalar, a vector or a table.
-struct Observable {
-  std::string name;                ///< "long_0.tension", "tip.position", "residual"
-  std::string unit;                ///< SI; empty for counts, ratios and words
-  std::vector<std::size_t> shape;  ///< at one time; empty for a scalar
-  ObservableKind kind = ObservableKind::report;
-  std::string owner;     ///< name of the actuator, effector, ...; empty: the whole robot
-  std::string quantity;  ///< general name of the quantity: "effort", "position"
-  /// Names of the components, as in a table: "tip.x", "tip.y", "tip.z"; empty if there are too
-  /// many.
-  std::vector<std::string> components;
-  std::vector<StatusWord> words;  ///< if its numbers represent words
-
-  /// Number of components.
-  std::size_t size() const;
-  /// The word that a number represents; empty if there is none.
-  std::string_view word(double number) const;
-};
 
 /// The observables of one simulation and their values. Observables may share a reading, which is
 /// evaluated at most once per time, and only if one of them is read. Reading allocates nothing.

@@ -29,11 +29,9 @@ Run::Run(std::shared_ptr<const Model> shared_model, int threads)
       actuation(*model),
       surroundings(*model, world.bodies()),
       effort(static_cast<std::size_t>(model->rows().rows()), 0.0),
-      sensors(*model),
-      estimators(*model, threads) {
+      instruments(*this) {
   finish_step();
-  sensors.restart(*this);
-  estimators.begin(*this);
+  instruments.begin();
   keep(before);
 }
 
@@ -130,8 +128,7 @@ void Run::restart() {
   finish_step();
   if (step::WithMemory* one = attached()) one->forget();
   report = {};
-  sensors.restart(*this);
-  estimators.begin(*this);
+  instruments.begin();
 }
 
 std::size_t Run::bytes() const {

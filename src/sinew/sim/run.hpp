@@ -8,11 +8,10 @@
 
 #include "sinew/core/thread_pool.hpp"
 #include "sinew/sim/actuation.hpp"
-#include "sinew/sim/estimators.hpp"
+#include "sinew/sim/instruments.hpp"
 #include "sinew/sim/kept_factors.hpp"
 #include "sinew/sim/measured_correction.hpp"
 #include "sinew/sim/model.hpp"
-#include "sinew/sim/sensors.hpp"
 #include "sinew/sim/stage_clock.hpp"
 #include "sinew/sim/state.hpp"
 #include "sinew/sim/step_report.hpp"
@@ -68,10 +67,10 @@ struct Run {
   void finish_step();
   void restart();
 
-  /// Writes the state, except the memory of the estimators, which a step does not change. Allocates
-  /// nothing if the vectors already have their sizes.
+  /// Writes the state, except the memory of the instruments, which a step does not change.
+  /// Allocates nothing if the vectors already have their sizes.
   void keep(State& state) const;
-  /// Restores what keep() writes; see Simulation::restore().
+  /// Restores what keep() writes, and leaves the instruments as they are.
   void restore(const State& state);
   /// Restores `before` after a failed or interrupted step or search.
   void go_back();
@@ -108,9 +107,8 @@ struct Run {
       false;     ///< whether the present step failed and is kept, see Simulation::step()
   State before;  ///< state before the current substep or search
   StepReport report;
-  Sensors sensors;
-  Estimators estimators;
   StageClock clock;
+  Instruments instruments;
 };
 
 }  // namespace sinew::sim

@@ -89,7 +89,6 @@ void Run::keep(State& state) const {
   world.end_efforts().save(state.end_efforts);
   state.next_step = next_step;
   state.steps = steps;
-  sensors.save(state.sensors);
 }
 
 void Run::restore(const State& state) {
@@ -117,7 +116,6 @@ void Run::restore(const State& state) {
   world.end_efforts().load(state.end_efforts, effort.size(), world.bodies().size());
   next_step = state.next_step;
   steps = state.steps;
-  if (!sensors.load(state.sensors)) sensors.restart(*this);
   step::WithMemory* remembering = attached();
   if (remembering == nullptr) return;
   if (!state.controller.empty() && state.controller.size() == remembering->memory_size()) {

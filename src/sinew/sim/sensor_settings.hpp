@@ -14,7 +14,7 @@
 #include "sinew/mesh/topology.hpp"
 #include "sinew/sim/channel.hpp"
 #include "sinew/sim/probe_settings.hpp"
-#include "sinew/sim/sensor_model.hpp"
+#include "sinew/sim/sensor_set.hpp"
 
 namespace sinew::sim {
 

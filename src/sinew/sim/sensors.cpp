@@ -1,31 +1,22 @@
 #include "sinew/sim/sensors.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <string>
+#include <utility>
 
-#include "sinew/core/named_hash.hpp"
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
 #include "sinew/core/whole.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/run.hpp"
+#include "sinew/sim/sensor_set.hpp"
 #include "sinew/sim/sensor_source.hpp"
 
 namespace sinew::sim {
 
-namespace {
-
-// A hash as an integer that a double represents exactly.
-double signature_of(const std::vector<SensorModel>& sensors) {
-  ValueHash hash;
-  for (const SensorModel& sensor : sensors) {
-    hash.add(sensor.name, sensor.kind, sensor.source->size(), sensor.source->memory_size());
-  }
-  return static_cast<double>(hash.value() >> 12);
-}
-
-}  // namespace
-
-Sensors::Sensors(const Model& model) : signature_(signature_of(model.sensors())) {
-  for (const SensorModel& sensor : model.sensors()) {
+Sensors::Sensors(const SensorSet& set, const Run& run) : run_(run) {
+  for (const SensorModel& sensor : set.sensors) {
     const std::size_t size = sensor.source->size();
     sensors_.push_back({&sensor, Channel(sensor.channel, size),
                         std::vector<double>(sensor.source->memory_size()), 0,
@@ -33,21 +24,21 @@ Sensors::Sensors(const Model& model) : signature_(signature_of(model.sensors()))
   }
 }
 
-void Sensors::sample(const Run& run, Sensor& sensor) {
+void Sensors::sample(Sensor& sensor) {
   if (sensor.model->record) {
-    replay(run, sensor);
+    replay(sensor);
     if (!sensor.channel.received()) return;  // no sample has arrived yet
   } else {
-    sensor.model->source->read(run, sensor.memory, sensor.truth);
+    sensor.model->source->read(run_, sensor.memory, sensor.truth);
   }
-  sensor.channel.offer(run.time(), sensor.truth);
+  sensor.channel.offer(run_.time(), sensor.truth);
 }
 
 // Delivers the samples that have arrived by now.
-void Sensors::replay(const Run& run, Sensor& sensor) {
+void Sensors::replay(Sensor& sensor) {
   const SensorRecord& record = *sensor.model->record;
   for (; sensor.row < record.arrivals.size(); ++sensor.row) {
-    if (record.arrivals[sensor.row] > run.time() + Channel::kSameTime) return;
+    if (record.arrivals[sensor.row] > run_.time() + Channel::kSameTime) return;
     const auto row = static_cast<Eigen::Index>(sensor.row);
     for (std::size_t c = 0; c < sensor.truth.size(); ++c) {
       sensor.truth[c] = record.values(row, static_cast<Eigen::Index>(c));
@@ -56,40 +47,48 @@ void Sensors::replay(const Run& run, Sensor& sensor) {
   }
 }
 
-void Sensors::restart(const Run& run) {
+void Sensors::begin() {
   for (Sensor& sensor : sensors_) {
     sensor.channel.restart();
     sensor.row = 0;
-    sensor.model->source->begin(run, sensor.memory);
-    sample(run, sensor);
+    sensor.model->source->begin(run_, sensor.memory);
+    sample(sensor);
   }
 }
 
-void Sensors::advance(const Run& run) {
+void Sensors::advance() {
   for (Sensor& sensor : sensors_) {
-    sensor.model->source->advance(run, run.model->step().time_step, sensor.memory);
-    sample(run, sensor);
+    sensor.model->source->advance(run_, run_.model->step().time_step, sensor.memory);
+    sample(sensor);
   }
 }
 
-void Sensors::settle(const Run& run) {
+void Sensors::settle(Rest rest) {
+  if (rest == Rest::end_of_path) return;
   for (Sensor& sensor : sensors_) {
-    sensor.model->source->begin(run, sensor.memory);
+    sensor.model->source->begin(run_, sensor.memory);
     if (sensor.model->record) continue;
-    sensor.model->source->read(run, sensor.memory, sensor.truth);
-    sensor.channel.settle(run.time(), sensor.truth);
+    sensor.model->source->read(run_, sensor.memory, sensor.truth);
+    sensor.channel.settle(run_.time(), sensor.truth);
   }
 }
 
-void Sensors::read_true(const Run& run, int index, std::span<double> values) const {
+void Sensors::read_true(int index, std::span<double> values) const {
   const Sensor& sensor = at(index);
-  sensor.model->source->read(run, sensor.memory, values);
+  sensor.model->source->read(run_, sensor.memory, values);
+}
+
+std::vector<double> Sensors::truth(int index) const {
+  std::vector<double> values(at(index).channel.size());
+  read_true(index, values);
+  return values;
+}
+
+void Sensors::feed(int index, double time, std::span<const double> value) {
+  sensors_[static_cast<std::size_t>(index)].channel.receive(time, value);
 }
 
 void Sensors::save(std::vector<double>& memory) const {
-  memory.clear();
-  if (sensors_.empty()) return;
-  memory.push_back(signature_);
   for (const Sensor& sensor : sensors_) {
     memory.push_back(static_cast<double>(sensor.row));
     memory.insert(memory.end(), sensor.memory.begin(), sensor.memory.end());
@@ -97,10 +96,13 @@ void Sensors::save(std::vector<double>& memory) const {
   }
 }
 
-bool Sensors::load(std::span<const double> memory) {
-  if (sensors_.empty()) return true;
-  if (memory.empty() || memory.front() != signature_) return false;
-  memory = memory.subspan(1);
+void Sensors::load(std::span<const double> memory) {
+  if (take(memory)) return;
+  throw Error(ErrorKind::wrong_length, {.item = "sensors of the state"}, "their memory is damaged",
+              "take the state from a simulation of the same model");
+}
+
+bool Sensors::take(std::span<const double> memory) {
   for (Sensor& sensor : sensors_) {
     if (memory.size() < 1 + sensor.memory.size()) return false;
     sensor.row = whole<std::size_t>(memory.front());
@@ -109,6 +111,36 @@ bool Sensors::load(std::span<const double> memory) {
     if (!sensor.channel.load(memory)) return false;
   }
   return memory.empty();
+}
+
+std::vector<Reading> Sensors::readings() const {
+  std::vector<Reading> all;
+  for (const Sensor& sensor : sensors_) {
+    const std::string& name = sensor.model->name;
+    const auto& numbers = sensor.model->source->components();
+    std::vector<Observable> parts;
+    const auto add = [&](const char* quantity) {
+      Observable one = observable_of(ObservableKind::sensor, name, quantity, numbers.front().unit);
+      if (numbers.size() > 1) {
+        one.shape = {numbers.size()};
+        one.components.clear();
+        for (const auto& number : numbers) {
+          one.components.push_back(fmt::format("{}_{}", one.name, number.name));
+        }
+      }
+      parts.push_back(std::move(one));
+    };
+    add("measured");
+    add("true");
+    parts.push_back(observable_of(ObservableKind::sensor, name, "sample_time", "s"));
+    all.push_back({std::move(parts), [this, &sensor](std::span<double> to) {
+                     const std::size_t size = sensor.channel.size();
+                     std::ranges::copy(sensor.channel.value(), to.begin());
+                     sensor.model->source->read(run_, sensor.memory, to.subspan(size, size));
+                     to.back() = sensor.channel.time();
+                   }});
+  }
+  return all;
 }
 
 }  // namespace sinew::sim

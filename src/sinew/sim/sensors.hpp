@@ -7,40 +7,38 @@
 #include <vector>
 
 #include "sinew/sim/channel.hpp"
+#include "sinew/sim/instruments.hpp"
 
 namespace sinew::sim {
 
-class Model;
 struct Run;
 struct SensorModel;
+class SensorSet;
 
-/// Samples the sensors during a run. Sensors only observe: the run is the same, bit for bit, with
-/// and without them.
-class Sensors {
+/// Samples the sensors during a run.
+class Sensors : public Instrument {
  public:
-  /// @param model must outlive them.
-  explicit Sensors(const Model& model);
+  /// @param set must outlive them. @param run whose sensors they are.
+  Sensors(const SensorSet& set, const Run& run);
 
-  bool empty() const { return sensors_.empty(); }
-  /// Starts afresh, at the start of a run.
-  void restart(const Run& run);
-  /// Samples the sensors after a step.
-  void advance(const Run& run);
-  /// Samples the sensors after a search for an equilibrium, as if the robot had rested there for
-  /// long; see Channel::settle().
-  void settle(const Run& run);
-
+  /// The channel of a sensor: its last sample and when it was taken. @param index in sensors_of().
   const Channel& channel(int index) const { return at(index).channel; }
-  Channel& channel(int index) { return sensors_[static_cast<std::size_t>(index)].channel; }
-  /// Reading of a sensor without errors and delay. @param run at its present time. @param index of
-  /// Model::sensors(). @param values (size,), overwritten.
-  void read_true(const Run& run, int index, std::span<double> values) const;
+  /// Writes the present reading of a sensor without errors and delay, without allocation.
+  /// @param index in sensors_of(). @param values (size,), overwritten.
+  void read_true(int index, std::span<double> values) const;
+  /// (size,) the same. @param index in sensors_of().
+  std::vector<double> truth(int index) const;
+  /// Delivers a sample of a real sensor. Until begin(), such samples replace the simulated ones.
+  /// Throws as Channel::receive() does.
+  /// @param index in sensors_of(). @param time s, when the sample was taken. @param value (size,).
+  void feed(int index, double time, std::span<const double> value);
 
-  /// Writes the state of all sensors as finite numbers; nothing without sensors.
-  void save(std::vector<double>& memory) const;
-  /// Restores the state. @return whether it belongs to the same sensors; if not, call restart(),
-  /// which resets all that may have changed.
-  bool load(std::span<const double> memory);
+  void begin() override;
+  void advance() override;
+  void settle(Rest rest) override;
+  void save(std::vector<double>& memory) const override;
+  void load(std::span<const double> memory) override;
+  std::vector<Reading> readings() const override;
 
  private:
   struct Sensor {
@@ -51,11 +49,20 @@ class Sensors {
     std::vector<double> truth;
   };
   const Sensor& at(int index) const { return sensors_[static_cast<std::size_t>(index)]; }
-  static void sample(const Run& run, Sensor& sensor);
-  static void replay(const Run& run, Sensor& sensor);
+  void sample(Sensor& sensor);
+  void replay(Sensor& sensor);
+  bool take(std::span<const double> memory);
 
-  double signature_;  // tells sets of sensors apart in states
+  const Run& run_;
   std::vector<Sensor> sensors_;
 };
+
+/// The sensors of a simulation, const if it is. Throws Error(unknown-name) if it has none.
+/// @param simulation with sensors.
+template <class Simulation>
+requires requires(Simulation& s) { s.instruments().template get<Sensors>(); }
+auto& sensors_of(Simulation& simulation) {
+  return simulation.instruments().template get<Sensors>();
+}
 
 }  // namespace sinew::sim

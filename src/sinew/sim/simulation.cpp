@@ -16,20 +16,6 @@
 
 namespace sinew::sim {
 
-namespace {
-
-// Estimators start afresh if the state belongs to others or is damaged.
-void load_estimators(Run& run, const State& state) {
-  try {
-    if (!run.estimators.load(state.estimators)) run.estimators.begin(run);
-  } catch (const Error&) {
-    run.estimators.begin(run);
-    throw;
-  }
-}
-
-}  // namespace
-
 Simulation::Simulation(std::shared_ptr<const Model> model, int threads)
     : run_(std::make_unique<Run>(std::move(model), threads)),
       stepper_(std::make_unique<Stepper>(*run_)) {}
@@ -50,8 +36,7 @@ const StepReport& Simulation::step(OnFailure on_failure) {
     if (on_failure != OnFailure::keep_going || !failure.is_run_failure()) throw;
     keep_failed_step();
   }
-  run_->sensors.advance(*run_);
-  run_->estimators.advance(*run_);
+  run_->instruments.advance();
   return run_->report;
 }
 
@@ -110,18 +95,16 @@ const EnergyLedger& Simulation::ledger() const { return run_->ledger.sums(); }
 
 StaticReport Simulation::solve_static(const StaticSettings& settings) {
   StaticReport report = StaticSolver(*run_, settings).run();
-  run_->sensors.settle(*run_);
-  run_->estimators.settle(*run_);
+  run_->instruments.settle(Rest::found);
   return report;
 }
 
-// On the path, loads and commands act partially, which an estimator does not know.
 Path Simulation::follow_path(const PathSettings& settings, const std::function<void()>& visit) {
   Path path = PathFollower(*run_, settings).follow([&] {
-    run_->sensors.settle(*run_);
+    run_->instruments.settle(Rest::on_path);
     if (visit) visit();
   });
-  run_->estimators.settle(*run_);
+  run_->instruments.settle(Rest::end_of_path);
   return path;
 }
 
@@ -167,23 +150,8 @@ std::vector<double> Simulation::probe_values(int index) const {
   return values;
 }
 
-const Channel& Simulation::sensor(int index) const { return run_->sensors.channel(index); }
-
-std::vector<double> Simulation::sensor_truth(int index) const {
-  std::vector<double> values(sensor(index).size());
-  read_sensor_truth(index, values);
-  return values;
-}
-
-void Simulation::read_sensor_truth(int index, std::span<double> values) const {
-  run_->sensors.read_true(*run_, index, values);
-}
-
-void Simulation::feed_sensor(int index, double time, std::span<const double> value) {
-  run_->sensors.channel(index).receive(time, value);
-}
-
-const Estimator& Simulation::estimator(int index) const { return run_->estimators.at(index); }
+Instruments& Simulation::instruments() { return run_->instruments; }
+const Instruments& Simulation::instruments() const { return run_->instruments; }
 
 ContactReader Simulation::contacts() const { return ContactReader(*run_); }
 
@@ -258,14 +226,14 @@ std::span<const step::ActuatorBlock> Simulation::actuator_blocks() const {
 State Simulation::state() const {
   State state;
   run_->keep(state);
-  run_->estimators.save(state.estimators);
+  run_->instruments.save(state.instruments);
   return state;
 }
 
 void Simulation::restore(const State& state) {
   run_->restore(state);
-  load_estimators(*run_, state);
   run_->world.contacts().forget_friction();
+  run_->instruments.load(state.instruments);
 }
 Inputs Simulation::inputs() const { return run_->inputs(); }
 void Simulation::set_inputs(const Inputs& inputs) { run_->set_inputs(inputs); }

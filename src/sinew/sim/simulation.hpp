@@ -31,13 +31,12 @@ class WithMemory;
 namespace sinew::sim {
 
 struct ActuatorState;
-class Channel;
 struct Command;
 class Commander;
 class ContactReader;
-class Estimator;
 struct EnergyLedger;
 struct Inputs;
+class Instruments;
 class Model;
 struct Run;
 class Signal;
@@ -151,24 +150,10 @@ class Simulation {
   /// (components,) the present values of a probe, m and rad. @param index of Model::probes().
   std::vector<double> probe_values(int index) const;
 
-  /// The channel of a sensor: its last sample and when it was taken. @param index of
-  /// Model::sensors().
-  const Channel& sensor(int index) const;
-  /// (size,) the present reading of a sensor without errors and delay. @param index of
-  /// Model::sensors().
-  std::vector<double> sensor_truth(int index) const;
-  /// Writes the same into `values`, without allocation. @param index of Model::sensors().
-  /// @param values (size,), overwritten.
-  void read_sensor_truth(int index, std::span<double> values) const;
-  /// Delivers a sample of a real sensor. Until reset(), such samples replace the simulated ones.
-  /// Throws as Channel::receive() does.
-  /// @param index of Model::sensors(). @param time s, when the sample was taken.
-  /// @param value (size,).
-  void feed_sensor(int index, double time, std::span<const double> value);
-
-  /// An estimator, which is updated from the sensors after each step and each search for an
-  /// equilibrium. @param index of Model::estimators().
-  const Estimator& estimator(int index) const;
+  /// Sensors and estimators, which observe after each step and each search for an equilibrium: see
+  /// sensors_of() and estimator_of().
+  Instruments& instruments();
+  const Instruments& instruments() const;
 
   /// Forces, gaps and states of the contacts. The reader is valid as long as the simulation.
   ContactReader contacts() const;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -16,39 +17,17 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/estimator.hpp"
-#include "sinew/sim/estimator_model.hpp"
+#include "sinew/sim/instruments.hpp"
 #include "sinew/sim/joint_load.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/row_efforts.hpp"
-#include "sinew/sim/sensor_source.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
 
 namespace sinew::sim {
 
 namespace {
-
-// Writes numbers in the order of the observables that share a reading.
-class Numbers {
- public:
-  explicit Numbers(std::span<double> numbers) : next_(numbers.begin()) {}
-  void put(double number) { *next_++ = number; }
-  void put(const Vector3& vector) { next_ = std::copy_n(vector.data(), 3, next_); }
-
- private:
-  std::span<double>::iterator next_;
-};
-
-// An observable named after its owner and its quantity.
-Observable of(ObservableKind kind, const std::string& owner, const std::string& quantity,
-              const char* unit, std::vector<std::size_t> shape = {}) {
-  Observable one{
-      fmt::format("{}.{}", owner, quantity), unit, std::move(shape), kind, owner, quantity, {}, {}};
-  if (one.shape.empty()) one.components = {one.name};
-  return one;
-}
 
 // An observable of the whole robot.
 Observable number(ObservableKind kind, const char* name, const char* unit = "") {
@@ -59,7 +38,7 @@ Observable number(ObservableKind kind, const char* name, const char* unit = "") 
 void add_pose(Observables& list, const std::string& name, const mechanics::HasPose& body) {
   std::vector<Observable> parts;
   const auto add = [&](const char* quantity, const char* unit, std::string_view axes) {
-    parts.push_back(of(ObservableKind::body, name, quantity, unit, {axes.size()}));
+    parts.push_back(observable_of(ObservableKind::body, name, quantity, unit, {axes.size()}));
     for (const char axis : axes) {
       parts.back().components.push_back(fmt::format("{}.{}_{}", name, quantity, axis));
     }
@@ -86,10 +65,11 @@ void add_bodies(Observables& list) {
     const std::vector<std::size_t> shape = {static_cast<std::size_t>(body.positions().rows()), 3};
     const auto add = [&](const char* quantity, const char* unit, auto numbers,
                          const std::vector<std::size_t>& extent) {
-      list.add_view({of(ObservableKind::body, name, quantity, unit, extent)}, [&body, numbers] {
-        const auto& array = numbers(body);
-        return std::span<const double>(array.data(), static_cast<std::size_t>(array.size()));
-      });
+      list.add_view(
+          {observable_of(ObservableKind::body, name, quantity, unit, extent)}, [&body, numbers] {
+            const auto& array = numbers(body);
+            return std::span<const double>(array.data(), static_cast<std::size_t>(array.size()));
+          });
     };
     add(
         "positions", "m", [](const mechanics::Body& b) -> const Points& { return b.positions(); },
@@ -122,8 +102,8 @@ void add_actuators(Observables& list) {
     const ActuatorModel& actuator = actuators[i];
     std::vector<Observable> parts;
     const auto add = [&](const QuantityName& quantity, const char* suffix, const char* role) {
-      parts.push_back(of(ObservableKind::actuator, actuator.name,
-                         fmt::format("{}{}", quantity.name, suffix), quantity.unit));
+      parts.push_back(observable_of(ObservableKind::actuator, actuator.name,
+                                    fmt::format("{}{}", quantity.name, suffix), quantity.unit));
       parts.back().quantity = fmt::format("{}{}", role, suffix);
     };
     const auto role = [](CommandKind kind) {
@@ -153,8 +133,8 @@ void add_effectors(Observables& list) {
     const std::string& name = model.effectors()[i].name;
     const constraint::Effector& effector = model.effector(index);
     const bool turns = effector.kind() == constraint::EffectorKind::orientation;
-    Observable one =
-        of(ObservableKind::effector, name, turns ? "rotation" : "position", effector.unit(), {3});
+    Observable one = observable_of(ObservableKind::effector, name, turns ? "rotation" : "position",
+                                   effector.unit(), {3});
     one.quantity = "position";
     for (const char* axis : kAxisNames) {
       one.components.push_back(fmt::format("{}.{}{}", name, turns ? "r" : "", axis));
@@ -173,8 +153,8 @@ void add_probes(Observables& list) {
     const std::size_t first = line ? 1 : numbers.size();
     const auto part = [&](const char* quantity, std::vector<std::size_t> shape, std::size_t from,
                           std::size_t to) {
-      Observable one =
-          of(ObservableKind::probe, probe.name(), quantity, numbers[from].unit, std::move(shape));
+      Observable one = observable_of(ObservableKind::probe, probe.name(), quantity,
+                                     numbers[from].unit, std::move(shape));
       one.components.clear();
       for (std::size_t k = from; k < to; ++k) {
         const std::string& own = numbers[k].name;
@@ -190,38 +170,6 @@ void add_probes(Observables& list) {
     if (line) parts.push_back(part("positions", {probe.mark_count(), 3}, 1, numbers.size()));
     list.add(std::move(parts), [&simulation, &probe](std::span<double> to) {
       probe.measure(simulation.configuration(), to);
-    });
-  }
-}
-
-void add_sensors(Observables& list) {
-  const Simulation& simulation = list.simulation();
-  const Model& model = simulation.model();
-  for (std::size_t i = 0; i < model.sensors().size(); ++i) {
-    const SensorModel& sensor = model.sensors()[i];
-    const auto& numbers = sensor.source->components();
-    std::vector<Observable> parts;
-    const auto add = [&](const char* quantity) {
-      Observable one = of(ObservableKind::sensor, sensor.name, quantity, numbers.front().unit);
-      if (numbers.size() > 1) {
-        one.shape = {numbers.size()};
-        one.components.clear();
-        for (const auto& number : numbers) {
-          one.components.push_back(fmt::format("{}_{}", one.name, number.name));
-        }
-      }
-      parts.push_back(std::move(one));
-    };
-    add("measured");
-    add("true");
-    parts.push_back(of(ObservableKind::sensor, sensor.name, "sample_time", "s"));
-    list.add(std::move(parts), [&simulation, i](std::span<double> all) {
-      const auto index = static_cast<int>(i);
-      const Channel& channel = simulation.sensor(index);
-      const std::size_t size = channel.size();
-      std::ranges::copy(channel.value(), all.begin());
-      simulation.read_sensor_truth(index, all.subspan(size, size));
-      all.back() = channel.time();
     });
   }
 }
@@ -270,11 +218,12 @@ void add_contacts(Observables& list) {
     std::vector<Observable> parts;
     const auto add_point = [&](const char* quantity, const char* unit,
                                std::vector<std::size_t> shape) {
-      parts.push_back(of(ObservableKind::contact_point, name, quantity, unit, std::move(shape)));
+      parts.push_back(
+          observable_of(ObservableKind::contact_point, name, quantity, unit, std::move(shape)));
       parts.back().name = fmt::format("{}.points.{}", name, quantity);
     };
     const auto add_sum = [&](const char* quantity, const char* unit) {
-      parts.push_back(of(ObservableKind::contact, name, quantity, unit));
+      parts.push_back(observable_of(ObservableKind::contact, name, quantity, unit));
     };
     add_point("pose", "1, m", {3, 4});
     parts.back().name = name + ".pose";
@@ -313,17 +262,18 @@ void add_joints(Observables& list) {
     const std::string& name = joint.name;
     std::vector<Observable> parts;
     const auto add_vector = [&](const char* quantity, const char* unit) {
-      parts.push_back(of(ObservableKind::joint, name, quantity, unit, {3}));
+      parts.push_back(observable_of(ObservableKind::joint, name, quantity, unit, {3}));
       for (const char* axis : kAxisNames) {
         parts.back().components.push_back(fmt::format("{}.{}_{}", name, quantity, axis));
       }
     };
     add_vector("force", "N");
     add_vector("moment", "N m");
-    parts.push_back(of(ObservableKind::joint, name, "gap", "m"));
-    if (joint.motions[0] >= 0) parts.push_back(of(ObservableKind::joint, name, "angle", "rad"));
+    parts.push_back(observable_of(ObservableKind::joint, name, "gap", "m"));
+    if (joint.motions[0] >= 0)
+      parts.push_back(observable_of(ObservableKind::joint, name, "angle", "rad"));
     if (joint.motions[1] >= 0)
-      parts.push_back(of(ObservableKind::joint, name, "displacement", "m"));
+      parts.push_back(observable_of(ObservableKind::joint, name, "displacement", "m"));
     list.add(std::move(parts), [&simulation, &joint, j](std::span<double> all) {
       const auto index = static_cast<int>(j);
       const JointLoad load = joint_load(simulation, index);
@@ -338,38 +288,11 @@ void add_joints(Observables& list) {
   }
 }
 
-void add_estimators(Observables& list) {
-  const Simulation& simulation = list.simulation();
-  const auto& estimators = simulation.model().estimators();
-  for (std::size_t i = 0; i < estimators.size(); ++i) {
-    const EstimatorModel& estimator = estimators[i];
-    std::vector<Observable> parts;
-    const auto add = [&](const Unknown& unknown, const char* of_it) {
-      const bool vector = unknown.size() == 3;
-      parts.push_back(of(ObservableKind::estimator, estimator.name, unknown.name + of_it,
-                         unknown.unit,
-                         vector ? std::vector<std::size_t>{3} : std::vector<std::size_t>{}));
-      if (!vector) return;
-      for (const char* axis : kAxisNames) {
-        parts.back().components.push_back(fmt::format("{}.{}", parts.back().name, axis));
-      }
-    };
-    for (const Unknown& unknown : estimator.unknowns) add(unknown, "");
-    for (const Unknown& unknown : estimator.unknowns) add(unknown, ".std");
-    parts.push_back(of(ObservableKind::estimator, estimator.name, "status", ""));
-    for (int code = 0; code < kEstimatorStatuses; ++code) {
-      parts.back().words.push_back(
-          {code, estimator_status_name(static_cast<EstimatorStatus>(code))});
+void add_instruments(Observables& list) {
+  for (const auto& instrument : list.simulation().instruments().all()) {
+    for (Reading& reading : instrument->readings()) {
+      list.add(std::move(reading.parts), std::move(reading.fill));
     }
-    list.add(std::move(parts), [&simulation, i](std::span<double> all) {
-      const Estimator& one = simulation.estimator(static_cast<int>(i));
-      Numbers to(all);
-      VectorX mean = one.mean(), deviation = one.deviation();
-      one.model().take_exponentials(mean, deviation);
-      for (const double component : mean) to.put(component);
-      for (const double own : deviation) to.put(own);
-      to.put(static_cast<double>(one.status()));
-    });
   }
 }
 
@@ -472,9 +395,9 @@ void add_report(Observables& list) {
 
 void add_timing(Observables& list) {
   const Simulation& simulation = list.simulation();
-  std::vector<Observable> parts = {of(ObservableKind::timing, "time", "step", "s")};
+  std::vector<Observable> parts = {observable_of(ObservableKind::timing, "time", "step", "s")};
   for (const char* stage : kStageNames) {
-    parts.push_back(of(ObservableKind::timing, "time", stage, "s"));
+    parts.push_back(observable_of(ObservableKind::timing, "time", stage, "s"));
   }
   list.add(std::move(parts), [&simulation](std::span<double> all) {
     const StageTimes& times = simulation.report().times;
@@ -494,10 +417,9 @@ void list_standard_observables(Observables& list) {
   add_actuators(list);
   add_effectors(list);
   add_probes(list);
-  add_sensors(list);
   add_contacts(list);
   add_joints(list);
-  add_estimators(list);
+  add_instruments(list);
   add_energies(list);
   add_report(list);
   add_timing(list);

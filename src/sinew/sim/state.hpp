@@ -49,8 +49,9 @@ struct State {
   std::vector<double> points;      ///< of contacts between bodies, see TouchingSurfaces
   std::vector<double> joints;      ///< (motions of joints,) rad or m, see JointRows
   std::vector<double> controller;  ///< memory of the attached controller; empty without one
-  std::vector<double> sensors;     ///< memory of the sensors, see Sensors; empty without
-  std::vector<double> estimators;  ///< memory of the estimators, see Estimators; empty without
+  /// Memory of each instrument, see Instruments::save(); empty without any, and in states between
+  /// which a step goes back and forth.
+  std::vector<std::vector<double>> instruments;
   /// (bodies,) see Bodies::afresh(); empty if all start afresh, as `last_step` tells, or none.
   std::vector<double> afresh;
   std::vector<double> correction;    ///< see MeasuredCorrection; empty: none
@@ -97,8 +98,7 @@ struct State {
     visitor("residual", state.residual);
     visitor("last step", state.last_step);
     visitor("next step", state.next_step);
-    visitor("sensors", state.sensors);
-    visitor("estimators", state.estimators);
+    for (auto& memory : state.instruments) visitor("instrument", memory);
     visitor("failure", state.failed);
     visitor("afresh", state.afresh);
     visitor("correction", state.correction);

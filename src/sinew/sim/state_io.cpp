@@ -29,11 +29,9 @@ constexpr std::string_view kMagic = "SINEWST\n";
 constexpr std::size_t kWord = 8;
 
 // What older versions lack, and the first version with it.
-constexpr std::array<std::pair<std::string_view, std::uint32_t>, 15> kIntroduced = {
+constexpr std::array<std::pair<std::string_view, std::uint32_t>, 13> kIntroduced = {
     {{"joints", 7},
      {"points", 8},
-     {"sensors", 9},
-     {"estimators", 10},
      {"outside power", 11},
      {"damping power", 11},
      {"energy through", 11},
@@ -51,6 +49,10 @@ bool lacks(std::uint32_t version, std::string_view part) {
     return introduced.first == part && version < introduced.second;
   });
 }
+
+// Older versions count no instruments: they have one list of the sensors, and one of the
+// estimators, which are empty without any.
+constexpr std::uint32_t kSensors = 9, kEstimators = 10, kInstruments = 16;
 
 constexpr std::size_t kPreamble = 2 * kWord;  // magic and version
 
@@ -179,9 +181,15 @@ SavedState read(std::string_view bytes, const std::string& name) {
   State& state = saved.state;
   state.steps = saved.header.steps;
   state.bodies.resize(reader.count());
+  const std::uint32_t from = saved.header.version;
+  state.instruments.resize(from >= kInstruments  ? reader.count()
+                           : from >= kEstimators ? 2
+                           : from >= kSensors    ? 1
+                                                 : 0);
   State::visit(state, [&](std::string_view part, auto& numbers) {
     if (!lacks(saved.header.version, part)) reader.number(numbers);
   });
+  std::erase_if(state.instruments, [](const auto& memory) { return memory.empty(); });
   if (!reader.done()) corrupt(name, "something follows the last number");
   saved.header.count = state.size();
   return saved;
@@ -206,6 +214,7 @@ std::string format_state(const State& state, const Model& model) {
     writer.text(part.name);
   }
   writer.word(state.bodies.size());
+  writer.word(state.instruments.size());
   State::visit(state, [&](std::string_view, const auto& numbers) { writer.number(numbers); });
   return writer.finish();
 }

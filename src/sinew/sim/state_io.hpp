@@ -26,7 +26,7 @@ struct State;
 /// A change of the layout, of what the fingerprint hashes or of what State::visit() visits requires
 /// a new kStateVersion. States of all versions from kOldestStateVersion on can be read; sample
 /// files are kept in python/tests/states.
-inline constexpr std::uint32_t kStateVersion = 15, kOldestStateVersion = 6;
+inline constexpr std::uint32_t kStateVersion = 16, kOldestStateVersion = 6;
 
 /// Metadata of a saved state.
 struct StateHeader {

@@ -1,0 +1,30 @@
+/// @file
+/// What observes a robot: sensors and estimators, as immutable parts of a model.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+namespace sinew::sim {
+
+class Instrument;
+struct Run;
+
+/// The immutable part of an Instrument. A model holds its instruments in the order in which they
+/// read each other: each may read those before it. They are not part of Model::parts(), since the
+/// motion does not depend on them.
+class InstrumentModel {
+ public:
+  InstrumentModel() = default;
+  virtual ~InstrumentModel() = default;
+  InstrumentModel(const InstrumentModel&) = delete;
+  InstrumentModel& operator=(const InstrumentModel&) = delete;
+
+  /// Hash of all that decides what the instrument's memory means; states identify it by that.
+  virtual std::uint64_t hash() const = 0;
+  /// The instrument of one run, before Instrument::begin().
+  /// @param run that it observes, which outlives it and may still be incomplete.
+  virtual std::unique_ptr<Instrument> start(const Run& run) const = 0;
+};
+
+}  // namespace sinew::sim

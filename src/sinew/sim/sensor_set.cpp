@@ -1,0 +1,44 @@
+#include "sinew/sim/sensor_set.hpp"
+
+#include "sinew/core/named_hash.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/named_index.hpp"
+#include "sinew/sim/sensor_source.hpp"
+#include "sinew/sim/sensors.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+const std::vector<SensorModel>& list_of(const SensorSet* set) {
+  static const std::vector<SensorModel> kNone;
+  return set != nullptr ? set->sensors : kNone;
+}
+
+}  // namespace
+
+std::uint64_t SensorSet::hash() const {
+  ValueHash hash;
+  for (const SensorModel& sensor : sensors) {
+    hash.add(sensor.name, sensor.kind, sensor.source->size(), sensor.source->memory_size());
+  }
+  return hash.value();
+}
+
+std::unique_ptr<Instrument> SensorSet::start(const Run& run) const {
+  return std::make_unique<Sensors>(*this, run);
+}
+
+const std::vector<SensorModel>& sensors_of(const Model& model) {
+  return list_of(model.instrument<const SensorSet>());
+}
+
+const std::vector<SensorModel>& sensors_of(const ModelData& data) {
+  return list_of(data.instrument<const SensorSet>());
+}
+
+int sensor_index(const Model& model, std::string_view name) {
+  return index_of_name(sensors_of(model), name, "sensor", [](const auto& s) { return s.name; });
+}
+
+}  // namespace sinew::sim
