@@ -38,7 +38,7 @@ function(sinew_tests name)
   cmake_parse_arguments(arg "" "" "LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   if(NOT sources)
-    return()
+    message(FATAL_ERROR "tests/${name} has no tests")
   endif()
   add_executable(test_${name} ${sources})
   target_link_libraries(test_${name} PRIVATE sinew_options sinew_${name} ${arg_LIBRARIES}

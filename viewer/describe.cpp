@@ -328,12 +328,15 @@ Json materials_json(const scene::Robot& robot, const mechanics::BodyModel& model
 
 Json body_json(const scene::Robot& robot, const mechanics::BodyModel& model,
                const DisplaySurface& surface) {
-  const mesh::Mesh& mesh = model.mesh();
+  std::size_t elements = 0;
+  if (model.has_mesh()) {
+    elements = model.mesh().tetrahedra.size() + model.mesh().hexahedra.size();
+  }
   return {{"name", model.name()},
           {"vertices", surface.nodes.size()},
           {"triangles", surface.triangles.size() / 3},
-          {"nodes", mesh.nodes.rows()},
-          {"elements", mesh.tetrahedra.size() + mesh.hexahedra.size()},
+          {"nodes", surface.node_count},
+          {"elements", elements},
           {"materials", materials_json(robot, model)}};
 }
 
@@ -353,6 +356,7 @@ Json bounds_json(const sim::Model& model) {
   Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
   Vector3 high = -low;
   for (const auto& body : model.bodies()) {
+    if (!body.has_mesh()) continue;
     const Points& nodes = body.mesh().nodes;
     low = low.cwiseMin(nodes.colwise().minCoeff().transpose());
     high = high.cwiseMax(nodes.colwise().maxCoeff().transpose());
@@ -410,9 +414,11 @@ bool is_signal(const sim::Observable& observable) {
 }
 
 DisplaySurface display_surface(const mechanics::BodyModel& body) {
-  const mesh::Mesh& mesh = body.mesh();
-  DisplaySurface result{mesh::outer_surface(mesh)};
+  DisplaySurface result;
   result.body = body.name();
+  if (!body.has_mesh()) return result;
+  const mesh::Mesh& mesh = body.mesh();
+  static_cast<mesh::OuterSurface&>(result) = mesh::outer_surface(mesh);
   result.node_count = mesh.node_count();
   result.element_count = fem::ElementList(mesh).count();
   for (const NodeId node : result.nodes) {

@@ -121,7 +121,11 @@ void add_body(ordered_json& json, std::string& text, const mechanics::BodyModel&
     return add_rigid(json, text, body, *shape);
   }
   const auto* material = mechanics::as<const fem::HasElements>(body);
-  if (material == nullptr) return;
+  if (material == nullptr) {
+    json["bodies"].push_back({{"name", body.name()}});
+    text += fmt::format("  body {}\n", body.name());
+    return;
+  }
   const fem::FemModel& model = material->elements();
   ordered_json elements = ordered_json::object();
   for (const auto& [element, count] : fem::count_elements(model)) {

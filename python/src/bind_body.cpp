@@ -149,8 +149,8 @@ Array jacobian(const Body& self) {
   const Session::Use use(*self.session);
   const auto& directions = self.session->simulation().world().rows().direction;
   const auto& pattern = self.session->model().rows();
-  const fem::HasElements& own = model(self);
-  const auto nodes = own.elements().mesh().nodes.rows();
+  const auto nodes = elements(self).mesh().nodes.rows();
+  const auto& own = *mechanics::as<const mechanics::MovesByNodes>(body(self).model());
   Array result({static_cast<Eigen::Index>(pattern.rows()), nodes, Eigen::Index{3}});
   auto h = result.mutable_unchecked<3>();
   std::fill_n(result.mutable_data(), result.size(), 0.0);

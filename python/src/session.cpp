@@ -9,7 +9,6 @@
 #include <pybind11/pybind11.h>
 
 #include "sinew/core/usual_range.hpp"
-#include "sinew/fem/has_material.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
@@ -227,7 +226,7 @@ void Session::reset() {
   for (int i = 0; i < simulation_.bodies(); ++i) {
     auto* body = mechanics::as<mechanics::TakesForces>(simulation_.body(i));
     if (body != nullptr) body->external_forces().setZero();
-    auto* made = mechanics::as<fem::HasMaterial>(simulation_.body(i));
+    auto* made = mechanics::as<mechanics::ScalesStiffness>(simulation_.body(i));
     if (made != nullptr) made->set_stiffness_factor(1.0);
   }
   simulation_.reset();

@@ -8,6 +8,7 @@
 
 #include "sinew/constraint/configuration.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
@@ -183,7 +184,7 @@ TEST(Cable, StraightCableHasNoWrapAndARightAngleHasOne) {
   body.mesh = mesh;
   body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   sim::CableSettings cable;
   cable.name = "corner";
   cable.points.resize(3, 3);
@@ -204,7 +205,7 @@ ErrorKind kind_of(const sim::CableSettings& cable) {
   body.mesh = mesh;
   body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   try {
     builder.add_cable(cable);
   } catch (const Error& error) {

@@ -58,7 +58,7 @@ class ChamberTest : public ::testing::TestWithParam<Kind> {
   }
   void move(const mechanics::MaterialPoint& point, int axis, double by) {
     sim::State state = simulation_.state();
-    const auto* model = mechanics::as<const fem::HasElements>(simulation_.model().body(0));
+    const auto* model = mechanics::as<const mechanics::MovesByNodes>(simulation_.model().body(0));
     const NodeId node = model->attachment(point.number).nodes.front();
     state.bodies[0][static_cast<std::size_t>(3 * node + axis)] += by;
     simulation_.restore(state);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
@@ -30,7 +31,7 @@ class Effectors : public ::testing::Test {
     body.mesh = mesh;
     body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
     body.elements.fixed_nodes = mesh->node_sets.at("x_min");
-    builder_.add_fem_body(std::move(body));
+    builder_.add_body<fem::FemBodyModel>(std::move(body));
     settings_.name = "e";
     settings_.points.resize(3, 3);
     settings_.points << 0.06, 0.02, 0.03, 0.09, 0.03, 0.02, 0.07, 0.08, 0.05;

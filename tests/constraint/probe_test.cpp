@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
@@ -174,7 +175,7 @@ TEST(RoundProbes, HaveOneDiameterInEveryDirection) {
   body.mesh = mesh;
   body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
   body.elements.fixed_nodes = {0, 1, 2};
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   std::vector<NodeId> all(static_cast<std::size_t>(mesh->nodes.rows()));
   std::iota(all.begin(), all.end(), 0);
   using Way = ExtentProbe::Way;

@@ -8,6 +8,7 @@
 #include "sinew/constraint/shape_contact.hpp"
 #include "sinew/core/rotation.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/rigid/rigid_body_model.hpp"
 #include "sinew/rigid/rigid_settings.hpp"
 #include "sinew/rigid/shape.hpp"
 #include "sinew/sim/contact_settings.hpp"
@@ -43,7 +44,7 @@ std::shared_ptr<const sim::Model> make(const Pair& pair) {
     body.shape = first ? pair.first : pair.second;
     body.density = 1000.0;
     if (first) body.position = Vector3(0.003, -0.002, pair.height);
-    builder.add_rigid_body(body);
+    builder.add_body<rigid::RigidBodyModel>(body);
   }
   sim::ContactSettings contact;
   contact.name = "touch";

@@ -59,7 +59,7 @@ struct Shown {
     settings.elements.regions = {region};
     settings.elements.fixed_nodes = {0};
     model = std::make_unique<FemBodyModel>(settings);
-    model->finish(0, {}, {}, {});
+    model->finish(0, {}, {});
     owned = model->create(pool, false, 0);
   }
   const HasMaterial& material() { return *mechanics::as<const HasMaterial>(*owned); }

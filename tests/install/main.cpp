@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/sinew.hpp"
 
 namespace {
@@ -59,7 +60,7 @@ void bends_and_steers_a_beam() {
   body.elements.regions = {{.constants = {.young_modulus = 1e5, .poisson_ratio = 0.4}}};
   body.elements.fixed_nodes =
       mesh::select_nodes(*beam, mesh::NamedRegion{.name = "z_min"}, "the beam's foot");
-  builder.add_fem_body(body);
+  builder.add_body<fem::FemBodyModel>(body);
   sim::CableSettings cable;
   cable.name = "cable";
   cable.points.resize(3, 3);

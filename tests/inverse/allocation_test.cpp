@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/pcc/arm_body_model.hpp"
 #include "sinew/pcc/published.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/cable_settings.hpp"
@@ -90,10 +91,8 @@ TEST_P(SteadyStep, OfContacts) {
   sinew::testing::BlockOptions options{.angle = 0.6, .height = 1e-4};
   for (const sim::Method method : {sim::Method::one_linearisation, sim::Method::newton}) {
     options.step.method = method;
-    linalg::FactorisationSettings factorisation;
-    factorisation.threads = GetParam();
-    sim::Simulation simulation(sinew::testing::block_on_plane(options).build(factorisation),
-                               GetParam());
+    options.factorisation.threads = GetParam();
+    sim::Simulation simulation(sinew::testing::block_on_plane(options).build(), GetParam());
     const auto land = [&] {  // some points stick, others slide
       for (int i = 0; i < 103; ++i) simulation.step();
     };
@@ -114,7 +113,7 @@ TEST_P(SteadyStep, OfConstantCurvatureArms) {
     step.integrator = mechanics::Integrator::generalized_alpha;
     step.method = sim::Method::newton;
     sim::ModelBuilder builder(step);
-    builder.add_arm(pcc::published_arm(pcc::MassCentre::distributed));
+    builder.add_body<pcc::ArmBodyModel>(pcc::published_arm(pcc::MassCentre::distributed));
     for (int segment = 1; segment < 4; ++segment) {
       sim::TorqueSettings torque;
       torque.name = "torque_" + std::to_string(segment);

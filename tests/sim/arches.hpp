@@ -83,16 +83,16 @@ inline std::shared_ptr<const sim::Model> arch(const ArchOptions& options) {
   int middle = 0;
   if (options.cut) {
     const double seam = 0.015;
-    const int left = builder.add_fem_body(arch_part("left", -kHalfSpan, -seam));
-    middle = builder.add_fem_body(arch_part("middle", -seam, seam));
-    const int right = builder.add_fem_body(arch_part("right", seam, kHalfSpan));
+    const int left = builder.add_body<fem::FemBodyModel>(arch_part("left", -kHalfSpan, -seam));
+    middle = builder.add_body<fem::FemBodyModel>(arch_part("middle", -seam, seam));
+    const int right = builder.add_body<fem::FemBodyModel>(arch_part("right", seam, kHalfSpan));
     const auto& seams = builder.added_body(middle).mesh().node_sets;
     builder.add_weld(
         {.name = "first", .first = middle, .second = left, .nodes = seams.at("x_min")});
     builder.add_weld(
         {.name = "second", .first = middle, .second = right, .nodes = seams.at("x_max")});
   } else {
-    builder.add_fem_body(arch_part("arch", -kHalfSpan, kHalfSpan, options.sways));
+    builder.add_body<fem::FemBodyModel>(arch_part("arch", -kHalfSpan, kHalfSpan, options.sways));
   }
   const Vector3 crown(0.0, 0.002, 0.009);
   if (options.by_load) {

@@ -56,7 +56,7 @@ const VectorX& coordinates(const Simulation& simulation) {
 /// The fluidic arm with torques on its last three segments.
 std::shared_ptr<const Model> driven(const StepSettings& step, MassCentre centre) {
   ModelBuilder builder(step);
-  builder.add_arm(fluidic(centre));
+  builder.add_body<pcc::ArmBodyModel>(fluidic(centre));
   builder.add_torque(torque(1, 0.05));
   builder.add_torque(torque(2, -0.04));
   builder.add_torque(torque(3, 0.1));
@@ -90,7 +90,7 @@ TEST(ArmBody, MovesAsTheArmByItself) {
 std::shared_ptr<const Model> commanded(const StepSettings& step, double angle, double far,
                                        double friction) {
   ModelBuilder builder(step);
-  builder.add_arm(fluidic(MassCentre::arc));
+  builder.add_body<pcc::ArmBodyModel>(fluidic(MassCentre::arc));
   for (int segment = 0; segment < 4; ++segment) {
     TorqueSettings bend = torque(segment, 0.0);
     bend.command = {CommandKind::motion, Signal::constant(angle)};
@@ -184,7 +184,7 @@ TEST(ArmBody, CableDoesTheWorkOfItsLength) {
   }
   cable.command = hold(2.0);
   ModelBuilder builder(step);
-  builder.add_arm(settings);
+  builder.add_body<pcc::ArmBodyModel>(settings);
   builder.add_cable(cable);
   Simulation simulation(builder.build());
   simulation.solve_static();
@@ -276,7 +276,7 @@ TEST(ArmBody, ItsSurfaceHasAThickness) {
 
 TEST(ArmBody, WrongPartsAreErrors) {
   ModelBuilder builder;
-  builder.add_arm(fluidic());
+  builder.add_body<pcc::ArmBodyModel>(fluidic());
   const auto kind_of = [&](auto&& add) {
     try {
       add();

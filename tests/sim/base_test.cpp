@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/fem/fem_model.hpp"
 #include "sinew/mechanics/body.hpp"
@@ -79,7 +80,7 @@ std::shared_ptr<const Model> block(const Options& options) {
     body.masses = {{"tip", {}, {0.011, 0.013, 0.055}, 0.01, mesh::Outside::error},
                    {"low", {}, {0.006, 0.012, 0.004}, 0.03, mesh::Outside::error}};
   }
-  const int number = builder.add_fem_body(std::move(body));
+  const int number = builder.add_body<fem::FemBodyModel>(std::move(body));
   EffectorSettings tip;
   tip.name = "tip";
   tip.points.resize(1, 3);
@@ -352,7 +353,7 @@ TEST(BaseErrors, SayWhatToDo) {
   body.name = "free";
   body.mesh = std::make_shared<const mesh::Mesh>(mesh::block({}));
   body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   Simulation free(builder.build());
   EXPECT_EQ(kind_of(free, Vector3::Zero()), ErrorKind::nothing_fixed);
 }

@@ -195,7 +195,7 @@ std::shared_ptr<const Model> sprung(double damping, bool tension_only,
   body.mesh = mesh;
   body.elements.regions = {{{200e3, 0.4}, material::Law::corotational, 1070.0, {}}};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
-  const int number = builder.add_fem_body(std::move(body));
+  const int number = builder.add_body<fem::FemBodyModel>(std::move(body));
   SpringLineSettings line;
   line.name = "spring";
   line.body = number;
@@ -333,7 +333,7 @@ std::shared_ptr<const Model> balloon() {
   region.density = 1000.0;
   body.elements.regions = {region};
   body.elements.fixed_nodes = bottom;
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   ChamberSettings chamber;
   chamber.name = "inside";
   chamber.surface = mesh::enclosing_surface(*mesh, Vector3::Zero(), "inside");

@@ -68,7 +68,7 @@ inline std::shared_ptr<const sim::Model> chamber(const ChamberOptions& options =
   region.density = options.density;
   body.elements.regions = {region};
   body.elements.fixed_nodes = mesh->node_sets.at("z_min");
-  const int number = builder.add_fem_body(std::move(body));
+  const int number = builder.add_body<fem::FemBodyModel>(std::move(body));
   sim::ChamberSettings chamber;
   chamber.name = "chamber";
   chamber.body = number;
@@ -88,7 +88,7 @@ inline std::shared_ptr<const sim::Model> chamber(const ChamberOptions& options =
   top.points.resize(1, 3);
   top.points << 0.005, 0.005, 0.03;
   builder.add_effector(top);
-  return builder.build({});
+  return builder.build();
 }
 
 }  // namespace sinew::testing

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/constraint/smooth_surface.hpp"
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/fem/fem_model.hpp"
 #include "sinew/mechanics/body.hpp"
@@ -64,7 +65,7 @@ std::unique_ptr<Simulation> thrown(const Throw& options) {
       body.elements.held_axes.push_back({static_cast<NodeId>(n), axis});
     }
   }
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   ContactSettings wall;
   wall.name = "wall";
   wall.surface = collision::Plane{{0.0, 0.0, -options.gap}, Vector3::UnitZ()};

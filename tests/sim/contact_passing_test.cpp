@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/sim/base_motion.hpp"
 #include "sinew/sim/contact_reader.hpp"
@@ -49,7 +50,7 @@ std::unique_ptr<Simulation> flying(const Flight& flight) {
       mesh::block({.corner = {-0.02, -0.02, 0.0}, .size = {0.04, 0.04, 0.02}, .cells = {4, 4, 2}}));
   body.mesh = mesh;
   body.elements.regions = {{{1e6, 0.3}, material::Law::corotational, 1000.0, {}}};
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   ContactSettings contact;
   contact.name = "obstacle";
   contact.surface = flight.surface;
@@ -222,7 +223,7 @@ std::size_t memory_of_a_simulation(bool contact) {
       mesh::block({.size = {0.2, 0.2, 0.01}, .cells = {26, 26, 1}}));
   body.mesh = mesh;
   body.elements.regions = {{{1e6, 0.3}, material::Law::corotational, 1000.0, {}}};
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   if (contact) {
     ContactSettings floor;
     floor.name = "floor";

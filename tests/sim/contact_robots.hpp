@@ -31,6 +31,7 @@ struct BlockOptions {
   bool floor = true;
   double aggregate = 0.0;  ///< m, size of contact zones
   bool top_fixed = false;
+  linalg::FactorisationSettings factorisation;
 };
 
 inline constexpr double kBlockDensity = 1000.0;
@@ -51,7 +52,8 @@ inline sim::ModelBuilder block_on_plane(const BlockOptions& options) {
   body.elements.regions = {
       {{options.modulus, 0.3}, material::Law::corotational, kBlockDensity, {}}};
   if (options.top_fixed) body.elements.fixed_nodes = mesh->node_sets.at("z_max");
-  builder.add_fem_body(std::move(body));
+  body.factorisation = options.factorisation;
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   if (options.floor) {
     sim::ContactSettings floor;
     floor.name = "floor";

@@ -193,7 +193,7 @@ std::shared_ptr<const Model> pressed_by_a_ball(Method method, double friction, d
   body.mesh = mesh;
   body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
   body.elements.fixed_nodes = mesh->node_sets.at("z_min");
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   ContactSettings ball;
   ball.name = "ball";
   ball.surface = collision::Sphere{Vector3(0.001, 0.002, 0.02 + 0.03), 0.03};
@@ -288,7 +288,7 @@ TEST(Contact, ActuatorsAndContactsShareOneProblem) {
     body.mesh = mesh;
     body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
     body.elements.fixed_nodes = mesh->node_sets.at("x_min");
-    builder.add_fem_body(std::move(body));
+    builder.add_body<fem::FemBodyModel>(std::move(body));
     ContactSettings floor;
     floor.name = "floor";
     floor.surface = collision::Plane{{0.0, 0.0, -0.0005}, Vector3::UnitZ()};
@@ -330,7 +330,7 @@ Simulation bent_to_a_floor(double below, bool floor, bool led) {
   body.mesh = mesh;
   body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   CableSettings cable;
   cable.name = "rope";
   cable.friction = 0.3;
@@ -430,7 +430,7 @@ TEST(Contact, PointsThatArriveUnexpectedlyAreTakenIn) {
       body.mesh = mesh;
       body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
       body.elements.fixed_nodes = mesh->node_sets.at("x_min");
-      builder.add_fem_body(std::move(body));
+      builder.add_body<fem::FemBodyModel>(std::move(body));
       ContactSettings floor;
       floor.name = "floor";
       floor.surface = collision::Plane{{0.0, 0.0, -0.003}};
@@ -557,11 +557,10 @@ TEST(Contact, FingerprintsTellApartWhatMovesDifferently) {
 TEST(Contact, ThreadsGiveTheSameBits) {
   std::vector<std::uint64_t> hashes;
   for (const int threads : {1, 4}) {
-    linalg::FactorisationSettings factorisation;
-    factorisation.threads = threads;
-    factorisation.ordering = linalg::Ordering::amd;
-    Simulation simulation(block_on_plane({.angle = 0.3, .height = 1e-4}).build(factorisation),
-                          threads);
+    BlockOptions options{.angle = 0.3, .height = 1e-4};
+    options.factorisation.threads = threads;
+    options.factorisation.ordering = linalg::Ordering::amd;
+    Simulation simulation(block_on_plane(options).build(), threads);
     for (int k = 0; k < 60; ++k) simulation.step();
     hashes.push_back(simulation.state().hash());
   }

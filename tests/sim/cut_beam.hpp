@@ -7,6 +7,7 @@
 #include <string>
 
 #include "sinew/constraint/smooth_surface.hpp"
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/sim/cable_settings.hpp"
@@ -57,7 +58,7 @@ inline int add_part(sim::ModelBuilder& builder, const char* name,
     body.elements.regions[0].hyperelastic->bulk_modulus = 2e5;
   }
   if (fixed) body.elements.fixed_nodes = mesh->node_sets.at(end);
-  return builder.add_fem_body(std::move(body));
+  return builder.add_body<fem::FemBodyModel>(std::move(body));
 }
 
 /// Both parts have even numbers of cells along x, so that they split like those of the whole beam.

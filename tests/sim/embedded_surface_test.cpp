@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/constraint/chamber.hpp"
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
@@ -53,10 +54,10 @@ std::shared_ptr<const Model> robot(const mesh::Mesh& mesh, const Surfaces& surfa
   body.elements.fixed_nodes = mesh.node_sets.at("z_min");
   ChamberSettings chamber;
   chamber.name = "air";
-  chamber.body = builder.add_fem_body(std::move(body));
+  chamber.body = builder.add_body<fem::FemBodyModel>(std::move(body));
   chamber.surface = surface;
   builder.add_chamber(chamber);
-  return builder.build({});
+  return builder.build();
 }
 
 std::vector<mesh::Face> faces_of_void(const mesh::Mesh& mesh) {
@@ -130,7 +131,7 @@ Points forces(const std::shared_ptr<const Model>& model, double size, double& gr
   chamber.linearise(simulation.configuration(), values);
   growth = values.delta[0];
   Points result = Points::Zero(x.rows(), 3);
-  const auto* elements = mechanics::as<const fem::HasElements>(model->body(0));
+  const auto* elements = mechanics::as<const mechanics::MovesByNodes>(model->body(0));
   for (std::size_t k = 0; k < chamber.material_points().size(); ++k) {
     const auto& at = elements->attachment(chamber.material_points()[k].number);
     for (std::size_t a = 0; a < at.nodes.size(); ++a) {

@@ -6,6 +6,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/rotation.hpp"
+#include "sinew/rigid/rigid_body_model.hpp"
 #include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/state.hpp"
 
@@ -142,7 +143,7 @@ std::unique_ptr<sim::Simulation> box(double lean, double restitution, double ste
   box.rotation = Eigen::AngleAxisd(lean, Vector3::UnitY()).toRotationMatrix();
   box.position = Vector3(0.0, 0.0, 0.3);
   box.gravity = Vector3(0.0, 0.0, -kGravity);
-  add_floor(builder, builder.add_rigid_body(box));
+  add_floor(builder, builder.add_body<rigid::RigidBodyModel>(box));
   return std::make_unique<sim::Simulation>(builder.build());
 }
 

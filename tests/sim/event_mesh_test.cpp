@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/rigid/rigid_body_model.hpp"
 #include "sinew/sim/base_motion.hpp"
 #include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
@@ -41,7 +42,7 @@ std::unique_ptr<sim::Simulation> dropped(Kind kind, const Matrix3& rotation, dou
   body.rotation = rotation;
   const double low = 0.5 * kEdge * rotation.row(2).cwiseAbs().sum();
   body.position = Vector3(0.013, -0.021, kAbove + low);
-  const int falling = builder.add_rigid_body(body);
+  const int falling = builder.add_body<rigid::RigidBodyModel>(body);
   add_pair(builder, falling, add_slab(builder, "floor", kind != Kind::shape), friction);
   return std::make_unique<sim::Simulation>(builder.build());
 }
@@ -157,7 +158,7 @@ std::unique_ptr<sim::Simulation> meeting(double e, double speed, double spin, do
     bodies.push_back(body);
   }
   if (swapped) std::swap(bodies[0], bodies[1]);
-  for (const rigid::RigidSettings& body : bodies) builder.add_rigid_body(body);
+  for (const rigid::RigidSettings& body : bodies) builder.add_body<rigid::RigidBodyModel>(body);
   add_pair(builder, 0, 1, friction);
   return std::make_unique<sim::Simulation>(builder.build());
 }
@@ -258,7 +259,7 @@ TEST(EventMesh, FrictionOpposesTheSlipOnATurningFace) {
   body.velocity = Vector3(0.0, 1.0, 0.0) + spin.cross(body.position);
   body.spin = spin;
   body.gravity = Vector3(-kGravity, 0.0, 0.0);
-  const int sliding = builder.add_rigid_body(body);
+  const int sliding = builder.add_body<rigid::RigidBodyModel>(body);
   rigid::RigidSettings slab;
   slab.name = "slab";
   slab.shape = triangles(rigid::Box{{0.1, 1.0, 1.0}});
@@ -266,7 +267,7 @@ TEST(EventMesh, FrictionOpposesTheSlipOnATurningFace) {
   slab.position = start * Vector3(-0.05, 0.0, 0.0);
   slab.fixed = true;
   sim::BaseMotion motion;
-  motion.body = builder.add_rigid_body(slab);
+  motion.body = builder.add_body<rigid::RigidBodyModel>(slab);
   motion.axis = Vector3::UnitY();
   motion.angle = sim::Signal::ramp({0.0, 10.0 * rate, 0.0, 10.0});
   builder.add_base_motion(motion, {});
@@ -316,11 +317,11 @@ TEST(EventMesh, AMissIsNone) {
     body.gravity.setZero();
     body.velocity = Vector3(10.0, 0.0, 0.0);
     body.position = Vector3(-0.5, 0.0, 0.0);
-    builder.add_rigid_body(body);
+    builder.add_body<rigid::RigidBodyModel>(body);
     body.name = "other";
     body.velocity.setZero();
     body.position = Vector3(0.0, kEdge + beside, 0.5 * kEdge);
-    builder.add_rigid_body(body);
+    builder.add_body<rigid::RigidBodyModel>(body);
     add_pair(builder, 0, 1);
     sim::Simulation simulation(builder.build());
     int impacts = 0;

@@ -18,6 +18,7 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/mesh.hpp"
+#include "sinew/rigid/rigid_body_model.hpp"
 #include "sinew/rigid/rigid_settings.hpp"
 #include "sinew/rigid/shape.hpp"
 #include "sinew/sim/contact_settings.hpp"
@@ -50,7 +51,7 @@ inline int add_ball(sim::ModelBuilder& builder, const std::string& name, const V
   ball.velocity = velocity;
   ball.spin = spin;
   ball.gravity = gravity;
-  return builder.add_rigid_body(ball);
+  return builder.add_body<rigid::RigidBodyModel>(ball);
 }
 
 /// Adds contact with the plane through the origin.
@@ -80,7 +81,7 @@ inline int add_slab(sim::ModelBuilder& builder, const std::string& name, bool as
   if (as_mesh) slab.shape = triangles(slab.shape);
   slab.position = Vector3(0.0, 0.0, -0.05);
   slab.fixed = true;
-  return builder.add_rigid_body(slab);
+  return builder.add_body<rigid::RigidBodyModel>(slab);
 }
 
 /// Distance at which triangles rest on those of the slab, m: 1e-7 of its diagonal.

@@ -44,7 +44,7 @@ std::shared_ptr<const Model> bollard(int points_on_arc) {
   body.mesh = mesh;
   body.elements.regions = {{{1e6, 0.3}, material::Law::corotational, 1000.0, {}}};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   CableSettings cable;
   cable.name = "rope";
   cable.friction = kFriction;

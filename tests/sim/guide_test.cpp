@@ -35,7 +35,7 @@ ModelBuilder block_with(CableSettings cable, int cells_across) {
   body.mesh = mesh;
   body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   cable.name = "rope";
   builder.add_cable(cable);
   return builder;

@@ -83,7 +83,7 @@ std::shared_ptr<const Model> with_clocks(const std::vector<std::string>& names) 
   body.gravity = {0.0, 0.0, -9.81};
   body.elements.regions = {{{200e3, 0.3}, material::Law::corotational, 1000.0, {}}};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   ForceSettings push;
   push.name = "push";
   push.point = {0.06, 0.01, 0.01};

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/material/hyperelastic.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/sim/actuator.hpp"
@@ -43,7 +44,7 @@ std::shared_ptr<const Model> cube(material::Hyperelastic rubber, const StepSetti
       body.elements.held_axes.push_back({node, axis});
     }
   }
-  const int number = builder.add_fem_body(std::move(body));
+  const int number = builder.add_body<fem::FemBodyModel>(std::move(body));
   for (const NodeId node : mesh->node_sets.at("x_max")) {
     ForceSettings force;
     force.name = "force_" + std::to_string(node);
@@ -52,7 +53,7 @@ std::shared_ptr<const Model> cube(material::Hyperelastic rubber, const StepSetti
     force.direction = Vector3::UnitX();
     builder.add_force(force);
   }
-  return builder.build({});
+  return builder.build();
 }
 
 // Nominal stress after each step to a stretch, Pa.

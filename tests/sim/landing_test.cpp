@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/fem/fem_body_model.hpp"
+#include "sinew/rigid/rigid_body_model.hpp"
 #include "sinew/sim/base_motion.hpp"
 #include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
@@ -45,7 +47,7 @@ int add_block(sim::ModelBuilder& builder, const std::string& name, const Vector3
   block.velocity = velocity;
   block.rotation = Eigen::AngleAxisd(lean, Vector3::UnitY()).toRotationMatrix();
   block.gravity = Vector3(0.0, 0.0, -kGravity);
-  return builder.add_rigid_body(block);
+  return builder.add_body<rigid::RigidBodyModel>(block);
 }
 
 // A block that lands flat and slides.
@@ -142,7 +144,7 @@ std::shared_ptr<const sim::Model> block_beside_beam(mechanics::Integrator integr
   base.position = Vector3(0.0, -0.1, 0.05);
   base.fixed = true;
   sim::BaseMotion motion;
-  motion.body = builder.add_rigid_body(base);
+  motion.body = builder.add_body<rigid::RigidBodyModel>(base);
   motion.translation[0] = sim::Signal::ramp({0.0, 0.1, 0.0, 1.0});
   builder.add_base_motion(motion, {});
   fem::FemBodySettings beam;
@@ -154,7 +156,7 @@ std::shared_ptr<const sim::Model> block_beside_beam(mechanics::Integrator integr
   beam.elements.fixed_nodes = mesh->node_sets.at("x_min");
   sim::CableSettings cable;
   cable.name = "cable";
-  cable.body = builder.add_fem_body(std::move(beam));
+  cable.body = builder.add_body<fem::FemBodyModel>(std::move(beam));
   cable.points.resize(2, 3);
   cable.points << 0.0, 0.1, 0.056, 0.097, 0.1, 0.056;
   cable.tension = {.min = 0.0};

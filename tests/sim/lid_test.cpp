@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/constraint/chamber.hpp"
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/sim/actuator.hpp"
 
 #include "chambers.hpp"
@@ -166,7 +167,7 @@ std::shared_ptr<const Model> bored(const Bored& part, mesh::Cells cells, bool ca
   const auto mesh = body.mesh;
   ChamberSettings chamber;
   chamber.name = "air";
-  chamber.body = builder.add_fem_body(std::move(body));
+  chamber.body = builder.add_body<fem::FemBodyModel>(std::move(body));
   std::vector<mesh::Face> faces;
   for (const mesh::Face& face : mesh::boundary_faces(*mesh)) {
     Vector3 middle = Vector3::Zero();
@@ -187,7 +188,7 @@ std::shared_ptr<const Model> bored(const Bored& part, mesh::Cells cells, bool ca
   chamber.surface = faces;
   chamber.cap = cap;
   builder.add_chamber(chamber);
-  return builder.build({});
+  return builder.build();
 }
 
 class LidTest : public ::testing::TestWithParam<mesh::Cells> {};

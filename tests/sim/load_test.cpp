@@ -184,7 +184,7 @@ TEST(Water, BodyAsHeavyAsWaterFloatsWhereItIs) {
     body.mesh = mesh;
     body.gravity = {0.0, 0.0, -9.81};
     body.elements.regions = {{{1e5, 0.4}, material::Law::corotational, density, {}}};
-    builder.add_fem_body(std::move(body));
+    builder.add_body<fem::FemBodyModel>(std::move(body));
     builder.add_load({.name = "sea", .load = WaterSettings{.faces = mesh::boundary_faces(*mesh)}});
     Simulation simulation(builder.build());
     for (int k = 0; k < 100; ++k) simulation.step();
@@ -219,7 +219,7 @@ TEST(Pressure, OpenSurfaceConvergesQuadraticallyInStatics) {
   region.density = 1000.0;
   body.elements.regions = {region};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   const auto faces = mesh::select_faces(*mesh, mesh::NamedRegion{"z_max"}, "top");
   builder.add_load(
       {.name = "wind", .load = PressureLoadSettings{faces}, .factor = Signal::constant(60.0)});
@@ -276,7 +276,7 @@ TEST(LineLoad, IsExactInEveryElement) {
   body.mesh = mesh;
   body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
-  const int bar = builder.add_fem_body(std::move(body));
+  const int bar = builder.add_body<fem::FemBodyModel>(std::move(body));
   const Vector3 from(0.0013, 0.0021, 0.0031), to(0.9971, 0.0087, 0.0074), by(0.1, -0.3, 0.2);
   LineLoadSettings line{Points(2, 3), by};
   line.points << from.transpose(), to.transpose();
@@ -327,7 +327,7 @@ TEST(LineLoad, MayLeaveTheBody) {
     region.hyperelastic->bulk_modulus = 1e5;
     body.elements.regions = {region};
     body.elements.fixed_nodes = mesh->node_sets.at("x_min");
-    builder.add_fem_body(std::move(body));
+    builder.add_body<fem::FemBodyModel>(std::move(body));
     LineLoadSettings line{Points(3, 3), {0.0, 0.0, -1.0}};
     line.points << 0.01, 0.005, 0.005, 0.08, 0.012, 0.011, 0.13, 0.01, 0.01;
     builder.add_load({.name = "line", .outside = mesh::Outside::nearest, .load = line});
@@ -349,7 +349,7 @@ TEST(Loads, BadOnesAreErrors) {
     body.mesh = mesh;
     body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
     body.elements.fixed_nodes = mesh->node_sets.at("x_min");
-    builder.add_fem_body(std::move(body));
+    builder.add_body<fem::FemBodyModel>(std::move(body));
     try {
       builder.add_load(load);
       builder.build();

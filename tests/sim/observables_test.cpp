@@ -13,6 +13,7 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/pcc/arm.hpp"
+#include "sinew/pcc/arm_body_model.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
@@ -57,7 +58,7 @@ std::shared_ptr<const Model> block_and_arm() {
   ModelBuilder builder = sinew::testing::block_on_plane(options);
   pcc::ArmSettings settings = pcc::testing::mixed();
   settings.name = "arm";
-  const int arm = builder.add_arm(std::move(settings));
+  const int arm = builder.add_body<pcc::ArmBodyModel>(std::move(settings));
   TorqueSettings torque;
   torque.name = "bend";
   torque.body = arm;
@@ -79,7 +80,7 @@ std::shared_ptr<const Model> block_and_arm() {
   turn.points << 0.0, 0.0, 0.01, 0.01, 0.0, 0.01, 0.0, 0.01, 0.01;
   turn.kind = EffectorSettings::Kind::orientation;
   builder.add_effector(turn);
-  return builder.build({});
+  return builder.build();
 }
 
 TEST(Observables, HaveTheNamesUnitsAndShapesOfTheRobot) {
@@ -312,7 +313,7 @@ TEST(Observables, DrivesHaveTheirInputsAndPassiveSpringsNoCommand) {
   line.pull_from_world = true;
   line.spring = SpringSettings{50.0, 0.04, 0.0, false};
   builder.add_spring(line);
-  Simulation sprung(builder.build({}));
+  Simulation sprung(builder.build());
   const Observables passive(sprung);
   EXPECT_TRUE(command_kinds(sprung.model().actuators()[0]).empty());
   for (const Observable& one : passive.list()) {

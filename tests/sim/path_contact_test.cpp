@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/contact_reader.hpp"
@@ -218,7 +219,7 @@ std::shared_ptr<const Model> pulled_strip(double friction) {
   body.gravity = {0.0, 0.0, -9.81};
   body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   ContactSettings floor;
   floor.name = "floor";
   floor.surface = collision::Plane{};
@@ -315,7 +316,7 @@ std::shared_ptr<const Model> beam_on_a_ball() {
   region.density = 1000.0;
   body.elements.regions = {region};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   ContactSettings ball;
   ball.name = "ball";
   ball.surface = collision::Sphere{{0.1, 0.0, -0.015}, 0.005};

@@ -64,8 +64,8 @@ class HungMass : public ::testing::TestWithParam<PointMassKind> {};
 
 TEST_P(HungMass, SagsTheBeamAsItsWeightDoes) {
   ModelBuilder weighed, pulled;
-  weighed.add_fem_body(cantilever(GetParam(), {hung(0.02)}));
-  pulled.add_fem_body(cantilever(GetParam()));
+  weighed.add_body<fem::FemBodyModel>(cantilever(GetParam(), {hung(0.02)}));
+  pulled.add_body<fem::FemBodyModel>(cantilever(GetParam()));
   pulled.add_load(
       {.name = "weight", .load = PointLoadSettings{kPoint, {0.0, 0.0, -0.02 * kGravity}}});
   Simulation a(weighed.build()), b(pulled.build());
@@ -149,7 +149,7 @@ TEST(PointMass, SwingsALightBeamAtItsFrequency) {
   body.elements.regions = {region};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
   body.masses = {hung(end, {length, 0.5 * side, 0.5 * side})};
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   builder.add_load({.name = "pull",
                     .load = PointLoadSettings{{length, 0.5 * side, 0.5 * side},
                                               {0.0, 0.0, 1e-3 * length * stiffness}}});
@@ -182,13 +182,13 @@ TEST(PointMass, KeepsEnergyAndMomentum) {
   step.time_step = 1e-3;
   step.tolerance = 1e-11;
   ModelBuilder builder(step);
-  builder.add_fem_body(cantilever(PointMassKind::tet4, {hung(0.05)}));
+  builder.add_body<fem::FemBodyModel>(cantilever(PointMassKind::tet4, {hung(0.05)}));
   fem::FemBodySettings thrown = cantilever(PointMassKind::hex8, {hung(0.03)});
   thrown.name = "thrown";
   thrown.masses[0].name = "ballast";
   thrown.elements.fixed_nodes.clear();
   thrown.initial_velocity = {{0.3, 0.0, 1.0}, {0.0, 2.0, 1.0}};
-  builder.add_fem_body(std::move(thrown));
+  builder.add_body<fem::FemBodyModel>(std::move(thrown));
   Simulation simulation(builder.build());
   ASSERT_EQ(simulation.model().masses().size(), 2u);
   EXPECT_EQ(simulation.model().mass_index("ballast"), 1);
@@ -218,7 +218,7 @@ TEST(PointMass, KeepsEnergyAndMomentum) {
 TEST(PointMass, IsPartOfTheRobot) {
   const auto fingerprint = [](std::vector<fem::PointMassSettings> masses) {
     ModelBuilder builder;
-    builder.add_fem_body(cantilever(PointMassKind::tet4, std::move(masses)));
+    builder.add_body<fem::FemBodyModel>(cantilever(PointMassKind::tet4, std::move(masses)));
     return builder.build()->fingerprint();
   };
   const auto with = fingerprint({hung(0.02)});
@@ -232,7 +232,8 @@ TEST(PointMass, BadOnesAreErrors) {
   const auto kind_of = [](std::vector<fem::PointMassSettings> masses) {
     for (fem::PointMassSettings& mass : masses) mass.place.line = 7;
     try {
-      ModelBuilder().add_fem_body(cantilever(PointMassKind::tet4, std::move(masses)));
+      ModelBuilder().add_body<fem::FemBodyModel>(
+          cantilever(PointMassKind::tet4, std::move(masses)));
     } catch (const Error& error) {
       EXPECT_FALSE(error.remedy().empty());
       return error.kind();

@@ -61,7 +61,8 @@ inline std::shared_ptr<const sim::Model> beam(const BeamOptions& options = {}) {
   body.elements.regions = {{{options.young_modulus, 0.4}, options.law, 1070.0, {}}};
   body.elements.mass = options.mass;
   if (options.clamped) body.elements.fixed_nodes = mesh->node_sets.at("x_min");
-  const int beam = builder.add_fem_body(std::move(body));
+  body.factorisation = options.factorisation;
+  const int beam = builder.add_body<fem::FemBodyModel>(std::move(body));
   for (int k = 0; k < options.cables; ++k) {
     sim::CableSettings cable;
     cable.name = "cable_" + std::to_string(k);
@@ -106,7 +107,7 @@ inline std::shared_ptr<const sim::Model> beam(const BeamOptions& options = {}) {
          mesh::Outside::error,
          sim::ProbeBend{{{{beam, sets.at("x_min"), {}}, {beam, sets.at("x_max"), {}}}}, {}}});
   }
-  return builder.build(options.factorisation);
+  return builder.build();
 }
 
 inline sim::Command pull(double metres) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/mesh.hpp"
@@ -30,7 +31,7 @@ struct ShapedBlock {
     body.mesh = mesh_;
     body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
     body.elements.fixed_nodes = mesh_->node_sets.at("x_min");
-    builder_.add_fem_body(std::move(body));
+    builder_.add_body<fem::FemBodyModel>(std::move(body));
   }
   void finish() { simulation_ = std::make_unique<Simulation>(builder_.build()); }
   /// Sets the position of every node to x = move(X).

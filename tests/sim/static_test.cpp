@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/linalg/dense.hpp"
@@ -52,7 +53,7 @@ fem::FemBodySettings block(const Vector3& size, const std::array<int, 3>& cells,
 /// A slender column along x, clamped at one end; an actuator can compress its tip along x.
 std::shared_ptr<const Model> column() {
   ModelBuilder builder;
-  builder.add_fem_body(
+  builder.add_body<fem::FemBodyModel>(
       block({kLength, kSide, kSide}, {20, 2, 2}, mesh::Cells::hexahedra, 1e6, 0.3));
   ForceSettings press;
   press.name = "press";
@@ -217,7 +218,7 @@ std::shared_ptr<const Model> strip() {
   ModelBuilder builder;
   auto body = block({0.1, 0.02, 0.01}, {20, 4, 2}, mesh::Cells::hexahedra, 1e5, 0.4);
   const auto faces = mesh::select_faces(*body.mesh, mesh::NamedRegion{"z_max"}, "top");
-  builder.add_fem_body(std::move(body));
+  builder.add_body<fem::FemBodyModel>(std::move(body));
   builder.add_load({.name = "wind", .load = PressureLoadSettings{faces}});
   EffectorSettings tip;
   tip.name = "tip";
@@ -248,7 +249,7 @@ TEST(Statics, IterationsDoNotGrowTowardsIncompressibility) {
       ModelBuilder builder;
       auto body = block({0.1, 0.02, 0.02}, {10, 2, 2}, kind, 1e5, poisson);
       body.gravity = {0.0, 0.0, -9.81};
-      builder.add_fem_body(std::move(body));
+      builder.add_body<fem::FemBodyModel>(std::move(body));
       Simulation simulation(builder.build());
       const StaticReport report = simulation.solve_static();
       EXPECT_EQ(report.load_steps, 1);

@@ -27,7 +27,7 @@ namespace {
 constexpr double kWide = 0.04, kThick = 0.01, kSmall = 0.02;
 
 void add_block(ModelBuilder& builder, const char* name, const mesh::BlockShape& shape,
-               const Vector3& gravity, const char* fixed) {
+               const Vector3& gravity, const char* fixed, int threads) {
   fem::FemBodySettings body;
   body.name = name;
   const auto mesh = std::make_shared<const mesh::Mesh>(mesh::block(shape));
@@ -36,7 +36,8 @@ void add_block(ModelBuilder& builder, const char* name, const mesh::BlockShape& 
   body.damping = {.mass = 0.0, .stiffness = 0.002};
   body.elements.regions = {{{2e5, 0.3}, material::Law::corotational, 1000.0, {}}};
   if (fixed != nullptr) body.elements.fixed_nodes = mesh->node_sets.at(fixed);
-  builder.add_fem_body(std::move(body));
+  body.factorisation.threads = threads;
+  builder.add_body<fem::FemBodyModel>(std::move(body));
 }
 
 // A small block falls by 10 um onto a wide one.
@@ -45,20 +46,18 @@ std::shared_ptr<const Model> two_blocks(bool held, int threads = 1) {
   const Vector3 gravity(0.0, 0.0, -9.81);
   add_block(builder, "low",
             {.corner = {0, 0, -kThick}, .size = {kWide, kWide, kThick}, .cells = {8, 8, 2}},
-            held ? gravity : Vector3::Zero(), held ? "z_min" : nullptr);
+            held ? gravity : Vector3::Zero(), held ? "z_min" : nullptr, threads);
   add_block(
       builder, "top",
       {.corner = {0.0073, 0.0091, 1e-5}, .size = {kSmall, kSmall, kThick}, .cells = {5, 5, 2}},
-      gravity, nullptr);
+      gravity, nullptr, threads);
   ContactSettings contact;
   contact.name = "touch";
   contact.body = 1;
   contact.touched = 0;
   contact.friction = 0.4;
   builder.add_contact(contact);
-  linalg::FactorisationSettings factorisation;
-  factorisation.threads = threads;
-  return builder.build(factorisation);
+  return builder.build();
 }
 
 TEST(SurfaceContact, RowsPushEquallyAndOppositely) {

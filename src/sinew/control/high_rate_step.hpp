@@ -108,7 +108,6 @@ class HighRateStep {
   ///   of the last one. Null: none. @param input of the right sizes. @param ages of the data.
   const HighRateOutput& step(Snapshot* fresh, const HighRateInput& input, const Ages& ages);
   const HighRateOutput& output() const { return output_; }
-  bool has_snapshot() const { return has_snapshot_; }
   const TouchLaw& law() const { return law_; }
   const PassivityController& passivity() const { return passivity_; }
 

@@ -86,26 +86,6 @@ PacketStatus get_numbers(std::span<const std::byte> bytes, std::initializer_list
 
 }  // namespace
 
-std::string_view packet_status_name(PacketStatus status) {
-  switch (status) {
-    case PacketStatus::good:
-      return "good";
-    case PacketStatus::wrong_size:
-      return "wrong-size";
-    case PacketStatus::wrong_magic:
-      return "wrong-magic";
-    case PacketStatus::wrong_version:
-      return "wrong-version";
-    case PacketStatus::wrong_kind:
-      return "wrong-kind";
-    case PacketStatus::wrong_counts:
-      return "wrong-counts";
-    case PacketStatus::not_finite:
-      return "not-finite";
-  }
-  return "unknown";
-}
-
 std::size_t measurement_size(const HighRateSettings& settings) {
   return kPacketHeader + sizeof(double) * (settings.sensors.size() + settings.hands.size() +
                                            settings.driven.size());

@@ -54,8 +54,6 @@ enum class PacketStatus {
   wrong_counts,   ///< of another device, or an unknown state
   not_finite,     ///< a number is infinite
 };
-/// "good", "wrong-size", "wrong-magic", ...
-std::string_view packet_status_name(PacketStatus status);
 
 /// Bytes of a measurement with all numbers.
 std::size_t measurement_size(const HighRateSettings& settings);

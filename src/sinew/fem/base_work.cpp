@@ -10,7 +10,7 @@ void count_base_inertia(const FemState& state, const mechanics::StepWeights& wei
     const Vector3 push = entry.mass * state.combined(weights.acceleration, entry.node);
     const Vector3 moved =
         (state.positions.row(entry.support) - state.start_positions.row(entry.support)).transpose();
-    end.outside += push.dot(moved);
+    end.external_work += push.dot(moved);
     end.power += push.dot(state.combined(weights.velocity, entry.support));
   }
 }
@@ -25,12 +25,12 @@ void count_base_force(const FemState& state, const BaseCarry& carry, std::span<c
     const Vector3 moved = (now - before).transpose();
     const Eigen::Map<const Vector3> f(force.data() + 3 * i);
     const Vector3 rest = state.base.rest_of(now.transpose());
-    end.outside -= f.dot(moved - carry.strayed(i, moved));
+    end.external_work -= f.dot(moved - carry.strayed(i, moved));
     end.power -= f.dot(value_at(state.base.velocity(), rest));
   }
   for (const NodeId node : model.settings().elements.fixed_nodes) {
     const Vector3 weight = model.weight(node);
-    end.outside -= weight.dot((state.positions.row(node) - state.start_positions.row(node)));
+    end.external_work -= weight.dot((state.positions.row(node) - state.start_positions.row(node)));
     end.power -= weight.dot(state.velocities.row(node));
   }
 }

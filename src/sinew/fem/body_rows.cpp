@@ -47,7 +47,7 @@ void BodyRows::each_node(std::int32_t entry, const mechanics::RowValues& rows, V
     for (std::size_t k = 0; k < patch.nodes.size(); ++k) see(patch.nodes[k], patch.weights[k]);
     return;
   }
-  const Attachment& at = model_.attachment(site.number);
+  const mechanics::Attachment& at = model_.attachment(site.number);
   for (std::size_t k = 0; k < at.nodes.size(); ++k) see(at.nodes[k], at.weights[k]);
 }
 

@@ -10,6 +10,7 @@
 #include "sinew/fem/has_material.hpp"
 #include "sinew/fem/membrane.hpp"
 #include "sinew/fem/solid_elements.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 
 namespace sinew::fem {
 
@@ -60,8 +61,8 @@ void add_membranes(const HasMaterial& body, Points& forces) {
 
 // Calls visit(node, weight) for the nodes on which an entry of a row acts.
 template <class Visit>
-void visit_nodes(const HasElements& model, const mechanics::RowValues& values, std::int32_t entry,
-                 int site, Visit&& visit) {
+void visit_nodes(const mechanics::MovesByNodes& model, const mechanics::RowValues& values,
+                 std::int32_t entry, int site, Visit&& visit) {
   const auto e = static_cast<std::size_t>(entry);
   if (!values.patch.empty() && values.patch[e].nodes[0] >= 0) {
     const mechanics::Patch& patch = values.patch[e];
@@ -70,7 +71,7 @@ void visit_nodes(const HasElements& model, const mechanics::RowValues& values, s
     }
     return;
   }
-  const Attachment& attached = model.attachment(site);
+  const mechanics::Attachment& attached = model.attachment(site);
   for (std::size_t a = 0; a < attached.nodes.size(); ++a) {
     visit(attached.nodes[a], attached.weights[a]);
   }
@@ -103,6 +104,7 @@ Points nodal_balance(const HasMaterial& body, const ElementStates& states,
                      std::span<const double> effort, const mechanics::RowValues& values,
                      const mechanics::RowPattern& rows, int index) {
   const HasElements& model = body.material();
+  const auto& nodes = *mechanics::as<const mechanics::MovesByNodes>(model);
   Points sum = states.forces + body.external_forces() + body.load_forces();
   for (NodeId node = 0; node < static_cast<NodeId>(sum.rows()); ++node) {
     sum.row(node) += model.elements().load_mass()[node] * model.settings().gravity.transpose();
@@ -114,7 +116,7 @@ Points nodal_balance(const HasMaterial& body, const ElementStates& states,
       const auto& site = rows.site[static_cast<std::size_t>(e)];
       if (site.body != index) continue;
       const Vector3 force = effort[row] * values.direction[static_cast<std::size_t>(e)];
-      visit_nodes(model, values, e, site.number,
+      visit_nodes(nodes, values, e, site.number,
                   [&](NodeId node, double weight) { sum.row(node) += weight * force.transpose(); });
     }
   }

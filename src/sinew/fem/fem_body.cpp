@@ -17,7 +17,7 @@ FemBody::~FemBody() = default;
 namespace {
 
 // Value of a nodal field at an attached point.
-Vector3 mean_at(const Points& field, const Attachment& point) {
+Vector3 mean_at(const Points& field, const mechanics::Attachment& point) {
   Vector3 sum = Vector3::Zero();
   for (std::size_t k = 0; k < point.nodes.size(); ++k) {
     sum += point.weights[k] * field.row(point.nodes[k]).transpose();
@@ -111,7 +111,7 @@ mechanics::HasBase::Carried FemBody::carried(int site, const mechanics::Patch* p
     for (std::size_t k = 0; k < patch->nodes.size(); ++k) add(patch->nodes[k], patch->weights[k]);
     return sum;
   }
-  const Attachment& at = state_->model.attachment(site);
+  const mechanics::Attachment& at = state_->model.attachment(site);
   for (std::size_t k = 0; k < at.nodes.size(); ++k) add(at.nodes[k], at.weights[k]);
   return sum;
 }

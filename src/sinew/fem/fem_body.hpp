@@ -24,6 +24,7 @@ class FemBody : public mechanics::Body,
                 public mechanics::HasBase,
                 public mechanics::TakesLoads,
                 public mechanics::HasSurfaceNodes,
+                public mechanics::ScalesStiffness,
                 public HasMaterial {
  public:
   /// @param model,pool must outlive the body.

@@ -11,6 +11,7 @@
 #include "sinew/collision/surface_topology.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body.hpp"
+#include "sinew/mechanics/spread_points.hpp"
 #include "sinew/mechanics/surface_trace.hpp"
 
 namespace sinew::fem {
@@ -22,6 +23,7 @@ FemBodyModel::FemBodyModel(FemBodySettings settings) : settings_(std::move(setti
                   fmt::format("a damping coefficient is {:g}", value), "give zero or more");
     }
   }
+  linalg::check_settings(settings_.factorisation);
   check_mesh(*settings_.mesh);
   if (!settings_.embedder) {
     settings_.embedder = std::make_shared<const mesh::Embedder>(*settings_.mesh);
@@ -87,6 +89,31 @@ int FemBodyModel::attach_nodes(std::span<const NodeId> nodes, std::span<const do
   return static_cast<int>(attachments_.size()) - 1;
 }
 
+int FemBodyModel::attach_mean(const Points& points, mesh::Outside outside,
+                              const std::string& what) {
+  std::vector<NodeId> nodes;
+  std::vector<double> weights;
+  const double share = 1.0 / static_cast<double>(points.rows());
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const mechanics::Attachment& one =
+        attachment(attach(points.row(i), outside, fmt::format("point {} of {}", i, what)));
+    for (std::size_t k = 0; k < one.nodes.size(); ++k) {
+      nodes.push_back(one.nodes[k]);
+      weights.push_back(share * one.weights[k]);
+    }
+  }
+  return attach_nodes(nodes, weights);
+}
+
+std::vector<int> FemBodyModel::attach_anchors(std::span<const NodeId> part) {
+  std::vector<int> anchors;
+  const double whole = 1.0;
+  for (const NodeId node : mechanics::spread_points(mesh().nodes, part)) {
+    anchors.push_back(attach_nodes({&node, 1}, {&whole, 1}));
+  }
+  return anchors;
+}
+
 int FemBodyModel::attach_surface() {
   if (surface_site_ >= 0) return surface_site_;
   const std::vector<mesh::Face> faces = mesh::boundary_faces(mesh());
@@ -116,7 +143,7 @@ int FemBodyModel::add_load(mechanics::Load load) {
   return static_cast<int>(added_loads_.size()) - 1;
 }
 
-std::optional<std::vector<mesh::HeldAxis>> FemBodyModel::held_nodes() const {
+std::vector<mesh::HeldAxis> FemBodyModel::held_axes() const {
   std::vector<mesh::HeldAxis> held = settings_.elements.held_axes;
   for (const NodeId node : settings_.elements.fixed_nodes) {
     for (int axis = 0; axis < 3; ++axis) held.push_back({node, axis});
@@ -124,9 +151,32 @@ std::optional<std::vector<mesh::HeldAxis>> FemBodyModel::held_nodes() const {
   return held;
 }
 
-std::vector<NodeId> FemBodyModel::nodes_of(int point) const {
-  const bool known = point >= 0 && static_cast<std::size_t>(point) < attachments_.size();
-  return known ? attachment(point).nodes : std::vector<NodeId>();
+std::vector<mechanics::HeldDirection> FemBodyModel::held_directions() const {
+  std::vector<mechanics::HeldDirection> held;
+  for (const mesh::HeldAxis& one : held_axes()) {
+    held.push_back(
+        {mesh().nodes.row(one.node).transpose(), Vector3::Unit(one.axis), false, one.node});
+  }
+  return held;
+}
+
+bool FemBodyModel::has_memory() const { return elements().has_memory(); }
+
+double FemBodyModel::stiffness_scale() const {
+  return stiffest_modulus(settings_.elements) * std::cbrt(elements().volume());
+}
+
+bool FemBodyModel::has_inertia() const { return elements().total_mass() > 0.0; }
+
+double FemBodyModel::size() const { return mechanics::box_diagonal(mesh().nodes, mesh().axes); }
+
+std::vector<mechanics::AttachedMass> FemBodyModel::point_masses() const {
+  std::vector<mechanics::AttachedMass> all;
+  for (std::size_t k = 0; k < settings_.masses.size(); ++k) {
+    const PointMassSettings& own = settings_.masses[k];
+    all.push_back({own.name, mass_points_[k], own.mass, own.place});
+  }
+  return all;
 }
 
 bool FemBodyModel::is_loaded() const {
@@ -135,7 +185,7 @@ bool FemBodyModel::is_loaded() const {
 
 Vector3 FemBodyModel::rest_position(int point) const {
   Vector3 position = Vector3::Zero();
-  const Attachment& a = attachment(point);
+  const mechanics::Attachment& a = attachment(point);
   for (std::size_t k = 0; k < a.nodes.size(); ++k) {
     position += a.weights[k] * settings_.mesh->nodes.row(a.nodes[k]).transpose();
   }
@@ -143,13 +193,10 @@ Vector3 FemBodyModel::rest_position(int point) const {
 }
 
 void FemBodyModel::finish(int body, const mechanics::RowPattern& rows,
-                          std::span<const mechanics::StiffnessPair> stiffness_pairs,
-                          const linalg::FactorisationSettings& settings) {
+                          std::span<const mechanics::StiffnessPair> stiffness_pairs) {
   body_ = body;
   world_rows_ = rows;
   loads_ = std::make_unique<const mechanics::LoadSet>(std::move(added_loads_), mesh().nodes);
-  linalg::check_settings(settings);  // plans are made later
-  factorisation_ = settings;
   rows_.clear();
   for (int row = 0; row < rows.rows(); ++row) {
     const auto begin = rows.row_start[static_cast<std::size_t>(row)];
@@ -231,14 +278,14 @@ FemSystem FemBodyModel::make_system(const FemModelSettings& elements) const {
     for (auto entry = begin; entry < end; ++entry) {
       const auto& site = world_rows_.site[static_cast<std::size_t>(entry)];
       if (site.body != body_) continue;
-      const Attachment& a = attachment(site.number);
+      const mechanics::Attachment& a = attachment(site.number);
       for (std::size_t k = 0; k < a.nodes.size(); ++k) {
         const auto node = free[static_cast<std::size_t>(a.nodes[k])];
         if (node >= 0) system.scatter.push_back({entry, position.at(node), a.weights[k]});
       }
     }
   }
-  system.plan = linalg::analyse(system.elements->pattern(), system.border, factorisation_);
+  system.plan = linalg::analyse(system.elements->pattern(), system.border, settings_.factorisation);
   return system;
 }
 

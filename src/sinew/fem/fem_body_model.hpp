@@ -39,10 +39,13 @@ class FemBodyModel final : public mechanics::BodyModel,
                            public mechanics::HasSurface,
                            public mechanics::MayHaveBase,
                            public mechanics::BearsLoads,
+                           public mechanics::CarriesMasses,
+                           public mechanics::MovesByNodes,
                            public HasElements {
  public:
   /// Throws the errors of FemModel, and Error: out-of-range (negative damping, mass that is not
-  /// positive), point-outside-mesh (a point mass outside of the mesh).
+  /// positive), point-outside-mesh (a point mass outside of the mesh), unknown-choice (a solver
+  /// that is not built in).
   explicit FemBodyModel(FemBodySettings settings);
   ~FemBodyModel() override;
 
@@ -52,6 +55,8 @@ class FemBodyModel final : public mechanics::BodyModel,
   int attach_ball(const Vector3& centre, double radius, mesh::Outside outside,
                   const std::string& what) override;
   int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
+  int attach_mean(const Points& points, mesh::Outside outside, const std::string& what) override;
+  std::vector<int> attach_anchors(std::span<const NodeId> part) override;
   int attach_surface() override;
   std::shared_ptr<const collision::SurfaceTopology> surface() const override { return surface_; }
   std::shared_ptr<const mechanics::SurfaceTrace> surface_trace() const override {
@@ -62,9 +67,15 @@ class FemBodyModel final : public mechanics::BodyModel,
     return elements().free_index()[static_cast<std::size_t>(node)] < 0;
   }
   Vector3 rest_position(int point) const override;
-  std::optional<std::vector<mesh::HeldAxis>> held_nodes() const override;
-  std::vector<NodeId> nodes_of(int point) const override;
+  std::vector<mesh::HeldAxis> held_axes() const override;
+  std::vector<mechanics::HeldDirection> held_directions() const override;
   bool is_loaded() const override;
+  bool has_memory() const override;
+  double stiffness_scale() const override;
+  bool has_inertia() const override;
+  double size() const override;
+  bool has_few_coordinates() const override { return false; }
+  std::vector<mechanics::AttachedMass> point_masses() const override;
   mesh::EmbeddedPoint locate(const Vector3& rest_position, mesh::Outside outside,
                              const std::string& what) const override;
   const mesh::Mesh& load_mesh() const override { return mesh(); }
@@ -76,8 +87,7 @@ class FemBodyModel final : public mechanics::BodyModel,
   const Vector3& gravity() const override { return settings_.gravity; }
   int add_load(mechanics::Load load) override;
   void finish(int body, const mechanics::RowPattern& rows,
-              std::span<const mechanics::StiffnessPair> stiffness_pairs,
-              const linalg::FactorisationSettings& settings) override;
+              std::span<const mechanics::StiffnessPair> stiffness_pairs) override;
   bool couples(int first, int second) const override;
   std::vector<NamedHash> parts() const override;
   std::uint64_t site_hash(int site) const override;
@@ -85,6 +95,7 @@ class FemBodyModel final : public mechanics::BodyModel,
   std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_geometric_stiffness,
                                           int histories) const override;
 
+  bool has_mesh() const override { return true; }
   const mesh::Mesh& mesh() const override { return *settings_.mesh; }
   const FemModel& elements() const override { return *elements_; }
   std::shared_ptr<const FemModel> shared_elements() const override { return elements_; }
@@ -96,7 +107,7 @@ class FemBodyModel final : public mechanics::BodyModel,
   int mass_point(std::size_t mass) const override { return mass_points_[mass]; }
   /// All loads. Only after finish().
   const mechanics::LoadSet& loads() const { return *loads_; }
-  const Attachment& attachment(int point) const override {
+  const mechanics::Attachment& attachment(int point) const override {
     return attachments_[static_cast<std::size_t>(point)];
   }
   /// World rows that touch this body: persistent rows, then transient rows, each ascending.
@@ -119,7 +130,7 @@ class FemBodyModel final : public mechanics::BodyModel,
   void attach_mass(const PointMassSettings& mass);
 
   FemBodySettings settings_;
-  std::vector<Attachment> attachments_;
+  std::vector<mechanics::Attachment> attachments_;
   int surface_site_ = -1;
   // From attach_surface() on.
   std::shared_ptr<const collision::SurfaceTopology> surface_;
@@ -133,7 +144,6 @@ class FemBodyModel final : public mechanics::BodyModel,
   std::size_t fixed_rows_ = 0;
   mechanics::RowPattern world_rows_;
   std::vector<std::array<std::int32_t, 2>> coupled_points_;
-  linalg::FactorisationSettings factorisation_;
   std::shared_ptr<const FemModel> elements_;
   mutable std::once_flag plain_once_, curved_once_;
   mutable FemSystem plain_, curved_;

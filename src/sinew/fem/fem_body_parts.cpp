@@ -57,7 +57,7 @@ std::vector<NamedHash> FemBodyModel::parts() const {
 // centre. Nodes and weights are not hashed: rounding decides in which element a point on a face was
 // found.
 std::uint64_t FemBodyModel::site_hash(int site) const {
-  const Attachment& of = attachment(site);
+  const mechanics::Attachment& of = attachment(site);
   const Vector3 at = rest_position(site);
   double spread = 0.0;
   for (std::size_t k = 0; k < of.nodes.size(); ++k) {

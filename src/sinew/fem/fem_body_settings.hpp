@@ -8,6 +8,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_model.hpp"
+#include "sinew/linalg/factorisation.hpp"
 #include "sinew/mesh/embedding.hpp"
 
 namespace sinew::fem {
@@ -43,6 +44,7 @@ struct FemBodySettings {
   RayleighDamping damping;
   std::vector<PointMassSettings> masses;
   InitialVelocity initial_velocity;  ///< of the free nodes; used in dynamics only
+  linalg::FactorisationSettings factorisation;
 };
 
 }  // namespace sinew::fem

@@ -98,7 +98,6 @@ class FemModel {
   FemModel& operator=(const FemModel&) = delete;
 
   const mesh::Mesh& mesh() const { return *mesh_; }
-  std::shared_ptr<const mesh::Mesh> shared_mesh() const { return mesh_; }
   /// Block pattern over free nodes, from the elements and the couplings.
   const linalg::BlockPattern& pattern() const { return pattern_; }
 

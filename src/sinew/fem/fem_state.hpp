@@ -57,7 +57,7 @@ struct FemState {
   Points external_forces;            ///< (n, 3) N
   std::vector<double> load_factors;  ///< (loads,) of FemBodyModel::loads()
   std::optional<mechanics::Tether> tether;
-  double stiffness_factor = 1.0;  ///< see HasMaterial
+  double stiffness_factor = 1.0;  ///< see mechanics::ScalesStiffness
 };
 
 }  // namespace sinew::fem

@@ -86,7 +86,7 @@ void FemStep::form_right_side(const mechanics::StepWeights& weights) {
   }
   force_scale_ = state_.stiffness_factor * min_force_ + std::sqrt(internal) + std::sqrt(outside);
   if (state_.tether) force_scale_ += pull(*state_.tether, state_.positions, elements, right_);
-  if (lessens_) right_ -= lessening_;
+  if (subtracts_) right_ -= subtracted_;
   if (weights.dynamic()) {
     force_scale_ += inertia_.add(weights, elements_.active(), first_linearisation_, right_);
   }
@@ -153,9 +153,9 @@ double FemStep::rounding_floor() const {
                              row_sums_);
 }
 
-void FemStep::lessen(std::span<const double> force) {
-  lessens_ = !force.empty();
-  if (lessens_) lessening_ = Eigen::Map<const VectorX>(force.data(), right_.size());
+void FemStep::subtract_residual(std::span<const double> force) {
+  subtracts_ = !force.empty();
+  if (subtracts_) subtracted_ = Eigen::Map<const VectorX>(force.data(), right_.size());
 }
 
 // Rows that are not in the border, and unsymmetric terms, need a solution for every right-hand
@@ -255,7 +255,7 @@ void FemStep::keep_positions() {
 }
 
 Vector3 FemStep::proposed_motion(int point) const {
-  const Attachment& a = state_.model.attachment(point);
+  const mechanics::Attachment& a = state_.model.attachment(point);
   const auto free = state_.model.elements().free_index();
   Vector3 sum = Vector3::Zero();
   for (std::size_t k = 0; k < a.nodes.size(); ++k) {
@@ -359,7 +359,7 @@ void FemStep::count_work(const mechanics::StepWeights& weights, mechanics::StepE
     const Vector3 outside =
         (state_.external_forces.row(node) + loads_.forces().row(node)).transpose();
     const Vector3 drag = loads_.drag().row(node).transpose();
-    end.outside += outside.dot(d);
+    end.external_work += outside.dot(d);
     end.damped -= drag.dot(d);
     if (!weights.dynamic()) continue;
     const Vector3 v = state_.combined(weights.velocity, node);
@@ -372,7 +372,7 @@ void FemStep::count_tether(const mechanics::StepWeights& weights, mechanics::Ste
   const mechanics::Tether& tether = *state_.tether;
   const Vector3 now = tether_point(tether, state_.positions);
   const Vector3 force = tether.stiffness * (tether.anchor - now);
-  end.outside += force.dot(now - tether_point(tether, state_.start_positions));
+  end.external_work += force.dot(now - tether_point(tether, state_.start_positions));
   if (!weights.dynamic()) return;
   for (std::size_t k = 0; k < 3; ++k) {
     end.power += tether.weights[k] * force.dot(state_.combined(weights.velocity, tether.nodes[k]));
@@ -381,7 +381,7 @@ void FemStep::count_tether(const mechanics::StepWeights& weights, mechanics::Ste
 
 std::size_t FemStep::bytes() const {
   const Eigen::Index numbers =
-      right_.size() + motion_.size() + from_.size() + imbalance_.size() + lessening_.size();
+      right_.size() + motion_.size() + from_.size() + imbalance_.size() + subtracted_.size();
   return sizeof(double) * static_cast<std::size_t>(numbers) + inertia_.bytes() + elements_.bytes() +
          touched_blocks_.bytes() + turns_.bytes();
 }

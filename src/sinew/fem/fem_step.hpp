@@ -36,7 +36,7 @@ class FemStep : public mechanics::StepSystem {
   mechanics::Wrench unbalanced(std::span<const double> effort, const Vector3& about) override;
   double force_scale() const override { return force_scale_; }
   double rounding_floor() const override;
-  void lessen(std::span<const double> force) override;
+  void subtract_residual(std::span<const double> force) override;
 
   void renew(std::span<const double> effort, bool turned) override;
   void solve_motion(std::span<const double> effort) override;
@@ -93,12 +93,12 @@ class FemStep : public mechanics::StepSystem {
   mechanics::Tangent tangent_ = mechanics::Tangent::corotated;  // of the last linearisation
   bool first_linearisation_ = true;
 
-  // Over free nodes, (3 free,); lessening_ is empty until lessen() is called.
+  // Over free nodes, (3 free,); subtracted_ is empty until subtract_residual() is called.
   VectorX right_, motion_;
-  VectorX imbalance_;  // b + H^T effort, N
-  VectorX from_;       // positions at which motion_ starts, m
-  VectorX lessening_;  // N
-  bool lessens_ = false;
+  VectorX imbalance_;   // b + H^T effort, N
+  VectorX from_;        // positions at which motion_ starts, m
+  VectorX subtracted_;  // N
+  bool subtracts_ = false;
   mutable VectorX row_sums_;  // of rounding_floor(), scratch
   // What b the factor contains: right_; right_ + H^T base_effort_; another one.
   enum class Content { right, imbalance, other };

@@ -5,22 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <string>
-#include <vector>
-
-#include "sinew/core/types.hpp"
-#include "sinew/mesh/embedding.hpp"
 
 namespace sinew::fem {
 
 class FemModel;
 struct FemBodySettings;
-
-/// Nodes and weights of an attached point: x = sum weights x_node.
-struct Attachment {
-  std::vector<NodeId> nodes;
-  std::vector<double> weights;
-};
 
 /// A body model that consists of finite elements: mechanics::as<HasElements>(model).
 class HasElements {
@@ -30,11 +19,6 @@ class HasElements {
   /// The same, for an Assembly, which shares ownership.
   virtual std::shared_ptr<const FemModel> shared_elements() const = 0;
   virtual const FemBodySettings& settings() const = 0;
-  /// Nodes and weights of an attached point.
-  virtual const Attachment& attachment(int point) const = 0;
-  /// Nodes and weights of any point, without attaching it. Throws as attach() does.
-  virtual mesh::EmbeddedPoint locate(const Vector3& rest_position, mesh::Outside outside,
-                                     const std::string& what) const = 0;
   /// Attached point of a point mass, by its position in the settings.
   virtual int mass_point(std::size_t mass) const = 0;
 };

@@ -24,13 +24,8 @@ class HasMaterial {
   virtual Points load_forces() const = 0;
   /// Strain history of its elements.
   virtual const ElementHistory& history() const = 0;
-  /// Factor of the stresses of its elements at a given strain, and thus of their stiffness damping.
-  /// It does not scale membranes. Like external forces, it is an input and not part of the state;
-  /// it is 1 initially.
+  /// See mechanics::ScalesStiffness.
   virtual double stiffness_factor() const = 0;
-  /// Does not count the jump of the strain energy; sim::Simulation::set_stiffness_factor() does.
-  /// @param factor > 0, finite.
-  virtual void set_stiffness_factor(double factor) = 0;
   /// Adds the force that rows put on each free node, as of the last linearisation.
   /// @param effort (rows,) N of the world's rows. @param forces (n, 3) N, added to.
   virtual void add_row_forces(std::span<const double> effort, Points& forces) const = 0;

@@ -47,7 +47,7 @@ const TouchedBlocks::Pair& TouchedBlocks::find(int first, int second) {
 // Only the lower triangle is stored. Of a point with itself, C is symmetric.
 TouchedBlocks::Pair TouchedBlocks::reach(int first, int second) const {
   const auto free = model_.elements().free_index();
-  const Attachment &from = model_.attachment(first), &to = model_.attachment(second);
+  const mechanics::Attachment &from = model_.attachment(first), &to = model_.attachment(second);
   Pair pair{second, {}};
   for (std::size_t a = 0; a < from.nodes.size(); ++a) {
     const auto i = free[static_cast<std::size_t>(from.nodes[a])];

@@ -25,7 +25,8 @@ class Body {
   /// Velocity (3,) of a site: m/s; for an orientation the angular velocity, rad/s; for a coordinate
   /// (rate, 0, 0).
   virtual Vector3 velocity(int site) const = 0;
-  /// Positions and velocities of the nodes of the model's mesh, (n, 3) m and m/s.
+  /// Positions and velocities, (n, 3) m and m/s, of the points that show the body: the nodes of the
+  /// model's mesh, if it has one.
   virtual const Points& positions() const = 0;
   virtual const Points& velocities() const = 0;
   /// Energies of the current state. Evaluates the elements if necessary.

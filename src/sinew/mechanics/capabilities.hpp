@@ -8,20 +8,20 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <Eigen/Geometry>
 
 #include "sinew/collision/shape.hpp"
+#include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/mechanics/affine_field.hpp"
+#include "sinew/mesh/embedding.hpp"
+#include "sinew/mesh/rigid_parts.hpp"
 
 namespace sinew::collision {
 class SurfaceTopology;
 }
-namespace sinew::mesh {
-enum class Outside;
-}
-
 namespace sinew::mechanics {
 
 class SurfaceTrace;
@@ -91,6 +91,19 @@ class MayHaveBase {
   virtual bool has_base() const = 0;
 };
 
+/// A body whose stiffness can be scaled.
+class ScalesStiffness {
+ public:
+  virtual ~ScalesStiffness() = default;
+  /// Factor of the stresses of its elements at a given strain, and thus of their stiffness damping.
+  /// It does not scale membranes. Like external forces, it is an input and not part of the state;
+  /// it is 1 initially.
+  virtual double stiffness_factor() const = 0;
+  /// Does not count the jump of the strain energy; sim::Simulation::set_stiffness_factor() does.
+  /// @param factor > 0, finite.
+  virtual void set_stiffness_factor(double factor) = 0;
+};
+
 /// A body with the loads of its model.
 class TakesLoads {
  public:
@@ -119,6 +132,41 @@ class HasOrientations {
   virtual ~HasOrientations() = default;
   /// Rotation of an attached orientation relative to rest.
   virtual Matrix3 rotation(int orientation) const = 0;
+};
+
+/// A point mass that is attached to a body.
+struct AttachedMass {
+  std::string name;
+  int site = -1;      ///< attached point
+  double mass = 0.0;  ///< kg
+  Location place;     ///< for error messages
+};
+
+/// A body model that carries point masses.
+class CarriesMasses {
+ public:
+  virtual ~CarriesMasses() = default;
+  virtual std::vector<AttachedMass> point_masses() const = 0;
+};
+
+/// Nodes and weights of an attached point: x = sum weights x_node.
+struct Attachment {
+  std::vector<NodeId> nodes;
+  std::vector<double> weights;
+};
+
+/// A body model whose motion is that of the nodes of its mesh. Parts of the mesh that are joined at
+/// nodes or edges only may move without deforming.
+class MovesByNodes {
+ public:
+  virtual ~MovesByNodes() = default;
+  /// Coordinates of nodes that do not move; repeats are allowed.
+  virtual std::vector<mesh::HeldAxis> held_axes() const = 0;
+  /// Nodes and weights of an attached point; none for a site that is no point.
+  virtual const Attachment& attachment(int point) const = 0;
+  /// Nodes and weights of any point, without attaching it. Throws as BodyModel::attach() does.
+  virtual mesh::EmbeddedPoint locate(const Vector3& rest_position, mesh::Outside outside,
+                                     const std::string& what) const = 0;
 };
 
 /// A body model with a surface of triangles. Their nodes need not be those of BodyModel::mesh().

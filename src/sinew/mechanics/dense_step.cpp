@@ -22,7 +22,7 @@ DenseStep::DenseStep(Eigen::Index coordinates, const OwnRows& own, RowMemory& me
       pivots_(coordinates),
       spectrum_(coordinates) {
   const Eigen::Index n = coordinates;
-  for (VectorX* v : {&right_, &motion_, &scratch_, &lessening_, &gross_}) v->setZero(n);
+  for (VectorX* v : {&right_, &motion_, &scratch_, &subtracted_, &gross_}) v->setZero(n);
   for (MatrixX* m : {&matrix_, &symmetric_}) m->setZero(n, n);
   for (MatrixX* m : {&jacobian_, &second_jacobian_, &pulled_}) m->setZero(3, n);
   for (MatrixX* m : {&rows_, &moved_rows_, &soft_rows_}) m->resize(n, 0);
@@ -44,7 +44,7 @@ void DenseStep::linearise(const LinearisationRequest& request) {
   iterating_ = request.iterating;
   projected_ = request.tangent == Tangent::projected;
   force_scale_ = form(request, right_, matrix_);
-  if (lessens_) right_ -= lessening_;
+  if (subtracts_) right_ -= subtracted_;
   add_row_stiffness(matrix_);
 }
 
@@ -154,9 +154,9 @@ double DenseStep::residual(std::span<const double> effort, std::span<double> imb
   return scratch_.norm();
 }
 
-void DenseStep::lessen(std::span<const double> force) {
-  lessens_ = !force.empty();
-  if (lessens_) lessening_ = Eigen::Map<const VectorX>(force.data(), right_.size());
+void DenseStep::subtract_residual(std::span<const double> force) {
+  subtracts_ = !force.empty();
+  if (subtracts_) subtracted_ = Eigen::Map<const VectorX>(force.data(), right_.size());
 }
 
 Inertia DenseStep::condense() {

@@ -28,7 +28,7 @@ class DenseStep : public StepSystem {
   std::size_t size() const final { return static_cast<std::size_t>(motion_.size()); }
   double residual(std::span<const double> effort, std::span<double> imbalance) final;
   double force_scale() const final { return force_scale_; }
-  void lessen(std::span<const double> force) final;
+  void subtract_residual(std::span<const double> force) final;
 
   void renew(std::span<const double> effort, bool turned) final;
   void solve_motion(std::span<const double> effort) final;
@@ -96,9 +96,9 @@ class DenseStep : public StepSystem {
   const OwnRows& own_;
   RowMemory& memory_;
   VectorX right_, motion_, scratch_;
-  VectorX lessening_;
+  VectorX subtracted_;
   VectorX gross_;  // of one row: sum of the magnitudes of its terms, to tell rounding from zero
-  bool lessens_ = false;
+  bool subtracts_ = false;
   MatrixX matrix_, symmetric_;
   mutable MatrixX jacobian_;          // (3, n), of sites: scratch
   MatrixX second_jacobian_, pulled_;  // (3, n), scratch

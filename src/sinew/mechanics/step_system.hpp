@@ -75,9 +75,9 @@ struct StepEnd {
   double error = 0.0;  ///< m, an estimate of the largest error in any coordinate
   /// Work of loads, external forces and tethers, and of the base on the body, without gravity. The
   /// work of rows on what is fixed to the base is not included (HasBase::carried()).
-  double outside = 0.0;
+  double external_work = 0.0;
   double damped = 0.0;   ///< energy dissipated by damping and drag
-  double power = 0.0;    ///< W, that of `outside` at the end of the step
+  double power = 0.0;    ///< W, that of `external_work` at the end of the step
   double damping = 0.0;  ///< W, dissipated by damping and drag at the end of the step
   /// The body was moved by something that the energy ledger does not count: its base, or a tether.
   bool moved_from_outside = false;
@@ -144,7 +144,7 @@ class StepSystem {
   virtual double rounding_floor() const = 0;
   /// From the next linearisation on, subtracts a force from b, the homotopy residual of load
   /// stepping. @param force (size(),) N, copied; empty: subtracts nothing.
-  virtual void lessen(std::span<const double> force) = 0;
+  virtual void subtract_residual(std::span<const double> force) = 0;
 
   /// Uses the last factorisation with the b and H of the present linearisation. After it,
   /// solve_motion() computes dq = A^-1 (b + H^T effort + H^T (effort' - effort)) for other efforts

@@ -21,6 +21,9 @@ constexpr int kSkinLayersASegment = 8;
 
 ArmBodyModel::ArmBodyModel(std::shared_ptr<const Arm> arm) : arm_(std::move(arm)) { make_skin(); }
 
+ArmBodyModel::ArmBodyModel(ArmSettings settings)
+    : ArmBodyModel(std::make_shared<const Arm>(std::move(settings))) {}
+
 ArmPoint ArmBodyModel::locate(const Vector3& rest_position, mesh::Outside outside,
                               const std::string& what) const {
   const ArmSettings& settings = arm_->settings();
@@ -74,6 +77,54 @@ int ArmBodyModel::attach_nodes(std::span<const NodeId>, std::span<const double>)
               "a constant-curvature arm has no nodes or faces", "name points of it");
 }
 
+int ArmBodyModel::attach_mean(const Points& points, mesh::Outside outside,
+                              const std::string& what) {
+  ArmPoint mean;
+  const double share = 1.0 / static_cast<double>(points.rows());
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const ArmPoint one = locate(points.row(i), outside, fmt::format("point {} of {}", i, what));
+    if (i == 0) {
+      mean = one;
+      mean.x = mean.y = mean.z = 0.0;
+    }
+    if (one.segment != mean.segment || one.fraction != mean.fraction) {
+      throw Error(ErrorKind::wrong_type, {.item = what},
+                  fmt::format("the points lie in several sections of arm '{}', which has no site "
+                              "for their mean",
+                              name()),
+                  "give one point, or several in one section");
+    }
+    mean.x += share * one.x;
+    mean.y += share * one.y;
+    mean.z += share * one.z;
+  }
+  return add({.point = mean});
+}
+
+std::vector<int> ArmBodyModel::attach_anchors(std::span<const NodeId>) {
+  std::vector<int> anchors;
+  for (int n = 0; n < arm_->segments(); ++n) {
+    ArmPoint end;
+    end.segment = n;
+    end.fraction = 1.0;
+    anchors.push_back(add({.point = end}));
+  }
+  return anchors;
+}
+
+std::vector<mechanics::HeldDirection> ArmBodyModel::held_directions() const {
+  return mechanics::held_as_a_whole(arm_->settings().base);
+}
+
+// Of the stiffest section: the force at its end that bends it, per motion of the end.
+double ArmBodyModel::stiffness_scale() const {
+  double most = 0.0;
+  for (const Segment& segment : arm_->settings().segments) {
+    most = std::max(most, segment.stiffness / (segment.length * segment.length));
+  }
+  return most > 0.0 ? most : 1.0;
+}
+
 int ArmBodyModel::attach_coordinate(int coordinate) {
   if (coordinate < 0 || coordinate >= arm_->coordinates()) {
     throw Error(ErrorKind::index_out_of_range, {.item = "body '" + name() + "'"},
@@ -108,8 +159,7 @@ Vector3 ArmBodyModel::rest_position(int point) const {
 }
 
 void ArmBodyModel::finish(int body, const mechanics::RowPattern& rows,
-                          std::span<const mechanics::StiffnessPair>,
-                          const linalg::FactorisationSettings&) {
+                          std::span<const mechanics::StiffnessPair>) {
   own_rows_ = mechanics::OwnRows(body, rows);
 }
 

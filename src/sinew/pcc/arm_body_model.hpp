@@ -31,6 +31,8 @@ class ArmBodyModel final : public mechanics::BodyModel,
   };
 
   explicit ArmBodyModel(std::shared_ptr<const Arm> arm);
+  /// Throws as Arm does.
+  explicit ArmBodyModel(ArmSettings settings);
 
   const std::string& name() const override { return arm_->settings().name; }
   /// Attaches a point to the section of the straight arm that contains it. If the point lies before
@@ -41,19 +43,28 @@ class ArmBodyModel final : public mechanics::BodyModel,
                   const std::string& what) override;
   /// Throws Error(wrong-type), since an arm has no nodes.
   int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
+  /// Of points of one section; throws Error(wrong-type) for others.
+  int attach_mean(const Points& points, mesh::Outside outside, const std::string& what) override;
+  std::vector<int> attach_anchors(std::span<const NodeId> part) override;
   int attach_orientation(const Vector3& rest_position, mesh::Outside outside,
                          const std::string& what) override;
   int attach_coordinate(int coordinate) override;
   Vector3 rest_position(int point) const override;
   void finish(int body, const mechanics::RowPattern& rows,
-              std::span<const mechanics::StiffnessPair> stiffness_pairs,
-              const linalg::FactorisationSettings& settings) override;
+              std::span<const mechanics::StiffnessPair> stiffness_pairs) override;
   bool couples(int, int) const override { return true; }
+  std::vector<mechanics::HeldDirection> held_directions() const override;
+  bool is_loaded() const override { return true; }
+  bool has_memory() const override { return false; }
+  double stiffness_scale() const override;
+  bool has_inertia() const override { return true; }  // every section has mass
+  double size() const override { return arm_->length(); }
   bool has_few_coordinates() const override { return true; }
   std::vector<NamedHash> parts() const override;
   std::uint64_t site_hash(int site) const override;
   std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_geometric_stiffness,
                                           int histories) const override;
+  bool has_mesh() const override { return true; }
   /// The skin for records and the view: a cylinder of hexahedra with the arm's radius.
   const mesh::Mesh& mesh() const override { return skin_; }
 

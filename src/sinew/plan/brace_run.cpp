@@ -14,7 +14,7 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/embedding.hpp"
-#include "sinew/pcc/arm.hpp"
+#include "sinew/pcc/arm_body_model.hpp"
 #include "sinew/plan/reach.hpp"
 #include "sinew/plan/uniform.hpp"
 #include "sinew/sim/actuator.hpp"
@@ -100,7 +100,7 @@ class Bench {
     step.time_step = settings.time_step;
     step.integrator = mechanics::Integrator::backward_euler;
     sim::ModelBuilder builder(step);
-    builder.add_arm(body);
+    builder.add_body<pcc::ArmBodyModel>(body);
     for (int segment = 0; segment < arm->segments(); ++segment) {
       const auto& of = arm->settings().segments[static_cast<std::size_t>(segment)];
       for (int along = 0; along < of.coordinates(); ++along) {

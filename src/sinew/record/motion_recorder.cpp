@@ -79,7 +79,8 @@ struct RunMotion::Parts {
   Parts(const sim::Model& model, const std::string& name) {
     motion.name = name;
     for (const auto& body : model.bodies()) {
-      mesh::OuterSurface surface = mesh::outer_surface(body.mesh());
+      mesh::OuterSurface surface;
+      if (body.has_mesh()) surface = mesh::outer_surface(body.mesh());
       motion.surfaces.push_back({body.name(), std::move(surface.triangles), {}});
       floats += 3 * surface.nodes.size();
       nodes.push_back(std::move(surface.nodes));

@@ -47,6 +47,7 @@ void RunStates::describe(const RecordSettings& settings) {
 
 void RunStates::write_meshes() {
   for (const auto& body : observables_.simulation().model().bodies()) {
+    if (!body.has_mesh()) continue;
     const mesh::Mesh& mesh = body.mesh();
     const auto nodes = static_cast<std::uint64_t>(mesh.node_count());
     const std::string folder = "/mesh/" + body.name();

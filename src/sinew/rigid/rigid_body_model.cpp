@@ -11,6 +11,7 @@
 #include "sinew/core/rotation.hpp"
 #include "sinew/core/thread_pool.hpp"
 #include "sinew/linalg/dense.hpp"
+#include "sinew/mechanics/spread_points.hpp"
 #include "sinew/mechanics/surface_trace.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/patch.hpp"
@@ -166,6 +167,34 @@ int RigidBodyModel::attach_nodes(std::span<const NodeId> nodes, std::span<const 
   return add({Attachment::Kind::point, mean - centre()});
 }
 
+int RigidBodyModel::attach_mean(const Points& points, mesh::Outside outside,
+                                const std::string& what) {
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    check_inside(points.row(i), outside, fmt::format("point {} of {}", i, what));
+  }
+  return add({Attachment::Kind::point, points.colwise().mean().transpose() - centre()});
+}
+
+std::vector<int> RigidBodyModel::attach_anchors(std::span<const NodeId>) {
+  std::vector<int> anchors;
+  const double whole = 1.0;
+  for (const NodeId node : mechanics::spread_points(skin_.nodes)) {
+    anchors.push_back(attach_nodes({&node, 1}, {&whole, 1}));
+  }
+  return anchors;
+}
+
+std::vector<mechanics::HeldDirection> RigidBodyModel::held_directions() const {
+  return is_free() ? std::vector<mechanics::HeldDirection>() : mechanics::held_as_a_whole(centre());
+}
+
+// Its matrix consists of the anchors alone.
+double RigidBodyModel::stiffness_scale() const { return 1e3; }
+
+double RigidBodyModel::size() const {
+  return mechanics::box_diagonal(skin_.nodes, settings_.rotation);
+}
+
 int RigidBodyModel::attach_orientation(const Vector3& rest_position, mesh::Outside outside,
                                        const std::string& what) {
   check_inside(rest_position, outside, what);
@@ -203,8 +232,7 @@ int RigidBodyModel::add(const Attachment& attachment) {
 Vector3 RigidBodyModel::rest_position(int point) const { return centre() + attachment(point).arm; }
 
 void RigidBodyModel::finish(int body, const mechanics::RowPattern& rows,
-                            std::span<const mechanics::StiffnessPair>,
-                            const linalg::FactorisationSettings&) {
+                            std::span<const mechanics::StiffnessPair>) {
   own_rows_ = mechanics::OwnRows(body, rows, surface_site_);
   std::vector<mechanics::Load> on_faces;
   for (const int load : face_load_numbers_) {

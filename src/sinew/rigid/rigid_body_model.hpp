@@ -41,6 +41,9 @@ class RigidBodyModel final : public mechanics::BodyModel,
   int attach_ball(const Vector3& centre, double radius, mesh::Outside outside,
                   const std::string& what) override;
   int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
+  /// The mean of material points of a rigid body is a material point.
+  int attach_mean(const Points& points, mesh::Outside outside, const std::string& what) override;
+  std::vector<int> attach_anchors(std::span<const NodeId> part) override;
   int attach_orientation(const Vector3& rest_position, mesh::Outside outside,
                          const std::string& what) override;
   int attach_surface() override;
@@ -50,10 +53,14 @@ class RigidBodyModel final : public mechanics::BodyModel,
   bool holds(NodeId) const override { return settings_.fixed; }
   Vector3 rest_position(int point) const override;
   void finish(int body, const mechanics::RowPattern& rows,
-              std::span<const mechanics::StiffnessPair> stiffness_pairs,
-              const linalg::FactorisationSettings& settings) override;
+              std::span<const mechanics::StiffnessPair> stiffness_pairs) override;
   bool couples(int, int) const override { return true; }
-  bool is_free() const override { return !settings_.fixed; }
+  bool is_free() const { return !settings_.fixed; }
+  std::vector<mechanics::HeldDirection> held_directions() const override;
+  bool has_memory() const override { return false; }
+  double stiffness_scale() const override;
+  bool has_inertia() const override { return true; }  // a body that can move has mass
+  double size() const override;
   bool is_loaded() const override {
     return load_count() > 0 || (mass() > 0.0 && settings_.gravity.norm() > 0.0);
   }
@@ -61,6 +68,7 @@ class RigidBodyModel final : public mechanics::BodyModel,
   bool has_base() const override { return settings_.fixed; }
   std::vector<NamedHash> parts() const override;
   std::uint64_t site_hash(int site) const override;
+  bool has_mesh() const override { return true; }
   const mesh::Mesh& mesh() const override { return skin_; }
   std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_geometric_stiffness,
                                           int histories) const override;

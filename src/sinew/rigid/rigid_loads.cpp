@@ -149,7 +149,7 @@ void RigidLoads::count_work(const mechanics::StepWeights& weights, mechanics::St
   const auto work = [&](const Sum& sum) {
     return sum.force.dot(moved) + (turn * sum.dyads).trace();
   };
-  end.outside += work(steady_ + turning_);
+  end.external_work += work(steady_ + turning_);
   end.damped -= work(drag_);
   if (!weights.dynamic()) return;
   const Vector6 rate = state_.combine(weights.velocity);

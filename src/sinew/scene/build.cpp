@@ -84,14 +84,6 @@ std::optional<Notice> replace_tangent(const SceneDescription& scene, sim::StepSe
       "leave out `tangent`, or write `tangent: exact`"};
 }
 
-linalg::FactorisationSettings factorisation_settings(const SolverDescription& solver) {
-  linalg::FactorisationSettings settings;
-  settings.backend = solver.backend;
-  settings.ordering = solver.ordering;
-  settings.threads = solver.threads;
-  return settings;
-}
-
 }  // namespace
 
 const SceneController* Robot::first_controller() const {
@@ -178,7 +170,7 @@ Robot build(SceneDescription description, const SharedMeshes& shared) {
   for (const EstimatorDescription& estimator : description.estimators) {
     add_estimator(builder, description, estimator);
   }
-  robot.model = builder.build(factorisation_settings(description.solver));
+  robot.model = builder.build();
   std::ranges::move(locking_notices(description, *robot.model, shared),
                     std::inserter(robot.notices, robot.notices.begin() + of_bodies));
   for (const ControllerDescription& controller : description.controllers) {

@@ -6,10 +6,11 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/solid_elements.hpp"
 #include "sinew/mesh/selection.hpp"
-#include "sinew/pcc/arm.hpp"
+#include "sinew/pcc/arm_body_model.hpp"
+#include "sinew/rigid/rigid_body_model.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/readers.hpp"
@@ -113,6 +114,14 @@ void fix(const FixedRegion& fixed, const mesh::Mesh& mesh, fem::FemModelSettings
   }
 }
 
+linalg::FactorisationSettings factorisation_settings(const SolverDescription& solver) {
+  linalg::FactorisationSettings settings;
+  settings.backend = solver.backend;
+  settings.ordering = solver.ordering;
+  settings.threads = solver.threads;
+  return settings;
+}
+
 fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescription& body,
                                   const SharedMesh* shared) {
   fem::FemBodySettings settings;
@@ -125,6 +134,7 @@ fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescr
     check_element(body, *settings.mesh);
   }
   settings.gravity = scene.gravity;
+  settings.factorisation = factorisation_settings(scene.solver);
   settings.damping = {body.mass_damping, body.stiffness_damping};
   for (const MassDescription& mass : scene.masses) {
     if (mass.body != body.name) continue;
@@ -150,7 +160,7 @@ void add_arm(sim::ModelBuilder& builder, const SceneDescription& scene,
              const BodyDescription& body) {
   pcc::ArmSettings settings = *body.arm;
   settings.gravity = scene.gravity;
-  builder.add_arm(std::move(settings));
+  builder.add_body<pcc::ArmBodyModel>(std::move(settings));
 }
 
 void add_base(sim::ModelBuilder& builder, int number, const BodyDescription& body) {
@@ -165,7 +175,7 @@ void add_rigid(sim::ModelBuilder& builder, const SceneDescription& scene,
   rigid::RigidSettings settings = *body.rigid;
   settings.gravity = scene.gravity;
   if (!body.mesh.file.empty()) settings.shape = make_solid(make_surface(body.mesh), body.convex);
-  add_base(builder, builder.add_rigid_body(std::move(settings), body.place), body);
+  add_base(builder, builder.add_body<rigid::RigidBodyModel>(std::move(settings), body.place), body);
 }
 
 }  // namespace
@@ -182,7 +192,8 @@ void add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
   try {
     if (body.arm) return add_arm(builder, scene, body);
     if (body.rigid) return add_rigid(builder, scene, body);
-    const int number = builder.add_fem_body(fem_settings(scene, body, shared), body.place);
+    const int number =
+        builder.add_body<fem::FemBodyModel>(fem_settings(scene, body, shared), body.place);
     add_base(builder, number, body);
   } catch (const Error& error) {
     throw error.at(body.place);

@@ -8,7 +8,6 @@
 
 #include "sinew/constraint/chamber.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/bears_loads.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
@@ -66,8 +65,7 @@ void add_liquid_weight(ModelData& data, const ChamberSettings& settings) {
                 "surface of its own",
                 "name the chamber by a point inside, a patch or a region, or leave `density` out");
   }
-  find_elements(data, settings.body, settings.place, "liquid");
-  auto& body = *mechanics::as<mechanics::BearsLoads>(data.body(settings.body));
+  auto& body = find_capable<mechanics::BearsLoads>(data, settings.body, settings.place, "liquid");
   body.add_load(hydrostatic(body, *faces, settings.liquid->density, std::nullopt));
 }
 

@@ -9,8 +9,6 @@
 #include "sinew/collision/touching_points.hpp"
 #include "sinew/constraint/shape_contact.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_model.hpp"
-#include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/mesh.hpp"
@@ -55,21 +53,14 @@ void check_gaps(const constraint::ShapeContact& contact, const mechanics::BodyMo
               "move the surface away; it may then approach by a motion");
 }
 
-std::vector<mechanics::MaterialPoint> attach_points(ModelData& data, mechanics::BodyModel& on,
+std::vector<mechanics::MaterialPoint> attach_points(mechanics::BodyModel& on,
                                                     const ContactSettings& settings) {
   std::vector<mechanics::MaterialPoint> points;
-  if (!settings.nodes.empty() && mechanics::as<mechanics::HasShape>(on) != nullptr) {
-    for (const NodeId node : settings.nodes) {
-      points.push_back({settings.body, attach_node(on, node)});
-    }
-  } else if (!settings.nodes.empty()) {
-    const auto free = find_elements(data, settings.body, settings.place, "contact of nodes")
-                          .elements()
-                          .free_index();
-    for (const NodeId node : settings.nodes) {
-      if (free[static_cast<std::size_t>(node)] < 0) continue;
-      points.push_back({settings.body, attach_node(on, node)});
-    }
+  const bool whole = mechanics::as<mechanics::HasShape>(on) != nullptr;  // moves as a whole
+  const auto* surface = mechanics::as<const mechanics::HasSurface>(on);
+  for (const NodeId node : settings.nodes) {
+    if (!whole && surface != nullptr && surface->holds(node)) continue;
+    points.push_back({settings.body, attach_node(on, node)});
   }
   for (Eigen::Index i = 0; i < settings.points.rows(); ++i) {
     points.push_back(
@@ -117,8 +108,8 @@ std::unique_ptr<constraint::ShapeContact> make_contact(ModelData& data, mechanic
                                                       attach_side(data, settings.body, settings),
                                                       surface, settings.coefficients(), carrier);
   }
-  return std::make_unique<constraint::ShapeContact>(
-      settings.name, attach_points(data, on, settings), surface, settings.coefficients(), carrier);
+  return std::make_unique<constraint::ShapeContact>(settings.name, attach_points(on, settings),
+                                                    surface, settings.coefficients(), carrier);
 }
 
 // Whether impacts are events of the integrator: true for rigid bodies. Deformable bodies rebound
@@ -166,12 +157,10 @@ double checked_aggregate(ModelData& data, const mechanics::BodyModel& on,
                 fmt::format("zones of {:g} m are asked for", settings.aggregate),
                 "give the size of a zone, some edges of the mesh; or leave `aggregate` out");
   }
-  const auto deformable = [](const mechanics::BodyModel& body) {
-    return mechanics::as<const fem::HasElements>(body) != nullptr;
-  };
-  const bool other =
-      settings.touched && deformable(find_body(data, *settings.touched, settings.place));
-  if (deformable(on) || other) return settings.aggregate;
+  const bool few = on.has_few_coordinates() &&
+                   (!settings.touched ||
+                    find_body(data, *settings.touched, settings.place).has_few_coordinates());
+  if (!few) return settings.aggregate;
   throw Error(ErrorKind::conflicting_keys, settings.place,
               "`aggregate` is for deformable bodies: others touch in few points",
               "leave `aggregate` out");

@@ -12,14 +12,8 @@ namespace sinew::constraint {
 class Constraint;
 class Contact;
 }  // namespace sinew::constraint
-namespace sinew::fem {
-struct FemBodySettings;
-}
-namespace sinew::pcc {
-struct ArmSettings;
-}
-namespace sinew::rigid {
-struct RigidSettings;
+namespace sinew::mechanics {
+class BodyModel;
 }
 
 namespace sinew::sim {
@@ -40,9 +34,7 @@ struct JointSettings;
 struct MotorSettings;
 struct WeldSettings;
 
-int add_fem_body(ModelData& data, fem::FemBodySettings settings);
-int add_arm(ModelData& data, pcc::ArmSettings settings);
-int add_rigid_body(ModelData& data, rigid::RigidSettings settings);
+int add_body(ModelData& data, std::unique_ptr<mechanics::BodyModel> body);
 
 /// @param data receives the actuator and its constraint.
 /// @param actuator without the indices of constraint, row and first state, which are set here.

@@ -23,7 +23,7 @@ std::vector<constraint::Tie::Pair> attach_pairs(ModelData& data, const WeldSetti
   mechanics::BodyModel &first = data.body(settings.first), &second = data.body(settings.second);
   std::vector<int> points;
   if (!settings.nodes.empty()) {
-    find_elements(data, settings.first, settings.place, "weld of nodes");
+    find_capable<mechanics::MovesByNodes>(data, settings.first, settings.place, "weld of nodes");
   }
   for (const NodeId node : settings.nodes) points.push_back(attach_node(first, node));
   for (Eigen::Index i = 0; i < settings.points.rows(); ++i) {

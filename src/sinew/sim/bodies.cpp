@@ -138,13 +138,13 @@ void Bodies::imbalance(std::span<const double> effort, VectorX& result) {
                 [&](auto& system, std::span<double> part) { system.residual(effort, part); });
 }
 
-void Bodies::lessen(std::span<const double> force) {
+void Bodies::subtract_residual(std::span<const double> force) {
   if (force.empty()) {
-    for (auto* system : systems_) system->lessen({});
+    for (auto* system : systems_) system->subtract_residual({});
     return;
   }
   for_each_part(systems_, force,
-                [](auto& system, std::span<const double> part) { system.lessen(part); });
+                [](auto& system, std::span<const double> part) { system.subtract_residual(part); });
 }
 
 void Bodies::solve_motion(std::span<const double> effort) {

@@ -56,9 +56,9 @@ class Bodies {
   /// The residual vector b + H^T effort. @param effort (rows,) N.
   /// @param result (all bodies' size(),) N.
   void imbalance(std::span<const double> effort, VectorX& result);
-  /// Subtracts a force from b, see mechanics::StepSystem::lessen().
+  /// Subtracts a force from b, see mechanics::StepSystem::subtract_residual().
   /// @param force (all bodies' size(),) N; empty: none.
-  void lessen(std::span<const double> force);
+  void subtract_residual(std::span<const double> force);
 
   void solve_motion(std::span<const double> effort);
   void renew(std::span<const double> effort, bool turned);

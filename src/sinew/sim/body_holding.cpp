@@ -13,6 +13,7 @@
 #include "sinew/constraint/joint.hpp"
 #include "sinew/constraint/tie.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/anchors.hpp"
 #include "sinew/sim/model_data.hpp"
 #include "sinew/sim/rigid_motions.hpp"
@@ -139,7 +140,9 @@ class Holding {
   }
 
   bool lies_on(const mechanics::Site& point, int part) const {
-    const std::vector<NodeId> nodes = data_.body(point.body).nodes_of(point.number);
+    const auto* body = mechanics::as<const mechanics::MovesByNodes>(data_.body(point.body));
+    if (body == nullptr) return false;
+    const std::vector<NodeId>& nodes = body->attachment(point.number).nodes;
     return std::ranges::any_of(nodes, [&](NodeId node) {
       const auto& own = parts_[static_cast<std::size_t>(point.body)].of_node(node);
       return std::ranges::find(own, part) != own.end();
@@ -185,8 +188,8 @@ bool is_joined(const ModelData& data, int body) {
 [[noreturn]] void throw_loose_part(const ModelData& data, std::size_t body,
                                    const std::vector<char>& free, Location place) {
   const mesh::Mesh& mesh = data.bodies[body]->mesh();
-  const std::vector<mesh::LooseJoint> loose =
-      mesh::loose_joints(mesh, *data.bodies[body]->held_nodes());
+  const auto& parts = *mechanics::as<const mechanics::MovesByNodes>(*data.bodies[body]);
+  const std::vector<mesh::LooseJoint> loose = mesh::loose_joints(mesh, parts.held_axes());
   std::string named;
   if (!loose.empty()) named = ": " + mesh::describe(loose.back(), mesh);
   if (loose.size() > 1) named += fmt::format(" ({} such parts in all)", loose.size());
@@ -201,7 +204,7 @@ bool is_joined(const ModelData& data, int body) {
 
 [[noreturn]] void throw_loose(const ModelData& data, std::size_t body, Location place,
                               bool joined) {
-  const auto held = data.bodies[body]->held_nodes();
+  const bool held = !data.bodies[body]->held_directions().empty();
   if (joined) {
     throw Error(ErrorKind::nothing_fixed, place,
                 "its joints leave it free to move, and neither weight nor a cable, spring or "
@@ -210,9 +213,8 @@ bool is_joined(const ModelData& data, int body) {
                 "line, give a hinge or slider a motor, or choose a dynamic integrator");
   }
   throw Error(ErrorKind::nothing_fixed, place,
-              !held || held->empty()
-                  ? "nothing holds this body, so it has no static equilibrium"
-                  : "what is fixed leaves it free to move, so it has no static equilibrium",
+              !held ? "nothing holds this body, so it has no static equilibrium"
+                    : "what is fixed leaves it free to move, so it has no static equilibrium",
               "fix a region of it, weld it to a body that is held, or choose a dynamic integrator");
 }
 

@@ -248,7 +248,7 @@ double ContactRows::turning_speed(std::size_t number, std::size_t point, double 
   return time_step * contact->turning_speed(configuration_, point, rows_);
 }
 
-void ContactRows::want(std::span<const int> contacts) {
+void ContactRows::require_active(std::span<const int> contacts) {
   std::ranges::fill(wanted_, 0);
   for (const int contact : contacts) wanted_[static_cast<std::size_t>(contact)] = 1;
 }

@@ -55,7 +55,7 @@ class ContactRows {
   double friction(const constraint::Contact& contact, std::size_t point) const;
   /// Keeps the nearest point of these contacts active, whatever its gap, since a controller needs
   /// their forces. @param contacts indices in planes().contacts().
-  void want(std::span<const int> contacts);
+  void require_active(std::span<const int> contacts);
   /// m: distance within which this point is searched; 0 if all these contacts have forces.
   /// @param effort (rows,) N of the last step.
   double wanted_reach(std::span<const double> effort) const;

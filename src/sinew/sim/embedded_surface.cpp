@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/distance.hpp"
@@ -38,22 +37,22 @@ std::pair<int, int> ends_of(int a, int b) { return std::minmax(a, b); }
 
 EmbeddedSurface::EmbeddedSurface(mechanics::BodyModel& body, const mesh::Surface& surface,
                                  mesh::Outside outside, const std::string& name)
-    : body_(body), elements_(mechanics::as<const fem::HasElements>(body)) {
+    : body_(body), nodes_(mechanics::as<const mechanics::MovesByNodes>(body)) {
   triangles_.assign(surface.triangles.begin(), surface.triangles.end());
   for (Eigen::Index i = 0; i < surface.nodes.rows(); ++i) {
     vertices_.push_back(surface.nodes.row(i).transpose());
     attached_.push_back(attach(vertices_.back(), outside,
                                fmt::format("vertex {} of the surface of '{}'", i, name)));
   }
-  if (elements_ != nullptr) {
+  if (nodes_ != nullptr) {
     for (int k = 0; k < kHalvings && halve_edges(); ++k) continue;
   }
   make_faces();
 }
 
 int EmbeddedSurface::attach(const Vector3& at, mesh::Outside outside, const std::string& what) {
-  if (elements_ == nullptr) return body_.attach(at, outside, what);
-  mesh::EmbeddedPoint point = elements_->locate(at, outside, what);
+  if (nodes_ == nullptr) return body_.attach(at, outside, what);
+  mesh::EmbeddedPoint point = nodes_->locate(at, outside, what);
   std::vector<NodeId> nodes;
   std::vector<double> weights;
   for (std::size_t k = 0; k < point.nodes.size(); ++k) {
@@ -68,7 +67,7 @@ int EmbeddedSurface::attach(const Vector3& at, mesh::Outside outside, const std:
 int EmbeddedSurface::attach_between(int first, int second) {
   std::map<NodeId, double> sum;
   for (const int point : {first, second}) {
-    const fem::Attachment& a = elements_->attachment(attached_[static_cast<std::size_t>(point)]);
+    const mechanics::Attachment& a = nodes_->attachment(attached_[static_cast<std::size_t>(point)]);
     for (std::size_t k = 0; k < a.nodes.size(); ++k) sum[a.nodes[k]] += 0.5 * a.weights[k];
   }
   std::vector<NodeId> nodes;
@@ -84,7 +83,7 @@ int EmbeddedSurface::attach_between(int first, int second) {
 bool EmbeddedSurface::is_longer(int first, int second, double elements) const {
   const Vector3 &a = vertices_[static_cast<std::size_t>(first)],
                 &b = vertices_[static_cast<std::size_t>(second)];
-  const int element = elements_->locate(0.5 * (a + b), mesh::Outside::nearest, kBetween).element;
+  const int element = nodes_->locate(0.5 * (a + b), mesh::Outside::nearest, kBetween).element;
   return (b - a).norm() > elements * mesh::element_size(body_.mesh(), element);
 }
 
@@ -93,7 +92,7 @@ bool EmbeddedSurface::leaves_element(int first, int second) const {
   const Vector3 &a = vertices_[static_cast<std::size_t>(first)],
                 &b = vertices_[static_cast<std::size_t>(second)];
   const auto element = static_cast<std::size_t>(
-      elements_->locate(0.5 * (a + b), mesh::Outside::nearest, kBetween).element);
+      nodes_->locate(0.5 * (a + b), mesh::Outside::nearest, kBetween).element);
   const mesh::Mesh& mesh = body_.mesh();
   if (element < mesh.tetrahedra.size()) {
     const mesh::Corners corners = mesh::corners_of(mesh, static_cast<int>(element));
@@ -171,7 +170,7 @@ void EmbeddedSurface::make_faces() {
   std::map<Edge, int> middles;  // -1: none
   const auto find_middle = [&](int a, int b) {
     const auto [found, is_new] = middles.try_emplace(ends_of(a, b), -1);
-    if (is_new && elements_ != nullptr && bends(a, b)) {
+    if (is_new && nodes_ != nullptr && bends(a, b)) {
       const Vector3 between =
           0.5 * (vertices_[static_cast<std::size_t>(a)] + vertices_[static_cast<std::size_t>(b)]);
       found->second = static_cast<int>(attached_.size());

@@ -12,12 +12,10 @@
 #include "sinew/core/types.hpp"
 #include "sinew/mesh/mesh.hpp"
 
-namespace sinew::fem {
-class HasElements;
-}
 namespace sinew::mechanics {
 class BodyModel;
-}
+class MovesByNodes;
+}  // namespace sinew::mechanics
 namespace sinew::mesh {
 enum class Outside;
 }
@@ -62,7 +60,7 @@ class EmbeddedSurface {
   int attach_between(int first, int second);
 
   mechanics::BodyModel& body_;
-  const fem::HasElements* elements_;  // null: a body without elements
+  const mechanics::MovesByNodes* nodes_;  // null: a body that does not move by nodes
   std::vector<Vector3> vertices_;
   std::vector<Triangle> triangles_;
   std::vector<int> attached_;

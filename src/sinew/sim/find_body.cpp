@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/has_elements.hpp"
-#include "sinew/mechanics/body_model.hpp"
-#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/model_data.hpp"
 
 namespace sinew::sim {
@@ -16,10 +13,7 @@ mechanics::BodyModel& find_body(ModelData& data, int index, const Location& plac
               "add the body first");
 }
 
-fem::HasElements& find_elements(ModelData& data, int index, const Location& place,
-                                const char* what) {
-  auto* elements = mechanics::as<fem::HasElements>(find_body(data, index, place));
-  if (elements != nullptr) return *elements;
+void throw_not_capable(const Location& place, const char* what) {
   throw Error(ErrorKind::wrong_type, place, fmt::format("this body takes no {}", what),
               "name a finite-element body");
 }

@@ -2,14 +2,11 @@
 /// Checked access to the bodies of a model under construction.
 #pragma once
 
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+
 namespace sinew {
 struct Location;
-}
-namespace sinew::fem {
-class HasElements;
-}
-namespace sinew::mechanics {
-class BodyModel;
 }
 
 namespace sinew::sim {
@@ -20,9 +17,17 @@ struct ModelData;
 /// @param place source location of the reference. Throws Error(unknown-name).
 mechanics::BodyModel& find_body(ModelData& data, int index, const Location& place);
 
-/// A body of finite elements by index. @param data,index,place as for find_body().
-/// @param what needs such a body, for the message: "loads". Throws Error: unknown-name, wrong-type.
-fem::HasElements& find_elements(ModelData& data, int index, const Location& place,
-                                const char* what);
+/// Throws Error(wrong-type) for a body that lacks a capability.
+/// @param place,what see find_capable().
+[[noreturn]] void throw_not_capable(const Location& place, const char* what);
+
+/// The capability of a body by index. @param data,index,place as for find_body().
+/// @param what needs it, for the message: "loads". Throws Error: unknown-name, wrong-type.
+template <class Capability>
+Capability& find_capable(ModelData& data, int index, const Location& place, const char* what) {
+  auto* const found = mechanics::as<Capability>(find_body(data, index, place));
+  if (found == nullptr) throw_not_capable(place, what);
+  return *found;
+}
 
 }  // namespace sinew::sim

@@ -50,7 +50,7 @@ Vector3 centre_of(const mechanics::Body& body) {
 std::string describe_part(const mechanics::BodyModel& body, const Points& at, const Points& moved,
                           double least) {
   const std::string& name = body.name();
-  if (!body.held_nodes()) {  // a rigid body moves as a whole
+  if (mechanics::as<const mechanics::MovesByNodes>(body) == nullptr) {  // it moves as a whole
     return fmt::format("body '{}' {}", name, RigidFit(at, moved).text());
   }
   std::vector<Eigen::Index> nodes;

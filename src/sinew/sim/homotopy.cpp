@@ -9,9 +9,9 @@ void Homotopy::keep_residual(std::span<const double> effort) {
 }
 
 void Homotopy::set_fraction(double fraction) {
-  if (fraction == 0.0) return bodies_.lessen({});
+  if (fraction == 0.0) return bodies_.subtract_residual({});
   lessened_ = fraction * residual_;
-  bodies_.lessen({lessened_.data(), static_cast<std::size_t>(lessened_.size())});
+  bodies_.subtract_residual({lessened_.data(), static_cast<std::size_t>(lessened_.size())});
 }
 
 }  // namespace sinew::sim

@@ -18,7 +18,7 @@ struct BodyInputs {
   std::optional<mechanics::Tether> tether;  ///< spring from a point to an anchor in the world
   std::optional<mechanics::AffineField>
       base;                       ///< where fixed nodes go in the next step; none: they stay
-  double stiffness_factor = 1.0;  ///< > 0, see fem::HasMaterial
+  double stiffness_factor = 1.0;  ///< > 0, see mechanics::ScalesStiffness
 };
 
 /// The inputs of a simulation as a value, see Simulation::inputs().

@@ -14,10 +14,7 @@
 #include "sinew/constraint/probe.hpp"
 #include "sinew/constraint/tie.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_model.hpp"
-#include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/body_model.hpp"
-#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/instrument_model.hpp"
 #include "sinew/sim/model_parts.hpp"
 #include "sinew/sim/named_index.hpp"
@@ -32,17 +29,13 @@ std::uint64_t fingerprint_of(const std::vector<NamedHash>& parts) {
   return hash.value();
 }
 
-bool has_memory(const mechanics::BodyModel& body) {
-  const auto* material = mechanics::as<const fem::HasElements>(body);
-  return material != nullptr && material->elements().has_memory();
-}
-
 }  // namespace
 
 Model::Model(ModelData data)
     : data_(std::move(data)),
-      errors_last_(data_.step.dynamic() ||
-                   std::ranges::any_of(data_.bodies, [](const auto& b) { return has_memory(*b); })),
+      errors_last_(
+          data_.step.dynamic() ||
+          std::ranges::any_of(data_.bodies, [](const auto& b) { return b->has_memory(); })),
       parts_(list_parts(data_)),
       fingerprint_(fingerprint_of(parts_)) {}
 

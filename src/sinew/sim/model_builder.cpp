@@ -5,10 +5,7 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/constraint.hpp"
-#include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body_model.hpp"
-#include "sinew/pcc/arm.hpp"
-#include "sinew/rigid/rigid_settings.hpp"
 #include "sinew/sim/add_parts.hpp"
 #include "sinew/sim/body_holding.hpp"
 #include "sinew/sim/held_rows.hpp"
@@ -50,20 +47,8 @@ ModelBuilder::ModelBuilder(StepSettings settings) {
   data_.step = settings;
 }
 
-int ModelBuilder::add_fem_body(fem::FemBodySettings settings, const Location& place) {
-  const int index = sim::add_fem_body(data_, std::move(settings));
-  places_.push_back(place);
-  return index;
-}
-
-int ModelBuilder::add_arm(pcc::ArmSettings settings) {
-  const int index = sim::add_arm(data_, std::move(settings));
-  places_.emplace_back();
-  return index;
-}
-
-int ModelBuilder::add_rigid_body(rigid::RigidSettings settings, const Location& place) {
-  const int index = sim::add_rigid_body(data_, std::move(settings));
+int ModelBuilder::add_body(std::unique_ptr<mechanics::BodyModel> body, const Location& place) {
+  const int index = sim::add_body(data_, std::move(body));
   places_.push_back(place);
   return index;
 }
@@ -118,7 +103,7 @@ int ModelBuilder::add_probe(const ProbeSettings& settings) {
   return sim::add_probe(data_, settings);
 }
 
-std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSettings& settings) {
+std::shared_ptr<const Model> ModelBuilder::build() {
   check_held_radius(data_);
   hold_bodies(data_, places_);
   add_couplings(data_);
@@ -127,7 +112,7 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
     data_.constraint(contact.constraint).declare(data_.rows, data_.stiffness_pairs);
   }
   for (std::size_t i = 0; i < data_.bodies.size(); ++i) {
-    data_.bodies[i]->finish(static_cast<int>(i), data_.rows, data_.stiffness_pairs, settings);
+    data_.bodies[i]->finish(static_cast<int>(i), data_.rows, data_.stiffness_pairs);
   }
   list_geometric_stiffness(data_);
   auto model = std::make_shared<const Model>(std::move(data_));

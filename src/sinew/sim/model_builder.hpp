@@ -3,22 +3,13 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "sinew/core/error.hpp"
-#include "sinew/linalg/factorisation.hpp"
+#include "sinew/mechanics/body_model.hpp"
 #include "sinew/sim/model_data.hpp"
 #include "sinew/sim/step_settings.hpp"
-
-namespace sinew::fem {
-struct FemBodySettings;
-}
-namespace sinew::pcc {
-struct ArmSettings;
-}
-namespace sinew::rigid {
-struct RigidSettings;
-}
 
 namespace sinew::sim {
 
@@ -43,14 +34,15 @@ class ModelBuilder {
   explicit ModelBuilder(StepSettings settings = {});
 
   /// All add functions return the index of the new part. Names are unique within their kind:
-  /// Error(duplicate-key). This one throws as fem::FemBodyModel does, and Error(missing-mass).
-  /// @param settings of the body. @param place source location of the body, for errors.
-  int add_fem_body(fem::FemBodySettings settings, const Location& place = {});
-  /// Adds a constant-curvature arm. Throws as pcc::Arm does.
-  int add_arm(pcc::ArmSettings settings);
-  /// Throws as rigid::RigidBodyModel does. @param settings of the body. @param place source
-  /// location of the body, for errors.
-  int add_rigid_body(rigid::RigidSettings settings, const Location& place = {});
+  /// Error(duplicate-key). This one throws Error(missing-mass) for dynamics without inertia.
+  /// @param body of any kind. @param place source location of the body, for errors.
+  int add_body(std::unique_ptr<mechanics::BodyModel> body, const Location& place = {});
+  /// Makes a body and adds it: add_body<fem::FemBodyModel>(settings). Throws as its constructor
+  /// does. @param settings of the body. @param place source location of the body, for errors.
+  template <class Kind, class Settings>
+  int add_body(Settings settings, const Location& place = {}) {
+    return add_body(std::make_unique<Kind>(std::move(settings)), place);
+  }
   /// Throws Error: too-few-points, degenerate-cable, point-outside-mesh, contradictory-limits,
   /// out-of-range (friction, tension).
   int add_cable(const CableSettings& settings);
@@ -86,12 +78,11 @@ class ModelBuilder {
   int add_motor(const MotorSettings& settings);
   /// Throws Error: too-few-points, empty-region, point-outside-mesh, degenerate-orientation.
   int add_probe(const ProbeSettings& settings);
-  /// Plans the factorisation and returns the model; the builder is empty afterwards.
-  /// @param settings of the factorisation.
+  /// Returns the model; the builder is empty afterwards.
   /// Throws Error(nothing-fixed) if the integrator is quasi-static and neither fixed nodes nor
   /// joints prevent a rigid motion of some body, Error(out-of-range) for a time step that is not
   /// positive, Error(missing-mass) for dynamics without mass.
-  std::shared_ptr<const Model> build(const linalg::FactorisationSettings& settings = {});
+  std::shared_ptr<const Model> build();
 
   /// The parts so far, for functions that add parts of further kinds, such as add_sensor().
   ModelData& data() { return data_; }

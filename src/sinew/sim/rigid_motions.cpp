@@ -8,6 +8,7 @@
 #include "sinew/constraint/joint.hpp"
 #include "sinew/linalg/dense_factor.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/model_data.hpp"
 
 namespace sinew::sim {
@@ -25,7 +26,7 @@ constexpr std::size_t kMostParts = 150;
 
 BodyParts::BodyParts(const ModelData& data, int body) : parts_(1) {
   const mechanics::BodyModel& model = data.body(body);
-  if (!model.held_nodes()) return;
+  if (mechanics::as<const mechanics::MovesByNodes>(model) == nullptr) return;
   std::vector<mesh::RigidPart> parts = mesh::rigid_parts(model.mesh());
   if (parts.size() < 2 || parts.size() > kMostParts) return;
   parts_ = std::move(parts);
@@ -37,11 +38,10 @@ RigidMotions::RigidMotions(const ModelData& data, const std::vector<BodyParts>& 
     : data_(data), parts_(parts), columns_(data.bodies.size()) {
   Eigen::Index count = 0;
   for (const int body : bodies) {
-    const Points& nodes = data.body(body).mesh().nodes;
     for (const mesh::RigidPart& part : parts[static_cast<std::size_t>(body)].all()) {
       Column column{.first = count, .centre = Vector3::Zero(), .radius = data.size};
       if (!part.nodes.empty()) {
-        const Points own = nodes(part.nodes, Eigen::all);
+        const Points own = data.body(body).mesh().nodes(part.nodes, Eigen::all);
         column.centre = own.colwise().mean().transpose();
         column.radius = (own.rowwise() - column.centre.transpose()).rowwise().norm().maxCoeff();
       }
@@ -62,36 +62,37 @@ int RigidMotions::part_of(const mechanics::MaterialPoint& point) const {
   if (point.body < 0) return 0;
   const BodyParts& parts = parts_[static_cast<std::size_t>(point.body)];
   if (!parts.several()) return 0;
-  const std::vector<NodeId> nodes = data_.body(point.body).nodes_of(point.number);
+  const auto& model = *mechanics::as<const mechanics::MovesByNodes>(data_.body(point.body));
+  const std::vector<NodeId>& nodes = model.attachment(point.number).nodes;
   return nodes.empty() ? 0 : parts.of_node(nodes.front()).front();
 }
 
 void RigidMotions::hold_own(int body) {
   const mechanics::BodyModel& model = data_.body(body);
-  if (model.is_free()) return;
-  const auto held = model.held_nodes();
-  if (!held) {
-    normal_.diagonal().segment<6>(column_of(body, 0)->first).array() += 1.0;
-    return;
-  }
   const BodyParts& parts = parts_[static_cast<std::size_t>(body)];
-  const Points& nodes = model.mesh().nodes;
-  const auto add = [&](NodeId node, int axis, std::initializer_list<std::pair<int, double>> sides) {
+  for (const mechanics::HeldDirection& held : model.held_directions()) {
+    const bool of_none = parts.several() && parts.of_node(held.node).empty();  // of no element
+    if (of_none) continue;
+    const Column* part = column_of(body, parts.several() ? parts.of_node(held.node).front() : 0);
     begin_row();
-    for (const auto& [part, sign] : sides) {
-      fill(column_of(body, part), nodes.row(node).transpose(), Vector3::Unit(axis), sign);
+    if (held.turn) {
+      turn(part, held.direction, 1.0);
+    } else {
+      fill(part, held.at, held.direction, 1.0);
     }
     end_row();
-  };
-  for (const mesh::HeldAxis& one : *held) {
-    if (parts.several() && parts.of_node(one.node).empty()) continue;  // of no element
-    add(one.node, one.axis, {{parts.several() ? parts.of_node(one.node).front() : 0, 1.0}});
   }
   if (!parts.several()) return;
-  for (NodeId node = 0; node < model.mesh().node_count(); ++node) {
+  const Points& nodes = model.mesh().nodes;
+  for (NodeId node = 0; node < static_cast<NodeId>(nodes.rows()); ++node) {
     const std::vector<int>& own = parts.of_node(node);
     for (std::size_t k = 1; k < own.size(); ++k) {
-      for (int axis = 0; axis < 3; ++axis) add(node, axis, {{own[0], 1.0}, {own[k], -1.0}});
+      for (int axis = 0; axis < 3; ++axis) {
+        begin_row();
+        fill(column_of(body, own[0]), nodes.row(node).transpose(), Vector3::Unit(axis), 1.0);
+        fill(column_of(body, own[k]), nodes.row(node).transpose(), Vector3::Unit(axis), -1.0);
+        end_row();
+      }
     }
   }
 }

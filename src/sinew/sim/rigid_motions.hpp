@@ -48,8 +48,7 @@ class RigidMotions {
   RigidMotions(const ModelData& data, const std::vector<BodyParts>& parts,
                const std::vector<int>& bodies);
 
-  /// Adds fixed nodes, held axes and the nodes that parts share. Bodies without nodes of their own
-  /// are free or fixed as a whole.
+  /// Adds what the body itself holds (BodyModel::held_directions()) and the nodes that parts share.
   void hold_own(int body);
   /// Adds a tied pair of points.
   void hold(const mechanics::MaterialPoint& first, const mechanics::MaterialPoint& second);

@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/has_material.hpp"
-#include "sinew/fem/of_elements.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
@@ -146,7 +144,7 @@ Inputs Run::inputs() const {
     if (const auto* standing = mechanics::as<mechanics::HasBase>(*body)) {
       own.base = standing->base_input();
     }
-    if (const auto* made = mechanics::as<fem::HasMaterial>(*body)) {
+    if (const auto* made = mechanics::as<mechanics::ScalesStiffness>(*body)) {
       own.stiffness_factor = made->stiffness_factor();
     }
   }
@@ -159,7 +157,7 @@ void Run::set_inputs(const Inputs& inputs) {
   check_count("load factors", surroundings.factors().size(), inputs.loads.size());
   check_count("bodies of the inputs", bodies.size(), inputs.bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (mechanics::as<fem::HasMaterial>(*bodies[i]) != nullptr) {
+    if (mechanics::as<mechanics::ScalesStiffness>(*bodies[i]) != nullptr) {
       check_stiffness_factor(*bodies[i], inputs.bodies[i].stiffness_factor);
     }
     if (mechanics::as<mechanics::TakesForces>(*bodies[i]) == nullptr) continue;
@@ -178,7 +176,7 @@ void Run::set_inputs(const Inputs& inputs) {
     if (auto* standing = mechanics::as<mechanics::HasBase>(*bodies[i])) {
       standing->move_base(own.base);
     }
-    if (auto* made = mechanics::as<fem::HasMaterial>(*bodies[i])) {
+    if (auto* made = mechanics::as<mechanics::ScalesStiffness>(*bodies[i])) {
       made->set_stiffness_factor(own.stiffness_factor);
     }
   }
@@ -188,11 +186,15 @@ void Run::set_inputs(const Inputs& inputs) {
 // change puts in.
 void Run::set_stiffness_factor(int body, double factor) {
   mechanics::Body& own = *world.bodies().all()[static_cast<std::size_t>(body)];
-  auto& made = fem::of_elements<fem::HasMaterial>(own);
+  auto* made = mechanics::as<mechanics::ScalesStiffness>(own);
+  if (made == nullptr) {
+    throw Error(ErrorKind::wrong_type, {.item = own.model().name()},
+                "this body has no stiffness factor", "name a finite-element body");
+  }
   check_stiffness_factor(own, factor);
-  if (factor == made.stiffness_factor()) return;
+  if (factor == made->stiffness_factor()) return;
   const double strain = own.energies().strain;
-  made.set_stiffness_factor(factor);
+  made->set_stiffness_factor(factor);
   ledger.count_outside(own.energies().strain - strain);
 }
 

@@ -174,14 +174,14 @@ void Simulation::attach(step::Controller& controller, std::span<const int> actua
   check_held_radius(model().step(), "a controller holds");
   run_->controller = &controller;
   run_->actuation.own(&controller, actuators);
-  run_->world.contacts().want(contacts);
+  run_->world.contacts().require_active(contacts);
 }
 
 void Simulation::detach(const step::Controller& controller) {
   if (run_->controller != &controller) return;
   run_->controller = nullptr;
   run_->actuation.release(&controller);
-  run_->world.contacts().want({});
+  run_->world.contacts().require_active({});
 }
 
 void Simulation::attach(Commander& commander, std::span<const int> actuators) {
@@ -195,8 +195,6 @@ void Simulation::detach(const Commander& commander) {
   run_->commander = nullptr;
   run_->actuation.release(&commander);
 }
-
-const step::Controller* Simulation::attached_controller() const { return run_->controller; }
 
 World& Simulation::world() { return run_->world; }
 const World& Simulation::world() const { return run_->world; }

@@ -163,11 +163,10 @@ class Simulation {
   /// Error(actuator-owned); Error(not-in-this-version) with event-driven integration.
   /// @param controller must be detached before its lifetime ends. @param actuators indices of
   ///   Model::actuators().
-  /// @param contacts whose forces the controller needs, see ContactRows::want().
+  /// @param contacts whose forces the controller needs, see ContactRows::require_active().
   void attach(step::Controller& controller, std::span<const int> actuators,
               std::span<const int> contacts = {});
   void detach(const step::Controller& controller);
-  const step::Controller* attached_controller() const;
   /// Attaches a commander, which alone may command the given actuators until it is detached. Only
   /// one controller or commander can be attached at a time. Throws Error(actuator-owned).
   /// @param commander must be detached before its lifetime ends. @param actuators indices of

@@ -46,7 +46,7 @@ StrikingPoints::StrikingPoints(const Model& model, World& world)
 
 void StrikingPoints::look(double time, std::span<double> effort) {
   if (contacts_.empty()) return;
-  world_.begin_look(time, effort);
+  world_.begin_event_query(time, effort);
   points_.clear();
   time_ = time;
   found_rest_ = false;

@@ -22,7 +22,7 @@ class StrikingPoints {
   StrikingPoints(const Model& model, World& world);
 
   /// Measures the present state, and marks all points with closed gaps as closed, for an impact.
-  /// @param time s. @param effort (rows,) N of the last part, see World::begin_look().
+  /// @param time s. @param effort (rows,) N of the last part, see World::begin_event_query().
   void look(double time, std::span<double> effort);
   /// Whether the gap of a closed point decreases.
   bool strike() const;

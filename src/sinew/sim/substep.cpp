@@ -23,7 +23,7 @@ namespace {
 // Smaller gains of energy, relative to the energy, are rounding.
 constexpr double kRounding = 1e-12;
 // A controller chooses at most this often again after its choice has failed.
-constexpr int kMostFailures = 5;
+constexpr int kMaxFailures = 5;
 // A held motion is slowed, not merely accelerated, if it loses more than this part of its velocity.
 constexpr double kSlows = 0.1;
 
@@ -88,7 +88,7 @@ void Substep::solve(double time_step, bool divisible) {
     } catch (const Error& failure) {
       run_.go_back();
       if (divisible || run_.controller == nullptr || !is_too_far(failure)) throw;
-      if (failures_ == kMostFailures) return hold_back(time_step, failure);
+      if (failures_ == kMaxFailures) return hold_back(time_step, failure);
     } catch (...) {  // of a watcher
       run_.go_back();
       throw;

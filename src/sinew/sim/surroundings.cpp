@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/of_elements.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mechanics/rigid_base.hpp"
 #include "sinew/sim/bodies.hpp"
@@ -70,7 +70,10 @@ void Surroundings::move_base(int body, const Vector3& translation, const Vector3
                 "leave `base` out of the scene to move it from a script, or write the motion there "
                 "as signals");
   }
-  if (base == nullptr) fem::throw_not_of_elements(name);
+  if (base == nullptr) {
+    throw Error(ErrorKind::wrong_type, place, "this body has no base that can be moved",
+                "name a finite-element body or a rigid body that is fixed");
+  }
   if (!base->base_can_move()) {
     throw Error(ErrorKind::nothing_fixed, place, "the body has no fixed node to move",
                 "fix the region that moves");

@@ -80,7 +80,7 @@ void WorkLedger::count_bodies(const World& world, const Step& step) {
   auto [outside, power] = work_of_bases(world, step.effort);
   double damped = 0.0, damping = 0.0;
   for (const mechanics::StepEnd& end : world.bodies().ends()) {
-    outside += end.outside;
+    outside += end.external_work;
     damped += end.damped;
     power += end.power;
     damping += end.damping;

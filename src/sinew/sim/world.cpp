@@ -91,7 +91,7 @@ void World::begin_query(double at) {
   bodies_.begin_query();
 }
 
-void World::begin_look(double at, std::span<double> effort) {
+void World::begin_event_query(double at, std::span<double> effort) {
   const double ahead = ContactRows::ahead(model_->step().time_step);
   contacts_.planes().find_striking_points(contacts_.reach(0.0), ahead, effort);
   begin_query(at);

@@ -58,9 +58,9 @@ class World {
   void begin_query(double at);
   /// The same within an event-driven step; searches the points of contacts that strike. @param at
   /// s. @param effort (rows,) N, see begin_step().
-  void begin_look(double at, std::span<double> effort);
+  void begin_event_query(double at, std::span<double> effort);
   /// Restricts the contact problem to the closed points of contacts that strike, for an impact at
-  /// the present state. Call after begin_look().
+  /// the present state. Call after begin_event_query().
   void take_closed_points();
   /// Assembles every body at its current state.
   void linearise(const mechanics::LinearisationRequest& request);
