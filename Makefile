@@ -20,7 +20,7 @@ build:  ## build the program and the Python package: build/release/bin/sinew, bu
 
 demo:  ## steer a soft trunk along a circle by inverse control; print a table and draw a picture
 	@scripts/setup.sh demo
-	@scripts/build.sh release sinew sinew_python
+	@scripts/build.sh release sinew_python
 	@scripts/demo.sh
 
 view: build  ## watch and steer the trunk in the browser
@@ -29,11 +29,13 @@ view: build  ## watch and steer the trunk in the browser
 test:  ## build and run all C++ and Python tests
 	@scripts/test.sh release
 
-combinations:  ## try 5000 random scenes that combine features, each in its own process
+combinations:  ## try 7000 random scenes that combine features, each in its own process
 	@scripts/setup.sh test
 	@scripts/build.sh release -DSINEW_TESTS=ON combinations
 	@build/release/bin/combinations --pairs
 	@build/release/bin/combinations --count 5000
+	@build/release/bin/combinations --symmetric --count 1000
+	@build/release/bin/combinations --changed --count 1000
 
 validate:  ## compare results with references; writes docs/scorecard.md
 	@scripts/setup.sh validate
@@ -57,7 +59,7 @@ format:  ## format all C++ sources in place
 format-check:  ## fail if a C++ source is not formatted
 	@scripts/format.sh --check
 
-lint: format-check  ## check the format and run clang-tidy on all C++ sources
+lint: format-check  ## check the format, run clang-tidy on all C++ sources and Doxygen on their headers
 	@scripts/lint.sh
 
 asan:  ## build and run the C++ tests with the address and undefined-behaviour sanitizers

@@ -51,21 +51,18 @@ def tell(path, name, outcome):
 def main(folder):
     """Prints the failed tests and the sums. Returns 1 if anything failed or nothing passed."""
     count = {"passed": 0, "failed": 0, "skipped": 0}
-    reported = {path.stem: cases(path) for path in (folder / "gtest").glob("*.xml")}
+    reports = {path.stem.removeprefix("test_"): path for path in (folder / "gtest").glob("*.xml")}
+    reports |= {path.stem: path for path in (folder / "pytest").glob("*.xml")}
     programs = cases(folder / "ctest.xml") if (folder / "ctest.xml").exists() else []
     for name, outcome in programs:
-        inside = reported.get(f"test_{name}", [])
+        inside = cases(reports[name]) if name in reports else []
         # A program can fail although all of its tests passed, for example by a leak that is found at its end.
         if not inside or (outcome == "failed" and all(o != "failed" for _, o in inside)):
             count[outcome] += 1
             tell(folder / "ctest.xml", name, outcome)
         for test, outcome in inside:
             count[outcome] += 1
-            tell(folder / "gtest" / f"test_{name}.xml", test, outcome)
-    if (folder / "pytest.xml").exists():
-        for name, outcome in cases(folder / "pytest.xml"):
-            count[outcome] += 1
-            tell(folder / "pytest.xml", name, outcome)
+            tell(reports[name], test, outcome)
 
     skipped = f", {count['skipped']} skipped" if count["skipped"] else ""
     print(f"{count['passed']} passed, {count['failed']} failed{skipped}")

@@ -1,6 +1,7 @@
 #!/bin/sh
-# Runs clang-tidy (.clang-tidy) on the project's own sources, in parallel:
-#   scripts/lint.sh [FILE...]      default: all sources
+# Runs clang-tidy (.clang-tidy) on the project's own sources, in parallel, and Doxygen on its headers, whose warnings are
+# errors:
+#   scripts/lint.sh [FILE...]      default: all sources and headers; with FILEs, clang-tidy only
 set -eu
 cd "$(dirname "$0")/.."
 scripts/setup.sh lint
@@ -10,7 +11,9 @@ if ! cmake --preset lint >"$log" 2>&1; then
   cat "$log" >&2
   exit 1
 fi
+status=0
 if [ $# -eq 0 ]; then
+  SINEW_SKIP_SETUP=1 scripts/docs.sh --cpp build/lint/docs || status=1
   # shellcheck disable=SC2046  # one word per file: no name contains blanks
   set -- $("${PYTHON:-/usr/bin/python3}" -c '
 import json, os
@@ -24,4 +27,5 @@ printf '%s\0' "$@" | xargs -0 -P "${JOBS:-$(scripts/jobs.sh)}" -n 1 sh -c '
   status=0
   output=$(clang-tidy -p build/lint --quiet "$0" 2>&1) || status=1
   printf "%s\n" "$output" | sed "/^[0-9]* warnings\{0,1\}.* generated\.$/d; /^$/d"
-  exit $status'
+  exit $status' || status=1
+exit $status

@@ -23,14 +23,14 @@ demo="python3-matplotlib"
 render="python3-moderngl python3-pil python3-yaml python3-h5py libegl1 libgl1-mesa-dri fonts-dejavu-core"
 sweep="python3-distributed python3-pandas python3-h5py python3-scipy python3-matplotlib"
 wheel="python3-pip python3-venv python3-setuptools python3-wheel"
-test="libgtest-dev libgmock-dev gmsh chromium ffmpeg python3-pytest python3-pytest-xdist python3-scipy python3-meshio
-  python3-h5py python3-distributed python3-pandas python3-yaml python3-cvxopt python3-jsonschema doxygen
+test="libgtest-dev libgmock-dev gmsh chromium ffmpeg python3-pytest python3-scipy python3-meshio
+  python3-h5py python3-distributed python3-pandas python3-yaml python3-cvxopt python3-jsonschema
   zsh fish"
 validate="calculix-ccx gmsh python3-scipy python3-meshio"
 bench="libbenchmark-dev chromium"
 docs="doxygen python3-sphinx python3-myst-parser furo"
 format="git clang-format"
-lint="clang clang-tidy"
+lint="clang clang-tidy doxygen"
 fuzz="clang libclang-rt-dev"
 
 packages_for() {

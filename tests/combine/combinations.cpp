@@ -22,19 +22,31 @@ constexpr const char* kUsage =
     "combinations [--from SEED] [--count N]       random selections (300)\n"
     "combinations --pairs [--from K] [--count N]  the cover of all pairs of levels\n"
     "combinations --symmetric [--from SEED] [--count N]  symmetric robots of random selections\n"
+    "combinations --changed [--from SEED] [--count N]  states of random scenes with a changed "
+    "number\n"
     "combinations [--pairs | --symmetric] --print SEED   the scene of a seed\n";
 
+enum class Trial { scene, symmetric, changed };
+
+// "KIND|CAUSE|CONDITION".
+std::string try_here(Trial trial, const Selection& selection, std::uint64_t seed) {
+  if (trial == Trial::changed) {
+    const std::string defect = try_changed_number(selection, seed);
+    return defect.empty() ? "ran||solved" : "wrong|" + defect + "|";
+  }
+  const Outcome outcome =
+      trial == Trial::symmetric ? try_symmetric_scene(selection, seed) : try_scene(selection, seed);
+  return fmt::format("{}|{}|{}", outcome_name(outcome.kind), outcome.cause, outcome.condition);
+}
+
 // Tries a scene in a child process. A crash is also an outcome.
-std::string try_apart(const Selection& selection, std::uint64_t seed, bool symmetric) {
+std::string try_apart(Trial trial, const Selection& selection, std::uint64_t seed) {
   int ends[2];
   if (pipe(ends) != 0) std::abort();
   const pid_t child = fork();
   if (child == 0) {
     close(ends[0]);
-    const Outcome outcome =
-        symmetric ? try_symmetric_scene(selection, seed) : try_scene(selection, seed);
-    const std::string text =
-        fmt::format("{}|{}|{}", outcome_name(outcome.kind), outcome.cause, outcome.condition);
+    const std::string text = try_here(trial, selection, seed);
     if (write(ends[1], text.data(), text.size()) < 0) std::abort();
     _exit(0);
   }
@@ -56,14 +68,17 @@ std::string try_apart(const Selection& selection, std::uint64_t seed, bool symme
 int main(int count, char** words) {
   std::uint64_t from = 0, printed = 0;
   int number = 300;
-  bool pairs = false, symmetric = false, prints = false;
+  bool pairs = false, prints = false;
+  Trial trial = Trial::scene;
   for (int k = 1; k < count; ++k) {
     const std::string word = words[k];
     const bool has_value = k + 1 < count;
     if (word == "--pairs") {
       pairs = true;
     } else if (word == "--symmetric") {
-      symmetric = true;
+      trial = Trial::symmetric;
+    } else if (word == "--changed") {
+      trial = Trial::changed;
     } else if (word == "--from" && has_value) {
       from = std::stoull(words[++k]);
     } else if (word == "--count" && has_value) {
@@ -78,8 +93,8 @@ int main(int count, char** words) {
   }
   if (prints) {
     const Selection selection = pairs ? pairwise_cover().at(printed) : random_selection(printed);
-    std::cout << write_scene(symmetric ? draft_symmetric_scene(selection, printed)
-                                       : draft_scene(selection, printed));
+    std::cout << write_scene(trial == Trial::symmetric ? draft_symmetric_scene(selection, printed)
+                                                       : draft_scene(selection, printed));
     return 0;
   }
   const std::vector<Selection> cover = pairs ? pairwise_cover() : std::vector<Selection>{};
@@ -90,7 +105,7 @@ int main(int count, char** words) {
     const std::uint64_t seed = from + static_cast<std::uint64_t>(k);
     const Selection selection =
         pairs ? cover[static_cast<std::size_t>(seed)] : random_selection(seed);
-    const std::string outcome = try_apart(selection, seed, symmetric);
+    const std::string outcome = try_apart(trial, selection, seed);
     ++sums[outcome.substr(0, outcome.find('|'))];
     if (!outcome.starts_with("ran||solved")) std::cout << seed << ' ' << outcome << std::endl;
   }
