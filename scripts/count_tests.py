@@ -4,7 +4,7 @@
 Before it, each failed test is named with the end of what it printed: whoever sees only the last lines of
 a long log learns what to run again.
 
-A ctest entry without a GoogleTest report, such as a program that crashed, counts as one test. Skipped
+A ctest entry without a report of GoogleTest or pytest, such as a program that crashed, counts as one test. Skipped
 tests, if any, are counted separately. If nothing passed, the run fails.
 """
 

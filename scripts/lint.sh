@@ -13,7 +13,7 @@ if ! cmake --preset lint >"$log" 2>&1; then
 fi
 status=0
 if [ $# -eq 0 ]; then
-  SINEW_SKIP_SETUP=1 scripts/docs.sh --cpp build/lint/docs || status=1
+  SINEW_SKIP_SETUP=1 scripts/docs.sh --cpp build/lint/docs >/dev/null || status=1
   # shellcheck disable=SC2046  # one word per file: no name contains blanks
   set -- $("${PYTHON:-/usr/bin/python3}" -c '
 import json, os

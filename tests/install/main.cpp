@@ -4,7 +4,6 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/sinew.hpp"
 
 namespace {

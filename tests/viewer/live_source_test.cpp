@@ -57,7 +57,7 @@ struct Live {
   }
   template <typename Holds>
   std::shared_ptr<const Frame> wait(Holds&& holds) {
-    for (int k = 0; k < 3000; ++k) {
+    for (int k = 0; k < 18000; ++k) {
       if (auto frame = watcher.frame(); frame && holds(*frame)) return frame;
       std::this_thread::sleep_for(10ms);
     }

@@ -29,7 +29,7 @@ struct HeldDirection {
   Vector3 at = Vector3::Zero();         ///< m, the point that does not move
   Vector3 direction = Vector3::Zero();  ///< unit vector
   bool turn = false;                    ///< whether the body does not turn about `direction`
-  NodeId node = -1;                     ///< of MovesByNodes; -1: none
+  NodeId node = -1;                     ///< of MovesByNodes; -1: the whole body
 };
 
 /// The six directions of a body that is held as a whole. @param at (3,) m, any point of it.
@@ -95,7 +95,7 @@ class BodyModel {
   virtual double stiffness_scale() const = 0;
   /// Whether all that can move has mass, as dynamics need.
   virtual bool has_inertia() const = 0;
-  /// m, its diameter at rest, independent of its orientation.
+  /// m, > 0: its diameter at rest, independent of its orientation.
   virtual double size() const = 0;
 
   /// Whether the body has few coordinates, as rigid bodies and arms: several contact points on it

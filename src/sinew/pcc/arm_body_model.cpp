@@ -87,12 +87,12 @@ int ArmBodyModel::attach_mean(const Points& points, mesh::Outside outside,
       mean = one;
       mean.x = mean.y = mean.z = 0.0;
     }
-    if (one.segment != mean.segment || one.fraction != mean.fraction) {
+    if (one.segment != mean.segment || std::abs(one.fraction - mean.fraction) > mesh::kOnSurface) {
       throw Error(ErrorKind::wrong_type, {.item = what},
-                  fmt::format("the points lie in several sections of arm '{}', which has no site "
-                              "for their mean",
+                  fmt::format("the points lie in several cross-sections of arm '{}', which has no "
+                              "site for their mean",
                               name()),
-                  "give one point, or several in one section");
+                  "give one point, or several in one cross-section");
     }
     mean.x += share * one.x;
     mean.y += share * one.y;

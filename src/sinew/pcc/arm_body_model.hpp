@@ -43,7 +43,7 @@ class ArmBodyModel final : public mechanics::BodyModel,
                   const std::string& what) override;
   /// Throws Error(wrong-type), since an arm has no nodes.
   int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
-  /// Of points of one section; throws Error(wrong-type) for others.
+  /// Of points of one cross-section; throws Error(wrong-type) for others.
   int attach_mean(const Points& points, mesh::Outside outside, const std::string& what) override;
   std::vector<int> attach_anchors(std::span<const NodeId> part) override;
   int attach_orientation(const Vector3& rest_position, mesh::Outside outside,

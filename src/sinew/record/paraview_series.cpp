@@ -67,7 +67,11 @@ void remove_series(const fs::path& folder) {
 ParaviewSeries::ParaviewSeries(const fs::path& folder, const sim::Simulation& simulation)
     : simulation_(simulation) {
   const auto bodies = simulation.model().bodies();
+  int index = -1;
   for (const auto& body : bodies) {
+    ++index;
+    if (!body.has_mesh()) continue;
+    bodies_.push_back(index);
     means_.push_back(fem::nodal_mean(body));
     lists_.emplace_back(folder / (bodies.size() == 1 ? "run.pvd" : "run_" + body.name() + ".pvd"));
   }
@@ -79,7 +83,7 @@ void ParaviewSeries::move_to(const fs::path& folder) {
 
 void ParaviewSeries::write() {
   for (std::size_t b = 0; b < lists_.size(); ++b) {
-    const mechanics::Body& body = simulation_.body(static_cast<int>(b));
+    const mechanics::Body& body = simulation_.body(bodies_[b]);
     const mesh::Mesh& mesh = body.model().mesh();
     mesh::VtuFields fields;
     fields.positions = &body.positions();
@@ -96,7 +100,8 @@ void ParaviewSeries::write() {
 
 // Adds fields of finite elements: stress, strain and reactions.
 void ParaviewSeries::add_fields(int index, mesh::VtuFields& fields) {
-  const auto& body = *mechanics::as<const fem::HasMaterial>(simulation_.body(index));
+  const int number = bodies_[static_cast<std::size_t>(index)];
+  const auto& body = *mechanics::as<const fem::HasMaterial>(simulation_.body(number));
   const fem::NodalMean& mean = *means_[static_cast<std::size_t>(index)];
   const fem::ElementStates states = fem::element_states(body);
   fields.cells.push_back({"deformation_gradient", 9, rows_of(states.deformation)});
@@ -110,8 +115,9 @@ void ParaviewSeries::add_fields(int index, mesh::VtuFields& fields) {
       fields.cells.push_back({infos[k].name, 1, column(values, k, infos.size())});
     }
   }
-  const Points held = fem::reactions(body, states, simulation_.efforts(),
-                                     simulation_.world().rows(), simulation_.model().rows(), index);
+  const Points held =
+      fem::reactions(body, states, simulation_.efforts(), simulation_.world().rows(),
+                     simulation_.model().rows(), number);
   fields.points.push_back({"reaction", 3, {held.data(), held.data() + held.size()}});
   if (!simulation_.model().contacts().empty()) add_contact_force(body, fields);
 }

@@ -36,8 +36,9 @@ class ParaviewSeries {
   void add_contact_force(const fem::HasMaterial& body, mesh::VtuFields& fields);
 
   const sim::Simulation& simulation_;
+  std::vector<int> bodies_;  // those with a mesh
   std::vector<mesh::PvdWriter> lists_;
-  std::vector<std::unique_ptr<fem::NodalMean>> means_;  // one a body; none of an arm
+  std::vector<std::unique_ptr<fem::NodalMean>> means_;  // of each, for its fields; none of an arm
 };
 
 }  // namespace sinew::record

@@ -65,6 +65,7 @@ void add_liquid_weight(ModelData& data, const ChamberSettings& settings) {
                 "surface of its own",
                 "name the chamber by a point inside, a patch or a region, or leave `density` out");
   }
+  find_capable<mechanics::MovesByNodes>(data, settings.body, settings.place, "liquid");
   auto& body = find_capable<mechanics::BearsLoads>(data, settings.body, settings.place, "liquid");
   body.add_load(hydrostatic(body, *faces, settings.liquid->density, std::nullopt));
 }

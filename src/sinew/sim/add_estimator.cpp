@@ -53,12 +53,9 @@ EstimatorSensor sensor_of(const ModelData& data, const std::string& name, const 
 int add_estimator(ModelBuilder& builder, const EstimatorSettings& settings) {
   ModelData& data = builder.data();
   auto* set = data.instrument<EstimatorSet>();
-  if (set == nullptr) {
-    data.instruments.push_back(std::make_unique<EstimatorSet>());
-    set = data.instrument<EstimatorSet>();
-  }
-  check_new_name(set->estimators, &EstimatorModel::name, "estimators", settings.name,
-                 settings.place);
+  const std::vector<EstimatorModel> none;
+  check_new_name(set != nullptr ? set->estimators : none, &EstimatorModel::name, "estimators",
+                 settings.name, settings.place);
   EstimatorModel estimator{settings.name, settings.robot, {}, settings.unknowns, settings.loads, 0,
                            settings.rank};
   for (std::size_t k = 0; k < settings.sensors.size(); ++k) {
@@ -74,6 +71,10 @@ int add_estimator(ModelBuilder& builder, const EstimatorSettings& settings) {
     }
     estimator.lags = std::max(estimator.lags, whole<int>(steps));
     estimator.sensors.push_back(sensor);
+  }
+  if (set == nullptr) {
+    data.instruments.push_back(std::make_unique<EstimatorSet>());
+    set = data.instrument<EstimatorSet>();
   }
   set->estimators.push_back(std::move(estimator));
   return static_cast<int>(set->estimators.size()) - 1;

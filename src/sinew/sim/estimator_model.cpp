@@ -12,6 +12,7 @@
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/named_index.hpp"
 #include "sinew/sim/run.hpp"
+#include "sinew/sim/state_io.hpp"
 
 namespace sinew::sim {
 
@@ -81,9 +82,11 @@ void EstimatorModel::take_exponentials(VectorX& mean, VectorX& deviation) const 
   }
 }
 
-// Of the robots, sensors and unknowns.
+// Of the robots, sensors and unknowns, and of the layout of the robots' states, which the memory
+// contains: an older one is not read, and the estimators begin afresh.
 std::uint64_t EstimatorSet::hash() const {
   ValueHash hash;
+  hash.add(kStateVersion);
   for (const EstimatorModel& one : estimators) {
     hash.add(one.lags, one.robot->fingerprint(), one.unknowns.size());
     for (const EstimatorSensor& sensor : one.sensors) hash.add(sensor.index, sensor.size);

@@ -20,7 +20,8 @@ class InstrumentModel {
   InstrumentModel(const InstrumentModel&) = delete;
   InstrumentModel& operator=(const InstrumentModel&) = delete;
 
-  /// Hash of all that decides what the instrument's memory means; states identify it by that.
+  /// Hash of all that decides what the instrument's memory means, including its kind and name:
+  /// states identify it by that, so it differs from those of the model's other instruments.
   virtual std::uint64_t hash() const = 0;
   /// The instrument of one run, before Instrument::begin().
   /// @param run that it observes, which outlives it and may still be incomplete.

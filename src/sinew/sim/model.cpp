@@ -4,8 +4,6 @@
 #include <string>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/chamber.hpp"
 #include "sinew/constraint/contact.hpp"

@@ -40,6 +40,9 @@ RigidMotions::RigidMotions(const ModelData& data, const std::vector<BodyParts>& 
   for (const int body : bodies) {
     for (const mesh::RigidPart& part : parts[static_cast<std::size_t>(body)].all()) {
       Column column{.first = count, .centre = Vector3::Zero(), .radius = data.size};
+      // About a held point, a body that lies far from the origin is as surely held as another.
+      const auto held = data.body(body).held_directions();
+      if (!held.empty()) column.centre = held.front().at;
       if (!part.nodes.empty()) {
         const Points own = data.body(body).mesh().nodes(part.nodes, Eigen::all);
         column.centre = own.colwise().mean().transpose();
@@ -70,17 +73,22 @@ int RigidMotions::part_of(const mechanics::MaterialPoint& point) const {
 void RigidMotions::hold_own(int body) {
   const mechanics::BodyModel& model = data_.body(body);
   const BodyParts& parts = parts_[static_cast<std::size_t>(body)];
-  for (const mechanics::HeldDirection& held : model.held_directions()) {
-    const bool of_none = parts.several() && parts.of_node(held.node).empty();  // of no element
-    if (of_none) continue;
-    const Column* part = column_of(body, parts.several() ? parts.of_node(held.node).front() : 0);
+  const auto hold = [&](int part, const mechanics::HeldDirection& held) {
     begin_row();
     if (held.turn) {
-      turn(part, held.direction, 1.0);
+      turn(column_of(body, part), held.direction, 1.0);
     } else {
-      fill(part, held.at, held.direction, 1.0);
+      fill(column_of(body, part), held.at, held.direction, 1.0);
     }
     end_row();
+  };
+  for (const mechanics::HeldDirection& held : model.held_directions()) {
+    if (parts.several() && held.node >= 0) {
+      const std::vector<int>& own = parts.of_node(held.node);
+      if (!own.empty()) hold(own.front(), held);  // else a node of no element
+      continue;
+    }
+    for (std::size_t part = 0; part < parts.count(); ++part) hold(static_cast<int>(part), held);
   }
   if (!parts.several()) return;
   const Points& nodes = model.mesh().nodes;

@@ -1,5 +1,5 @@
 /// @file
-/// Settings for ModelBuilder::add_sensor().
+/// Settings for add_sensor().
 #pragma once
 
 #include <array>

@@ -192,10 +192,10 @@ class Simulation {
   State state() const;
   /// Sets the state to one of this simulation or of another simulation of the same model. An
   /// attached controller restores its memory if the state contains it, and otherwise starts afresh;
-  /// sensors start afresh if the state belongs to different sensors. Commands do not change.
+  /// so do instruments of which the state has no memory. Commands do not change.
   /// Throws Error(wrong-length) for a state of another model, which leaves the simulation
-  /// unchanged; also if the memory of the estimators is damaged, in which case the state is
-  /// restored and the estimators start afresh.
+  /// unchanged; also if the memory of an instrument is damaged, in which case the state is
+  /// restored and that instrument begins afresh.
   void restore(const State& state);
   /// External inputs: commands, load factors, forces, tethers, prescribed displacements of bases
   /// and stiffness factors.
