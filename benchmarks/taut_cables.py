@@ -6,11 +6,8 @@ Upright columns with one to three cables of commanded length, inside them or to 
 is taut, and would fall further without it.
 """
 
-import argparse
-import warnings
-
 import numpy as np
-import sinew
+from hard_steps import main
 
 HEIGHT = 0.1
 
@@ -43,27 +40,5 @@ def random_column(seed):
     }
 
 
-def run(seed):
-    """Iterations of the column's steps, and whether it stopped."""
-    sim, iterations = sinew.load(random_column(seed)), 0
-    try:
-        for _ in range(6):
-            sim.step()
-            iterations += sim.report.iterations
-    except sinew.RunError:
-        return iterations, True
-    return iterations, False
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--robots", type=int, default=40)
-    count = parser.parse_args().robots
-    warnings.simplefilter("ignore")
-    results = [run(seed) for seed in range(count)]
-    iterations, stopped = (sum(column) for column in zip(*results))
-    print(f"{count} columns: {iterations} iterations, {stopped} stopped")
-
-
 if __name__ == "__main__":
-    main()
+    main(__doc__, robots=40, name="columns", make=lambda seed: (random_column(seed), 0.12))

@@ -122,7 +122,7 @@ def main():
     table(sim, seen)
     draw(sim, seen, arguments.picture)
     print(f"\npicture: {arguments.picture}")
-    print("to see it move, and to drive it: build/release/bin/sinew view examples/trunk/circle.yaml")
+    print("to see it move, and to drive it: make view")
 
 
 if __name__ == "__main__":

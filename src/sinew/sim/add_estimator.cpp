@@ -6,6 +6,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/core/whole.hpp"
 #include "sinew/sim/estimator_model.hpp"
+#include "sinew/sim/instrument_in.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/model_data.hpp"
@@ -52,10 +53,10 @@ EstimatorSensor sensor_of(const ModelData& data, const std::string& name, const 
 
 int add_estimator(ModelBuilder& builder, const EstimatorSettings& settings) {
   ModelData& data = builder.data();
-  auto* set = data.instrument<EstimatorSet>();
-  const std::vector<EstimatorModel> none;
-  check_new_name(set != nullptr ? set->estimators : none, &EstimatorModel::name, "estimators",
-                 settings.name, settings.place);
+  if (const auto* present = data.instrument<const EstimatorSet>()) {
+    check_new_name(present->estimators, &EstimatorModel::name, "estimators", settings.name,
+                   settings.place);
+  }
   EstimatorModel estimator{settings.name, settings.robot, {}, settings.unknowns, settings.loads, 0,
                            settings.rank};
   for (std::size_t k = 0; k < settings.sensors.size(); ++k) {
@@ -72,12 +73,9 @@ int add_estimator(ModelBuilder& builder, const EstimatorSettings& settings) {
     estimator.lags = std::max(estimator.lags, whole<int>(steps));
     estimator.sensors.push_back(sensor);
   }
-  if (set == nullptr) {
-    data.instruments.push_back(std::make_unique<EstimatorSet>());
-    set = data.instrument<EstimatorSet>();
-  }
-  set->estimators.push_back(std::move(estimator));
-  return static_cast<int>(set->estimators.size()) - 1;
+  std::vector<EstimatorModel>& all = instrument_in<EstimatorSet>(data).estimators;
+  all.push_back(std::move(estimator));
+  return static_cast<int>(all.size()) - 1;
 }
 
 }  // namespace sinew::sim

@@ -18,6 +18,7 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/attacher.hpp"
 #include "sinew/sim/electrodes.hpp"
+#include "sinew/sim/instrument_in.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/model_data.hpp"
 #include "sinew/sim/new_name.hpp"
@@ -349,12 +350,7 @@ int add_sensor(ModelBuilder& builder, const SensorSettings& settings) {
     sensor.observable = make.observable.empty() ? settings.name + ".true" : make.observable;
     sensor.channel.stream = stream_of(settings.name);
     Channel checked(sensor.channel, sensor.source->size());
-    auto* set = data.instrument<SensorSet>();
-    if (set == nullptr) {
-      data.instruments.push_back(std::make_unique<SensorSet>());
-      set = data.instrument<SensorSet>();
-    }
-    set->sensors.push_back(std::move(sensor));
+    instrument_in<SensorSet>(data).sensors.push_back(std::move(sensor));
   } catch (const Error& error) {
     throw error.at(settings.place);
   }

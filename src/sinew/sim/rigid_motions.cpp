@@ -40,10 +40,11 @@ RigidMotions::RigidMotions(const ModelData& data, const std::vector<BodyParts>& 
   for (const int body : bodies) {
     for (const mesh::RigidPart& part : parts[static_cast<std::size_t>(body)].all()) {
       Column column{.first = count, .centre = Vector3::Zero(), .radius = data.size};
-      // About a held point, a body that lies far from the origin is as surely held as another.
-      const auto held = data.body(body).held_directions();
-      if (!held.empty()) column.centre = held.front().at;
-      if (!part.nodes.empty()) {
+      if (part.nodes.empty()) {
+        // About a held point, a body that lies far from the origin is as surely held as another.
+        const auto held = data.body(body).held_directions();
+        if (!held.empty()) column.centre = held.front().at;
+      } else {
         const Points own = data.body(body).mesh().nodes(part.nodes, Eigen::all);
         column.centre = own.colwise().mean().transpose();
         column.radius = (own.rowwise() - column.centre.transpose()).rowwise().norm().maxCoeff();
