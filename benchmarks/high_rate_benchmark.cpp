@@ -12,15 +12,15 @@
 
 #include <time.h>
 
-#include "sinew/control/high_rate_loop.hpp"
-#include "sinew/control/high_rate_step.hpp"
+#include "sinew/high_rate/high_rate_loop.hpp"
+#include "sinew/high_rate/high_rate_step.hpp"
 
 #include "snapshots.hpp"
 
 namespace {
 
 using namespace sinew;
-using namespace sinew::control;
+using namespace sinew::high_rate;
 
 HighRateSettings robot(int contacts) {
   HighRateSettings settings = sinew::testing::robot_settings(1, contacts);

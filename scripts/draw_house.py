@@ -3,7 +3,8 @@
 
 Every folder is a box. An arrow means that files of one folder include headers of another; its thickness grows with their
 number. Arrows that follow from others (a -> c from a -> b -> c) are omitted. If folders include each other in a circle,
-the script draws nothing and exits with 1. With --check, it only verifies that the picture is up to date.
+or a folder includes one that its DEPENDS line in src/sinew/CMakeLists.txt does not allow, itself or through those that it
+names, the script draws nothing and exits with 1. With --check, it only verifies that the picture is up to date.
 """
 import collections
 import pathlib
@@ -49,6 +50,28 @@ def levels(counts):
     return level, below
 
 
+def allowed():
+    """{folder: folders that its DEPENDS line allows, itself or through those that it names}."""
+    text = (ROOT / "src/sinew/CMakeLists.txt").read_text()
+    named = {}
+    for name, rest in re.findall(r"sinew_module\((\w+)([^)]*)\)", text):
+        depends = re.search(r"DEPENDS([a-z_ \n]*)", rest)
+        named[name] = depends.group(1).split() if depends else []
+
+    def reach(name):
+        return set(named[name]).union(*(reach(other) for other in named[name]))
+
+    return {name: reach(name) for name in named}
+
+
+def check_depends(counts):
+    """Exits if a folder of the library includes one that its DEPENDS line does not allow."""
+    may = allowed()
+    for upper, lower in sorted(counts):
+        if upper in may and lower not in may[upper]:
+            sys.exit(f"src/sinew/{upper} includes headers of {lower}, which its DEPENDS line does not allow")
+
+
 def reduced(below):
     """The (from, to) arrows that do not follow from others."""
     reach = {}
@@ -65,6 +88,7 @@ def reduced(below):
 def draw():
     counts = includes()
     level, below = levels(counts)
+    check_depends(counts)
     rows = collections.defaultdict(list)
     for name in sorted(level):
         rows[level[name]].append(name)

@@ -20,10 +20,10 @@
 #include "sinew/fem/solid_elements.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/sensor_set.hpp"
-#include "sinew/sim/sensor_source.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/sense/sensor_set.hpp"
+#include "sinew/sense/sensor_source.hpp"
 
 #include "fields.hpp"
 
@@ -45,7 +45,7 @@ constexpr double kStrongPower = 5.0;      // W
 Json vector_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 Json limit_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json quantity_json(const sim::QuantityName& quantity, const sim::Limits& limits, double low,
+Json quantity_json(const model::QuantityName& quantity, const model::Limits& limits, double low,
                    double high) {
   return {{"name", quantity.name},
           {"unit", quantity.unit},
@@ -61,31 +61,31 @@ struct Ends {
   double low, high;
 };
 
-Ends motion_ends(const sim::Model& model, int index) {
+Ends motion_ends(const model::Model& model, int index) {
   if (const auto* chamber = model.chamber(index)) {
     const double volume = std::abs(chamber->rest_volume());
     return {-0.5 * volume, volume};
   }
   const double far = kFarPull * model.size();
   const auto type = model.actuators()[static_cast<std::size_t>(index)].type;
-  if (type == sim::ActuatorType::torque || type == sim::ActuatorType::motor) {
+  if (type == model::ActuatorType::torque || type == model::ActuatorType::motor) {
     return {-kFarBend, kFarBend};
   }
-  return {type == sim::ActuatorType::cable ? 0.0 : -far, far};
+  return {type == model::ActuatorType::cable ? 0.0 : -far, far};
 }
 
-Ends effort_ends(const sim::ActuatorModel& actuator) {
-  if (actuator.type == sim::ActuatorType::chamber) return {-kStrongPressure, kStrongPressure};
-  if (actuator.type == sim::ActuatorType::torque || actuator.type == sim::ActuatorType::motor) {
+Ends effort_ends(const model::ActuatorModel& actuator) {
+  if (actuator.type == model::ActuatorType::chamber) return {-kStrongPressure, kStrongPressure};
+  if (actuator.type == model::ActuatorType::torque || actuator.type == model::ActuatorType::motor) {
     return {-kStrongTorque, kStrongTorque};
   }
-  return {actuator.type == sim::ActuatorType::cable ? 0.0 : -kStrongPull, kStrongPull};
+  return {actuator.type == model::ActuatorType::cable ? 0.0 : -kStrongPull, kStrongPull};
 }
 
-Ends input_ends(const sim::Model& model, int index) {
-  const sim::ActuatorModel& actuator = model.actuators()[static_cast<std::size_t>(index)];
-  if (actuator.type == sim::ActuatorType::motor) return {-kFastTurn, kFastTurn};
-  if (actuator.type == sim::ActuatorType::linear_motor) return {-model.size(), model.size()};
+Ends input_ends(const model::Model& model, int index) {
+  const model::ActuatorModel& actuator = model.actuators()[static_cast<std::size_t>(index)];
+  if (actuator.type == model::ActuatorType::motor) return {-kFastTurn, kFastTurn};
+  if (actuator.type == model::ActuatorType::linear_motor) return {-model.size(), model.size()};
   const std::string_view name = actuator.input_name().name;
   if (name == "power") return {0.0, kStrongPower};
   if (name == "phase") return {0.0, 1.0};
@@ -94,30 +94,30 @@ Ends input_ends(const sim::Model& model, int index) {
 }
 
 // The quantities that can be commanded. The first is the one that the scene commands.
-Json quantities_json(const sim::Model& model, int index) {
-  const sim::ActuatorModel& actuator = model.actuators()[static_cast<std::size_t>(index)];
+Json quantities_json(const model::Model& model, int index) {
+  const model::ActuatorModel& actuator = model.actuators()[static_cast<std::size_t>(index)];
   Json quantities = Json::array();
   if (actuator.controllable()) {
     const auto [low, high] = motion_ends(model, index);
     quantities.push_back(quantity_json(actuator.words().motion, actuator.motion, low, high));
     const auto [least, most] = effort_ends(actuator);
     quantities.push_back(quantity_json(
-        actuator.words().effort, actuator.effort_limits(sim::CommandKind::motion), least, most));
-    if (actuator.command.kind == sim::CommandKind::effort) {
+        actuator.words().effort, actuator.effort_limits(model::CommandKind::motion), least, most));
+    if (actuator.command.kind == model::CommandKind::effort) {
       std::swap(quantities[0], quantities[1]);
     }
   }
   if (*actuator.input_name().name != '\0') {
     const auto [low, high] = input_ends(model, index);
     const Json input = quantity_json(actuator.input_name(), {}, low, high);
-    const bool first = actuator.command.kind == sim::CommandKind::input;
+    const bool first = actuator.command.kind == model::CommandKind::input;
     quantities.insert(first ? quantities.begin() : quantities.end(), input);
   }
   return quantities;
 }
 
-Json actuator_json(const sim::Model& model, const scene::Robot& robot, int index) {
-  const sim::ActuatorModel& actuator = model.actuators()[static_cast<std::size_t>(index)];
+Json actuator_json(const model::Model& model, const scene::Robot& robot, int index) {
+  const model::ActuatorModel& actuator = model.actuators()[static_cast<std::size_t>(index)];
   const auto& description = robot.description.actuators[static_cast<std::size_t>(index)];
   const bool wire = model.cable(index) != nullptr;
   // Number of points in frames, including guide points added between those in the scene.
@@ -129,7 +129,7 @@ Json actuator_json(const sim::Model& model, const scene::Robot& robot, int index
           {"points", points}};
 }
 
-Json effector_json(const sim::Model& model, int index) {
+Json effector_json(const model::Model& model, int index) {
   const constraint::Effector& effector = model.effector(index);
   Json directions = Json::array();
   for (const Vector3& direction : effector.directions())
@@ -145,11 +145,11 @@ std::string plain(std::string name) {
 }
 
 // Group of signals of one unit that are plotted together.
-std::string group_of(const sim::Observable& observable) {
+std::string group_of(const run::Observable& observable) {
   const std::string& unit = observable.unit;
   const std::string_view quantity = observable.quantity;
   switch (observable.kind) {
-    case sim::ObservableKind::actuator: {
+    case run::ObservableKind::actuator: {
       const std::string named = observable.name.substr(observable.owner.size() + 1);
       if (quantity == "input_command") return plain(named);
       const char* after = quantity.ends_with("_command") ? " command" : "";
@@ -158,54 +158,54 @@ std::string group_of(const sim::Observable& observable) {
       }
       return (unit == "m" ? "motion" : unit == "rad" ? "angle" : "volume") + std::string(after);
     }
-    case sim::ObservableKind::effector:
+    case run::ObservableKind::effector:
       return unit == "m" ? "effector" : "rotation";
-    case sim::ObservableKind::controller:
+    case run::ObservableKind::controller:
       return unit == "m" ? "error" : "rotation error";
-    case sim::ObservableKind::probe:
+    case run::ObservableKind::probe:
       return unit == "rad" ? "angle" : "probe";
-    case sim::ObservableKind::sensor:
+    case run::ObservableKind::sensor:
       return unit.empty() ? "sensor" : "sensor " + unit;
-    case sim::ObservableKind::estimator:
+    case run::ObservableKind::estimator:
       return unit == "N" || unit.empty() ? "estimate" : "estimate " + unit;
-    case sim::ObservableKind::contact:
+    case run::ObservableKind::contact:
       return unit == "N" ? "contact" : unit == "m" ? "gap" : "touching";
-    case sim::ObservableKind::joint:
+    case run::ObservableKind::joint:
       return "joint " + unit;
-    case sim::ObservableKind::energy:
+    case run::ObservableKind::energy:
       return "energy";
-    case sim::ObservableKind::timing:
+    case run::ObservableKind::timing:
       return unit == "s" ? "time" : "solver";
     default:
       return "solver";
   }
 }
 
-void add_signals(const sim::Observable& observable, std::vector<SignalInfo>& list) {
+void add_signals(const run::Observable& observable, std::vector<SignalInfo>& list) {
   if (!is_signal(observable)) return;
   const std::string group = group_of(observable);
   for (const std::string& component : observable.components) {
     SignalInfo signal{component, plain(component), observable.unit, group};
     switch (observable.kind) {
-      case sim::ObservableKind::actuator:
-      case sim::ObservableKind::controller:
+      case run::ObservableKind::actuator:
+      case run::ObservableKind::controller:
         signal.label = observable.owner;
         break;
-      case sim::ObservableKind::probe:  // an effector may have the same name
+      case run::ObservableKind::probe:  // an effector may have the same name
         if (observable.size() == 1) signal.key = observable.owner;
         signal.label = signal.key;
         signal.key = "probe." + signal.key;
         break;
-      case sim::ObservableKind::sensor:
+      case run::ObservableKind::sensor:
         signal.label = component;
         signal.key = "sensor." + signal.key;
         break;
-      case sim::ObservableKind::effector:
-      case sim::ObservableKind::contact:
-      case sim::ObservableKind::joint:
+      case run::ObservableKind::effector:
+      case run::ObservableKind::contact:
+      case run::ObservableKind::joint:
         signal.label = component;
         break;
-      case sim::ObservableKind::timing:
+      case run::ObservableKind::timing:
         if (!observable.owner.empty()) signal.label = observable.quantity;
         break;
       default:
@@ -220,20 +220,20 @@ void add_signals(const sim::Observable& observable, std::vector<SignalInfo>& lis
 class SignalKeys {
  public:
   explicit SignalKeys(const sim::Observables& observables) {
-    for (const sim::Observable& one : observables.list()) {
+    for (const run::Observable& one : observables.list()) {
       if (one.quantity == "true") continue;
       std::vector<SignalInfo> signals;
       add_signals(one, signals);
       for (const SignalInfo& signal : signals) keys_[{one.kind, one.owner}].push_back(signal.key);
     }
   }
-  Json of(sim::ObservableKind kind, const std::string& owner) const {
+  Json of(run::ObservableKind kind, const std::string& owner) const {
     const auto found = keys_.find({kind, owner});
     return found == keys_.end() ? Json::array() : found->second;
   }
 
  private:
-  std::map<std::pair<sim::ObservableKind, std::string>, Json> keys_;
+  std::map<std::pair<run::ObservableKind, std::string>, Json> keys_;
 };
 
 Json probe_json(const SignalKeys& keys, const constraint::Probe& probe) {
@@ -241,17 +241,17 @@ Json probe_json(const SignalKeys& keys, const constraint::Probe& probe) {
           {"kind", probe.kind()},
           {"sensor", false},
           {"marks", probe.mark_count()},
-          {"signals", keys.of(sim::ObservableKind::probe, probe.name())}};
+          {"signals", keys.of(run::ObservableKind::probe, probe.name())}};
 }
 
 // A sensor, which is drawn like a probe.
-Json sensor_json(const SignalKeys& keys, const sim::SensorModel& sensor) {
+Json sensor_json(const SignalKeys& keys, const sense::SensorModel& sensor) {
   const constraint::Probe* probe = sensor.source->probe();
   return {{"name", sensor.name},
           {"kind", sensor.kind},
           {"sensor", true},
           {"marks", probe != nullptr ? probe->mark_count() : 0},
-          {"signals", keys.of(sim::ObservableKind::sensor, sensor.name)}};
+          {"signals", keys.of(run::ObservableKind::sensor, sensor.name)}};
 }
 
 // The surface of a contact. That of a rigid body is drawn with the body.
@@ -274,7 +274,7 @@ Json surface_json(const constraint::Contact& contact) {
           {"radius", capsule.radius}};
 }
 
-Json contact_json(const SignalKeys& keys, const sim::Model& model, int index) {
+Json contact_json(const SignalKeys& keys, const model::Model& model, int index) {
   const constraint::Contact& contact = model.contact(index);
   const int body = contact.body();
   return {{"name", contact.name()},
@@ -282,20 +282,20 @@ Json contact_json(const SignalKeys& keys, const sim::Model& model, int index) {
           {"surface", surface_json(contact)},
           {"friction", contact.friction().sticking},
           {"points", contact.size()},
-          {"signals", keys.of(sim::ObservableKind::contact, contact.name())}};
+          {"signals", keys.of(run::ObservableKind::contact, contact.name())}};
 }
 
-Json joint_json(const SignalKeys& keys, const sim::Model& model, int index) {
-  const sim::JointModel& joint = model.joints()[static_cast<std::size_t>(index)];
+Json joint_json(const SignalKeys& keys, const model::Model& model, int index) {
+  const model::JointModel& joint = model.joints()[static_cast<std::size_t>(index)];
   const constraint::Joint* rigid = model.joint(index);
   const auto name_of = [&](int body) {
-    return body == sim::kWorld ? "world" : model.body(body).name();
+    return body == model::kWorld ? "world" : model.body(body).name();
   };
   const auto type = rigid != nullptr ? rigid->type() : constraint::JointType::weld;
   return {{"name", joint.name},
           {"type", constraint::joint_type_name(type)},
           {"bodies", {name_of(joint.first), name_of(joint.second)}},
-          {"signals", keys.of(sim::ObservableKind::joint, joint.name)}};
+          {"signals", keys.of(run::ObservableKind::joint, joint.name)}};
 }
 
 std::string material_text(const fem::MaterialRegion& region) {
@@ -352,7 +352,7 @@ Json notices_json(const std::vector<Notice>& notices) {
   return list;
 }
 
-Json bounds_json(const sim::Model& model) {
+Json bounds_json(const model::Model& model) {
   Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
   Vector3 high = -low;
   for (const auto& body : model.bodies()) {
@@ -379,7 +379,7 @@ Json controllers_json(const scene::Robot& robot) {
   Json list = Json::array();
   for (const scene::SceneController& controller : robot.controllers) {
     Json effectors = Json::array();
-    for (const inverse::EffectorTask& task : controller.settings.tasks) {
+    for (const control::EffectorTask& task : controller.settings.tasks) {
       effectors.push_back(robot.model->effectors()[static_cast<std::size_t>(task.effector)].name);
     }
     list.push_back({{"name", controller.name}, {"type", "inverse"}, {"effectors", effectors}});
@@ -390,23 +390,23 @@ Json controllers_json(const scene::Robot& robot) {
 }  // namespace
 
 // Vectors of contacts and targets are drawn instead. A replay has no record of the work.
-bool is_signal(const sim::Observable& observable) {
+bool is_signal(const run::Observable& observable) {
   switch (observable.kind) {
-    case sim::ObservableKind::time:
-    case sim::ObservableKind::body:
-    case sim::ObservableKind::contact_point:
-    case sim::ObservableKind::ledger:
-    case sim::ObservableKind::status:
+    case run::ObservableKind::time:
+    case run::ObservableKind::body:
+    case run::ObservableKind::contact_point:
+    case run::ObservableKind::ledger:
+    case run::ObservableKind::status:
       return false;
-    case sim::ObservableKind::controller:
+    case run::ObservableKind::controller:
       return !observable.owner.empty() && observable.size() == 1;
-    case sim::ObservableKind::contact:
+    case run::ObservableKind::contact:
       return observable.size() == 1;
-    case sim::ObservableKind::probe:  // the points of a line are drawn
+    case run::ObservableKind::probe:  // the points of a line are drawn
       return observable.quantity == "value";
-    case sim::ObservableKind::sensor:
+    case run::ObservableKind::sensor:
       return observable.quantity != "sample_time";
-    case sim::ObservableKind::estimator:
+    case run::ObservableKind::estimator:
       return observable.quantity != "status";
     default:
       return true;
@@ -438,7 +438,7 @@ DisplaySurface display_surface(const mechanics::BodyModel& body) {
 }
 
 Description describe(const scene::Robot& robot, const sim::Observables& observables) {
-  const sim::Model& model = *robot.model;
+  const model::Model& model = *robot.model;
   Description result;
   Json bodies = Json::array();
   for (const auto& body : model.bodies()) {
@@ -457,7 +457,7 @@ Description describe(const scene::Robot& robot, const sim::Observables& observab
   }
   const SignalKeys keys(observables);
   for (const auto& probe : model.probes()) probes.push_back(probe_json(keys, probe));
-  for (const sim::SensorModel& sensor : sim::sensors_of(model)) {
+  for (const sense::SensorModel& sensor : sense::sensors_of(model)) {
     probes.push_back(sensor_json(keys, sensor));
   }
   Json contacts = Json::array();
@@ -468,7 +468,7 @@ Description describe(const scene::Robot& robot, const sim::Observables& observab
   for (std::size_t j = 0; j < model.joints().size(); ++j) {
     joints.push_back(joint_json(keys, model, static_cast<int>(j)));
   }
-  for (const sim::Observable& one : observables.list()) add_signals(one, result.signals);
+  for (const run::Observable& one : observables.list()) add_signals(one, result.signals);
   Json fields = Json::array();
   for (const FieldInfo& field : list_fields()) {
     result.fields.push_back(field.name);

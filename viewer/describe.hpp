@@ -18,7 +18,7 @@ namespace sinew::viewer {
 
 /// Whether Frame::signals contains the numbers of an observable. Signals are in the order of the
 /// list.
-bool is_signal(const sim::Observable& observable);
+bool is_signal(const run::Observable& observable);
 
 /// The surface of a body as it is drawn.
 DisplaySurface display_surface(const mechanics::BodyModel& body);

@@ -27,7 +27,7 @@ class FollowSource final : public LiveSource {
   // Functions for the script, called from one thread.
 
   /// Sets the controller that is shown, see RobotState::observe(). Call it before hand_over().
-  void observe(const std::string& name, inverse::TargetController* controller) {
+  void observe(const std::string& name, control::TargetController* controller) {
     state().observe(name, controller);
   }
   /// Starts the turn of the source.

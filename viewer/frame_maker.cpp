@@ -10,10 +10,10 @@
 #include "sinew/constraint/probe.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/sensor_set.hpp"
-#include "sinew/sim/sensor_source.hpp"
-#include "sinew/sim/state.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/state.hpp"
+#include "sinew/sense/sensor_set.hpp"
+#include "sinew/sense/sensor_source.hpp"
 
 #include "fields.hpp"
 #include "joint_marks.hpp"
@@ -44,8 +44,8 @@ void FrameMaker::find_contacts() {
       {"friction_force", &ContactPlaces::friction_force},
       {"state", &ContactPlaces::state}};
   for (std::size_t k = 0; k < observables_.list().size(); ++k) {
-    const sim::Observable& one = observables_.list()[k];
-    if (one.kind != sim::ObservableKind::contact_point) continue;
+    const run::Observable& one = observables_.list()[k];
+    if (one.kind != run::ObservableKind::contact_point) continue;
     if (one.quantity == "pose") contacts_.emplace_back();
     const auto found = members.find(one.quantity);
     if (found != members.end()) contacts_.back().*(found->second) = k;
@@ -101,7 +101,7 @@ void FrameMaker::fill_body(std::size_t index, const FrameWishes& wishes, BodyFra
 }
 
 void FrameMaker::fill_points(Frame& frame) {
-  const sim::Model& model = simulation_.model();
+  const model::Model& model = simulation_.model();
   const auto put = [](std::vector<float>& list, const Vector3& point) {
     for (int c = 0; c < 3; ++c) list.push_back(static_cast<float>(point[c]));
   };
@@ -116,7 +116,7 @@ void FrameMaker::fill_points(Frame& frame) {
     for (Eigen::Index k = 0; k < marks.rows(); ++k) put(frame.probes, marks.row(k).transpose());
   };
   for (const auto& probe : model.probes()) put_marks(probe);
-  for (const sim::SensorModel& sensor : sim::sensors_of(model)) {
+  for (const sense::SensorModel& sensor : sense::sensors_of(model)) {
     if (const constraint::Probe* probe = sensor.source->probe()) put_marks(*probe);
   }
   // Rotations are not points.
@@ -127,9 +127,9 @@ void FrameMaker::fill_points(Frame& frame) {
     put(list, point ? Vector3(numbers[0], numbers[1], numbers[2]) : Vector3::Constant(kNone));
   };
   for (std::size_t k = 0; k < observables_.list().size(); ++k) {
-    const sim::Observable& one = observables_.list()[k];
-    if (one.kind == sim::ObservableKind::effector) put_numbers(frame.effectors, k);
-    const bool target = one.kind == sim::ObservableKind::controller && one.quantity == "target";
+    const run::Observable& one = observables_.list()[k];
+    if (one.kind == run::ObservableKind::effector) put_numbers(frame.effectors, k);
+    const bool target = one.kind == run::ObservableKind::controller && one.quantity == "target";
     if (target) put_numbers(frame.targets, k);
   }
 }

@@ -1,8 +1,8 @@
 #include "joint_marks.hpp"
 
 #include "sinew/constraint/joint.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/joint_load.hpp"
-#include "sinew/sim/model.hpp"
 
 namespace sinew::viewer {
 

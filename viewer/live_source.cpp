@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
 
 namespace sinew::viewer {
 
@@ -33,7 +33,7 @@ void LiveSource::stop() {
 
 bool LiveSource::complete(void (RobotState::*work)()) {
   struct Ended {};
-  const sim::Watched watched = state_.watch([this](const sim::StepProgress&) {
+  const sim::Watched watched = state_.watch([this](const run::StepProgress&) {
     if (stopping()) throw Ended{};
   });
   try {

@@ -10,7 +10,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/whole.hpp"
-#include "sinew/sim/actuator.hpp"
+#include "sinew/model/actuator.hpp"
 
 #include "limits.hpp"
 
@@ -184,7 +184,7 @@ Pick read_pick(Fields& fields) {
 SetCommand read_command(Fields& fields) {
   SetCommand command;
   command.actuator = fields.text("actuator");
-  const auto& known = sim::command_quantities();
+  const auto& known = model::command_quantities();
   command.quantity = fields.text("quantity");
   if (std::ranges::find(known, command.quantity) == known.end()) {
     fail(ErrorKind::unknown_choice, "quantity",

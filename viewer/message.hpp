@@ -11,7 +11,7 @@
 #include <variant>
 
 #include "sinew/core/types.hpp"
-#include "sinew/sim/actuator.hpp"
+#include "sinew/model/actuator.hpp"
 
 #include "frame.hpp"
 

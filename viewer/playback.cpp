@@ -9,16 +9,16 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/signal.hpp"
-#include "sinew/sim/state.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/model/signal.hpp"
+#include "sinew/run/state.hpp"
 
 namespace sinew::viewer {
 
 void Playback::check(const RecordedState& recorded) const {
   for (const auto& [index, numbers] : recorded.values) {
-    const sim::Observable& one = observables_.list().at(index);
+    const run::Observable& one = observables_.list().at(index);
     const auto refuse = [&](const std::string& what) {
       throw Error(ErrorKind::malformed_file, {.item = one.name}, what,
                   "record the run again with this version");
@@ -34,8 +34,8 @@ void Playback::check(const RecordedState& recorded) const {
   }
 }
 
-void Playback::put_body(const sim::Observable& what, const std::vector<double>& numbers,
-                        sim::State& state) const {
+void Playback::put_body(const run::Observable& what, const std::vector<double>& numbers,
+                        run::State& state) const {
   const int body = simulation_.model().body_index(what.owner);
   if (mechanics::as<const mechanics::HasPose>(simulation_.body(body)) != nullptr) return;
   const bool of_coordinates =
@@ -47,7 +47,7 @@ void Playback::put_body(const sim::Observable& what, const std::vector<double>& 
 }
 
 // Sets the poses of rigid bodies, which are recorded as position and rotation.
-void Playback::put_poses(const RecordedState& recorded, sim::State& state) const {
+void Playback::put_poses(const RecordedState& recorded, run::State& state) const {
   for (int body = 0; body < simulation_.bodies(); ++body) {
     const auto* rigid = mechanics::as<const mechanics::HasPose>(simulation_.body(body));
     if (rigid == nullptr) continue;
@@ -55,8 +55,8 @@ void Playback::put_poses(const RecordedState& recorded, sim::State& state) const
     const std::vector<double>* position = nullptr;
     const std::vector<double>* rotation = nullptr;
     for (const auto& [index, numbers] : recorded.values) {
-      const sim::Observable& one = observables_.list()[index];
-      if (one.kind != sim::ObservableKind::body || one.owner != name) continue;
+      const run::Observable& one = observables_.list()[index];
+      if (one.kind != run::ObservableKind::body || one.owner != name) continue;
       if (one.quantity == "position") position = &numbers;
       if (one.quantity == "rotation") rotation = &numbers;
     }
@@ -68,33 +68,33 @@ void Playback::put_poses(const RecordedState& recorded, sim::State& state) const
 }
 
 // Sets an actuator. Its command is the recorded one, whether from a controller or the scene.
-void Playback::put_actuator(const sim::Observable& what, double number, sim::State& state) {
+void Playback::put_actuator(const run::Observable& what, double number, run::State& state) {
   const int index = simulation_.model().actuator_index(what.owner);
   const auto place = static_cast<std::size_t>(index);
-  const sim::ActuatorModel& actuator = simulation_.model().actuators()[place];
+  const model::ActuatorModel& actuator = simulation_.model().actuators()[place];
   if (what.quantity == "effort") state.efforts[static_cast<std::size_t>(actuator.row)] = number;
   if (what.quantity == "motion") state.motions[place] = state.setpoints[place] = number;
-  for (const sim::CommandKind kind : sim::command_kinds(actuator)) {
+  for (const model::CommandKind kind : sim::command_kinds(actuator)) {
     if (what.name != sim::command_name(actuator, kind) || !std::isfinite(number)) continue;
     // Older versions recorded pressures below vacuum.
-    const bool pressure = kind == sim::CommandKind::effort && actuator.vacuum.has_value();
+    const bool pressure = kind == model::CommandKind::effort && actuator.vacuum.has_value();
     const double told = pressure ? std::max(number, *actuator.vacuum) : number;
-    simulation_.command(index, {kind, sim::Signal::constant(told)});
+    simulation_.command(index, {kind, model::Signal::constant(told)});
   }
 }
 
 void Playback::show(const RecordedState& recorded) {
   check(recorded);
   observables_.release();
-  sim::State state = simulation_.state();
+  run::State state = simulation_.state();
   for (const auto& [index, numbers] : recorded.values) {
-    const sim::Observable& one = observables_.list()[index];
-    if (one.kind == sim::ObservableKind::body) {
+    const run::Observable& one = observables_.list()[index];
+    if (one.kind == run::ObservableKind::body) {
       put_body(one, numbers, state);
       continue;
     }
     observables_.hold(index, numbers);
-    if (one.kind == sim::ObservableKind::actuator) put_actuator(one, numbers.front(), state);
+    if (one.kind == run::ObservableKind::actuator) put_actuator(one, numbers.front(), state);
   }
   put_poses(recorded, state);
   state.volume_ratio = 1.0;  // not recorded

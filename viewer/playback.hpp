@@ -34,10 +34,10 @@ class Playback {
 
  private:
   void check(const RecordedState& recorded) const;
-  void put_body(const sim::Observable& what, const std::vector<double>& numbers,
-                sim::State& state) const;
-  void put_poses(const RecordedState& recorded, sim::State& state) const;
-  void put_actuator(const sim::Observable& what, double number, sim::State& state);
+  void put_body(const run::Observable& what, const std::vector<double>& numbers,
+                run::State& state) const;
+  void put_poses(const RecordedState& recorded, run::State& state) const;
+  void put_actuator(const run::Observable& what, double number, run::State& state);
 
   sim::Simulation& simulation_;
   sim::Observables& observables_;

@@ -27,14 +27,14 @@ using Json = nlohmann::json;
 fs::path file_of(const fs::path& path) { return fs::is_directory(path) ? path / "run.h5" : path; }
 
 // Whether a state cannot be shown without an observable. All formats have these.
-bool is_needed(const sim::Observable& observable) {
+bool is_needed(const run::Observable& observable) {
   switch (observable.kind) {
-    case sim::ObservableKind::body:
-    case sim::ObservableKind::effector:
-    case sim::ObservableKind::probe:
-    case sim::ObservableKind::contact_point:
+    case run::ObservableKind::body:
+    case run::ObservableKind::effector:
+    case run::ObservableKind::probe:
+    case run::ObservableKind::contact_point:
       return true;
-    case sim::ObservableKind::actuator:
+    case run::ObservableKind::actuator:
       return observable.quantity == "effort" || observable.quantity == "motion";
     default:
       return false;
@@ -101,7 +101,7 @@ ReplaySource::ReplaySource(const fs::path& path, bool playing, double speed)
 
 void ReplaySource::open_series() {
   constexpr std::size_t kSmall = 16;
-  const std::vector<sim::Observable>& list = state_.observables().list();
+  const std::vector<run::Observable>& list = state_.observables().list();
   for (std::size_t k = 0; k < list.size(); ++k) {
     std::string dataset = record::dataset_of(list[k]);
     if (dataset.empty()) continue;
@@ -200,7 +200,7 @@ std::string ReplaySource::history() {
   for (std::size_t k = 0; k < frames; k += stride) times.push_back(file_.times()[k]);
   std::vector<float> numbers(times.size() * signals, std::numeric_limits<float>::quiet_NaN());
   std::size_t first = 0;  // signal of the observable
-  const std::vector<sim::Observable>& list = state_.observables().list();
+  const std::vector<run::Observable>& list = state_.observables().list();
   for (std::size_t k = 0; k < list.size(); ++k) {
     if (!is_signal(list[k])) continue;
     const std::size_t size = list[k].size();

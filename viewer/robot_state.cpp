@@ -6,15 +6,15 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "sinew/control/target_controller.hpp"
 #include "sinew/fem/of_elements.hpp"
-#include "sinew/inverse/target_controller.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/free_motion_error.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/signal.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/model/signal.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/statics/free_motion_error.hpp"
 
 #include "troubles.hpp"
 
@@ -30,10 +30,10 @@ constexpr double kShownMotion = 0.15;
 constexpr double kLeastMotion = 0.1;
 constexpr std::size_t kMostArrows = 60;
 
-std::vector<std::pair<Vector3, Vector3>> sample(const std::vector<sim::BodyMotion>& motion,
+std::vector<std::pair<Vector3, Vector3>> sample(const std::vector<statics::BodyMotion>& motion,
                                                 double size) {
   std::vector<std::pair<Vector3, Vector3>> all, some;
-  for (const sim::BodyMotion& body : motion) {
+  for (const statics::BodyMotion& body : motion) {
     for (Eigen::Index i = 0; i < body.displacements.rows(); ++i) {
       const Vector3 by = body.displacements.row(i).transpose();
       if (by.norm() < kLeastMotion) continue;
@@ -73,12 +73,12 @@ sim::Observables RobotState::list_observables() {
   sim::Observables list(*simulation_);
   std::vector<int> effectors(simulation_->model().effectors().size());
   std::iota(effectors.begin(), effectors.end(), 0);  // any of them may get a target
-  inverse::add_controller(
+  control::add_controller(
       list, [this] { return controller_; }, effectors);
   list.add({{"real_time_factor",
              "",
              {},
-             sim::ObservableKind::timing,
+             run::ObservableKind::timing,
              {},
              "real_time_factor",
              {"real_time_factor"},
@@ -87,13 +87,13 @@ sim::Observables RobotState::list_observables() {
   return list;
 }
 
-void RobotState::observe(const std::string& name, inverse::TargetController* controller) {
+void RobotState::observe(const std::string& name, control::TargetController* controller) {
   observing_ = true;
   controller_ = controller;
   controller_name_ = controller == nullptr ? "" : name;
 }
 
-std::pair<std::string, std::unique_ptr<inverse::TargetController>> RobotState::take_controller() {
+std::pair<std::string, std::unique_ptr<control::TargetController>> RobotState::take_controller() {
   controller_ = nullptr;
   return {controller_name_, std::move(own_)};
 }
@@ -102,7 +102,7 @@ void RobotState::step() {
   try {
     simulation_->step();
     ++shape_;
-  } catch (const sim::FreeMotionError& error) {
+  } catch (const statics::FreeMotionError& error) {
     stop(error);
     stopped_->free_motion = sample(error.motion(), simulation_->model().size());
   } catch (const Error& error) {
@@ -135,24 +135,24 @@ void RobotState::settle() {
 
 void RobotState::command(const SetCommand& command) {
   const int index = simulation_->model().actuator_index(command.actuator);
-  const sim::ActuatorModel& actuator =
+  const model::ActuatorModel& actuator =
       simulation_->model().actuators()[static_cast<std::size_t>(index)];
-  const std::optional<sim::CommandKind> kind = actuator.kind_of(command.quantity);
+  const std::optional<model::CommandKind> kind = actuator.kind_of(command.quantity);
   if (!kind) {
     throw Error(ErrorKind::wrong_actuator_type, {.item = command.actuator},
                 fmt::format("a {} is not commanded by {}", actuator.words().type, command.quantity),
                 "use one of the actuator's quantities");
   }
-  const sim::Limits limits = *kind == sim::CommandKind::motion   ? actuator.motion
-                             : *kind == sim::CommandKind::effort ? actuator.effort
-                                                                 : sim::Limits{};
+  const model::Limits limits = *kind == model::CommandKind::motion   ? actuator.motion
+                               : *kind == model::CommandKind::effort ? actuator.effort
+                                                                     : model::Limits{};
   if (command.value < limits.min || command.value > limits.max) {
     throw Error(ErrorKind::out_of_range, {.item = command.actuator},
                 fmt::format("{:g} is beyond the limits {:g} to {:g}", command.value, limits.min,
                             limits.max),
                 "stay within the limits of the scene");
   }
-  simulation_->command(index, {*kind, sim::Signal::constant(command.value)});
+  simulation_->command(index, {*kind, model::Signal::constant(command.value)});
   acting_.reset();
 }
 
@@ -163,9 +163,9 @@ void RobotState::detach() {
   controller_name_.clear();
 }
 
-void RobotState::attach(const std::string& name, const inverse::InverseSettings& settings) {
+void RobotState::attach(const std::string& name, const control::InverseSettings& settings) {
   detach();
-  own_ = inverse::make_controller(*simulation_, settings);
+  own_ = control::make_controller(*simulation_, settings);
   controller_ = own_.get();
   controller_name_ = name;
 }
@@ -189,7 +189,7 @@ void RobotState::set_target(const SetTarget& target) {
     for (const scene::SceneController& controller : robot_.controllers) {
       if (controller.name != controller_name_) continue;
       const auto found =
-          std::ranges::find(controller.settings.tasks, effector, &inverse::EffectorTask::effector);
+          std::ranges::find(controller.settings.tasks, effector, &control::EffectorTask::effector);
       if (found == controller.settings.tasks.end()) continue;
       controller_->set_target(task_of(effector), found->target);
     }
@@ -202,11 +202,11 @@ void RobotState::set_target(const SetTarget& target) {
                 "attach one: sinew.InverseController(sim, {...})");
   }
   if (task_of(effector) < 0) {
-    inverse::InverseSettings settings;
-    settings.tasks = {{effector, inverse::Target::fixed(*target.position), {1.0}}};
+    control::InverseSettings settings;
+    settings.tasks = {{effector, control::Target::fixed(*target.position), {1.0}}};
     attach(kOwnController, settings);
   } else {
-    controller_->set_target(task_of(effector), inverse::Target::fixed(*target.position));
+    controller_->set_target(task_of(effector), control::Target::fixed(*target.position));
   }
   targets_[target.effector] = *target.position;
 }
@@ -247,7 +247,7 @@ void RobotState::release() {
 std::shared_ptr<const Acting> RobotState::acting() {
   if (acting_) return acting_;
   Acting now{simulation_->inputs(), controller_name_, {}, targets_};
-  for (sim::BodyInputs& body : now.inputs.bodies) body.tether.reset();
+  for (run::BodyInputs& body : now.inputs.bodies) body.tether.reset();
   if (own_) now.settings = own_->settings();
   return acting_ = std::make_shared<const Acting>(std::move(now));
 }
@@ -283,11 +283,11 @@ std::shared_ptr<Frame> RobotState::frame(const FrameWishes& wishes, double real_
 }
 
 std::string RobotState::status_members() const {
-  const sim::Model& model = simulation_->model();
+  const model::Model& model = simulation_->model();
   Json commands = Json::object(), targets = Json::object();
   for (std::size_t i = 0; i < model.actuators().size(); ++i) {
-    const sim::ActuatorModel& actuator = model.actuators()[i];
-    const sim::ActuatorState& state = simulation_->actuator(static_cast<int>(i));
+    const model::ActuatorModel& actuator = model.actuators()[i];
+    const model::ActuatorState& state = simulation_->actuator(static_cast<int>(i));
     commands[actuator.name] = {{"quantity", actuator.quantity(state.command.kind).name},
                                {"value", state.command.signal.value(simulation_->time())},
                                {"owned", state.owner != nullptr}};

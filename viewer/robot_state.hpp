@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "sinew/inverse/controller_observables.hpp"
-#include "sinew/inverse/target_controller.hpp"
+#include "sinew/control/controller_observables.hpp"
+#include "sinew/control/target_controller.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -67,14 +67,14 @@ class RobotState {
   /// Advances one step. If it throws Error, keeps that as stopped().
   void step();
   /// While the result exists, step() and settle() report their progress to `watcher`.
-  sim::Watched watch(sim::StepWatcher watcher) { return {*simulation_, std::move(watcher)}; }
+  sim::Watched watch(run::StepWatcher watcher) { return {*simulation_, std::move(watcher)}; }
   /// Call it after other code has stepped the simulation.
   void moved() { ++shape_; }
   /// Shows a controller that other code attaches and detaches. From now on, none is attached here.
   /// @param name,controller to be shown; null: there is none.
-  void observe(const std::string& name, inverse::TargetController* controller);
+  void observe(const std::string& name, control::TargetController* controller);
   /// Releases ownership of the controller, which stays attached. Returns it with its name.
-  std::pair<std::string, std::unique_ptr<inverse::TargetController>> take_controller();
+  std::pair<std::string, std::unique_ptr<control::TargetController>> take_controller();
   void reset();
   void settle();
   void command(const SetCommand& command);
@@ -98,11 +98,11 @@ class RobotState {
   std::string status_members() const;
 
  private:
-  void attach(const std::string& name, const inverse::InverseSettings& settings);
+  void attach(const std::string& name, const control::InverseSettings& settings);
   void detach();
   void stop(const Error& error);
   std::shared_ptr<const Acting> acting();
-  int task_of(int effector) const { return inverse::task_of(controller_, effector); }
+  int task_of(int effector) const { return control::task_of(controller_, effector); }
   sim::Observables list_observables();
 
   scene::Robot robot_;
@@ -112,8 +112,8 @@ class RobotState {
   Playback playback_;
   FrameMaker frames_;
   double real_time_factor_ = 0.0;
-  std::unique_ptr<inverse::TargetController> own_;
-  inverse::TargetController* controller_ = nullptr;  ///< own_, or an observed one
+  std::unique_ptr<control::TargetController> own_;
+  control::TargetController* controller_ = nullptr;  ///< own_, or an observed one
   std::string controller_name_;
   std::optional<bool> followed_before_;  // see follow()
   std::optional<scene::SceneController> first_;

@@ -10,10 +10,10 @@
 #include <optional>
 #include <string>
 
+#include "sinew/control/inverse_settings.hpp"
 #include "sinew/core/types.hpp"
-#include "sinew/inverse/inverse_settings.hpp"
-#include "sinew/sim/inputs.hpp"
-#include "sinew/sim/state.hpp"
+#include "sinew/run/inputs.hpp"
+#include "sinew/run/state.hpp"
 
 #include "frame.hpp"
 
@@ -21,15 +21,15 @@ namespace sinew::viewer {
 
 /// The inputs of a run besides its state. Moments between which these have not changed share one.
 struct Acting {
-  sim::Inputs inputs;                                ///< without the mouse spring
+  run::Inputs inputs;                                ///< without the mouse spring
   std::string controller;                            ///< name; empty: none
-  std::optional<inverse::InverseSettings> settings;  ///< of the controller, including targets
+  std::optional<control::InverseSettings> settings;  ///< of the controller, including targets
   std::map<std::string, Vector3> targets;            ///< set by the page
 };
 
 /// Everything that determines how a run continues from one time.
 struct Moment {
-  sim::State state;
+  run::State state;
   std::shared_ptr<const Acting> acting;
   double time = 0.0;  ///< s, simulated
 };

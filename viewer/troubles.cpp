@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "sinew/inverse/target_controller.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/signal.hpp"
+#include "sinew/control/target_controller.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/model/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::viewer {
@@ -31,7 +31,7 @@ Json trouble(const char* level, const char* kind, const std::string& subject,
   return {{"level", level}, {"kind", kind}, {"subject", subject}, {"text", text}};
 }
 
-void add_limits(const sim::ActuatorModel& model, const sim::ActuatorState& state, double time,
+void add_limits(const model::ActuatorModel& model, const model::ActuatorState& state, double time,
                 Json& list) {
   const bool most = state.effort > 0.0 && at(state.effort, model.effort.max, 1e-3);
   if (most) {
@@ -53,44 +53,44 @@ void add_limits(const sim::ActuatorModel& model, const sim::ActuatorState& state
   }
 }
 
-void add_controller(const inverse::TargetController& controller, const std::string& name,
+void add_controller(const control::TargetController& controller, const std::string& name,
                     Json& list) {
-  const std::string kind(inverse::inverse_status_name(controller.status()));
+  const std::string kind(control::inverse_status_name(controller.status()));
   switch (controller.status()) {
-    case inverse::InverseStatus::not_started:
-    case inverse::InverseStatus::on_target:
-    case inverse::InverseStatus::moving:
+    case control::InverseStatus::not_started:
+    case control::InverseStatus::on_target:
+    case control::InverseStatus::moving:
       break;
-    case inverse::InverseStatus::rate_limited:
+    case control::InverseStatus::rate_limited:
       list.push_back(trouble("info", "rate-limited", name, "on the way; rates are limited"));
       break;
-    case inverse::InverseStatus::out_of_reach:
+    case control::InverseStatus::out_of_reach:
       list.push_back(trouble(
           "warning", "out-of-reach", name,
           fmt::format("the target is out of reach by {:.3g} mm", 1e3 * controller.error())));
       break;
-    case inverse::InverseStatus::local_optimum:
+    case control::InverseStatus::local_optimum:
       list.push_back(trouble("warning", "local-optimum", name,
                              fmt::format("no small change of efforts comes nearer than {:.3g} mm",
                                          1e3 * controller.error())));
       break;
-    case inverse::InverseStatus::held_back:
+    case control::InverseStatus::held_back:
       list.push_back(trouble(
           "warning", "held-back", name,
           fmt::format("the robot rests {:.3g} mm from the target because larger steps fail: it "
                       "would buckle or be crushed",
                       1e3 * controller.error())));
       break;
-    case inverse::InverseStatus::limits_conflict:
+    case control::InverseStatus::limits_conflict:
       list.push_back(trouble("error", "limits-conflict", name,
                              "limits contradict each other: " + controller.conflict()));
       break;
-    case inverse::InverseStatus::at_limits:
+    case control::InverseStatus::at_limits:
       list.push_back(trouble("warning", "at-limits", name,
                              fmt::format("limits hold the effectors {:.3g} mm off their targets",
                                          1e3 * controller.error())));
       break;
-    case inverse::InverseStatus::holding:
+    case control::InverseStatus::holding:
       list.push_back(
           trouble("warning", "holding", name, "commands are held, since " + controller.conflict()));
       break;
@@ -100,18 +100,18 @@ void add_controller(const inverse::TargetController& controller, const std::stri
 }  // namespace
 
 nlohmann::json list_troubles(const sim::Simulation& simulation,
-                             const inverse::TargetController* controller, const std::string& name) {
+                             const control::TargetController* controller, const std::string& name) {
   Json troubles = Json::array();
   const auto& actuators = simulation.model().actuators();
   for (std::size_t i = 0; i < actuators.size(); ++i) {
     add_limits(actuators[i], simulation.actuator(static_cast<int>(i)), simulation.time(), troubles);
   }
   if (controller != nullptr) add_controller(*controller, name, troubles);
-  if (const sim::StepStatus step = simulation.report().status; sim::is_flagged(step)) {
+  if (const run::StepStatus step = simulation.report().status; run::is_flagged(step)) {
     troubles.push_back(
-        trouble("warning", std::string(sim::step_status_name(step)).c_str(), "step",
-                fmt::format("this step is {}; {}", sim::step_status_name(step),
-                            sim::step_status_remedy(step, simulation.model().step()))));
+        trouble("warning", std::string(run::step_status_name(step)).c_str(), "step",
+                fmt::format("this step is {}; {}", run::step_status_name(step),
+                            run::step_status_remedy(step, simulation.model().step()))));
   }
   return troubles;
 }

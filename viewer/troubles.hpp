@@ -6,7 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-namespace sinew::inverse {
+namespace sinew::control {
 class TargetController;
 }
 namespace sinew::sim {
@@ -19,6 +19,6 @@ namespace sinew::viewer {
 /// level, kind, subject and text. @param simulation in its current state.
 /// @param controller,name of the controller; null: none.
 nlohmann::json list_troubles(const sim::Simulation& simulation,
-                             const inverse::TargetController* controller, const std::string& name);
+                             const control::TargetController* controller, const std::string& name);
 
 }  // namespace sinew::viewer

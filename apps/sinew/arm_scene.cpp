@@ -70,7 +70,8 @@ std::vector<std::string> left_out(const SceneDescription& scene, const std::stri
   std::vector<std::string> names;
   for (const ActuatorDescription& actuator : scene.actuators) {
     if (actuator.body != body || actuator.type == ActuatorDescription::Type::torque) continue;
-    names.push_back(fmt::format("{} '{}'", sim::actuator_words(actuator.type).type, actuator.name));
+    names.push_back(
+        fmt::format("{} '{}'", model::actuator_words(actuator.type).type, actuator.name));
   }
   for (const auto& joint : scene.joints) {
     if (joint.first != body && joint.second != body) continue;
@@ -99,7 +100,7 @@ void take_inputs(ArmScene& scene, pcc::ArmSettings settings,
   scene.angle_upper = scene.rate = VectorX::Constant(n, kInfinity);
   for (Eigen::Index u = 0; u < inputs; ++u) {
     const ActuatorDescription& actuator = *torques[static_cast<std::size_t>(u)];
-    const auto& torque = std::get<sim::TorqueSettings>(actuator.own);
+    const auto& torque = std::get<builder::TorqueSettings>(actuator.own);
     const Eigen::Index bend = plain.first(torque.segment) + static_cast<int>(torque.towards);
     settings.actuation(bend, u) = 1.0;
     scene.inputs.push_back(actuator.name);

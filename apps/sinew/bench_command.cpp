@@ -15,12 +15,12 @@
 #include "sinew/core/build_info.hpp"
 #include "sinew/core/file.hpp"
 #include "sinew/core/whole.hpp"
+#include "sinew/law/step_problem.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/tangent.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/step/step_problem.hpp"
 
 #include "arguments.hpp"
 #include "commands.hpp"
@@ -46,10 +46,10 @@ struct BenchOptions {
 
 // The measurements; times in s.
 struct Samples {
-  std::array<std::vector<double>, sim::kStageCount + 1> stages;  // the last one is the whole step
-  double error_sum = 0.0, error_max = 0.0;                       // m or rad
-  double residual_max = 0.0;                                     // relative
-  double distance_max = 0.0;                                     // m, see StepReport::distance
+  std::array<std::vector<double>, world::kStageCount + 1> stages;  // the last one is the whole step
+  double error_sum = 0.0, error_max = 0.0;                         // m or rad
+  double residual_max = 0.0;                                       // relative
+  double distance_max = 0.0;                                       // m, see StepReport::distance
   int active_set_changes = 0;
   std::vector<double> eigen;
 };
@@ -62,15 +62,15 @@ double quantile(std::vector<double> values, double share) {
 }
 
 const char* stage_name(std::size_t stage) {
-  return stage < sim::kStageCount ? sim::kStageNames[stage] : "total";
+  return stage < world::kStageCount ? world::kStageNames[stage] : "total";
 }
 
 // Reads which actuators are slack or at a limit, which is the visible part of the active set.
 void read_active_set(const sim::Simulation& simulation, std::vector<int>& active) {
   active.clear();
   for (std::size_t a = 0; a < simulation.model().actuators().size(); ++a) {
-    const sim::ActuatorState& state = simulation.actuator(static_cast<int>(a));
-    const step::ActuatorBlock& range = simulation.actuator_blocks()[a];
+    const model::ActuatorState& state = simulation.actuator(static_cast<int>(a));
+    const law::ActuatorBlock& range = simulation.actuator_blocks()[a];
     const auto at = [](double value, double limit) {
       return std::abs(value - limit) <= 1e-9 * (1.0 + std::abs(limit));
     };
@@ -95,11 +95,11 @@ void measure_steps(const BenchOptions& options, Session& session, int warm_up, S
   for (; i < steps; ++i) {
     Interrupt::check();
     session.step();
-    const sim::StepReport& report = session.simulation().report();
+    const run::StepReport& report = session.simulation().report();
     before.swap(active);
     read_active_set(session.simulation(), active);
     if (i < warm_up) continue;
-    for (std::size_t s = 0; s < sim::kStageCount; ++s) {
+    for (std::size_t s = 0; s < world::kStageCount; ++s) {
       samples.stages[s].push_back(report.times.seconds[s]);
     }
     samples.stages.back().push_back(report.times.total);
@@ -126,7 +126,7 @@ Samples measure(const BenchOptions& options, Session& session, int warm_up) {
 }
 
 nlohmann::ordered_json to_json(const Samples& samples, Session& session, int warm_up) {
-  const sim::Model& model = *session.robot().model;
+  const model::Model& model = *session.robot().model;
   const auto steps = samples.stages.back().size();
   nlohmann::ordered_json json = {
       {"scene", session.robot().description.name},

@@ -16,7 +16,7 @@
 #include "sinew/fem/of_elements.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/integrator.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::cli {

@@ -15,6 +15,7 @@
 #include "sinew/constraint/joint.hpp"
 #include "sinew/constraint/probe.hpp"
 #include "sinew/constraint/tie.hpp"
+#include "sinew/contact/contact_state.hpp"
 #include "sinew/core/file.hpp"
 #include "sinew/core/quantity.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
@@ -25,12 +26,11 @@
 #include "sinew/mesh/read.hpp"
 #include "sinew/mesh/report.hpp"
 #include "sinew/mesh/surface.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/record/run_file.hpp"
 #include "sinew/scene/build.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/sensor_set.hpp"
+#include "sinew/sense/sensor_set.hpp"
 #include "sinew/sim/state_io.hpp"
 
 #include "arguments.hpp"
@@ -162,10 +162,10 @@ void add_notice(Facts& facts, const Notice& notice) {
   facts.text += fmt::format("  {}: {}\n", notice_level_name(notice.level), notice.text());
 }
 
-void add_joint(Facts& facts, const sim::Model& model, int index) {
-  const sim::JointModel& joint = model.joints()[static_cast<std::size_t>(index)];
+void add_joint(Facts& facts, const model::Model& model, int index) {
+  const model::JointModel& joint = model.joints()[static_cast<std::size_t>(index)];
   const auto name = [&](int body) -> std::string {
-    return body == sim::kWorld ? "world" : model.body(body).name();
+    return body == model::kWorld ? "world" : model.body(body).name();
   };
   const constraint::Tie* tie = model.tie(index);
   const std::string type =
@@ -204,7 +204,7 @@ void add_membranes(Facts& facts, const mechanics::BodyModel& body) {
 
 Facts scene_facts(const InfoOptions& options) {
   const scene::Robot robot = scene::load(options.file);
-  const sim::Model& model = *robot.model;
+  const model::Model& model = *robot.model;
   const double duration = robot.description.run_duration();
   Facts facts;
   facts.json = {{"kind", "scene"},
@@ -223,7 +223,7 @@ Facts scene_facts(const InfoOptions& options) {
   }
   for (const Notice& notice : robot.notices) add_notice(facts, notice);
   for (std::size_t a = 0; a < model.actuators().size(); ++a) {
-    const sim::ActuatorModel& actuator = model.actuators()[a];
+    const model::ActuatorModel& actuator = model.actuators()[a];
     const constraint::Cable* cable = model.cable(static_cast<int>(a));
     ordered_json entry = {{"name", actuator.name}, {"type", actuator.words().type}};
     const constraint::Chamber* chamber = model.chamber(static_cast<int>(a));
@@ -242,7 +242,7 @@ Facts scene_facts(const InfoOptions& options) {
     facts.json["actuators"].push_back(entry);
     facts.text += fmt::format("  {} {}{}\n", actuator.words().type, actuator.name, size);
   }
-  for (const sim::MassModel& mass : model.masses()) {
+  for (const model::MassModel& mass : model.masses()) {
     const std::string& body = model.body(mass.body).name();
     facts.json["masses"].push_back({{"name", mass.name}, {"body", body}, {"mass_kg", mass.mass}});
     facts.text += fmt::format("  mass {}: {:.4g} g on {}\n", mass.name, 1e3 * mass.mass, body);
@@ -256,14 +256,14 @@ Facts scene_facts(const InfoOptions& options) {
     facts.json["probes"].push_back(probe.name());
     facts.text += fmt::format("  probe {}: {}\n", probe.name(), probe.kind());
   }
-  for (const sim::SensorModel& sensor : sim::sensors_of(model)) {
+  for (const sense::SensorModel& sensor : sense::sensors_of(model)) {
     facts.json["sensors"].push_back({{"name", sensor.name}, {"kind", sensor.kind}});
     facts.text += fmt::format("  sensor {}: {}\n", sensor.name, sensor.kind);
   }
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
     const std::string& name = model.contacts()[i].name;
     const constraint::Contact& contact = model.contact(static_cast<int>(i));
-    const std::vector<std::string> bodies = sim::touching_bodies(model, static_cast<int>(i));
+    const std::vector<std::string> bodies = contact::touching_bodies(model, static_cast<int>(i));
     facts.json["contacts"].push_back(
         {{"name", name}, {"bodies", bodies}, {"points", contact.size()}});
     facts.text +=

@@ -42,7 +42,7 @@ int report(const Error& error) {
   return error.is_run_failure() ? kFailed : kWrongInput;
 }
 
-int run(int argc, const char* const* argv) {
+int run_program(int argc, const char* const* argv) {
   cli::CommandLine line("Simulate and control soft robots in real time.",
                         fmt::format("sinew {} ({}, {})", version(), compiler(), instruction_set()),
                         kExamples);
@@ -71,7 +71,7 @@ int run(int argc, const char* const* argv) {
 
 int main(int argc, char** argv) {
   try {
-    return run(argc, argv);
+    return run_program(argc, argv);
   } catch (const Error& error) {
     return report(error);
   } catch (const std::bad_alloc&) {

@@ -12,19 +12,19 @@
 #include <unistd.h>
 
 #include "sinew/constraint/effector.hpp"
+#include "sinew/control/controller_observables.hpp"
 #include "sinew/core/file.hpp"
 #include "sinew/core/whole.hpp"
 #include "sinew/fem/element_count.hpp"
 #include "sinew/fem/fem_model.hpp"
 #include "sinew/fem/has_elements.hpp"
-#include "sinew/inverse/controller_observables.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/record/motion_recorder.hpp"
 #include "sinew/record/run_recorder.hpp"
 #include "sinew/scene/strain_watch.hpp"
 #include "sinew/scene/watched_cables.hpp"
-#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "arguments.hpp"
@@ -53,7 +53,7 @@ struct RunOptions {
 };
 
 // Describes the bodies.
-std::vector<std::vector<std::string>> body_rows(const sim::Model& model) {
+std::vector<std::vector<std::string>> body_rows(const model::Model& model) {
   std::vector<std::vector<std::string>> rows;
   for (const auto& body : model.bodies()) {
     const auto* material = mechanics::as<const fem::HasElements>(body);
@@ -65,7 +65,7 @@ std::vector<std::vector<std::string>> body_rows(const sim::Model& model) {
 
 // Describes the run without a step.
 int print_check(const Session& session, double duration, std::int64_t steps) {
-  const sim::Model& model = *session.robot().model;
+  const model::Model& model = *session.robot().model;
   auto rows = body_rows(model);
   rows.push_back({"actuators, effectors, contacts",
                   fmt::format("{}, {}, {}", model.actuators().size(), model.effectors().size(),
@@ -90,7 +90,7 @@ struct Tally {
     std::int64_t steps = 0;
     double first = 0.0;  ///< s
   };
-  std::map<sim::StepStatus, Flagged> flagged;
+  std::map<run::StepStatus, Flagged> flagged;
   std::map<std::string, std::int64_t> statuses;
   double judged_from = 0.0;  ///< s
   std::int64_t judged = 0;
@@ -98,21 +98,21 @@ struct Tally {
 };
 
 void count(Tally& tally, Session& session) {
-  const sim::StepReport& report = session.simulation().report();
+  const run::StepReport& report = session.simulation().report();
   ++tally.steps;
   tally.max_residual = std::max(tally.max_residual, report.relative_residual);
   tally.max_distance = std::fmax(tally.max_distance, report.distance);
   tally.follows = tally.follows || report.following;
   tally.min_volume_ratio = std::min(tally.min_volume_ratio, report.smallest_volume_ratio);
   tally.snapped += report.snapped ? 1 : 0;
-  if (sim::is_flagged(report.status)) {
+  if (run::is_flagged(report.status)) {
     Tally::Flagged& flagged = tally.flagged[report.status];
     if (flagged.steps++ == 0) flagged.first = session.simulation().time();
   }
-  const inverse::TargetController* controller = session.controller();
-  const bool told = controller != nullptr && !sim::is_flagged(report.status);
+  const control::TargetController* controller = session.controller();
+  const bool told = controller != nullptr && !run::is_flagged(report.status);
   ++tally.statuses[std::string(told ? inverse_status_name(controller->status())
-                                    : sim::step_status_name(report.status))];
+                                    : run::step_status_name(report.status))];
   if (controller == nullptr || session.simulation().time() < tally.judged_from) return;
   ++tally.judged;
   tally.error_sum += controller->error();
@@ -139,7 +139,7 @@ double run_duration(const scene::Robot& robot) {
 
 // The error is the largest of all tasks, in m if none of them is an orientation.
 std::string error_text(const Session& session, double error) {
-  for (const inverse::EffectorTask& task : session.controller()->settings().tasks) {
+  for (const control::EffectorTask& task : session.controller()->settings().tasks) {
     const auto kind = session.robot().model->effector(task.effector).kind();
     if (kind == constraint::EffectorKind::orientation) {
       return fmt::format("{:.4g} m or rad", error);
@@ -151,7 +151,7 @@ std::string error_text(const Session& session, double error) {
 // Bound of the distance to the solutions of the steps; empty if no step has one.
 std::string distance_text(const Tally& tally, const Session& session) {
   if (tally.max_distance < 0.0) return {};
-  const bool one = session.robot().model->step().method == sim::Method::one_linearisation;
+  const bool one = session.robot().model->step().method == model::Method::one_linearisation;
   const char* how = one ? " (one linearisation)" : tally.follows ? " (equilibrium: following)" : "";
   if (!std::isfinite(tally.max_distance)) return fmt::format("not bounded in some steps{}", how);
   return fmt::format("{:.2g} mm{}", 1e3 * tally.max_distance, how);
@@ -188,11 +188,11 @@ std::vector<std::vector<std::string>> summary(const Tally& tally, Session& sessi
 }
 
 // Prints warnings about flagged steps on stderr.
-void warn(const Tally& tally, const sim::StepSettings& step) {
+void warn(const Tally& tally, const model::StepSettings& step) {
   for (const auto& [status, flagged] : tally.flagged) {
     fmt::print(stderr, "sinew: warning: {} of {} steps are {}, the first at t = {:g} s; {}\n",
-               flagged.steps, tally.steps, sim::step_status_name(status), flagged.first,
-               sim::step_status_remedy(status, step));
+               flagged.steps, tally.steps, run::step_status_name(status), flagged.first,
+               run::step_status_remedy(status, step));
   }
 }
 
@@ -299,7 +299,7 @@ int run(const RunOptions& options) {
   settings.states = description.record.states;
   settings.vtk = options.vtk;
   sim::Observables observables(session.simulation());
-  inverse::add_controller(observables, session.controller());
+  control::add_controller(observables, session.controller());
   std::error_code unknown;  // a path that is too long is refused by the recorder
   const bool replaces = std::filesystem::exists(settings.folder / "run.csv", unknown);
   Records records;

@@ -13,7 +13,7 @@
 #include "sinew/fem/has_material.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::cli {
@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t kMostEffectors = 4;  // with rows of their own
 
 // "long_0.tension" is a tension.
-std::string quantity_of(const sim::Observable& observable) {
+std::string quantity_of(const run::Observable& observable) {
   return observable.name.substr(observable.name.rfind('.') + 1);
 }
 
@@ -45,10 +45,10 @@ std::string shown(double value, const std::string& unit) {
 
 RunExtremes::RunExtremes(Session& session) : session_(session), observables_(session.simulation()) {
   for (std::size_t k = 0; k < observables_.list().size(); ++k) {
-    const sim::Observable& one = observables_.list()[k];
-    if (one.kind == sim::ObservableKind::actuator && one.quantity == "effort") {
+    const run::Observable& one = observables_.list()[k];
+    if (one.kind == run::ObservableKind::actuator && one.quantity == "effort") {
       efforts_.push_back(k);
-    } else if (one.kind == sim::ObservableKind::effector && effectors_.size() < kMostEffectors) {
+    } else if (one.kind == run::ObservableKind::effector && effectors_.size() < kMostEffectors) {
       effectors_.push_back(k);
     }
   }
@@ -76,7 +76,7 @@ void RunExtremes::after_step() {
 void RunExtremes::add_errors(std::vector<std::vector<std::string>>& rows) const {
   if (steps_ == 0) return;
   const auto& tasks = session_.controller()->settings().tasks;
-  const bool metres = std::ranges::all_of(tasks, [&](const inverse::EffectorTask& task) {
+  const bool metres = std::ranges::all_of(tasks, [&](const control::EffectorTask& task) {
     return std::string_view(session_.robot().model->effector(task.effector).unit()) == "m";
   });
   const auto text = [&](double error) {
@@ -91,7 +91,7 @@ void RunExtremes::add_effectors(std::vector<std::vector<std::string>>& rows) {
   observables_.refresh();
   for (const std::size_t k : effectors_) {
     const std::span<const double> v = observables_.read(k);
-    const sim::Observable& one = observables_.list()[k];
+    const run::Observable& one = observables_.list()[k];
     const bool metres = one.unit == "m";
     const double scale = metres ? 1e3 : 1.0;
     rows.push_back(
@@ -122,7 +122,7 @@ std::vector<std::vector<std::string>> RunExtremes::rows() {
   std::vector<std::vector<std::string>> rows;
   add_errors(rows);
   for (const auto& [quantity, peak] : peaks_) {
-    const sim::Observable& one = observables_.list()[peak.observable];
+    const run::Observable& one = observables_.list()[peak.observable];
     rows.push_back(
         {"peak " + quantity,
          fmt::format("{} of {} at {:g} s", shown(peak.value, one.unit), one.owner, peak.time)});

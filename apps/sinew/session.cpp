@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/contact.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/scene/scene.hpp"
-#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "arguments.hpp"
@@ -33,7 +33,7 @@ scene::Robot load(const SceneOptions& options) {
 }
 
 // Advice if the contacts have many points; else empty.
-std::string contact_hint(const sim::Model& model) {
+std::string contact_hint(const model::Model& model) {
   std::size_t points = 0, single = 0;
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
     const std::size_t size = model.contact(static_cast<int>(i)).size();
@@ -68,13 +68,13 @@ Session::Session(const SceneOptions& options)
   simulation_ = std::make_unique<sim::Simulation>(robot_.model, robot_.threads());
   if (chosen == nullptr) return;
   controller_name_ = chosen->name;
-  controller_ = inverse::make_controller(*simulation_, chosen->settings);
+  controller_ = control::make_controller(*simulation_, chosen->settings);
 }
 
 double Session::first_turn() const {
   double end = 0.0;
   if (!controller_) return end;
-  for (const inverse::EffectorTask& task : controller_->settings().tasks) {
+  for (const control::EffectorTask& task : controller_->settings().tasks) {
     end = std::max(end, task.target.end_time());
   }
   return end;
@@ -87,7 +87,7 @@ std::string Session::resolved_scene() const {
 }
 
 sim::Watched watch_steps(sim::Simulation& simulation, ProgressBar& bar, const std::int64_t& done) {
-  return {simulation, [&simulation, &bar, &done](const sim::StepProgress& step) {
+  return {simulation, [&simulation, &bar, &done](const run::StepProgress& step) {
             Interrupt::check();
             if (step.seconds < kSlowStep || !bar.slow_due()) return;
             bar.update_slow(done,

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "sinew/inverse/target_controller.hpp"
+#include "sinew/control/target_controller.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/watched.hpp"
@@ -47,7 +47,7 @@ class Session {
   const scene::Robot& robot() const { return robot_; }
   sim::Simulation& simulation() { return *simulation_; }
   /// The controller; null if there is none.
-  const inverse::TargetController* controller() const { return controller_.get(); }
+  const control::TargetController* controller() const { return controller_.get(); }
   const std::string& controller_name() const { return controller_name_; }
   /// @param keeps_going whether a step that fails is kept, see sim::Simulation::step().
   void step(bool keeps_going = false) {
@@ -66,7 +66,7 @@ class Session {
   std::filesystem::path folder_;
   std::unique_ptr<sim::Simulation> simulation_;
   std::string controller_name_;
-  std::unique_ptr<inverse::TargetController> controller_;
+  std::unique_ptr<control::TargetController> controller_;
 };
 
 /// While the result exists, Ctrl-C ends the current step (by throwing Interrupted, see

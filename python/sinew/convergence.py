@@ -27,7 +27,7 @@ import numpy as np
 from . import command, mesh, scene
 from ._whole_files import draft
 from .errors import Error
-from .sweep.worker import measure as measure_now
+from .sweep.runner import measure as measure_now
 
 __all__ = ["Estimate", "Level", "Study", "study"]
 

@@ -6,44 +6,12 @@ import csv
 import errno
 import json
 import math
-import os
 import pathlib
 import re
 import sys
 import warnings
 
-OURS, DATA, SECOND, QUIET = "#1f5fa8", "#222222", "#c8501e", "#999999"
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5195", "#5c5c5c")
-LEGEND_ROWS = 11  # rows that fit the height of a panel
-DASHES = ("-", "-.", ":")  # for the first len(COLOURS) lines, the next ones, and so on
-
-
-def _pyplot():
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    plt.rcParams.update({"axes.grid": True, "grid.color": "#e4e4e4", "axes.spines.top": False,
-                         "axes.spines.right": False, "legend.frameon": False,
-                         "figure.constrained_layout.use": True, "legend.fontsize": 8})
-    return plt
-
-
-def save(figure, path) -> None:
-    """Writes a figure beside the file that it then replaces: what was there stays whole until then."""
-    path = pathlib.Path(path)
-    draft = path.with_name(f"{path.name}.{os.getpid()}.tmp")
-    try:
-        figure.savefig(draft, dpi=110, format=path.suffix.lstrip(".") or "png")
-        os.replace(draft, path)
-    finally:
-        draft.unlink(missing_ok=True)
-
-
-# Displayed unit of each SI unit, and the conversion factor.
-SHOWN = {"m": ("mm", 1e3), "Pa": ("kPa", 1e-3), "m^3": ("ml", 1e6), "J": ("mJ", 1e3), "rad": ("degrees", 180 / math.pi),
-         "m^3/s": ("ml/s", 1e6), "F": ("pF", 1e12)}
+from .plot_style import COLOURS, DASHES, DATA, LEGEND_ROWS, OURS, QUIET, SECOND, SHOWN, pyplot, save
 
 
 def read_run(folder, table="run.csv") -> dict[str, list[float]]:
@@ -147,7 +115,7 @@ def run(folder, out) -> pathlib.Path:
     out : path-like
         PNG file.
     """
-    plt = _pyplot()
+    plt = pyplot()
     columns = read_run(folder)
     time = columns.pop("time [s]")
     numbers = {_split(heading)[0]: values for heading, values in columns.items()}
@@ -200,7 +168,7 @@ def fit(data, out) -> pathlib.Path:
     out : path-like
         PNG file.
     """
-    plt = _pyplot()
+    plt = pyplot()
     content = json.loads(pathlib.Path(data).read_text(encoding="utf-8"))
     tests, fits = content["tests"], content["fits"]
     figure, axes = plt.subplots(2, len(tests), figsize=(4.6 * len(tests), 5.4), squeeze=False, sharex="col",
@@ -231,7 +199,7 @@ def reach(data, out) -> pathlib.Path:
     out : path-like
         PNG file.
     """
-    plt = _pyplot()
+    plt = pyplot()
     content = json.loads(pathlib.Path(data).read_text(encoding="utf-8"))
     goals = content["goals"]
     points = content["tip_m"] + [goal["goal_m"] for goal in goals]
@@ -265,7 +233,7 @@ def plan(data, out) -> pathlib.Path:
     out : path-like
         PNG file.
     """
-    plt = _pyplot()
+    plt = pyplot()
     content = json.loads(pathlib.Path(data).read_text(encoding="utf-8"))
     goal, run = content["goal_m"], content["replay"]
     time, tip = run["times_s"], run["tip_m"]
@@ -301,7 +269,7 @@ def _draw_object(axis, shape, aside):
                         color=QUIET, lw=2)
         return
     first, last = shape["capsule"]["ends_m"]
-    plt = _pyplot()
+    plt = pyplot()
     for share in (k / 40 for k in range(41)):
         centre = [100 * ((1 - share) * first[k] + share * last[k]) for k in (aside, 2)]
         axis.add_patch(plt.Circle(centre, 100 * shape["capsule"]["radius_m"], color=QUIET, lw=0, zorder=2))
@@ -317,7 +285,7 @@ def brace(data, out) -> pathlib.Path:
     out : path-like
         PNG file.
     """
-    plt = _pyplot()
+    plt = pyplot()
     content = json.loads(pathlib.Path(data).read_text(encoding="utf-8"))
     goal, poses, force = content["goal_m"], content["poses"], content["force"]
     points = [point for pose in poses for point in pose["axis_m"]]
@@ -356,7 +324,7 @@ def identify(data, out) -> pathlib.Path:
     out : path-like
         PNG file.
     """
-    plt = _pyplot()
+    plt = pyplot()
     records = json.loads(pathlib.Path(data).read_text(encoding="utf-8"))["records"]
     figure, axes = plt.subplots(2, len(records), figsize=(5 * len(records), 6), squeeze=False, sharex="col")
 

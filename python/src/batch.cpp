@@ -10,10 +10,10 @@
 #include <fmt/format.h>
 #include <pybind11/pybind11.h>
 
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/model/signal.hpp"
 #include "sinew/sim/observables.hpp"
-#include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::python {
@@ -78,12 +78,12 @@ void Batch::command(const std::string& quantity, const Rows& values, std::span<c
                     fmt::format("it takes {} and {}", actuators[k].words().effort.name,
                                 actuators[k].words().motion.name));
       }
-      if (actuators[k].type == sim::ActuatorType::cable && quantity == "tension" && value < 0.0) {
+      if (actuators[k].type == model::ActuatorType::cable && quantity == "tension" && value < 0.0) {
         throw Error(ErrorKind::out_of_range, {.item = "Batch.command(values)"},
                     fmt::format("a tension of {:g} N of '{}' would push", value, actuators[k].name),
                     "give zero or more; a cable can only pull");
       }
-      session.simulation().command(static_cast<int>(k), {*kind, sim::Signal::constant(value)});
+      session.simulation().command(static_cast<int>(k), {*kind, model::Signal::constant(value)});
     }
   }
 }

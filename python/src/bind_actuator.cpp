@@ -7,10 +7,10 @@
 #include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/chamber.hpp"
 #include "sinew/constraint/configuration.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/model/signal.hpp"
 #include "sinew/sim/row_efforts.hpp"
-#include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "arrays.hpp"
@@ -21,10 +21,10 @@ namespace sinew::python {
 
 namespace {
 
-using sim::ActuatorType;
-using sim::CommandKind;
+using model::ActuatorType;
+using model::CommandKind;
 
-const sim::ActuatorModel& model(const Actuator& self) {
+const model::ActuatorModel& model(const Actuator& self) {
   return self.session->model().actuators()[static_cast<std::size_t>(self.index)];
 }
 
@@ -33,7 +33,7 @@ std::string place(const Actuator& self, const char* what) {
 }
 
 [[noreturn]] void fail_type(const Actuator& self, const char* what) {
-  const sim::ActuatorModel& own = model(self);
+  const model::ActuatorModel& own = model(self);
   std::string has = fmt::format(".{} and .{}", own.words().effort.name, own.words().motion.name);
   if (own.drive != nullptr && *own.drive->input().name != '\0') {
     has += fmt::format(" and .{}", own.drive->input().name);
@@ -64,7 +64,8 @@ auto read(const Actuator& self, Get get) {
 void tell(const Actuator& self, const char* what, const py::object& value) {
   const std::optional<CommandKind> kind = model(self).kind_of(what);
   if (!kind) fail_type(self, what);
-  const sim::Signal signal = to_signal(value, place(self, what), model(self).quantity(*kind).unit);
+  const model::Signal signal =
+      to_signal(value, place(self, what), model(self).quantity(*kind).unit);
   const bool pushes = model(self).type == ActuatorType::cable && *kind == CommandKind::effort &&
                       signal.is_constant() && signal.value(0.0) < 0.0;
   if (pushes) {
@@ -87,7 +88,7 @@ double effort(const Actuator& self, const char* what) {
 
 double motion(const Actuator& self, const char* what) {
   if (std::string_view(model(self).words().motion.name) != what) fail_type(self, what);
-  return read(self, [](const sim::ActuatorState& state) { return state.motion; });
+  return read(self, [](const model::ActuatorState& state) { return state.motion; });
 }
 
 /// Entry `index` in the state of a drive with the input `input`.
@@ -125,7 +126,7 @@ double told(const Actuator& self, const char* what) {
 
 py::tuple command(const Actuator& self) {
   const Session::Use use(*self.session);
-  const sim::Command& command = self.session->simulation().actuator(self.index).command;
+  const model::Command& command = self.session->simulation().actuator(self.index).command;
   const char* kind = model(self).quantity(command.kind).name;
   if (command.signal.is_constant()) return py::make_tuple(kind, command.signal.value(0.0));
   return py::make_tuple(kind, py::cast(command.signal));
@@ -148,11 +149,11 @@ auto of_cable(const char* what, Measure measure) {
 }
 
 void bind_limits(py::module_& module) {
-  py::class_<sim::Limits>(module, "Limits", "Inclusive limits; infinite if unlimited.")
-      .def_readonly("min", &sim::Limits::min, "float: N, m, Pa or m^3.")
-      .def_readonly("max", &sim::Limits::max, "float: N, m, Pa or m^3.")
-      .def_readonly("rate", &sim::Limits::rate, "float: largest change per second.")
-      .def("__repr__", [](const sim::Limits& self) {
+  py::class_<model::Limits>(module, "Limits", "Inclusive limits; infinite if unlimited.")
+      .def_readonly("min", &model::Limits::min, "float: N, m, Pa or m^3.")
+      .def_readonly("max", &model::Limits::max, "float: N, m, Pa or m^3.")
+      .def_readonly("rate", &model::Limits::rate, "float: largest change per second.")
+      .def("__repr__", [](const model::Limits& self) {
         return fmt::format("Limits(min={:g}, max={:g}, rate={:g})", self.min, self.max, self.rate);
       });
 }
@@ -236,7 +237,7 @@ Error (actuator-owned) while a controller owns the actuator.)");
           "owned",
           [](const Actuator& self) {
             return read(self,
-                        [](const sim::ActuatorState& state) { return state.owner != nullptr; });
+                        [](const model::ActuatorState& state) { return state.owner != nullptr; });
           },
           "bool: whether a controller owns it. Commands then raise an error.");
 }
@@ -247,7 +248,7 @@ void bind_measures(py::class_<Actuator>& type) {
   type.def_property_readonly(
           "slack",
           [](const Actuator& self) {
-            return read(self, [](const sim::ActuatorState& state) { return state.slack; });
+            return read(self, [](const model::ActuatorState& state) { return state.slack; });
           },
           "bool: whether a cable is slack (tension zero).")
       .def_property_readonly(

@@ -12,10 +12,10 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/self_touch.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/pcc/has_arm.hpp"
-#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/world/world.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"

@@ -2,9 +2,9 @@
 
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/shape_contact.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/contact/contact_state.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/contact_reader.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "arrays.hpp"
@@ -15,30 +15,30 @@ namespace sinew::python {
 
 namespace {
 
-const sim::ContactModel& model(const Contact& self) {
+const model::ContactModel& model(const Contact& self) {
   return self.session->model().contacts()[static_cast<std::size_t>(self.index)];
 }
 
 // Only those that were found: the others have no place.
-std::vector<sim::ContactPoint> points(const Contact& self) {
+std::vector<contact::ContactPoint> points(const Contact& self) {
   const Session::Use use(*self.session);
   auto all = self.session->simulation().contacts().points(self.index);
-  std::erase_if(all, [](const sim::ContactPoint& point) { return !point.is_measured(); });
+  std::erase_if(all, [](const contact::ContactPoint& point) { return !point.is_measured(); });
   return all;
 }
 
-sim::ContactResultant sum(const Contact& self) {
+contact::ContactResultant sum(const Contact& self) {
   const Session::Use use(*self.session);
   return self.session->simulation().contacts().sum(self.index);
 }
 
-sim::ContactResultant resultant(const Contact& self) {
+contact::ContactResultant resultant(const Contact& self) {
   const Session::Use use(*self.session);
   return self.session->simulation().contacts().resultant(self.index);
 }
 
 /// An array (n, 3) with one vector of every point.
-Array vectors(const Contact& self, Vector3 sim::ContactPoint::*member) {
+Array vectors(const Contact& self, Vector3 contact::ContactPoint::*member) {
   const auto all = points(self);
   Points result(static_cast<Eigen::Index>(all.size()), 3);
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -48,7 +48,7 @@ Array vectors(const Contact& self, Vector3 sim::ContactPoint::*member) {
 }
 
 /// An array (n,) with one number of every point.
-Array numbers(const Contact& self, double sim::ContactPoint::*member) {
+Array numbers(const Contact& self, double contact::ContactPoint::*member) {
   const auto all = points(self);
   VectorX result(static_cast<Eigen::Index>(all.size()));
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -59,7 +59,7 @@ Array numbers(const Contact& self, double sim::ContactPoint::*member) {
 
 py::list states(const Contact& self) {
   py::list result;
-  for (const sim::ContactPoint& point : points(self)) {
+  for (const contact::ContactPoint& point : points(self)) {
     result.append(qp::contact_state_name(point.state));
   }
   return result;
@@ -112,22 +112,23 @@ void bind_sums(py::class_<Contact>& type) {
 void bind_points(py::class_<Contact>& type) {
   type.def_property_readonly(
           "positions",
-          [](const Contact& self) { return vectors(self, &sim::ContactPoint::position); },
+          [](const Contact& self) { return vectors(self, &contact::ContactPoint::position); },
           "(n, 3) ndarray: present positions of the points that may touch (m). Where points are "
           "searched for in every step, those that the last one found; none before the first step.")
       .def_property_readonly(
-          "gaps", [](const Contact& self) { return numbers(self, &sim::ContactPoint::gap); },
+          "gaps", [](const Contact& self) { return numbers(self, &contact::ContactPoint::gap); },
           "(n,) ndarray: distance of each of these points from the surface (m), negative inside.")
       .def_property_readonly(
-          "normals", [](const Contact& self) { return vectors(self, &sim::ContactPoint::normal); },
+          "normals",
+          [](const Contact& self) { return vectors(self, &contact::ContactPoint::normal); },
           "(n, 3) ndarray: outward normals of the surface in the last step.")
       .def_property_readonly(
           "normal_forces",
-          [](const Contact& self) { return numbers(self, &sim::ContactPoint::normal_force); },
+          [](const Contact& self) { return numbers(self, &contact::ContactPoint::normal_force); },
           "(n,) ndarray: force on the body along the normal (N), >= 0.")
       .def_property_readonly(
           "friction_forces",
-          [](const Contact& self) { return vectors(self, &sim::ContactPoint::friction_force); },
+          [](const Contact& self) { return vectors(self, &contact::ContactPoint::friction_force); },
           "(n, 3) ndarray: force on the body along the surface (N).")
       .def_property_readonly("states", &states,
                              "list of str: 'open', 'stick' or 'slip' (friction at its limit) of "
@@ -145,7 +146,7 @@ void bind_contact(py::module_& module) {
       .def_property_readonly(
           "bodies",
           [](const Contact& self) {
-            return sim::touching_bodies(self.session->model(), self.index);
+            return contact::touching_bodies(self.session->model(), self.index);
           },
           "list of str: the body on which `force` acts, and the body that it touches; a surface of "
           "the world has no name.")

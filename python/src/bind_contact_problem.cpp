@@ -4,10 +4,10 @@
 #include <string>
 #include <utility>
 
+#include "sinew/law/contact_problem.hpp"
 #include "sinew/record/fclib.hpp"
-#include "sinew/sim/contact_reader.hpp"
+#include "sinew/run/contact_reader.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/step/contact_problem.hpp"
 
 #include "arrays.hpp"
 #include "simulation_type.hpp"
@@ -49,7 +49,7 @@ bool stands_as_sparse(const Eigen::SparseMatrix<double>& matrix) {
 
 ContactProblem problem_of(const Session& session, const std::optional<bool>& sparse) {
   const Session::Use use(session);
-  const step::ContactProblem problem = session.simulation().contacts().problem();
+  const law::ContactProblem problem = session.simulation().contacts().problem();
   const bool by_blocks = sparse.value_or(stands_as_sparse(problem.compliance));
   return {
       by_blocks ? by_columns(problem.compliance) : py::object(copy(MatrixX(problem.compliance))),

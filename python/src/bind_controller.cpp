@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/contact.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/sensor_set.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/sense/sensor_set.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -14,9 +14,9 @@ namespace sinew::python {
 
 namespace {
 
-using inverse::EffectorTask;
-using inverse::InverseSettings;
-using inverse::TargetController;
+using control::EffectorTask;
+using control::InverseSettings;
+using control::TargetController;
 
 // The class of `controller.targets`: a live mapping from effectors to targets.
 struct Targets {
@@ -62,7 +62,7 @@ py::dict to_dict(const py::handle& value, const char* place) {
               "give a dict such as {'tip': [0.03, 0.0, 0.18]}");
 }
 
-std::vector<EffectorTask> to_tasks(const sim::Model& model, const py::handle& targets,
+std::vector<EffectorTask> to_tasks(const model::Model& model, const py::handle& targets,
                                    const py::object& weights) {
   std::vector<EffectorTask> tasks;
   for (const auto& [key, value] : to_dict(targets, "InverseController(targets)")) {
@@ -89,9 +89,9 @@ std::vector<EffectorTask> to_tasks(const sim::Model& model, const py::handle& ta
   return tasks;
 }
 
-inverse::ContactTask to_contact_task(const sim::Model& model, const std::string& name,
+control::ContactTask to_contact_task(const model::Model& model, const std::string& name,
                                      const py::handle& value) {
-  inverse::ContactTask task;
+  control::ContactTask task;
   task.contact = model.contact_index(name);
   const std::string place = fmt::format("contacts['{}']", name);
   bool may_slip = true;
@@ -121,9 +121,9 @@ inverse::ContactTask to_contact_task(const sim::Model& model, const std::string&
   return task;
 }
 
-std::vector<inverse::ContactTask> to_contact_tasks(const sim::Model& model,
+std::vector<control::ContactTask> to_contact_tasks(const model::Model& model,
                                                    const py::object& contacts) {
-  std::vector<inverse::ContactTask> tasks;
+  std::vector<control::ContactTask> tasks;
   if (contacts.is_none()) return tasks;
   for (const auto& [key, value] : to_dict(contacts, "InverseController(contacts)")) {
     const std::string name = text_key(key, "InverseController(contacts)");
@@ -132,7 +132,7 @@ std::vector<inverse::ContactTask> to_contact_tasks(const sim::Model& model,
   return tasks;
 }
 
-void set_priorities(const sim::Model& model, const py::object& priorities,
+void set_priorities(const model::Model& model, const py::object& priorities,
                     std::vector<EffectorTask>& tasks) {
   if (priorities.is_none()) return;
   for (const auto& [key, value] : to_dict(priorities, "InverseController(priorities)")) {
@@ -148,7 +148,7 @@ void set_priorities(const sim::Model& model, const py::object& priorities,
   }
 }
 
-std::vector<int> to_actuators(const sim::Model& model, const py::object& names) {
+std::vector<int> to_actuators(const model::Model& model, const py::object& names) {
   std::vector<int> actuators;
   if (names.is_none()) return actuators;
   if (py::isinstance<py::str>(names) || !py::isinstance<py::iterable>(names)) {
@@ -166,9 +166,9 @@ std::vector<int> to_actuators(const sim::Model& model, const py::object& names) 
   return actuators;
 }
 
-inverse::Regularisation to_regularisation(const std::string& word) {
-  if (word == "change") return inverse::Regularisation::change;
-  if (word == "effort") return inverse::Regularisation::effort;
+control::Regularisation to_regularisation(const std::string& word) {
+  if (word == "change") return control::Regularisation::change;
+  if (word == "effort") return control::Regularisation::effort;
   throw Error(ErrorKind::unknown_choice, {.item = "InverseController(regularisation)"},
               fmt::format("there is no regularisation '{}'", word), "use 'change' or 'effort'");
 }
@@ -244,7 +244,7 @@ py::dict sensors(const Controller& self) {
   for (std::size_t k = 0; k < settings.tasks.size(); ++k) {
     const auto sensor = static_cast<std::size_t>(settings.feedback->sensors[k]);
     result[effector_name(self, settings.tasks[k]).c_str()] =
-        sim::sensors_of(self.session->model())[sensor].name;
+        sense::sensors_of(self.session->model())[sensor].name;
   }
   return result;
 }
@@ -436,7 +436,7 @@ void bind_results(py::class_<Controller>& type) {
             all["cold"] = found->cold;
             all["between"] = found->between;
             all["pieces"] = found->pieces;
-            all["stationarity"] = std::string(step::stationarity_name(found->stationarity));
+            all["stationarity"] = std::string(law::stationarity_name(found->stationarity));
             all["best_nearby"] = found->best_nearby;
             return all;
           }),

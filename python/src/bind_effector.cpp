@@ -2,9 +2,9 @@
 
 #include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/effector.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/world/world.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"

@@ -2,11 +2,11 @@
 #include <string>
 #include <utility>
 
-#include "sinew/sim/estimator.hpp"
-#include "sinew/sim/estimator_model.hpp"
-#include "sinew/sim/estimators.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/sensor_set.hpp"
+#include "sinew/estimate/estimator.hpp"
+#include "sinew/estimate/estimator_model.hpp"
+#include "sinew/estimate/estimators.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/sense/sensor_set.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "arrays.hpp"
@@ -17,35 +17,35 @@ namespace sinew::python {
 
 namespace {
 
-const sim::EstimatorModel& model(const Estimator& self) {
-  return sim::estimators_of(self.session->model())[static_cast<std::size_t>(self.index)];
+const estimate::EstimatorModel& model(const Estimator& self) {
+  return estimate::estimators_of(self.session->model())[static_cast<std::size_t>(self.index)];
 }
 
 template <class Get>
 auto of_estimator(Get get) {
   return [get](const Estimator& self) {
     const Session::Use use(*self.session);
-    return get(sim::estimator_of(self.session->simulation(), self.index));
+    return get(estimate::estimator_of(self.session->simulation(), self.index));
   };
 }
 
 py::list sensor_names(const Estimator& self) {
   py::list names;
-  for (const sim::EstimatorSensor& sensor : model(self).sensors) {
+  for (const estimate::EstimatorSensor& sensor : model(self).sensors) {
     names.append(
-        sim::sensors_of(self.session->model())[static_cast<std::size_t>(sensor.index)].name);
+        sense::sensors_of(self.session->model())[static_cast<std::size_t>(sensor.index)].name);
   }
   return names;
 }
 
 // The estimates of the unknowns of one kind, by name. @param get(components) converts one.
 template <class Get>
-py::dict unknowns(const Estimator& self, sim::Unknown::Kind kind, Get get) {
+py::dict unknowns(const Estimator& self, estimate::Unknown::Kind kind, Get get) {
   const Session::Use use(*self.session);
-  const VectorX mean = sim::estimator_of(self.session->simulation(), self.index).mean();
+  const VectorX mean = estimate::estimator_of(self.session->simulation(), self.index).mean();
   py::dict all;
   Eigen::Index first = 0;
-  for (const sim::Unknown& unknown : model(self).unknowns) {
+  for (const estimate::Unknown& unknown : model(self).unknowns) {
     const Eigen::Index own = std::exchange(first, first + unknown.size());
     if (unknown.kind == kind) all[py::str(unknown.name)] = get(mean.segment(own, unknown.size()));
   }
@@ -53,16 +53,16 @@ py::dict unknowns(const Estimator& self, sim::Unknown::Kind kind, Get get) {
 }
 
 py::dict forces(const Estimator& self) {
-  return unknowns(self, sim::Unknown::Kind::force,
+  return unknowns(self, estimate::Unknown::Kind::force,
                   [](const VectorX& own) { return reading(Vector3(own)); });
 }
 
 py::dict efforts(const Estimator& self) {
-  return unknowns(self, sim::Unknown::Kind::effort, [](const VectorX& own) { return own[0]; });
+  return unknowns(self, estimate::Unknown::Kind::effort, [](const VectorX& own) { return own[0]; });
 }
 
 py::dict stiffness_factors(const Estimator& self) {
-  return unknowns(self, sim::Unknown::Kind::stiffness,
+  return unknowns(self, estimate::Unknown::Kind::stiffness,
                   [](const VectorX& own) { return std::exp(own[0]); });
 }
 
@@ -75,7 +75,7 @@ py::list list_of(const std::vector<std::string>& texts) {
 }  // namespace
 
 void bind_estimator(py::module_& module) {
-  module.attr("silent_periods") = sim::kSilentPeriods;
+  module.attr("silent_periods") = estimate::kSilentPeriods;
   py::class_<Estimator>(module, "Estimator",
                         "An estimator of the scene; it does not affect the robot. From "
                         "Simulation.estimator() or Simulation.estimators.")
@@ -97,18 +97,19 @@ void bind_estimator(py::module_& module) {
                              "dict of float: the estimate of each unknown stiffness, as a factor "
                              "of the body's moduli in the scene.")
       .def_property_readonly(
-          "mean", of_estimator([](const sim::Estimator& one) { return reading(one.mean()); }),
+          "mean", of_estimator([](const estimate::Estimator& one) { return reading(one.mean()); }),
           "(n,) ndarray: the estimate of all components (N or Pa; of a stiffness, the logarithm of "
           "the factor).")
       .def_property_readonly(
-          "std", of_estimator([](const sim::Estimator& one) { return reading(one.deviation()); }),
+          "std",
+          of_estimator([](const estimate::Estimator& one) { return reading(one.deviation()); }),
           "(n,) ndarray: standard deviations of the components (N or Pa; of a stiffness, of the "
           "logarithm, about the relative standard deviation of the factor).")
       .def_property_readonly(
           "covariance",
-          of_estimator([](const sim::Estimator& one) { return reading(one.covariance()); }),
+          of_estimator([](const estimate::Estimator& one) { return reading(one.covariance()); }),
           "(n, n) ndarray: covariance of the components, in products of their units.")
-      .def_property_readonly("singular_values", of_estimator([](const sim::Estimator& one) {
+      .def_property_readonly("singular_values", of_estimator([](const estimate::Estimator& one) {
                                return reading(one.observability().singular_values);
                              }),
                              "(n,) ndarray, descending: information of one sample of each sensor "
@@ -116,25 +117,25 @@ void bind_estimator(py::module_& module) {
                              "of all samples so far. Along a direction with singular value s, the "
                              "samples reduce the standard deviation to 1/sqrt(1 + s^2) of the "
                              "prior's. Zeros before the first step.")
-      .def_property_readonly("unobservable", of_estimator([](const sim::Estimator& one) {
+      .def_property_readonly("unobservable", of_estimator([](const estimate::Estimator& one) {
                                return list_of(one.unobservable());
                              }),
                              "list of str: directions with a singular value below 1, such as "
                              "'0.98 hand.z - 0.2 hand.x (singular value 0.03)'. The prior decides "
                              "the estimate there.")
       .def_property_readonly(
-          "lost", of_estimator([](const sim::Estimator& one) { return list_of(one.lost()); }),
+          "lost", of_estimator([](const estimate::Estimator& one) { return list_of(one.lost()); }),
           "list of str: sensors without a sample for five periods, or older than their timeout.")
-      .def_property_readonly("dropped",
-                             of_estimator([](const sim::Estimator& one) { return one.dropped(); }),
-                             "int: samples that came later than the longest delay of the sensors.")
-      .def_property_readonly("status", of_estimator([](const sim::Estimator& one) {
-                               return std::string(sim::estimator_status_name(one.status()));
+      .def_property_readonly(
+          "dropped", of_estimator([](const estimate::Estimator& one) { return one.dropped(); }),
+          "int: samples that came later than the longest delay of the sensors.")
+      .def_property_readonly("status", of_estimator([](const estimate::Estimator& one) {
+                               return std::string(estimate::estimator_status_name(one.status()));
                              }),
                              "str: 'not-started', 'estimating', 'unobservable', 'sensors-lost' or "
                              "'no-equilibrium'.")
       .def_property_readonly(
-          "message", of_estimator([](const sim::Estimator& one) { return one.message(); }),
+          "message", of_estimator([](const estimate::Estimator& one) { return one.message(); }),
           "str: which sensors are silent, which directions they do not observe, or why "
           "there is no equilibrium; else empty.");
 }

@@ -9,10 +9,10 @@
 #include "sinew/fem/has_material.hpp"
 #include "sinew/fem/of_elements.hpp"
 #include "sinew/fem/solid_elements.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/world/world.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -69,8 +69,8 @@ Array nodal_field_at(const Body& self, const std::string& field, const py::objec
       to_points(positions, "nodal_field_at(positions)", "m", body(self).positions().rows());
   const Session::Use use(*self.session);
   sim::Simulation& simulation = self.session->simulation();
-  const sim::State before = simulation.state();
-  sim::State shown = before;
+  const run::State before = simulation.state();
+  run::State shown = before;
   std::vector<double>& own = shown.bodies[static_cast<std::size_t>(self.index)];
   std::ranges::fill(own, 0.0);
   std::copy_n(at.data(), at.size(), own.begin());

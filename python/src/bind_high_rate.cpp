@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "sinew/control/high_rate_loop.hpp"
-#include "sinew/control/snapshot.hpp"
-#include "sinew/control/udp_device.hpp"
 #include "sinew/core/whole.hpp"
+#include "sinew/high_rate/high_rate_loop.hpp"
+#include "sinew/high_rate/snapshot.hpp"
+#include "sinew/high_rate/udp_device.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -16,7 +16,7 @@ namespace sinew::python {
 
 namespace {
 
-using namespace control;
+using namespace high_rate;
 
 // A clock without real time: a period takes no time, and sleeping sets the time.
 class IdealClock : public Clock {

@@ -3,8 +3,8 @@
 #include "sinew/constraint/joint.hpp"
 #include "sinew/constraint/tie.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/joint_load.hpp"
-#include "sinew/sim/model.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -14,12 +14,12 @@ namespace sinew::python {
 
 namespace {
 
-const sim::JointModel& model(const Joint& self) {
+const model::JointModel& model(const Joint& self) {
   return self.session->model().joints()[static_cast<std::size_t>(self.index)];
 }
 
 std::string body_name(const Joint& self, int body) {
-  if (body == sim::kWorld) return "world";
+  if (body == model::kWorld) return "world";
   return self.session->model().body(body).name();
 }
 

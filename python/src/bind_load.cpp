@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/signal.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/model/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "arrays.hpp"
@@ -17,7 +17,7 @@ namespace {
 
 using Type = scene::LoadDescription::Type;
 
-const sim::LoadModel& model(const Load& self) {
+const model::LoadModel& model(const Load& self) {
   return self.session->model().loads()[static_cast<std::size_t>(self.index)];
 }
 
@@ -65,14 +65,14 @@ double present(const Load& self) {
   return simulation.load_factor(self.index).value(simulation.time());
 }
 
-void set(const Load& self, const sim::Signal& signal) {
+void set(const Load& self, const model::Signal& signal) {
   const Session::Use use(*self.session);
   self.session->simulation().set_load(self.index, signal);
 }
 
 // The pressure of the scene to which a factor refers, Pa.
 double unit_pressure(const Load& self) {
-  const sim::Signal& written = description(self).factor;
+  const model::Signal& written = description(self).factor;
   if (written.is_constant() && written.value(0.0) != 0.0) return written.value(0.0);
   throw Error(
       ErrorKind::wrong_type, {.item = place(self, "factor")},
@@ -90,13 +90,13 @@ void set_factor(const Load& self, const py::object& value) {
   const std::string where = place(self, "factor");
   if (description(self).type != Type::pressure) return set(self, to_signal(value, where, ""));
   const double unit = unit_pressure(self);
-  const sim::Signal signal = to_signal(value, where, "");
+  const model::Signal signal = to_signal(value, where, "");
   if (!signal.is_constant()) {
     throw Error(ErrorKind::wrong_type, {.item = where},
                 "the factor of a pressure is a number, and this changes over time",
                 "give the pressure over time, in Pa, to .pressure");
   }
-  set(self, sim::Signal::constant(unit * signal.value(0.0)));
+  set(self, model::Signal::constant(unit * signal.value(0.0)));
 }
 
 template <Type type>
@@ -122,7 +122,7 @@ void set_vector(const Load& self, const py::object& value) {
                     wanted.x(), wanted.y(), wanted.z(), own.x(), own.y(), own.z()),
         "a load keeps its direction: write one load for each direction");
   }
-  set(self, sim::Signal::constant(along));
+  set(self, model::Signal::constant(along));
 }
 
 double pressure(const Load& self) {
@@ -133,7 +133,7 @@ double pressure(const Load& self) {
 void set_pressure(const Load& self, const py::object& value) {
   require(self, Type::pressure);
   const std::string where = place(self, "pressure");
-  const sim::Signal signal = to_signal(value, where, "Pa");
+  const model::Signal signal = to_signal(value, where, "Pa");
   self.session->note_pressure(where, signal);
   set(self, signal);
 }

@@ -2,7 +2,7 @@
 
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "arrays.hpp"
@@ -13,7 +13,7 @@ namespace sinew::python {
 
 namespace {
 
-const sim::MassModel& model(const PointMass& self) {
+const model::MassModel& model(const PointMass& self) {
   return self.session->model().masses()[static_cast<std::size_t>(self.index)];
 }
 

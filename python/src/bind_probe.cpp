@@ -2,7 +2,7 @@
 
 #include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/probe.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "arrays.hpp"

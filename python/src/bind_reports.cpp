@@ -10,13 +10,13 @@ namespace sinew::python {
 
 namespace {
 
-using sim::StaticReport;
-using sim::StepReport;
+using run::StepReport;
+using statics::StaticReport;
 
 py::dict times_of(const StepReport& report) {
   py::dict times;
-  for (std::size_t i = 0; i < sim::kStageCount; ++i) {
-    times[sim::kStageNames[i]] = report.times.seconds[i];
+  for (std::size_t i = 0; i < world::kStageCount; ++i) {
+    times[world::kStageNames[i]] = report.times.seconds[i];
   }
   times["total"] = report.times.total;
   return times;
@@ -25,20 +25,20 @@ py::dict times_of(const StepReport& report) {
 void bind_step_report(py::module_& module) {
   py::class_<StepReport>(module, "StepReport", "Report of the last step.")
       .def_property_readonly(
-          "status", [](const StepReport& self) { return sim::step_status_name(self.status); },
+          "status", [](const StepReport& self) { return run::step_status_name(self.status); },
           "str: 'solved'; 'limits-conflict' if limits contradict each other (the step takes the "
           "smallest violation); or a flag, for which step() and run() issue a warning: "
           "'command-not-reached', 'cavitates', 'cut-back', 'gaining-energy', 'after-failure'; or a "
           "failure, for which they raise RunError unless told to keep going: 'not-in-equilibrium', "
           "'unphysical'.")
       .def_property_readonly(
-          "failed", [](const StepReport& self) { return sim::is_failure(self.status); },
+          "failed", [](const StepReport& self) { return run::is_failure(self.status); },
           "bool: whether the status is a failure: the state of the step solves nothing.")
       .def_readonly("snapped", &StepReport::snapped,
                     "bool: whether a quasi-static step left the branch of equilibria on which it "
                     "began, as where an arch snaps through. No flag.")
       .def_property_readonly(
-          "flagged", [](const StepReport& self) { return sim::is_flagged(self.status); },
+          "flagged", [](const StepReport& self) { return run::is_flagged(self.status); },
           "bool: whether the status is a flag: the results of the step are not reliable.")
       .def_readonly("residual", &StepReport::residual,
                     "float: norm of the unbalanced forces at the end of the step (N).")
@@ -103,7 +103,7 @@ void bind_step_report(py::module_& module) {
                              "'factorisation', 'law', 'correction' and 'total'.")
       .def("__repr__", [](const StepReport& self) {
         return fmt::format("<StepReport {}, residual {:.3g} N, {} iteration(s), {:.3g} ms>",
-                           sim::step_status_name(self.status), self.residual, self.iterations,
+                           run::step_status_name(self.status), self.residual, self.iterations,
                            1e3 * self.times.total);
       });
 }

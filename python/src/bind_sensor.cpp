@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "sinew/sim/channel.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/sensor_set.hpp"
-#include "sinew/sim/sensor_source.hpp"
-#include "sinew/sim/sensors.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/sense/channel.hpp"
+#include "sinew/sense/sensor_set.hpp"
+#include "sinew/sense/sensor_source.hpp"
+#include "sinew/sense/sensors.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "arrays.hpp"
@@ -20,11 +20,11 @@ namespace sinew::python {
 
 namespace {
 
-using sim::Channel;
-using sim::ChannelSettings;
+using sense::Channel;
+using sense::ChannelSettings;
 
-const sim::SensorModel& model(const Sensor& self) {
-  return sim::sensors_of(self.session->model())[static_cast<std::size_t>(self.index)];
+const sense::SensorModel& model(const Sensor& self) {
+  return sense::sensors_of(self.session->model())[static_cast<std::size_t>(self.index)];
 }
 
 // A number for one component, an array for several.
@@ -51,7 +51,7 @@ auto of_channel(Get get) {
   return [get](const Sensor& self) {
     const Session::Use use(*self.session);
     const sim::Simulation& simulation = self.session->simulation();
-    return get(sim::sensors_of(simulation).channel(self.index), simulation);
+    return get(sense::sensors_of(simulation).channel(self.index), simulation);
   };
 }
 
@@ -61,7 +61,7 @@ void feed(const Sensor& self, const py::object& value, const std::optional<doubl
   const Session::Use use(*self.session);
   sim::Simulation& simulation = self.session->simulation();
   try {
-    sim::sensors_of(simulation).feed(self.index, time.value_or(simulation.time()), numbers);
+    sense::sensors_of(simulation).feed(self.index, time.value_or(simulation.time()), numbers);
   } catch (const Error& error) {
     throw Error(error.kind(), {.item = place}, error.message(), error.remedy());
   }
@@ -130,7 +130,7 @@ void bind_sensor_type(py::module_& module) {
           "true_value",
           [](const Sensor& self) {
             const Session::Use use(*self.session);
-            return to_python(sim::sensors_of(self.session->simulation()).truth(self.index));
+            return to_python(sense::sensors_of(self.session->simulation()).truth(self.index));
           },
           "float, or (size,) ndarray: present value without errors and delay.")
       .def("feed", &feed, py::arg("value"), py::arg("time") = py::none(),

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "sinew/sim/signal.hpp"
+#include "sinew/model/signal.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -13,7 +13,7 @@ namespace sinew::python {
 
 namespace {
 
-using sim::Signal;
+using model::Signal;
 
 // The Python classes of signals; each is a Signal.
 struct Ramp : Signal {};
@@ -162,7 +162,8 @@ samples : (n, 2) array_like
 
 }  // namespace
 
-sim::Signal to_signal(const py::handle& value, const std::string& place, const std::string& unit) {
+model::Signal to_signal(const py::handle& value, const std::string& place,
+                        const std::string& unit) {
   if (py::isinstance<Signal>(value)) return value.cast<const Signal&>();
   if (py::isinstance<py::function>(value)) {
     throw Error(ErrorKind::wrong_type, {.item = place}, "a command cannot be a function",

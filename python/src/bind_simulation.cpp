@@ -1,9 +1,9 @@
 // Binds sinew.Simulation, and loading of scenes.
 #include <fmt/format.h>
 
+#include "sinew/model/model.hpp"
 #include "sinew/scene/renamed_words.hpp"
 #include "sinew/scene/scene.hpp"
-#include "sinew/sim/model.hpp"
 
 #include "simulation_type.hpp"
 #include "tree.hpp"

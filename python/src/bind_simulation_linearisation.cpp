@@ -1,7 +1,7 @@
 // Binds the linearised response of motions to efforts.
 #include <string>
 
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
 
 #include "arrays.hpp"
 #include "simulation_type.hpp"

@@ -1,11 +1,11 @@
 // Binds reports and observables of a simulation.
 #include <string>
 
+#include "sinew/model/model.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/scene/scene.hpp"
-#include "sinew/sim/model.hpp"
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "errors.hpp"
 #include "simulation_type.hpp"
@@ -26,9 +26,9 @@ py::dict ledger(Session& self) {
   observables.refresh();
   py::dict result;
   for (std::size_t k = 0; k < observables.list().size(); ++k) {
-    const sim::Observable& one = observables.list()[k];
+    const run::Observable& one = observables.list()[k];
     const bool counts =
-        one.kind == sim::ObservableKind::energy || one.kind == sim::ObservableKind::ledger;
+        one.kind == run::ObservableKind::energy || one.kind == run::ObservableKind::ledger;
     if (counts) result[one.name.c_str()] = observables.number(k);
   }
   return result;

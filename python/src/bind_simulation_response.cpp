@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/controlled_response.hpp"
-#include "sinew/sim/model.hpp"
 
 #include "arrays.hpp"
 #include "simulation_type.hpp"
@@ -22,7 +22,7 @@ struct NamedResponse {
   sim::ControlledResponse response;
 };
 
-std::vector<int> to_controlled(const sim::Model& model, const std::vector<std::string>& names) {
+std::vector<int> to_controlled(const model::Model& model, const std::vector<std::string>& names) {
   std::vector<int> controlled;
   std::set<int> seen;
   for (const std::string& name : names) {
@@ -38,7 +38,7 @@ std::vector<int> to_controlled(const sim::Model& model, const std::vector<std::s
 
 NamedResponse respond(Session& self, const std::optional<std::vector<std::string>>& names,
                       const std::string& tangent, bool geometric_stiffness, bool statics) {
-  const sim::Model& model = self.model();
+  const model::Model& model = self.model();
   NamedResponse result;
   if (names) {
     result.actuators = *names;

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "arrays.hpp"
 #include "simulation_type.hpp"
@@ -17,16 +17,16 @@ namespace sinew::python {
 
 namespace {
 
-sim::StabilityChoice stability_choice(const std::string& name) {
-  if (name == "stable") return sim::StabilityChoice::stable;
-  if (name == "any") return sim::StabilityChoice::any;
+statics::StabilityChoice stability_choice(const std::string& name) {
+  if (name == "stable") return statics::StabilityChoice::stable;
+  if (name == "any") return statics::StabilityChoice::any;
   throw Error(ErrorKind::unknown_choice, {.item = "solve_static(stability)"},
               fmt::format("there is no stability '{}'", name), "use 'stable' or 'any'");
 }
 
-sim::StaticReport solve_static(Session& self, double tolerance, int max_iterations,
-                               int max_load_steps, int max_relaxation_steps,
-                               const std::string& stability) {
+statics::StaticReport solve_static(Session& self, double tolerance, int max_iterations,
+                                   int max_load_steps, int max_relaxation_steps,
+                                   const std::string& stability) {
   if (!(tolerance > 0.0) || max_iterations < 1 || max_load_steps < 1 || max_relaxation_steps < 0) {
     throw Error(ErrorKind::out_of_range, {.item = "solve_static()"},
                 fmt::format("tolerance {:g}, max_iterations {} and max_load_steps {} must be "
@@ -44,23 +44,23 @@ struct Visits {
   std::vector<SavedState> states;
 };
 
-py::dict path_table(const sim::Path& path, const std::vector<sim::EffectorModel>& effectors,
+py::dict path_table(const statics::Path& path, const std::vector<model::EffectorModel>& effectors,
                     const Visits& visits) {
   const auto count = static_cast<Eigen::Index>(path.points.size());
   VectorX load_fraction(count), unstable(count);
   py::list events;
   for (Eigen::Index k = 0; k < count; ++k) {
-    const sim::PathPoint& point = path.points[static_cast<std::size_t>(k)];
+    const statics::PathPoint& point = path.points[static_cast<std::size_t>(k)];
     load_fraction[k] = point.load_fraction;
     unstable[k] = point.negative_pivots;
-    events.append(std::string(sim::path_event_name(point.event)));
+    events.append(std::string(statics::path_event_name(point.event)));
   }
   py::dict result;
   result["load_fraction"] = copy(load_fraction);
   result["negative_pivots"] = copy(unstable);
   result["event"] = py::module_::import("numpy").attr("array")(events, "U");
   result["limit_load"] = path.limit_load.value_or(std::numeric_limits<double>::quiet_NaN());
-  result["status"] = std::string(sim::path_end_name(path.end));
+  result["status"] = std::string(statics::path_end_name(path.end));
   result["reason"] = path.reason;
   result["states"] = py::cast(visits.states);
   for (std::size_t i = 0; i < effectors.size(); ++i) {
@@ -73,8 +73,8 @@ py::dict path_table(const sim::Path& path, const std::vector<sim::EffectorModel>
   return result;
 }
 
-void warn_of_early_end(const sim::Path& path) {
-  if (path.end != sim::PathEnd::no_equilibrium) return;
+void warn_of_early_end(const statics::Path& path) {
+  if (path.end != statics::PathEnd::no_equilibrium) return;
   const py::object kind = py::module_::import("sinew.errors").attr("SinewWarning");
   const std::string text = "follow_path() ended early: " + path.reason;
   if (PyErr_WarnEx(kind.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
@@ -90,7 +90,7 @@ py::dict follow_path(Session& self, double first_step, double largest_step, doub
       visits.values[i].push_back(simulation.effector_value(static_cast<int>(i)));
     }
     if (!states) return;
-    visits.states.emplace_back(std::make_shared<const sim::State>(simulation.state()),
+    visits.states.emplace_back(std::make_shared<const run::State>(simulation.state()),
                                simulation.shared_model());
   });
   warn_of_early_end(path);
@@ -151,8 +151,8 @@ on : bool
       .def_property_readonly(
           "equilibrium",
           [](const Session& self) {
-            return self.simulation().equilibrium() == sim::Equilibrium::following ? "following"
-                                                                                  : "converged";
+            return self.simulation().equilibrium() == model::Equilibrium::following ? "following"
+                                                                                    : "converged";
           },
           "str: when quasi-static steps end: 'converged' or 'following', as the scene says, or by "
           "default.");

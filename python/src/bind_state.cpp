@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <pybind11/pybind11.h>
 
-#include "sinew/sim/state.hpp"
+#include "sinew/run/state.hpp"
 
 #include "bindings.hpp"
 #include "session.hpp"

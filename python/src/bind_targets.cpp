@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "sinew/inverse/target.hpp"
+#include "sinew/control/target.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -12,7 +12,7 @@ namespace sinew::python {
 
 namespace {
 
-using inverse::Target;
+using control::Target;
 
 // The Python classes of targets; each is a Target.
 struct Circle : Target {};
@@ -76,7 +76,7 @@ start_angle : float
 )")
       .def(py::init([](const py::object& centre, const py::object& radius, const py::object& period,
                        const py::object& normal, const py::object& start_angle) {
-             inverse::Circle circle;
+             control::Circle circle;
              circle.centre = to_vector3(centre, "Circle(centre)", "m");
              circle.radius = to_number(radius, "Circle(radius)", "m");
              circle.period = to_number(period, "Circle(period)", "s");
@@ -133,7 +133,7 @@ positions : (n, 3) array_like
 
 }  // namespace
 
-inverse::Target to_target(const py::handle& value, const std::string& place) {
+control::Target to_target(const py::handle& value, const std::string& place) {
   if (py::isinstance<Target>(value)) return value.cast<const Target&>();
   return Target::fixed(to_vector3(value, place, "m"));
 }

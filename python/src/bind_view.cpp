@@ -164,7 +164,7 @@ void drive(const std::shared_ptr<Session>& session, const ViewOptions& options) 
   } catch (...) {
     if (first) {
       session->take_back(true, name,
-                         inverse::make_controller(session->simulation(), first->settings));
+                         control::make_controller(session->simulation(), first->settings));
     }
     throw;
   }

@@ -11,13 +11,13 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-namespace sinew::inverse {
+namespace sinew::control {
 class Target;
-}  // namespace sinew::inverse
+}  // namespace sinew::control
 
-namespace sinew::sim {
+namespace sinew::model {
 class Signal;
-}  // namespace sinew::sim
+}
 
 namespace sinew::python {
 
@@ -99,10 +99,10 @@ py::dict run(const std::shared_ptr<Session>& session, const py::object& duration
 /// Converts a Target object or three numbers to a target. Throws Error(wrong-type | wrong-shape |
 /// not-finite).
 /// @param value from Python. @param place names the argument.
-inverse::Target to_target(const py::handle& value, const std::string& place);
+control::Target to_target(const py::handle& value, const std::string& place);
 
 /// Converts a Signal object, a number, or (n, 2) samples of time and value to a signal.
 /// @param value from Python. @param place names the argument. @param unit "N" or "m".
-sim::Signal to_signal(const py::handle& value, const std::string& place, const std::string& unit);
+model::Signal to_signal(const py::handle& value, const std::string& place, const std::string& unit);
 
 }  // namespace sinew::python

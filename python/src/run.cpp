@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "sinew/control/controller_observables.hpp"
 #include "sinew/core/whole.hpp"
-#include "sinew/inverse/controller_observables.hpp"
 #include "sinew/scene/watched_cables.hpp"
 #include "sinew/sim/observables.hpp"
 
@@ -39,23 +39,23 @@ struct Recording {
 
 sim::Observables list_observables(Session& session) {
   sim::Observables list(session.simulation());
-  const auto controller = [&session]() -> const inverse::TargetController* {
+  const auto controller = [&session]() -> const control::TargetController* {
     return session.controller() ? session.controller()->law.get() : nullptr;
   };
-  const auto effectors = inverse::steered_effectors(controller());
-  if (!effectors.empty()) inverse::add_controller(list, controller, effectors);
+  const auto effectors = control::steered_effectors(controller());
+  if (!effectors.empty()) control::add_controller(list, controller, effectors);
   return list;
 }
 
 // Whether an observable is recorded by default: not large arrays, observables that evaluate all
 // elements, or those that differ from run to run.
-bool is_default(const sim::Observable& observable) {
+bool is_default(const run::Observable& observable) {
   switch (observable.kind) {
-    case sim::ObservableKind::body:
-    case sim::ObservableKind::contact_point:
-    case sim::ObservableKind::energy:
-    case sim::ObservableKind::ledger:
-    case sim::ObservableKind::timing:
+    case run::ObservableKind::body:
+    case run::ObservableKind::contact_point:
+    case run::ObservableKind::energy:
+    case run::ObservableKind::ledger:
+    case run::ObservableKind::timing:
       return false;
     default:
       return true;
@@ -63,7 +63,7 @@ bool is_default(const sim::Observable& observable) {
 }
 
 std::vector<Column> choose_columns(const sim::Observables& observables, const py::object& record) {
-  const std::vector<sim::Observable>& list = observables.list();
+  const std::vector<run::Observable>& list = observables.list();
   std::vector<Column> chosen;
   if (record.is_none()) {
     for (std::size_t k = 0; k < list.size(); ++k) {
@@ -94,7 +94,7 @@ void write_moment(const Session& session, Recording& recording) {
   }
 }
 
-py::object to_array(const sim::Observable& observable, const std::vector<double>& values) {
+py::object to_array(const run::Observable& observable, const std::vector<double>& values) {
   if (!observable.words.empty() && observable.shape.empty()) {
     py::list words;
     for (const double value : values) words.append(py::str(std::string(observable.word(value))));
@@ -108,7 +108,7 @@ py::object to_array(const sim::Observable& observable, const std::vector<double>
 py::dict to_arrays(const Recording& recording) {
   py::dict result;
   for (const Column& column : recording.columns) {
-    const sim::Observable& observable = recording.observables.list()[column.observable];
+    const run::Observable& observable = recording.observables.list()[column.observable];
     result[column.name.c_str()] = to_array(observable, column.values);
   }
   return result;

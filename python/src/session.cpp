@@ -12,12 +12,12 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
-#include "sinew/sim/inputs.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/inputs.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 #include "sinew/sim/watched.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/world/world.hpp"
 
 #include "errors.hpp"
 
@@ -30,7 +30,7 @@ constexpr auto kSignalInterval = std::chrono::milliseconds(50);
 
 // While the result exists, steps and solvers check regularly for Ctrl-C, which ends them.
 sim::Watched look_for_signals(sim::Simulation& simulation) {
-  return {simulation, [due = Clock::now() + kSignalInterval](const sim::StepProgress&) mutable {
+  return {simulation, [due = Clock::now() + kSignalInterval](const run::StepProgress&) mutable {
             if (Clock::now() < due) return;
             const pybind11::gil_scoped_acquire lock;
             if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
@@ -62,7 +62,7 @@ const std::string& SavedState::bytes() const {
   return bytes_;
 }
 
-const sim::State* SavedState::of(const sim::Model& model) const {
+const run::State* SavedState::of(const model::Model& model) const {
   if (state_ == nullptr || model_->fingerprint() != model.fingerprint()) return nullptr;
   return state_.get();
 }
@@ -147,8 +147,8 @@ void Session::advance_unlocked(std::int64_t count, const std::function<bool()>& 
 }
 
 void Session::note_status() {
-  const sim::StepStatus status = simulation_.report().status;
-  if (!sim::is_flagged(status)) return;
+  const run::StepStatus status = simulation_.report().status;
+  if (!run::is_flagged(status)) return;
   Flagged& flagged = flagged_[status];
   if (flagged.steps++ == 0) flagged.first = simulation_.time();
 }
@@ -157,13 +157,13 @@ void Session::warn() {
   for (auto& [status, flagged] : flagged_) {
     if (std::exchange(flagged.warned, true)) continue;
     const std::string message = fmt::format(
-        "the step to t = {:g} s is {}; {}", flagged.first, sim::step_status_name(status),
-        sim::step_status_remedy(status, simulation_.model().step()));
+        "the step to t = {:g} s is {}; {}", flagged.first, run::step_status_name(status),
+        run::step_status_remedy(status, simulation_.model().step()));
     issue_warning(message, "StepWarning");
   }
 }
 
-void Session::note_pressure(const std::string& what, const sim::Signal& signal) {
+void Session::note_pressure(const std::string& what, const model::Signal& signal) {
   constexpr int kSamples = 64;
   double& largest = pressures_[what].largest;
   for (int k = 0; k <= kSamples; ++k) {
@@ -196,12 +196,12 @@ void Session::warn_strains(const scene::StrainWatch& strains) {
   }
 }
 
-sim::StaticReport Session::solve_static(const sim::StaticSettings& settings) {
+statics::StaticReport Session::solve_static(const statics::StaticSettings& settings) {
   warn_units();
   const Use use(*this);
   check_loads();
   const sim::Watched watched = look_for_signals(simulation_);
-  sim::StaticReport report;
+  statics::StaticReport report;
   {
     const pybind11::gil_scoped_release release;
     report = simulation_.solve_static(settings);
@@ -213,8 +213,8 @@ sim::StaticReport Session::solve_static(const sim::StaticSettings& settings) {
   return report;
 }
 
-sim::Path Session::follow_path(const sim::PathSettings& settings,
-                               const std::function<void()>& visit) {
+statics::Path Session::follow_path(const statics::PathSettings& settings,
+                                   const std::function<void()>& visit) {
   const Use use(*this);
   const sim::Watched watched = look_for_signals(simulation_);
   const pybind11::gil_scoped_release release;
@@ -237,12 +237,12 @@ void Session::reset() {
 
 SavedState Session::state() const {
   const Use use(*this);
-  return {std::make_shared<const sim::State>(simulation_.state()), simulation_.shared_model()};
+  return {std::make_shared<const run::State>(simulation_.state()), simulation_.shared_model()};
 }
 
 void Session::restore(const SavedState& state) {
   const Use use(*this);
-  if (const sim::State* known = state.of(simulation_.model())) {
+  if (const run::State* known = state.of(simulation_.model())) {
     simulation_.restore(*known);
   } else {
     sim::parse_state(simulation_, state.bytes(), "state");
@@ -273,7 +273,7 @@ sim::Linearisation Session::last_linearisation() {
   return sim::last_linearisation(simulation_);
 }
 
-std::shared_ptr<AttachedController> Session::attach(inverse::InverseSettings settings,
+std::shared_ptr<AttachedController> Session::attach(control::InverseSettings settings,
                                                     std::string name) {
   const Use use(*this);
   if (controller_) {
@@ -285,19 +285,19 @@ std::shared_ptr<AttachedController> Session::attach(inverse::InverseSettings set
   }
   auto made = std::make_shared<AttachedController>();
   made->name = std::move(name);
-  made->law = inverse::make_controller(simulation_, std::move(settings));
+  made->law = control::make_controller(simulation_, std::move(settings));
   controller_ = made;
   return made;
 }
 
-std::optional<inverse::InverseSettings> Session::lend_controller() {
+std::optional<control::InverseSettings> Session::lend_controller() {
   if (!controller_) return std::nullopt;
   controller_->law->detach();
   return controller_->law->settings();
 }
 
 void Session::take_back(bool same, const std::string& name,
-                        std::unique_ptr<inverse::TargetController> law) {
+                        std::unique_ptr<control::TargetController> law) {
   if (controller_ && law && same) {
     controller_->law = std::move(law);
     return;

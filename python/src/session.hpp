@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "sinew/inverse/target_controller.hpp"
+#include "sinew/control/target_controller.hpp"
 #include "sinew/mechanics/tangent.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/strain_watch.hpp"
@@ -30,7 +30,7 @@ namespace sinew::python {
 /// A controller and its name in the scene. The name is empty for a controller made in Python.
 struct AttachedController {
   std::string name;
-  std::unique_ptr<inverse::TargetController> law;
+  std::unique_ptr<control::TargetController> law;
   bool attached = true;
 };
 
@@ -48,21 +48,21 @@ mechanics::Tangent to_tangent(const std::string& word, const std::string& argume
 class SavedState {
  public:
   explicit SavedState(std::string bytes) : bytes_(std::move(bytes)) {}
-  SavedState(std::shared_ptr<const sim::State> state, std::shared_ptr<const sim::Model> model)
+  SavedState(std::shared_ptr<const run::State> state, std::shared_ptr<const model::Model> model)
       : state_(std::move(state)), model_(std::move(model)) {}
 
   /// The bytes of the state. For a state of this process, they are made at the first call, since
   /// most states are only restored. Requires the GIL.
   const std::string& bytes() const;
   /// The state; null if only bytes are known, or the model has another fingerprint.
-  const sim::State* of(const sim::Model& model) const;
+  const run::State* of(const model::Model& model) const;
   /// Number of steps so far. Throws Error(state-corrupt), Error(state-version).
   std::int64_t steps() const;
 
  private:
   mutable std::string bytes_;  // empty: not made yet
-  std::shared_ptr<const sim::State> state_;
-  std::shared_ptr<const sim::Model> model_;
+  std::shared_ptr<const run::State> state_;
+  std::shared_ptr<const model::Model> model_;
 };
 
 /// A simulation in Python.
@@ -88,7 +88,7 @@ class Session {
   std::shared_ptr<Session> clone() const;
 
   const LoadedRobot& robot() const { return *robot_; }
-  const sim::Model& model() const { return simulation_.model(); }
+  const model::Model& model() const { return simulation_.model(); }
   /// To be used only while a Use is held.
   sim::Simulation& simulation() { return simulation_; }
   const sim::Simulation& simulation() const { return simulation_; }
@@ -118,7 +118,7 @@ class Session {
   /// Keeps a pressure that Python commands, for warn_units(). @param what
   /// "actuator('air').pressure".
   /// @param signal Pa.
-  void note_pressure(const std::string& what, const sim::Signal& signal);
+  void note_pressure(const std::string& what, const model::Signal& signal);
   /// Issues a SinewWarning for each pressure of which all commands so far were far below those of
   /// robots, such as 30 for 30 kPa. A loop that raises a pressure step by step passes small ones,
   /// so this is for calls whose result is final: many steps, and equilibria.
@@ -129,9 +129,10 @@ class Session {
   /// Issues a SinewWarning for each law that was not tested at the strains of a run, once each
   /// until the next reset. @param strains of the run.
   void warn_strains(const scene::StrainWatch& strains);
-  sim::StaticReport solve_static(const sim::StaticSettings& settings);
+  statics::StaticReport solve_static(const statics::StaticSettings& settings);
   /// @param visit called without the GIL.
-  sim::Path follow_path(const sim::PathSettings& settings, const std::function<void()>& visit);
+  statics::Path follow_path(const statics::PathSettings& settings,
+                            const std::function<void()>& visit);
   /// Calls Simulation::reset(), and sets external forces to zero.
   void reset();
   SavedState state() const;
@@ -147,18 +148,18 @@ class Session {
   /// The attached controller; null if there is none.
   const std::shared_ptr<AttachedController>& controller() const { return controller_; }
   /// Attaches a controller. Throws Error(actuator-owned) if another one is attached.
-  std::shared_ptr<AttachedController> attach(inverse::InverseSettings settings, std::string name);
+  std::shared_ptr<AttachedController> attach(control::InverseSettings settings, std::string name);
   /// Detaches `controller` if it is attached.
   void detach(AttachedController& controller);
 
   /// For code that holds a Use and steps the simulation itself: detaches the controller, which
   /// Python still sees as attached, and returns its settings; none if there is no controller.
-  std::optional<inverse::InverseSettings> lend_controller();
+  std::optional<control::InverseSettings> lend_controller();
   /// Takes back the controller after lend_controller().
   /// @param same whether it is the one that was lent. @param name of another one.
   /// @param law the controller that is now attached, or null.
   void take_back(bool same, const std::string& name,
-                 std::unique_ptr<inverse::TargetController> law);
+                 std::unique_ptr<control::TargetController> law);
   /// Updates steps() after other code has stepped the simulation.
   void count_steps() { steps_ = simulation_.steps(); }
 
@@ -175,7 +176,7 @@ class Session {
     double first = 0.0;  // s
     bool warned = false;
   };
-  std::map<sim::StepStatus, Flagged> flagged_;  // since the last reset
+  std::map<run::StepStatus, Flagged> flagged_;  // since the last reset
   struct Told {
     double largest = 0.0;  // Pa
     bool warned = false;

@@ -7,7 +7,7 @@ from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 from sinew import control
 from sinew.control import rotations
-from sinew.control.jacobian import condensed
+from sinew.control.robot import condensed
 
 CABLES = ["east", "north", "west", "south"]
 

@@ -26,7 +26,7 @@ pytest.importorskip("h5py")
 pytest.importorskip("scipy")
 
 import sinew.sweep  # noqa: E402
-from sinew.sweep import engine, progress, samples, store, worker  # noqa: E402
+from sinew.sweep import engine, progress, runner, samples, store  # noqa: E402
 
 MODULUS, PULL = "bodies.finger.material.young_modulus", "actuators.east.command.displacement"
 QUIET = ["--set", "bodies.finger.element=tet4"]  # an element that is named brings no notice about locking
@@ -64,7 +64,7 @@ def plain(scene, vary, measure, **options):
     for index in range(design.size):
         sim = sinew.load(scene, set=[f"{axis.key}={axis.spell(value)}" for axis, value in zip(design.axes, design.values(index))])
         sim.run(**options)
-        found.append(worker.measure(sim, measure))
+        found.append(runner.measure(sim, measure))
     return found
 
 
@@ -131,12 +131,12 @@ def test_a_kept_simulation_gives_the_bits_of_a_new_one(scene, static):
     design = samples.design({MODULUS: "300kPa:500kPa:2", PULL: "0mm:8mm:5", "actuators.north.command.tension": [0.0, 1.5]})
     base = sinew.load(scene)
     measures = ("tip.position", "finger.positions", "strain_energy", "finger.strain_energy") + (() if static else ("actuator_work",))
-    job = worker.Job(scene=base.to_yaml(), axes=tuple(design.axes), commands=(1, 2), measures=measures,
-                     shapes=worker.check_measures(base, measures, static), static=static)
-    runner = worker.Runner(job)
-    kept = [runner.row(k, design.values(k)) for k in range(design.size)]
-    assert runner._reusable is True
-    anew = [worker.Runner(job).row(k, design.values(k)) for k in range(design.size)]
+    job = runner.Job(scene=base.to_yaml(), axes=tuple(design.axes), commands=(1, 2), measures=measures,
+                     shapes=runner.check_measures(base, measures, static), static=static)
+    keeping = runner.Runner(job)
+    kept = [keeping.row(k, design.values(k)) for k in range(design.size)]
+    assert keeping._reusable is True
+    anew = [runner.Runner(job).row(k, design.values(k)) for k in range(design.size)]
     for one, other in zip(kept, anew):
         assert one.status == "done", one.error
         for name in measures:
@@ -146,7 +146,7 @@ def test_a_kept_simulation_gives_the_bits_of_a_new_one(scene, static):
 
 def test_samples_between_which_only_commands_change_stand_together():
     design = samples.design({PULL: [0.0, 1.0], MODULUS: [1.0, 2.0, 3.0]})
-    job = worker.Job(scene="x", axes=tuple(design.axes), commands=(0,))
+    job = runner.Job(scene="x", axes=tuple(design.axes), commands=(0,))
     order = sinew.sweep.sweep._order(job, design)
     assert sorted(order) == list(range(6))
     assert [design.values(k)[1] for k in order] == [1.0, 1.0, 2.0, 2.0, 3.0, 3.0]
@@ -159,7 +159,7 @@ def test_batches_take_about_half_a_second_and_shrink_at_the_end():
     for _ in range(6):
         size = batches.size(100_000, 2)
         sizes.append(size)
-        batches.add([worker.Row(0, "done", "", 0.001, {})] * size)
+        batches.add([runner.Row(0, "done", "", 0.001, {})] * size)
     assert sizes[-1] == 500 and sizes == sorted(sizes)
     assert batches.size(40, 2) == 10
     assert batches.size(1, 2) == 1
@@ -461,8 +461,8 @@ def test_what_is_wrong_is_told_before_any_work(scene, tmp_path, monkeypatch, opt
 def test_an_output_of_another_shape_is_a_failed_row(tmp_path):
     table = store.Store(tmp_path, ABOUT, "", {"k": 0}, {})
     shapes = [{"y": np.zeros(2)}, {"y": np.zeros(3)}, {"z": np.asarray(1.0)}]
-    table.append([worker.Row(k, "done", "", 0.1, outputs) for k, outputs in enumerate(shapes)], [[0.5]] * 3, BY)
-    table.append([worker.Row(3, "done", "", 0.1, {"w": np.asarray(4.0)})], [[0.5]], BY)
+    table.append([runner.Row(k, "done", "", 0.1, outputs) for k, outputs in enumerate(shapes)], [[0.5]] * 3, BY)
+    table.append([runner.Row(3, "done", "", 0.1, {"w": np.asarray(4.0)})], [[0.5]], BY)
     table.close()
     read = sinew.sweep.load(tmp_path)
     assert list(read["status"]) == ["done", "failed", "done", "done"]
@@ -471,7 +471,7 @@ def test_an_output_of_another_shape_is_a_failed_row(tmp_path):
 
 
 def rows_of(indices):
-    return [worker.Row(k, "done", "", 0.1, {"y": np.asarray(10.0 * k), "p": np.asarray([k, 0.0, 1.0])}) for k in indices]
+    return [runner.Row(k, "done", "", 0.1, {"y": np.asarray(10.0 * k), "p": np.asarray([k, 0.0, 1.0])}) for k in indices]
 
 
 BY = {"version": "1", "instruction_set": "x", "worker": "w"}
@@ -531,7 +531,7 @@ def test_every_kind_of_plot_is_drawn_and_others_are_refused(scene, tmp_path):
     about = {**ABOUT, "units": {MODULUS: "Pa", PULL: "m"}}
     table = store.Store(tmp_path, about, "", {MODULUS: 0, PULL: 0}, {"tip.position": (3,), "y": ()})
     values = [design.values(k) for k in range(design.size)]
-    rows = [worker.Row(k, "done", "", 0.1, {"tip.position": np.asarray([v[1], v[1] ** 2, v[0] * 1e-6]), "y": np.asarray(v[0] * v[1])})
+    rows = [runner.Row(k, "done", "", 0.1, {"tip.position": np.asarray([v[1], v[1] ** 2, v[0] * 1e-6]), "y": np.asarray(v[0] * v[1])})
             for k, v in enumerate(values)]
     rows[5] = rows[5]._replace(status="failed", outputs={})
     table.append(rows, values, BY)
@@ -694,5 +694,5 @@ def test_the_command_ends_cleanly_on_an_interrupt(scene, tmp_path):
 
 
 def test_a_job_travels():
-    job = worker.Job(scene="", axes=tuple(samples.design({"x": "0:1:2"}).axes), function=doubled)
+    job = runner.Job(scene="", axes=tuple(samples.design({"x": "0:1:2"}).axes), function=doubled)
     assert pickle.loads(pickle.dumps(job)) == job

@@ -10,8 +10,8 @@ pytest.importorskip("h5py")
 pytest.importorskip("pandas")
 pytest.importorskip("distributed")
 
-from sinew import plot  # noqa: E402
-from sinew.sweep import plots, store, worker  # noqa: E402
+from sinew.plot_style import pyplot  # noqa: E402
+from sinew.sweep import plots, runner, store  # noqa: E402
 
 WORDS, PULLS = ("dragon-skin-20", "dragon-skin-30"), (0.004, 0.012, 0.008)
 
@@ -22,7 +22,7 @@ def table(folder, moduli=(1e5,)):
         for pull in PULLS:
             for modulus in moduli:
                 tip = np.array([pull, 1e-9 * len(rows) % 2e-9, 0.1 - pull * stiff])
-                rows.append(worker.Row(len(rows), "done", "", 1.0, {"tip.position": tip, "cable.tension": 50 * stiff * pull * modulus}))
+                rows.append(runner.Row(len(rows), "done", "", 1.0, {"tip.position": tip, "cable.tension": 50 * stiff * pull * modulus}))
                 inputs.append((word, pull, modulus))
     about = {"sinew_version": "x", "instruction_set": "y", "samples": len(rows), "seed": 1, "sample": "grid", "hash": "h",
              "units": json.dumps({"actuators.cable.command.displacement": "m", "modulus": "Pa"})}
@@ -34,7 +34,7 @@ def table(folder, moduli=(1e5,)):
 
 
 def test_every_word_has_a_labelled_curve_without_zigzag(tmp_path):
-    plt = plot._pyplot()
+    plt = pyplot()
     figure = plots._surface(plt, table(tmp_path))
     for axis in figure.axes[:4]:
         assert [line.get_label() for line in axis.lines] == list(WORDS)
@@ -48,7 +48,7 @@ def test_every_word_has_a_labelled_curve_without_zigzag(tmp_path):
 
 
 def test_two_numbers_and_a_word_have_a_panel_of_contours_each(tmp_path):
-    plt = plot._pyplot()
+    plt = pyplot()
     figure = plots._surface(plt, table(tmp_path, (1e5, 2e5, 3e5)))
     titles = [axis.get_title() for axis in figure.axes if axis.get_title()]
     assert all(f"cable.tension (N)\n{word}" in titles for word in WORDS)
@@ -56,7 +56,7 @@ def test_two_numbers_and_a_word_have_a_panel_of_contours_each(tmp_path):
 
 
 def test_words_have_an_axis_of_parallel_coordinates(tmp_path):
-    plt = plot._pyplot()
+    plt = pyplot()
     figure = plots._parallel(plt, table(tmp_path))
     texts = [text.get_text() for text in figure.axes[0].texts]
     assert all(word in texts for word in WORDS)
@@ -65,7 +65,7 @@ def test_words_have_an_axis_of_parallel_coordinates(tmp_path):
 
 
 def test_points_in_a_plane_have_no_volume(tmp_path):
-    plt = plot._pyplot()
+    plt = pyplot()
     figure = plots._workspace(plt, table(tmp_path))
     title = figure._suptitle.get_text()
     assert "no volume" in title and "ml" not in title

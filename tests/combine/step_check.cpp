@@ -17,12 +17,12 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mechanics/step_system.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/rigid/rigid_body_model.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/run/contact_reader.hpp"
+#include "sinew/run/step_tolerances.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/step_tolerances.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/world/world.hpp"
 
 namespace sinew::combine {
 
@@ -44,12 +44,12 @@ bool is_free(const fem::FemModel& elements) {
 
 // The largest relative residual that a step which is not flagged may leave.
 double tolerance_of(const sim::Simulation& simulation) {
-  const sim::StepSettings& step = simulation.model().step();
-  if (step.method != sim::Method::newton) return sim::kLag.residual;
+  const model::StepSettings& step = simulation.model().step();
+  if (step.method != model::Method::newton) return run::kLag.residual;
   if (step.tolerance) return std::max(*step.tolerance, kRoundedResidual);
-  if (step.dynamic()) return sim::kStalledTolerance;
-  if (simulation.report().following) return sim::kLag.residual;
-  return simulation.model().errors_last() ? sim::kStalledTolerance : sim::kQuasiStaticTolerance;
+  if (step.dynamic()) return model::kStalledTolerance;
+  if (simulation.report().following) return run::kLag.residual;
+  return simulation.model().errors_last() ? model::kStalledTolerance : model::kQuasiStaticTolerance;
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ void StepCheck::begin() {
 }
 
 std::string StepCheck::end() {
-  if (sim::is_flagged(simulation_.report().status)) return {};
+  if (run::is_flagged(simulation_.report().status)) return {};
   std::string wrong = check_report();
   if (wrong.empty()) wrong = check_shapes();
   for (int body = 0; body < simulation_.bodies() && wrong.empty(); ++body) {
@@ -75,7 +75,7 @@ std::string StepCheck::end() {
 }
 
 std::string StepCheck::check_report() const {
-  const sim::StepReport& report = simulation_.report();
+  const run::StepReport& report = simulation_.report();
   if (!report.balanced || !report.physical) return "a step that failed is not flagged";
   if (report.relative_residual <= tolerance_of(simulation_)) return {};
   if (report.residual <= kFloors * simulation_.world().bodies().rounding_floor()) return {};
@@ -93,7 +93,7 @@ std::string StepCheck::check_shapes() {
                          f.norm());
     }
   }
-  const sim::Model& model = simulation_.model();
+  const model::Model& model = simulation_.model();
   for (std::size_t i = 0; i < model.actuators().size(); ++i) {
     const constraint::Chamber* chamber = model.chamber(static_cast<int>(i));
     if (chamber == nullptr) continue;
@@ -109,7 +109,7 @@ std::string StepCheck::check_shapes() {
 std::string StepCheck::check_rest(int number) {
   const auto* body = mechanics::as<const fem::HasMaterial>(simulation_.body(number));
   if (body == nullptr) return {};
-  const sim::World& world = simulation_.world();
+  const world::World& world = simulation_.world();
   const fem::FemModel& elements = body->material().elements();
   const fem::ElementStates states = fem::element_states(*body);
   Points sum = fem::nodal_balance(*body, states, simulation_.efforts(), world.rows(),
@@ -162,8 +162,8 @@ Vector3 StepCheck::momentum_change(int number) const {
 std::string StepCheck::check_motion(int number) {
   using enum mechanics::Integrator;
   const auto i = static_cast<std::size_t>(number);
-  const sim::StepReport& report = simulation_.report();
-  const sim::StepSettings& step = simulation_.model().step();
+  const run::StepReport& report = simulation_.report();
+  const model::StepSettings& step = simulation_.model().step();
   const bool known = step.integrator == backward_euler || step.integrator == bdf2;
   if (!known || report.substeps != 1 || report.retries > 0 || !start_[i]) return {};
   const mechanics::Body& body = simulation_.body(number);

@@ -15,20 +15,20 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "sinew/control/controller_observables.hpp"
+#include "sinew/control/target_controller.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/inverse/controller_observables.hpp"
-#include "sinew/inverse/target_controller.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/record/run_file.hpp"
 #include "sinew/record/run_layout.hpp"
 #include "sinew/record/run_recorder.hpp"
+#include "sinew/run/contact_reader.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/scene.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 #include "sinew/sim/state_io.hpp"
 
 #include "random.hpp"
@@ -69,7 +69,7 @@ class Run {
   Run(const scene::Robot& robot, std::unique_ptr<sim::Simulation> begun)
       : own_(std::move(begun)), simulation(*own_) {
     for (const auto& controller : robot.controllers) {
-      controllers_.push_back(inverse::make_controller(simulation, controller.settings));
+      controllers_.push_back(control::make_controller(simulation, controller.settings));
     }
   }
 
@@ -90,7 +90,7 @@ class Run {
   const std::string& error() const { return error_; }
   sim::Observables observables() {
     sim::Observables list(simulation);
-    inverse::add_controller(list, controllers_.empty() ? nullptr : controllers_.front().get());
+    control::add_controller(list, controllers_.empty() ? nullptr : controllers_.front().get());
     return list;
   }
   void forget() {
@@ -99,12 +99,12 @@ class Run {
   }
 
   sim::Simulation& simulation;
-  std::vector<sim::State> states;
-  sim::StepStatus condition = sim::StepStatus::solved;
+  std::vector<run::State> states;
+  run::StepStatus condition = run::StepStatus::solved;
   bool choice_held = false;
 
  private:
-  std::vector<std::unique_ptr<inverse::TargetController>> controllers_;
+  std::vector<std::unique_ptr<control::TargetController>> controllers_;
   std::string error_;
 };
 
@@ -113,9 +113,9 @@ scene::Robot build(const std::string& text) {
 }
 
 // Names all numbers: "body at 12", "volume ratio".
-std::vector<std::pair<std::string, double>> numbers_of(const sim::State& state) {
+std::vector<std::pair<std::string, double>> numbers_of(const run::State& state) {
   std::vector<std::pair<std::string, double>> numbers;
-  sim::State::visit(state, [&](std::string_view name, const auto& part) {
+  run::State::visit(state, [&](std::string_view name, const auto& part) {
     if constexpr (requires { part.size(); }) {
       for (std::size_t k = 0; k < part.size(); ++k) {
         numbers.emplace_back(fmt::format("{} at {}", name, k), part[k]);
@@ -127,14 +127,14 @@ std::vector<std::pair<std::string, double>> numbers_of(const sim::State& state) 
   return numbers;
 }
 
-bool is_finite(const sim::State& state) {
+bool is_finite(const run::State& state) {
   return std::ranges::all_of(numbers_of(state),
                              [](const auto& number) { return std::isfinite(number.second); });
 }
 
 // Relative to the robot's size.
 double order_tolerance(const scene::Robot& robot) {
-  const sim::StepSettings& step = robot.model->step();
+  const model::StepSettings& step = robot.model->step();
   if (step.event_driven()) return kEventTolerance;
   if (step.adaptive) return kPartOfError * step.adaptive->tolerance;
   return robot.controllers.empty() ? kOrderTolerance : kChoiceTolerance;
@@ -152,7 +152,7 @@ double largest_distance(const sim::Simulation& one, const sim::Simulation& other
 }
 
 // The name of the first number that differs.
-std::string first_difference(const sim::State& one, const sim::State& other) {
+std::string first_difference(const run::State& one, const run::State& other) {
   const auto mine = numbers_of(one), theirs = numbers_of(other);
   for (std::size_t k = 0; k < std::min(mine.size(), theirs.size()); ++k) {
     if (std::bit_cast<std::uint64_t>(mine[k].second) !=
@@ -233,12 +233,12 @@ class Trial {
     } catch (const Error& error) {
       return {Outcome::Kind::refused, error.what(), ""};
     }
-    const sim::State start = first->simulation.state();
+    const run::State start = first->simulation.state();
     Record record(*first);
     record.advance(kHalf);
     const std::string half = sim::format_state(first->simulation);
     std::unique_ptr<sim::Simulation> copy = first->simulation.clone();
-    const sim::State state = first->simulation.state();
+    const run::State state = first->simulation.state();
     const bool halfway = first->error().empty();
     record.advance(kSteps - kHalf);
     reference_ = first->states;
@@ -270,7 +270,7 @@ class Trial {
     }
     // A flagged step may have diverged, and an active set that did not converge may depend on
     // rounding.
-    if (!sim::is_flagged(first->condition) && !first->choice_held) {
+    if (!run::is_flagged(first->condition) && !first->choice_held) {
       double distance = distance_of_order({.reversed = true}, first->simulation);
       const double tolerance = order_tolerance(*robot) * robot->model->size();
       if (!(distance <= tolerance)) {
@@ -283,7 +283,7 @@ class Trial {
         fail(fmt::format("another order moves nodes by {:.1e} m", distance));
       }
     }
-    const std::string condition(sim::step_status_name(first->condition));
+    const std::string condition(run::step_status_name(first->condition));
     const std::string error = first->error();
     first->forget();
     first->simulation.reset();
@@ -306,15 +306,15 @@ class Trial {
   }
 
   // A step that stops a run names its failure, and so do all steps of a run that keeps going.
-  void check_failure(const scene::Robot& robot, const sim::StepReport& report) {
-    if (!sim::is_failure(report.status)) fail("a run stops without a failure");
+  void check_failure(const scene::Robot& robot, const run::StepReport& report) {
+    if (!run::is_failure(report.status)) fail("a run stops without a failure");
     Run kept(robot);
     bool failed = false;
     try {
       for (int k = 0; k < kSteps; ++k) {
-        const sim::StepStatus status = kept.simulation.step(sim::OnFailure::keep_going).status;
-        if (failed && !sim::is_flagged(status)) fail("a step after a failure is not flagged");
-        failed = failed || sim::is_failure(status);
+        const run::StepStatus status = kept.simulation.step(sim::OnFailure::keep_going).status;
+        if (failed && !run::is_flagged(status)) fail("a step after a failure is not flagged");
+        failed = failed || run::is_failure(status);
       }
     } catch (const Error&) {
       failed = true;  // a state that cannot be evaluated
@@ -324,7 +324,7 @@ class Trial {
 
   // A record reads back bit for bit, and a copy of the simulation has the same observables.
   void check_record(const scene::Robot& robot, Run& run, Record& record) {
-    const std::vector<sim::Observable>& observables = record.list.list();
+    const std::vector<run::Observable>& observables = record.list.list();
     const record::RunFile file(record.close());
     for (std::size_t k = 0; k < observables.size(); ++k) {
       const std::string dataset = record::dataset_of(observables[k]);
@@ -336,13 +336,13 @@ class Trial {
     copy.simulation.restore(run.simulation.state());
     sim::Observables theirs = copy.observables();
     for (std::size_t k = 0; k < observables.size(); ++k) {
-      const sim::Observable& one = observables[k];
+      const run::Observable& one = observables[k];
       // Work since the first read, and the report of the last step, are not part of a state.
-      if (one.kind >= sim::ObservableKind::ledger) {
+      if (one.kind >= run::ObservableKind::ledger) {
         continue;
       }
       // A step sums energies in another order than their evaluation over elements.
-      const bool same = one.kind == sim::ObservableKind::energy
+      const bool same = one.kind == run::ObservableKind::energy
                             ? std::abs(record.list.number(k) - theirs.number(k)) <=
                                   kEnergyTolerance * std::abs(record.list.number(k)) + kNoEnergy
                             : same_bits(record.list.read(k), theirs.read(k));
@@ -355,10 +355,10 @@ class Trial {
   void fail(const std::string& what) { wrong_ += (wrong_.empty() ? "" : "; ") + what; }
 
   // Compares states. @param states of the steps from `from` on.
-  void compare(const char* way, const std::vector<sim::State>& states, std::size_t from) {
+  void compare(const char* way, const std::vector<run::State>& states, std::size_t from) {
     const std::size_t expected = reference_.size() - std::min(from, reference_.size());
     for (std::size_t k = 0; k < std::min(states.size(), expected); ++k) {
-      const sim::State& reference = reference_[from + k];
+      const run::State& reference = reference_[from + k];
       if (states[k].hash() == reference.hash()) continue;
       return fail(fmt::format("{}: step {} differs in {}", way, from + k + 1,
                               first_difference(states[k], reference)));
@@ -367,7 +367,7 @@ class Trial {
   }
 
   const SceneDraft& draft_;
-  std::vector<sim::State> reference_;
+  std::vector<run::State> reference_;
   std::string wrong_;
 };
 
@@ -409,7 +409,7 @@ std::string find_asymmetry(const sim::Simulation& simulation) {
   }
   std::optional<double> first;
   for (std::size_t i = 0; i < simulation.model().actuators().size(); ++i) {
-    if (simulation.model().actuators()[i].type != sim::ActuatorType::cable) continue;
+    if (simulation.model().actuators()[i].type != model::ActuatorType::cable) continue;
     const double tension = simulation.actuator(static_cast<int>(i)).effort;
     if (!first) first = tension;
     if (std::abs(tension - *first) <= kForceSymmetry * std::abs(*first)) continue;
@@ -443,10 +443,10 @@ Outcome try_symmetric_scene(const Selection& selection, std::uint64_t seed) {
     Run run(build(write_scene(draft_symmetric_scene(selection, seed), {.converged = true})));
     Record record(run);
     record.advance(kSteps);
-    const std::string condition(sim::step_status_name(run.condition));
+    const std::string condition(run::step_status_name(run.condition));
     if (!run.error().empty()) return {Outcome::Kind::stopped, run.error(), condition};
     std::string wrong = record.unsound;
-    if (wrong.empty() && !sim::is_flagged(run.condition)) wrong = find_asymmetry(run.simulation);
+    if (wrong.empty() && !run::is_flagged(run.condition)) wrong = find_asymmetry(run.simulation);
     return {wrong.empty() ? Outcome::Kind::ran : Outcome::Kind::wrong, wrong, condition};
   } catch (const Error& error) {
     return {Outcome::Kind::refused, error.what(), ""};

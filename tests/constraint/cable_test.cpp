@@ -6,15 +6,15 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "sinew/builder/cable_settings.hpp"
 #include "sinew/constraint/configuration.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
-#include "sinew/sim/cable_settings.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/world/world.hpp"
 
 #include "../sim/robots.hpp"
 
@@ -53,7 +53,7 @@ class BentCable : public ::testing::Test {
     return sum;
   }
 
-  std::shared_ptr<const sim::Model> model_;
+  std::shared_ptr<const model::Model> model_;
   sim::Simulation simulation_;
 };
 
@@ -176,7 +176,7 @@ TEST(Cable, StraightCableHasNoWrapAndARightAngleHasOne) {
   sim::Simulation simulation(model);
   EXPECT_NEAR(model->cable(0)->wrap(simulation.configuration()), 0.0, 1e-12);
 
-  sim::ModelBuilder builder;
+  builder::ModelBuilder builder;
   fem::FemBodySettings body;
   body.name = "block";
   const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -185,7 +185,7 @@ TEST(Cable, StraightCableHasNoWrapAndARightAngleHasOne) {
   body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
   builder.add_body<fem::FemBodyModel>(std::move(body));
-  sim::CableSettings cable;
+  builder::CableSettings cable;
   cable.name = "corner";
   cable.points.resize(3, 3);
   cable.points << 0.01, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05, 0.09;
@@ -196,8 +196,8 @@ TEST(Cable, StraightCableHasNoWrapAndARightAngleHasOne) {
   EXPECT_NEAR(corner->cable(0)->rest_length(), 0.08, 1e-15);
 }
 
-ErrorKind kind_of(const sim::CableSettings& cable) {
-  sim::ModelBuilder builder;
+ErrorKind kind_of(const builder::CableSettings& cable) {
+  builder::ModelBuilder builder;
   fem::FemBodySettings body;
   body.name = "block";
   const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -216,7 +216,7 @@ ErrorKind kind_of(const sim::CableSettings& cable) {
 }
 
 TEST(Cable, DefectsAreErrorsAtLoad) {
-  sim::CableSettings cable;
+  builder::CableSettings cable;
   cable.name = "bad";
   cable.points.resize(1, 3);
   cable.points << 0.01, 0.05, 0.05;

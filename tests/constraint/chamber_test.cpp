@@ -9,9 +9,9 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "../sim/chambers.hpp"
 #include "support/error_kind.hpp"
@@ -45,7 +45,7 @@ class ChamberTest : public ::testing::TestWithParam<Kind> {
   }
   /// Displaces the nodes by a smooth field of this magnitude, m.
   void distort(double size) {
-    sim::State state = simulation_.state();
+    run::State state = simulation_.state();
     const Points& x = simulation_.body(0).positions();
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
       state.bodies[0][static_cast<std::size_t>(3 * i)] +=
@@ -57,7 +57,7 @@ class ChamberTest : public ::testing::TestWithParam<Kind> {
     simulation_.restore(state);
   }
   void move(const mechanics::MaterialPoint& point, int axis, double by) {
-    sim::State state = simulation_.state();
+    run::State state = simulation_.state();
     const auto* model = mechanics::as<const mechanics::MovesByNodes>(simulation_.model().body(0));
     const NodeId node = model->attachment(point.number).nodes.front();
     state.bodies[0][static_cast<std::size_t>(3 * node + axis)] += by;
@@ -177,7 +177,7 @@ TEST_P(ChamberTest, ACapPassesItsForceToTheRim) {
   auto options = options_of(GetParam());
   options.bore = options.cap = true;
   sim::Simulation simulation(chamber(options));
-  sim::State state = simulation.state();
+  run::State state = simulation.state();
   for (std::size_t k = 0; k < state.bodies[0].size() / 2; ++k) {
     state.bodies[0][k] += 2e-4 * std::sin(37.0 * static_cast<double>(k));
   }

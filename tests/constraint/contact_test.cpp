@@ -40,7 +40,7 @@ class ContactRows : public ::testing::Test {
     body.load_state(state);
   }
 
-  std::shared_ptr<const sim::Model> model_;
+  std::shared_ptr<const model::Model> model_;
   sim::Simulation simulation_;
 };
 

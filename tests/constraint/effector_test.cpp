@@ -5,15 +5,15 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "sinew/builder/effector_settings.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
-#include "sinew/sim/effector_settings.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/world/world.hpp"
 
 #include "../sim/robots.hpp"
 
@@ -49,13 +49,13 @@ class Effectors : public ::testing::Test {
   Points rest() { return simulation_->body(0).model().mesh().nodes; }
   const Effector& effector() { return simulation_->model().effector(0); }
 
-  sim::ModelBuilder builder_;
-  sim::EffectorSettings settings_;
+  builder::ModelBuilder builder_;
+  builder::EffectorSettings settings_;
   std::unique_ptr<sim::Simulation> simulation_;
 };
 
 TEST_F(Effectors, OrientationIsTheRotationVectorOfARigidTurn) {
-  settings_.kind = sim::EffectorSettings::Kind::orientation;
+  settings_.kind = builder::EffectorSettings::Kind::orientation;
   finish();
   const Vector3 turn(0.3, -0.7, 0.5);
   const Matrix3 rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
@@ -64,7 +64,7 @@ TEST_F(Effectors, OrientationIsTheRotationVectorOfARigidTurn) {
 }
 
 TEST_F(Effectors, OrientationRowsAreTheSpin) {
-  settings_.kind = sim::EffectorSettings::Kind::orientation;
+  settings_.kind = builder::EffectorSettings::Kind::orientation;
   finish();
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0.0, 0.004);
@@ -101,7 +101,7 @@ TEST_F(Effectors, OrientationRowsAreTheSpin) {
 }
 
 TEST_F(Effectors, OrientationTargetIsReachedByTheRemainingTurn) {
-  settings_.kind = sim::EffectorSettings::Kind::orientation;
+  settings_.kind = builder::EffectorSettings::Kind::orientation;
   finish();
   const Vector3 turn(0.0, 0.0, 0.4);
   place(rest() * Matrix3(Eigen::AngleAxisd(0.4, Vector3::UnitZ())).transpose());
@@ -112,7 +112,7 @@ TEST_F(Effectors, OrientationTargetIsReachedByTheRemainingTurn) {
 }
 
 TEST_F(Effectors, CollinearPointsHaveNoOrientation) {
-  settings_.kind = sim::EffectorSettings::Kind::orientation;
+  settings_.kind = builder::EffectorSettings::Kind::orientation;
   settings_.points << 0.02, 0.02, 0.02, 0.05, 0.05, 0.05, 0.08, 0.08, 0.08;
   try {
     builder_.add_effector(settings_);

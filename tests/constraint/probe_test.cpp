@@ -14,9 +14,9 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/embedding.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "../sim/shaped_block.hpp"
 
@@ -36,12 +36,12 @@ struct Block : sim::ShapedBlock {
     std::iota(nodes.begin(), nodes.end(), 0);
     return nodes;
   }
-  sim::ProbeBend ends(const std::optional<Vector3>& about = {}) const {
+  builder::ProbeBend ends(const std::optional<Vector3>& about = {}) const {
     return {{{{0, mesh_->node_sets.at("x_min"), {}}, {0, mesh_->node_sets.at("x_max"), {}}}},
             about};
   }
-  sim::ProbeLine axis(int samples) const {
-    sim::ProbeLine line;
+  builder::ProbeLine axis(int samples) const {
+    builder::ProbeLine line;
     line.corners.resize(2, 3);
     line.corners << 0.0, 0.0, 0.0, kLength, 0.0, 0.0;
     line.samples = samples;
@@ -69,7 +69,7 @@ TEST_F(Probes, ABendIsTheAngleBetweenTheEnds) {
 TEST_F(Probes, ABendKnowsNothingOfRigidMotions) {
   add("bend", ends());
   add("sides",
-      sim::ProbeBend{
+      builder::ProbeBend{
           {{{0, mesh_->node_sets.at("x_max"), {}}, {0, mesh_->node_sets.at("z_max"), {}}}}, {}});
   finish();
   const double square = values("sides")[0];
@@ -88,7 +88,7 @@ TEST_F(Probes, ACrossSectionTakesTheNormalThatIsGiven) {
       thick.push_back(static_cast<NodeId>(i));
     }
   }
-  sim::ProbeBend bend = ends();
+  builder::ProbeBend bend = ends();
   bend.faces[1].nodes = thick;
   try {
     add("bad", bend);
@@ -105,7 +105,7 @@ TEST_F(Probes, ACrossSectionTakesTheNormalThatIsGiven) {
 
 TEST_F(Probes, ALineHasItsPointsAndTheirLength) {
   add("axis", axis(11));
-  sim::ProbeLine corner = axis(5);
+  builder::ProbeLine corner = axis(5);
   corner.corners.resize(3, 3);
   corner.corners << 0.0, 0.0, 0.0, 0.06, 0.0, 0.0, 0.06, 0.0, 0.006;
   add("corner", corner);
@@ -125,10 +125,10 @@ TEST_F(Probes, ALineHasItsPointsAndTheirLength) {
 }
 
 TEST_F(Probes, DistancesAndMeans) {
-  sim::ProbeSpot start, end;
+  builder::ProbeSpot start, end;
   start.points = Vector3(0.0, 0.0, 0.0).transpose();
   end.nodes = mesh_->node_sets.at("x_max");
-  add("span", sim::ProbeDistance{{start, end}});
+  add("span", builder::ProbeDistance{{start, end}});
   add("end", end);
   finish();
   const double angle = 1.2, radius = kLength / angle;
@@ -140,9 +140,9 @@ TEST_F(Probes, DistancesAndMeans) {
 
 TEST_F(Probes, ExtentsAreThoseOfEveryDirection) {
   using Way = ExtentProbe::Way;
-  add("along", sim::ProbeExtent{0, all_nodes(), Vector3(0.6, 0.0, 0.8), Way::along});
-  add("smallest", sim::ProbeExtent{0, all_nodes(), Vector3::UnitX(), Way::smallest_across});
-  add("largest", sim::ProbeExtent{0, all_nodes(), Vector3::UnitX(), Way::largest_across});
+  add("along", builder::ProbeExtent{0, all_nodes(), Vector3(0.6, 0.0, 0.8), Way::along});
+  add("smallest", builder::ProbeExtent{0, all_nodes(), Vector3::UnitX(), Way::smallest_across});
+  add("largest", builder::ProbeExtent{0, all_nodes(), Vector3::UnitX(), Way::largest_across});
   finish();
   EXPECT_NEAR(values("smallest")[0], kWidth, 1e-15);
   EXPECT_NEAR(values("largest")[0], std::numbers::sqrt2 * kWidth, 1e-15);
@@ -167,7 +167,7 @@ TEST_F(Probes, ExtentsAreThoseOfEveryDirection) {
 
 // Nodes of a cylinder coincide along its axis, up to rounding.
 TEST(RoundProbes, HaveOneDiameterInEveryDirection) {
-  sim::ModelBuilder builder;
+  builder::ModelBuilder builder;
   fem::FemBodySettings body;
   body.name = "disc";
   const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -180,9 +180,9 @@ TEST(RoundProbes, HaveOneDiameterInEveryDirection) {
   std::iota(all.begin(), all.end(), 0);
   using Way = ExtentProbe::Way;
   builder.add_probe(
-      {"least", {}, {}, sim::ProbeExtent{0, all, Vector3::UnitZ(), Way::smallest_across}});
+      {"least", {}, {}, builder::ProbeExtent{0, all, Vector3::UnitZ(), Way::smallest_across}});
   builder.add_probe(
-      {"most", {}, {}, sim::ProbeExtent{0, all, Vector3::UnitZ(), Way::largest_across}});
+      {"most", {}, {}, builder::ProbeExtent{0, all, Vector3::UnitZ(), Way::largest_across}});
   sim::Simulation simulation(builder.build());
   // Ring r of the mesh has 6 r nodes, so the outermost is a polygon of 36 corners.
   const double most = simulation.probe_values(1)[0];
@@ -193,7 +193,7 @@ TEST(RoundProbes, HaveOneDiameterInEveryDirection) {
 TEST_F(Probes, OnlyLook) {
   add("axis", axis(11));
   add("bend", ends());
-  add("height", sim::ProbeExtent{0, all_nodes(), Vector3::UnitZ(), ExtentProbe::Way::along});
+  add("height", builder::ProbeExtent{0, all_nodes(), Vector3::UnitZ(), ExtentProbe::Way::along});
   finish();
   EXPECT_EQ(simulation_->model().rows().rows(), 0);
   Block bare;
@@ -220,14 +220,14 @@ TEST_F(Probes, RefuseWhatCannotBeMeasured) {
       EXPECT_EQ(error.kind(), kind) << error.what();
     }
   };
-  sim::ProbeBend line = ends();
+  builder::ProbeBend line = ends();
   line.faces[0].nodes = {0, 1, 2};
   expect(line, ErrorKind::degenerate_orientation);
   expect(ends(Vector3::UnitX()), ErrorKind::degenerate_orientation);
-  expect(sim::ProbeExtent{}, ErrorKind::empty_region);
-  expect(sim::ProbeLine{}, ErrorKind::too_few_points);
-  expect(sim::ProbeSpot{}, ErrorKind::too_few_points);
-  sim::ProbeSpot away;
+  expect(builder::ProbeExtent{}, ErrorKind::empty_region);
+  expect(builder::ProbeLine{}, ErrorKind::too_few_points);
+  expect(builder::ProbeSpot{}, ErrorKind::too_few_points);
+  builder::ProbeSpot away;
   away.points = Vector3(1.0, 1.0, 1.0).transpose();
   expect(away, ErrorKind::point_outside_mesh);
   add("twice", ends());

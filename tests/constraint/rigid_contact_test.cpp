@@ -4,16 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/builder/contact_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/shape_contact.hpp"
 #include "sinew/core/rotation.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/rigid/rigid_body_model.hpp"
 #include "sinew/rigid/rigid_settings.hpp"
 #include "sinew/rigid/shape.hpp"
-#include "sinew/sim/contact_settings.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::constraint {
@@ -36,8 +36,9 @@ std::vector<Pair> pairs() {
           {ball, ball, 0.0204}};
 }
 
-std::shared_ptr<const sim::Model> make(const Pair& pair) {
-  sim::ModelBuilder builder(sim::StepSettings{.integrator = mechanics::Integrator::backward_euler});
+std::shared_ptr<const model::Model> make(const Pair& pair) {
+  builder::ModelBuilder builder(
+      model::StepSettings{.integrator = mechanics::Integrator::backward_euler});
   for (const bool first : {true, false}) {
     rigid::RigidSettings body;
     body.name = first ? "first" : "second";
@@ -46,7 +47,7 @@ std::shared_ptr<const sim::Model> make(const Pair& pair) {
     if (first) body.position = Vector3(0.003, -0.002, pair.height);
     builder.add_body<rigid::RigidBodyModel>(body);
   }
-  sim::ContactSettings contact;
+  builder::ContactSettings contact;
   contact.name = "touch";
   contact.body = 0;
   contact.touched = 1;

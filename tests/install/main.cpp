@@ -50,7 +50,7 @@ void embeds_a_point() {
 // given the position reached, the controller finds the tension again.
 void bends_and_steers_a_beam() {
   using namespace sinew;
-  sim::ModelBuilder builder;
+  builder::ModelBuilder builder;
   const auto beam = std::make_shared<mesh::Mesh>(
       mesh::block({.corner = {-0.01, -0.01, 0}, .size = {0.02, 0.02, 0.1}, .cells = {2, 2, 8}}));
   fem::FemBodySettings body;
@@ -60,12 +60,12 @@ void bends_and_steers_a_beam() {
   body.elements.fixed_nodes =
       mesh::select_nodes(*beam, mesh::NamedRegion{.name = "z_min"}, "the beam's foot");
   builder.add_body<fem::FemBodyModel>(body);
-  sim::CableSettings cable;
+  builder::CableSettings cable;
   cable.name = "cable";
   cable.points.resize(3, 3);
   cable.points << 0.008, 0, 0, 0.008, 0, 0.05, 0.008, 0, 0.1;
   builder.add_cable(cable);
-  sim::EffectorSettings tip;
+  builder::EffectorSettings tip;
   tip.name = "tip";
   tip.points.resize(1, 3);
   tip.points << 0, 0, 0.1;
@@ -73,16 +73,16 @@ void bends_and_steers_a_beam() {
   const auto model = builder.build();
 
   sim::Simulation direct(model);
-  direct.command(0, {.kind = sim::CommandKind::effort, .signal = sim::Signal::constant(0.2)});
+  direct.command(0, {.kind = model::CommandKind::effort, .signal = model::Signal::constant(0.2)});
   for (int i = 0; i < 20; ++i) direct.step();
   const Vector3 reached = direct.effector_value(0);
   expect(reached.x() > 1e-3 && std::abs(reached.y()) < 1e-3, "the way a cable bends a beam");
 
   sim::Simulation steered(model);
-  inverse::InverseController controller(
-      steered, {.tasks = {{.effector = 0, .target = inverse::Target::fixed(reached)}}});
+  control::InverseController controller(
+      steered, {.tasks = {{.effector = 0, .target = control::Target::fixed(reached)}}});
   for (int i = 0; i < 40; ++i) controller.step();
-  expect(controller.status() == inverse::InverseStatus::on_target, "the controller's status");
+  expect(controller.status() == control::InverseStatus::on_target, "the controller's status");
   expect(std::abs(controller.efforts()(0) - 0.2) < 2e-3, "the tension found again");
 }
 

@@ -11,9 +11,9 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/mesh.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/record/hdf5_writer.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::record::testing {
@@ -24,7 +24,7 @@ class OlderRun {
   OlderRun(const std::filesystem::path& path, const sim::Simulation& simulation,
            const std::string& scene)
       : simulation_(simulation), file_(path) {
-    const sim::Model& model = simulation.model();
+    const model::Model& model = simulation.model();
     file_.attribute("/", "format", std::string_view("sinew-run"));
     file_.attribute("/", "format_version", std::int64_t{2});
     file_.attribute("/", "sinew_version", std::string_view("0.1.0"));
@@ -44,12 +44,12 @@ class OlderRun {
       file_.dataset(folder + "/hexahedra", {0, 8}, std::span<const std::int32_t>());
       positions_.push_back(file_.series("/positions/" + body.name(), {nodes, 3}));
     }
-    for (const sim::ActuatorModel& actuator : model.actuators()) {
+    for (const model::ActuatorModel& actuator : model.actuators()) {
       const std::string folder = "/actuators/" + actuator.name;
       actuators_.push_back(
           {file_.series(folder + "/effort", {}), file_.series(folder + "/motion", {})});
     }
-    for (const sim::EffectorModel& effector : model.effectors()) {
+    for (const model::EffectorModel& effector : model.effectors()) {
       effectors_.push_back(file_.series("/effectors/" + effector.name + "/position", {3}));
     }
     for (const char* name : {"residual", "relative_residual", "iterations", "scale",
@@ -74,7 +74,7 @@ class OlderRun {
       const Vector3 value = simulation_.effector_value(static_cast<int>(e));
       file_.append(effectors_[e], {value.data(), 3});
     }
-    const sim::StepReport& report = simulation_.report();
+    const run::StepReport& report = simulation_.report();
     const std::array<double, 6> numbers = {
         report.residual, report.relative_residual,     static_cast<double>(report.iterations),
         report.scale,    report.smallest_volume_ratio, static_cast<double>(report.status)};

@@ -18,24 +18,24 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "sinew/builder/contact_settings.hpp"
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/probe.hpp"
+#include "sinew/contact/contact_state.hpp"
+#include "sinew/control/controller_observables.hpp"
+#include "sinew/control/inverse_controller.hpp"
 #include "sinew/core/csv.hpp"
 #include "sinew/fem/element_fields.hpp"
-#include "sinew/inverse/controller_observables.hpp"
-#include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/read.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/model/signal.hpp"
 #include "sinew/record/hdf5_writer.hpp"
 #include "sinew/record/run_file.hpp"
 #include "sinew/record/run_layout.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/contact_settings.hpp"
-#include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/signal.hpp"
+#include "sinew/run/contact_reader.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "record/older_run.hpp"
@@ -141,11 +141,11 @@ TEST_F(RunRecorderTest, StatesReadBackBitForBit) {
 
 TEST_F(RunRecorderTest, TheTableHasUnitsAndWords) {
   sim::Simulation simulation(beam());
-  inverse::InverseSettings steering;
-  steering.tasks = {{0, inverse::Target::fixed({0.099, 0.0, 0.004}), {1.0}}};
-  inverse::InverseController controller(simulation, steering);
+  control::InverseSettings steering;
+  steering.tasks = {{0, control::Target::fixed({0.099, 0.0, 0.004}), {1.0}}};
+  control::InverseController controller(simulation, steering);
   sim::Observables list(simulation);
-  inverse::add_controller(list, &controller);
+  control::add_controller(list, &controller);
   RunRecorder recorder(std::move(list), settings());
   for (int i = 0; i < 5; ++i) {
     simulation.step();
@@ -162,7 +162,7 @@ TEST_F(RunRecorderTest, TheTableHasUnitsAndWords) {
   ASSERT_EQ(first.size(), names.size());
   ASSERT_EQ(last.size(), names.size());
   EXPECT_EQ(first.back(), "start");
-  EXPECT_EQ(last.back(), inverse::inverse_status_name(controller.status()));
+  EXPECT_EQ(last.back(), control::inverse_status_name(controller.status()));
   EXPECT_EQ(last[last.size() - 2], "solved");
   const auto number = [&](const std::string& heading) {
     const auto found = std::ranges::find(names, '"' + heading + '"');
@@ -211,22 +211,22 @@ TEST_F(RunRecorderTest, ProbesHaveATableAndSeries) {
 
 TEST_F(RunRecorderTest, ContactsReadBackBitForBit) {
   sinew::testing::BlockOptions options{.angle = 0.5, .height = 1e-4};
-  sim::ModelBuilder builder = block_on_plane(options);
-  sim::ContactSettings wall;
+  builder::ModelBuilder builder = block_on_plane(options);
+  builder::ContactSettings wall;
   wall.name = "wall";
   wall.surface = constraint::Sphere{{0.0, 0.0, 0.1}, 0.01};
   wall.points = Points::Zero(1, 3);
   wall.points(0, 2) = 0.02;
-  sim::BaseMotion motion;
-  motion.translation[2] = sim::Signal::ramp({0.0, -0.01, 0.0, 1.0});
-  motion.angle = sim::Signal::ramp({0.0, 1.0, 0.0, 1.0});
+  model::BaseMotion motion;
+  motion.translation[2] = model::Signal::ramp({0.0, -0.01, 0.0, 1.0});
+  motion.angle = model::Signal::ramp({0.0, 1.0, 0.0, 1.0});
   wall.motion = motion;
   builder.add_contact(wall);
   sim::Simulation simulation(builder.build());
   RecordSettings with_series = settings();
   with_series.vtk = true;
   RunRecorder recorder(sim::Observables(simulation), with_series);
-  std::vector<std::array<sim::ContactSnapshot, 2>> seen;
+  std::vector<std::array<contact::ContactSnapshot, 2>> seen;
   for (int k = 0; k <= 40; ++k) {
     seen.push_back({simulation.contacts().snapshot(0), simulation.contacts().snapshot(1)});
     simulation.step();
@@ -243,13 +243,13 @@ TEST_F(RunRecorderTest, ContactsReadBackBitForBit) {
         return run.numbers(dataset, static_cast<std::int64_t>(frame));
       };
       const auto read = [&](const char* what) { return numbers("/contacts/" + name + "/" + what); };
-      const sim::ContactSnapshot& was = seen[frame][contact];
+      const contact::ContactSnapshot& was = seen[frame][contact];
       const Eigen::Matrix<double, 3, 4> pose = was.pose.affine();
       EXPECT_TRUE(std::ranges::equal(read("pose"), pose.reshaped<Eigen::RowMajor>()));
       ASSERT_EQ(read("gap").size(), was.points.size());
-      sim::ContactResultant resultant;
+      contact::ContactResultant resultant;
       for (std::size_t k = 0; k < was.points.size(); ++k) {
-        const sim::ContactPoint& point = was.points[k];
+        const contact::ContactPoint& point = was.points[k];
         const auto vector = [&](const char* what) {
           const std::vector<double> all = read(what);
           return Vector3(all[3 * k], all[3 * k + 1], all[3 * k + 2]);
@@ -282,7 +282,7 @@ TEST_F(RunRecorderTest, TablesAndDatasetsAreThoseOfTheList) {
   const sim::Observables list(simulation);
   record_pull(simulation, settings(), 3);
   std::vector<std::string> run_headings, probe_headings, datasets;
-  for (const sim::Observable& one : list.list()) {
+  for (const run::Observable& one : list.list()) {
     for (const std::string& heading : headings_of(one)) {
       const std::string quoted =
           heading.find(' ') == std::string::npos ? heading : '"' + heading + '"';
@@ -348,7 +348,8 @@ TEST_F(RunRecorderTest, EveryObservableReadsBackBitForBit) {
 
 TEST_F(RunRecorderTest, CommandsAreRecordedAsTheyWereGiven) {
   sim::Simulation simulation(beam());
-  simulation.command(0, {sim::CommandKind::motion, sim::Signal::ramp({0.0, 0.004, 0.01, 0.03})});
+  simulation.command(0,
+                     {model::CommandKind::motion, model::Signal::ramp({0.0, 0.004, 0.01, 0.03})});
   simulation.command(1, sinew::testing::tension(0.3));
   RunRecorder recorder(sim::Observables(simulation), settings());
   for (int i = 0; i < 6; ++i) {

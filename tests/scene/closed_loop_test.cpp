@@ -1,5 +1,5 @@
 // Closed loops in scenes: decay of errors, effect of delays and silent sensors, and invalid scenes.
-#include "sinew/inverse/closed_loop.hpp"
+#include "sinew/control/closed_loop.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,20 +11,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sinew/control/inverse_controller.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/scene.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/channel.hpp"
-#include "sinew/sim/sensors.hpp"
+#include "sinew/sense/channel.hpp"
+#include "sinew/sense/sensors.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 namespace sinew::scene::closed_loop {
 namespace {
 
-using inverse::InverseStatus;
+using control::InverseStatus;
 
 // A finger held by four taut cables, initially in equilibrium.
 const std::string kFinger = R"(sinew: 1
@@ -67,12 +67,12 @@ struct Trial {
     simulation->solve_static();
   }
   void attach(double gain, const Vector3& way, double integral = 0.0) {
-    inverse::InverseSettings settings;
+    control::InverseSettings settings;
     target = tip() + way;
-    settings.tasks = {{0, inverse::Target::fixed(target), {1.0, 1.0, 0.0}}};
+    settings.tasks = {{0, control::Target::fixed(target), {1.0, 1.0, 0.0}}};
     settings.tolerance = 1e-6;
     settings.feedback = {.sensors = {0}, .gain = gain, .integral = integral};
-    loop = inverse::make_controller(*simulation, settings);
+    loop = control::make_controller(*simulation, settings);
   }
   Vector3 tip() const { return simulation->effector_value(0); }
   // Error in the directions with non-zero weight, m.
@@ -88,7 +88,7 @@ struct Trial {
 
   Robot robot;
   std::unique_ptr<sim::Simulation> simulation;
-  std::unique_ptr<inverse::TargetController> loop;
+  std::unique_ptr<control::TargetController> loop;
   Vector3 target = Vector3::Zero();
 };
 
@@ -168,10 +168,10 @@ TEST(ClosedLoop, TurnsWhatAnOrientationMeasures) {
             "sensors:\n  turn: {type: orientation, body: finger, at: [0 0 80 mm, 5 0 80 mm, 0 "
             "5 80 mm]}\n");
   const Vector3 way(0.03, -0.02, 0.0);
-  inverse::InverseSettings settings;
-  settings.tasks = {{0, inverse::Target::fixed(run.tip() + way), {1.0, 1.0, 0.0}}};
+  control::InverseSettings settings;
+  settings.tasks = {{0, control::Target::fixed(run.tip() + way), {1.0, 1.0, 0.0}}};
   settings.feedback = {.sensors = {0}, .gain = 20.0};
-  run.loop = inverse::make_controller(*run.simulation, settings);
+  run.loop = control::make_controller(*run.simulation, settings);
   for (int k = 0; k < 40; ++k) run.simulation->step();
   EXPECT_LT(run.loop->error(0), 1e-4);
   EXPECT_LT((run.tip() - settings.tasks[0].target.at(0.0)).head<2>().norm(), 1e-3);
@@ -181,7 +181,7 @@ TEST(ClosedLoop, HoldsWhileASensorIsSilent) {
   Trial run(with_sensor());
   run.attach(10.0, {1e-3, 0.0, 0.0});
   const Vector3 seen = run.tip();
-  sim::sensors_of(*run.simulation).feed(0, 0.0, {seen.data(), 3});
+  sense::sensors_of(*run.simulation).feed(0, 0.0, {seen.data(), 3});
   std::vector<InverseStatus> statuses;
   for (int k = 0; k < 14; ++k) {
     run.simulation->step();
@@ -197,7 +197,7 @@ TEST(ClosedLoop, HoldsWhileASensorIsSilent) {
   EXPECT_EQ(run.simulation->actuator(0).command.signal.value(0.0), command);
   EXPECT_LT((run.tip() - held).norm(), 1e-9);
   const Vector3 now = run.tip();
-  sim::sensors_of(*run.simulation).feed(0, run.simulation->time(), {now.data(), 3});
+  sense::sensors_of(*run.simulation).feed(0, run.simulation->time(), {now.data(), 3});
   run.simulation->step();
   EXPECT_EQ(run.loop->status(), InverseStatus::moving);
   EXPECT_TRUE(run.loop->conflict().empty());
@@ -206,20 +206,20 @@ TEST(ClosedLoop, HoldsWhileASensorIsSilent) {
 TEST(ClosedLoop, LeavesTheScenesCommandsUntilTheFirstSample) {
   Robot robot = build(parse_scene_text(with_sensor(", delay: 50 ms"), "scene.yaml", {}));
   sim::Simulation simulation(robot.model);
-  inverse::InverseSettings settings;
-  settings.tasks = {{0, inverse::Target::fixed({0.005, 0.0, 0.08}), {1.0}}};
+  control::InverseSettings settings;
+  settings.tasks = {{0, control::Target::fixed({0.005, 0.0, 0.08}), {1.0}}};
   settings.feedback = {.sensors = {0}};
-  const auto loop = inverse::make_controller(simulation, settings);
+  const auto loop = control::make_controller(simulation, settings);
   for (int k = 0; k < 5; ++k) simulation.step();
   EXPECT_EQ(loop->status(), InverseStatus::holding);
   EXPECT_THAT(loop->conflict(), testing::HasSubstr("'tip' has delivered nothing yet"));
   EXPECT_DOUBLE_EQ(simulation.actuator(0).effort, 3.0);
   simulation.step();
   EXPECT_EQ(loop->status(), InverseStatus::moving);
-  EXPECT_EQ(simulation.actuator(0).command.kind, sim::CommandKind::motion);
+  EXPECT_EQ(simulation.actuator(0).command.kind, model::CommandKind::motion);
   simulation.reset();
   EXPECT_EQ(loop->status(), InverseStatus::not_started);
-  EXPECT_EQ(simulation.actuator(0).command.kind, sim::CommandKind::effort);
+  EXPECT_EQ(simulation.actuator(0).command.kind, model::CommandKind::effort);
 }
 
 TEST(ClosedLoop, SaysThatLimitsHoldEffectorsBack) {
@@ -234,16 +234,16 @@ TEST(ClosedLoop, SaysThatLimitsHoldEffectorsBack) {
 TEST(ClosedLoop, GoesOnBitForBit) {
   const std::string scene = with_sensor(", noise: 0.1 mm, delay: 25 ms, rate: 50 Hz, seed: 3");
   const auto attach = [](sim::Simulation& simulation) {
-    inverse::InverseSettings settings;
+    control::InverseSettings settings;
     settings.tasks = {
-        {0, inverse::Target::circle({.centre = {0.0, 0.0, 0.078}, .radius = 0.004}), {1.0}}};
+        {0, control::Target::circle({.centre = {0.0, 0.0, 0.078}, .radius = 0.004}), {1.0}}};
     settings.feedback = {.sensors = {0}, .gain = 8.0, .integral = 5.0};
-    return inverse::make_controller(simulation, settings);
+    return control::make_controller(simulation, settings);
   };
   Trial run(scene);
   run.loop = attach(*run.simulation);
   run.errors(15);
-  const sim::State kept = run.simulation->state();
+  const run::State kept = run.simulation->state();
   const auto copy = run.simulation->clone();
   const auto other = attach(*copy);
   copy->restore(kept);
@@ -253,7 +253,7 @@ TEST(ClosedLoop, GoesOnBitForBit) {
   threads.errors(15);
   EXPECT_EQ(threads.simulation->state(), kept) << "three threads";
   run.errors(10);
-  const sim::State whole = run.simulation->state();
+  const run::State whole = run.simulation->state();
   for (int k = 0; k < 10; ++k) copy->step();
   EXPECT_EQ(copy->state(), whole);
   EXPECT_EQ(other->status(), run.loop->status());
@@ -269,11 +269,11 @@ TEST(ClosedLoop, AFailedStepChangesNothing) {
   Trial run(with_sensor());
   run.attach(10.0, {1e-3, 5e-4, 0.0}, 5.0);
   run.errors(5);
-  const sim::State before = run.simulation->state();
+  const run::State before = run.simulation->state();
   const auto command = [&] { return run.simulation->actuator(0).command.signal.value(0.0); };
   const std::vector<double> told{command()};
   struct Ended {};
-  run.simulation->watch([](const sim::StepProgress&) { throw Ended{}; });
+  run.simulation->watch([](const run::StepProgress&) { throw Ended{}; });
   try {
     run.simulation->step();
     FAIL() << "the step went on";
@@ -287,11 +287,11 @@ TEST(ClosedLoop, OwnsItsActuators) {
   Trial run(with_sensor());
   run.attach(10.0, {1e-3, 0.0, 0.0});
   run.errors(5);
-  const sim::Command other{sim::CommandKind::effort, sim::Signal::constant(1.0)};
+  const model::Command other{model::CommandKind::effort, model::Signal::constant(1.0)};
   EXPECT_THROW(run.simulation->command(0, other), Error);
-  inverse::InverseSettings second;
-  second.tasks = {{0, inverse::Target::fixed(run.tip()), {1.0}}};
-  EXPECT_THROW(inverse::InverseController(*run.simulation, second), Error);
+  control::InverseSettings second;
+  second.tasks = {{0, control::Target::fixed(run.tip()), {1.0}}};
+  EXPECT_THROW(control::InverseController(*run.simulation, second), Error);
   const double command = run.simulation->actuator(0).command.signal.value(0.0);
   run.loop->detach();
   run.simulation->step();
@@ -320,7 +320,7 @@ TEST(ClosedLoopScene, IsBuiltAndSteers) {
   EXPECT_EQ(settings.feedback->integral, 16.0);
   EXPECT_EQ(settings.feedback->timeout, 0.05);
   EXPECT_EQ(settings.feedback->sensors, std::vector<int>{0});
-  run.loop = inverse::make_controller(*run.simulation, settings);
+  run.loop = control::make_controller(*run.simulation, settings);
   for (int k = 0; k < 250; ++k) run.simulation->step();
   double sum = 0.0;
   for (int k = 0; k < 50; ++k) {

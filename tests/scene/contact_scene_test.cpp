@@ -5,9 +5,9 @@
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/shape_contact.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/scene.hpp"
-#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::scene {
@@ -122,7 +122,7 @@ TEST(Contacts, TouchPlanesThatAreBodies) {
   const Robot robot = build(scene);
   EXPECT_EQ(robot.model->bodies().size(), 3u);
   std::vector<std::string> names;
-  for (const sim::ContactModel& contact : robot.model->contacts()) names.push_back(contact.name);
+  for (const model::ContactModel& contact : robot.model->contacts()) names.push_back(contact.name);
   EXPECT_THAT(names, testing::UnorderedElementsAre(
                          "all-block-block", "all-block-box", "all-block-base", "all-box-base",
                          "all-block-wall", "all-block-floor", "all-box-floor"));

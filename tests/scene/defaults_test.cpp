@@ -92,7 +92,7 @@ class Dump {
     }
     for (const auto& controller : scene.controllers) {
       add(controller.regularisation, controller.epsilon.value_or(-1));
-      const auto feedback = controller.feedback.value_or(inverse::Feedback{});
+      const auto feedback = controller.feedback.value_or(control::Feedback{});
       add(feedback.gain, feedback.integral, feedback.timeout);
       for (const auto& task : controller.tasks) {
         for (const double weight : task.weights) add(weight);
@@ -110,26 +110,26 @@ class Dump {
     add(start.linear, start.angular);
   }
   void add_sensor(const SensorDescription& sensor) {
-    const sim::ChannelSettings& channel = sensor.channel;
+    const sense::ChannelSettings& channel = sensor.channel;
     add(channel.noise, channel.bias, channel.drift, channel.delay, channel.dropout, channel.seed);
     add(sensor.samples, sensor.outside, sensor.loss_per_length, sensor.loss_per_turn);
     add(sensor.permittivity, sensor.threshold, sensor.electrodes[0].angle);
   }
   void add_actuator(const ActuatorDescription& actuator) {
     if (const auto* cable = std::get_if<CableDescription>(&actuator.own)) {
-      const sim::CableSettings& settings = cable->settings;
+      const builder::CableSettings& settings = cable->settings;
       add(settings.outside, settings.pull_from_world, settings.geometric_stiffness);
       add(settings.friction, settings.guide_radius, settings.guide_spacing);
       add_limits(settings.tension, settings.displacement);
     } else {
-      const auto& force = std::get<sim::ForceSettings>(actuator.own);
+      const auto& force = std::get<builder::ForceSettings>(actuator.own);
       add(force.outside);
       add_limits(force.force, force.displacement);
     }
     for (const double time : {0.0, 0.3, 1.7}) add(actuator.command.signal.value(time));
   }
-  void add_limits(const sim::Limits& effort, const sim::Limits& motion) {
-    for (const sim::Limits& limits : {effort, motion}) add(limits.min, limits.max, limits.rate);
+  void add_limits(const model::Limits& effort, const model::Limits& motion) {
+    for (const model::Limits& limits : {effort, motion}) add(limits.min, limits.max, limits.rate);
   }
   template <typename... Values>
   void add(const Values&... values) {

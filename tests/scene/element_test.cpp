@@ -13,10 +13,10 @@
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/write.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/scene/build.hpp"
-#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/static_settings.hpp"
+#include "sinew/statics/static_settings.hpp"
 
 #include "scene_fixture.hpp"
 

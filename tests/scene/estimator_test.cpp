@@ -1,5 +1,5 @@
 // Estimators of scenes in states of a run. Their results are tested in Python.
-#include "sinew/sim/estimator.hpp"
+#include "sinew/estimate/estimator.hpp"
 
 #include <memory>
 #include <string>
@@ -9,27 +9,27 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/estimate/equilibrium_filter.hpp"
+#include "sinew/estimate/estimator_filter.hpp"
+#include "sinew/estimate/estimator_model.hpp"
+#include "sinew/estimate/estimators.hpp"
+#include "sinew/estimate/motion_filter.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/run.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/scene.hpp"
-#include "sinew/sim/equilibrium_filter.hpp"
-#include "sinew/sim/estimator_filter.hpp"
-#include "sinew/sim/estimator_model.hpp"
-#include "sinew/sim/estimators.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/motion_filter.hpp"
-#include "sinew/sim/run.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 namespace sinew::scene {
 namespace {
 
-std::shared_ptr<const sim::Model> estimated(const std::string& integrator,
-                                            const std::string& more = "") {
+std::shared_ptr<const model::Model> estimated(const std::string& integrator,
+                                              const std::string& more = "") {
   const std::string scene = fmt::format(R"(sinew: 1
 time_step: 10 ms
 integrator: {}
@@ -54,13 +54,13 @@ TEST(Estimators, RefuseDamagedMemoryAndBeginAnewOtherwise) {
   for (const char* integrator : {"quasi-static", "backward-euler"}) {
     const auto whole = estimating(integrator), other = estimating(integrator);
     for (int k = 0; k < 3; ++k) whole->step();
-    const sim::State state = whole->state();
+    const run::State state = whole->state();
     other->restore(state);
-    EXPECT_EQ(sim::estimator_of(*other, 0).mean(), sim::estimator_of(*whole, 0).mean());
+    EXPECT_EQ(estimate::estimator_of(*other, 0).mean(), estimate::estimator_of(*whole, 0).mean());
     EXPECT_EQ(other->state(), state);
     for (const std::size_t left :
          {state.instruments.back().size() - 1, state.instruments.back().size() / 2}) {
-      sim::State damaged = state;
+      run::State damaged = state;
       damaged.instruments.back().resize(left);
       try {
         other->restore(damaged);
@@ -69,12 +69,12 @@ TEST(Estimators, RefuseDamagedMemoryAndBeginAnewOtherwise) {
         EXPECT_EQ(error.kind(), ErrorKind::wrong_length);
         EXPECT_THAT(error.what(), testing::HasSubstr("damaged"));
       }
-      EXPECT_EQ(sim::estimator_of(*other, 0).status(), sim::EstimatorStatus::not_started);
+      EXPECT_EQ(estimate::estimator_of(*other, 0).status(), estimate::EstimatorStatus::not_started);
     }
-    sim::State without = state;
+    run::State without = state;
     without.instruments.pop_back();
     other->restore(without);
-    EXPECT_EQ(sim::estimator_of(*other, 0).status(), sim::EstimatorStatus::not_started);
+    EXPECT_EQ(estimate::estimator_of(*other, 0).status(), estimate::EstimatorStatus::not_started);
     EXPECT_EQ(other->steps(), state.steps);
   }
 }
@@ -85,11 +85,13 @@ TEST(Estimators, OfBothKindsAgreeAtRest) {
   const auto still = estimating("quasi-static"), moving = estimating("backward-euler");
   still->solve_static();
   moving->solve_static();
-  EXPECT_LT((sim::estimator_of(*still, 0).mean() - sim::estimator_of(*moving, 0).mean()).norm(),
-            5e-3 * sim::estimator_of(*still, 0).deviation().norm());
   EXPECT_LT(
-      (sim::estimator_of(*still, 0).deviation() - sim::estimator_of(*moving, 0).deviation()).norm(),
-      1e-2 * sim::estimator_of(*still, 0).deviation().norm());
+      (estimate::estimator_of(*still, 0).mean() - estimate::estimator_of(*moving, 0).mean()).norm(),
+      5e-3 * estimate::estimator_of(*still, 0).deviation().norm());
+  EXPECT_LT((estimate::estimator_of(*still, 0).deviation() -
+             estimate::estimator_of(*moving, 0).deviation())
+                .norm(),
+            1e-2 * estimate::estimator_of(*still, 0).deviation().norm());
 }
 
 // A column of the blow pushes with 100 kN, for which the robot's step fails. The columns of the
@@ -97,10 +99,10 @@ TEST(Estimators, OfBothKindsAgreeAtRest) {
 TEST(Estimators, AStepOfWhichAColumnFailsIsNotMade) {
   const auto model = estimated("backward-euler",
                                ", blow: {force: {body: beam, point: 60 0 0 mm}, prior: 1000 kN}");
-  const sim::Run run(model, 1);
-  sim::MotionFilter filter(sim::estimators_of(*model).front(), 1);
+  const run::Run run(model, 1);
+  estimate::MotionFilter filter(estimate::estimators_of(*model).front(), 1);
   filter.restart(run);
-  const sim::State start = filter.robot().state();
+  const run::State start = filter.robot().state();
   filter.advance(run, 0.01);
   EXPECT_TRUE(filter.failed());
   EXPECT_FALSE(filter.knows(0));
@@ -109,8 +111,8 @@ TEST(Estimators, AStepOfWhichAColumnFailsIsNotMade) {
   EXPECT_EQ(filter.mean(), VectorX::Zero(6));
   sim::Simulation whole(model);
   whole.step();
-  EXPECT_EQ(sim::estimator_of(whole, 0).status(), sim::EstimatorStatus::no_equilibrium);
-  EXPECT_FALSE(sim::estimator_of(whole, 0).message().empty());
+  EXPECT_EQ(estimate::estimator_of(whole, 0).status(), estimate::EstimatorStatus::no_equilibrium);
+  EXPECT_FALSE(estimate::estimator_of(whole, 0).message().empty());
 }
 
 // A marker a thousand kilometres away asks for a force that no equilibrium of the beam bears. The
@@ -118,19 +120,19 @@ TEST(Estimators, AStepOfWhichAColumnFailsIsNotMade) {
 TEST(Estimators, AFailedRoundAtRestKeepsTheLastOne) {
   for (const char* integrator : {"quasi-static", "backward-euler"}) {
     const auto model = estimated(integrator);
-    const sim::EstimatorModel& own = sim::estimators_of(*model).front();
-    const sim::Run run(model, 1);
-    std::unique_ptr<sim::EstimatorFilter> filter;
+    const estimate::EstimatorModel& own = estimate::estimators_of(*model).front();
+    const run::Run run(model, 1);
+    std::unique_ptr<estimate::EstimatorFilter> filter;
     if (integrator == std::string("quasi-static")) {
-      filter = std::make_unique<sim::EquilibriumFilter>(own, 1);
+      filter = std::make_unique<estimate::EquilibriumFilter>(own, 1);
     } else {
-      filter = std::make_unique<sim::MotionFilter>(own, 1);
+      filter = std::make_unique<estimate::MotionFilter>(own, 1);
     }
     filter->restart(run);
     filter->begin_settling();
     ASSERT_TRUE(filter->settle(run)) << integrator;
     const VectorX path = filter->path(0);
-    const sim::State state = filter->robot().state();
+    const run::State state = filter->robot().state();
     filter->correct(0, 0, VectorX::Constant(3, 1e6), VectorX::Constant(3, 1e-6));
     const VectorX mean = filter->mean();
     EXPECT_GT(mean.norm(), 1e3) << integrator;
@@ -147,10 +149,10 @@ TEST(Estimators, AFailedRoundAtRestKeepsTheLastOne) {
 // The robots of the scene and of its estimator share the mesh and its embedder.
 TEST(Estimators, ShareTheMeshOfTheScene) {
   const auto model = estimated("quasi-static");
-  const auto settings = [](const sim::Model& of) -> const fem::FemBodySettings& {
+  const auto settings = [](const model::Model& of) -> const fem::FemBodySettings& {
     return mechanics::as<const fem::HasElements>(of.body(0))->settings();
   };
-  const sim::Model& known = *sim::estimators_of(*model).front().robot;
+  const model::Model& known = *estimate::estimators_of(*model).front().robot;
   EXPECT_EQ(settings(known).mesh, settings(*model).mesh);
   EXPECT_EQ(settings(known).embedder, settings(*model).embedder);
 }

@@ -8,11 +8,11 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/scene.hpp"
-#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 namespace sinew::scene {
 namespace {

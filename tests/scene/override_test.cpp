@@ -43,7 +43,7 @@ TEST(Override, TakesAnyYaml) {
 TEST(Override, ReplacesAlternatives) {
   const SceneDescription scene =
       with({"actuators.long_0.command.tension=2N", "bodies.trunk.density=1000"});
-  EXPECT_EQ(scene.actuators[0].command.kind, sim::CommandKind::effort);
+  EXPECT_EQ(scene.actuators[0].command.kind, model::CommandKind::effort);
   EXPECT_FALSE(scene.bodies[0].mass.has_value());
   EXPECT_EQ(scene.bodies[0].density.value(), 1000.0);
 }

@@ -61,7 +61,7 @@ TEST(Scene, TheDocumentedExampleParsesAsWritten) {
   EXPECT_EQ(cable.displacement.min, 0.0);
   EXPECT_DOUBLE_EQ(cable.displacement.max, 0.07);
   EXPECT_DOUBLE_EQ(cable.displacement.rate, 0.1);
-  EXPECT_EQ(actuator.command.kind, sim::CommandKind::motion);
+  EXPECT_EQ(actuator.command.kind, model::CommandKind::motion);
   EXPECT_EQ(actuator.command.signal.value(1.0), 0.0);
 
   ASSERT_EQ(scene.effectors.size(), 1u);
@@ -144,7 +144,7 @@ TEST(Scene, EverySignalIsRead) {
         .command;
   };
   EXPECT_DOUBLE_EQ(signal("tension: 2 N").signal.value(0), 2.0);
-  EXPECT_EQ(signal("tension: 2 N").kind, sim::CommandKind::effort);
+  EXPECT_EQ(signal("tension: 2 N").kind, model::CommandKind::effort);
   const auto ramp = signal("displacement: {ramp: {to: 10 mm, start: 1 s, duration: 2 s}}").signal;
   EXPECT_DOUBLE_EQ(ramp.value(2.0), 0.005);
   EXPECT_DOUBLE_EQ(ramp.end_time(), 3.0);
@@ -247,7 +247,7 @@ TEST(Scene, ForceActuatorsAreRead) {
   ASSERT_EQ(scene.actuators.size(), 2u);
   const ActuatorDescription& actuator = scene.actuators[1];
   EXPECT_EQ(actuator.type, ActuatorDescription::Type::force);
-  const auto& force = std::get<sim::ForceSettings>(actuator.own);
+  const auto& force = std::get<builder::ForceSettings>(actuator.own);
   EXPECT_EQ(force.direction, Vector3::UnitX().eval());
   EXPECT_EQ(force.force.min, -1.0);
   EXPECT_EQ(actuator.command.signal.value(0), 0.5);

@@ -15,15 +15,15 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/run/contact_reader.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/scene.hpp"
-#include "sinew/sim/channel.hpp"
-#include "sinew/sim/contact_reader.hpp"
+#include "sinew/sense/channel.hpp"
+#include "sinew/sense/sensor_set.hpp"
+#include "sinew/sense/sensors.hpp"
 #include "sinew/sim/observables.hpp"
-#include "sinew/sim/sensor_set.hpp"
-#include "sinew/sim/sensors.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 #include "sinew/sim/state_io.hpp"
 
 namespace sinew::scene {
@@ -87,11 +87,11 @@ std::unique_ptr<sim::Simulation> simulation_of(const std::string& text) {
 }
 
 std::vector<double> truth(const sim::Simulation& simulation, const char* name) {
-  return sim::sensors_of(simulation).truth(sim::sensor_index(simulation.model(), name));
+  return sense::sensors_of(simulation).truth(sense::sensor_index(simulation.model(), name));
 }
 
-const sim::Channel& channel(const sim::Simulation& simulation, const char* name) {
-  return sim::sensors_of(simulation).channel(sim::sensor_index(simulation.model(), name));
+const sense::Channel& channel(const sim::Simulation& simulation, const char* name) {
+  return sense::sensors_of(simulation).channel(sense::sensor_index(simulation.model(), name));
 }
 
 TEST(Sensors, OnlyLook) {
@@ -100,7 +100,7 @@ TEST(Sensors, OnlyLook) {
   for (int k = 0; k < 25; ++k) {
     with->step();
     without->step();
-    sim::State state = with->state();
+    run::State state = with->state();
     EXPECT_FALSE(state.instruments.empty());
     state.instruments.clear();
     ASSERT_EQ(state.hash(), without->state().hash()) << k;
@@ -136,8 +136,8 @@ TEST(Sensors, SayWhatOthersObserve) {
   EXPECT_GT(std::abs(truth(*simulation, "fibre")[0]), 1.0);
   EXPECT_NEAR(truth(*simulation, "wire")[0], 350.0 * (1.0 + 2.0 * truth(*simulation, "skin")[0]),
               1e-9);
-  EXPECT_EQ(sim::sensors_of(simulation->model())[1].observable, "cable.displacement");
-  EXPECT_EQ(sim::sensors_of(simulation->model())[0].observable, "marker.true");
+  EXPECT_EQ(sense::sensors_of(simulation->model())[1].observable, "cable.displacement");
+  EXPECT_EQ(sense::sensors_of(simulation->model())[0].observable, "marker.true");
 }
 
 // The patch at the end measures the forces of the points that are there.
@@ -149,7 +149,7 @@ TEST(Sensors, APatchFeelsItsPoints) {
   for (int k = 0; k < 40; ++k) {
     simulation->step();
     double expected = 0.0;
-    for (const sim::ContactPoint& point : simulation->contacts().points(0)) {
+    for (const contact::ContactPoint& point : simulation->contacts().points(0)) {
       if (point.normal_force == 0.0) continue;
       Eigen::Index node = 0;
       (body.positions().rowwise() - point.position.transpose()).rowwise().norm().minCoeff(&node);
@@ -174,13 +174,13 @@ TEST(Sensors, GoOnFromSavedStatesBitForBit) {
     EXPECT_EQ(resumed->state(), whole->state());
     EXPECT_EQ(clone->state(), whole->state());
   }
-  for (std::size_t i = 0; i < sim::sensors_of(whole->model()).size(); ++i) {
+  for (std::size_t i = 0; i < sense::sensors_of(whole->model()).size(); ++i) {
     const auto index = static_cast<int>(i);
-    for (std::size_t c = 0; c < sim::sensors_of(*whole).channel(index).size(); ++c) {
-      EXPECT_EQ(sim::sensors_of(*resumed).channel(index).value()[c],
-                sim::sensors_of(*whole).channel(index).value()[c]);
-      EXPECT_EQ(sim::sensors_of(*clone).channel(index).value()[c],
-                sim::sensors_of(*whole).channel(index).value()[c]);
+    for (std::size_t c = 0; c < sense::sensors_of(*whole).channel(index).size(); ++c) {
+      EXPECT_EQ(sense::sensors_of(*resumed).channel(index).value()[c],
+                sense::sensors_of(*whole).channel(index).value()[c]);
+      EXPECT_EQ(sense::sensors_of(*clone).channel(index).value()[c],
+                sense::sensors_of(*whole).channel(index).value()[c]);
     }
   }
   const std::uint64_t hash = whole->state().hash();
@@ -347,7 +347,7 @@ class RecordedSensor : public ::testing::Test {
 
 TEST_F(RecordedSensor, IsReplayedAtItsTimes) {
   const auto simulation = with("0,1\n0.013,2\n0.024,3\n0.026,4\n", ", delay: 10 ms, noise: 0.1 N");
-  const sim::Channel& s = sim::sensors_of(*simulation).channel(0);
+  const sense::Channel& s = sense::sensors_of(*simulation).channel(0);
   EXPECT_EQ(s.settings().standard_deviation(), 0.1);
   EXPECT_FALSE(s.has_value());
   const double expected[] = {1, 1, 2, 4};  // at 10, 20, 30 and 40 ms
@@ -361,7 +361,7 @@ TEST_F(RecordedSensor, IsReplayedAtItsTimes) {
 
 TEST_F(RecordedSensor, SaysNothingBeforeItsFirstSample) {
   const auto simulation = with("0.025,1\n");
-  const sim::Channel& s = sim::sensors_of(*simulation).channel(0);
+  const sense::Channel& s = sense::sensors_of(*simulation).channel(0);
   for (int k = 0; k < 2; ++k) {
     simulation->step();
     EXPECT_FALSE(s.has_value() || s.fresh());
@@ -376,7 +376,7 @@ TEST_F(RecordedSensor, ReadsColumnsByTheirHeadings) {
       "time [s],other,s.measured [mN],s.sample_time [s]\n"
       "0,9,nan,nan\n0.01,9,500,0\n0.02,9,500,0\n0.03,9,700,0.02\n";
   const auto simulation = with(table, ", missing: lost");
-  const sim::Channel& s = sim::sensors_of(*simulation).channel(0);
+  const sense::Channel& s = sense::sensors_of(*simulation).channel(0);
   const double values[] = {0.5, 0.5, 0.7};
   const double times[] = {0.0, 0.0, 0.02};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -386,7 +386,7 @@ TEST_F(RecordedSensor, ReadsColumnsByTheirHeadings) {
     EXPECT_EQ(s.fresh(), k != 1);
   }
   const auto named = with("t,a,b\n0,1,2\n", ", columns: [b]");
-  EXPECT_EQ(sim::sensors_of(*named).channel(0).value()[0], 2.0);
+  EXPECT_EQ(sense::sensors_of(*named).channel(0).value()[0], 2.0);
 }
 
 TEST_F(RecordedSensor, GapsAndMissingValuesAreErrorsOrLostSamples) {
@@ -400,7 +400,7 @@ TEST_F(RecordedSensor, GapsAndMissingValuesAreErrorsOrLostSamples) {
   expect_error("t,a\n0,1\n", ", columns: [b]", ErrorKind::wrong_columns, 25, "'b'", "t, a");
   expect_error("0,1\n", ", dropout: 10 %", ErrorKind::conflicting_keys, 25, "dropout", "remove");
   const auto simulation = with(gaps, ", missing: lost, rate: 100 Hz, timeout: 15 ms");
-  const sim::Channel& s = sim::sensors_of(*simulation).channel(0);
+  const sense::Channel& s = sense::sensors_of(*simulation).channel(0);
   for (int k = 0; k < 3; ++k) simulation->step();
   EXPECT_EQ(s.missing(), 2);
   EXPECT_EQ(s.value()[0], 1.0);
@@ -418,8 +418,8 @@ TEST_F(RecordedSensor, GoesOnFromASavedState) {
   const auto clone = simulation->clone();
   for (auto* one : {simulation.get(), clone.get()}) {
     one->step();
-    EXPECT_EQ(sim::sensors_of(*one).channel(0).value()[0], 4.0);
-    EXPECT_EQ(sim::sensors_of(*one).channel(0).samples(), 4);
+    EXPECT_EQ(sense::sensors_of(*one).channel(0).value()[0], 4.0);
+    EXPECT_EQ(sense::sensors_of(*one).channel(0).samples(), 4);
   }
 }
 

@@ -6,17 +6,17 @@
 #include <optional>
 #include <utility>
 
+#include "sinew/builder/contact_settings.hpp"
+#include "sinew/builder/effector_settings.hpp"
+#include "sinew/builder/force_settings.hpp"
+#include "sinew/builder/joint_settings.hpp"
+#include "sinew/builder/load_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/collision/shape.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/shapes.hpp"
-#include "sinew/sim/contact_settings.hpp"
-#include "sinew/sim/effector_settings.hpp"
-#include "sinew/sim/force_settings.hpp"
-#include "sinew/sim/joint_settings.hpp"
-#include "sinew/sim/load_settings.hpp"
-#include "sinew/sim/model_builder.hpp"
 
 namespace sinew::testing {
 
@@ -64,8 +64,8 @@ inline fem::FemBodySettings arch_part(const char* name, double from, double to,
   return body;
 }
 
-inline void add_floor(sim::ModelBuilder& builder, int body, const ArchOptions& options) {
-  sim::ContactSettings floor;
+inline void add_floor(builder::ModelBuilder& builder, int body, const ArchOptions& options) {
+  builder::ContactSettings floor;
   floor.name = "floor";
   floor.body = body;
   floor.surface = options.below ? *options.below
@@ -78,8 +78,8 @@ inline void add_floor(sim::ModelBuilder& builder, int body, const ArchOptions& o
   builder.add_contact(floor);
 }
 
-inline std::shared_ptr<const sim::Model> arch(const ArchOptions& options) {
-  sim::ModelBuilder builder;
+inline std::shared_ptr<const model::Model> arch(const ArchOptions& options) {
+  builder::ModelBuilder builder;
   int middle = 0;
   if (options.cut) {
     const double seam = 0.015;
@@ -98,9 +98,9 @@ inline std::shared_ptr<const sim::Model> arch(const ArchOptions& options) {
   if (options.by_load) {
     builder.add_load({.name = "press",
                       .body = middle,
-                      .load = sim::PointLoadSettings{crown, {0.0, 0.0, -0.02}}});
+                      .load = builder::PointLoadSettings{crown, {0.0, 0.0, -0.02}}});
   } else {
-    sim::ForceSettings force;
+    builder::ForceSettings force;
     force.name = "press";
     force.body = middle;
     force.point = crown;
@@ -108,7 +108,7 @@ inline std::shared_ptr<const sim::Model> arch(const ArchOptions& options) {
     builder.add_force(force);
   }
   if (options.floor || options.below) add_floor(builder, middle, options);
-  sim::EffectorSettings top;
+  builder::EffectorSettings top;
   top.name = "crown";
   top.body = middle;
   top.points = crown.transpose();

@@ -5,29 +5,29 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/builder/cable_settings.hpp"
+#include "sinew/builder/contact_settings.hpp"
+#include "sinew/builder/force_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
+#include "sinew/builder/torque_settings.hpp"
 #include "sinew/constraint/smooth_surface.hpp"
+#include "sinew/contact/contact_state.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/thread_pool.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/embedding.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/model/signal.hpp"
 #include "sinew/pcc/arm.hpp"
 #include "sinew/pcc/arm_body_model.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
 #include "sinew/pcc/has_arm.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/cable_settings.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/contact_settings.hpp"
-#include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/force_settings.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/model_builder.hpp"
-#include "sinew/sim/signal.hpp"
+#include "sinew/run/contact_reader.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
-#include "sinew/sim/torque_settings.hpp"
 
 #include "pcc/arms.hpp"
 
@@ -39,10 +39,12 @@ using pcc::MassCentre;
 using pcc::testing::fluidic;
 using pcc::testing::mixed;
 
-Command hold(double effort) { return {CommandKind::effort, Signal::constant(effort)}; }
+model::Command hold(double effort) {
+  return {model::CommandKind::effort, model::Signal::constant(effort)};
+}
 
-TorqueSettings torque(int segment, double value) {
-  TorqueSettings settings;
+builder::TorqueSettings torque(int segment, double value) {
+  builder::TorqueSettings settings;
   settings.name = "torque_" + std::to_string(segment);
   settings.segment = segment;
   settings.command = hold(value);
@@ -54,8 +56,8 @@ const VectorX& coordinates(const Simulation& simulation) {
 }
 
 /// The fluidic arm with torques on its last three segments.
-std::shared_ptr<const Model> driven(const StepSettings& step, MassCentre centre) {
-  ModelBuilder builder(step);
+std::shared_ptr<const model::Model> driven(const model::StepSettings& step, MassCentre centre) {
+  builder::ModelBuilder builder(step);
   builder.add_body<pcc::ArmBodyModel>(fluidic(centre));
   builder.add_torque(torque(1, 0.05));
   builder.add_torque(torque(2, -0.04));
@@ -68,10 +70,10 @@ const VectorX kTorque{{0.0, 0.05, -0.04, 0.1}};
 TEST(ArmBody, MovesAsTheArmByItself) {
   for (const auto integrator : {mechanics::Integrator::backward_euler, mechanics::Integrator::bdf2,
                                 mechanics::Integrator::generalized_alpha}) {
-    StepSettings step;
+    model::StepSettings step;
     step.time_step = 2e-3;
     step.integrator = integrator;
-    step.method = Method::newton;
+    step.method = model::Method::newton;
     step.tolerance = 1e-12;
     Simulation simulation(driven(step, MassCentre::arc));
     pcc::ArmSimulation alone(pcc::testing::make(fluidic(MassCentre::arc)),
@@ -87,17 +89,17 @@ TEST(ArmBody, MovesAsTheArmByItself) {
 }
 
 /// The fluidic arm with commanded bends in all segments, and a wall at x = far for points along it.
-std::shared_ptr<const Model> commanded(const StepSettings& step, double angle, double far,
-                                       double friction) {
-  ModelBuilder builder(step);
+std::shared_ptr<const model::Model> commanded(const model::StepSettings& step, double angle,
+                                              double far, double friction) {
+  builder::ModelBuilder builder(step);
   builder.add_body<pcc::ArmBodyModel>(fluidic(MassCentre::arc));
   for (int segment = 0; segment < 4; ++segment) {
-    TorqueSettings bend = torque(segment, 0.0);
-    bend.command = {CommandKind::motion, Signal::constant(angle)};
+    builder::TorqueSettings bend = torque(segment, 0.0);
+    bend.command = {model::CommandKind::motion, model::Signal::constant(angle)};
     builder.add_torque(bend);
   }
   if (far > 0.0) {
-    ContactSettings wall;
+    builder::ContactSettings wall;
     wall.name = "wall";
     wall.surface = collision::Plane{{far, 0.0, 0.0}, -Vector3::UnitX()};
     wall.points = Points::Zero(2, 3);
@@ -114,14 +116,14 @@ std::shared_ptr<const Model> commanded(const StepSettings& step, double angle, d
 TEST(ArmBody, NewtonReachesACommandedAngleInOneStep) {
   for (const auto integrator :
        {mechanics::Integrator::backward_euler, mechanics::Integrator::bdf2}) {
-    StepSettings step;
+    model::StepSettings step;
     step.time_step = 5e-3;
     step.integrator = integrator;
-    step.method = Method::newton;
+    step.method = model::Method::newton;
     Simulation simulation(commanded(step, 0.1, 0.0, 0.0));
     for (int k = 0; k < 10; ++k) {
       simulation.step();
-      ASSERT_EQ(simulation.report().newton, NewtonStatus::converged);
+      ASSERT_EQ(simulation.report().newton, run::NewtonStatus::converged);
       for (int segment = 0; segment < 4; ++segment) {
         EXPECT_NEAR(simulation.actuator(segment).motion, 0.1, 1e-7);
       }
@@ -131,9 +133,9 @@ TEST(ArmBody, NewtonReachesACommandedAngleInOneStep) {
 
 // With all bends held, the compliance of the contact points is mere rounding.
 TEST(ArmBody, HeldBendsAreNoHindranceToOpenContacts) {
-  for (const Method method : {Method::one_linearisation, Method::newton}) {
+  for (const model::Method method : {model::Method::one_linearisation, model::Method::newton}) {
     for (const double friction : {0.0, 0.5}) {
-      StepSettings step;
+      model::StepSettings step;
       step.integrator = mechanics::Integrator::quasi_static;
       step.method = method;
       Simulation simulation(commanded(step, 0.1, 1.0, friction));
@@ -158,7 +160,7 @@ TEST(ArmBody, HeldBendsAreNoHindranceToOpenContacts) {
 }
 
 TEST(ArmBody, SettlesInTheArmsEquilibrium) {
-  StepSettings step;
+  model::StepSettings step;
   step.integrator = mechanics::Integrator::quasi_static;
   Simulation simulation(driven(step, MassCentre::distributed));
   simulation.solve_static();
@@ -171,11 +173,11 @@ TEST(ArmBody, SettlesInTheArmsEquilibrium) {
 TEST(ArmBody, CableDoesTheWorkOfItsLength) {
   // All features at once: rotated segments, dead lengths, extension. r(q) = -T dl/dq, with the
   // derivative of the length l by differences.
-  StepSettings step;
+  model::StepSettings step;
   step.integrator = mechanics::Integrator::quasi_static;
   ArmSettings settings = mixed();
   const Vector3 along = settings.frame.col(2), across = settings.frame.col(0);
-  CableSettings cable;
+  builder::CableSettings cable;
   cable.name = "tendon";
   const double at[] = {0.0, 0.1, 0.2, 0.3, 0.4};
   cable.points.resize(5, 3);
@@ -183,7 +185,7 @@ TEST(ArmBody, CableDoesTheWorkOfItsLength) {
     cable.points.row(i) = (settings.base + at[i] * along + 0.015 * across).transpose();
   }
   cable.command = hold(2.0);
-  ModelBuilder builder(step);
+  builder::ModelBuilder builder(step);
   builder.add_body<pcc::ArmBodyModel>(settings);
   builder.add_cable(cable);
   Simulation simulation(builder.build());
@@ -220,12 +222,12 @@ TEST(ArmBody, CableDoesTheWorkOfItsLength) {
 }
 
 TEST(ArmBody, StateGoesOnAsItWas) {
-  StepSettings step;
+  model::StepSettings step;
   step.time_step = 5e-3;
   step.integrator = mechanics::Integrator::generalized_alpha;
   Simulation first(driven(step, MassCentre::arc)), second(first.shared_model());
   for (int i = 0; i < 20; ++i) first.step();
-  State state = first.state();
+  run::State state = first.state();
   second.restore(state);
   for (int i = 0; i < 20; ++i) {
     first.step();
@@ -235,11 +237,11 @@ TEST(ArmBody, StateGoesOnAsItWas) {
 }
 
 TEST(ArmBody, LedgerBalancesOverASwing) {
-  StepSettings step;
+  model::StepSettings step;
   step.time_step = 5e-4;
   step.integrator = mechanics::Integrator::generalized_alpha;
   step.spectral_radius = 1.0;
-  step.method = Method::newton;
+  step.method = model::Method::newton;
   step.tolerance = 1e-12;
   Simulation simulation(driven(step, MassCentre::distributed));
   for (int i = 0; i < 1000; ++i) simulation.step();
@@ -251,7 +253,7 @@ TEST(ArmBody, LedgerBalancesOverASwing) {
 }
 
 TEST(ArmBody, SkinFollowsTheAxis) {
-  StepSettings step;
+  model::StepSettings step;
   step.integrator = mechanics::Integrator::quasi_static;
   Simulation simulation(driven(step, MassCentre::arc));
   const mesh::Mesh& skin = simulation.body(0).model().mesh();
@@ -275,7 +277,7 @@ TEST(ArmBody, ItsSurfaceHasAThickness) {
 }
 
 TEST(ArmBody, WrongPartsAreErrors) {
-  ModelBuilder builder;
+  builder::ModelBuilder builder;
   builder.add_body<pcc::ArmBodyModel>(fluidic());
   const auto kind_of = [&](auto&& add) {
     try {
@@ -288,12 +290,12 @@ TEST(ArmBody, WrongPartsAreErrors) {
   EXPECT_EQ(kind_of([&] { builder.add_torque(torque(4, 0.0)); }), ErrorKind::index_out_of_range);
   EXPECT_EQ(kind_of([&] {
               auto across = torque(1, 0.0);
-              across.towards = TorqueSettings::Towards::across;
+              across.towards = builder::TorqueSettings::Towards::across;
               builder.add_torque(across);
             }),
             ErrorKind::unknown_choice);
   EXPECT_EQ(kind_of([&] {
-              ForceSettings force;
+              builder::ForceSettings force;
               force.name = "push";
               force.point = {0.1, 0.0, -0.2};
               builder.add_force(force);

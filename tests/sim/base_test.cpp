@@ -8,6 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/builder/effector_settings.hpp"
+#include "sinew/builder/load_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
@@ -16,14 +19,11 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/shapes.hpp"
-#include "sinew/sim/base_motion.hpp"
-#include "sinew/sim/effector_settings.hpp"
-#include "sinew/sim/load_settings.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/model_builder.hpp"
-#include "sinew/sim/signal.hpp"
+#include "sinew/model/base_motion.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/model/signal.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 #include "sinew/sim/state_io.hpp"
 
 namespace sinew::sim {
@@ -37,7 +37,7 @@ constexpr double kFrequency = 40.0;  // Hz, above the block's fundamental
 struct Options {
   Integrator integrator = Integrator::bdf2;
   double time_step = 1e-3;
-  Method method = Method::newton;
+  model::Method method = model::Method::newton;
   fem::MassMatrix mass = fem::MassMatrix::lumped;
   fem::RayleighDamping damping;
   material::Law law = material::Law::linear;
@@ -46,27 +46,27 @@ struct Options {
   double shake = kAmplitude;  ///< m, amplitude of the base's displacement
   double turn = 0.0;          ///< rad, amplitude of its rotation
   double frequency = kFrequency;
-  std::optional<AdaptiveStep> adaptive;
+  std::optional<model::AdaptiveStep> adaptive;
 };
 
 // Oscillation of a base from rest: amplitude (1 - cos(w t)).
-Signal to_and_fro(double amplitude, double frequency) {
-  return Signal::sine({.mean = amplitude,
-                       .amplitude = amplitude,
-                       .period = 1.0 / frequency,
-                       .phase = -0.5 * std::numbers::pi});
+model::Signal to_and_fro(double amplitude, double frequency) {
+  return model::Signal::sine({.mean = amplitude,
+                              .amplitude = amplitude,
+                              .period = 1.0 / frequency,
+                              .phase = -0.5 * std::numbers::pi});
 }
 
 /// A block of 20 x 20 x 60 mm of 100 kPa on its base at z = 0.
-std::shared_ptr<const Model> block(const Options& options) {
-  StepSettings step;
+std::shared_ptr<const model::Model> block(const Options& options) {
+  model::StepSettings step;
   step.integrator = options.integrator;
   step.time_step = options.time_step;
   step.method = options.method;
   step.tangent = mechanics::Tangent::exact;
   step.tolerance = 1e-11;
   step.adaptive = options.adaptive;
-  ModelBuilder builder(step);
+  builder::ModelBuilder builder(step);
   fem::FemBodySettings body;
   body.name = "block";
   const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -81,7 +81,7 @@ std::shared_ptr<const Model> block(const Options& options) {
                    {"low", {}, {0.006, 0.012, 0.004}, 0.03, mesh::Outside::error}};
   }
   const int number = builder.add_body<fem::FemBodyModel>(std::move(body));
-  EffectorSettings tip;
+  builder::EffectorSettings tip;
   tip.name = "tip";
   tip.points.resize(1, 3);
   tip.points << 0.01, 0.01, 0.06;
@@ -91,13 +91,13 @@ std::shared_ptr<const Model> block(const Options& options) {
     const double w = 2.0 * std::numbers::pi * kFrequency;
     builder.add_load({.name = "frame",
                       .body = number,
-                      .load = BodyLoadSettings{{-options.shake * w * w, 0.0, 0.0}},
-                      .factor = Signal::sine({.mean = 0.0,
-                                              .amplitude = 1.0,
-                                              .period = 1.0 / kFrequency,
-                                              .phase = 0.5 * std::numbers::pi})});
+                      .load = builder::BodyLoadSettings{{-options.shake * w * w, 0.0, 0.0}},
+                      .factor = model::Signal::sine({.mean = 0.0,
+                                                     .amplitude = 1.0,
+                                                     .period = 1.0 / kFrequency,
+                                                     .phase = 0.5 * std::numbers::pi})});
   } else if (options.shake != 0.0 || options.turn != 0.0) {
-    BaseMotion motion;
+    model::BaseMotion motion;
     motion.body = number;
     motion.translation[0] = to_and_fro(options.shake, options.frequency);
     motion.angle = to_and_fro(options.turn, options.frequency);
@@ -203,7 +203,7 @@ TEST(TurnedBase, DampingKeepsTheOrder) {
 
 // An unstrained body that moves at constant velocity is not damped.
 TEST(ShakenBase, EvenSpeedIsNotDamped) {
-  for (const auto method : {Method::newton, Method::one_linearisation}) {
+  for (const auto method : {model::Method::newton, model::Method::one_linearisation}) {
     Options options;
     options.method = method;
     options.law = material::Law::corotational;
@@ -302,7 +302,7 @@ TEST(Substeps, TakeTheBaseAlong) {
   Options options;
   options.integrator = Integrator::generalized_alpha;
   options.time_step = 5e-3;
-  options.adaptive = AdaptiveStep{1e-5, 1e-6};
+  options.adaptive = model::AdaptiveStep{1e-5, 1e-6};
   Simulation simulation(block(options));
   int retries = 0;
   for (int k = 0; k < 10; ++k) retries += simulation.step().retries;
@@ -348,7 +348,7 @@ TEST(BaseErrors, SayWhatToDo) {
   options.shake = 0.0;
   Simulation still(block(options));
   EXPECT_EQ(kind_of(still, {NAN, 0.0, 0.0}), ErrorKind::not_finite);
-  ModelBuilder builder(StepSettings{.integrator = Integrator::bdf2});
+  builder::ModelBuilder builder(model::StepSettings{.integrator = Integrator::bdf2});
   fem::FemBodySettings body;
   body.name = "free";
   body.mesh = std::make_shared<const mesh::Mesh>(mesh::block({}));

@@ -6,19 +6,19 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/builder/chamber_settings.hpp"
+#include "sinew/builder/effector_settings.hpp"
+#include "sinew/builder/spring_line_settings.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/chamber_settings.hpp"
-#include "sinew/sim/effector_settings.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/spring_drive.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/spring_drive.hpp"
-#include "sinew/sim/spring_line_settings.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "chambers.hpp"
 #include "robots.hpp"
@@ -30,8 +30,12 @@ using sinew::testing::chamber;
 using sinew::testing::ChamberOptions;
 using sinew::testing::kVoid;
 
-Command effort(double value) { return {CommandKind::effort, Signal::constant(value)}; }
-Command input(double value) { return {CommandKind::input, Signal::constant(value)}; }
+model::Command effort(double value) {
+  return {model::CommandKind::effort, model::Signal::constant(value)};
+}
+model::Command input(double value) {
+  return {model::CommandKind::input, model::Signal::constant(value)};
+}
 
 TEST(Chamber, GrowsUnderPressureAndObeysEitherCommand) {
   Simulation by_pressure(chamber());
@@ -60,7 +64,7 @@ TEST(Chamber, StepsReachTheStaticSolution) {
 
 TEST(Chamber, WorkOfPressureIsTheStrainEnergy) {
   ChamberOptions options;
-  options.step.method = Method::newton;
+  options.step.method = model::Method::newton;
   Simulation simulation(chamber(options));
   constexpr int kSteps = 400;
   double before = 0.0, work = 0.0;
@@ -76,7 +80,7 @@ TEST(Chamber, WorkOfPressureIsTheStrainEnergy) {
 
 TEST(Chamber, GasFollowsItsLaw) {
   for (const double exponent : {1.0, 1.4}) {
-    GasSettings gas;
+    model::GasSettings gas;
     gas.exponent = exponent;
     gas.dead_volume = 0.5 * kVoid;
     Simulation simulation(chamber({.gas = gas}));
@@ -98,8 +102,8 @@ TEST(Chamber, GasFollowsItsLaw) {
 }
 
 TEST(Chamber, ASupplyFillsItInTimeThatStepsDoNotChange) {
-  GasSettings gas;
-  gas.supply = Supply{2e-11, 0.3, 0.0};
+  model::GasSettings gas;
+  gas.supply = model::Supply{2e-11, 0.3, 0.0};
   std::vector<double> half_way;
   for (const double step : {4e-3, 2e-3, 1e-3, 5e-4}) {
     ChamberOptions options{.gas = gas};
@@ -125,8 +129,8 @@ TEST(Chamber, ASupplyFillsItInTimeThatStepsDoNotChange) {
 }
 
 TEST(Chamber, ALeakLowersThePressureThatIsReached) {
-  GasSettings gas;
-  gas.supply = Supply{2e-10, 0.3, 2e-10};
+  model::GasSettings gas;
+  gas.supply = model::Supply{2e-10, 0.3, 2e-10};
   Simulation simulation(chamber({.gas = gas}));
   simulation.command(0, effort(5e3));
   for (int i = 0; i < 400; ++i) simulation.step();
@@ -138,7 +142,7 @@ TEST(Chamber, ALeakLowersThePressureThatIsReached) {
 }
 
 TEST(Chamber, LiquidIsStiff) {
-  Simulation simulation(chamber({.liquid = LiquidSettings{}}));
+  Simulation simulation(chamber({.liquid = model::LiquidSettings{}}));
   simulation.command(0, input(0.1 * kVoid));
   for (int i = 0; i < 30; ++i) simulation.step();
   const auto& state = simulation.actuator(0);
@@ -147,13 +151,13 @@ TEST(Chamber, LiquidIsStiff) {
 }
 
 TEST(Chamber, SavedStatesHoldTheGas) {
-  GasSettings gas;
-  gas.supply = Supply{2e-11, 0.3, 0.0};
+  model::GasSettings gas;
+  gas.supply = model::Supply{2e-11, 0.3, 0.0};
   Simulation a(chamber({.gas = gas})), b(chamber({.gas = gas}));
   a.command(0, effort(5e3));
   b.command(0, effort(5e3));
   for (int i = 0; i < 5; ++i) a.step();
-  State state = a.state();
+  run::State state = a.state();
   b.restore(state);
   for (int i = 0; i < 5; ++i) {
     a.step();
@@ -165,7 +169,7 @@ TEST(Chamber, SavedStatesHoldTheGas) {
 }
 
 TEST(Chamber, BadSettingsAreRefused) {
-  const auto kind = [](const GasSettings& gas) {
+  const auto kind = [](const model::GasSettings& gas) {
     try {
       chamber({.gas = gas});
     } catch (const Error& error) {
@@ -173,11 +177,11 @@ TEST(Chamber, BadSettingsAreRefused) {
     }
     return ErrorKind::internal;
   };
-  GasSettings gas;
+  model::GasSettings gas;
   gas.exponent = 0.5;
   EXPECT_EQ(kind(gas), ErrorKind::out_of_range);
   gas = {};
-  gas.supply = Supply{0.0, 0.5, 0.0};
+  gas.supply = model::Supply{0.0, 0.5, 0.0};
   EXPECT_EQ(kind(gas), ErrorKind::out_of_range);
   gas = {};
   gas.dead_volume = -2.0 * kVoid;
@@ -185,9 +189,9 @@ TEST(Chamber, BadSettingsAreRefused) {
 }
 
 // The beam of the other tests with a spring from above to its tip.
-std::shared_ptr<const Model> sprung(double damping, bool tension_only,
-                                    std::optional<SmaSettings> wire = std::nullopt) {
-  ModelBuilder builder(StepSettings{});
+std::shared_ptr<const model::Model> sprung(double damping, bool tension_only,
+                                           std::optional<model::SmaSettings> wire = std::nullopt) {
+  builder::ModelBuilder builder(model::StepSettings{});
   fem::FemBodySettings body;
   body.name = "beam";
   const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -196,7 +200,7 @@ std::shared_ptr<const Model> sprung(double damping, bool tension_only,
   body.elements.regions = {{{200e3, 0.4}, material::Law::corotational, 1070.0, {}}};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
   const int number = builder.add_body<fem::FemBodyModel>(std::move(body));
-  SpringLineSettings line;
+  builder::SpringLineSettings line;
   line.name = "spring";
   line.body = number;
   line.points.resize(2, 3);
@@ -205,10 +209,10 @@ std::shared_ptr<const Model> sprung(double damping, bool tension_only,
   if (wire) {
     line.spring = *wire;
   } else {
-    line.spring = SpringSettings{50.0, 0.04, damping, tension_only};
+    line.spring = model::SpringSettings{50.0, 0.04, damping, tension_only};
   }
   builder.add_spring(line);
-  EffectorSettings tip;
+  builder::EffectorSettings tip;
   tip.name = "tip";
   tip.body = number;
   tip.points.resize(1, 3);
@@ -259,9 +263,9 @@ TEST(Spring, DampingSlowsButDoesNotMoveTheEnd) {
 }
 
 TEST(Spring, ShapeMemoryWireStiffensWhenHot) {
-  const double cold = coil_stiffness(14.1e9, 0.0005, 0.0024, 10.0);
+  const double cold = model::coil_stiffness(14.1e9, 0.0005, 0.0024, 10.0);
   EXPECT_NEAR(cold, 796.8, 0.1);  // G d^4/(8 n D^3), by hand
-  SmaSettings wire;
+  model::SmaSettings wire;
   wire.free_length = 0.055;
   wire.heat_capacity = 0.01;
   Simulation simulation(sprung(0.0, false, wire));
@@ -283,15 +287,15 @@ TEST(Spring, ShapeMemoryWireStiffensWhenHot) {
 }
 
 TEST(Spring, PhaseHasHysteresis) {
-  SmaSettings wire;
-  SmaDrive drive(wire, 0.06);
-  std::array<double, Drive::kMaxStates> state{};
+  model::SmaSettings wire;
+  model::SmaDrive drive(wire, 0.06);
+  std::array<double, model::Drive::kMaxStates> state{};
   drive.rest(state);
   // A power whose steady temperature is between the two transformation ranges: on heating, the wire
   // remains martensite.
   const double power = wire.heat_loss * (333.0 - wire.ambient);
   const auto settle = [&](double watts) {
-    const Drive::Step step{CommandKind::input, watts, 1e9, 0.0, state};
+    const model::Drive::Step step{model::CommandKind::input, watts, 1e9, 0.0, state};
     drive.advance(step, 0.0, 0.0, state);
     return state[1];
   };
@@ -303,7 +307,7 @@ TEST(Spring, PhaseHasHysteresis) {
 
 // A spherical shell of one layer of hexahedra, radius 10 mm, wall 1 mm, held at its bottom; mapped
 // from a hollow cube.
-std::shared_ptr<const Model> balloon() {
+std::shared_ptr<const model::Model> balloon() {
   constexpr int kCells = 8;
   mesh::Mesh made =
       mesh::block({.corner = {-1, -1, -1}, .size = {2, 2, 2}, .cells = {kCells, kCells, kCells}},
@@ -322,7 +326,7 @@ std::shared_ptr<const Model> balloon() {
     made.nodes.row(node) = (radius * at.normalized()).transpose();
     if (made.nodes(node, 2) < -0.0085) bottom.push_back(node);
   }
-  ModelBuilder builder;
+  builder::ModelBuilder builder;
   fem::FemBodySettings body;
   body.name = "balloon";
   const auto mesh = std::make_shared<const mesh::Mesh>(std::move(made));
@@ -334,7 +338,7 @@ std::shared_ptr<const Model> balloon() {
   body.elements.regions = {region};
   body.elements.fixed_nodes = bottom;
   builder.add_body<fem::FemBodyModel>(std::move(body));
-  ChamberSettings chamber;
+  builder::ChamberSettings chamber;
   chamber.name = "inside";
   chamber.surface = mesh::enclosing_surface(*mesh, Vector3::Zero(), "inside");
   builder.add_chamber(chamber);
@@ -348,13 +352,13 @@ TEST(Chamber, PressureBeyondTheLimitPointIsNamed) {
   const double volume = model->chamber(0)->rest_volume();
   double peak = 0.0;
   for (int tenth = 1; tenth <= 40; ++tenth) {
-    held.command(0, {CommandKind::motion, Signal::constant(0.1 * tenth * volume)});
+    held.command(0, {model::CommandKind::motion, model::Signal::constant(0.1 * tenth * volume)});
     held.solve_static();
     peak = std::max(peak, held.actuator(0).effort);
   }
   ASSERT_LT(held.actuator(0).effort, 0.99 * peak);
   Simulation simulation(model);
-  simulation.command(0, {CommandKind::effort, Signal::constant(1.5 * peak)});
+  simulation.command(0, {model::CommandKind::effort, model::Signal::constant(1.5 * peak)});
   try {
     simulation.solve_static();
     FAIL();

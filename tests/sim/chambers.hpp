@@ -5,16 +5,16 @@
 #include <memory>
 #include <utility>
 
+#include "sinew/builder/chamber_settings.hpp"
+#include "sinew/builder/effector_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mesh/patch.hpp"
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/topology.hpp"
-#include "sinew/sim/chamber_settings.hpp"
-#include "sinew/sim/effector_settings.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/model_builder.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::testing {
@@ -39,22 +39,22 @@ inline mesh::Mesh hollow_block(mesh::Cells cells, bool bore = false) {
 inline constexpr double kVoid = 1e-6;  // m^3
 
 struct ChamberOptions {
-  sim::StepSettings step;
+  model::StepSettings step;
   mesh::Cells cells = mesh::Cells::hexahedra;
   bool quadratic = false;
   bool bore = false;
   bool cap = false;
   bool load_stiffness = true;
   double density = 1000.0;
-  std::optional<sim::GasSettings> gas;
-  std::optional<sim::LiquidSettings> liquid;
+  std::optional<model::GasSettings> gas;
+  std::optional<model::LiquidSettings> liquid;
   fem::RayleighDamping damping;
 };
 
 /// The hollow block of neo-Hookean silicone, clamped at its bottom. The void is the actuator
 /// `chamber`, and the middle of the top is the effector.
-inline std::shared_ptr<const sim::Model> chamber(const ChamberOptions& options = {}) {
-  sim::ModelBuilder builder(options.step);
+inline std::shared_ptr<const model::Model> chamber(const ChamberOptions& options = {}) {
+  builder::ModelBuilder builder(options.step);
   fem::FemBodySettings body;
   body.name = "block";
   const mesh::Mesh linear = hollow_block(options.cells, options.bore);
@@ -69,7 +69,7 @@ inline std::shared_ptr<const sim::Model> chamber(const ChamberOptions& options =
   body.elements.regions = {region};
   body.elements.fixed_nodes = mesh->node_sets.at("z_min");
   const int number = builder.add_body<fem::FemBodyModel>(std::move(body));
-  sim::ChamberSettings chamber;
+  builder::ChamberSettings chamber;
   chamber.name = "chamber";
   chamber.body = number;
   const Vector3 inside(0.015, 0.015, 0.015);
@@ -82,7 +82,7 @@ inline std::shared_ptr<const sim::Model> chamber(const ChamberOptions& options =
   chamber.gas = options.gas;
   chamber.liquid = options.liquid;
   builder.add_chamber(chamber);
-  sim::EffectorSettings top;
+  builder::EffectorSettings top;
   top.name = "top";
   top.body = number;
   top.points.resize(1, 3);

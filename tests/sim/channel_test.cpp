@@ -1,4 +1,4 @@
-#include "sinew/sim/channel.hpp"
+#include "sinew/sense/channel.hpp"
 
 #include <array>
 #include <cmath>
@@ -17,14 +17,15 @@ namespace {
 constexpr double kStep = 0.01;  // s
 constexpr int kSamples = 20000;
 
-void offer(Channel& channel, double time, double value) {
+void offer(sense::Channel& channel, double time, double value) {
   const std::array truth{value};
   channel.offer(time, truth);
 }
 
 // Samples of a constant, one per step.
-std::vector<double> samples(const ChannelSettings& settings, double truth, int count = kSamples) {
-  Channel channel(settings, 1);
+std::vector<double> samples(const sense::ChannelSettings& settings, double truth,
+                            int count = kSamples) {
+  sense::Channel channel(settings, 1);
   std::vector<double> values;
   for (int k = 0; k < count; ++k) {
     offer(channel, k * kStep, truth);
@@ -67,7 +68,7 @@ TEST(Channel, NoiseIsWhiteAndNormal) {
 }
 
 TEST(Channel, ComponentsAndStreamsAreIndependent) {
-  Channel a({.noise = 1.0, .seed = 1, .stream = 1}, 2),
+  sense::Channel a({.noise = 1.0, .seed = 1, .stream = 1}, 2),
       b({.noise = 1.0, .seed = 1, .stream = 2}, 2);
   const std::array truth{0.0, 0.0};
   double between = 0.0, across = 0.0;
@@ -87,7 +88,7 @@ TEST(Channel, DriftGrowsWithTheRootOfTime) {
   for (const double step : {0.01, 0.1}) {
     double variance = 0.0;
     for (int w = 0; w < kWalks; ++w) {
-      Channel channel({.drift = 0.3, .seed = static_cast<std::uint64_t>(w)}, 1);
+      sense::Channel channel({.drift = 0.3, .seed = static_cast<std::uint64_t>(w)}, 1);
       const int count = static_cast<int>(std::lround(2.0 / step));
       for (int k = 0; k <= count; ++k) offer(channel, k * step, 0.0);
       variance += channel.value()[0] * channel.value()[0] / kWalks;
@@ -99,9 +100,9 @@ TEST(Channel, DriftGrowsWithTheRootOfTime) {
 
 TEST(Channel, RoundsToTheQuantumAndSaturates) {
   const double quantum = 0.25;
-  const ChannelSettings settings{.quantum = quantum, .min = -1.0, .max = 2.1};
+  const sense::ChannelSettings settings{.quantum = quantum, .min = -1.0, .max = 2.1};
   for (int k = -400; k <= 400; ++k) {
-    Channel channel(settings, 1);
+    sense::Channel channel(settings, 1);
     const double x = 0.01 * k + 0.003;
     offer(channel, 0.0, x);
     const double y = channel.value()[0];
@@ -113,7 +114,7 @@ TEST(Channel, RoundsToTheQuantumAndSaturates) {
   }
   // The rounding error of a uniformly varying value is quantum/sqrt(12).
   double squares = 0.0;
-  Channel fine({.quantum = quantum}, 1);
+  sense::Channel fine({.quantum = quantum}, 1);
   for (int k = 0; k < kSamples; ++k) {
     const double x = 1e-4 * k;  // over eight quanta
     offer(fine, k * kStep, x);
@@ -123,7 +124,7 @@ TEST(Channel, RoundsToTheQuantumAndSaturates) {
 }
 
 TEST(Channel, SamplesAtItsRateAndDeliversWithItsDelayToTheStep) {
-  Channel channel({.rate = 20.0, .delay = 0.03}, 1);
+  sense::Channel channel({.rate = 20.0, .delay = 0.03}, 1);
   for (int k = 0; k < 1000; ++k) {
     offer(channel, k * kStep, k);
     // Samples are taken at every fifth step and arrive three steps later.
@@ -141,7 +142,7 @@ TEST(Channel, SamplesAtItsRateAndDeliversWithItsDelayToTheStep) {
 }
 
 TEST(Channel, ADelayBetweenStepsEndsAtTheNext) {
-  Channel channel({.delay = 0.014}, 1);
+  sense::Channel channel({.delay = 0.014}, 1);
   for (int k = 0; k < 10; ++k) {
     offer(channel, k * kStep, k);
     if (k >= 2) {
@@ -156,24 +157,24 @@ TEST(Channel, LosesItsShareOfSamples) {
   const double lost = 1.0 - static_cast<double>(values.size()) / kSamples;
   EXPECT_NEAR(lost, p, 5.0 * std::sqrt(p * (1.0 - p) / kSamples));
   EXPECT_TRUE(samples({.dropout = 1.0}, 1.0, 100).empty());
-  Channel channel({.dropout = p, .seed = 8}, 1);
+  sense::Channel channel({.dropout = p, .seed = 8}, 1);
   for (int k = 0; k < kSamples; ++k) offer(channel, k * kStep, 1.0);
   EXPECT_EQ(channel.samples(), kSamples);
   EXPECT_EQ(channel.missing(), kSamples - static_cast<std::int64_t>(values.size()));
 }
 
-const ChannelSettings kAll{.noise = 0.1,
-                           .bias = 0.2,
-                           .drift = 0.3,
-                           .quantum = 1e-3,
-                           .rate = 50.0,
-                           .delay = 0.07,
-                           .dropout = 0.2,
-                           .timeout = 0.2,
-                           .seed = 5};
+const sense::ChannelSettings kAll{.noise = 0.1,
+                                  .bias = 0.2,
+                                  .drift = 0.3,
+                                  .quantum = 1e-3,
+                                  .rate = 50.0,
+                                  .delay = 0.07,
+                                  .dropout = 0.2,
+                                  .timeout = 0.2,
+                                  .seed = 5};
 
 TEST(Channel, GoesOnFromItsMemoryBitForBit) {
-  Channel whole(kAll, 3), first(kAll, 3);
+  sense::Channel whole(kAll, 3), first(kAll, 3);
   const auto truth = [](int k) { return std::array{0.1 * k, std::sin(k), -1.0 * k}; };
   std::vector<double> memory;
   for (int k = 0; k < 57; ++k) {
@@ -182,7 +183,7 @@ TEST(Channel, GoesOnFromItsMemoryBitForBit) {
   }
   first.save(memory);
   for (const double number : memory) EXPECT_TRUE(std::isfinite(number));
-  Channel second(kAll, 3), copy = first;
+  sense::Channel second(kAll, 3), copy = first;
   std::span<const double> rest(memory);
   ASSERT_TRUE(second.load(rest));
   EXPECT_TRUE(rest.empty());
@@ -199,7 +200,7 @@ TEST(Channel, GoesOnFromItsMemoryBitForBit) {
   }
   EXPECT_EQ(second.missing(), whole.missing());
   second.restart();
-  Channel anew(kAll, 3);
+  sense::Channel anew(kAll, 3);
   for (int k = 0; k < 100; ++k) {
     second.offer(k * kStep, truth(k));
     anew.offer(k * kStep, truth(k));
@@ -208,7 +209,7 @@ TEST(Channel, GoesOnFromItsMemoryBitForBit) {
 }
 
 TEST(Channel, RefusesTheMemoryOfAnother) {
-  Channel three(kAll, 3), two(kAll, 2);
+  sense::Channel three(kAll, 3), two(kAll, 2);
   std::vector<double> memory;
   three.save(memory);
   std::span<const double> rest(memory);
@@ -219,7 +220,7 @@ TEST(Channel, RefusesTheMemoryOfAnother) {
 }
 
 TEST(Channel, SettlesWithAFreshSampleOfItsOwn) {
-  Channel channel({.noise = 0.1, .delay = 0.05, .dropout = 0.5, .seed = 2}, 1);
+  sense::Channel channel({.noise = 0.1, .delay = 0.05, .dropout = 0.5, .seed = 2}, 1);
   offer(channel, 0.0, 7.0);
   std::vector<double> values;
   for (int k = 0; k < 2000; ++k) {
@@ -237,7 +238,7 @@ TEST(Channel, SettlesWithAFreshSampleOfItsOwn) {
 }
 
 TEST(Channel, TakesRealSamplesInPlaceOfSimulatedOnes) {
-  Channel channel({.noise = 1.0, .delay = 0.02, .timeout = 0.03}, 2);
+  sense::Channel channel({.noise = 1.0, .delay = 0.02, .timeout = 0.03}, 2);
   const std::array truth{5.0, 5.0};
   channel.offer(0.0, truth);
   channel.receive(0.004, std::array{1.0, 2.0});
@@ -270,13 +271,13 @@ TEST(Channel, TakesRealSamplesInPlaceOfSimulatedOnes) {
 }
 
 TEST(Channel, RefusesWhatMeansNothing) {
-  for (const ChannelSettings& settings :
-       {ChannelSettings{.noise = -1.0}, ChannelSettings{.drift = -1.0},
-        ChannelSettings{.quantum = -1.0}, ChannelSettings{.rate = -1.0},
-        ChannelSettings{.delay = -1.0}, ChannelSettings{.dropout = 1.1},
-        ChannelSettings{.min = 1.0, .max = 1.0}, ChannelSettings{.timeout = 0.0},
-        ChannelSettings{.bias = std::nan("")}}) {
-    EXPECT_THROW(Channel(settings, 1), Error);
+  for (const sense::ChannelSettings& settings :
+       {sense::ChannelSettings{.noise = -1.0}, sense::ChannelSettings{.drift = -1.0},
+        sense::ChannelSettings{.quantum = -1.0}, sense::ChannelSettings{.rate = -1.0},
+        sense::ChannelSettings{.delay = -1.0}, sense::ChannelSettings{.dropout = 1.1},
+        sense::ChannelSettings{.min = 1.0, .max = 1.0}, sense::ChannelSettings{.timeout = 0.0},
+        sense::ChannelSettings{.bias = std::nan("")}}) {
+    EXPECT_THROW(sense::Channel(settings, 1), Error);
   }
 }
 

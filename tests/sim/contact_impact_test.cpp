@@ -7,18 +7,18 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/builder/contact_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/constraint/smooth_surface.hpp"
+#include "sinew/contact/contact_state.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/fem/fem_model.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/shapes.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/contact_settings.hpp"
-#include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/model_builder.hpp"
+#include "sinew/run/contact_reader.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 namespace sinew::sim {
 namespace {
@@ -44,10 +44,10 @@ struct Outcome {
 };
 
 std::unique_ptr<Simulation> thrown(const Throw& options) {
-  ModelBuilder builder(StepSettings{.time_step = options.time_step,
-                                    .integrator = options.integrator,
-                                    .spectral_radius = options.spectral_radius,
-                                    .method = Method::newton});
+  builder::ModelBuilder builder(model::StepSettings{.time_step = options.time_step,
+                                                    .integrator = options.integrator,
+                                                    .spectral_radius = options.spectral_radius,
+                                                    .method = model::Method::newton});
   fem::FemBodySettings body;
   body.name = "bar";
   const double side = kLength / options.cells;
@@ -66,13 +66,13 @@ std::unique_ptr<Simulation> thrown(const Throw& options) {
     }
   }
   builder.add_body<fem::FemBodyModel>(std::move(body));
-  ContactSettings wall;
+  builder::ContactSettings wall;
   wall.name = "wall";
   wall.surface = collision::Plane{{0.0, 0.0, -options.gap}, Vector3::UnitZ()};
   wall.nodes = mesh->node_sets.at("z_min");
   builder.add_contact(wall);
   auto simulation = std::make_unique<Simulation>(builder.build());
-  State state = simulation->state();
+  run::State state = simulation->state();
   const auto size = static_cast<std::size_t>(mesh->nodes.size());
   for (std::size_t i = 2; i < size; i += 3) state.bodies[0][size + i] = -kSpeed;
   simulation->restore(state);
@@ -159,7 +159,7 @@ TEST_P(Smooth, PhasesKeepTheSecondOrder) {
     Throw options{.time_step = time_step, .gap = 0.0, .integrator = GetParam()};
     const auto bar = thrown(options);
     Simulation& simulation = *bar;
-    State state = simulation.state();
+    run::State state = simulation.state();
     const auto size = static_cast<std::size_t>(simulation.body(0).positions().size());
     // Fundamental vibration of a bar whose end rests on the wall: no shock wave hits it.
     const double speed = std::sqrt(kModulus / kDensity);

@@ -7,16 +7,16 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include "sinew/builder/contact_settings.hpp"
+#include "sinew/contact/contact_state.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
-#include "sinew/sim/base_motion.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/contact_settings.hpp"
-#include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/signal.hpp"
+#include "sinew/model/base_motion.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/model/signal.hpp"
+#include "sinew/run/contact_reader.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "contact_robots.hpp"
 
@@ -31,9 +31,9 @@ struct Flight {
   collision::Shape surface;
   double speed = 1.0;       ///< m/s, of the block along x
   double time_step = 0.01;  ///< s
-  Method method = Method::newton;
+  model::Method method = model::Method::newton;
   Integrator integrator = Integrator::backward_euler;
-  std::optional<BaseMotion> motion;  ///< of the surface
+  std::optional<model::BaseMotion> motion;  ///< of the surface
 };
 
 /// A free block, 40 x 40 x 20 mm, centred over the origin, its bottom at z = 0; every node may
@@ -43,7 +43,7 @@ std::unique_ptr<Simulation> flying(const Flight& flight) {
   options.step.time_step = flight.time_step;
   options.step.method = flight.method;
   options.step.integrator = flight.integrator;
-  sim::ModelBuilder builder(options.step);
+  builder::ModelBuilder builder(options.step);
   fem::FemBodySettings body;
   body.name = "block";
   const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -51,7 +51,7 @@ std::unique_ptr<Simulation> flying(const Flight& flight) {
   body.mesh = mesh;
   body.elements.regions = {{{1e6, 0.3}, material::Law::corotational, 1000.0, {}}};
   builder.add_body<fem::FemBodyModel>(std::move(body));
-  ContactSettings contact;
+  builder::ContactSettings contact;
   contact.name = "obstacle";
   contact.surface = flight.surface;
   contact.friction = 0.3;
@@ -61,7 +61,7 @@ std::unique_ptr<Simulation> flying(const Flight& flight) {
   }
   builder.add_contact(contact);
   auto simulation = std::make_unique<Simulation>(builder.build());
-  State state = simulation->state();
+  run::State state = simulation->state();
   const auto size = static_cast<std::size_t>(mesh->nodes.size());
   for (std::size_t i = 0; i < size; i += 3) state.bodies[0][size + i] = flight.speed;
   simulation->restore(state);
@@ -84,7 +84,8 @@ TEST(Passing, BodiesThatMissFeelNothing) {
     for (const double phase : {0.0, 0.3, 0.7}) {
       const double x = 0.06 + phase * c.speed * c.time_step;
       for (const collision::Shape& surface : obstacles(x, c.below)) {
-        for (const Method method : {Method::one_linearisation, Method::newton}) {
+        for (const model::Method method :
+             {model::Method::one_linearisation, model::Method::newton}) {
           const auto flown = flying(
               {.surface = surface, .speed = c.speed, .time_step = c.time_step, .method = method});
           Simulation& simulation = *flown;
@@ -105,8 +106,8 @@ TEST(Passing, BodiesThatMissFeelNothing) {
 // The same relative motion, made by the surface: it passes a body at rest.
 TEST(Passing, SurfacesThatMissAreNotFelt) {
   for (const collision::Shape& surface : obstacles(0.06, 0.001)) {
-    BaseMotion motion;
-    motion.translation[0] = Signal::ramp({0.0, -0.12, 0.0, 0.12});
+    model::BaseMotion motion;
+    motion.translation[0] = model::Signal::ramp({0.0, -0.12, 0.0, 0.12});
     const auto flown = flying({.surface = surface, .speed = 0.0, .motion = motion});
     Simulation& simulation = *flown;
     for (int k = 0; k < 13; ++k) {
@@ -137,19 +138,20 @@ TEST(Passing, NothingGoesThroughASurface) {
       const collision::Sphere ball{{x, 0.0, 0.01}, radius};
       const collision::Capsule bar{{x, -0.3, 0.01}, {x, 0.3, 0.01}, radius};
       for (const collision::Shape& surface : {collision::Shape(ball), collision::Shape(bar)}) {
-        for (const Method method : {Method::one_linearisation, Method::newton}) {
+        for (const model::Method method :
+             {model::Method::one_linearisation, model::Method::newton}) {
           const auto flown = flying({.surface = surface, .speed = speed, .method = method});
           Simulation& simulation = *flown;
           const double start = simulation.energies().kinetic;
           bool touched = false;
           for (int k = 0; k < 4; ++k) {
             simulation.step(OnFailure::keep_going);  // one linearisation leaves up to 36 %
-            const ContactResultant resultant = simulation.contacts().resultant(0);
+            const contact::ContactResultant resultant = simulation.contacts().resultant(0);
             EXPECT_GE(resultant.smallest_gap, -1e-9);
             // Allows a fraction of a millimetre of slip. Later, or in later Newton iterations, the
             // front may slip off sideways, since a ball in front of its middle gives no stable
             // rest.
-            if (!touched && method == Method::one_linearisation) {
+            if (!touched && method == model::Method::one_linearisation) {
               EXPECT_LT(front(simulation), x - radius + 1e-4);
             }
             // In a subdivided step it may touch and slip off.
@@ -170,7 +172,7 @@ TEST(Passing, NothingGoesThroughASurface) {
 TEST(Passing, ImpactsAreThoseOfThePlaceWhereTheyHappen) {
   const collision::Sphere ball{{0.045, 0.0, -0.003}, 0.005};
   for (const double time_step : {1e-3, 4e-3, 1e-2}) {
-    for (const Method method : {Method::one_linearisation, Method::newton}) {
+    for (const model::Method method : {model::Method::one_linearisation, model::Method::newton}) {
       const auto flown =
           flying({.surface = ball, .speed = 1.0, .time_step = time_step, .method = method});
       Simulation& simulation = *flown;
@@ -180,14 +182,14 @@ TEST(Passing, ImpactsAreThoseOfThePlaceWhereTheyHappen) {
       }
       double most = 0.0;
       Vector3 normal = Vector3::Zero();
-      for (const ContactPoint& point : simulation.contacts().points(0)) {
+      for (const contact::ContactPoint& point : simulation.contacts().points(0)) {
         if (point.normal_force <= most) continue;
         most = point.normal_force;
         normal = point.normal;
       }
       // Newton's method takes the tangent planes from the paths predicted by its last iterate,
       // which the impact bends.
-      const double bent = method == Method::newton ? 40.0 * time_step : 1e-6;
+      const double bent = method == model::Method::newton ? 40.0 * time_step : 1e-6;
       EXPECT_LT((normal - Vector3(-0.8, 0.0, 0.6)).norm(), bent) << time_step;
     }
   }
@@ -201,7 +203,7 @@ TEST(Passing, RunsGoOnFromASavedStateBitForBit) {
     const auto whole = flying(own), first = flying(own), second = flying(own);
     for (int k = 0; k < 12; ++k) whole->step();
     for (int k = 0; k < 3; ++k) first->step();
-    State state = first->state();
+    run::State state = first->state();
     second->restore(state);
     for (int k = 0; k < 9; ++k) second->step();
     EXPECT_EQ(second->state().hash(), whole->state().hash());
@@ -216,7 +218,7 @@ std::size_t allocated() {
 
 // Memory of one more simulation of a plate, all of whose nodes may touch a plane far below.
 std::size_t memory_of_a_simulation(bool contact) {
-  sim::ModelBuilder builder({.time_step = 0.01, .integrator = Integrator::backward_euler});
+  builder::ModelBuilder builder({.time_step = 0.01, .integrator = Integrator::backward_euler});
   fem::FemBodySettings body;
   body.name = "plate";
   const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -225,7 +227,7 @@ std::size_t memory_of_a_simulation(bool contact) {
   body.elements.regions = {{{1e6, 0.3}, material::Law::corotational, 1000.0, {}}};
   builder.add_body<fem::FemBodyModel>(std::move(body));
   if (contact) {
-    ContactSettings floor;
+    builder::ContactSettings floor;
     floor.name = "floor";
     floor.surface = collision::Plane{{0.0, 0.0, -1.0}, Vector3::UnitZ()};
     for (Eigen::Index n = 0; n < mesh->nodes.rows(); ++n) {

@@ -5,13 +5,13 @@
 #include <memory>
 #include <utility>
 
+#include "sinew/builder/contact_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/constraint/smooth_surface.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/shapes.hpp"
-#include "sinew/sim/contact_settings.hpp"
-#include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::testing {
@@ -21,7 +21,7 @@ inline constexpr double kGravity = 9.81;
 /// A block of rubber, 40 x 40 x 20 mm, on or above the plane z = 0. The plane is inclined by
 /// rotating gravity, so that x points downhill.
 struct BlockOptions {
-  sim::StepSettings step{.time_step = 1e-3, .integrator = mechanics::Integrator::backward_euler};
+  model::StepSettings step{.time_step = 1e-3, .integrator = mechanics::Integrator::backward_euler};
   double angle = 0.0;  ///< rad
   double friction = 0.5;
   double height = 0.0;   ///< m, initial height of its bottom
@@ -38,8 +38,8 @@ inline constexpr double kBlockDensity = 1000.0;
 inline constexpr double kBlockWeight = kBlockDensity * 0.04 * 0.04 * 0.02 * kGravity;
 
 /// A builder with the block as body 0 and the floor as contact 0.
-inline sim::ModelBuilder block_on_plane(const BlockOptions& options) {
-  sim::ModelBuilder builder(options.step);
+inline builder::ModelBuilder block_on_plane(const BlockOptions& options) {
+  builder::ModelBuilder builder(options.step);
   fem::FemBodySettings body;
   body.name = "block";
   const auto mesh =
@@ -55,7 +55,7 @@ inline sim::ModelBuilder block_on_plane(const BlockOptions& options) {
   body.factorisation = options.factorisation;
   builder.add_body<fem::FemBodyModel>(std::move(body));
   if (options.floor) {
-    sim::ContactSettings floor;
+    builder::ContactSettings floor;
     floor.name = "floor";
     floor.surface = collision::Plane{};
     floor.nodes = mesh->node_sets.at("z_min");

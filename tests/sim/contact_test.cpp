@@ -6,25 +6,25 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/builder/cable_settings.hpp"
+#include "sinew/builder/contact_settings.hpp"
+#include "sinew/builder/force_settings.hpp"
 #include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/configuration.hpp"
+#include "sinew/contact/contact_state.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/base_motion.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/model/signal.hpp"
 #include "sinew/qp/cone_solver.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/base_motion.hpp"
-#include "sinew/sim/cable_settings.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/contact_settings.hpp"
-#include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/force_settings.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/signal.hpp"
+#include "sinew/run/contact_reader.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/world/world.hpp"
 
 #include "contact_robots.hpp"
 #include "support/allocation_guard.hpp"
@@ -47,7 +47,7 @@ TEST(Contact, BlockSticksBelowTheFrictionAngle) {
     for (int k = 0; k < 500; ++k) simulation.step();
     const Vector3 after = simulation.body(0).positions().colwise().mean();
     EXPECT_LT((after - before).norm(), 1e-9) << share;
-    const ContactResultant resultant = simulation.contacts().resultant(0);
+    const contact::ContactResultant resultant = simulation.contacts().resultant(0);
     EXPECT_NEAR(resultant.normal_force, kBlockWeight * std::cos(share * critical),
                 1e-6 * kBlockWeight);
     EXPECT_NEAR(resultant.force[0], -kBlockWeight * std::sin(share * critical),
@@ -66,7 +66,7 @@ TEST(Contact, BlockSlidesAsCoulombSaysAboveIt) {
     const double acceleration = (mean_velocity(simulation)[0] - before) / 0.4;
     const double expected = kGravity * (std::sin(angle) - 0.5 * std::cos(angle));
     EXPECT_NEAR(acceleration, expected, 1e-3 * expected) << angle;
-    const ContactResultant resultant = simulation.contacts().resultant(0);
+    const contact::ContactResultant resultant = simulation.contacts().resultant(0);
     EXPECT_EQ(resultant.sticking, 0);
     EXPECT_NEAR(resultant.friction_force, 0.5 * resultant.normal_force, 1e-9 * kBlockWeight);
   }
@@ -96,13 +96,13 @@ TEST(Contact, RestingForcesDoNotDependOnTheTimeStep) {
     }
     EXPECT_NEAR(sum, kBlockWeight, 1e-8 * kBlockWeight);
     if (first.empty()) {
-      for (const ContactPoint& point : points) first.push_back(point.normal_force);
+      for (const contact::ContactPoint& point : points) first.push_back(point.normal_force);
     }
   }
 }
 
 TEST(Contact, ImpactTakesEnergyAndNeverGivesAny) {
-  for (const Method method : {Method::one_linearisation, Method::newton}) {
+  for (const model::Method method : {model::Method::one_linearisation, model::Method::newton}) {
     for (const double friction : {0.0, 0.5}) {
       BlockOptions options{.angle = 0.3, .friction = friction, .height = 0.005, .modulus = 1e5};
       options.damping = {};
@@ -145,17 +145,17 @@ TEST(Contact, SecondOrderStepsDoNotGainEnergyInAnImpact) {
 // backward Euler.
 TEST(Contact, LedgerOfACarriedBlock) {
   BlockOptions options{.friction = 0.5, .floor = false};
-  ModelBuilder builder = block_on_plane(options);
-  ContactSettings belt;
+  builder::ModelBuilder builder = block_on_plane(options);
+  builder::ContactSettings belt;
   belt.name = "belt";
   belt.surface = collision::Plane{};
   belt.friction = 0.5;
   const auto mesh =
       mesh::block({.corner = {-0.02, -0.02, 0.0}, .size = {0.04, 0.04, 0.02}, .cells = {4, 4, 2}});
   belt.nodes = mesh.node_sets.at("z_min");
-  BaseMotion motion;
-  motion.translation = {Signal::ramp({0.0, 0.2, 0.0, 1.0}), Signal::constant(0.0),
-                        Signal::constant(0.0)};
+  model::BaseMotion motion;
+  motion.translation = {model::Signal::ramp({0.0, 0.2, 0.0, 1.0}), model::Signal::constant(0.0),
+                        model::Signal::constant(0.0)};
   belt.motion = motion;
   builder.add_contact(belt);
   Simulation simulation(builder.build());
@@ -183,10 +183,11 @@ mesh::Mesh block_mesh(int cells) {
 }
 
 /// The block with fixed bottom, and a ball that is lowered onto its top quasi-statically.
-std::shared_ptr<const Model> pressed_by_a_ball(Method method, double friction, double depth) {
+std::shared_ptr<const model::Model> pressed_by_a_ball(model::Method method, double friction,
+                                                      double depth) {
   BlockOptions options{.floor = false};
   options.step = {.time_step = 0.1, .method = method};
-  ModelBuilder builder(options.step);
+  builder::ModelBuilder builder(options.step);
   fem::FemBodySettings body;
   body.name = "block";
   const auto mesh = std::make_shared<const mesh::Mesh>(block_mesh(8));
@@ -194,26 +195,26 @@ std::shared_ptr<const Model> pressed_by_a_ball(Method method, double friction, d
   body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
   body.elements.fixed_nodes = mesh->node_sets.at("z_min");
   builder.add_body<fem::FemBodyModel>(std::move(body));
-  ContactSettings ball;
+  builder::ContactSettings ball;
   ball.name = "ball";
   ball.surface = collision::Sphere{Vector3(0.001, 0.002, 0.02 + 0.03), 0.03};
   ball.nodes = mesh->node_sets.at("z_max");
   ball.friction = friction;
-  BaseMotion motion;
-  motion.translation[2] = Signal::ramp({0.0, -depth, 0.0, 1.0});
+  model::BaseMotion motion;
+  motion.translation[2] = model::Signal::ramp({0.0, -depth, 0.0, 1.0});
   ball.motion = motion;
   builder.add_contact(ball);
   return builder.build();
 }
 
 TEST(Contact, BallPressedIntoABlockIsNotPenetrated) {
-  for (const Method method : {Method::one_linearisation, Method::newton}) {
+  for (const model::Method method : {model::Method::one_linearisation, model::Method::newton}) {
     for (const double friction : {0.0, 0.6}) {
       Simulation simulation(pressed_by_a_ball(method, friction, 0.004));
       for (int k = 0; k < 10; ++k) simulation.step();
       simulation.solve_static();
       int closed = 0;
-      for (const ContactPoint& point : simulation.contacts().points(0)) {
+      for (const contact::ContactPoint& point : simulation.contacts().points(0)) {
         EXPECT_GE(point.gap, -1e-9 * 0.06);
         if (point.normal_force > 0.0) {
           ++closed;
@@ -228,10 +229,10 @@ TEST(Contact, BallPressedIntoABlockIsNotPenetrated) {
 
 // Fast and slow paths give the same static forces, since frictionless contact has no history.
 TEST(Contact, FrictionlessStaticsDoNotDependOnTheWay) {
-  Simulation slow(pressed_by_a_ball(Method::newton, 0.0, 0.004));
+  Simulation slow(pressed_by_a_ball(model::Method::newton, 0.0, 0.004));
   for (int k = 0; k < 10; ++k) slow.step();
   slow.solve_static();
-  Simulation fast(pressed_by_a_ball(Method::one_linearisation, 0.0, 0.004));
+  Simulation fast(pressed_by_a_ball(model::Method::one_linearisation, 0.0, 0.004));
   for (int k = 0; k < 10; ++k) fast.step();
   fast.solve_static();
   const Vector3 expected = slow.contacts().resultant(0).force;
@@ -244,27 +245,27 @@ TEST(Contact, TwoCapsulesHoldABlockByFriction) {
     BlockOptions options{.floor = false};
     options.step.time_step = 2e-3;
     options.modulus = 1e5;
-    ModelBuilder builder = block_on_plane(options);
+    builder::ModelBuilder builder = block_on_plane(options);
     const mesh::Mesh mesh = block_mesh(4);
     for (const double side : {-1.0, 1.0}) {
-      ContactSettings finger;
+      builder::ContactSettings finger;
       finger.name = side < 0.0 ? "left" : "right";
       const double x = side * (0.02 + 0.008);
       finger.surface = collision::Capsule{{x, -0.03, 0.01}, {x, 0.03, 0.01}, 0.008};
       finger.nodes = mesh.node_sets.at(side < 0.0 ? "x_min" : "x_max");
       finger.friction = friction;
-      BaseMotion motion;
+      model::BaseMotion motion;
       // A deep indentation alone would support the block.
       const double depth = friction > 0.5 ? 3e-3 : 1e-4;
-      motion.translation[0] = Signal::ramp({0.0, -side * depth, 0.0, 0.02});
+      motion.translation[0] = model::Signal::ramp({0.0, -side * depth, 0.0, 0.02});
       finger.motion = motion;
       builder.add_contact(finger);
     }
     Simulation simulation(builder.build());
     for (int k = 0; k < 300; ++k) simulation.step();
     const double fallen = -mean_velocity(simulation)[2];
-    const ContactResultant left = simulation.contacts().resultant(0),
-                           right = simulation.contacts().resultant(1);
+    const contact::ContactResultant left = simulation.contacts().resultant(0),
+                                    right = simulation.contacts().resultant(1);
     if (friction > 0.5) {
       EXPECT_NEAR(left.force[2] + right.force[2], kBlockWeight, 1e-3 * kBlockWeight);
       EXPECT_NEAR(left.force[0], -right.force[0], 1e-3 * left.normal_force);
@@ -280,8 +281,8 @@ TEST(Contact, ActuatorsAndContactsShareOneProblem) {
   // A clamped block pushed down by a force with a limited stroke: the floor takes the rest.
   for (const double pushed : {0.5, 20.0}) {
     BlockOptions options{.height = 1e-3, .modulus = 1e5};
-    options.step = {.time_step = 0.1, .method = Method::newton};
-    ModelBuilder builder(options.step);
+    options.step = {.time_step = 0.1, .method = model::Method::newton};
+    builder::ModelBuilder builder(options.step);
     fem::FemBodySettings body;
     body.name = "block";
     const auto mesh = std::make_shared<const mesh::Mesh>(block_mesh(4));
@@ -289,24 +290,24 @@ TEST(Contact, ActuatorsAndContactsShareOneProblem) {
     body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
     body.elements.fixed_nodes = mesh->node_sets.at("x_min");
     builder.add_body<fem::FemBodyModel>(std::move(body));
-    ContactSettings floor;
+    builder::ContactSettings floor;
     floor.name = "floor";
     floor.surface = collision::Plane{{0.0, 0.0, -0.0005}, Vector3::UnitZ()};
     floor.nodes = mesh->node_sets.at("z_min");
     floor.friction = 0.3;
     builder.add_contact(floor);
-    ForceSettings push;
+    builder::ForceSettings push;
     push.name = "push";
     push.point = {0.02, 0.0, 0.02};
     push.direction = -Vector3::UnitZ();
     push.displacement.max = 0.004;
-    push.command = {CommandKind::effort, Signal::constant(pushed)};
+    push.command = {model::CommandKind::effort, model::Signal::constant(pushed)};
     builder.add_force(push);
     Simulation simulation(builder.build());
     for (int k = 0; k < 5; ++k) simulation.step();
     EXPECT_LT(simulation.report().violation, 1e-9);
-    const ContactResultant resultant = simulation.contacts().resultant(0);
-    const ActuatorState& state = simulation.actuator(0);
+    const contact::ContactResultant resultant = simulation.contacts().resultant(0);
+    const model::ActuatorState& state = simulation.actuator(0);
     EXPECT_GE(resultant.smallest_gap, -1e-12);
     EXPECT_GT(resultant.normal_force, 0.0);
     if (pushed < 1.0) {
@@ -321,8 +322,8 @@ TEST(Contact, ActuatorsAndContactsShareOneProblem) {
 
 /// A block with one end fixed that a cable with friction bends towards a floor `below` it.
 Simulation bent_to_a_floor(double below, bool floor, bool led) {
-  ModelBuilder builder(
-      StepSettings{.time_step = 0.01, .method = Method::newton, .tolerance = 1e-10});
+  builder::ModelBuilder builder(
+      model::StepSettings{.time_step = 0.01, .method = model::Method::newton, .tolerance = 1e-10});
   fem::FemBodySettings body;
   body.name = "block";
   const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -331,16 +332,16 @@ Simulation bent_to_a_floor(double below, bool floor, bool led) {
   body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
   builder.add_body<fem::FemBodyModel>(std::move(body));
-  CableSettings cable;
+  builder::CableSettings cable;
   cable.name = "rope";
   cable.friction = 0.3;
   cable.points.resize(4, 3);
   cable.points << 0.0, 0.01, 0.004, 0.04, 0.01, 0.003, 0.07, 0.01, 0.004, 0.095, 0.01, 0.004;
-  cable.command = {led ? CommandKind::motion : CommandKind::effort,
-                   Signal::ramp({0.0, led ? 0.004 : 0.5, 0.0, 0.1})};
+  cable.command = {led ? model::CommandKind::motion : model::CommandKind::effort,
+                   model::Signal::ramp({0.0, led ? 0.004 : 0.5, 0.0, 0.1})};
   builder.add_cable(cable);
   if (floor) {
-    ContactSettings contact;
+    builder::ContactSettings contact;
     contact.name = "floor";
     contact.surface = collision::Plane{{0.0, 0.0, -below}};
     contact.nodes = mesh->node_sets.at("z_min");
@@ -363,7 +364,7 @@ TEST(Contact, CablesWithFrictionAndContactsShareOneProblem) {
     EXPECT_LT((far.body(0).positions() - free.body(0).positions()).cwiseAbs().maxCoeff(), 1e-9);
     EXPECT_LT(far.body(0).positions().col(2).minCoeff(), -0.004);
     EXPECT_EQ(far.contacts().resultant(0).normal_force, 0.0);
-    const ContactResultant resultant = near.contacts().resultant(0);
+    const contact::ContactResultant resultant = near.contacts().resultant(0);
     EXPECT_GE(resultant.smallest_gap, -1e-9);
     EXPECT_GT(resultant.normal_force, 0.01);
     // Along the cable, the tension changes by no more than friction allows.
@@ -379,14 +380,14 @@ TEST(Contact, CablesWithFrictionAndContactsShareOneProblem) {
 
 /// A block that falls onto the floor and slides; all its nodes may touch, or only those of its
 /// bottom.
-Simulation sliding(bool whole, Method method) {
+Simulation sliding(bool whole, model::Method method) {
   BlockOptions options{.angle = 0.6, .height = 2e-3, .floor = false};
   options.step.method = method;
-  ModelBuilder builder = block_on_plane(options);
+  builder::ModelBuilder builder = block_on_plane(options);
   const mesh::Mesh mesh = mesh::block({.corner = {-0.02, -0.02, options.height},
                                        .size = {0.04, 0.04, 0.02},
                                        .cells = options.cells});
-  ContactSettings floor;
+  builder::ContactSettings floor;
   floor.name = "floor";
   floor.surface = collision::Plane{};
   floor.friction = 0.5;
@@ -402,7 +403,7 @@ Simulation sliding(bool whole, Method method) {
 }
 
 TEST(Contact, PointsThatStayAwayChangeNothing) {
-  for (const Method method : {Method::one_linearisation, Method::newton}) {
+  for (const model::Method method : {model::Method::one_linearisation, model::Method::newton}) {
     Simulation whole = sliding(true, method), bottom = sliding(false, method);
     int left_out = 0;
     for (int k = 0; k < 150; ++k) {
@@ -421,9 +422,9 @@ TEST(Contact, PointsThatStayAwayChangeNothing) {
 
 // One step carries the block across a gap much larger than the distance that counts as near.
 TEST(Contact, PointsThatArriveUnexpectedlyAreTakenIn) {
-  for (const Method method : {Method::one_linearisation, Method::newton}) {
+  for (const model::Method method : {model::Method::one_linearisation, model::Method::newton}) {
     for (const double pushed : {0.05, 1.5}) {
-      ModelBuilder builder(StepSettings{.time_step = 0.1, .method = method});
+      builder::ModelBuilder builder(model::StepSettings{.time_step = 0.1, .method = method});
       fem::FemBodySettings body;
       body.name = "block";
       const auto mesh = std::make_shared<const mesh::Mesh>(block_mesh(4));
@@ -431,21 +432,21 @@ TEST(Contact, PointsThatArriveUnexpectedlyAreTakenIn) {
       body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
       body.elements.fixed_nodes = mesh->node_sets.at("x_min");
       builder.add_body<fem::FemBodyModel>(std::move(body));
-      ContactSettings floor;
+      builder::ContactSettings floor;
       floor.name = "floor";
       floor.surface = collision::Plane{{0.0, 0.0, -0.003}};
       floor.nodes = mesh->node_sets.at("z_min");
       floor.friction = 0.3;
       builder.add_contact(floor);
-      ForceSettings push;
+      builder::ForceSettings push;
       push.name = "push";
       push.point = {0.02, 0.0, 0.02};
       push.direction = -Vector3::UnitZ();
-      push.command = {CommandKind::effort, Signal::constant(pushed)};
+      push.command = {model::CommandKind::effort, model::Signal::constant(pushed)};
       builder.add_force(push);
       Simulation simulation(builder.build());
       simulation.step(OnFailure::keep_going);  // one linearisation leaves 42 % of the forces
-      const ContactResultant resultant = simulation.contacts().resultant(0);
+      const contact::ContactResultant resultant = simulation.contacts().resultant(0);
       EXPECT_GE(resultant.smallest_gap, -1e-9 * 0.06);
       if (pushed < 1.0) {
         EXPECT_EQ(resultant.normal_force, 0.0);
@@ -460,7 +461,7 @@ TEST(Contact, PointsThatArriveUnexpectedlyAreTakenIn) {
 
 TEST(Contact, StepsDoNotAllocate) {
   if (!sinew::testing::counts_allocations()) GTEST_SKIP();
-  Simulation simulation = sliding(true, Method::one_linearisation);
+  Simulation simulation = sliding(true, model::Method::one_linearisation);
   for (int k = 0; k < 60; ++k) simulation.step();
   const long before = sinew::testing::allocations();
   for (int k = 0; k < 60; ++k) simulation.step();
@@ -474,7 +475,7 @@ TEST(Contact, RunsGoOnFromASavedStateBitForBit) {
   Simulation whole(model), first(model), second(model);
   for (int k = 0; k < 60; ++k) whole.step();
   for (int k = 0; k < 30; ++k) first.step();
-  State state = first.state();
+  run::State state = first.state();
   second.restore(state);
   for (int k = 0; k < 30; ++k) second.step();
   EXPECT_EQ(second.state().hash(), whole.state().hash());
@@ -484,15 +485,15 @@ TEST(Contact, RunsGoOnFromASavedStateBitForBit) {
 }
 
 /// The fingerprint of a block with one modified contact.
-std::uint64_t fingerprint(const std::function<void(ContactSettings&)>& change) {
-  ModelBuilder builder = block_on_plane({.floor = false});
-  ContactSettings contact;
+std::uint64_t fingerprint(const std::function<void(builder::ContactSettings&)>& change) {
+  builder::ModelBuilder builder = block_on_plane({.floor = false});
+  builder::ContactSettings contact;
   contact.name = "tool";
   contact.surface = collision::Capsule{{0.0, 0.0, -0.02}, {0.01, 0.0, -0.02}, 0.01};
   contact.points = Points::Zero(2, 3);
   contact.points.row(1) << 0.01, 0.0, 0.0;
-  BaseMotion motion;
-  motion.translation[2] = Signal::ramp({0.0, 0.001, 0.0, 1.0});
+  model::BaseMotion motion;
+  motion.translation[2] = model::Signal::ramp({0.0, 0.001, 0.0, 1.0});
   contact.motion = motion;
   change(contact);
   builder.add_contact(contact);
@@ -500,49 +501,53 @@ std::uint64_t fingerprint(const std::function<void(ContactSettings&)>& change) {
 }
 
 TEST(Contact, FingerprintsTellApartWhatMovesDifferently) {
-  using Change = std::function<void(ContactSettings&)>;
-  const auto capsule = [](ContactSettings& c) -> collision::Capsule& {
+  using Change = std::function<void(builder::ContactSettings&)>;
+  const auto capsule = [](builder::ContactSettings& c) -> collision::Capsule& {
     return std::get<collision::Capsule>(c.surface);
   };
   const std::vector<Change> changes = {
-      [](ContactSettings&) {},
-      [](ContactSettings& c) { c.friction = 0.25; },
-      [&](ContactSettings& c) { capsule(c).radius = 0.011; },
-      [&](ContactSettings& c) { capsule(c).from[1] = 0.001; },
-      [&](ContactSettings& c) { capsule(c).to[1] = 0.001; },
-      [](ContactSettings& c) { c.points.row(1) << 0.011, 0.0, 0.0; },
-      [](ContactSettings& c) { c.points.conservativeResize(1, 3); },
-      [](ContactSettings& c) { c.motion.reset(); },
-      [](ContactSettings& c) {
-        c.motion->translation[2] = Signal::ramp({0.0, 0.001, 0.0, 2.0});
+      [](builder::ContactSettings&) {},
+      [](builder::ContactSettings& c) { c.friction = 0.25; },
+      [&](builder::ContactSettings& c) { capsule(c).radius = 0.011; },
+      [&](builder::ContactSettings& c) { capsule(c).from[1] = 0.001; },
+      [&](builder::ContactSettings& c) { capsule(c).to[1] = 0.001; },
+      [](builder::ContactSettings& c) { c.points.row(1) << 0.011, 0.0, 0.0; },
+      [](builder::ContactSettings& c) { c.points.conservativeResize(1, 3); },
+      [](builder::ContactSettings& c) { c.motion.reset(); },
+      [](builder::ContactSettings& c) {
+        c.motion->translation[2] = model::Signal::ramp({0.0, 0.001, 0.0, 2.0});
       },
-      [](ContactSettings& c) { c.motion->translation[2] = Signal::constant(0.001); },
-      [](ContactSettings& c) {
-        c.motion->translation[2] = Signal::sine({0.0, 0.001, 1.0, 0.0});
+      [](builder::ContactSettings& c) {
+        c.motion->translation[2] = model::Signal::constant(0.001);
       },
-      [](ContactSettings& c) {
-        c.motion->translation[2] = Signal::steps({{0.0, 0.001}});
+      [](builder::ContactSettings& c) {
+        c.motion->translation[2] = model::Signal::sine({0.0, 0.001, 1.0, 0.0});
       },
-      [](ContactSettings& c) { c.motion->translation[2] = Signal::sampled({0.0}, {0.001}); },
-      [](ContactSettings& c) { c.motion->axis = Vector3::UnitX(); },
-      [](ContactSettings& c) { c.motion->centre[0] = 0.001; },
-      [](ContactSettings& c) { c.motion->angle = Signal::constant(0.1); },
-      [](ContactSettings& c) {
+      [](builder::ContactSettings& c) {
+        c.motion->translation[2] = model::Signal::steps({{0.0, 0.001}});
+      },
+      [](builder::ContactSettings& c) {
+        c.motion->translation[2] = model::Signal::sampled({0.0}, {0.001});
+      },
+      [](builder::ContactSettings& c) { c.motion->axis = Vector3::UnitX(); },
+      [](builder::ContactSettings& c) { c.motion->centre[0] = 0.001; },
+      [](builder::ContactSettings& c) { c.motion->angle = model::Signal::constant(0.1); },
+      [](builder::ContactSettings& c) {
         c.surface = collision::Plane{{0.0, 0.0, -0.03}};
       },
-      [](ContactSettings& c) {
+      [](builder::ContactSettings& c) {
         c.surface = collision::Plane{{0.0, 0.0, -0.04}};
       },
-      [](ContactSettings& c) {
+      [](builder::ContactSettings& c) {
         c.surface = collision::Plane{{0.0, 0.0, -0.03}, {0.0, 0.1, 1.0}};
       },
-      [](ContactSettings& c) {
+      [](builder::ContactSettings& c) {
         c.surface = collision::Sphere{{0.0, 0.0, -0.03}, 0.01};
       },
-      [](ContactSettings& c) {
+      [](builder::ContactSettings& c) {
         c.surface = collision::Sphere{{0.0, 0.0, -0.04}, 0.01};
       },
-      [](ContactSettings& c) {
+      [](builder::ContactSettings& c) {
         c.surface = collision::Sphere{{0.0, 0.0, -0.03}, 0.02};
       },
   };

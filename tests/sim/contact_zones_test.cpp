@@ -1,4 +1,4 @@
-#include "sinew/sim/contact_zones.hpp"
+#include "sinew/contact/contact_zones.hpp"
 
 #include <cmath>
 #include <vector>
@@ -6,13 +6,13 @@
 #include <gtest/gtest.h>
 
 #include "sinew/constraint/contact.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/row_numbering.hpp"
+#include "sinew/contact/contact_state.hpp"
+#include "sinew/contact/row_numbering.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/contact_reader.hpp"
+#include "sinew/run/step_report.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/step_report.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/world/world.hpp"
 
 #include "contact_robots.hpp"
 #include "support/allocation_guard.hpp"
@@ -32,7 +32,7 @@ BlockOptions options(double aggregate, double friction, double angle = 0.0) {
 
 std::vector<double> normal_forces(const Simulation& simulation) {
   std::vector<double> forces;
-  for (const ContactPoint& point : simulation.contacts().points(0)) {
+  for (const contact::ContactPoint& point : simulation.contacts().points(0)) {
     forces.push_back(point.normal_force);
   }
   return forces;
@@ -69,7 +69,7 @@ TEST(ContactZones, ABlockSlidesAsCoulombSays) {
   const double expected =
       sinew::testing::kGravity * (std::sin(angle) - friction * std::cos(angle)) * 0.1;
   EXPECT_NEAR(gained, expected, 5e-3 * expected);
-  for (const ContactPoint& point : simulation.contacts().points(0)) {
+  for (const contact::ContactPoint& point : simulation.contacts().points(0)) {
     EXPECT_LE(point.friction_force.norm(), friction * point.normal_force + 1e-12);
   }
 }
@@ -78,7 +78,7 @@ TEST(ContactZones, ABlockSlidesAsCoulombSays) {
 TEST(ContactZones, ComplianceIsThatOfTheSpreadForces) {
   Simulation simulation(block_on_plane(options(kZone, 0.5, 0.2)).build());
   for (int k = 0; k < 20; ++k) simulation.step();
-  World& world = simulation.world();
+  world::World& world = simulation.world();
   const MatrixX w = world.problem().compliance;
   const auto rows = static_cast<int>(w.rows());
   std::vector<double> unit(simulation.efforts().size(), 0.0);

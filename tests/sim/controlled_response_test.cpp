@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/model/signal.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/linearisation.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "robots.hpp"
 
@@ -20,14 +20,16 @@ namespace {
 using sinew::testing::beam;
 using sinew::testing::tension;
 
-Command length(double metres) { return {CommandKind::motion, Signal::constant(metres)}; }
+model::Command length(double metres) {
+  return {model::CommandKind::motion, model::Signal::constant(metres)};
+}
 
 // Two cables are controlled; the others keep their commanded tensions.
 TEST(ControlledResponse, OfEffortsIsTheCompliance) {
   Simulation simulation(beam());
   for (int k = 0; k < 4; ++k) simulation.command(k, tension(1.0 + k));
   simulation.solve_static();
-  const State before = simulation.state();
+  const run::State before = simulation.state();
   const std::vector<int> controlled{2, 0};
   const ControlledResponse response = controlled_response(simulation, controlled);
   EXPECT_EQ(simulation.state(), before);

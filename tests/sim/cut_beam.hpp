@@ -6,17 +6,17 @@
 #include <optional>
 #include <string>
 
+#include "sinew/builder/cable_settings.hpp"
+#include "sinew/builder/contact_settings.hpp"
+#include "sinew/builder/effector_settings.hpp"
+#include "sinew/builder/force_settings.hpp"
+#include "sinew/builder/joint_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/constraint/smooth_surface.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mesh/shapes.hpp"
-#include "sinew/sim/cable_settings.hpp"
-#include "sinew/sim/contact_settings.hpp"
-#include "sinew/sim/effector_settings.hpp"
-#include "sinew/sim/force_settings.hpp"
-#include "sinew/sim/joint_settings.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/model_builder.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::testing {
@@ -25,7 +25,7 @@ inline constexpr double kBeamLength = 0.1;  // m
 inline constexpr double kBeamGravity = 9.81;
 
 struct CutBeam {
-  sim::StepSettings step;
+  model::StepSettings step;
   bool cut = true;  ///< in the middle, into two bodies
   int finer = 1;    ///< ratio of the cells across the second part to those across the first
   Vector3 gravity{0.0, 0.0, -kBeamGravity};
@@ -45,7 +45,7 @@ inline std::shared_ptr<const mesh::Mesh> beam_part(double from, double to, int c
                    .cells = {cells, 2 * across, 2 * across}}));
 }
 
-inline int add_part(sim::ModelBuilder& builder, const char* name,
+inline int add_part(builder::ModelBuilder& builder, const char* name,
                     const std::shared_ptr<const mesh::Mesh>& mesh, const CutBeam& options,
                     bool fixed, const char* end) {
   fem::FemBodySettings body;
@@ -62,8 +62,8 @@ inline int add_part(sim::ModelBuilder& builder, const char* name,
 }
 
 /// Both parts have even numbers of cells along x, so that they split like those of the whole beam.
-inline std::shared_ptr<const sim::Model> cut_beam(const CutBeam& options) {
-  sim::ModelBuilder builder(options.step);
+inline std::shared_ptr<const model::Model> cut_beam(const CutBeam& options) {
+  builder::ModelBuilder builder(options.step);
   const double middle = 0.5 * kBeamLength;
   const auto whole = beam_part(0.0, kBeamLength, 12, 1);
   const auto lower = options.cut ? beam_part(0.0, middle, 6, 1) : whole;
@@ -73,7 +73,7 @@ inline std::shared_ptr<const sim::Model> cut_beam(const CutBeam& options) {
                          ? add_part(builder, "upper", upper, options, options.second_fixed, "x_max")
                          : first;
   if (options.cut && options.weld) {
-    sim::WeldSettings weld;
+    builder::WeldSettings weld;
     weld.name = "seam";
     weld.first = second;  // the finer one
     weld.second = first;
@@ -81,7 +81,7 @@ inline std::shared_ptr<const sim::Model> cut_beam(const CutBeam& options) {
     builder.add_weld(weld);
   }
   for (int k = 0; k < options.cables; ++k) {
-    sim::CableSettings cable;
+    builder::CableSettings cable;
     cable.name = "cable_" + std::to_string(k);
     cable.body = first;
     cable.points.resize(5, 3);
@@ -94,14 +94,14 @@ inline std::shared_ptr<const sim::Model> cut_beam(const CutBeam& options) {
     cable.friction = options.cable_friction;
     builder.add_cable(cable);
   }
-  sim::EffectorSettings tip;
+  builder::EffectorSettings tip;
   tip.name = "tip";
   tip.body = second;
   tip.points.resize(1, 3);
   tip.points << kBeamLength, 0.0, 0.0;
   builder.add_effector(tip);
   if (options.push) {
-    sim::ForceSettings push;
+    builder::ForceSettings push;
     push.name = "push";
     push.body = second;
     push.point = {kBeamLength, 0.005, 0.005};
@@ -109,7 +109,7 @@ inline std::shared_ptr<const sim::Model> cut_beam(const CutBeam& options) {
     builder.add_force(push);
   }
   if (options.wall) {
-    sim::ContactSettings wall;
+    builder::ContactSettings wall;
     wall.name = "wall";
     wall.body = second;
     wall.surface = collision::Plane{{0.0, 0.0, *options.wall}, Vector3::UnitZ()};

@@ -5,9 +5,9 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body.hpp"
-#include "sinew/sim/actuator.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "sim/robots.hpp"
 
@@ -29,11 +29,11 @@ double distance_to_rest(Simulation& simulation) {
 }
 
 TEST(DefaultStep, RemediesDoNotNameWhatIsChosen) {
-  StepSettings step;
-  step.method = Method::one_linearisation;
-  const auto remedy = [&] { return step_status_remedy(StepStatus::not_in_equilibrium, step); };
+  model::StepSettings step;
+  step.method = model::Method::one_linearisation;
+  const auto remedy = [&] { return step_status_remedy(run::StepStatus::not_in_equilibrium, step); };
   EXPECT_NE(remedy().find("use `solver: newton`"), std::string::npos);
-  step.method = Method::newton;
+  step.method = model::Method::newton;
   EXPECT_EQ(remedy(), "take a smaller time step, or change commands more slowly");
   step.tangent = mechanics::Tangent::corotated;
   EXPECT_NE(remedy().find("use `tangent: exact`"), std::string::npos);
@@ -42,10 +42,11 @@ TEST(DefaultStep, RemediesDoNotNameWhatIsChosen) {
 TEST(DefaultStep, APulledCableBendsTheBeamToItsEquilibrium) {
   for (const double length : {0.002, 0.01, 0.02}) {
     Simulation simulation(beam());
-    simulation.command(0, {CommandKind::motion, Signal::ramp({0.0, length, 0.0, 0.2})});
+    simulation.command(0,
+                       {model::CommandKind::motion, model::Signal::ramp({0.0, length, 0.0, 0.2})});
     for (int k = 0; k < 25; ++k) {
       simulation.step();
-      ASSERT_EQ(simulation.report().status, StepStatus::solved) << length;
+      ASSERT_EQ(simulation.report().status, run::StepStatus::solved) << length;
     }
     EXPECT_NEAR(simulation.actuator(0).motion, length, 1e-6);
     EXPECT_LT(distance_to_rest(simulation), 1e-5) << length;
@@ -56,7 +57,7 @@ TEST(DefaultStep, ACommandThatJumpsIsReachedInTheStep) {
   Simulation simulation(beam());
   simulation.command(0, pull(0.01));
   simulation.step();
-  EXPECT_EQ(simulation.report().status, StepStatus::solved);
+  EXPECT_EQ(simulation.report().status, run::StepStatus::solved);
   EXPECT_NEAR(simulation.actuator(0).motion, 0.01, 1e-5);
   EXPECT_LT(distance_to_rest(simulation), 1e-4);
 }
@@ -67,14 +68,14 @@ TEST(DefaultStep, GravityThatComesAtOnceHangsTheBeamWhereItRests) {
   options.young_modulus = 2e4;
   Simulation simulation(beam(options));
   for (int k = 0; k < 2; ++k) simulation.step();
-  EXPECT_EQ(simulation.report().status, StepStatus::solved);
+  EXPECT_EQ(simulation.report().status, run::StepStatus::solved);
   EXPECT_LT(distance_to_rest(simulation), 1e-6);
 }
 
 // Number of iterations of a step, whether it converges or not.
 int count_iterations(Simulation& simulation) {
   int iterations = 0;
-  simulation.watch([&](const StepProgress& step) { iterations = step.iterations; });
+  simulation.watch([&](const run::StepProgress& step) { iterations = step.iterations; });
   try {
     simulation.step();
   } catch (const Error& error) {
@@ -105,13 +106,13 @@ TEST(DefaultStep, AStepFromFarOutOfBalanceIsNotSearchedForLong) {
   options.step.max_iterations = 5;
   Simulation simulation(beam(options));
   simulation.command(0, pull(0.03));
-  State lost = simulation.state();
+  run::State lost = simulation.state();
   EXPECT_GT(count_iterations(simulation), 5);
-  EXPECT_EQ(simulation.report().status, StepStatus::solved);
+  EXPECT_EQ(simulation.report().status, run::StepStatus::solved);
   lost.residual = 0.5;
   simulation.restore(lost);
   EXPECT_EQ(count_iterations(simulation), 5);
-  EXPECT_EQ(simulation.report().status, StepStatus::not_in_equilibrium);
+  EXPECT_EQ(simulation.report().status, run::StepStatus::not_in_equilibrium);
 }
 
 TEST(DefaultStep, AStepAtRestTakesOneIteration) {
@@ -124,11 +125,11 @@ TEST(DefaultStep, AStepAtRestTakesOneIteration) {
 
 TEST(DefaultStep, OneLinearisationSaysThatItLeftEquilibrium) {
   BeamOptions options;
-  options.step.method = Method::one_linearisation;
+  options.step.method = model::Method::one_linearisation;
   options.step.tangent = mechanics::Tangent::corotated;
   options.geometric_stiffness = false;
   Simulation simulation(beam(options));
-  simulation.command(0, {CommandKind::motion, Signal::ramp({0.0, 0.06, 0.0, 0.5})});
+  simulation.command(0, {model::CommandKind::motion, model::Signal::ramp({0.0, 0.06, 0.0, 0.5})});
   bool flagged = false;
   try {
     for (int k = 0; k < 80; ++k) flagged = is_flagged(simulation.step().status) || flagged;
@@ -143,13 +144,13 @@ TEST(DefaultStep, OneLinearisationSaysThatItLeftEquilibrium) {
 TEST(DefaultStep, ASwingKeepsItsEnergyOrSaysThatItDoesNot) {
   for (const auto integrator : {mechanics::Integrator::backward_euler, mechanics::Integrator::bdf2,
                                 mechanics::Integrator::generalized_alpha}) {
-    for (const Method method : {Method::newton, Method::one_linearisation}) {
+    for (const model::Method method : {model::Method::newton, model::Method::one_linearisation}) {
       BeamOptions options;
       options.gravity = {0.0, 0.0, -9.81};
       options.young_modulus = 3e4;
       options.step.integrator = integrator;
       options.step.method = method;
-      if (method == Method::one_linearisation) {
+      if (method == model::Method::one_linearisation) {
         options.step.tangent = mechanics::Tangent::corotated;
       }
       Simulation simulation(beam(options));
@@ -158,7 +159,7 @@ TEST(DefaultStep, ASwingKeepsItsEnergyOrSaysThatItDoesNot) {
       bool flagged = false;
       try {
         for (int k = 0; k < 200; ++k) {
-          flagged = simulation.step().status == StepStatus::gaining_energy || flagged;
+          flagged = simulation.step().status == run::StepStatus::gaining_energy || flagged;
           const auto [strain, kinetic, gravity] = simulation.energies();
           gained = std::max(gained, strain + kinetic + gravity - start);
           swing = std::max(swing, kinetic + strain);
@@ -168,7 +169,7 @@ TEST(DefaultStep, ASwingKeepsItsEnergyOrSaysThatItDoesNot) {
       }
       EXPECT_TRUE(flagged || gained < 0.06 * swing)
           << mechanics::integrator_name(integrator) << " " << gained / swing;
-      if (method == Method::one_linearisation) continue;
+      if (method == model::Method::one_linearisation) continue;
       EXPECT_FALSE(flagged);
       EXPECT_LT(gained, 0.01 * swing);
     }
@@ -188,13 +189,13 @@ TEST(DefaultStep, TheWatchOfEnergyGoesWithTheState) {
   const auto model = beam(swinging());
   Simulation run(model), loaded(model);
   for (int k = 0; k < 10; ++k) run.step();
-  State state = run.state();
+  run::State state = run.state();
   for (int k = 0; k < 30; ++k) run.step();
   const double gained = run.report().energy_gained;
   EXPECT_LT(gained, 0.0);  // backward Euler damps
   for (Simulation* back : {&loaded, &run}) {
     back->restore(state);
-    for (int k = 0; k < 30; ++k) EXPECT_EQ(back->step().status, StepStatus::solved);
+    for (int k = 0; k < 30; ++k) EXPECT_EQ(back->step().status, run::StepStatus::solved);
     EXPECT_EQ(back->report().energy_gained, gained);
     EXPECT_EQ(back->ledger().dissipated, run.ledger().dissipated);
   }
@@ -206,18 +207,18 @@ TEST(DefaultStep, AStaticSolutionGainsNoEnergy) {
   for (int k = 0; k < 3; ++k) simulation.step();
   simulation.command(0, tension(0.3));
   simulation.solve_static();
-  for (int k = 0; k < 10; ++k) EXPECT_EQ(simulation.step().status, StepStatus::solved) << k;
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(simulation.step().status, run::StepStatus::solved) << k;
   EXPECT_NEAR(simulation.report().energy_gained, 0.0, 1e-9);
   for (const double newtons : {0.4, 0.2}) {  // one stores more than the above equilibrium
     simulation.command(0, tension(newtons));
     simulation.follow_path({});
-    for (int k = 0; k < 10; ++k) EXPECT_EQ(simulation.step().status, StepStatus::solved) << k;
+    for (int k = 0; k < 10; ++k) EXPECT_EQ(simulation.step().status, run::StepStatus::solved) << k;
     EXPECT_LT(simulation.report().energy_gained, 1e-9);
   }
   simulation.command(0, tension(0.0));
   simulation.solve_static();
   simulation.command(0, tension(0.3));
-  for (int k = 0; k < 50; ++k) EXPECT_EQ(simulation.step().status, StepStatus::solved) << k;
+  for (int k = 0; k < 50; ++k) EXPECT_EQ(simulation.step().status, run::StepStatus::solved) << k;
 }
 
 TEST(DefaultStep, ARobotAtRestGainsNoEnergy) {
@@ -226,7 +227,7 @@ TEST(DefaultStep, ARobotAtRestGainsNoEnergy) {
     BeamOptions options;
     options.step.integrator = integrator;
     Simulation run(beam(options));
-    for (int k = 0; k < 20; ++k) EXPECT_EQ(run.step().status, StepStatus::solved) << k;
+    for (int k = 0; k < 20; ++k) EXPECT_EQ(run.step().status, run::StepStatus::solved) << k;
   }
 }
 

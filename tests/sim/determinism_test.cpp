@@ -7,17 +7,17 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/inverse/inverse_controller.hpp"
-#include "sinew/sim/actuator.hpp"
+#include "sinew/control/inverse_controller.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "robots.hpp"
 
 namespace sinew::sim {
 namespace {
 
-std::shared_ptr<const Model> robot(int threads) {
+std::shared_ptr<const model::Model> robot(int threads) {
   sinew::testing::BeamOptions options;
   options.factorisation.threads = threads;
   return sinew::testing::beam(options);
@@ -25,8 +25,9 @@ std::shared_ptr<const Model> robot(int threads) {
 
 std::uint64_t hash_after_200_steps(int threads) {
   Simulation simulation(robot(threads), threads);
-  simulation.command(0, {CommandKind::motion, Signal::sine({0.002, 0.002, 0.7, 0.0})});
-  simulation.command(1, {CommandKind::effort, Signal::sine({0.3, 0.3, 1.1, 0.0})});
+  simulation.command(0,
+                     {model::CommandKind::motion, model::Signal::sine({0.002, 0.002, 0.7, 0.0})});
+  simulation.command(1, {model::CommandKind::effort, model::Signal::sine({0.3, 0.3, 1.1, 0.0})});
   for (int i = 0; i < 200; ++i) simulation.step();
   for (int thread = 0; thread < threads; ++thread) {
     EXPECT_GE(simulation.work_done(thread), 200) << "thread " << thread << " of " << threads;

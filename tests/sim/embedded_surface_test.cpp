@@ -1,5 +1,5 @@
 // Chambers whose surface is given apart from the mesh, against the faces of the mesh.
-#include "sinew/sim/embedded_surface.hpp"
+#include "sinew/builder/embedded_surface.hpp"
 
 #include <cmath>
 #include <map>
@@ -15,8 +15,8 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/surface.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/state.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/run/state.hpp"
 
 #include "chambers.hpp"
 #include "robots.hpp"
@@ -42,8 +42,8 @@ mesh::Mesh block_with_void(int n, mesh::Cells cells) {
 
 using Surfaces = std::variant<std::vector<mesh::Face>, mesh::Surface>;
 
-std::shared_ptr<const Model> robot(const mesh::Mesh& mesh, const Surfaces& surface) {
-  ModelBuilder builder;
+std::shared_ptr<const model::Model> robot(const mesh::Mesh& mesh, const Surfaces& surface) {
+  builder::ModelBuilder builder;
   fem::FemBodySettings body;
   body.name = "block";
   body.mesh = std::make_shared<const mesh::Mesh>(mesh);
@@ -52,7 +52,7 @@ std::shared_ptr<const Model> robot(const mesh::Mesh& mesh, const Surfaces& surfa
   region.hyperelastic->bulk_modulus = material::bulk_modulus_of(30e3, 0.45);
   body.elements.regions = {region};
   body.elements.fixed_nodes = mesh.node_sets.at("z_min");
-  ChamberSettings chamber;
+  builder::ChamberSettings chamber;
   chamber.name = "air";
   chamber.body = builder.add_body<fem::FemBodyModel>(std::move(body));
   chamber.surface = surface;
@@ -115,9 +115,9 @@ mesh::Surface slivers(mesh::Surface surface, int times) {
 }
 
 /// (n, 3): forces of unit pressure on all nodes of the body, with its nodes displaced.
-Points forces(const std::shared_ptr<const Model>& model, double size, double& growth) {
+Points forces(const std::shared_ptr<const model::Model>& model, double size, double& growth) {
   Simulation simulation(model);
-  State state = simulation.state();
+  run::State state = simulation.state();
   const Points& x = simulation.body(0).positions();
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
     for (int c = 0; c < 3; ++c) {
@@ -141,9 +141,9 @@ Points forces(const std::shared_ptr<const Model>& model, double size, double& gr
   return result;
 }
 
-double inflated(const std::shared_ptr<const Model>& model) {
+double inflated(const std::shared_ptr<const model::Model>& model) {
   Simulation simulation(model);
-  simulation.command(0, {CommandKind::effort, Signal::constant(100.0)});
+  simulation.command(0, {model::CommandKind::effort, model::Signal::constant(100.0)});
   simulation.solve_static();
   return simulation.actuator(0).motion;
 }

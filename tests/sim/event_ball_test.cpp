@@ -14,7 +14,7 @@ constexpr double kRadius = 0.05;
 
 // On a floor inclined by `slope`, rad.
 std::unique_ptr<sim::Simulation> ball(double time_step, double restitution, double slope) {
-  sim::ModelBuilder builder(events(time_step, restitution));
+  builder::ModelBuilder builder(events(time_step, restitution));
   const Vector3 normal(std::sin(slope), 0.0, std::cos(slope));
   add_floor(builder, add_ball(builder, "ball", (kHeight * std::cos(slope) + kRadius) * normal),
             normal);

@@ -7,8 +7,8 @@
 #include "sinew/core/error.hpp"
 #include "sinew/core/rotation.hpp"
 #include "sinew/rigid/rigid_body_model.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/state.hpp"
+#include "sinew/run/contact_reader.hpp"
+#include "sinew/run/state.hpp"
 
 #include "event_robots.hpp"
 
@@ -25,7 +25,7 @@ double kinetic(sim::Simulation& simulation) { return simulation.energies().kinet
 
 TEST(EventImpact, BallsHeadOn) {
   for (const double e : {0.0, 0.6, 1.0}) {
-    sim::ModelBuilder builder(events(20e-3, e));
+    builder::ModelBuilder builder(events(20e-3, e));
     const int first =
         add_ball(builder, "first", Vector3(-0.2, 0.0, 0.0), Vector3(3.0, 0, 0), kNone);
     const int second = add_ball(builder, "second", Vector3(0.1, 0, 0), Vector3(-1.0, 0, 0), kNone);
@@ -46,7 +46,7 @@ TEST(EventImpact, BallsHeadOn) {
 // planes follow the balls until they touch.
 TEST(EventImpact, BallsThatMeetAskew) {
   const double e = 0.7, offset = 0.06;
-  sim::ModelBuilder builder(events(20e-3, e));
+  builder::ModelBuilder builder(events(20e-3, e));
   const int first = add_ball(builder, "first", Vector3(-0.5, 0, 0), Vector3(5.0, 0, 0), kNone);
   const int second = add_ball(builder, "second", Vector3(0.0, offset, 0.0), kNone, kNone);
   add_pair(builder, first, second);
@@ -60,7 +60,7 @@ TEST(EventImpact, BallsThatMeetAskew) {
 
 // Balls that narrowly miss each other do not touch, however long the step.
 TEST(EventImpact, AMissIsNone) {
-  sim::ModelBuilder builder(events(50e-3, 1.0));
+  builder::ModelBuilder builder(events(50e-3, 1.0));
   const int first = add_ball(builder, "first", Vector3(-0.5, 0, 0), Vector3(20.0, 0, 0), kNone);
   const int second = add_ball(builder, "second", Vector3(0.0, 0.1 + 1e-6, 0.0), kNone, kNone);
   add_pair(builder, first, second);
@@ -73,7 +73,7 @@ TEST(EventImpact, AMissIsNone) {
 
 // A ball between others does not pass through them in one step.
 TEST(EventImpact, NothingTunnels) {
-  sim::ModelBuilder builder(events(50e-3, 1.0));
+  builder::ModelBuilder builder(events(50e-3, 1.0));
   const int first = add_ball(builder, "first", Vector3(-0.5, 0, 0), Vector3(40.0, 0, 0), kNone);
   const int second = add_ball(builder, "second", kNone, kNone, kNone);
   add_pair(builder, first, second);
@@ -88,7 +88,7 @@ TEST(EventImpact, NothingTunnels) {
 // and momentum are conserved. If the balls are apart, the impacts follow each other.
 TEST(EventImpact, Cradle) {
   for (const double gap : {0.0, 1e-4}) {
-    sim::ModelBuilder builder(events(20e-3, 1.0));
+    builder::ModelBuilder builder(events(20e-3, 1.0));
     const int first = add_ball(builder, "first", Vector3(-0.2, 0, 0), Vector3(3.0, 0, 0), kNone);
     const int second = add_ball(builder, "second", kNone, kNone, kNone);
     const int third = add_ball(builder, "third", Vector3(0.1 + gap, 0, 0), kNone, kNone);
@@ -109,7 +109,7 @@ TEST(EventImpact, Cradle) {
 TEST(EventImpact, SpinAndFriction) {
   const double e = 0.6, radius = 0.05, mass = 2.0;
   for (const double friction : {0.1, 0.8}) {
-    sim::ModelBuilder builder(events(5e-3, e));
+    builder::ModelBuilder builder(events(5e-3, e));
     const Vector3 before(1.5, 0.5, -3.0), spin(20.0, 30.0, 7.0);
     const int ball = add_ball(builder, "ball", Vector3(0, 0, 0.1), before, kNone, radius, spin);
     add_floor(builder, ball, Vector3::UnitZ(), friction);
@@ -135,7 +135,7 @@ TEST(EventImpact, SpinAndFriction) {
 }
 
 std::unique_ptr<sim::Simulation> box(double lean, double restitution, double step) {
-  sim::ModelBuilder builder(events(step, restitution));
+  builder::ModelBuilder builder(events(step, restitution));
   rigid::RigidSettings box;
   box.name = "box";
   box.shape = rigid::Box{{0.1, 0.1, 0.1}};
@@ -189,16 +189,16 @@ TEST(EventImpact, ABoxComesToRest) {
 class Pendulum {
  public:
   Pendulum(double step, double e) {
-    sim::ModelBuilder builder(events(step, e));
+    builder::ModelBuilder builder(events(step, e));
     const Vector3 at = kLength * Vector3(-std::sin(kStart), 0.0, -std::cos(kStart));
     const int ball = add_ball(builder, "ball", at);
-    sim::JointSettings hinge;
+    builder::JointSettings hinge;
     hinge.name = "hinge";
-    hinge.first = sim::kWorld;
+    hinge.first = model::kWorld;
     hinge.second = ball;
     hinge.axis = Vector3::UnitY();
     builder.add_joint(hinge);
-    sim::ContactSettings wall;
+    builder::ContactSettings wall;
     wall.name = "wall";
     wall.body = ball;
     wall.surface = collision::Plane{Vector3(0.05, 0.0, 0.0), -Vector3::UnitX()};
@@ -247,16 +247,16 @@ TEST(EventImpact, APendulumStrikesAWallInTime) {
 // while the block touches the floor, steps are by backward Euler, which lose g h t/2 of height.
 TEST(EventDriven, ADeformableBodyFallsBesideABall) {
   BlockOptions options{.step = events(2e-3, 0.5), .height = 0.01};
-  sim::ModelBuilder builder = block_on_plane(options);
+  builder::ModelBuilder builder = block_on_plane(options);
   const int ball = add_ball(builder, "ball", Vector3(0.3, 0.0, 0.1));
   add_floor(builder, ball);
   sim::Simulation simulation(builder.build());
-  sim::ModelBuilder other(options.step);
+  builder::ModelBuilder other(options.step);
   add_floor(other, add_ball(other, "ball", Vector3(0.3, 0.0, 0.1)));
   sim::Simulation alone(other.build());
   for (int k = 0; k < 200; ++k) {
-    const sim::StepReport& report = simulation.step();
-    EXPECT_EQ(report.status, sim::StepStatus::solved);
+    const run::StepReport& report = simulation.step();
+    EXPECT_EQ(report.status, run::StepStatus::solved);
     alone.step();
     const double error = pose(simulation, ball).origin()[2] - pose(alone, 0).origin()[2];
     const double time = simulation.time();
@@ -272,10 +272,10 @@ TEST(EventDriven, ADeformableBodyFallsBesideABall) {
 TEST(EventDriven, ABallReboundsFromADeformableBody) {
   BlockOptions options{.step = events(0.5e-3, 0.9), .friction = 0.5, .modulus = 1e7};
   options.damping = {};
-  sim::ModelBuilder builder = block_on_plane(options);
+  builder::ModelBuilder builder = block_on_plane(options);
   const int ball = add_ball(builder, "ball", Vector3(0.0, 0.0, 0.071), Vector3(0.0, 0.0, -0.3),
                             Vector3(0.0, 0.0, -kGravity));
-  sim::ContactSettings contact;
+  builder::ContactSettings contact;
   contact.name = "ground";
   contact.body = 0;
   contact.touched = ball;
@@ -287,8 +287,8 @@ TEST(EventDriven, ABallReboundsFromADeformableBody) {
   const double start = simulation.energies().total();
   double fastest = 0.0;
   for (int k = 0; k < 60; ++k) {
-    const sim::StepReport& report = simulation.step();
-    EXPECT_EQ(report.status, sim::StepStatus::solved);
+    const run::StepReport& report = simulation.step();
+    EXPECT_EQ(report.status, run::StepStatus::solved);
     EXPECT_EQ(report.impacts, 0);
     fastest = std::max(fastest, pose(simulation, ball).linear_velocity()[2]);
     EXPECT_LT(simulation.energies().total(), start + 1e-6);
@@ -312,19 +312,19 @@ class Refused : public ::testing::Test {
 };
 
 TEST_F(Refused, SettingsThatDivideStepsOtherwise) {
-  sim::StepSettings adaptive = events(1e-3, 0.5);
-  adaptive.adaptive = sim::AdaptiveStep{.tolerance = 1e-4, .smallest = 1e-5};
-  EXPECT_EQ(kind_of([&] { sim::ModelBuilder{adaptive}; }), ErrorKind::not_in_this_version);
-  sim::StepSettings linear = events(1e-3, 0.5);
-  linear.method = sim::Method::one_linearisation;
-  EXPECT_EQ(kind_of([&] { sim::ModelBuilder{linear}; }), ErrorKind::not_in_this_version);
-  EXPECT_EQ(kind_of([] { sim::ModelBuilder{events(1e-3, 1.5)}; }), ErrorKind::out_of_range);
+  model::StepSettings adaptive = events(1e-3, 0.5);
+  adaptive.adaptive = model::AdaptiveStep{.tolerance = 1e-4, .smallest = 1e-5};
+  EXPECT_EQ(kind_of([&] { builder::ModelBuilder{adaptive}; }), ErrorKind::not_in_this_version);
+  model::StepSettings linear = events(1e-3, 0.5);
+  linear.method = model::Method::one_linearisation;
+  EXPECT_EQ(kind_of([&] { builder::ModelBuilder{linear}; }), ErrorKind::not_in_this_version);
+  EXPECT_EQ(kind_of([] { builder::ModelBuilder{events(1e-3, 1.5)}; }), ErrorKind::out_of_range);
 }
 
 TEST_F(Refused, RestitutionWhereNothingStrikes) {
-  const auto add = [](const sim::StepSettings& step, bool rigid, double restitution, bool jumps) {
-    sim::ModelBuilder builder = block_on_plane({.step = step, .floor = false});
-    sim::ContactSettings contact;
+  const auto add = [](const model::StepSettings& step, bool rigid, double restitution, bool jumps) {
+    builder::ModelBuilder builder = block_on_plane({.step = step, .floor = false});
+    builder::ContactSettings contact;
     contact.name = "floor";
     contact.surface = collision::Plane{};
     contact.body = rigid ? add_ball(builder, "ball", Vector3(0.3, 0.0, 0.1)) : 0;
@@ -332,15 +332,15 @@ TEST_F(Refused, RestitutionWhereNothingStrikes) {
     contact.restitution = restitution;
     if (jumps) {
       contact.motion.emplace();
-      contact.motion->translation[2] = sim::Signal::steps({{0.0, 0.0}, {0.1, 0.01}});
+      contact.motion->translation[2] = model::Signal::steps({{0.0, 0.0}, {0.1, 0.01}});
     }
     builder.add_contact(contact);
   };
-  const sim::StepSettings step = events(1e-3, 0.5);
+  const model::StepSettings step = events(1e-3, 0.5);
   EXPECT_EQ(kind_of([&] { add(step, false, 0.5, false); }), ErrorKind::conflicting_keys);
   EXPECT_EQ(kind_of([&] { add(step, true, 1.5, false); }), ErrorKind::out_of_range);
   EXPECT_EQ(kind_of([&] { add(step, true, 0.5, true); }), ErrorKind::conflicting_keys);
-  sim::StepSettings euler = step;
+  model::StepSettings euler = step;
   euler.integrator = mechanics::Integrator::backward_euler;
   EXPECT_EQ(kind_of([&] { add(euler, true, 0.5, false); }), ErrorKind::conflicting_keys);
   add(step, true, 0.5, false);

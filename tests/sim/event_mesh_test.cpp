@@ -7,12 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/contact/contact_state.hpp"
+#include "sinew/model/base_motion.hpp"
+#include "sinew/model/signal.hpp"
 #include "sinew/rigid/rigid_body_model.hpp"
-#include "sinew/sim/base_motion.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/signal.hpp"
-#include "sinew/sim/step_report.hpp"
+#include "sinew/run/contact_reader.hpp"
+#include "sinew/run/step_report.hpp"
 
 #include "event_robots.hpp"
 
@@ -37,7 +37,7 @@ rigid::RigidSettings cube(Kind kind) {
 // A cube falls onto a fixed slab, which is a mesh unless the cube is a shape.
 std::unique_ptr<sim::Simulation> dropped(Kind kind, const Matrix3& rotation, double h, double e,
                                          double friction = 0.0) {
-  sim::ModelBuilder builder(events(h, e));
+  builder::ModelBuilder builder(events(h, e));
   rigid::RigidSettings body = cube(kind);
   body.rotation = rotation;
   const double low = 0.5 * kEdge * rotation.row(2).cwiseAbs().sum();
@@ -144,7 +144,7 @@ TEST(EventMesh, ACubeComesToRest) {
 // Two spinning cubes that collide in free flight.
 std::unique_ptr<sim::Simulation> meeting(double e, double speed, double spin, double friction,
                                          bool swapped = false, double h = 10e-3) {
-  sim::ModelBuilder builder(events(h, e));
+  builder::ModelBuilder builder(events(h, e));
   std::vector<rigid::RigidSettings> bodies;
   for (const double side : {-1.0, 1.0}) {
     rigid::RigidSettings body = cube(Kind::surface);
@@ -211,7 +211,7 @@ TEST(EventMesh, CubesThatDoNotReboundSlideOff) {
   const double start = energy;
   int impacts = 0;
   for (int k = 0; k < 13; ++k) {
-    const sim::StepReport& report = simulation->step();
+    const run::StepReport& report = simulation->step();
     impacts += report.impacts;
     EXPECT_LT(report.substeps, 40) << "at " << simulation->time();
     const double now = simulation->energies().kinetic;
@@ -252,7 +252,7 @@ TEST(EventMesh, FrictionOpposesTheSlipOnATurningFace) {
   const double h = 5e-3, rate = 0.5, angle = -9.9 * h * rate;
   const Matrix3 start = Eigen::AngleAxisd(angle, Vector3::UnitY()).toRotationMatrix();
   const Vector3 spin = rate * Vector3::UnitY();
-  sim::ModelBuilder builder(events(h, 0.0));
+  builder::ModelBuilder builder(events(h, 0.0));
   rigid::RigidSettings body = cube(Kind::surface);
   body.rotation = start;
   body.position = start * Vector3(0.5 * kEdge + 1e-6, 0.0, 0.0);
@@ -266,10 +266,10 @@ TEST(EventMesh, FrictionOpposesTheSlipOnATurningFace) {
   slab.rotation = start;
   slab.position = start * Vector3(-0.05, 0.0, 0.0);
   slab.fixed = true;
-  sim::BaseMotion motion;
+  model::BaseMotion motion;
   motion.body = builder.add_body<rigid::RigidBodyModel>(slab);
   motion.axis = Vector3::UnitY();
-  motion.angle = sim::Signal::ramp({0.0, 10.0 * rate, 0.0, 10.0});
+  motion.angle = model::Signal::ramp({0.0, 10.0 * rate, 0.0, 10.0});
   builder.add_base_motion(motion, {});
   add_pair(builder, sliding, motion.body, 0.3);
   sim::Simulation simulation(builder.build());
@@ -277,7 +277,7 @@ TEST(EventMesh, FrictionOpposesTheSlipOnATurningFace) {
   for (int k = 0; k < 15; ++k) {
     simulation.step();
     const mechanics::HasPose& own = pose(simulation, sliding);
-    for (const sim::ContactPoint& point : simulation.contacts().points(0)) {
+    for (const contact::ContactPoint& point : simulation.contacts().points(0)) {
       if (!(point.normal_force > 1e-3)) continue;
       const Vector3 slip = own.linear_velocity() +
                            own.angular_velocity().cross(point.position - own.centre_of_mass()) -
@@ -312,7 +312,7 @@ TEST(EventMesh, FastCubesDoNotPass) {
 // Corners that narrowly pass each other.
 TEST(EventMesh, AMissIsNone) {
   for (const double beside : {-1e-5, 1e-5}) {
-    sim::ModelBuilder builder(events(20e-3, 1.0));
+    builder::ModelBuilder builder(events(20e-3, 1.0));
     rigid::RigidSettings body = cube(Kind::surface);
     body.gravity.setZero();
     body.velocity = Vector3(10.0, 0.0, 0.0);

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/state.hpp"
+#include "sinew/run/contact_reader.hpp"
+#include "sinew/run/state.hpp"
 
 #include "event_robots.hpp"
 
@@ -16,21 +16,21 @@ namespace {
 constexpr double kBall = 0.05;  // m, radius
 constexpr double kOver = 0.35;  // m, initial height of its lowest point above the table
 
-sim::BaseMotion rising(double speed, double start = 0.0) {
-  sim::BaseMotion motion;
-  motion.translation[2] = sim::Signal::ramp({0.0, 10.0 * speed, start, 10.0});
+model::BaseMotion rising(double speed, double start = 0.0) {
+  model::BaseMotion motion;
+  motion.translation[2] = model::Signal::ramp({0.0, 10.0 * speed, start, 10.0});
   return motion;
 }
 
 // The support of the ball: a surface of the world, or a body given by a shape or a mesh.
 enum class Table { plane, shape, mesh };
 
-std::unique_ptr<sim::Simulation> ball_on(Table table, const sim::BaseMotion& motion,
-                                         const sim::StepSettings& step, double above = kOver) {
-  sim::ModelBuilder builder(step);
+std::unique_ptr<sim::Simulation> ball_on(Table table, const model::BaseMotion& motion,
+                                         const model::StepSettings& step, double above = kOver) {
+  builder::ModelBuilder builder(step);
   const int ball = add_ball(builder, "ball", Vector3(0.013, -0.021, above + kBall));
   if (table == Table::plane) {
-    sim::ContactSettings contact;
+    builder::ContactSettings contact;
     contact.name = "table";
     contact.body = ball;
     contact.surface = collision::Plane{};
@@ -38,7 +38,7 @@ std::unique_ptr<sim::Simulation> ball_on(Table table, const sim::BaseMotion& mot
     builder.add_contact(contact);
   } else {
     const int body = add_slab(builder, "table", table == Table::mesh);
-    sim::BaseMotion own = motion;
+    model::BaseMotion own = motion;
     own.body = body;
     builder.add_base_motion(own, {});
     add_pair(builder, ball, body);
@@ -84,8 +84,8 @@ TEST_P(MovingTable, RisesUnderABouncingBall) {
 
 // The ball rests on an oscillating table and follows it: midpoint steps are of second order.
 TEST_P(MovingTable, SwingsWithABallOnIt) {
-  sim::BaseMotion swing;
-  swing.translation[2] = sim::Signal::sine({0.0, 5e-3, 1.0, 0.0});
+  model::BaseMotion swing;
+  swing.translation[2] = model::Signal::sine({0.0, 5e-3, 1.0, 0.0});
   const double pace = 2.0 * M_PI;
   const auto simulation = ball_on(GetParam(), swing, events(10e-3, 0.5), 0.0);
   // The table's velocity jumps at the start and hits the ball, which then comes to rest on it.
@@ -136,7 +136,7 @@ TEST(EventMotion, EnergiesAddUp) {
       dissipated += 0.5 * mass * (1.0 - e * e) * approach * approach;
       approach *= e;
     }
-    const sim::EnergyLedger& ledger = simulation->ledger();
+    const run::EnergyLedger& ledger = simulation->ledger();
     EXPECT_NEAR(ledger.dissipated, dissipated, 1e-8);
     EXPECT_NEAR(simulation->energies().total() - start, ledger.outside - ledger.dissipated, 1e-8);
   }
@@ -146,16 +146,16 @@ TEST(EventMotion, EnergiesAddUp) {
 // of length h the normal at the ball rotates, so its gap is off by up to r (w h)^2/8 = 1.4e-6 m.
 TEST(EventMotion, AFloorThatTurnsStrikes) {
   const double e = 0.7, pace = 1.5, beside = 0.4;
-  sim::ModelBuilder builder(events(10e-3, e));
+  builder::ModelBuilder builder(events(10e-3, e));
   const int ball =
       add_ball(builder, "ball", Vector3(beside, 0.0, 0.2), Vector3::Zero(), Vector3::Zero());
-  sim::ContactSettings floor;
+  builder::ContactSettings floor;
   floor.name = "floor";
   floor.body = ball;
   floor.surface = collision::Plane{};
   floor.motion.emplace();
   floor.motion->axis = -Vector3::UnitY();
-  floor.motion->angle = sim::Signal::ramp({0.0, 10.0 * pace, 0.0, 10.0});
+  floor.motion->angle = model::Signal::ramp({0.0, 10.0 * pace, 0.0, 10.0});
   builder.add_contact(floor);
   sim::Simulation simulation(builder.build());
   // The ball rests at (x, z) and is hit when z cos a - x sin a = r.
@@ -175,15 +175,15 @@ TEST(EventMotion, AFloorThatTurnsStrikes) {
 // the midpoint rule a slip of less than 5 % of the speed changes sign from step to step, so the
 // mean of two steps is tested.
 TEST(EventMotion, ABeltCarriesABall) {
-  sim::ModelBuilder builder(events(5e-3, 0.0));
+  builder::ModelBuilder builder(events(5e-3, 0.0));
   const int ball = add_ball(builder, "ball", Vector3(0.0, 0.0, kBall));
-  sim::ContactSettings belt;
+  builder::ContactSettings belt;
   belt.name = "belt";
   belt.body = ball;
   belt.surface = collision::Plane{};
   belt.friction = 0.3;
   belt.motion.emplace();
-  belt.motion->translation[0] = sim::Signal::ramp({0.0, 10.0, 0.0, 10.0});
+  belt.motion->translation[0] = model::Signal::ramp({0.0, 10.0, 0.0, 10.0});
   builder.add_contact(belt);
   sim::Simulation simulation(builder.build());
   double before = 0.0;
@@ -200,8 +200,8 @@ TEST(EventMotion, ABeltCarriesABall) {
 }
 
 TEST(EventMotion, SurfacesThatJumpAreRefused) {
-  sim::BaseMotion jump;
-  jump.translation[2] = sim::Signal::steps({{0.0, 0.0}, {0.1, 0.01}});
+  model::BaseMotion jump;
+  jump.translation[2] = model::Signal::steps({{0.0, 0.0}, {0.1, 0.01}});
   for (const Table table : {Table::plane, Table::shape}) {
     EXPECT_THROW(ball_on(table, jump, events(10e-3, 0.5)), Error);
   }

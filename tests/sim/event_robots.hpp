@@ -12,34 +12,34 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "sinew/builder/contact_settings.hpp"
+#include "sinew/builder/joint_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/collision/polyhedron.hpp"
 #include "sinew/collision/shape.hpp"
 #include "sinew/constraint/configuration.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/mesh.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/rigid/rigid_body_model.hpp"
 #include "sinew/rigid/rigid_settings.hpp"
 #include "sinew/rigid/shape.hpp"
-#include "sinew/sim/contact_settings.hpp"
-#include "sinew/sim/joint_settings.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/model_builder.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "contact_robots.hpp"
 
 namespace sinew::testing {
 
 /// Settings of event-driven steps.
-inline sim::StepSettings events(double time_step, double restitution) {
+inline model::StepSettings events(double time_step, double restitution) {
   return {.time_step = time_step,
           .integrator = mechanics::Integrator::event_driven,
           .restitution = restitution};
 }
 
-inline int add_ball(sim::ModelBuilder& builder, const std::string& name, const Vector3& at,
+inline int add_ball(builder::ModelBuilder& builder, const std::string& name, const Vector3& at,
                     const Vector3& velocity = Vector3::Zero(),
                     const Vector3& gravity = Vector3(0.0, 0.0, -kGravity), double radius = 0.05,
                     const Vector3& spin = Vector3::Zero()) {
@@ -55,9 +55,9 @@ inline int add_ball(sim::ModelBuilder& builder, const std::string& name, const V
 }
 
 /// Adds contact with the plane through the origin.
-inline void add_floor(sim::ModelBuilder& builder, int body,
+inline void add_floor(builder::ModelBuilder& builder, int body,
                       const Vector3& normal = Vector3::UnitZ(), double friction = 0.0) {
-  sim::ContactSettings contact;
+  builder::ContactSettings contact;
   contact.name = "floor_" + std::to_string(body);
   contact.body = body;
   contact.surface = collision::Plane{Vector3::Zero(), normal};
@@ -74,7 +74,7 @@ inline rigid::Solid triangles(const rigid::Shape& shape, bool convex = false) {
 }
 
 /// Adds a fixed slab of 1 x 1 x 0.1 m whose upper side is at z = 0, as a shape or as triangles.
-inline int add_slab(sim::ModelBuilder& builder, const std::string& name, bool as_mesh) {
+inline int add_slab(builder::ModelBuilder& builder, const std::string& name, bool as_mesh) {
   rigid::RigidSettings slab;
   slab.name = name;
   slab.shape = rigid::Box{{1.0, 1.0, 0.1}};
@@ -87,8 +87,8 @@ inline int add_slab(sim::ModelBuilder& builder, const std::string& name, bool as
 /// Distance at which triangles rest on those of the slab, m: 1e-7 of its diagonal.
 inline const double kApart = 1e-7 * std::sqrt(2.01);
 
-inline void add_pair(sim::ModelBuilder& builder, int first, int second, double friction = 0.0) {
-  sim::ContactSettings contact;
+inline void add_pair(builder::ModelBuilder& builder, int first, int second, double friction = 0.0) {
+  builder::ContactSettings contact;
   contact.name = "pair_" + std::to_string(first) + std::to_string(second);
   contact.body = first;
   contact.touched = second;
@@ -131,12 +131,12 @@ inline void expect_same_run(sim::Simulation& simulation, std::span<const int> pa
   const std::uint64_t start = simulation.state().hash();
   for (const int steps : pauses) {
     advance(simulation, steps);
-    const sim::State kept = simulation.state();
+    const run::State kept = simulation.state();
     sim::Simulation other(simulation.shared_model(), threads);
     other.restore(kept);
     const auto copy = simulation.clone();
     advance(simulation, further);
-    const sim::State expected = simulation.state();
+    const run::State expected = simulation.state();
     for (sim::Simulation* twin : {&other, copy.get()}) {
       advance(*twin, further);
       EXPECT_TRUE(twin->state() == expected) << "from step " << kept.steps;
@@ -146,7 +146,7 @@ inline void expect_same_run(sim::Simulation& simulation, std::span<const int> pa
       EXPECT_TRUE(twin->state() == expected) << "again from step " << kept.steps;
     }
   }
-  const sim::State end = simulation.state();
+  const run::State end = simulation.state();
   simulation.reset();
   EXPECT_EQ(simulation.state().hash(), start);
   advance(simulation, end.steps);

@@ -6,11 +6,11 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body.hpp"
-#include "sinew/sim/actuator.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 #include "sinew/sim/state_io.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/world/world.hpp"
 
 #include "arches.hpp"
 #include "chambers.hpp"
@@ -28,10 +28,12 @@ using sinew::testing::kVoid;
 // The neo-Hookean wall (mu = 30 kPa) bears no more than about 1.5 mu.
 constexpr double kTooMuch = 100e3;
 
-Command pressure(const Signal& signal) { return {CommandKind::effort, signal}; }
+model::Command pressure(const model::Signal& signal) {
+  return {model::CommandKind::effort, signal};
+}
 
-Command ramp(double to, int steps, double time_step) {
-  return pressure(Signal::ramp({0.0, to, 0.0, steps * time_step}));
+model::Command ramp(double to, int steps, double time_step) {
+  return pressure(model::Signal::ramp({0.0, to, 0.0, steps * time_step}));
 }
 
 // Steps until one fails. @return its message; empty if none of `most` fails.
@@ -43,7 +45,7 @@ std::string run_until_failure(Simulation& simulation, int most) {
       EXPECT_TRUE(failure.is_run_failure());
       return failure.what();
     }
-    EXPECT_EQ(simulation.report().status, StepStatus::solved) << k;
+    EXPECT_EQ(simulation.report().status, run::StepStatus::solved) << k;
     EXPECT_FALSE(is_failure(simulation.report().status)) << k;
   }
   return {};
@@ -64,10 +66,10 @@ TEST(FailedStep, APressureBeyondItsPeakStopsAtTheLastEquilibrium) {
     EXPECT_LT(simulation.actuator(0).motion, 50.0 * kVoid);
     EXPECT_EQ(simulation.state().failed, 0.0);
     // A smaller command works from there.
-    simulation.command(0, pressure(Signal::constant(5e3)));
-    EXPECT_EQ(simulation.step().status, StepStatus::solved);
+    simulation.command(0, pressure(model::Signal::constant(5e3)));
+    EXPECT_EQ(simulation.step().status, run::StepStatus::solved);
     Simulation other(simulation.shared_model());
-    other.command(0, pressure(Signal::constant(5e3)));
+    other.command(0, pressure(model::Signal::constant(5e3)));
     other.solve_static();
     EXPECT_NEAR(simulation.actuator(0).motion, other.actuator(0).motion, 1e-3 * kVoid);
   }
@@ -80,9 +82,9 @@ TEST(FailedStep, NothingThatDescendsFromOneIsSolved) {
   int failed = 0;
   for (int k = 0; k < 12; ++k) {
     try {
-      const StepStatus status = simulation.step(OnFailure::keep_going).status;
+      const run::StepStatus status = simulation.step(OnFailure::keep_going).status;
       failed += is_failure(status) ? 1 : 0;
-      EXPECT_EQ(status == StepStatus::solved, failed == 0) << k;
+      EXPECT_EQ(status == run::StepStatus::solved, failed == 0) << k;
     } catch (const Error& failure) {  // of a state that cannot be evaluated
       EXPECT_TRUE(failure.is_run_failure());
       break;
@@ -95,15 +97,15 @@ TEST(FailedStep, NothingThatDescendsFromOneIsSolved) {
   Simulation copy(simulation.shared_model());
   parse_state(copy, saved, "saved");
   EXPECT_EQ(copy.state(), simulation.state());
-  copy.command(0, pressure(Signal::constant(1e3)));
+  copy.command(0, pressure(model::Signal::constant(1e3)));
   try {
-    EXPECT_GE(copy.step(OnFailure::keep_going).status, StepStatus::after_failure);
+    EXPECT_GE(copy.step(OnFailure::keep_going).status, run::StepStatus::after_failure);
   } catch (const Error& failure) {
     EXPECT_TRUE(failure.is_run_failure());
   }
   copy.reset();
-  copy.command(0, pressure(Signal::constant(1e3)));
-  EXPECT_EQ(copy.step().status, StepStatus::solved);
+  copy.command(0, pressure(model::Signal::constant(1e3)));
+  EXPECT_EQ(copy.step().status, run::StepStatus::solved);
 }
 
 TEST(FailedStep, AVacuumThatCollapsesTheWallStops) {
@@ -118,7 +120,7 @@ TEST(FailedStep, AVacuumThatCollapsesTheWallStops) {
 
 TEST(FailedStep, TheVolumeRatioIsThatOfTheState) {
   Simulation simulation(chamber());
-  simulation.command(0, pressure(Signal::constant(10e3)));
+  simulation.command(0, pressure(model::Signal::constant(10e3)));
   const double moved = simulation.step().smallest_volume_ratio;
   EXPECT_LT(moved, 1.0);
   // A step that has nothing to do reports the same.
@@ -131,18 +133,19 @@ TEST(FailedStep, TheVolumeRatioIsThatOfTheState) {
 
 TEST(Vacuum, NoCommandGoesBelowIt) {
   Simulation simulation(chamber());
-  for (const Signal& signal :
-       {Signal::constant(-150e3), Signal::ramp({0.0, -150e3, 0.0, 1.0}),
-        Signal::sine({0.0, 150e3, 1.0, 0.0}), Signal::steps({{0.0, 0.0}, {1.0, -102e3}}),
-        Signal::sampled({0.0, 1.0, 2.0}, {0.0, -102e3, 0.0})}) {
+  for (const model::Signal& signal :
+       {model::Signal::constant(-150e3), model::Signal::ramp({0.0, -150e3, 0.0, 1.0}),
+        model::Signal::sine({0.0, 150e3, 1.0, 0.0}),
+        model::Signal::steps({{0.0, 0.0}, {1.0, -102e3}}),
+        model::Signal::sampled({0.0, 1.0, 2.0}, {0.0, -102e3, 0.0})}) {
     EXPECT_EQ(kind_of([&] { simulation.command(0, pressure(signal)); }), ErrorKind::out_of_range);
   }
-  simulation.command(0, pressure(Signal::constant(-101325.0)));
+  simulation.command(0, pressure(model::Signal::constant(-101325.0)));
   ChamberOptions options;
-  options.gas = GasSettings{.ambient_pressure = 2e5};
+  options.gas = model::GasSettings{.ambient_pressure = 2e5};
   Simulation deep(chamber(options));
-  deep.command(0, pressure(Signal::constant(-150e3)));
-  EXPECT_EQ(kind_of([&] { deep.command(0, pressure(Signal::constant(-201e3))); }),
+  deep.command(0, pressure(model::Signal::constant(-150e3)));
+  EXPECT_EQ(kind_of([&] { deep.command(0, pressure(model::Signal::constant(-201e3))); }),
             ErrorKind::out_of_range);
   EXPECT_EQ(deep.model().actuators()[0].effort.min, -2e5);
 }
@@ -154,7 +157,7 @@ TEST(Vacuum, AVolumeThatNeedsLessCavitates) {
   for (int k = 1; k <= 19 && !cavitates; ++k) {
     simulation.command(0, sinew::testing::pull(-0.05 * k * kVoid));
     try {
-      cavitates = simulation.step().status == StepStatus::cavitates;
+      cavitates = simulation.step().status == run::StepStatus::cavitates;
     } catch (const Error&) {
       break;
     }
@@ -175,9 +178,9 @@ TEST(Snapped, AnArchThatSnapsThroughSaysSo) {
     for (int k = 1; k <= 40; ++k) {
       simulation.command(
           0, by_force ? sinew::testing::tension(5e-4 * k) : sinew::testing::pull(4e-4 * k));
-      const StepReport& report = simulation.step();
+      const run::StepReport& report = simulation.step();
       const double depth = top - simulation.effector_value(0).z();
-      EXPECT_EQ(report.status, StepStatus::solved) << k;
+      EXPECT_EQ(report.status, run::StepStatus::solved) << k;
       EXPECT_EQ(report.snapped, depth - before > 4e-3) << by_force << " " << k << " " << depth;
       snapped += report.snapped ? 1 : 0;
       before = depth;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/builder/cable_settings.hpp"
 #include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/configuration.hpp"
 #include "sinew/core/error.hpp"
@@ -12,11 +13,10 @@
 #include "sinew/fem/has_material.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/cable_settings.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "robots.hpp"
 
@@ -32,11 +32,11 @@ constexpr double kFriction = 0.3;
 
 /// A block with a cable that runs straight in, along a quarter circle of radius 40 mm, and straight
 /// out.
-std::shared_ptr<const Model> bollard(int points_on_arc) {
-  StepSettings step;
+std::shared_ptr<const model::Model> bollard(int points_on_arc) {
+  model::StepSettings step;
   step.tolerance = 1e-11;  // friction laws are checked to the last digits
-  step.method = Method::newton;
-  ModelBuilder builder(step);
+  step.method = model::Method::newton;
+  builder::ModelBuilder builder(step);
   fem::FemBodySettings body;
   body.name = "block";
   const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -45,7 +45,7 @@ std::shared_ptr<const Model> bollard(int points_on_arc) {
   body.elements.regions = {{{1e6, 0.3}, material::Law::corotational, 1000.0, {}}};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
   builder.add_body<fem::FemBodyModel>(std::move(body));
-  CableSettings cable;
+  builder::CableSettings cable;
   cable.name = "rope";
   cable.friction = kFriction;
   cable.points.resize(points_on_arc + 2, 3);
@@ -135,15 +135,15 @@ TEST(Friction, ForcesOfRowsAreThoseOfTheSegments) {
 
 // With friction, the same length requires more tension.
 TEST(Friction, BentBeamLosesTensionAlongItsCable) {
-  StepSettings step;
+  model::StepSettings step;
   step.tolerance = 1e-11;  // friction laws are checked to the last digits
-  step.method = Method::newton;
+  step.method = model::Method::newton;
   Simulation smooth(beam({.step = step})), rough(beam({.step = step, .friction = kFriction}));
   for (Simulation* simulation : {&smooth, &rough}) {
     simulation->command(0, pull(0.004));
     for (int k = 1; k < 4; ++k) simulation->command(k, tension(0.0));
     simulation->step();
-    EXPECT_EQ(simulation->report().newton, NewtonStatus::converged);
+    EXPECT_EQ(simulation->report().newton, run::NewtonStatus::converged);
     EXPECT_NEAR(simulation->actuator(0).motion, 0.004, 1e-10);
   }
   expect_friction(rough, 1.0);
@@ -151,9 +151,9 @@ TEST(Friction, BentBeamLosesTensionAlongItsCable) {
 }
 
 TEST(Friction, CyclesDissipate) {
-  StepSettings step;
+  model::StepSettings step;
   step.tolerance = 1e-11;  // friction laws are checked to the last digits
-  step.method = Method::newton;
+  step.method = model::Method::newton;
   const auto work_of_cycle = [&](double friction) {
     Simulation simulation(beam({.step = step, .cables = 1, .friction = friction}));
     double work = 0.0;
@@ -182,7 +182,7 @@ TEST(Friction, StateRestoresWithItsFriction) {
   Simulation simulation(model);
   simulation.command(0, tension(3.0));
   simulation.step();
-  State state = simulation.state();
+  run::State state = simulation.state();
   simulation.command(0, tension(2.0));
   simulation.step();
   Simulation other(model);

@@ -4,15 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/builder/cable_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mesh/shapes.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/cable_settings.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/model_builder.hpp"
-#include "sinew/sim/signal.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/model/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::sim {
@@ -26,8 +26,8 @@ Points rows(std::initializer_list<Vector3> points) {
 }
 
 /// A clamped block, 100 x 40 x 40 mm, with one cable.
-ModelBuilder block_with(CableSettings cable, int cells_across) {
-  ModelBuilder builder;
+builder::ModelBuilder block_with(builder::CableSettings cable, int cells_across) {
+  builder::ModelBuilder builder;
   fem::FemBodySettings body;
   body.name = "block";
   const auto mesh = std::make_shared<const mesh::Mesh>(mesh::block(
@@ -42,7 +42,7 @@ ModelBuilder block_with(CableSettings cable, int cells_across) {
 }
 
 TEST(Guides, SpacingSetsTheGuidesThatOneWouldWrite) {
-  CableSettings written, set;
+  builder::CableSettings written, set;
   written.points = rows({{0.0, 0.02, 0.03},
                          {0.025, 0.02, 0.03},
                          {0.05, 0.02, 0.03},
@@ -58,11 +58,11 @@ TEST(Guides, SpacingSetsTheGuidesThatOneWouldWrite) {
 
 /// Displacement of the end of a cable that pulls a point of the block sideways with 1 N, m.
 double pulled(double radius, int cells_across) {
-  CableSettings cable;
+  builder::CableSettings cable;
   cable.points = rows({{0.07, 0.02, 0.2}, {0.07, 0.02, 0.02}});
   cable.guide_radius = radius;
   Simulation simulation(block_with(cable, cells_across).build());
-  simulation.command(0, {CommandKind::effort, Signal::constant(1.0)});
+  simulation.command(0, {model::CommandKind::effort, model::Signal::constant(1.0)});
   simulation.solve_static();
   return simulation.actuator(0).motion;
 }
@@ -75,10 +75,11 @@ TEST(Guides, ATubeDentsLessOnAFineMeshThanABarePoint) {
 }
 
 TEST(Guides, NegativeRadiusOrSpacingIsAnError) {
-  CableSettings cable;
+  builder::CableSettings cable;
   cable.points = rows({{0.0, 0.02, 0.03}, {0.09, 0.02, 0.03}});
-  for (double CableSettings::*key : {&CableSettings::guide_radius, &CableSettings::guide_spacing}) {
-    CableSettings bad = cable;
+  for (double builder::CableSettings::*key :
+       {&builder::CableSettings::guide_radius, &builder::CableSettings::guide_spacing}) {
+    builder::CableSettings bad = cable;
     bad.*key = -0.001;
     try {
       block_with(bad, 4);

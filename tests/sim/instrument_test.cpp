@@ -1,5 +1,5 @@
 // An instrument that the library does not know: it counts what it is told.
-#include "sinew/sim/instrument.hpp"
+#include "sinew/run/instrument.hpp"
 
 #include <memory>
 #include <string>
@@ -8,17 +8,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sinew/builder/force_settings.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/sim/force_settings.hpp"
-#include "sinew/sim/instrument_model.hpp"
-#include "sinew/sim/instruments.hpp"
-#include "sinew/sim/model_data.hpp"
+#include "sinew/model/instrument_model.hpp"
+#include "sinew/model/model_data.hpp"
+#include "sinew/run/instruments.hpp"
+#include "sinew/run/run.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/observables.hpp"
-#include "sinew/sim/path_settings.hpp"
-#include "sinew/sim/run.hpp"
-#include "sinew/sim/state.hpp"
 #include "sinew/sim/state_io.hpp"
-#include "sinew/sim/static_settings.hpp"
+#include "sinew/statics/path_settings.hpp"
+#include "sinew/statics/static_settings.hpp"
 
 #include "robots.hpp"
 
@@ -26,9 +26,9 @@ namespace sinew::sim {
 namespace {
 
 /// Sums the times of the steps that it sees.
-class Clock : public Instrument {
+class Clock : public run::Instrument {
  public:
-  Clock(const Run& run, std::string name) : run_(run), name_(std::move(name)) {}
+  Clock(const run::Run& run, std::string name) : run_(run), name_(std::move(name)) {}
 
   void begin() override {
     sum_ = 0.0;
@@ -38,16 +38,16 @@ class Clock : public Instrument {
     sum_ += run_.time();
     seen_ += " step";
   }
-  void settle(Rest rest) override {
-    seen_ += rest == Rest::found ? " found" : rest == Rest::on_path ? " point" : " end";
+  void settle(run::Rest rest) override {
+    seen_ += rest == run::Rest::found ? " found" : rest == run::Rest::on_path ? " point" : " end";
   }
   void save(std::vector<double>& memory) const override { memory.push_back(sum_); }
   void load(std::span<const double> memory) override {
     if (memory.size() != 1) throw Error(ErrorKind::wrong_length, {}, "damaged");
     sum_ = memory.front();
   }
-  std::vector<Reading> readings() const override {
-    return {{{observable_of(ObservableKind::sensor, name_, "sum", "s")},
+  std::vector<run::Reading> readings() const override {
+    return {{{observable_of(run::ObservableKind::sensor, name_, "sum", "s")},
              [this](std::span<double> to) { to[0] = sum_; }}};
   }
 
@@ -55,16 +55,16 @@ class Clock : public Instrument {
   double sum() const { return sum_; }
 
  private:
-  const Run& run_;
+  const run::Run& run_;
   std::string name_, seen_;
   double sum_ = 0.0;
 };
 
-class ClockModel : public InstrumentModel {
+class ClockModel : public model::InstrumentModel {
  public:
   explicit ClockModel(std::string name) : name_(std::move(name)) {}
   std::uint64_t hash() const override { return ValueHash().add(name_).value(); }
-  std::unique_ptr<Instrument> start(const Run& run) const override {
+  std::unique_ptr<run::Instrument> start(const run::Run& run) const override {
     return std::make_unique<Clock>(run, name_);
   }
 
@@ -73,8 +73,9 @@ class ClockModel : public InstrumentModel {
 };
 
 // A beam with clocks of these names.
-std::shared_ptr<const Model> with_clocks(const std::vector<std::string>& names) {
-  ModelBuilder builder({.time_step = 0.5, .integrator = mechanics::Integrator::quasi_static});
+std::shared_ptr<const model::Model> with_clocks(const std::vector<std::string>& names) {
+  builder::ModelBuilder builder(
+      {.time_step = 0.5, .integrator = mechanics::Integrator::quasi_static});
   fem::FemBodySettings body;
   body.name = "beam";
   const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -84,10 +85,10 @@ std::shared_ptr<const Model> with_clocks(const std::vector<std::string>& names) 
   body.elements.regions = {{{200e3, 0.3}, material::Law::corotational, 1000.0, {}}};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
   builder.add_body<fem::FemBodyModel>(std::move(body));
-  ForceSettings push;
+  builder::ForceSettings push;
   push.name = "push";
   push.point = {0.06, 0.01, 0.01};
-  push.command = {CommandKind::effort, Signal::constant(0.02)};
+  push.command = {model::CommandKind::effort, model::Signal::constant(0.02)};
   builder.add_force(push);
   for (const std::string& name : names) {
     builder.data().instruments.push_back(std::make_unique<ClockModel>(name));
@@ -108,7 +109,7 @@ TEST(Instruments, SeeStepsAndEquilibria) {
   EXPECT_EQ(clock_of(simulation).seen(), "begin step step found");
   simulation.reset();
   EXPECT_EQ(clock_of(simulation).seen(), "begin");
-  const Path path = simulation.follow_path({});
+  const statics::Path path = simulation.follow_path({});
   std::string expected = "begin";
   for (std::size_t k = 0; k < path.points.size(); ++k) expected += " point";
   EXPECT_EQ(clock_of(simulation).seen(), expected + " end");
@@ -129,7 +130,7 @@ TEST(Instruments, OnlyLook) {
   EXPECT_EQ(with.model().fingerprint(), without.model().fingerprint());
   with.step();
   without.step();
-  State state = with.state();
+  run::State state = with.state();
   ASSERT_EQ(state.instruments.size(), 1u);
   state.instruments.clear();
   EXPECT_EQ(state, without.state());
@@ -140,9 +141,9 @@ TEST(Instruments, OnlyLook) {
 TEST(Instruments, TakeTheirOwnMemoryFromAState) {
   Simulation simulation(with_clocks({"a", "b"})), other(with_clocks({"c", "b", "a"}));
   simulation.step();
-  const State early = simulation.state();
+  const run::State early = simulation.state();
   simulation.step();
-  State mixed = simulation.state();
+  run::State mixed = simulation.state();
   mixed.instruments[0] = early.instruments[0];  // a: 0.5 s, b: 1.5 s
   other.step();
   other.restore(mixed);
@@ -158,7 +159,7 @@ TEST(Instruments, TakeTheirOwnMemoryFromAState) {
 TEST(Instruments, TellOfDamage) {
   Simulation simulation(with_clocks({"a", "b"}));
   simulation.step();
-  State state = simulation.state();
+  run::State state = simulation.state();
   state.instruments[0].push_back(1.0);
   Simulation other(with_clocks({"a", "b"}));
   try {

@@ -6,10 +6,10 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "robots.hpp"
 
@@ -25,7 +25,7 @@ BeamOptions falling(Integrator integrator, double step, double rho = 0.8) {
   options.step.integrator = integrator;
   options.step.time_step = step;
   options.step.spectral_radius = rho;
-  options.step.method = Method::newton;
+  options.step.method = model::Method::newton;
   options.step.tangent = mechanics::Tangent::exact;
   options.step.tolerance = 1e-10;
   options.gravity = {0.0, 0.0, -9.81};
@@ -113,7 +113,7 @@ TEST(Integrator, SavedStatesGoOnBitForBit) {
   for (const auto integrator : {Integrator::bdf2, Integrator::generalized_alpha}) {
     Simulation a(beam(falling(integrator, 2e-3))), b(beam(falling(integrator, 2e-3)));
     for (int i = 0; i < 20; ++i) a.step();
-    State state = a.state();
+    run::State state = a.state();
     b.restore(state);
     for (int i = 0; i < 20; ++i) {
       a.step();
@@ -137,7 +137,7 @@ TEST(Integrator, OneLinearisationConvergesToTheSameMotion) {
     BeamOptions options = falling(integrator, 2.5e-4);
     options.damping = {1.0, 2e-3};
     const Vector3 newton = tip_after(options, 0.1);
-    options.step.method = Method::one_linearisation;
+    options.step.method = model::Method::one_linearisation;
     options.step.tangent = mechanics::Tangent::corotated;
     const Vector3 once = tip_after(options, 0.1);
     EXPECT_LT((once - newton).norm(), 2e-5) << mechanics::integrator_name(integrator);
@@ -150,11 +150,11 @@ TEST(Adaptive, MeetsItsToleranceWithFewerSteps) {
   int last_steps = 0;
   for (const double tolerance : {1e-3, 1e-5}) {
     BeamOptions options = falling(Integrator::generalized_alpha, 0.02);
-    options.step.adaptive = AdaptiveStep{tolerance, 1e-5};
+    options.step.adaptive = model::AdaptiveStep{tolerance, 1e-5};
     Simulation simulation(beam(options));
     int substeps = 0;
     for (int i = 0; i < 5; ++i) {
-      const StepReport& report = simulation.step();
+      const run::StepReport& report = simulation.step();
       substeps += report.substeps;
       EXPECT_LE(report.error, tolerance * simulation.model().size());
     }
@@ -174,14 +174,15 @@ TEST(Adaptive, RetriesWhereAStepFails) {
     BeamOptions options = falling(Integrator::backward_euler, 0.05);
     options.cables = 4;
     options.step.max_iterations = 3;
-    if (adaptive) options.step.adaptive = AdaptiveStep{1.0, 1e-4};
+    if (adaptive) options.step.adaptive = model::AdaptiveStep{1.0, 1e-4};
     auto simulation = std::make_unique<Simulation>(beam(options));
-    simulation->command(0, {CommandKind::motion, Signal::ramp({0.0, 0.01, 0.0, 0.05})});
+    simulation->command(0,
+                        {model::CommandKind::motion, model::Signal::ramp({0.0, 0.01, 0.0, 0.05})});
     return simulation;
   };
   EXPECT_THROW(pulled(false)->step(), Error);
   const auto simulation = pulled(true);
-  const StepReport& report = simulation->step();
+  const run::StepReport& report = simulation->step();
   EXPECT_GT(report.retries, 0);
   EXPECT_GT(report.substeps, 1);
   EXPECT_NEAR(simulation->actuator(0).motion, 0.01, 1e-9);
@@ -193,18 +194,18 @@ TEST(Parts, TheNextStepBeginsWithPartsOfTheLastOnes) {
   options.cables = 4;
   options.step.max_iterations = 4;
   Simulation simulation(beam(options));
-  simulation.command(0, {CommandKind::motion, Signal::ramp({0.0, 0.02, 0.0, 0.1})});
-  const StepReport first = simulation.step();
+  simulation.command(0, {model::CommandKind::motion, model::Signal::ramp({0.0, 0.02, 0.0, 0.1})});
+  const run::StepReport first = simulation.step();
   EXPECT_GT(first.retries, 0);
   EXPECT_EQ(first.substeps, 4);  // quarters, since halves failed
-  const State saved = simulation.state();
-  const StepReport second = simulation.step();
+  const run::State saved = simulation.state();
+  const run::StepReport second = simulation.step();
   EXPECT_EQ(second.retries, 0);
   EXPECT_EQ(second.substeps, 4);
   EXPECT_NEAR(simulation.actuator(0).motion, 0.02, 1e-9);
 
   Simulation other(simulation.shared_model());
-  other.command(0, {CommandKind::motion, Signal::ramp({0.0, 0.02, 0.0, 0.1})});
+  other.command(0, {model::CommandKind::motion, model::Signal::ramp({0.0, 0.02, 0.0, 0.1})});
   other.restore(saved);
   EXPECT_EQ(other.step().substeps, second.substeps);
   EXPECT_EQ(other.state().hash(), simulation.state().hash());
@@ -220,7 +221,7 @@ TEST(Adaptive, StopsAtTheSmallestStepAndRestoresTheState) {
   options.cables = 4;
   options.step.max_iterations = 1;
   options.step.tolerance = 1e-15;
-  options.step.adaptive = AdaptiveStep{1.0, 0.01};
+  options.step.adaptive = model::AdaptiveStep{1.0, 0.01};
   Simulation simulation(beam(options));
   const auto before = simulation.state().hash();
   EXPECT_THROW(simulation.step(), Error);

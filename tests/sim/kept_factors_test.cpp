@@ -1,4 +1,4 @@
-#include "sinew/sim/kept_factors.hpp"
+#include "sinew/run/kept_factors.hpp"
 
 #include <vector>
 
@@ -8,13 +8,13 @@ namespace sinew::sim {
 namespace {
 
 TEST(KeptFactors, ServeWhileNothingElseIsKnown) {
-  EXPECT_TRUE(KeptFactors{}.pays(1e-1, 1e-8));
-  EXPECT_TRUE(KeptFactors{}.will_pay(1e-8));
+  EXPECT_TRUE(run::KeptFactors{}.pays(1e-1, 1e-8));
+  EXPECT_TRUE(run::KeptFactors{}.will_pay(1e-8));
 }
 
 // From 1e-3 to 1e-6, motions that leave a tenth each are three, those that leave a quarter five.
 TEST(KeptFactors, PayIfFewMotionsReachTheTolerance) {
-  KeptFactors good, poor;
+  run::KeptFactors good, poor;
   good.take(0.1, 1e-3);
   poor.take(0.25, 1e-3);
   EXPECT_TRUE(good.will_pay(1e-6));
@@ -25,7 +25,7 @@ TEST(KeptFactors, PayIfFewMotionsReachTheTolerance) {
 }
 
 TEST(KeptFactors, AreTriedAgainAfterSomeSearchesWithoutOne) {
-  KeptFactors refused;
+  run::KeptFactors refused;
   refused.take(1.0, 1e-2);
   for (int k = 0; k < 15; ++k) {
     EXPECT_FALSE(refused.pays(1.1e-6, 1e-6)) << k;
@@ -37,14 +37,14 @@ TEST(KeptFactors, AreTriedAgainAfterSomeSearchesWithoutOne) {
 }
 
 TEST(KeptFactors, AreRememberedInAState) {
-  KeptFactors known;
+  run::KeptFactors known;
   std::vector<double> numbers;
   known.save(numbers);
   EXPECT_TRUE(numbers.empty());
   known.take(0.25, 1e-3);
   known.take(0.0, 2e-3);
   known.save(numbers);
-  KeptFactors again(numbers);
+  run::KeptFactors again(numbers);
   std::vector<double> same;
   again.save(same);
   EXPECT_EQ(same, numbers);

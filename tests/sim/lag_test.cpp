@@ -5,12 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/builder/force_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/material/hyperelastic.hpp"
 #include "sinew/mechanics/body.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/force_settings.hpp"
-#include "sinew/sim/model_builder.hpp"
+#include "sinew/model/actuator.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "sim/robots.hpp"
@@ -26,8 +26,9 @@ constexpr double kC1 = 1e4, kC2 = 2e2, kC3 = 5.0;
 constexpr material::MullinsEffect kSoftening{.r = 1.6, .m = 900.0, .beta = 0.05};
 
 // A cube on rollers (one hexahedron), stretched along x by four forces.
-std::shared_ptr<const Model> cube(material::Hyperelastic rubber, const StepSettings& step) {
-  ModelBuilder builder(step);
+std::shared_ptr<const model::Model> cube(material::Hyperelastic rubber,
+                                         const model::StepSettings& step) {
+  builder::ModelBuilder builder(step);
   fem::FemBodySettings body;
   body.name = "cube";
   const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -46,7 +47,7 @@ std::shared_ptr<const Model> cube(material::Hyperelastic rubber, const StepSetti
   }
   const int number = builder.add_body<fem::FemBodyModel>(std::move(body));
   for (const NodeId node : mesh->node_sets.at("x_max")) {
-    ForceSettings force;
+    builder::ForceSettings force;
     force.name = "force_" + std::to_string(node);
     force.body = number;
     force.point = mesh->nodes.row(node);
@@ -57,7 +58,7 @@ std::shared_ptr<const Model> cube(material::Hyperelastic rubber, const StepSetti
 }
 
 // Nominal stress after each step to a stretch, Pa.
-std::vector<double> stresses(const std::shared_ptr<const Model>& model,
+std::vector<double> stresses(const std::shared_ptr<const model::Model>& model,
                              const std::vector<double>& stretches) {
   Simulation simulation(model);
   std::vector<double> result;
@@ -110,7 +111,7 @@ TEST(Lag, SofteningRubberTurnsWhereItsFormulaTurns) {
 TEST(Lag, ViscousRubberKeepsNoErrorOfAStep) {
   material::Hyperelastic rubber = material::neo_hookean(2e4);
   rubber.prony = {{0.3, 0.05}, {0.2, 0.5}};
-  const StepSettings exact{.tolerance = 1e-12};
+  const model::StepSettings exact{.tolerance = 1e-12};
   const std::vector<double> expected = stresses(cube(rubber, exact), cycles());
   const std::vector<double> found = stresses(cube(rubber, {}), cycles());
   for (std::size_t k = 0; k < expected.size(); ++k) {
@@ -119,44 +120,47 @@ TEST(Lag, ViscousRubberKeepsNoErrorOfAStep) {
 }
 
 // Largest relative residual over the steps of a beam that a cable bends.
-double largest_residual(const StepSettings& step) {
+double largest_residual(const model::StepSettings& step) {
   BeamOptions options;
   options.step = step;
   Simulation simulation(beam(options));
-  simulation.command(0, {CommandKind::motion, Signal::ramp({0.0, 0.02, 0.0, 0.2})});
+  simulation.command(0, {model::CommandKind::motion, model::Signal::ramp({0.0, 0.02, 0.0, 0.2})});
   double largest = 0.0;
   for (int k = 0; k < 20; ++k) {
     largest = std::max(largest, simulation.step().relative_residual);
-    EXPECT_EQ(simulation.report().status, StepStatus::solved);
+    EXPECT_EQ(simulation.report().status, run::StepStatus::solved);
   }
   return largest;
 }
 
 TEST(Lag, StepsConvergeUnlessTheyFollow) {
-  EXPECT_LE(largest_residual({}), kQuasiStaticTolerance);
-  EXPECT_GT(largest_residual({.equilibrium = Equilibrium::following}), 1.2 * kFollowingTolerance);
+  EXPECT_LE(largest_residual({}), model::kQuasiStaticTolerance);
+  EXPECT_GT(largest_residual({.equilibrium = model::Equilibrium::following}),
+            1.2 * model::kFollowingTolerance);
 }
 
 // An explicit tolerance is met, even if it equals the default of following steps.
 TEST(Lag, AToleranceThatIsAskedForIsKept) {
-  for (const double tolerance : {kFollowingTolerance, 1e-7}) {
-    EXPECT_LE(largest_residual({.equilibrium = Equilibrium::following, .tolerance = tolerance}),
-              tolerance);
+  for (const double tolerance : {model::kFollowingTolerance, 1e-7}) {
+    EXPECT_LE(
+        largest_residual({.equilibrium = model::Equilibrium::following, .tolerance = tolerance}),
+        tolerance);
   }
 }
 
 TEST(Lag, OnlyAModelWithoutAWordFollowsWhenAsked) {
-  for (const auto word : {std::optional<Equilibrium>(), std::optional(Equilibrium::converged),
-                          std::optional(Equilibrium::following)}) {
+  for (const auto word :
+       {std::optional<model::Equilibrium>(), std::optional(model::Equilibrium::converged),
+        std::optional(model::Equilibrium::following)}) {
     BeamOptions options;
     options.step.equilibrium = word;
     Simulation simulation(beam(options));
-    EXPECT_EQ(simulation.equilibrium(), word.value_or(Equilibrium::converged));
+    EXPECT_EQ(simulation.equilibrium(), word.value_or(model::Equilibrium::converged));
     simulation.follow();
-    EXPECT_EQ(simulation.equilibrium(), word.value_or(Equilibrium::following));
+    EXPECT_EQ(simulation.equilibrium(), word.value_or(model::Equilibrium::following));
     EXPECT_EQ(simulation.clone()->equilibrium(), simulation.equilibrium());
     simulation.follow(false);
-    EXPECT_EQ(simulation.equilibrium(), word.value_or(Equilibrium::converged));
+    EXPECT_EQ(simulation.equilibrium(), word.value_or(model::Equilibrium::converged));
   }
 }
 

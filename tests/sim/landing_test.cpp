@@ -6,14 +6,14 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/contact/contact_state.hpp"
 #include "sinew/fem/fem_body_model.hpp"
+#include "sinew/model/base_motion.hpp"
 #include "sinew/rigid/rigid_body_model.hpp"
-#include "sinew/sim/base_motion.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/run.hpp"
-#include "sinew/sim/stepper.hpp"
-#include "sinew/sim/substep.hpp"
+#include "sinew/run/contact_reader.hpp"
+#include "sinew/run/run.hpp"
+#include "sinew/step/stepper.hpp"
+#include "sinew/step/substep.hpp"
 
 #include "event_robots.hpp"
 #include "robots.hpp"
@@ -28,7 +28,7 @@ constexpr double kNothing = 1e-9;  // of m g h
 constexpr double kLater = 1e-6;
 const Vector3 kSize(0.06, 0.04, 0.02);
 
-using Scene = void (*)(sim::ModelBuilder& builder, double friction);
+using Scene = void (*)(builder::ModelBuilder& builder, double friction);
 
 struct Landing {
   const char* name;
@@ -37,7 +37,7 @@ struct Landing {
   double last = 0.0;  ///< s: until then kLater may be gained
 };
 
-int add_block(sim::ModelBuilder& builder, const std::string& name, const Vector3& at,
+int add_block(builder::ModelBuilder& builder, const std::string& name, const Vector3& at,
               const Vector3& velocity = Vector3::Zero(), double lean = 0.0) {
   rigid::RigidSettings block;
   block.name = name;
@@ -51,19 +51,19 @@ int add_block(sim::ModelBuilder& builder, const std::string& name, const Vector3
 }
 
 // A block that lands flat and slides.
-void block(sim::ModelBuilder& builder, double friction) {
+void block(builder::ModelBuilder& builder, double friction) {
   const int body = add_block(builder, "block", {0.0, 0.0, 0.01 + kFall}, {0.3, 0.0, 0.0});
   add_floor(builder, body, Vector3::UnitZ(), friction);
 }
 
 // A block that lands on an edge and turns about it.
-void leaning_block(sim::ModelBuilder& builder, double friction) {
+void leaning_block(builder::ModelBuilder& builder, double friction) {
   const int body = add_block(builder, "block", {0.0, 0.0, 0.06}, {0.3, 0.0, 0.0}, 0.4);
   add_floor(builder, body, Vector3::UnitZ(), friction);
 }
 
 // Three blocks that land one after the other, off-centre; the highest one slides.
-void stack(sim::ModelBuilder& builder, double friction) {
+void stack(builder::ModelBuilder& builder, double friction) {
   const int low = add_block(builder, "low", {0.0, 0.0, 0.01 + 0.5 * kFall});
   const int middle = add_block(builder, "middle", {0.01, 0.003, 0.04 + kFall});
   const int high = add_block(builder, "high", {-0.005, 0.0, 0.09 + kFall}, {0.2, 0.0, 0.0});
@@ -73,7 +73,7 @@ void stack(sim::ModelBuilder& builder, double friction) {
 }
 
 // A ball lands on another falling ball and rolls off it.
-void balls(sim::ModelBuilder& builder, double friction) {
+void balls(builder::ModelBuilder& builder, double friction) {
   const Vector3 gravity(0.0, 0.0, -kGravity);
   const int low =
       add_ball(builder, "low", {0.0, 0.0, 0.02 + kFall}, Vector3::Zero(), gravity, 0.02);
@@ -100,7 +100,7 @@ class Landings : public ::testing::TestWithParam<Landing> {};
 TEST_P(Landings, GainNoEnergy) {
   for (const double friction : {0.0, 0.5}) {
     for (const double time_step : {5e-3, 2e-3, 1e-3, 0.5e-3}) {
-      sim::ModelBuilder builder(
+      builder::ModelBuilder builder(
           {.time_step = time_step, .integrator = mechanics::Integrator::bdf2});
       GetParam().scene(builder, friction);
       sim::Simulation simulation(builder.build());
@@ -134,8 +134,8 @@ INSTANTIATE_TEST_SUITE_P(Bdf2, Landings,
 
 // A beam with a cable, and a block that falls beside it. A base moves, too, so a BDF2 step in which
 // the block lands counts as one that gains energy.
-std::shared_ptr<const sim::Model> block_beside_beam(mechanics::Integrator integrator, double h) {
-  sim::ModelBuilder builder({.time_step = h, .integrator = integrator});
+std::shared_ptr<const model::Model> block_beside_beam(mechanics::Integrator integrator, double h) {
+  builder::ModelBuilder builder({.time_step = h, .integrator = integrator});
   const int block = add_block(builder, "block", {0.0, 0.0, 0.017}, {0.0, 0.0, -1.0});
   add_floor(builder, block);
   rigid::RigidSettings base;
@@ -143,9 +143,9 @@ std::shared_ptr<const sim::Model> block_beside_beam(mechanics::Integrator integr
   base.shape = rigid::Box{kSize};
   base.position = Vector3(0.0, -0.1, 0.05);
   base.fixed = true;
-  sim::BaseMotion motion;
+  model::BaseMotion motion;
   motion.body = builder.add_body<rigid::RigidBodyModel>(base);
-  motion.translation[0] = sim::Signal::ramp({0.0, 0.1, 0.0, 1.0});
+  motion.translation[0] = model::Signal::ramp({0.0, 0.1, 0.0, 1.0});
   builder.add_base_motion(motion, {});
   fem::FemBodySettings beam;
   beam.name = "beam";
@@ -154,7 +154,7 @@ std::shared_ptr<const sim::Model> block_beside_beam(mechanics::Integrator integr
   beam.mesh = mesh;
   beam.elements.regions = {{{200e3, 0.4}, material::Law::corotational, 1070.0, {}}};
   beam.elements.fixed_nodes = mesh->node_sets.at("x_min");
-  sim::CableSettings cable;
+  builder::CableSettings cable;
   cable.name = "cable";
   cable.body = builder.add_body<fem::FemBodyModel>(std::move(beam));
   cable.points.resize(2, 3);
@@ -170,15 +170,15 @@ TEST(LandingsInParts, LeaveCommandsInProportion) {
   using enum mechanics::Integrator;
   const double h = 5e-3, jump = 2e-4;
   for (const mechanics::Integrator integrator : {bdf2, generalized_alpha}) {
-    sim::Run run(block_beside_beam(integrator, h), 1);
+    run::Run run(block_beside_beam(integrator, h), 1);
     const auto& block = *mechanics::as<const mechanics::HasPose>(*run.world.bodies().all()[0]);
-    sim::Stepper(run).step();
+    step::Stepper(run).step();
     ASSERT_EQ(run.last_step, h) << "the block landed too early";
     const double height = block.origin()[2];
     run.actuation.command(0, pull(jump));
-    sim::Substep part(run);
+    step::Substep part(run);
     part.read_commands(1.5 * h, 0.5 * h);
-    sim::blend(run.world.problem().actuators, run.actuation.states(), 0.5);
+    run::blend(run.world.problem().actuators, run.actuation.states(), 0.5);
     const double goal = run.world.problem().actuators[0].value;
     ASSERT_NEAR(goal, 0.5 * jump, 0.1 * jump);
     part.begin(0.5 * h);

@@ -1,5 +1,5 @@
 // Lids over openings: hubs in the planes of their rims, and rims without planes.
-#include "sinew/sim/lid.hpp"
+#include "sinew/builder/lid.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -8,7 +8,7 @@
 
 #include "sinew/constraint/chamber.hpp"
 #include "sinew/fem/fem_body_model.hpp"
-#include "sinew/sim/actuator.hpp"
+#include "sinew/model/actuator.hpp"
 
 #include "chambers.hpp"
 #include "robots.hpp"
@@ -19,14 +19,14 @@ namespace {
 
 using sinew::testing::kind_of;
 
-Vector3 hub_of(const Rim& rim, const std::vector<double>& weights) {
+Vector3 hub_of(const builder::Rim& rim, const std::vector<double>& weights) {
   Vector3 hub = Vector3::Zero();
   for (std::size_t k = 0; k < weights.size(); ++k) hub += weights[k] * rim.corners[k];
   return hub;
 }
 
-Rim rim_of(std::vector<Vector3> corners) {
-  Rim rim{std::move(corners), {}, {}};
+builder::Rim rim_of(std::vector<Vector3> corners) {
+  builder::Rim rim{std::move(corners), {}, {}};
   rim.held.assign(rim.corners.size(), 0);
   return rim;
 }
@@ -55,8 +55,8 @@ Points quadrant() {
 TEST(Lid, APlaneRimHasItsMeanAsHub) {
   std::vector<Vector3> corners;
   add_arc(corners, Vector3(1, 2, 3), Vector3(2, 2, 3), 2.0 * std::numbers::pi);
-  const Rim rim = rim_of(corners);
-  const auto weights = find_hub(rim, quadrant());
+  const builder::Rim rim = rim_of(corners);
+  const auto weights = builder::find_hub(rim, quadrant());
   ASSERT_TRUE(weights);
   EXPECT_LT((hub_of(rim, *weights) - Vector3(1, 2, 3)).norm(), 1e-12);
 }
@@ -72,8 +72,8 @@ std::vector<Vector3> half_bore() {
 }
 
 TEST(Lid, ARimInTwoPlanesHasItsHubOnBoth) {
-  const Rim rim = rim_of(half_bore());
-  const auto weights = find_hub(rim, quadrant());
+  const builder::Rim rim = rim_of(half_bore());
+  const auto weights = builder::find_hub(rim, quadrant());
   ASSERT_TRUE(weights);
   EXPECT_LT(hub_of(rim, *weights).norm(), 1e-12);
   for (std::size_t k = 0; k < weights->size(); ++k) {
@@ -89,10 +89,10 @@ TEST(Lid, ARimInThreePlanesNeedsImmovableNodes) {
   add_line(corners, Vector3(0, 1, 5), Vector3(0, 0, 5));
   add_line(corners, Vector3(0, 0, 5), Vector3(1, 0, 5));
   add_line(corners, Vector3(1, 0, 5), Vector3(1, 0, 0));
-  Rim rim = rim_of(corners);
-  EXPECT_FALSE(find_hub(rim, quadrant())) << "nothing holds the hub in three planes";
+  builder::Rim rim = rim_of(corners);
+  EXPECT_FALSE(builder::find_hub(rim, quadrant())) << "nothing holds the hub in three planes";
   for (std::size_t k = 0; k < corners.size(); ++k) rim.held[k] = corners[k].z() == 0.0 ? 1 : 0;
-  const auto weights = find_hub(rim, quadrant());
+  const auto weights = builder::find_hub(rim, quadrant());
   ASSERT_TRUE(weights);
   EXPECT_LT(hub_of(rim, *weights).norm(), 1e-12);
   for (std::size_t k = 0; k < corners.size(); ++k) {
@@ -107,9 +107,9 @@ TEST(Lid, ACurvedRimHasNoHubAndAnUncertainVolume) {
     const double angle = 2.0 * std::numbers::pi * k / 24;
     corners.emplace_back(std::cos(angle), std::sin(angle), 0.3 * std::cos(2.0 * angle));
   }
-  const Rim rim = rim_of(corners);
-  EXPECT_FALSE(find_hub(rim, quadrant()));
-  const RimShape shape = rim_shape(rim);
+  const builder::Rim rim = rim_of(corners);
+  EXPECT_FALSE(builder::find_hub(rim, quadrant()));
+  const builder::RimShape shape = builder::rim_shape(rim);
   EXPECT_NEAR(shape.rise, 0.6, 1e-12);
   // The area of the polygon along z is 12 sin(15 degrees).
   EXPECT_NEAR(shape.area.z(), 12.0 * std::sin(std::numbers::pi / 12.0), 1e-12);
@@ -126,7 +126,7 @@ struct Bored {
   Vector3 size() const { return {0.03 / along_x, 0.03 / along_y, 0.03}; }
 };
 
-std::shared_ptr<const Model> bored(const Bored& part, mesh::Cells cells, bool cap = true) {
+std::shared_ptr<const model::Model> bored(const Bored& part, mesh::Cells cells, bool cap = true) {
   const auto solid = cells == mesh::Cells::hexahedra ? cells : mesh::Cells::tetrahedra;
   mesh::Mesh linear =
       mesh::block({.size = part.size(), .cells = {6 / part.along_x, 6 / part.along_y, 6}}, solid);
@@ -163,9 +163,9 @@ std::shared_ptr<const Model> bored(const Bored& part, mesh::Cells cells, bool ca
       body.elements.held_axes.push_back({node, 1});
     }
   }
-  ModelBuilder builder;
+  builder::ModelBuilder builder;
   const auto mesh = body.mesh;
-  ChamberSettings chamber;
+  builder::ChamberSettings chamber;
   chamber.name = "air";
   chamber.body = builder.add_body<fem::FemBodyModel>(std::move(body));
   std::vector<mesh::Face> faces;
@@ -205,7 +205,7 @@ TEST_P(LidTest, PartsOfARobotEncloseTheirPartOfTheVolume) {
 TEST_P(LidTest, PartsOfARobotGrowLikeThePartsOfTheWhole) {
   const auto growth = [&](int x, int y) {
     Simulation simulation(bored({x, y}, GetParam()));
-    simulation.command(0, {CommandKind::effort, Signal::constant(1000.0)});
+    simulation.command(0, {model::CommandKind::effort, model::Signal::constant(1000.0)});
     simulation.solve_static();
     return x * y * simulation.actuator(0).motion;
   };

@@ -9,10 +9,10 @@
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
-#include "sinew/sim/actuator.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/controlled_response.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "cut_beam.hpp"
 
@@ -42,7 +42,7 @@ VectorX by_differences(Simulation& simulation, NodeId node, const Vector3& force
 TEST(Fields, AreTheRowsAnswersToForcesOnNodesThroughWelds) {
   CutBeam options{.gravity = {0.0, 0.0, -2.0}, .cables = 1, .push = true};
   Simulation simulation(cut_beam(options));
-  simulation.command(0, {CommandKind::effort, Signal::constant(2.0)});
+  simulation.command(0, {model::CommandKind::effort, model::Signal::constant(2.0)});
   simulation.solve_static({.tolerance = 1e-12});
   const Linearisation linear = linearise(simulation, {.fields = true});
   ASSERT_EQ(linear.fields.size(), 2U);
@@ -65,7 +65,7 @@ TEST(Fields, AreEmptyUnlessAskedFor) {
 TEST(LastLinearisation, IsThatOfTheStepAndNeedsOne) {
   CutBeam options{.gravity = {0.0, 0.0, -2.0}, .cables = 1, .push = true};
   Simulation simulation(cut_beam(options));
-  simulation.command(0, {CommandKind::effort, Signal::constant(2.0)});
+  simulation.command(0, {model::CommandKind::effort, model::Signal::constant(2.0)});
   simulation.solve_static({.tolerance = 1e-12});
   const Linearisation last = last_linearisation(simulation);
   const Linearisation here = linearise(simulation);
@@ -87,7 +87,7 @@ void expect_same(const Linearisation& one, const Linearisation& other) {
 // The static W is far from that of a step, so an overwrite by a query would show.
 TEST(LastLinearisation, StaysThatOfTheStepAfterQueries) {
   Simulation simulation(cut_beam({.gravity = {0.0, 0.0, -2.0}, .cables = 1, .push = true}));
-  simulation.command(0, {CommandKind::effort, Signal::constant(2.0)});
+  simulation.command(0, {model::CommandKind::effort, model::Signal::constant(2.0)});
   simulation.step();
   const Linearisation last = last_linearisation(simulation);
   const Linearisation statics = linearise(simulation);
@@ -108,7 +108,7 @@ TEST(LastLinearisation, IsRefusedWhereNoStepLedToTheState) {
   };
   expect_refused();
   simulation.step();
-  const State state = simulation.state();
+  const run::State state = simulation.state();
   simulation.step();
   EXPECT_NO_THROW(last_linearisation(simulation));
   simulation.restore(state);

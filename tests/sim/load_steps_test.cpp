@@ -1,5 +1,5 @@
 // Incremental loading when steps above a certain length fail.
-#include "sinew/sim/load_steps.hpp"
+#include "sinew/run/load_steps.hpp"
 
 #include <cmath>
 
@@ -14,7 +14,7 @@ struct Way {
 };
 
 // @param longest step that succeeds.
-Way go(const LoadSteps& steps, double longest) {
+Way go(const run::LoadSteps& steps, double longest) {
   Way way;
   double at = 1.0, next = 1.0;
   const auto solve = [&](double share) {
@@ -27,7 +27,7 @@ Way go(const LoadSteps& steps, double longest) {
     at = next;
     ++way.successes;
   };
-  way.left = take_load_steps(steps, solve, keep, [] {});
+  way.left = run::take_load_steps(steps, solve, keep, [] {});
   EXPECT_EQ(way.left, at);
   return way;
 }
@@ -49,7 +49,7 @@ TEST(LoadSteps, FailuresGrowRarer) {
 }
 
 TEST(LoadSteps, TheFirstMayHaveToBeLongerThanTheOthers) {
-  const LoadSteps steps{.first = 0.5, .min = 1.0 / 64, .min_at_first = 1.0 / 16};
+  const run::LoadSteps steps{.first = 0.5, .min = 1.0 / 64, .min_at_first = 1.0 / 16};
   EXPECT_EQ(go(steps, 1.0 / 16).left, 0.0);
   const Way stuck = go(steps, 1.0 / 32);
   EXPECT_EQ(stuck.left, 1.0);

@@ -8,6 +8,8 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "sinew/builder/load_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
@@ -19,11 +21,9 @@
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/patch.hpp"
 #include "sinew/mesh/shapes.hpp"
-#include "sinew/sim/load_settings.hpp"
-#include "sinew/sim/model_builder.hpp"
-#include "sinew/sim/signal.hpp"
+#include "sinew/model/signal.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 namespace sinew::sim {
 namespace {
@@ -174,9 +174,9 @@ TEST(Water, CylinderHasTheDragAndInertiaOfItsWidth) {
 // A free body with the density of water stays in place.
 TEST(Water, BodyAsHeavyAsWaterFloatsWhereItIs) {
   for (const double density : {1000.0, 1100.0}) {
-    StepSettings step;
+    model::StepSettings step;
     step.integrator = mechanics::Integrator::backward_euler;
-    ModelBuilder builder(step);
+    builder::ModelBuilder builder(step);
     fem::FemBodySettings body;
     body.name = "ball";
     const auto mesh = std::make_shared<const mesh::Mesh>(mesh::block(
@@ -185,7 +185,8 @@ TEST(Water, BodyAsHeavyAsWaterFloatsWhereItIs) {
     body.gravity = {0.0, 0.0, -9.81};
     body.elements.regions = {{{1e5, 0.4}, material::Law::corotational, density, {}}};
     builder.add_body<fem::FemBodyModel>(std::move(body));
-    builder.add_load({.name = "sea", .load = WaterSettings{.faces = mesh::boundary_faces(*mesh)}});
+    builder.add_load(
+        {.name = "sea", .load = builder::WaterSettings{.faces = mesh::boundary_faces(*mesh)}});
     Simulation simulation(builder.build());
     for (int k = 0; k < 100; ++k) simulation.step();
     const Points moved = simulation.body(0).positions() - mesh->nodes;
@@ -207,7 +208,7 @@ TEST(Water, BodyAsHeavyAsWaterFloatsWhereItIs) {
 // Pressure on the upper side of a cantilever: with the full tangent, Newton's method converges
 // quadratically.
 TEST(Pressure, OpenSurfaceConvergesQuadraticallyInStatics) {
-  ModelBuilder builder;
+  builder::ModelBuilder builder;
   fem::FemBodySettings body;
   body.name = "beam";
   const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -221,14 +222,15 @@ TEST(Pressure, OpenSurfaceConvergesQuadraticallyInStatics) {
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
   builder.add_body<fem::FemBodyModel>(std::move(body));
   const auto faces = mesh::select_faces(*mesh, mesh::NamedRegion{"z_max"}, "top");
-  builder.add_load(
-      {.name = "wind", .load = PressureLoadSettings{faces}, .factor = Signal::constant(60.0)});
+  builder.add_load({.name = "wind",
+                    .load = builder::PressureLoadSettings{faces},
+                    .factor = model::Signal::constant(60.0)});
   Simulation simulation(builder.build());
   simulation.solve_static();
   // Near the solution, a tangent without its unsymmetric part would gain one digit per iteration.
-  simulation.set_load(0, Signal::constant(60.5));
-  const StaticReport report = simulation.solve_static();
-  EXPECT_EQ(report.status, NewtonStatus::converged);
+  simulation.set_load(0, model::Signal::constant(60.5));
+  const statics::StaticReport report = simulation.solve_static();
+  EXPECT_EQ(report.status, run::NewtonStatus::converged);
   EXPECT_LE(report.iterations, 5);
   const double tip = (simulation.body(0).positions() - mesh->nodes).col(2).minCoeff();
   EXPECT_LT(tip, -0.02);  // large: the load rotates with the beam
@@ -268,7 +270,7 @@ Points forces_of_the_load(Simulation& simulation) {
 // A line through 200 cells. In every tetrahedron that it crosses, the integral of the linear shape
 // functions is the length of the segment times their values at its midpoint.
 TEST(LineLoad, IsExactInEveryElement) {
-  ModelBuilder builder;
+  builder::ModelBuilder builder;
   fem::FemBodySettings body;
   body.name = "bar";
   const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -278,7 +280,7 @@ TEST(LineLoad, IsExactInEveryElement) {
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
   const int bar = builder.add_body<fem::FemBodyModel>(std::move(body));
   const Vector3 from(0.0013, 0.0021, 0.0031), to(0.9971, 0.0087, 0.0074), by(0.1, -0.3, 0.2);
-  LineLoadSettings line{Points(2, 3), by};
+  builder::LineLoadSettings line{Points(2, 3), by};
   line.points << from.transpose(), to.transpose();
   builder.add_load({.name = "line", .body = bar, .load = line});
   const auto model = builder.build();
@@ -316,7 +318,7 @@ TEST(LineLoad, IsExactInEveryElement) {
 // Parts of the line outside the body act on the nearest part of the body: no force is lost.
 TEST(LineLoad, MayLeaveTheBody) {
   for (const auto cells : {mesh::Cells::quadratic, mesh::Cells::hexahedra}) {
-    ModelBuilder builder;
+    builder::ModelBuilder builder;
     fem::FemBodySettings body;
     body.name = "block";
     const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -328,7 +330,7 @@ TEST(LineLoad, MayLeaveTheBody) {
     body.elements.regions = {region};
     body.elements.fixed_nodes = mesh->node_sets.at("x_min");
     builder.add_body<fem::FemBodyModel>(std::move(body));
-    LineLoadSettings line{Points(3, 3), {0.0, 0.0, -1.0}};
+    builder::LineLoadSettings line{Points(3, 3), {0.0, 0.0, -1.0}};
     line.points << 0.01, 0.005, 0.005, 0.08, 0.012, 0.011, 0.13, 0.01, 0.01;
     builder.add_load({.name = "line", .outside = mesh::Outside::nearest, .load = line});
     Simulation simulation(builder.build());
@@ -340,8 +342,8 @@ TEST(LineLoad, MayLeaveTheBody) {
 }
 
 TEST(Loads, BadOnesAreErrors) {
-  const auto kind_of = [](const LoadSettings& load) {
-    ModelBuilder builder;
+  const auto kind_of = [](const builder::LoadSettings& load) {
+    builder::ModelBuilder builder;
     fem::FemBodySettings body;
     body.name = "block";
     const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -359,14 +361,15 @@ TEST(Loads, BadOnesAreErrors) {
     }
     return ErrorKind::internal;
   };
-  EXPECT_EQ(kind_of({.name = "far", .load = PointLoadSettings{{1, 1, 1}, {0, 0, 1}}}),
+  EXPECT_EQ(kind_of({.name = "far", .load = builder::PointLoadSettings{{1, 1, 1}, {0, 0, 1}}}),
             ErrorKind::point_outside_mesh);
-  EXPECT_EQ(kind_of({.name = "short", .load = LineLoadSettings{Points::Zero(1, 3), {0, 0, 1}}}),
-            ErrorKind::too_few_points);
-  EXPECT_EQ(kind_of({.name = "sea", .load = WaterSettings{.density = -1.0}}),
+  EXPECT_EQ(
+      kind_of({.name = "short", .load = builder::LineLoadSettings{Points::Zero(1, 3), {0, 0, 1}}}),
+      ErrorKind::too_few_points);
+  EXPECT_EQ(kind_of({.name = "sea", .load = builder::WaterSettings{.density = -1.0}}),
             ErrorKind::out_of_range);
-  EXPECT_EQ(kind_of({.name = "sea", .load = WaterSettings{}}), ErrorKind::zero_volume);
-  EXPECT_EQ(kind_of({.name = "lost", .body = 3, .load = BodyLoadSettings{}}),
+  EXPECT_EQ(kind_of({.name = "sea", .load = builder::WaterSettings{}}), ErrorKind::zero_volume);
+  EXPECT_EQ(kind_of({.name = "lost", .body = 3, .load = builder::BodyLoadSettings{}}),
             ErrorKind::unknown_name);
 }
 

@@ -8,24 +8,24 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/builder/effector_settings.hpp"
+#include "sinew/builder/force_settings.hpp"
+#include "sinew/builder/spring_line_settings.hpp"
+#include "sinew/builder/torque_settings.hpp"
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/probe.hpp"
+#include "sinew/contact/contact_state.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/pcc/arm.hpp"
 #include "sinew/pcc/arm_body_model.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/effector_settings.hpp"
-#include "sinew/sim/force_settings.hpp"
-#include "sinew/sim/inputs.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/run/contact_reader.hpp"
+#include "sinew/run/inputs.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/row_efforts.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/spring_line_settings.hpp"
-#include "sinew/sim/state.hpp"
-#include "sinew/sim/torque_settings.hpp"
 
 #include "pcc/arms.hpp"
 #include "sim/chambers.hpp"
@@ -47,38 +47,38 @@ std::vector<double> values(Observables& list, std::string_view name) {
 double value(Observables& list, std::string_view name) { return list.number(list.find(name)); }
 std::vector<double> numbers(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
-Command ramp(CommandKind kind, double to) {
-  return {kind, Signal::ramp({.from = 0.0, .to = to, .start = 0.0, .duration = 0.1})};
+model::Command ramp(model::CommandKind kind, double to) {
+  return {kind, model::Signal::ramp({.from = 0.0, .to = to, .start = 0.0, .duration = 0.1})};
 }
 
 // A block that slides down a plane, pushed by a force, and an arm next to it: two bodies, dynamics.
-std::shared_ptr<const Model> block_and_arm() {
+std::shared_ptr<const model::Model> block_and_arm() {
   BlockOptions options{.angle = 0.5, .height = 1e-4};
   options.step.time_step = 2e-3;
-  ModelBuilder builder = sinew::testing::block_on_plane(options);
+  builder::ModelBuilder builder = sinew::testing::block_on_plane(options);
   pcc::ArmSettings settings = pcc::testing::mixed();
   settings.name = "arm";
   const int arm = builder.add_body<pcc::ArmBodyModel>(std::move(settings));
-  TorqueSettings torque;
+  builder::TorqueSettings torque;
   torque.name = "bend";
   torque.body = arm;
   torque.segment = 1;
-  torque.command = ramp(CommandKind::effort, 0.05);
+  torque.command = ramp(model::CommandKind::effort, 0.05);
   builder.add_torque(torque);
-  ForceSettings push;
+  builder::ForceSettings push;
   push.name = "push";
   push.point = {0.0, 0.0, 0.01};
-  push.command = ramp(CommandKind::effort, 0.2);
+  push.command = ramp(model::CommandKind::effort, 0.2);
   builder.add_force(push);
-  EffectorSettings top;
+  builder::EffectorSettings top;
   top.name = "top";
   top.points = push.point.transpose();
   builder.add_effector(top);
-  EffectorSettings turn = top;
+  builder::EffectorSettings turn = top;
   turn.name = "turn";
   turn.points.resize(3, 3);
   turn.points << 0.0, 0.0, 0.01, 0.01, 0.0, 0.01, 0.0, 0.01, 0.01;
-  turn.kind = EffectorSettings::Kind::orientation;
+  turn.kind = builder::EffectorSettings::Kind::orientation;
   builder.add_effector(turn);
   return builder.build();
 }
@@ -90,7 +90,7 @@ TEST(Observables, HaveTheNamesUnitsAndShapesOfTheRobot) {
   Simulation simulation(beam(options));
   const Observables list(simulation);
   std::vector<std::string> told;
-  for (const Observable& one : list.list()) {
+  for (const run::Observable& one : list.list()) {
     std::string shape;
     for (const std::size_t length : one.shape) shape += " " + std::to_string(length);
     told.push_back(one.name + " [" + one.unit + "]" + shape);
@@ -141,8 +141,8 @@ TEST(Observables, HaveTheValuesOfTheSimulation) {
   Simulation simulation(beam(options));
   Observables list(simulation);
   EXPECT_EQ(list.word(list.find("status")), "start");
-  simulation.command(0, ramp(CommandKind::motion, 0.005));
-  simulation.command(2, ramp(CommandKind::effort, 0.3));
+  simulation.command(0, ramp(model::CommandKind::motion, 0.005));
+  simulation.command(2, ramp(model::CommandKind::effort, 0.3));
   for (int k = 0; k < 7; ++k) simulation.step();
   list.refresh();
   EXPECT_EQ(value(list, "time"), simulation.time());
@@ -165,7 +165,7 @@ TEST(Observables, HaveTheValuesOfTheSimulation) {
   EXPECT_EQ(value(list, "strain_energy"), energies.strain);
   EXPECT_EQ(value(list, "kinetic_energy"), energies.kinetic);
   EXPECT_EQ(value(list, "gravity_energy"), energies.gravity);
-  const StepReport& report = simulation.report();
+  const run::StepReport& report = simulation.report();
   EXPECT_EQ(value(list, "residual"), report.residual);
   EXPECT_EQ(value(list, "relative_residual"), report.relative_residual);
   EXPECT_EQ(value(list, "iterations"), report.iterations);
@@ -174,7 +174,7 @@ TEST(Observables, HaveTheValuesOfTheSimulation) {
   EXPECT_EQ(value(list, "smallest_volume_ratio"), report.smallest_volume_ratio);
   EXPECT_EQ(list.word(list.find("status")), step_status_name(report.status));
   EXPECT_EQ(value(list, "time.step"), report.times.total);
-  EXPECT_EQ(value(list, "time.law"), report.times[Stage::law]);
+  EXPECT_EQ(value(list, "time.law"), report.times[world::Stage::law]);
 }
 
 TEST(Observables, TheLedgerBeginsWithTheFirstReading) {
@@ -182,7 +182,7 @@ TEST(Observables, TheLedgerBeginsWithTheFirstReading) {
   options.step.integrator = mechanics::Integrator::backward_euler;
   options.gravity = {0.0, 0.0, -9.81};
   Simulation simulation(beam(options));
-  simulation.command(0, ramp(CommandKind::motion, 0.005));
+  simulation.command(0, ramp(model::CommandKind::motion, 0.005));
   for (int k = 0; k < 5; ++k) simulation.step();
   Observables list(simulation);
   const double before = simulation.ledger().actuators;
@@ -210,7 +210,7 @@ TEST(Observables, ContactsArmsAndTwoBodies) {
   for (int k = 0; k < 40; ++k) {
     simulation.step();
     list.refresh();
-    const ContactResultant resultant = simulation.contacts().resultant(0);
+    const contact::ContactResultant resultant = simulation.contacts().resultant(0);
     EXPECT_EQ(values(list, "floor.force"), numbers(resultant.force));
     EXPECT_EQ(value(list, "floor.normal_force"), resultant.normal_force);
     EXPECT_EQ(value(list, "floor.friction_force"), resultant.friction_force);
@@ -218,11 +218,11 @@ TEST(Observables, ContactsArmsAndTwoBodies) {
     EXPECT_EQ(value(list, "floor.sticking"), resultant.sticking);
     EXPECT_EQ(value(list, "floor.slipping"), resultant.slipping);
     friction = std::max(friction, resultant.friction_force);
-    const ContactSnapshot snapshot = simulation.contacts().snapshot(0);
+    const contact::ContactSnapshot snapshot = simulation.contacts().snapshot(0);
     const Eigen::Matrix<double, 3, 4> pose = snapshot.pose.affine();
     EXPECT_TRUE(std::ranges::equal(values(list, "floor.pose"), pose.reshaped<Eigen::RowMajor>()));
     for (std::size_t p = 0; p < snapshot.points.size(); ++p) {
-      const ContactPoint& point = snapshot.points[p];
+      const contact::ContactPoint& point = snapshot.points[p];
       const auto vector = [&](const char* name) {
         const std::vector<double> all = values(list, name);
         return Vector3(all[3 * p], all[3 * p + 1], all[3 * p + 2]);
@@ -244,7 +244,7 @@ TEST(Observables, ContactsArmsAndTwoBodies) {
   EXPECT_DOUBLE_EQ(value(list, "push.force_command"), 0.2 * 0.08 / 0.1);
   EXPECT_EQ(values(list, "turn.rotation"), numbers(simulation.effector_value(1)));
   EXPECT_EQ(list.list()[list.find("turn.rotation")].components.front(), "turn.rx");
-  const Observable& state = list.list()[list.find("floor.points.state")];
+  const run::Observable& state = list.list()[list.find("floor.points.state")];
   EXPECT_EQ(state.word(2.0), "slip");
   EXPECT_EQ(state.word(3.0), "");
 }
@@ -259,8 +259,9 @@ TEST(Observables, AStateThatIsTakenUpShowsTheSame) {
   Observables theirs(second);
   mine.refresh();
   for (std::size_t k = 0; k < mine.list().size(); ++k) {
-    const Observable& one = mine.list()[k];
-    if (one.kind >= ObservableKind::ledger) continue;  // a state does not contain the last step
+    const run::Observable& one = mine.list()[k];
+    if (one.kind >= run::ObservableKind::ledger)
+      continue;  // a state does not contain the last step
     const auto a = mine.read(k), b = theirs.read(k);
     EXPECT_TRUE(std::ranges::equal(a, b, [](double x, double y) {
       return x == y || (std::isnan(x) && std::isnan(y));
@@ -275,8 +276,8 @@ TEST(Observables, CommandsAreThoseOfTheQuantityThatIsCommanded) {
   Observables list(simulation);
   EXPECT_EQ(value(list, "cable_0.tension_command"), 0.0) << "what the model commands";
   EXPECT_TRUE(std::isnan(value(list, "cable_0.displacement_command")));
-  simulation.command(0, ramp(CommandKind::motion, 0.01));
-  simulation.command(1, ramp(CommandKind::effort, 5.0));
+  simulation.command(0, ramp(model::CommandKind::motion, 0.01));
+  simulation.command(1, ramp(model::CommandKind::effort, 5.0));
   for (int k = 1; k <= 12; ++k) {
     simulation.step();
     list.refresh();
@@ -286,16 +287,16 @@ TEST(Observables, CommandsAreThoseOfTheQuantityThatIsCommanded) {
     EXPECT_DOUBLE_EQ(value(list, "cable_1.tension_command"), 5.0 * part);
   }
   EXPECT_LE(value(list, "cable_1.tension"), 1.0 + 1e-9) << "limits bind, the command does not";
-  simulation.command(0, {CommandKind::effort, Signal::constant(0.2)});
+  simulation.command(0, {model::CommandKind::effort, model::Signal::constant(0.2)});
   list.refresh();
   EXPECT_EQ(value(list, "cable_0.tension_command"), 0.2);
   EXPECT_TRUE(std::isnan(value(list, "cable_0.displacement_command")));
 }
 
 TEST(Observables, DrivesHaveTheirInputsAndPassiveSpringsNoCommand) {
-  Simulation gas(sinew::testing::chamber({.gas = GasSettings{}}));
+  Simulation gas(sinew::testing::chamber({.gas = model::GasSettings{}}));
   Observables list(gas);
-  gas.command(0, ramp(CommandKind::input, 1e-7));
+  gas.command(0, ramp(model::CommandKind::input, 1e-7));
   for (int k = 0; k < 5; ++k) gas.step();
   list.refresh();
   EXPECT_DOUBLE_EQ(value(list, "chamber.gas_command"), 0.5e-7);
@@ -305,18 +306,18 @@ TEST(Observables, DrivesHaveTheirInputsAndPassiveSpringsNoCommand) {
   EXPECT_EQ(value(list, "chamber.pressure"), gas.actuator(0).effort);
 
   BlockOptions options{.floor = false, .top_fixed = true};
-  ModelBuilder builder = sinew::testing::block_on_plane(options);
-  SpringLineSettings line;
+  builder::ModelBuilder builder = sinew::testing::block_on_plane(options);
+  builder::SpringLineSettings line;
   line.name = "spring";
   line.points.resize(2, 3);
   line.points << 0.0, 0.0, -0.05, 0.0, 0.0, 0.0;
   line.pull_from_world = true;
-  line.spring = SpringSettings{50.0, 0.04, 0.0, false};
+  line.spring = model::SpringSettings{50.0, 0.04, 0.0, false};
   builder.add_spring(line);
   Simulation sprung(builder.build());
   const Observables passive(sprung);
   EXPECT_TRUE(command_kinds(sprung.model().actuators()[0]).empty());
-  for (const Observable& one : passive.list()) {
+  for (const run::Observable& one : passive.list()) {
     EXPECT_EQ(one.name.find("_command"), std::string::npos) << one.name;
   }
 }
@@ -325,8 +326,8 @@ TEST(Observables, AReadingIsMadeOnceAMoment) {
   Simulation simulation(beam());
   Observables list(simulation);
   int readings = 0;
-  Observable one{"one", "m", {}, ObservableKind::effector, "", "one", {"one"}, {}};
-  Observable two{"two", "m", {2}, ObservableKind::effector, "", "two", {}, {}};
+  run::Observable one{"one", "m", {}, run::ObservableKind::effector, "", "one", {"one"}, {}};
+  run::Observable two{"two", "m", {2}, run::ObservableKind::effector, "", "two", {}, {}};
   list.add({one, two}, [&readings](std::span<double> to) {
     ++readings;
     for (std::size_t k = 0; k < 3; ++k) to[k] = readings + 0.1 * static_cast<double>(k);
@@ -337,7 +338,7 @@ TEST(Observables, AReadingIsMadeOnceAMoment) {
   EXPECT_EQ(readings, 1);
   list.refresh();
   EXPECT_EQ(values(list, "two"), (std::vector<double>{2.1, 2.2}));
-  EXPECT_TRUE(std::ranges::is_sorted(list.list(), {}, &Observable::kind));
+  EXPECT_TRUE(std::ranges::is_sorted(list.list(), {}, &run::Observable::kind));
   EXPECT_EQ(values(list, "tip.position"), numbers(simulation.effector_value(0)))
       << "what was listed before stays what it was";
 }

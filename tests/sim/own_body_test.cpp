@@ -7,13 +7,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sinew/builder/force_settings.hpp"
+#include "sinew/contact/contact_state.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/force_settings.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/run/contact_reader.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/observables.hpp"
-#include "sinew/sim/state.hpp"
 #include "sinew/sim/state_io.hpp"
 
 #include "../toys/spring_point.hpp"
@@ -28,18 +28,18 @@ using sinew::testing::SpringPointSettings;
 constexpr double kSag = 0.1 * 9.81 / 50.0;  // m, of the point
 
 struct Options {
-  StepSettings step{.time_step = 1e-3, .integrator = mechanics::Integrator::backward_euler};
+  model::StepSettings step{.time_step = 1e-3, .integrator = mechanics::Integrator::backward_euler};
   double height = 1.0;         // m, of the point above the floor; no floor if not finite
   bool with_beam = false;      // a cantilever of finite elements
   bool with_effector = false;  // on the point
 };
 
-std::shared_ptr<const Model> robot(const Options& options) {
-  ModelBuilder builder(options.step);
+std::shared_ptr<const model::Model> robot(const Options& options) {
+  builder::ModelBuilder builder(options.step);
   SpringPointSettings settings;
   settings.at.z() = options.height;
   const int point = builder.add_body<SpringPointModel>(settings);
-  ForceSettings push;
+  builder::ForceSettings push;
   push.name = "push";
   push.body = point;
   push.point.z() = options.height;
@@ -55,7 +55,7 @@ std::shared_ptr<const Model> robot(const Options& options) {
     body.elements.regions = {{{200e3, 0.4}, material::Law::corotational, 1070.0, {}}};
     body.elements.fixed_nodes = mesh->node_sets.at("x_min");
     const int beam = builder.add_body<fem::FemBodyModel>(std::move(body));
-    CableSettings cable;  // from the point to the tip of the beam
+    builder::CableSettings cable;  // from the point to the tip of the beam
     cable.name = "cable";
     cable.points.resize(2, 3);
     cable.points << 0.0, 0.0, 1.0, 0.12, 0.0, 1.0;
@@ -65,14 +65,14 @@ std::shared_ptr<const Model> robot(const Options& options) {
     builder.add_cable(cable);
   }
   if (options.with_effector) {
-    EffectorSettings effector;
+    builder::EffectorSettings effector;
     effector.name = "place";
     effector.body = point;
     effector.points = push.point.transpose();
     builder.add_effector(effector);
   }
   if (options.height < 0.5) {
-    ContactSettings floor;
+    builder::ContactSettings floor;
     floor.name = "floor";
     floor.body = point;
     floor.points = push.point.transpose();
@@ -117,10 +117,12 @@ TEST(OwnBody, TouchesWithFriction) {
   Simulation simulation(robot({.height = height}));
   for (int k = 0; k < 2000; ++k) simulation.step();
   EXPECT_NEAR(simulation.contacts().resultant(0).normal_force, pressed, 1e-6);
-  simulation.command(0, Command{CommandKind::effort, Signal::constant(0.4 * pressed)});
+  simulation.command(
+      0, model::Command{model::CommandKind::effort, model::Signal::constant(0.4 * pressed)});
   for (int k = 0; k < 1000; ++k) simulation.step();
   EXPECT_LT(std::abs(simulation.body(0).position(0).x()), 1e-6);
-  simulation.command(0, Command{CommandKind::effort, Signal::constant(2.0 * pressed)});
+  simulation.command(
+      0, model::Command{model::CommandKind::effort, model::Signal::constant(2.0 * pressed)});
   for (int k = 0; k < 4000; ++k) simulation.step();
   const double held = 50.0 * simulation.body(0).position(0).x();
   EXPECT_GT(held, 1.4 * pressed);
@@ -132,12 +134,12 @@ TEST(OwnBody, HasObservablesAndStates) {
   Simulation simulation(model), other(model);
   Observables list(simulation);
   EXPECT_EQ(list.list()[list.find("point.positions")].shape, (std::vector<std::size_t>{1, 3}));
-  simulation.command(1, Command{CommandKind::effort, Signal::constant(1.0)});
+  simulation.command(1, model::Command{model::CommandKind::effort, model::Signal::constant(1.0)});
   for (int k = 0; k < 30; ++k) simulation.step();
   list.refresh();
   EXPECT_EQ(list.read(list.find("place.position"))[0], simulation.body(0).position(0).x());
   EXPECT_GT(simulation.body(0).position(0).x(), 1e-3) << "the cable pulls it to the beam";
-  other.command(1, Command{CommandKind::effort, Signal::constant(1.0)});
+  other.command(1, model::Command{model::CommandKind::effort, model::Signal::constant(1.0)});
   parse_state(other, format_state(simulation), "state");
   const auto clone = simulation.clone();
   for (int k = 0; k < 30; ++k) {
@@ -161,16 +163,16 @@ TEST(OwnBody, RefusesWhatNeedsAMesh) {
     return ErrorKind::internal;
   };
   EXPECT_EQ(kind_of([&] { model->body(0).mesh(); }), ErrorKind::wrong_type);
-  ModelBuilder builder;
+  builder::ModelBuilder builder;
   const int point = builder.add_body<SpringPointModel>(SpringPointSettings{});
-  ContactSettings touch;
+  builder::ContactSettings touch;
   touch.name = "touch";
   touch.body = touch.touched.emplace(point);
   EXPECT_EQ(kind_of([&] { builder.add_contact(touch); }), ErrorKind::not_in_this_version);
 }
 
 TEST(OwnBody, NeedsMassInDynamics) {
-  ModelBuilder builder({.time_step = 1e-3, .integrator = mechanics::Integrator::bdf2});
+  builder::ModelBuilder builder({.time_step = 1e-3, .integrator = mechanics::Integrator::bdf2});
   try {
     builder.add_body<SpringPointModel>(SpringPointSettings{.mass = 0.0});
     ADD_FAILURE();

@@ -4,16 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/builder/load_settings.hpp"
+#include "sinew/contact/contact_state.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/mechanics/body.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/load_settings.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/contact_reader.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "arches.hpp"
 #include "contact_robots.hpp"
@@ -34,12 +34,12 @@ constexpr double kAgrees = 1e-6;  // relative, of sizes and forces
 struct Visit {
   double depth = 0.0, normal = 0.0;
   Points positions;
-  std::vector<ContactPoint> points;
-  State state;
+  std::vector<contact::ContactPoint> points;
+  run::State state;
 };
 
 struct Followed {
-  std::vector<PathPoint> path;
+  std::vector<statics::PathPoint> path;
   std::vector<Visit> visits;
 
   int turns() const {
@@ -53,19 +53,19 @@ struct Followed {
   }
   static int touching(const Visit& visit) {
     return static_cast<int>(std::ranges::count_if(
-        visit.points, [](const ContactPoint& point) { return point.normal_force > 0.0; }));
+        visit.points, [](const contact::ContactPoint& point) { return point.normal_force > 0.0; }));
   }
 };
 
-Followed follow(Simulation& simulation, const PathSettings& settings) {
+Followed follow(Simulation& simulation, const statics::PathSettings& settings) {
   Followed result;
   const double top = simulation.effector_value(0).z();
-  const Path path = simulation.follow_path(settings, [&] {
+  const statics::Path path = simulation.follow_path(settings, [&] {
     result.visits.push_back(
         {top - simulation.effector_value(0).z(), simulation.contacts().resultant(0).normal_force,
          simulation.body(0).positions(), simulation.contacts().points(0), simulation.state()});
   });
-  EXPECT_EQ(path.end, PathEnd::full_load) << path.reason;
+  EXPECT_EQ(path.end, statics::PathEnd::full_load) << path.reason;
   result.path = path.points;
   return result;
 }
@@ -74,7 +74,7 @@ Followed follow(Simulation& simulation, const PathSettings& settings) {
 // A commanded motion passes through the same points.
 TEST(PathContact, ASnapThatAFloorEndsAgreesWithControlByMotion) {
   Simulation loaded(arch({.floor = 0.003})), moved(arch({.by_load = false, .floor = 0.003}));
-  loaded.set_load(0, Signal::constant(20.0));
+  loaded.set_load(0, model::Signal::constant(20.0));
   const Followed all = follow(loaded, {.first_step = 2e-3, .largest_step = 5e-3});
   const double size = loaded.model().size();
   int falling = 0, touched = 0;
@@ -102,7 +102,7 @@ TEST(PathContact, ASnapThatAFloorEndsAgreesWithControlByMotion) {
 TEST(PathContact, WeldsHoldBesideAFloor) {
   Simulation cut(arch({.cut = true, .floor = 0.003}));
   Simulation whole(arch({.by_load = false, .floor = 0.003}));
-  cut.set_load(0, Signal::constant(20.0));
+  cut.set_load(0, model::Signal::constant(20.0));
   const Followed all = follow(cut, {.first_step = 5e-3, .largest_step = 1e-2});
   for (std::size_t k = 0; k < all.path.size(); ++k) {
     whole.command(0, pull(all.visits[k].depth));
@@ -150,9 +150,11 @@ TEST(PathContact, ABeamIsLaidDownAndLifted) {
 
 // The points of a bulging bottom close in symmetric groups of four and eight.
 TEST(PathContact, SymmetricPointsCloseTogether) {
-  ModelBuilder builder = block_on_plane({.friction = 0.0, .height = 2e-4, .top_fixed = true});
-  builder.add_load({.name = "draw", .body = 0, .load = BodyLoadSettings{{0.0, 0.0, -4000.0}}});
-  EffectorSettings centre;
+  builder::ModelBuilder builder =
+      block_on_plane({.friction = 0.0, .height = 2e-4, .top_fixed = true});
+  builder.add_load(
+      {.name = "draw", .body = 0, .load = builder::BodyLoadSettings{{0.0, 0.0, -4000.0}}});
+  builder::EffectorSettings centre;
   centre.name = "centre";
   centre.points = Vector3(0.0, 0.0, 2e-4).transpose();
   builder.add_effector(centre);
@@ -162,7 +164,7 @@ TEST(PathContact, SymmetricPointsCloseTogether) {
   std::vector<int> touching;
   for (std::size_t k = 0; k < all.path.size(); ++k) {
     Simulation fresh(model);
-    fresh.set_load(0, Signal::constant(all.path[k].load_fraction));
+    fresh.set_load(0, model::Signal::constant(all.path[k].load_fraction));
     fresh.solve_static();
     EXPECT_LT((fresh.body(0).positions() - all.visits[k].positions).cwiseAbs().maxCoeff(),
               kAgrees * model->size());
@@ -177,7 +179,7 @@ TEST(PathContact, SymmetricPointsCloseTogether) {
 void check_friction(const Followed& all, double friction, double size, int& stuck, int& slid) {
   for (std::size_t k = 1; k < all.visits.size(); ++k) {
     for (std::size_t i = 0; i < all.visits[k].points.size(); ++i) {
-      const ContactPoint& point = all.visits[k].points[i];
+      const contact::ContactPoint& point = all.visits[k].points[i];
       const double limit = friction * point.normal_force;
       EXPECT_LE(point.friction_force.norm(), limit * (1.0 + 1e-7));
       if (!(point.normal_force > 0.0)) continue;
@@ -198,7 +200,7 @@ void check_friction(const Followed& all, double friction, double size, int& stuc
 TEST(PathContact, FrictionObeysCoulombsLawThroughASnap) {
   const double friction = 0.2;
   Simulation path(arch({.floor = 0.003, .friction = friction}));
-  path.set_load(0, Signal::constant(20.0));
+  path.set_load(0, model::Signal::constant(20.0));
   const Followed all = follow(path, {.first_step = 2e-3, .largest_step = 5e-3});
   int stuck = 0, slid = 0;
   check_friction(all, friction, path.model().size(), stuck, slid);
@@ -209,8 +211,8 @@ TEST(PathContact, FrictionObeysCoulombsLawThroughASnap) {
 
 /// A rubber strip with one end clamped, held on a plane by its weight and pulled along it by a
 /// load.
-std::shared_ptr<const Model> pulled_strip(double friction) {
-  ModelBuilder builder;
+std::shared_ptr<const model::Model> pulled_strip(double friction) {
+  builder::ModelBuilder builder;
   fem::FemBodySettings body;
   body.name = "strip";
   const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -220,15 +222,16 @@ std::shared_ptr<const Model> pulled_strip(double friction) {
   body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
   builder.add_body<fem::FemBodyModel>(std::move(body));
-  ContactSettings floor;
+  builder::ContactSettings floor;
   floor.name = "floor";
   floor.surface = collision::Plane{};
   floor.nodes = mesh->node_sets.at("z_min");
   floor.friction = friction;
   builder.add_contact(floor);
-  builder.add_load(
-      {.name = "pull", .body = 0, .load = PointLoadSettings{{0.06, 0.01, 0.01}, {0.3, 0.0, 0.0}}});
-  EffectorSettings tip;
+  builder.add_load({.name = "pull",
+                    .body = 0,
+                    .load = builder::PointLoadSettings{{0.06, 0.01, 0.01}, {0.3, 0.0, 0.0}}});
+  builder::EffectorSettings tip;
   tip.name = "tip";
   tip.points = Vector3(0.06, 0.01, 0.01).transpose();
   builder.add_effector(tip);
@@ -242,11 +245,11 @@ TEST(PathContact, FrictionTurnsWithTheMotion) {
   std::vector<double> held;
   int stuck = 0, slid = 0;
   for (const double factor : {1.0, -1.0}) {
-    path.set_load(0, Signal::constant(factor));
+    path.set_load(0, model::Signal::constant(factor));
     const Followed all =
         follow(path, {.first_step = 1e-3, .largest_step = 5e-3, .tolerance = 1e-11});
     check_friction(all, friction, path.model().size(), stuck, slid);
-    const ContactResultant resultant = path.contacts().resultant(0);
+    const contact::ContactResultant resultant = path.contacts().resultant(0);
     held.push_back(resultant.force.x() / (friction * resultant.normal_force));
   }
   EXPECT_NEAR(held[0], -1.0, 0.05);
@@ -262,7 +265,7 @@ TEST(PathContact, FrictionIsThatOfSlowMotionsFromPointToPoint) {
   const Followed all = follow(path, {.first_step = 1e-3, .largest_step = 5e-3, .tolerance = 1e-11});
   for (std::size_t k = 1; k < all.path.size(); ++k) {
     still.restore(all.visits[k - 1].state);
-    still.set_load(0, Signal::constant(all.path[k].load_fraction));
+    still.set_load(0, model::Signal::constant(all.path[k].load_fraction));
     still.solve_static();
     EXPECT_LT((still.body(0).positions() - all.visits[k].positions).cwiseAbs().maxCoeff(),
               kAgrees * model->size())
@@ -284,7 +287,7 @@ TEST(PathContact, CurvedSurfacesEndASnap) {
   for (const collision::Shape& surface :
        {collision::Shape(ball), collision::Shape(across), collision::Shape(askew)}) {
     Simulation loaded(arch({.below = surface})), moved(arch({.by_load = false, .below = surface}));
-    loaded.set_load(0, Signal::constant(10.0));
+    loaded.set_load(0, model::Signal::constant(10.0));
     const Followed all = follow(loaded, {.first_step = 2e-3, .largest_step = 5e-3});
     for (std::size_t k = 0; k < all.path.size(); ++k) {
       moved.command(0, pull(all.visits[k].depth));
@@ -302,8 +305,8 @@ TEST(PathContact, CurvedSurfacesEndASnap) {
 }
 
 /// A beam along x whose end is pressed onto the top of a ball, with a small sideways load.
-std::shared_ptr<const Model> beam_on_a_ball() {
-  ModelBuilder builder;
+std::shared_ptr<const model::Model> beam_on_a_ball() {
+  builder::ModelBuilder builder;
   fem::FemBodySettings body;
   body.name = "beam";
   const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -317,15 +320,17 @@ std::shared_ptr<const Model> beam_on_a_ball() {
   body.elements.regions = {region};
   body.elements.fixed_nodes = mesh->node_sets.at("x_min");
   builder.add_body<fem::FemBodyModel>(std::move(body));
-  ContactSettings ball;
+  builder::ContactSettings ball;
   ball.name = "ball";
   ball.surface = collision::Sphere{{0.1, 0.0, -0.015}, 0.005};
   ball.points = Vector3(0.1, 0.0, -0.01).transpose();
   builder.add_contact(ball);
   const Vector3 end(0.1, 0.0, -0.01);
-  builder.add_load({.name = "press", .body = 0, .load = PointLoadSettings{end, {0.0, 0.0, -0.1}}});
-  builder.add_load({.name = "aside", .body = 0, .load = PointLoadSettings{end, {0.0, 1e-9, 0.0}}});
-  EffectorSettings tip;
+  builder.add_load(
+      {.name = "press", .body = 0, .load = builder::PointLoadSettings{end, {0.0, 0.0, -0.1}}});
+  builder.add_load(
+      {.name = "aside", .body = 0, .load = builder::PointLoadSettings{end, {0.0, 1e-9, 0.0}}});
+  builder::EffectorSettings tip;
   tip.name = "tip";
   tip.points = end.transpose();
   builder.add_effector(tip);
@@ -340,16 +345,16 @@ TEST(PathContact, ABallLetsGoOfWhatIsPressedOnIt) {
   Simulation path(model);
   std::vector<int> unstable;
   for (const double factor : {0.05, 0.1, 0.15, 0.3, 0.6, 1.0}) {
-    path.set_load(0, Signal::constant(factor));
-    path.set_load(1, Signal::constant(0.0));
+    path.set_load(0, model::Signal::constant(factor));
+    path.set_load(1, model::Signal::constant(0.0));
     const auto points = path.follow_path({.first_step = 1e-4, .largest_step = 2e-3}).points;
     Simulation pushed(model);
     pushed.restore(path.state());
-    pushed.set_load(0, Signal::constant(factor));
-    pushed.set_load(1, Signal::constant(1.0));
+    pushed.set_load(0, model::Signal::constant(factor));
+    pushed.set_load(1, model::Signal::constant(1.0));
     std::vector<double> aside;
     for (int round = 0; round < 4; ++round) {
-      pushed.solve_static({.stability = StabilityChoice::any});
+      pushed.solve_static({.stability = statics::StabilityChoice::any});
       aside.push_back(pushed.effector_value(0).y());
     }
     const bool leaves = aside[3] - aside[2] > aside[2] - aside[1];

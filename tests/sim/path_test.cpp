@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "arches.hpp"
@@ -74,10 +74,10 @@ TEST(Path, OfAnArchThatIsCutAndWelded) {
 }
 
 // Unstable directions of the symmetric equilibrium at a load, from a search of its own.
-int unstable_directions(const std::shared_ptr<const Model>& model, double load) {
+int unstable_directions(const std::shared_ptr<const model::Model>& model, double load) {
   Simulation simulation(model);
-  simulation.set_load(0, Signal::constant(load));
-  return simulation.solve_static({.stability = StabilityChoice::any}).negative_pivots;
+  simulation.set_load(0, model::Signal::constant(load));
+  return simulation.solve_static({.stability = statics::StabilityChoice::any}).negative_pivots;
 }
 
 // An arch that may sway loses its stability before its limit point. The path finds the bifurcation
@@ -86,20 +86,21 @@ TEST(Path, AnArchThatSwaysBifurcatesBeforeItsLimitPoint) {
   for (const double first_step : {1e-4, 0.01, 0.2}) {
     const auto model = arch({.sways = true});
     Simulation loaded(model), guided(arch({.by_load = false}));
-    loaded.set_load(0, Signal::constant(1.5));
+    loaded.set_load(0, model::Signal::constant(1.5));
     const double top = loaded.effector_value(0).z();
     std::vector<Vector3> crown;
-    const Path path = loaded.follow_path({.first_step = first_step, .largest_step = 0.02},
-                                         [&] { crown.push_back(loaded.effector_value(0)); });
-    EXPECT_EQ(path.end, PathEnd::full_load);
-    std::vector<PathEvent> events;
+    const statics::Path path =
+        loaded.follow_path({.first_step = first_step, .largest_step = 0.02},
+                           [&] { crown.push_back(loaded.effector_value(0)); });
+    EXPECT_EQ(path.end, statics::PathEnd::full_load);
+    std::vector<statics::PathEvent> events;
     double before = 0.0;
     for (std::size_t k = 0; k < path.points.size(); ++k) {
-      const PathPoint& point = path.points[k];
+      const statics::PathPoint& point = path.points[k];
       EXPECT_LE(std::abs(point.load_fraction - before), 0.1) << k;
       EXPECT_LE(point.load_fraction, 1.1) << k;
-      if (point.event != PathEvent::none) events.push_back(point.event);
-      if (point.event == PathEvent::bifurcation && events.size() == 1) {
+      if (point.event != statics::PathEvent::none) events.push_back(point.event);
+      if (point.event == statics::PathEvent::bifurcation && events.size() == 1) {
         EXPECT_EQ(unstable_directions(model, 1.5 * 0.99 * point.load_fraction), 0);
         EXPECT_EQ(unstable_directions(model, 1.5 * 1.01 * point.load_fraction), 1);
       }
@@ -107,15 +108,15 @@ TEST(Path, AnArchThatSwaysBifurcatesBeforeItsLimitPoint) {
       EXPECT_LT(std::abs(crown[k].x()), 1e-6) << k;
       if (k % 4 != 0) continue;
       guided.command(0, sinew::testing::pull(top - crown[k].z()));
-      guided.solve_static({.stability = StabilityChoice::any});
+      guided.solve_static({.stability = statics::StabilityChoice::any});
       EXPECT_NEAR(guided.actuator(0).effort, 0.03 * point.load_fraction, 1e-6 * 0.03) << k;
     }
     ASSERT_GE(events.size(), 2u);
-    EXPECT_EQ(events[0], PathEvent::bifurcation);
-    EXPECT_EQ(events[1], PathEvent::limit_point);
+    EXPECT_EQ(events[0], statics::PathEvent::bifurcation);
+    EXPECT_EQ(events[1], statics::PathEvent::limit_point);
     double largest = 0.0;
-    for (const PathPoint& point : path.points) {
-      if (point.event == PathEvent::limit_point) break;
+    for (const statics::PathPoint& point : path.points) {
+      if (point.event == statics::PathEvent::limit_point) break;
       largest = std::max(largest, point.load_fraction);
     }
     ASSERT_TRUE(path.limit_load.has_value());
@@ -127,8 +128,9 @@ TEST(Path, AnArchThatSwaysBifurcatesBeforeItsLimitPoint) {
 // A path that ends early returns its points, and where it ended.
 TEST(Path, EndsEarlyWithWhatItFound) {
   Simulation loaded(arch({}));
-  const Path path = loaded.follow_path({.first_step = 2e-3, .largest_step = 5e-3, .max_points = 4});
-  EXPECT_EQ(path.end, PathEnd::max_points);
+  const statics::Path path =
+      loaded.follow_path({.first_step = 2e-3, .largest_step = 5e-3, .max_points = 4});
+  EXPECT_EQ(path.end, statics::PathEnd::max_points);
   ASSERT_EQ(path.points.size(), 4u);
   EXPECT_NE(path.reason.find("max_points"), std::string::npos);
   EXPECT_FALSE(path.limit_load.has_value());
@@ -140,7 +142,7 @@ TEST(Path, EndsNextToTheEquilibriumOfTheFullLoad) {
   loaded.follow_path({.first_step = 2e-3, .largest_step = 1e-2});
   const Vector3 end = loaded.effector_value(0);
   const auto report = loaded.solve_static();
-  EXPECT_EQ(report.status, NewtonStatus::converged);
+  EXPECT_EQ(report.status, run::NewtonStatus::converged);
   EXPECT_LT((loaded.effector_value(0) - end).norm(), 2e-3);
 }
 

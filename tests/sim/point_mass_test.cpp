@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/builder/load_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
@@ -17,10 +19,8 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/shapes.hpp"
-#include "sinew/sim/load_settings.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/model_builder.hpp"
-#include "sinew/sim/signal.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/model/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::sim {
@@ -63,11 +63,11 @@ fem::PointMassSettings hung(double mass, const Vector3& point = kPoint) {
 class HungMass : public ::testing::TestWithParam<PointMassKind> {};
 
 TEST_P(HungMass, SagsTheBeamAsItsWeightDoes) {
-  ModelBuilder weighed, pulled;
+  builder::ModelBuilder weighed, pulled;
   weighed.add_body<fem::FemBodyModel>(cantilever(GetParam(), {hung(0.02)}));
   pulled.add_body<fem::FemBodyModel>(cantilever(GetParam()));
   pulled.add_load(
-      {.name = "weight", .load = PointLoadSettings{kPoint, {0.0, 0.0, -0.02 * kGravity}}});
+      {.name = "weight", .load = builder::PointLoadSettings{kPoint, {0.0, 0.0, -0.02 * kGravity}}});
   Simulation a(weighed.build()), b(pulled.build());
   a.solve_static();
   b.solve_static();
@@ -75,7 +75,7 @@ TEST_P(HungMass, SagsTheBeamAsItsWeightDoes) {
   EXPECT_LT(moved.col(2).minCoeff(), -2e-3);
   EXPECT_LT((a.body(0).positions() - b.body(0).positions()).cwiseAbs().maxCoeff(), 1e-10);
   // Its potential energy is that of the height it lost.
-  const MassModel& mass = a.model().masses()[0];
+  const model::MassModel& mass = a.model().masses()[0];
   const double lost = kPoint.z() - a.body(0).position(mass.point).z();
   EXPECT_NEAR(b.energies().gravity - a.energies().gravity, 0.02 * kGravity * lost,
               1e-8 * kGravity * lost);
@@ -127,16 +127,16 @@ INSTANTIATE_TEST_SUITE_P(Elements, HungMass,
 // (Rayleigh, Theory of Sound, 1877, art. 182).
 TEST(PointMass, SwingsALightBeamAtItsFrequency) {
   const double young = 1e6, length = 0.2, side = 0.01, density = 1000.0, end = 0.2;
-  StepSettings step;
+  model::StepSettings step;
   step.integrator = Integrator::generalized_alpha;
   step.spectral_radius = 1.0;
-  step.method = Method::newton;
+  step.method = model::Method::newton;
   step.tangent = mechanics::Tangent::exact;
   const double moment = std::pow(side, 4) / 12.0, beam = density * side * side * length;
   const double stiffness = 3.0 * young * moment / std::pow(length, 3);
   const double period = 2.0 * std::numbers::pi / std::sqrt(stiffness / (end + 33.0 / 140.0 * beam));
   step.time_step = period / 200.0;
-  ModelBuilder builder(step);
+  builder::ModelBuilder builder(step);
   fem::FemBodySettings body;
   body.name = "beam";
   const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -151,11 +151,11 @@ TEST(PointMass, SwingsALightBeamAtItsFrequency) {
   body.masses = {hung(end, {length, 0.5 * side, 0.5 * side})};
   builder.add_body<fem::FemBodyModel>(std::move(body));
   builder.add_load({.name = "pull",
-                    .load = PointLoadSettings{{length, 0.5 * side, 0.5 * side},
-                                              {0.0, 0.0, 1e-3 * length * stiffness}}});
+                    .load = builder::PointLoadSettings{{length, 0.5 * side, 0.5 * side},
+                                                       {0.0, 0.0, 1e-3 * length * stiffness}}});
   Simulation simulation(builder.build());
   simulation.solve_static();
-  simulation.set_load(0, Signal::constant(0.0));
+  simulation.set_load(0, model::Signal::constant(0.0));
   const int point = simulation.model().masses()[0].point;
   const auto height = [&] { return simulation.body(0).position(point).z() - 0.5 * side; };
   double before = height();
@@ -174,14 +174,14 @@ TEST(PointMass, SwingsALightBeamAtItsFrequency) {
 
 // Energy of a swing with a heavy mass, and momentum of a throw.
 TEST(PointMass, KeepsEnergyAndMomentum) {
-  StepSettings step;
+  model::StepSettings step;
   step.integrator = Integrator::generalized_alpha;
   step.spectral_radius = 1.0;
-  step.method = Method::newton;
+  step.method = model::Method::newton;
   step.tangent = mechanics::Tangent::exact;
   step.time_step = 1e-3;
   step.tolerance = 1e-11;
-  ModelBuilder builder(step);
+  builder::ModelBuilder builder(step);
   builder.add_body<fem::FemBodyModel>(cantilever(PointMassKind::tet4, {hung(0.05)}));
   fem::FemBodySettings thrown = cantilever(PointMassKind::hex8, {hung(0.03)});
   thrown.name = "thrown";
@@ -217,7 +217,7 @@ TEST(PointMass, KeepsEnergyAndMomentum) {
 
 TEST(PointMass, IsPartOfTheRobot) {
   const auto fingerprint = [](std::vector<fem::PointMassSettings> masses) {
-    ModelBuilder builder;
+    builder::ModelBuilder builder;
     builder.add_body<fem::FemBodyModel>(cantilever(PointMassKind::tet4, std::move(masses)));
     return builder.build()->fingerprint();
   };
@@ -232,7 +232,7 @@ TEST(PointMass, BadOnesAreErrors) {
   const auto kind_of = [](std::vector<fem::PointMassSettings> masses) {
     for (fem::PointMassSettings& mass : masses) mass.place.line = 7;
     try {
-      ModelBuilder().add_body<fem::FemBodyModel>(
+      builder::ModelBuilder().add_body<fem::FemBodyModel>(
           cantilever(PointMassKind::tet4, std::move(masses)));
     } catch (const Error& error) {
       EXPECT_FALSE(error.remedy().empty());

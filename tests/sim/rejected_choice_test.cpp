@@ -7,11 +7,11 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/law/controller.hpp"
+#include "sinew/law/response.hpp"
+#include "sinew/law/step_problem.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
-#include "sinew/step/controller.hpp"
-#include "sinew/step/response.hpp"
-#include "sinew/step/step_problem.hpp"
 
 #include "robots.hpp"
 #include "support/error_kind.hpp"
@@ -26,7 +26,7 @@ constexpr double kPull = 0.02;  // N, which one linearisation can follow
 
 // Its choices fail until the step has failed often enough; then it pulls the first cable with 20
 // mN.
-class Reckless : public step::Controller {
+class Reckless : public law::Controller {
  public:
   Reckless(Simulation& simulation, int patience) : simulation_(simulation), patience_(patience) {
     const int first = 0;
@@ -34,20 +34,20 @@ class Reckless : public step::Controller {
   }
   ~Reckless() override { simulation_.detach(*this); }
 
-  void begin_choices(const step::StepProblem&, const step::Response&) override {}
-  step::LawStatus choose(const step::StepProblem&, const step::Response&, step::Guards,
-                         std::span<double> effort) override {
+  void begin_choices(const law::StepProblem&, const law::Response&) override {}
+  law::LawStatus choose(const law::StepProblem&, const law::Response&, law::Guards,
+                        std::span<double> effort) override {
     if (failures_ < patience_) throw Error(ErrorKind::not_converged, {}, "crushed", "pull less");
     effort[0] = kPull;
-    return step::LawStatus::solved;
+    return law::LawStatus::solved;
   }
   double foreseen() const override { return 0.0; }
   std::span<const double> guard_multipliers() const override { return {}; }
-  Merit merit(const step::StepProblem&, const VectorX&, std::span<const double>,
+  Merit merit(const law::StepProblem&, const VectorX&, std::span<const double>,
               std::span<const double>) const override {
     return {};
   }
-  void accept(const step::StepProblem&, const step::Response&, const VectorX&,
+  void accept(const law::StepProblem&, const law::Response&, const VectorX&,
               std::span<const double>, std::span<const double>) override {}
   void begin_step(int failures) override {
     failures_ = failures;
@@ -63,9 +63,10 @@ class Reckless : public step::Controller {
   int failures_ = 0, most_ = 0, held_back_ = 0;
 };
 
-class RejectedChoice : public ::testing::TestWithParam<std::pair<mechanics::Integrator, Method>> {
+class RejectedChoice
+    : public ::testing::TestWithParam<std::pair<mechanics::Integrator, model::Method>> {
  protected:
-  static std::shared_ptr<const Model> robot() {
+  static std::shared_ptr<const model::Model> robot() {
     BeamOptions options;
     options.step.integrator = GetParam().first;
     options.step.method = GetParam().second;
@@ -76,7 +77,7 @@ class RejectedChoice : public ::testing::TestWithParam<std::pair<mechanics::Inte
 TEST_P(RejectedChoice, GivesWayToAnother) {
   Simulation simulation(robot()), careful(robot());
   Reckless controller(simulation, 3), other(careful, 0);
-  const StepReport& report = simulation.step();
+  const run::StepReport& report = simulation.step();
   EXPECT_EQ(controller.most(), 3);
   EXPECT_GE(report.retries, 3);
   EXPECT_EQ(simulation.actuator(0).effort, kPull);
@@ -96,7 +97,7 @@ TEST_P(RejectedChoice, HoldsTheLastEffortsInTheEnd) {
     ASSERT_EQ(simulation.actuator(0).effort, kPull);
   }
   Reckless controller(simulation, 100);
-  const StepReport& report = simulation.step();
+  const run::StepReport& report = simulation.step();
   EXPECT_EQ(controller.most(), 5);
   EXPECT_EQ(controller.held_back(), 6);
   EXPECT_TRUE(report.choice_held);
@@ -106,11 +107,12 @@ TEST_P(RejectedChoice, HoldsTheLastEffortsInTheEnd) {
 
 INSTANTIATE_TEST_SUITE_P(
     Steps, RejectedChoice,
-    ::testing::Values(std::pair{mechanics::Integrator::quasi_static, Method::newton},
-                      std::pair{mechanics::Integrator::quasi_static, Method::one_linearisation},
-                      std::pair{mechanics::Integrator::backward_euler, Method::newton},
-                      std::pair{mechanics::Integrator::backward_euler, Method::one_linearisation},
-                      std::pair{mechanics::Integrator::bdf2, Method::newton}));
+    ::testing::Values(
+        std::pair{mechanics::Integrator::quasi_static, model::Method::newton},
+        std::pair{mechanics::Integrator::quasi_static, model::Method::one_linearisation},
+        std::pair{mechanics::Integrator::backward_euler, model::Method::newton},
+        std::pair{mechanics::Integrator::backward_euler, model::Method::one_linearisation},
+        std::pair{mechanics::Integrator::bdf2, model::Method::newton}));
 
 }  // namespace
 }  // namespace sinew::sim

@@ -7,20 +7,20 @@
 #include <string>
 #include <utility>
 
+#include "sinew/builder/cable_settings.hpp"
+#include "sinew/builder/contact_settings.hpp"
+#include "sinew/builder/effector_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
+#include "sinew/builder/probe_settings.hpp"
 #include "sinew/constraint/smooth_surface.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/fem/fem_model.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/shapes.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/cable_settings.hpp"
-#include "sinew/sim/contact_settings.hpp"
-#include "sinew/sim/effector_settings.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/model_builder.hpp"
-#include "sinew/sim/probe_settings.hpp"
-#include "sinew/sim/signal.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/model/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::testing {
@@ -30,12 +30,12 @@ inline constexpr double kRightAngle = 1.57079632679489662;
 /// A clamped silicone beam along x, 100 x 20 x 20 mm, with four cables at 6 mm from its axis (up,
 /// left, down, right) and its tip as effector.
 struct BeamOptions {
-  sim::StepSettings step;
+  model::StepSettings step;
   Vector3 gravity = Vector3::Zero();
   fem::RayleighDamping damping;
   int cables = 4;
-  sim::Limits tension{.min = 0.0};
-  sim::Limits displacement;
+  model::Limits tension{.min = 0.0};
+  model::Limits displacement;
   bool pull_from_world = true;
   bool geometric_stiffness = false;
   double friction = 0.0;
@@ -49,8 +49,8 @@ struct BeamOptions {
   bool probes = false;  ///< "end" at the tip, "axis" of six points, "bend" of both ends
 };
 
-inline std::shared_ptr<const sim::Model> beam(const BeamOptions& options = {}) {
-  sim::ModelBuilder builder(options.step);
+inline std::shared_ptr<const model::Model> beam(const BeamOptions& options = {}) {
+  builder::ModelBuilder builder(options.step);
   fem::FemBodySettings body;
   body.name = "beam";
   const auto mesh = std::make_shared<const mesh::Mesh>(
@@ -64,7 +64,7 @@ inline std::shared_ptr<const sim::Model> beam(const BeamOptions& options = {}) {
   body.factorisation = options.factorisation;
   const int beam = builder.add_body<fem::FemBodyModel>(std::move(body));
   for (int k = 0; k < options.cables; ++k) {
-    sim::CableSettings cable;
+    builder::CableSettings cable;
     cable.name = "cable_" + std::to_string(k);
     cable.body = beam;
     cable.points.resize(6, 3);
@@ -80,14 +80,14 @@ inline std::shared_ptr<const sim::Model> beam(const BeamOptions& options = {}) {
     cable.friction = options.friction;
     builder.add_cable(cable);
   }
-  sim::EffectorSettings tip;
+  builder::EffectorSettings tip;
   tip.name = "tip";
   tip.body = beam;
   tip.points.resize(1, 3);
   tip.points << 0.1, 0.0, 0.0;
   builder.add_effector(tip);
   if (options.wall) {
-    sim::ContactSettings wall;
+    builder::ContactSettings wall;
     wall.name = "wall";
     wall.body = beam;
     wall.surface = collision::Plane{{0.0, 0.0, *options.wall}, Vector3::UnitZ()};
@@ -96,8 +96,8 @@ inline std::shared_ptr<const sim::Model> beam(const BeamOptions& options = {}) {
     builder.add_contact(wall);
   }
   if (options.probes) {
-    builder.add_probe({"end", {}, mesh::Outside::error, sim::ProbeSpot{beam, tip.points, {}}});
-    sim::ProbeLine axis{beam, Points(2, 3), 6};
+    builder.add_probe({"end", {}, mesh::Outside::error, builder::ProbeSpot{beam, tip.points, {}}});
+    builder::ProbeLine axis{beam, Points(2, 3), 6};
     axis.corners << 0.0, 0.0, 0.0, 0.1, 0.0, 0.0;
     builder.add_probe({"axis", {}, mesh::Outside::error, axis});
     const auto& sets = mesh->node_sets;
@@ -105,16 +105,16 @@ inline std::shared_ptr<const sim::Model> beam(const BeamOptions& options = {}) {
         {"bend",
          {},
          mesh::Outside::error,
-         sim::ProbeBend{{{{beam, sets.at("x_min"), {}}, {beam, sets.at("x_max"), {}}}}, {}}});
+         builder::ProbeBend{{{{beam, sets.at("x_min"), {}}, {beam, sets.at("x_max"), {}}}}, {}}});
   }
   return builder.build();
 }
 
-inline sim::Command pull(double metres) {
-  return {sim::CommandKind::motion, sim::Signal::constant(metres)};
+inline model::Command pull(double metres) {
+  return {model::CommandKind::motion, model::Signal::constant(metres)};
 }
-inline sim::Command tension(double newtons) {
-  return {sim::CommandKind::effort, sim::Signal::constant(newtons)};
+inline model::Command tension(double newtons) {
+  return {model::CommandKind::effort, model::Signal::constant(newtons)};
 }
 
 }  // namespace sinew::testing

@@ -16,9 +16,9 @@
 #include "sinew/mesh/patch.hpp"
 #include "sinew/mesh/selection.hpp"
 #include "sinew/mesh/topology.hpp"
+#include "sinew/sense/sensor_settings.hpp"
+#include "sinew/sense/sensors.hpp"
 #include "sinew/sim/observables.hpp"
-#include "sinew/sim/sensor_settings.hpp"
-#include "sinew/sim/sensors.hpp"
 
 #include "../support/allocation_guard.hpp"
 #include "shaped_block.hpp"
@@ -32,14 +32,14 @@ class SensorBlock : public ::testing::Test, public ShapedBlock {
  protected:
   template <typename What>
   void add(const char* name, What what) {
-    SensorSettings settings;
+    sense::SensorSettings settings;
     settings.name = name;
     settings.kind = name;
     settings.what = std::move(what);
     add_sensor(builder_, settings);
   }
   std::vector<double> truth(const char* name) {
-    return sensors_of(*simulation_).truth(sensor_index(simulation_->model(), name));
+    return sense::sensors_of(*simulation_).truth(sense::sensor_index(simulation_->model(), name));
   }
   static Points line(double z) {
     Points corners(2, 3);
@@ -50,8 +50,8 @@ class SensorBlock : public ::testing::Test, public ShapedBlock {
 
 TEST_F(SensorBlock, CurvatureOfAnArcIsOneOverItsRadius) {
   // All points are nodes, since elements are straight between them.
-  add("axis", SensorCurvature{0, line(0.0), {0.03, 0.05, 0.08}, 0.04, {}});
-  add("side", SensorCurvature{0, line(0.01), {0.05}, 0.02, {}});
+  add("axis", sense::SensorCurvature{0, line(0.0), {0.03, 0.05, 0.08}, 0.04, {}});
+  add("side", sense::SensorCurvature{0, line(0.01), {0.05}, 0.02, {}});
   finish();
   EXPECT_NEAR(truth("axis")[0], 0.0, 1e-12);
   for (const double angle : {0.4, -1.7, 2.9}) {
@@ -64,8 +64,8 @@ TEST_F(SensorBlock, CurvatureOfAnArcIsOneOverItsRadius) {
 }
 
 TEST_F(SensorBlock, CurvatureAboutAnAxisHasASign) {
-  add("y", SensorCurvature{0, line(0.0), {0.05}, 0.04, Vector3(0.0, 1.0, 0.0)});
-  add("x", SensorCurvature{0, line(0.0), {0.05}, 0.04, Vector3(1.0, 0.0, 0.0)});
+  add("y", sense::SensorCurvature{0, line(0.0), {0.05}, 0.04, Vector3(0.0, 1.0, 0.0)});
+  add("x", sense::SensorCurvature{0, line(0.0), {0.05}, 0.04, Vector3(1.0, 0.0, 0.0)});
   finish();
   bend(0.8);  // a rotation from x to z is left-handed about y
   EXPECT_NEAR(truth("y")[0], -0.8 / kLength, 1e-9);
@@ -75,9 +75,9 @@ TEST_F(SensorBlock, CurvatureAboutAnAxisHasASign) {
 }
 
 TEST_F(SensorBlock, StrainAndResistanceFollowTheLength) {
-  using What = SensorLine::What;
-  add("strain", SensorLine{What::stretch, {0, line(0.0), 11}});
-  add("gauge", SensorLine{What::resistance, {0, line(0.0), 11}, 2.1, 350.0});
+  using What = sense::SensorLine::What;
+  add("strain", sense::SensorLine{What::stretch, {0, line(0.0), 11}});
+  add("gauge", sense::SensorLine{What::resistance, {0, line(0.0), 11}, 2.1, 350.0});
   finish();
   EXPECT_NEAR(truth("gauge")[0], 350.0, 1e-9);
   deform([](const Vector3& x) -> Vector3 { return {1.25 * x.x(), 0.9 * x.y(), 0.9 * x.z()}; });
@@ -86,7 +86,8 @@ TEST_F(SensorBlock, StrainAndResistanceFollowTheLength) {
 }
 
 TEST_F(SensorBlock, LightIsLostByLengthAndTurn) {
-  add("light", SensorLine{SensorLine::What::attenuation, {0, line(0.0), 11}, 0.0, 0.0, 20.0, 1.5});
+  add("light", sense::SensorLine{
+                   sense::SensorLine::What::attenuation, {0, line(0.0), 11}, 0.0, 0.0, 20.0, 1.5});
   finish();
   EXPECT_NEAR(truth("light")[0], 20.0 * kLength, 1e-12);
   const double angle = 1.2, piece = angle / 10;
@@ -100,7 +101,7 @@ TEST_F(SensorBlock, CapacitanceOfPlatesIsThatOfAnAffineLayer) {
   const auto faces = [&](const char* set) {
     return mesh::select_faces(*mesh_, mesh::NamedRegion{set}, set);
   };
-  add("plates", SensorCapacitance{{{{0, faces("z_min")}, {0, faces("z_max")}}}, 2.8});
+  add("plates", sense::SensorCapacitance{{{{0, faces("z_min")}, {0, faces("z_max")}}}, 2.8});
   finish();
   const double at_rest = 2.8 * kFreeSpace * kLength * kWidth / kWidth;
   EXPECT_NEAR(truth("plates")[0], at_rest, 1e-9 * at_rest);
@@ -119,9 +120,10 @@ TEST_F(SensorBlock, CapacitanceOfPlatesIsThatOfAnAffineLayer) {
 TEST_F(SensorBlock, MarkersAndOrientationsFollowARigidMotion) {
   Points frame(3, 3);
   frame << 0.09, 0.0, 0.0, 0.1, 0.0, 0.0, 0.09, 0.01, 0.0;
-  add("marker", ProbeSpot{0, {}, mesh_->node_sets.at("x_max")});
-  add("imu", SensorMotion{SensorMotion::What::orientation, 0, frame, {}});
-  add("level", SensorMotion{SensorMotion::What::accelerometer, 0, frame, {0.0, 0.0, -9.81}});
+  add("marker", builder::ProbeSpot{0, {}, mesh_->node_sets.at("x_max")});
+  add("imu", sense::SensorMotion{sense::SensorMotion::What::orientation, 0, frame, {}});
+  add("level",
+      sense::SensorMotion{sense::SensorMotion::What::accelerometer, 0, frame, {0.0, 0.0, -9.81}});
   finish();
   const Vector3 turn(0.4, -0.9, 0.3);
   const Matrix3 r = rotation_matrix(turn);
@@ -143,18 +145,18 @@ TEST_F(SensorBlock, MarkersAndOrientationsFollowARigidMotion) {
 TEST_F(SensorBlock, SamplingAndReadingAllocateNothing) {
   Points frame(3, 3);
   frame << 0.09, 0.0, 0.0, 0.1, 0.0, 0.0, 0.09, 0.01, 0.0;
-  using What = SensorMotion::What;
-  add("marker", ProbeSpot{0, {}, mesh_->node_sets.at("x_max")});
-  add("spin", SensorMotion{What::gyroscope, 0, frame, {}});
-  add("shake", SensorMotion{What::accelerometer, 0, frame, {}});
-  add("axis", SensorCurvature{0, line(0.0), {0.03, 0.05, 0.08}, 0.04, {}});
-  add("strain", SensorLine{SensorLine::What::stretch, {0, line(0.0), 11}});
+  using What = sense::SensorMotion::What;
+  add("marker", builder::ProbeSpot{0, {}, mesh_->node_sets.at("x_max")});
+  add("spin", sense::SensorMotion{What::gyroscope, 0, frame, {}});
+  add("shake", sense::SensorMotion{What::accelerometer, 0, frame, {}});
+  add("axis", sense::SensorCurvature{0, line(0.0), {0.03, 0.05, 0.08}, 0.04, {}});
+  add("strain", sense::SensorLine{sense::SensorLine::What::stretch, {0, line(0.0), 11}});
   finish();
   Observables list(*simulation_);
   const auto read = [&] {
     list.refresh();
     for (std::size_t k = 0; k < list.list().size(); ++k) {
-      if (list.list()[k].kind == ObservableKind::sensor) list.read(k);
+      if (list.list()[k].kind == run::ObservableKind::sensor) list.read(k);
     }
   };
   for (int k = 0; k < 3; ++k) simulation_->step();
@@ -170,11 +172,12 @@ TEST_F(SensorBlock, SamplingAndReadingAllocateNothing) {
 }
 
 TEST_F(SensorBlock, RefusesWhatLiesBeyondItsLine) {
-  EXPECT_THROW(add("end", SensorCurvature{0, line(0.0), {0.099}, 0.02, {}}), Error);
-  EXPECT_THROW(add("point", SensorLine{SensorLine::What::stretch, {0, Points::Zero(2, 3), 5}}),
-               Error);
-  add("one", SensorCurvature{0, line(0.0), {0.05}, 0.02, {}});
-  EXPECT_THROW(add("one", SensorCurvature{0, line(0.0), {0.05}, 0.02, {}}), Error);
+  EXPECT_THROW(add("end", sense::SensorCurvature{0, line(0.0), {0.099}, 0.02, {}}), Error);
+  EXPECT_THROW(
+      add("point", sense::SensorLine{sense::SensorLine::What::stretch, {0, Points::Zero(2, 3), 5}}),
+      Error);
+  add("one", sense::SensorCurvature{0, line(0.0), {0.05}, 0.02, {}});
+  EXPECT_THROW(add("one", sense::SensorCurvature{0, line(0.0), {0.05}, 0.02, {}}), Error);
 }
 
 }  // namespace

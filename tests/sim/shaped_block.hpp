@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/mesh.hpp"
-#include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "robots.hpp"
@@ -55,7 +55,7 @@ struct ShapedBlock {
     });
   }
 
-  ModelBuilder builder_;
+  builder::ModelBuilder builder_;
   std::shared_ptr<const mesh::Mesh> mesh_;
   std::unique_ptr<Simulation> simulation_;
 };

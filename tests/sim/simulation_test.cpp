@@ -7,10 +7,10 @@
 
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/inputs.hpp"
-#include "sinew/sim/state.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/run/inputs.hpp"
+#include "sinew/run/state.hpp"
+#include "sinew/world/world.hpp"
 
 #include "robots.hpp"
 #include "support/error_kind.hpp"
@@ -108,8 +108,8 @@ TEST(Simulation, StepsConvergeToTheStaticSolution) {
   run(stepped, 60);
   Simulation solved(beam());
   solved.command(0, pull(0.004));
-  const StaticReport report = solved.solve_static();
-  EXPECT_EQ(report.status, NewtonStatus::converged);
+  const statics::StaticReport report = solved.solve_static();
+  EXPECT_EQ(report.status, run::NewtonStatus::converged);
   EXPECT_LE(report.relative_residual, 1e-10);
   EXPECT_LT((stepped.body(0).positions() - solved.body(0).positions()).cwiseAbs().maxCoeff(), 1e-9);
 }
@@ -120,7 +120,7 @@ TEST(Simulation, StaticSolutionIsInEquilibriumWithItsTensions) {
   Simulation simulation(beam(options));
   simulation.command(0, tension(1.0));
   simulation.command(1, pull(0.002));
-  const StaticReport report = simulation.solve_static();
+  const statics::StaticReport report = simulation.solve_static();
   EXPECT_LE(report.relative_residual, 1e-10);
   EXPECT_NEAR(simulation.actuator(1).motion, 0.002, 1e-11);
   // Another quasi-static step changes nothing.
@@ -134,7 +134,7 @@ TEST(Simulation, NewtonStepsMeetTheEquationOfBackwardEuler) {
   options.gravity = {0.0, 0.0, -9.81};
   options.damping = {.mass = 0.5, .stiffness = 0.01};
   options.step.integrator = mechanics::Integrator::backward_euler;
-  options.step.method = Method::newton;
+  options.step.method = model::Method::newton;
   options.step.tangent = mechanics::Tangent::exact;
   options.step.tolerance = 1e-11;
   for (const auto mass : {fem::MassMatrix::lumped, fem::MassMatrix::consistent}) {
@@ -142,7 +142,7 @@ TEST(Simulation, NewtonStepsMeetTheEquationOfBackwardEuler) {
     Simulation simulation(beam(options));
     simulation.command(0, pull(0.003));
     for (int i = 0; i < 20; ++i) {
-      const StepReport& report = simulation.step();
+      const run::StepReport& report = simulation.step();
       EXPECT_LE(report.relative_residual, 1e-11);
       EXPECT_LT(report.iterations, 12);
     }
@@ -153,7 +153,7 @@ TEST(Simulation, NewtonStepsMeetTheEquationOfBackwardEuler) {
 TEST(Simulation, RotatedAndExactTangentLeadToTheSameStep) {
   BeamOptions options;
   options.step.integrator = mechanics::Integrator::backward_euler;
-  options.step.method = Method::newton;
+  options.step.method = model::Method::newton;
   options.step.tolerance = 1e-12;
   options.damping = {.mass = 0.0, .stiffness = 0.005};
   options.step.tangent = mechanics::Tangent::corotated;
@@ -161,7 +161,8 @@ TEST(Simulation, RotatedAndExactTangentLeadToTheSameStep) {
   options.step.tangent = mechanics::Tangent::exact;
   Simulation exact(beam(options));
   for (Simulation* simulation : {&rough, &exact}) {
-    simulation->command(0, {CommandKind::motion, Signal::ramp({0.0, 0.005, 0.0, 0.05})});
+    simulation->command(0,
+                        {model::CommandKind::motion, model::Signal::ramp({0.0, 0.005, 0.0, 0.05})});
     run(*simulation, 5);
   }
   EXPECT_LT((rough.body(0).positions() - exact.body(0).positions()).cwiseAbs().maxCoeff(), 1e-10);
@@ -256,13 +257,13 @@ TEST(Simulation, SimulationsOfOneModelDoNotTouchEachOther) {
 
 TEST(Simulation, AHugePullIsCutBackAndNothingInverts) {
   BeamOptions options;
-  options.step.method = Method::one_linearisation;
+  options.step.method = model::Method::one_linearisation;
   Simulation simulation(beam(options));
   simulation.command(0, tension(200.0));
   bool cut = false;
   try {
     for (int i = 0; i < 50; ++i) {
-      const StepReport& report = simulation.step(OnFailure::keep_going);
+      const run::StepReport& report = simulation.step(OnFailure::keep_going);
       EXPECT_GT(report.smallest_volume_ratio, 0.0);
       EXPECT_TRUE(report.scale == 1.0 || is_flagged(report.status));
       cut = cut || report.scale < 1.0;
@@ -292,9 +293,9 @@ TEST(Simulation, NotANumberInAForceStopsTheRunAndKeepsTheState) {
 
 TEST(Simulation, StiffnessFactorsAreAboveZero) {
   Simulation simulation(beam());
-  const Inputs good = simulation.inputs();
+  const run::Inputs good = simulation.inputs();
   for (const double wrong : {0.0, -1.0, static_cast<double>(NAN), kInfinity}) {
-    Inputs inputs = good;
+    run::Inputs inputs = good;
     inputs.bodies[0].stiffness_factor = wrong;
     EXPECT_EQ(kind_of([&] { simulation.set_inputs(inputs); }), ErrorKind::out_of_range) << wrong;
     EXPECT_EQ(kind_of([&] { simulation.set_stiffness_factor(0, wrong); }), ErrorKind::out_of_range)

@@ -12,9 +12,9 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/state_hash.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "robots.hpp"
 
@@ -81,7 +81,7 @@ TEST(StateIo, NumbersThatAreNotFiniteAreRefused) {
   Simulation simulation(beam());
   std::string bytes = format_state(simulation);
   const double largest_energy = 0.125;  // occurs nowhere else
-  State state = simulation.state();
+  run::State state = simulation.state();
   state.ledger.largest = largest_energy;
   simulation.restore(state);
   bytes = format_state(simulation);

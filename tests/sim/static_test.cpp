@@ -6,6 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/builder/effector_settings.hpp"
+#include "sinew/builder/force_settings.hpp"
+#include "sinew/builder/load_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
@@ -18,16 +22,12 @@
 #include "sinew/mesh/selection.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/topology.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/effector_settings.hpp"
-#include "sinew/sim/force_settings.hpp"
-#include "sinew/sim/load_settings.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/model_builder.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/stability.hpp"
-#include "sinew/sim/state.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/world/stability.hpp"
+#include "sinew/world/world.hpp"
 
 #include "robots.hpp"
 
@@ -51,16 +51,16 @@ fem::FemBodySettings block(const Vector3& size, const std::array<int, 3>& cells,
 }
 
 /// A slender column along x, clamped at one end; an actuator can compress its tip along x.
-std::shared_ptr<const Model> column() {
-  ModelBuilder builder;
+std::shared_ptr<const model::Model> column() {
+  builder::ModelBuilder builder;
   builder.add_body<fem::FemBodyModel>(
       block({kLength, kSide, kSide}, {20, 2, 2}, mesh::Cells::hexahedra, 1e6, 0.3));
-  ForceSettings press;
+  builder::ForceSettings press;
   press.name = "press";
   press.point = {kLength, kSide / 2, kSide / 2};
   press.direction = {-1.0, 0.0, 0.0};
   builder.add_force(press);
-  EffectorSettings tip;
+  builder::EffectorSettings tip;
   tip.name = "tip";
   tip.points = press.point.transpose();
   builder.add_effector(tip);
@@ -74,7 +74,7 @@ Vector3 tip_motion(const Simulation& simulation) {
 double aside(const Simulation& simulation) { return tip_motion(simulation).tail<2>().norm(); }
 
 /// Buckling load of the column's mesh to 1e-3, N: the first negative pivot of the straight column.
-double buckling_load(const std::shared_ptr<const Model>& model) {
+double buckling_load(const std::shared_ptr<const model::Model>& model) {
   const double inertia = std::pow(kSide, 4) / 12.0;
   const double euler = std::pow(std::numbers::pi / (2.0 * kLength), 2) * 1e6 * inertia;
   double low = 0.5 * euler, high = 1.5 * euler;
@@ -82,7 +82,7 @@ double buckling_load(const std::shared_ptr<const Model>& model) {
     const double load = 0.5 * (low + high);
     Simulation straight(model);
     straight.command(0, sinew::testing::tension(load));
-    const auto report = straight.solve_static({.stability = StabilityChoice::any});
+    const auto report = straight.solve_static({.stability = statics::StabilityChoice::any});
     (report.negative_pivots > 0 ? high : low) = load;
   }
   // Two hexahedra across are too stiff in bending.
@@ -111,8 +111,8 @@ TEST(Statics, AColumnPastEulersLoadBuckles) {
   for (const double ratio : {1.1, 2.0, 5.0}) {
     Simulation simulation(model);
     simulation.command(0, sinew::testing::tension(ratio * critical));
-    const StaticReport report = simulation.solve_static();
-    EXPECT_EQ(report.status, NewtonStatus::converged);
+    const statics::StaticReport report = simulation.solve_static();
+    EXPECT_EQ(report.status, run::NewtonStatus::converged);
     EXPECT_TRUE(report.stable);
     EXPECT_EQ(report.negative_pivots, 0);
     EXPECT_GT(report.relaxation_steps, 0);
@@ -139,7 +139,8 @@ TEST(Statics, TheSameColumnBucklesTheSameWay) {
 TEST(Statics, AnUnstableBranchIsKeptAndNamed) {
   Simulation simulation(column());
   simulation.command(0, sinew::testing::tension(2e-2));
-  const StaticReport report = simulation.solve_static({.stability = StabilityChoice::any});
+  const statics::StaticReport report =
+      simulation.solve_static({.stability = statics::StabilityChoice::any});
   EXPECT_EQ(report.negative_pivots, 2);  // one per lateral direction
   EXPECT_FALSE(report.stable);
   EXPECT_LT(aside(simulation), 1e-6);
@@ -154,10 +155,11 @@ TEST(Statics, ACommandedMotionHoldsWhatItCommandsAlone) {
   const double critical = buckling_load(model);
   Simulation simulation(model);
   simulation.command(0, sinew::testing::pull(kThrice));
-  EXPECT_EQ(simulation.solve_static({.stability = StabilityChoice::any}).negative_pivots, 2);
+  EXPECT_EQ(simulation.solve_static({.stability = statics::StabilityChoice::any}).negative_pivots,
+            2);
   simulation.reset();
   simulation.command(0, sinew::testing::pull(kThrice));
-  const StaticReport report = simulation.solve_static();
+  const statics::StaticReport report = simulation.solve_static();
   EXPECT_EQ(report.negative_pivots, 0);
   EXPECT_NEAR(simulation.actuator(0).motion, kThrice, 1e-9);
   EXPECT_GT(aside(simulation), 0.002);
@@ -170,13 +172,14 @@ TEST(Statics, StabilityAgreesWithTheDenseTangent) {
   for (const bool held : {false, true}) {
     Simulation simulation(column());
     simulation.command(0, held ? sinew::testing::pull(kThrice) : sinew::testing::tension(5e-2));
-    const StaticReport report = simulation.solve_static({.stability = StabilityChoice::any});
-    World& world = simulation.world();
+    const statics::StaticReport report =
+        simulation.solve_static({.stability = statics::StabilityChoice::any});
+    world::World& world = simulation.world();
     world.begin_query(0.0);
     world.linearise({{}, mechanics::Tangent::exact, true, false});
     world.form_rows(simulation.efforts(), simulation.model().geometric_stiffness().all);
     ASSERT_NE(world.condense(), linalg::FactorStatus::singular);
-    const Stability stability(world, simulation.efforts());
+    const world::Stability stability(world, simulation.efforts());
     VectorX rest, row;
     world.bodies().imbalance(std::vector<double>(simulation.efforts().size(), 0.0), rest);
     std::vector<double> unit(simulation.efforts().size(), 0.0);
@@ -214,13 +217,13 @@ TEST(Statics, StabilityAgreesWithTheDenseTangent) {
 }
 
 /// A strip under a pressure on its upper side, Pa per load factor.
-std::shared_ptr<const Model> strip() {
-  ModelBuilder builder;
+std::shared_ptr<const model::Model> strip() {
+  builder::ModelBuilder builder;
   auto body = block({0.1, 0.02, 0.01}, {20, 4, 2}, mesh::Cells::hexahedra, 1e5, 0.4);
   const auto faces = mesh::select_faces(*body.mesh, mesh::NamedRegion{"z_max"}, "top");
   builder.add_body<fem::FemBodyModel>(std::move(body));
-  builder.add_load({.name = "wind", .load = PressureLoadSettings{faces}});
-  EffectorSettings tip;
+  builder.add_load({.name = "wind", .load = builder::PressureLoadSettings{faces}});
+  builder::EffectorSettings tip;
   tip.name = "tip";
   tip.points = Vector3(0.1, 0.01, 0.005).transpose();
   builder.add_effector(tip);
@@ -231,9 +234,9 @@ TEST(Statics, AStripIsCurledPastItsBaseByAPressureThatFollowsIt) {
   Simulation simulation(strip());
   for (const double pressure : {170.0, 300.0}) {
     simulation.reset();
-    simulation.set_load(0, Signal::constant(pressure));
-    const StaticReport report = simulation.solve_static();
-    EXPECT_EQ(report.status, NewtonStatus::converged);
+    simulation.set_load(0, model::Signal::constant(pressure));
+    const statics::StaticReport report = simulation.solve_static();
+    EXPECT_EQ(report.status, run::NewtonStatus::converged);
     EXPECT_LT(report.relative_residual, 1e-10);
     EXPECT_TRUE(report.stable);
     EXPECT_LT(simulation.effector_value(0).x(), 0.0);
@@ -246,12 +249,12 @@ TEST(Statics, IterationsDoNotGrowTowardsIncompressibility) {
   for (const auto kind : {mesh::Cells::hexahedra, mesh::Cells::quadratic}) {
     double first = 0.0;
     for (const double poisson : {0.45, 0.499, 0.4999, 0.49999999}) {
-      ModelBuilder builder;
+      builder::ModelBuilder builder;
       auto body = block({0.1, 0.02, 0.02}, {10, 2, 2}, kind, 1e5, poisson);
       body.gravity = {0.0, 0.0, -9.81};
       builder.add_body<fem::FemBodyModel>(std::move(body));
       Simulation simulation(builder.build());
-      const StaticReport report = simulation.solve_static();
+      const statics::StaticReport report = simulation.solve_static();
       EXPECT_EQ(report.load_steps, 1);
       EXPECT_LE(report.iterations, 12) << poisson;
       EXPECT_TRUE(report.stable);
@@ -269,10 +272,10 @@ TEST(Newton, EndsWhereRoundingDoesInSmallSteps) {
   for (const auto integrator : {mechanics::Integrator::backward_euler, mechanics::Integrator::bdf2,
                                 mechanics::Integrator::generalized_alpha}) {
     for (const double time_step : {1e-4, 1e-5, 1e-6}) {
-      StepSettings step;
+      model::StepSettings step;
       step.time_step = time_step;
       step.integrator = integrator;
-      step.method = Method::newton;
+      step.method = model::Method::newton;
       Simulation simulation(sinew::testing::beam({.step = step, .cables = 0, .clamped = false}));
       auto& body = *mechanics::as<mechanics::TakesForces>(simulation.body(0));
       const double push = 0.1 / (20.0 * time_step);  // m/s^2: 0.1 m/s after 20 steps

@@ -5,19 +5,19 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/builder/contact_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/constraint/contact.hpp"
+#include "sinew/contact/contact_state.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/shapes.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/contact_settings.hpp"
-#include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/model_builder.hpp"
-#include "sinew/sim/row_motions.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/contact_reader.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/world/row_motions.hpp"
+#include "sinew/world/world.hpp"
 
 #include "../support/allocation_guard.hpp"
 
@@ -26,7 +26,7 @@ namespace {
 
 constexpr double kWide = 0.04, kThick = 0.01, kSmall = 0.02;
 
-void add_block(ModelBuilder& builder, const char* name, const mesh::BlockShape& shape,
+void add_block(builder::ModelBuilder& builder, const char* name, const mesh::BlockShape& shape,
                const Vector3& gravity, const char* fixed, int threads) {
   fem::FemBodySettings body;
   body.name = name;
@@ -41,8 +41,9 @@ void add_block(ModelBuilder& builder, const char* name, const mesh::BlockShape& 
 }
 
 // A small block falls by 10 um onto a wide one.
-std::shared_ptr<const Model> two_blocks(bool held, int threads = 1) {
-  ModelBuilder builder({.time_step = 1e-3, .integrator = mechanics::Integrator::backward_euler});
+std::shared_ptr<const model::Model> two_blocks(bool held, int threads = 1) {
+  builder::ModelBuilder builder(
+      {.time_step = 1e-3, .integrator = mechanics::Integrator::backward_euler});
   const Vector3 gravity(0.0, 0.0, -9.81);
   add_block(builder, "low",
             {.corner = {0, 0, -kThick}, .size = {kWide, kWide, kThick}, .cells = {8, 8, 2}},
@@ -51,7 +52,7 @@ std::shared_ptr<const Model> two_blocks(bool held, int threads = 1) {
       builder, "top",
       {.corner = {0.0073, 0.0091, 1e-5}, .size = {kSmall, kSmall, kThick}, .cells = {5, 5, 2}},
       gravity, nullptr, threads);
-  ContactSettings contact;
+  builder::ContactSettings contact;
   contact.name = "touch";
   contact.body = 1;
   contact.touched = 0;
@@ -63,7 +64,7 @@ std::shared_ptr<const Model> two_blocks(bool held, int threads = 1) {
 TEST(SurfaceContact, RowsPushEquallyAndOppositely) {
   Simulation simulation(two_blocks(false));
   for (int k = 0; k < 20; ++k) simulation.step();
-  const World& world = simulation.world();
+  const world::World& world = simulation.world();
   const constraint::Contact& contact = simulation.model().contact(0);
   std::vector<int> problem_rows;
   for (std::size_t k = 0; k < contact.size(); ++k) {
@@ -72,7 +73,7 @@ TEST(SurfaceContact, RowsPushEquallyAndOppositely) {
       problem_rows.push_back(world.numbering().problem_row_of(contact.row(k) + c));
   }
   ASSERT_GT(problem_rows.size(), 60U);
-  const MatrixX forces = row_forces(simulation.world(), problem_rows);
+  const MatrixX forces = world::row_forces(simulation.world(), problem_rows);
   Eigen::Index at = 0;
   MatrixX force = MatrixX::Zero(3, forces.cols()), moment = force;
   for (const int body : {0, 1}) {

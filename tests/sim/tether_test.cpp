@@ -13,8 +13,8 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/mesh.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "robots.hpp"
 

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/builder/load_settings.hpp"
 #include "sinew/mechanics/body.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/load_settings.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "sim/contact_robots.hpp"
 #include "sim/robots.hpp"
@@ -25,7 +25,7 @@ struct Ended {};
 // Cancels the work at its `calls`th progress callback; returns whether that was reached.
 template <class Work>
 bool ends_at(Simulation& simulation, int calls, Work&& work) {
-  simulation.watch([&calls](const StepProgress&) {
+  simulation.watch([&calls](const run::StepProgress&) {
     if (--calls == 0) throw Ended{};
   });
   bool ended = false;
@@ -40,14 +40,14 @@ bool ends_at(Simulation& simulation, int calls, Work&& work) {
 
 // Cancels a step at its first, second, ... and some later callbacks, until it completes; each time
 // the state is restored. The run then continues as without a callback.
-void expect_steps_that_can_be_ended(const std::shared_ptr<const Model>& model, Command command,
-                                    int least_calls) {
+void expect_steps_that_can_be_ended(const std::shared_ptr<const model::Model>& model,
+                                    model::Command command, int least_calls) {
   Simulation plain(model), ended(model);
   for (Simulation* one : {&plain, &ended}) {
     one->step();
     one->command(0, command);
   }
-  const State before = ended.state();
+  const run::State before = ended.state();
   int calls = 1;
   while (ends_at(ended, calls, [&] { ended.step(); })) {
     ASSERT_EQ(ended.state(), before) << calls;
@@ -73,7 +73,7 @@ BeamOptions soft() {
   options.young_modulus = 2e4;
   options.friction = 0.2;
   options.step.max_iterations = 5;
-  options.step.equilibrium = Equilibrium::following;
+  options.step.equilibrium = model::Equilibrium::following;
   return options;
 }
 
@@ -103,14 +103,14 @@ TEST(Watch, AStepWithContactsEndsWithinALawToo) {
   const auto model = beam(options);
   Simulation simulation(model);
   int within = 0, last = -1;
-  simulation.watch([&](const StepProgress& step) {
+  simulation.watch([&](const run::StepProgress& step) {
     within += step.iterations == last ? 1 : 0;
     last = step.iterations;
   });
   for (int k = 0; k < 20; ++k) simulation.step();
   EXPECT_GT(within, 0);  // callbacks within a Newton iteration
   simulation.watch({});
-  const State before = simulation.state();
+  const run::State before = simulation.state();
   Simulation plain(model);
   plain.restore(before);
   for (int calls = 1; ends_at(simulation, calls, [&] { simulation.step(); }); ++calls) {
@@ -127,7 +127,7 @@ TEST(Watch, TheFirstStepOfARunCanBeEndedToo) {
   for (const bool adaptive : {false, true}) {
     if (adaptive) options.step.adaptive = {.tolerance = 1e-4, .smallest = 1e-4};
     Simulation simulation(beam(options));
-    const State start = simulation.state();
+    const run::State start = simulation.state();
     EXPECT_TRUE(ends_at(simulation, 2, [&] { simulation.step(); }));
     EXPECT_EQ(simulation.state(), start);
   }
@@ -137,7 +137,7 @@ TEST(Watch, AStaticSearchEndsAsIfItHadNotBegun) {
   Simulation simulation(beam());
   simulation.step();
   simulation.command(0, tension(2.0));
-  const State before = simulation.state();
+  const run::State before = simulation.state();
   int calls = 1;
   while (ends_at(simulation, calls, [&] { simulation.solve_static({.max_iterations = 4}); })) {
     ASSERT_EQ(simulation.state(), before) << calls;
@@ -150,7 +150,7 @@ TEST(Watch, AnEndedPathLeavesItsLastPoint) {
   BeamOptions options;
   Simulation simulation(beam(options));
   simulation.command(0, tension(0.5));
-  State last;
+  run::State last;
   int points = 0;
   const bool ended = ends_at(simulation, 8, [&] {
     simulation.follow_path({.largest_step = 0.01}, [&] {
@@ -170,12 +170,12 @@ TEST(Watch, ProgressCountsIterationsAndTime) {
   int largest = 0;
   bool in_parts = false, in_order = true;
   double seconds = 0.0, residual = 0.0;
-  simulation.watch([&](const StepProgress& step) {
+  simulation.watch([&](const run::StepProgress& step) {
     in_order = in_order && step.iterations >= largest && step.seconds >= seconds;
     largest = step.iterations;
     seconds = step.seconds;
     residual = step.relative_residual;
-    in_parts = in_parts || step.stage == SearchStage::parts;
+    in_parts = in_parts || step.stage == run::SearchStage::parts;
   });
   simulation.step();
   EXPECT_TRUE(in_order);

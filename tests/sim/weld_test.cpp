@@ -8,20 +8,20 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/builder/joint_settings.hpp"
 #include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/constraint.hpp"
 #include "sinew/constraint/tie.hpp"
+#include "sinew/contact/contact_state.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/contact_state.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/model/signal.hpp"
+#include "sinew/run/contact_reader.hpp"
 #include "sinew/sim/joint_load.hpp"
-#include "sinew/sim/joint_settings.hpp"
 #include "sinew/sim/linearisation.hpp"
-#include "sinew/sim/model.hpp"
 #include "sinew/sim/row_efforts.hpp"
-#include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "cut_beam.hpp"
@@ -36,8 +36,12 @@ using sinew::testing::CutBeam;
 using sinew::testing::kBeamGravity;
 using sinew::testing::kBeamLength;
 
-Command pull_cable(double metres) { return {CommandKind::motion, Signal::constant(metres)}; }
-Command effort(double newtons) { return {CommandKind::effort, Signal::constant(newtons)}; }
+model::Command pull_cable(double metres) {
+  return {model::CommandKind::motion, model::Signal::constant(metres)};
+}
+model::Command effort(double newtons) {
+  return {model::CommandKind::effort, model::Signal::constant(newtons)};
+}
 
 Vector3 tip_of(const Simulation& simulation) { return simulation.effector_value(0); }
 
@@ -51,7 +55,7 @@ TEST(Weld, CutBeamIsTheUncutBeam) {
     for (Simulation* simulation : {&cut, &whole}) {
       simulation->command(0, effort(3.0));
       simulation->command(1, effort(0.05));
-      const StaticReport report = simulation->solve_static();
+      const statics::StaticReport report = simulation->solve_static();
       EXPECT_TRUE(report.stable);
       EXPECT_EQ(report.negative_pivots, 0);
     }
@@ -75,7 +79,7 @@ TEST(Weld, DefaultStepsOfTheCutBeamAreThoseOfTheUncut) {
     for (int k = 0; k < 30; ++k) {
       for (Simulation* simulation : {&cut, &whole}) {
         simulation->command(0, pull_cable(2e-4 * std::min(k, 20)));
-        EXPECT_EQ(simulation->step().status, StepStatus::solved);
+        EXPECT_EQ(simulation->step().status, run::StepStatus::solved);
       }
       // The cable's geometric stiffness between the bodies is as exact as within them.
       EXPECT_LE(cut.report().iterations, whole.report().iterations + 1) << k;
@@ -153,7 +157,7 @@ TEST(Weld, StandsBesideContactAndFrictionOfCables) {
   for (int k = 0; k < 30; ++k) {
     for (Simulation* simulation : {&cut, &whole}) {
       simulation->command(0, effort(0.05 * k));
-      EXPECT_EQ(simulation->step().status, StepStatus::solved) << k;
+      EXPECT_EQ(simulation->step().status, run::StepStatus::solved) << k;
     }
     // Friction amplifies the differences of the two solutions where a point begins to touch.
     const bool touches = whole.contacts().resultant(0).normal_force > 0.0;
@@ -208,13 +212,13 @@ ErrorKind refusal(const std::function<void()>& act) {
 TEST(Weld, WhatHoldsNothingIsRefused) {
   EXPECT_EQ(refusal([] { cut_beam({.weld = false}); }), ErrorKind::nothing_fixed);
   const auto welded_at = [](const Points& points) {
-    ModelBuilder builder;
+    builder::ModelBuilder builder;
     const CutBeam options;
     const int lower =
         add_part(builder, "lower", beam_part(0.0, 0.05, 5, 1), options, true, "x_min");
     const int upper =
         add_part(builder, "upper", beam_part(0.05, 0.1, 5, 1), options, false, "x_min");
-    WeldSettings weld{.name = "seam", .first = upper, .second = lower};
+    builder::WeldSettings weld{.name = "seam", .first = upper, .second = lower};
     weld.points = points;
     builder.add_weld(weld);
     builder.build();

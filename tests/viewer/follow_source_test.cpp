@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/control/inverse_controller.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "robot_fixture.hpp"
 
@@ -81,7 +81,7 @@ TEST(FollowSource, CarriesOutRequestsInTurnsOnly) {
   EXPECT_EQ(kind(reset.get()), "not-in-this-version");
   EXPECT_EQ(kind(target.get()), "no-effectors");
   EXPECT_EQ(kind(controller.get()), "not-in-this-version");
-  inverse::InverseController own(*script.simulation, script.shown.controllers.at(0).settings);
+  control::InverseController own(*script.simulation, script.shown.controllers.at(0).settings);
   script.source.observe("own", &own);
   auto steered = script.ask(SetTarget{"tip", Vector3(0.06, 0.01, 0.012)});
   ASSERT_TRUE(script.update());

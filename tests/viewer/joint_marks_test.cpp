@@ -5,8 +5,8 @@
 
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/joint_load.hpp"
-#include "sinew/sim/model.hpp"
 
 #include "robot_fixture.hpp"
 

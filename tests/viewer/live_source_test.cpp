@@ -9,21 +9,21 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/control/target_controller.hpp"
 #include "sinew/fem/element_fields.hpp"
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/fem/has_material.hpp"
-#include "sinew/inverse/target_controller.hpp"
+#include "sinew/law/controller.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/quality.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/channel.hpp"
-#include "sinew/sim/sensors.hpp"
-#include "sinew/sim/signal.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/signal.hpp"
+#include "sinew/run/state.hpp"
+#include "sinew/sense/channel.hpp"
+#include "sinew/sense/sensors.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
-#include "sinew/step/controller.hpp"
 
 #include "robot_fixture.hpp"
 #include "viewer/fields.hpp"
@@ -76,7 +76,7 @@ TEST(LiveSource, StepsExactlyAndAsASimulationDoes) {
   const scene::Robot same = robot();
   sim::Simulation simulation(same.model);
   simulation.follow();
-  simulation.command(0, {sim::CommandKind::effort, sim::Signal::constant(1.5)});
+  simulation.command(0, {model::CommandKind::effort, model::Signal::constant(1.5)});
   for (int k = 0; k < 25; ++k) simulation.step();
   EXPECT_EQ(frame->hash, simulation.state().hash());
   EXPECT_EQ(frame->signals[0], simulation.actuator(0).effort);
@@ -278,7 +278,7 @@ TEST(LiveSource, ShowsSensorsBesideProbes) {
   const auto frame = state.frame({}, 1.0);
   const sim::Simulation& simulation = state.simulation();
   EXPECT_EQ(number(*frame, "sensor.eye.measured_x"),
-            sim::sensors_of(simulation).channel(0).value()[0]);
+            sense::sensors_of(simulation).channel(0).value()[0]);
   EXPECT_EQ(number(*frame, "sensor.eye.true_x"), simulation.effector_value(0).x());
   EXPECT_EQ(number(*frame, "sensor.load.measured"), simulation.actuator(0).effort + 1.0);
   ASSERT_EQ(frame->probes.size(), 3 * (2 + 4 + 1u));
@@ -403,7 +403,7 @@ TEST(LiveSource, RecordsEveryStepAndSavesAFile) {
 TEST(LiveSource, StepsASimulationOfOthersAndGivesItsControllerBack) {
   const scene::Robot shown = robot();
   const auto simulation = std::make_shared<sim::Simulation>(shown.model);
-  std::pair<std::string, std::unique_ptr<inverse::TargetController>> left;
+  std::pair<std::string, std::unique_ptr<control::TargetController>> left;
   {
     Watcher watcher;
     LiveSource source(shown, simulation,
@@ -423,8 +423,7 @@ TEST(LiveSource, StepsASimulationOfOthersAndGivesItsControllerBack) {
   const auto before = simulation->steps();
   simulation->step();
   EXPECT_EQ(simulation->steps(), before + 1);
-  EXPECT_EQ(simulation->actuator(0).owner,
-            dynamic_cast<const step::Controller*>(left.second.get()));
+  EXPECT_EQ(simulation->actuator(0).owner, dynamic_cast<const law::Controller*>(left.second.get()));
 }
 
 }  // namespace

@@ -14,10 +14,10 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/signal.hpp"
 #include "sinew/record/run_layout.hpp"
 #include "sinew/record/run_recorder.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "record/older_run.hpp"
@@ -184,7 +184,7 @@ class Recorded : public ::testing::Test {
 TEST_F(Recorded, RunsAreShownWithWhatWasRecorded) {
   const scene::Robot same = robot();
   sim::Simulation simulation(same.model);
-  simulation.command(0, {sim::CommandKind::motion, sim::Signal::ramp({0.0, 0.002, 0.0, 0.05})});
+  simulation.command(0, {model::CommandKind::motion, model::Signal::ramp({0.0, 0.002, 0.0, 0.05})});
   record::RecordSettings settings;
   settings.folder = folder_;
   settings.scene = kScene;
@@ -254,7 +254,7 @@ TEST_F(Recorded, OlderRunsAreShownAndSayWhatTheyLack) {
   sim::Simulation simulation(same.model);
   {
     record::testing::OlderRun older(folder_ / "run.h5", simulation, text);
-    simulation.command(0, {sim::CommandKind::effort, sim::Signal::constant(0.5)});
+    simulation.command(0, {model::CommandKind::effort, model::Signal::constant(0.5)});
     for (int k = 0; k < 5; ++k) {
       simulation.step();
       older.write();

@@ -20,7 +20,7 @@ Runs that gain energy are soft bars that spin freely, with the generalized-alpha
 their steps are solved, and the method itself puts energy in. A run counts if its energy is twice that of the start for two steps; it
 should be flagged by then. Another 30 are soft beams that swing with one corotated linearisation in each step. It leaves most of the
 forces out of balance, and the run stops."""
-SOURCES = {"ledger": "work of the integrator's own quadrature, sim/work_ledger.hpp",
+SOURCES = {"ledger": "work of the integrator's own quadrature, run/work_ledger.hpp",
            "Simo": "J. C. Simo, N. Tarnow, The discrete energy-momentum method, ZAMP 43 (1992) 757-792: Newmark's method and its kin gain "
                    "energy in nonlinear elastodynamics",
            "Hairer": "E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), sections VI.4, IX"}

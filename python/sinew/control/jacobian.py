@@ -9,34 +9,7 @@ import numpy as np
 from ..errors import Error
 from .robot import Robot
 
-__all__ = ["condensed", "jacobian"]
-
-
-def condensed(w_ea: np.ndarray, w_aa: np.ndarray, by_motion: np.ndarray, slack: np.ndarray) -> np.ndarray:
-    """J (rows, actuators) of the effectors with respect to commands, from W_ea and W_aa.
-
-    With motions s of the actuators M that are commanded in motion, and efforts of the others F,
-        lambda_M = W_MM^+ (s - W_MF lambda_F),   J_M = W_eM W_MM^+,   J_F = W_eF - J_M W_MF.
-    A slack cable moves nothing, so its column is zero. W_MM is scaled to a unit diagonal, and W_MM^+ omits directions with
-    eigenvalues below 1e-9 of the largest one: two cables on one line have one motion.
-
-    Parameters
-    ----------
-    w_ea : (rows, actuators)
-    w_aa : (actuators, actuators)
-    by_motion, slack : (actuators,) bool
-    """
-    result = np.where(slack, 0.0, w_ea)
-    held = by_motion & ~slack
-    if not held.any():
-        return result
-    own = w_aa[np.ix_(held, held)]
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(own), np.finfo(float).tiny))
-    inverse = scale[:, None] * np.linalg.pinv(scale[:, None] * own * scale, rcond=1e-9) * scale
-    result[:, held] = w_ea[:, held] @ inverse
-    others = ~by_motion & ~slack
-    result[:, others] = w_ea[:, others] - result[:, held] @ w_aa[np.ix_(held, others)]
-    return result
+__all__ = ["jacobian"]
 
 
 def jacobian(

@@ -13,6 +13,6 @@ from __future__ import annotations
 from .sensitivity import SobolIndices, saltelli_points, sobol_indices
 from .sweep import run
 from .table import arrays, indices, load
-from .worker import Sample
+from .runner import Sample
 
 __all__ = ["Sample", "SobolIndices", "arrays", "indices", "load", "run", "saltelli_points", "sobol_indices"]

@@ -14,6 +14,8 @@ import time
 from collections.abc import Sequence
 from typing import Any, Optional
 
+from .runner import Row, Runner
+
 _LENGTH = struct.Struct("<Q")
 _PR_SET_PDEATHSIG = 1
 _LONGEST_WAIT = 3600.0  # s, because select() does not accept infinity
@@ -36,8 +38,6 @@ class Child:
 
     def row(self, index: int, values: Sequence[Any]):
         """As Runner.row()."""
-        from .worker import Row
-
         begin = time.perf_counter()
         try:
             if self._process is None:
@@ -118,8 +118,6 @@ def serve() -> None:
         data = pickle.dumps(what)
         sink.write(_LENGTH.pack(len(data)) + data)
         sink.flush()
-
-    from .worker import Runner
 
     runner = Runner(pickle.loads(receive()))
     send(True)

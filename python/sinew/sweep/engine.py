@@ -17,9 +17,10 @@ from typing import Any, Optional
 
 from ..errors import Error, RunError
 from .progress import Progress
+from .runner import Row
 from .samples import Design
 from .store import Store
-from .worker import Row, run_batch
+from .worker import run_batch
 
 _BATCH = 0.5  # s, intended duration of a batch
 _LARGEST = 10_000

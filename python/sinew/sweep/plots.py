@@ -10,8 +10,8 @@ from typing import Any, Optional, Union
 
 import numpy as np
 
-from .. import plot
 from ..errors import Error
+from ..plot_style import COLOURS, DASHES, DATA, LEGEND_ROWS, OURS, QUIET, SECOND, SHOWN, pyplot, save
 from .table import component_names, load
 
 _Path = Union[str, "os.PathLike[str]"]
@@ -55,7 +55,7 @@ class _Table:
 
     def _shown(self, name: str) -> tuple[str, float]:
         unit = self._units.get(name, "")
-        return plot.SHOWN.get(unit, (unit, 1.0))
+        return SHOWN.get(unit, (unit, 1.0))
 
     def groups(self) -> list[tuple[str, np.ndarray]]:
         """Label and rows of each combination of words; one group without a label if there are no words."""
@@ -92,16 +92,16 @@ def _legend(axis: Any, table: _Table) -> None:
     labels = axis.get_legend_handles_labels()[1]
     if labels:
         axis.legend(title=", ".join(table.label(name) for name in table.words), loc="upper left", bbox_to_anchor=(1.0, 1.02),
-                    title_fontsize=8, ncol=1 + (len(labels) - 1) // plot.LEGEND_ROWS)
+                    title_fontsize=8, ncol=1 + (len(labels) - 1) // LEGEND_ROWS)
 
 
 def _colour(group: int) -> str:
-    return plot.COLOURS[group % len(plot.COLOURS)]
+    return COLOURS[group % len(COLOURS)]
 
 
 def _style(group: int) -> dict[str, Any]:
     """Colour and dashes of the curve of a group: after the last colour, the colours repeat with other dashes."""
-    return {"color": _colour(group), "linestyle": plot.DASHES[group // len(plot.COLOURS) % len(plot.DASHES)]}
+    return {"color": _colour(group), "linestyle": DASHES[group // len(COLOURS) % len(DASHES)]}
 
 
 def _scatter(plt: Any, table: _Table) -> Any:
@@ -116,9 +116,9 @@ def _scatter(plt: Any, table: _Table) -> Any:
             axis = axes[i, j]
             if i == j:
                 axis.hist([_finite(table.numbers(upper)[rows]) for _, rows in groups], bins=20, stacked=True,
-                          color=[_colour(k) if table.words else plot.OURS for k in range(len(groups))])
+                          color=[_colour(k) if table.words else OURS for k in range(len(groups))])
             else:
-                colour = plot.DATA if upper in table.inputs else plot.OURS
+                colour = DATA if upper in table.inputs else OURS
                 for k, (label, rows) in enumerate(groups):
                     axis.plot(table.numbers(right)[rows], table.numbers(upper)[rows], ".", ms=2.5, label=label or None,
                               color=_colour(k) if table.words else colour)
@@ -142,11 +142,11 @@ def _parallel(plt: Any, table: _Table) -> Any:
     ends = [(seen.min(), seen.max()) if (seen := _finite(column)).size else (math.nan, math.nan) for column in columns]
     scaled = np.array([(column - low) / (high - low) if high > low else 0.5 + 0 * column for column, (low, high) in zip(columns, ends)])
     figure, axis = plt.subplots(figsize=(1.5 * len(names) + 1.5, 4.2))
-    colours = plt.get_cmap("viridis").with_extremes(bad=plot.QUIET)(np.ma.masked_invalid(scaled[-1]))
+    colours = plt.get_cmap("viridis").with_extremes(bad=QUIET)(np.ma.masked_invalid(scaled[-1]))
     for k in np.argsort(scaled[-1]):
         axis.plot(range(len(names)), scaled[:, k], lw=0.7, alpha=0.6, color=colours[k])
     for k, (name, reach) in enumerate(zip(names, ends)):
-        axis.axvline(k, color=plot.DATA, lw=0.8)
+        axis.axvline(k, color=DATA, lw=0.8)
         if name in words:
             for word, at in zip(words[name], np.linspace(0.0, 1.0, len(words[name]))):
                 axis.text(k + 0.03, at, word, ha="left", va="center", fontsize=7)
@@ -196,7 +196,7 @@ def _curves(axis: Any, table: _Table, name: str, groups: list[tuple[str, np.ndar
     for k, (label, rows) in enumerate(groups):
         order = rows[np.argsort(first[rows], kind="stable")]
         axis.plot(first[order], values[order], marker=".", ms=4, label=label or None,
-                  **(_style(k) if table.words else {"color": plot.OURS}))
+                  **(_style(k) if table.words else {"color": OURS}))
 
 
 def _contours(figure: Any, axis: Any, table: _Table, name: str, label: str, rows: np.ndarray) -> None:
@@ -243,11 +243,11 @@ def _workspace(plt: Any, table: _Table) -> Any:
     for axis, (a, b) in zip(axes, ((0, 2), (1, 2), (0, 1))):
         seen = 1e3 * points[:, [a, b]]
         for k, (label, rows) in enumerate(table.groups()):
-            axis.plot(*seen[rows].T, ".", ms=3, color=_colour(k) if table.words else plot.OURS, label=label or None)
+            axis.plot(*seen[rows].T, ".", ms=3, color=_colour(k) if table.words else OURS, label=label or None)
         try:
             hull = ConvexHull(seen[good])
             corners = seen[good][np.append(hull.vertices, hull.vertices[0])]
-            axis.plot(*corners.T, color=plot.QUIET if table.words else plot.SECOND, lw=1)
+            axis.plot(*corners.T, color=QUIET if table.words else SECOND, lw=1)
         except (QhullError, ValueError):
             pass  # collinear, or too few points
         axis.set(xlabel=f"{'xyz'[a]} (mm)", ylabel=f"{'xyz'[b]} (mm)")
@@ -288,7 +288,7 @@ def draw(folder: _Path, out: Optional[_Path] = None, kind: Optional[str] = None)
     """
     if kind is not None and kind not in KINDS:
         raise Error("unknown-choice", "plot(kind)", f"there is no plot '{kind}'", f"choose one of {', '.join(KINDS)}")
-    plt, table, drawn = plot._pyplot(), _Table(folder), []
+    plt, table, drawn = pyplot(), _Table(folder), []
     where = pathlib.Path(folder if out is None else out)
     for name in KINDS if kind is None else [kind]:
         figure = KINDS[name](plt, table)
@@ -296,7 +296,7 @@ def draw(folder: _Path, out: Optional[_Path] = None, kind: Optional[str] = None)
             continue
         path = where if kind is not None and out is not None else where / f"{name}.png"
         path.parent.mkdir(parents=True, exist_ok=True)
-        plot.save(figure, path)
+        save(figure, path)
         plt.close(figure)
         drawn.append(path)
     if not drawn:

@@ -22,7 +22,7 @@ from typing import Any, Optional, Union
 import numpy as np
 
 from ..errors import Error
-from .worker import Row
+from .runner import Row
 
 FORMAT, FORMAT_VERSION, NAME = "sinew-sweep", 1, "sweep.h5"
 _TEXTS = {"status": 8, "error": 1000, "version": 16, "instruction_set": 16, "worker": 80}

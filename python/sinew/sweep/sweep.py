@@ -22,7 +22,7 @@ from .engine import Engine, connect
 from .progress import Progress
 from .samples import Axis, Design, design
 from .store import Rows, Store, table_path
-from .worker import Job, Sample, check_measures
+from .runner import Job, Sample, check_measures
 
 if TYPE_CHECKING:
     import os

@@ -9,7 +9,7 @@ namespace sinew::constraint {
 /// The relative motion of two points normal to the line between them. Two rows, whose directions
 /// e_1 and e_2 form an orthonormal frame with the line: delta = e . (x_2 - x_1) = 0. The geometric
 /// stiffness T/l (I - n n^T) of a cable segment between two bodies is a spring of stiffness T/l
-/// along each of them (see step::StiffnessBlock).
+/// along each of them (see law::StiffnessBlock).
 class Coupling : public Constraint {
  public:
   Coupling(mechanics::MaterialPoint first, mechanics::MaterialPoint second);

@@ -24,8 +24,9 @@ namespace sinew::constraint {
 ///   gap = g(x_c) + n.(x - x_c),   slid = (t_1, t_2).(x - x_s),   g the signed distance at P_end.
 /// The surfaces are convex, and so are the half spaces bounded by their tangent planes. A point on
 /// the outer side of the plane is therefore outside the surface, and a point on a path that misses
-/// is not pushed. begin_step() uses the path at the point's velocity. sim::ContactRows::correct()
-/// replaces it by the path that the point would take without its own contact force.
+/// is not pushed. begin_step() uses the path at the point's velocity.
+/// contact::ContactRows::correct() replaces it by the path that the point would take without its
+/// own contact force.
 ///
 /// If a rigid body carries the surface, motions are relative to that body. With y its material
 /// point that was at x when the step began, rows measure frame^T (x - y), and forces act on both

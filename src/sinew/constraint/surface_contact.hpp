@@ -18,7 +18,7 @@ namespace sinew::constraint {
 
 /// Contact between two deformable surfaces. Its points are pairs of surface points that are local
 /// minima of the distance: a vertex over a face, an edge or a vertex, or two crossing edges. They
-/// are found anew in every step (sim::TouchingSurfaces). Both surface points are fixed in their
+/// are found anew in every step (contact::TouchingSurfaces). Both surface points are fixed in their
 /// materials through a step, and so is the normal n, from the second surface to the first:
 ///   gap = n.(x_1 - x_2) - separation,   slid = (t_1, t_2).(x_1 - x_2) since the step began.
 /// Surfaces rest at the separation, so that rounding never takes them through each other.

@@ -9,23 +9,23 @@
 
 #include <fmt/format.h>
 
+#include "sinew/builder/contact_settings.hpp"
+#include "sinew/builder/force_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
+#include "sinew/builder/torque_settings.hpp"
+#include "sinew/contact/contact_state.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/whole.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/embedding.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/signal.hpp"
 #include "sinew/pcc/arm_body_model.hpp"
 #include "sinew/plan/reach.hpp"
 #include "sinew/plan/uniform.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/contact_settings.hpp"
-#include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/force_settings.hpp"
-#include "sinew/sim/model_builder.hpp"
-#include "sinew/sim/signal.hpp"
+#include "sinew/run/contact_reader.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/torque_settings.hpp"
 
 namespace sinew::plan {
 
@@ -96,25 +96,25 @@ class Bench {
     body.segments[0].gamma += turn;
     equations_.emplace(std::make_shared<const pcc::Arm>(body));
     points_ = skin_points(*arm, task);
-    sim::StepSettings step;
+    model::StepSettings step;
     step.time_step = settings.time_step;
     step.integrator = mechanics::Integrator::backward_euler;
-    sim::ModelBuilder builder(step);
+    builder::ModelBuilder builder(step);
     builder.add_body<pcc::ArmBodyModel>(body);
     for (int segment = 0; segment < arm->segments(); ++segment) {
       const auto& of = arm->settings().segments[static_cast<std::size_t>(segment)];
       for (int along = 0; along < of.coordinates(); ++along) {
-        sim::TorqueSettings torque;
+        builder::TorqueSettings torque;
         torque.name = fmt::format("torque {}.{}", segment, along);
         torque.segment = segment;
-        torque.towards = static_cast<sim::TorqueSettings::Towards>(along);
+        torque.towards = static_cast<builder::TorqueSettings::Towards>(along);
         torques_.push_back(builder.add_torque(torque));
       }
     }
     const VectorX straight = VectorX::Zero(arm->coordinates());
     const pcc::ArmPoint end{.segment = arm->segments() - 1};
     for (int axis = 0; axis < 3; ++axis) {
-      sim::ForceSettings force;
+      builder::ForceSettings force;
       force.name = fmt::format("force {}", axis);
       force.point = equations_->point(end, straight, straight).position;
       force.direction = Vector3::Unit(axis);
@@ -128,7 +128,7 @@ class Bench {
             equations_->point(points_[p], straight, straight).position;
       }
       for (std::size_t k = 0; k < task.objects.size(); ++k) {
-        sim::ContactSettings contact;
+        builder::ContactSettings contact;
         contact.name = fmt::format("object {}", k);
         std::visit([&](const auto& surface) { contact.surface = surface; },
                    task.objects[k].surface);
@@ -217,7 +217,7 @@ class Bench {
     return *mechanics::as<const mechanics::HasCoordinates>(simulation_->body(0));
   }
   void tell(int actuator, double value) {
-    simulation_->command(actuator, {sim::CommandKind::effort, sim::Signal::constant(value)});
+    simulation_->command(actuator, {model::CommandKind::effort, model::Signal::constant(value)});
   }
   void note(const VectorX& torque) {
     times_.push_back(time());
@@ -225,7 +225,7 @@ class Bench {
     efforts_.push_back(torque);
     const Points ends = equations_->endpoints(angles());
     tips_.push_back(ends.row(ends.rows() - 1));
-    sim::ContactPoint touch;
+    contact::ContactPoint touch;
     if (object_ >= 0) touch = simulation_->contacts().point(object_, point_);
     normal_.push_back(touch.normal_force);
     friction_.push_back(touch.friction_force.norm());

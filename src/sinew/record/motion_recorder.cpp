@@ -7,7 +7,7 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/outer_surface.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
 
 namespace sinew::record {
 
@@ -76,7 +76,7 @@ struct RunMotion::Parts {
   std::vector<int> cables;
   std::size_t floats = 0;
 
-  Parts(const sim::Model& model, const std::string& name) {
+  Parts(const model::Model& model, const std::string& name) {
     motion.name = name;
     for (const auto& body : model.bodies()) {
       mesh::OuterSurface surface;

@@ -11,9 +11,9 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/mesh.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/row_efforts.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/world/world.hpp"
 
 namespace sinew::record {
 

@@ -4,60 +4,60 @@
 
 namespace sinew::record {
 
-std::string dataset_of(const sim::Observable& observable) {
+std::string dataset_of(const run::Observable& observable) {
   const auto in = [&](const char* folder) {
     return fmt::format("/{}/{}/{}", folder, observable.owner, observable.quantity);
   };
   switch (observable.kind) {
-    case sim::ObservableKind::time:
+    case run::ObservableKind::time:
       return "/time";
-    case sim::ObservableKind::body:
+    case run::ObservableKind::body:
       return fmt::format("/{}/{}", observable.quantity, observable.owner);
-    case sim::ObservableKind::actuator:
+    case run::ObservableKind::actuator:
       return in("actuators");
-    case sim::ObservableKind::effector:
+    case run::ObservableKind::effector:
       return in("effectors");
-    case sim::ObservableKind::probe:
+    case run::ObservableKind::probe:
       return in("probes");
-    case sim::ObservableKind::sensor:
+    case run::ObservableKind::sensor:
       return in("sensors");
-    case sim::ObservableKind::contact_point:
+    case run::ObservableKind::contact_point:
       return in("contacts");
-    case sim::ObservableKind::contact:
+    case run::ObservableKind::contact:
       return in("contact_resultants");
-    case sim::ObservableKind::joint:
+    case run::ObservableKind::joint:
       return in("joints");
-    case sim::ObservableKind::estimator:
+    case run::ObservableKind::estimator:
       return in("estimators");
-    case sim::ObservableKind::controller:
+    case run::ObservableKind::controller:
       if (!observable.owner.empty()) return in("controller");
       break;
-    case sim::ObservableKind::energy:
-    case sim::ObservableKind::ledger:
+    case run::ObservableKind::energy:
+    case run::ObservableKind::ledger:
       return "/energy/" + observable.name;
-    case sim::ObservableKind::report:
-    case sim::ObservableKind::status:
+    case run::ObservableKind::report:
+    case run::ObservableKind::status:
       break;
-    case sim::ObservableKind::timing:
+    case run::ObservableKind::timing:
       return {};
   }
   return "/report/" + observable.name;
 }
 
-bool is_state(const sim::Observable& observable) {
-  return observable.kind == sim::ObservableKind::body ||
-         observable.kind == sim::ObservableKind::contact_point;
+bool is_state(const run::Observable& observable) {
+  return observable.kind == run::ObservableKind::body ||
+         observable.kind == run::ObservableKind::contact_point;
 }
 
-bool is_in_table(const sim::Observable& observable, TableKind table) {
-  if (observable.kind == sim::ObservableKind::time) return true;
-  if (is_state(observable) || observable.kind == sim::ObservableKind::timing) return false;
-  if (observable.kind == sim::ObservableKind::probe) return table == TableKind::probes;
-  if (observable.kind == sim::ObservableKind::sensor) return table == TableKind::sensors;
+bool is_in_table(const run::Observable& observable, TableKind table) {
+  if (observable.kind == run::ObservableKind::time) return true;
+  if (is_state(observable) || observable.kind == run::ObservableKind::timing) return false;
+  if (observable.kind == run::ObservableKind::probe) return table == TableKind::probes;
+  if (observable.kind == run::ObservableKind::sensor) return table == TableKind::sensors;
   return table == TableKind::run;
 }
 
-std::vector<std::string> headings_of(const sim::Observable& observable) {
+std::vector<std::string> headings_of(const run::Observable& observable) {
   std::vector<std::string> headings;
   for (const std::string& name : observable.components) {
     headings.push_back(observable.unit.empty() ? name
@@ -66,9 +66,9 @@ std::vector<std::string> headings_of(const sim::Observable& observable) {
   return headings;
 }
 
-std::string meaning_of(const sim::Observable& observable) {
+std::string meaning_of(const run::Observable& observable) {
   std::string meaning;
-  for (const sim::StatusWord& one : observable.words) {
+  for (const run::StatusWord& one : observable.words) {
     meaning += fmt::format("{}{} {}", meaning.empty() ? "" : ", ", one.code, one.word);
   }
   return meaning;

@@ -12,12 +12,12 @@
 #include "sinew/core/build_info.hpp"
 #include "sinew/core/file.hpp"
 #include "sinew/core/folder_lock.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/record/draft_folder.hpp"
 #include "sinew/record/paraview_series.hpp"
 #include "sinew/record/run_states.hpp"
 #include "sinew/record/run_table.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/sensor_set.hpp"
+#include "sinew/sense/sensor_set.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::record {
@@ -83,14 +83,14 @@ struct RunRecorder::Files {
     }
   }
   void create() {
-    const sim::Model& model = observables.simulation().model();
+    const model::Model& model = observables.simulation().model();
     states.emplace(draft / "run.h5", observables, settings);
     table.emplace(draft / "run.csv", observables, TableKind::run);
     write_file(draft / "scene.yaml", settings.scene);
     if (!model.probes().empty()) {
       probes.emplace(draft / "probes.csv", observables, TableKind::probes);
     }
-    if (!sim::sensors_of(model).empty()) {
+    if (!sense::sensors_of(model).empty()) {
       sensors.emplace(draft / "sensors.csv", observables, TableKind::sensors);
     }
     if (settings.vtk) series.emplace(draft.path(), observables.simulation());

@@ -81,7 +81,7 @@ struct RecordSettings {
 class RunRecorder {
  public:
   /// Creates the files and records the current state as the first frame.
-  /// @param observables of a simulation that outlives the recorder; inverse::add_controller() adds
+  /// @param observables of a simulation that outlives the recorder; control::add_controller() adds
   /// those of a controller. @param settings what to record, and where.
   /// Throws Error(out-of-range) for `every` < 1, Error(file-unwritable), also if another run is
   /// being recorded into the folder, Error(recording-failed) if the disk is full.

@@ -9,10 +9,10 @@
 #include "sinew/core/build_info.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/mesh.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/record/run_layout.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/sensor_set.hpp"
+#include "sinew/sense/sensor_set.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::record {
@@ -33,7 +33,7 @@ RunStates::RunStates(const std::filesystem::path& path, sim::Observables& observ
 }
 
 void RunStates::describe(const RecordSettings& settings) {
-  const sim::Model& model = observables_.simulation().model();
+  const model::Model& model = observables_.simulation().model();
   file_.attribute("/", "format", std::string_view("sinew-run"));
   file_.attribute("/", "format_version", kRunFormatVersion);
   file_.attribute("/", "sinew_version", version());
@@ -67,7 +67,7 @@ void RunStates::write_meshes() {
 }
 
 void RunStates::declare_series(bool states) {
-  const std::vector<sim::Observable>& list = observables_.list();
+  const std::vector<run::Observable>& list = observables_.list();
   for (std::size_t k = 0; k < list.size(); ++k) {
     const std::string path = dataset_of(list[k]);
     if (path.empty() || (is_state(list[k]) && !states)) continue;
@@ -79,16 +79,16 @@ void RunStates::declare_series(bool states) {
 }
 
 void RunStates::describe_owners() {
-  const sim::Model& model = observables_.simulation().model();
+  const model::Model& model = observables_.simulation().model();
   if (model.actuators().empty()) file_.group("/actuators");
   if (model.effectors().empty()) file_.group("/effectors");
-  for (const sim::ActuatorModel& actuator : model.actuators()) {
+  for (const model::ActuatorModel& actuator : model.actuators()) {
     file_.attribute("/actuators/" + actuator.name, "type", std::string_view(actuator.words().type));
   }
   for (const auto& probe : model.probes()) {
     file_.attribute("/probes/" + probe.name(), "kind", std::string_view(probe.kind()));
   }
-  for (const sim::SensorModel& sensor : sim::sensors_of(model)) {
+  for (const sense::SensorModel& sensor : sense::sensors_of(model)) {
     file_.attribute("/sensors/" + sensor.name, "kind", std::string_view(sensor.kind));
     file_.attribute("/sensors/" + sensor.name, "observable", std::string_view(sensor.observable));
   }

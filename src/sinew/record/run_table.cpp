@@ -8,7 +8,7 @@ namespace {
 std::vector<std::size_t> columns(const sim::Observables& observables, TableKind table, bool words) {
   std::vector<std::size_t> chosen;
   for (std::size_t k = 0; k < observables.list().size(); ++k) {
-    const sim::Observable& one = observables.list()[k];
+    const run::Observable& one = observables.list()[k];
     if (is_in_table(one, table) && one.words.empty() != words) chosen.push_back(k);
   }
   return chosen;

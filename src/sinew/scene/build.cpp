@@ -7,12 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/scene.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/model_builder.hpp"
-#include "sinew/sim/sensor_set.hpp"
+#include "sinew/sense/sensor_set.hpp"
 
 namespace sinew::scene {
 
@@ -21,7 +21,7 @@ namespace {
 // Error below which an effector of a closed loop counts as on target, m or rad.
 constexpr double kMeasuredTolerance = 5e-4;
 
-SceneController controller_of(const ControllerDescription& description, const sim::Model& model) {
+SceneController controller_of(const ControllerDescription& description, const model::Model& model) {
   SceneController controller{description.name, {}};
   auto& settings = controller.settings;
   for (const TaskDescription& task : description.tasks) {
@@ -39,7 +39,7 @@ SceneController controller_of(const ControllerDescription& description, const si
     settings.tolerance = kMeasuredTolerance;
     settings.feedback = description.feedback;
     for (const std::string& name : description.sensors) {
-      settings.feedback->sensors.push_back(sim::sensor_index(model, name));
+      settings.feedback->sensors.push_back(sense::sensor_index(model, name));
     }
   }
   settings.regularisation = description.regularisation;
@@ -47,8 +47,8 @@ SceneController controller_of(const ControllerDescription& description, const si
   return controller;
 }
 
-sim::StepSettings step_settings(const SceneDescription& scene) {
-  sim::StepSettings step;
+model::StepSettings step_settings(const SceneDescription& scene) {
+  model::StepSettings step;
   step.place = scene.integrator_place;
   step.time_step = scene.time_step;
   step.integrator = scene.integrator;
@@ -66,7 +66,7 @@ sim::StepSettings step_settings(const SceneDescription& scene) {
 
 // Only corotational elements have a corotated tangent. That of rubber would be the projected one,
 // which needs ten iterations for one with the exact tangent, so the robot uses the exact one.
-std::optional<Notice> replace_tangent(const SceneDescription& scene, sim::StepSettings& step) {
+std::optional<Notice> replace_tangent(const SceneDescription& scene, model::StepSettings& step) {
   const auto rubber = std::ranges::find_if(scene.bodies, [](const BodyDescription& body) {
     const auto is_rubber = [](const auto& of) {
       return of.material.model == MaterialModel::hyperelastic;
@@ -108,12 +108,12 @@ Robot build(SceneDescription description) { return build(std::move(description),
 Robot build(SceneDescription description, const SharedMeshes& shared) {
   Robot robot;
   robot.notices = description.notices;
-  sim::StepSettings step = step_settings(description);
+  model::StepSettings step = step_settings(description);
   if (auto notice = replace_tangent(description, step)) {
     robot.notices.push_back(std::move(*notice));
   }
   std::ranges::move(expand_urdf(description), std::back_inserter(robot.notices));
-  sim::ModelBuilder builder(step);
+  builder::ModelBuilder builder(step);
   for (const BodyDescription& body : description.bodies) {
     const auto made = shared.find(body.name);
     add_body(builder, description, body, made == shared.end() ? nullptr : &made->second);
@@ -126,7 +126,7 @@ Robot build(SceneDescription description, const SharedMeshes& shared) {
   const auto of_bodies = static_cast<std::ptrdiff_t>(robot.notices.size());
   const BodyOf body_of = [&](const std::string& name) -> BuiltBody {
     const auto found = std::ranges::find(description.bodies, name, &BodyDescription::name);
-    if (found == description.bodies.end()) return {sim::kWorld};
+    if (found == description.bodies.end()) return {model::kWorld};
     const int number = static_cast<int>(found - description.bodies.begin());
     return {number, &builder.added_body(number)};
   };

@@ -7,25 +7,25 @@
 #include <string>
 #include <vector>
 
+#include "sinew/control/inverse_settings.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/notice.hpp"
-#include "sinew/inverse/inverse_settings.hpp"
 #include "sinew/mesh/mesh.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/scene/description.hpp"
-#include "sinew/sim/model.hpp"
 
 namespace sinew::scene {
 
 /// A controller, ready to be attached to a simulation of the scene's model.
 struct SceneController {
   std::string name;
-  inverse::InverseSettings settings;
+  control::InverseSettings settings;
 };
 
 /// A scene that is ready to run. Any number of simulations may share `model`.
 struct Robot {
   SceneDescription description;
-  std::shared_ptr<const sim::Model> model;
+  std::shared_ptr<const model::Model> model;
   std::vector<SceneController> controllers;
   std::vector<Notice> notices;  ///< remarks and warnings, in the order of the scene
   int threads() const { return description.solver.threads; }

@@ -3,12 +3,12 @@
 #include <variant>
 #include <vector>
 
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/scale.hpp"
 #include "sinew/mesh/surface.hpp"
 #include "sinew/scene/build_parts.hpp"
-#include "sinew/sim/model_builder.hpp"
 
 namespace sinew::scene {
 
@@ -30,16 +30,16 @@ mesh::Surface read_closed(const SurfaceDescription& surface, const BodyDescripti
 }
 
 // Counts the pressures of a chamber from that of the water that wets its faces.
-void add_head(sim::ChamberSettings& chamber, double head) {
+void add_head(builder::ChamberSettings& chamber, double head) {
   if (head <= 0.0) return;
-  const double air = chamber.gas ? chamber.gas->ambient_pressure : sim::kAtmosphere;
+  const double air = chamber.gas ? chamber.gas->ambient_pressure : model::kAtmosphere;
   chamber.ambient_pressure = chamber.ambient_pressure.value_or(air) + head;
 }
 
 // Adds an actuator according to the settings of its type.
 class Adder {
  public:
-  Adder(sim::ModelBuilder& builder, const SceneDescription& scene,
+  Adder(builder::ModelBuilder& builder, const SceneDescription& scene,
         const ActuatorDescription& actuator, const BodyOf& body_of, const JointOf& joint_of)
       : builder_(builder),
         scene_(scene),
@@ -48,17 +48,17 @@ class Adder {
         joint_of_(joint_of) {}
 
   void operator()(const CableDescription& cable) const {
-    sim::CableSettings settings = on_body(cable.settings);
+    builder::CableSettings settings = on_body(cable.settings);
     for (const std::string& name : cable.point_bodies) {
       settings.point_bodies.push_back(name.empty() ? settings.body : body_of_(name).number);
     }
     builder_.add_cable(settings);
   }
 
-  void operator()(const sim::ForceSettings& force) const { builder_.add_force(on_body(force)); }
+  void operator()(const builder::ForceSettings& force) const { builder_.add_force(on_body(force)); }
 
   void operator()(const ChamberDescription& chamber) const {
-    sim::ChamberSettings settings = on_body(chamber.settings);
+    builder::ChamberSettings settings = on_body(chamber.settings);
     if (chamber.surface.kind == SurfaceDescription::Kind::file) {
       settings.surface =
           read_closed(chamber.surface,
@@ -72,12 +72,16 @@ class Adder {
     builder_.add_chamber(settings);
   }
 
-  void operator()(const sim::SpringLineSettings& line) const { builder_.add_spring(on_body(line)); }
+  void operator()(const builder::SpringLineSettings& line) const {
+    builder_.add_spring(on_body(line));
+  }
 
-  void operator()(const sim::TorqueSettings& torque) const { builder_.add_torque(on_body(torque)); }
+  void operator()(const builder::TorqueSettings& torque) const {
+    builder_.add_torque(on_body(torque));
+  }
 
   void operator()(const MotorDescription& motor) const {
-    sim::MotorSettings settings = complete(motor.settings);
+    builder::MotorSettings settings = complete(motor.settings);
     settings.joint = joint_of_(motor.joint);
     builder_.add_motor(settings);
   }
@@ -98,7 +102,7 @@ class Adder {
     return settings;
   }
 
-  sim::ModelBuilder& builder_;
+  builder::ModelBuilder& builder_;
   const SceneDescription& scene_;
   const ActuatorDescription& actuator_;
   const BodyOf& body_of_;
@@ -107,7 +111,7 @@ class Adder {
 
 }  // namespace
 
-void add_actuator(sim::ModelBuilder& builder, const SceneDescription& scene,
+void add_actuator(builder::ModelBuilder& builder, const SceneDescription& scene,
                   const ActuatorDescription& actuator, const BodyOf& body_of,
                   const JointOf& joint_of) {
   std::visit(Adder(builder, scene, actuator, body_of, joint_of), actuator.own);

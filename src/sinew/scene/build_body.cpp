@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/solid_elements.hpp"
@@ -14,7 +15,6 @@
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/readers.hpp"
-#include "sinew/sim/model_builder.hpp"
 
 namespace sinew::scene {
 
@@ -156,21 +156,21 @@ fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescr
   return settings;
 }
 
-void add_arm(sim::ModelBuilder& builder, const SceneDescription& scene,
+void add_arm(builder::ModelBuilder& builder, const SceneDescription& scene,
              const BodyDescription& body) {
   pcc::ArmSettings settings = *body.arm;
   settings.gravity = scene.gravity;
   builder.add_body<pcc::ArmBodyModel>(std::move(settings));
 }
 
-void add_base(sim::ModelBuilder& builder, int number, const BodyDescription& body) {
+void add_base(builder::ModelBuilder& builder, int number, const BodyDescription& body) {
   if (!body.base) return;
-  sim::BaseMotion motion = *body.base;
+  model::BaseMotion motion = *body.base;
   motion.body = number;
   builder.add_base_motion(motion, body.base_place);
 }
 
-void add_rigid(sim::ModelBuilder& builder, const SceneDescription& scene,
+void add_rigid(builder::ModelBuilder& builder, const SceneDescription& scene,
                const BodyDescription& body) {
   rigid::RigidSettings settings = *body.rigid;
   settings.gravity = scene.gravity;
@@ -187,7 +187,7 @@ rigid::Solid make_solid(mesh::Surface surface, bool convex) {
   return solid;
 }
 
-void add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
+void add_body(builder::ModelBuilder& builder, const SceneDescription& scene,
               const BodyDescription& body, const SharedMesh* shared) {
   try {
     if (body.arm) return add_arm(builder, scene, body);

@@ -4,14 +4,14 @@
 
 #include <fmt/format.h>
 
+#include "sinew/builder/contact_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/topology.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/readers.hpp"
-#include "sinew/sim/contact_settings.hpp"
-#include "sinew/sim/model_builder.hpp"
 
 namespace sinew::scene {
 
@@ -58,7 +58,7 @@ double radius_of(const constraint::SmoothSurface& surface) {
 std::optional<Notice> coarse_notice(const ContactDescription& contact, const mesh::Mesh& mesh) {
   const double longest = mesh::longest_edge(mesh::boundary_surface(mesh));
   const double radius = radius_of(contact.surface);
-  if (longest <= sim::kFineEdge * radius) return std::nullopt;
+  if (longest <= builder::kFineEdge * radius) return std::nullopt;
   return Notice{
       contact.nodes.empty() ? NoticeLevel::warning : NoticeLevel::remark,
       NoticeKind::coarse_contact, contact.place,
@@ -71,7 +71,7 @@ std::optional<Notice> coarse_notice(const ContactDescription& contact, const mes
 
 }  // namespace
 
-std::optional<Notice> add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
+std::optional<Notice> add_contact(builder::ModelBuilder& builder, const ContactDescription& contact,
                                   const BodyOf& body_of) {
   BuiltBody touching = body_of(contact.body), other;
   if (!contact.other.empty()) {
@@ -80,9 +80,9 @@ std::optional<Notice> add_contact(sim::ModelBuilder& builder, const ContactDescr
   }
   const bool surfaces =
       other.model != nullptr &&
-      sim::touch_by_surfaces(*touching.model, *other.model, names_points(contact));
+      builder::touch_by_surfaces(*touching.model, *other.model, names_points(contact));
   const auto [body, model] = touching;
-  sim::ContactSettings settings;
+  builder::ContactSettings settings;
   settings.name = contact.name;
   settings.place = contact.place;
   settings.body = body;

@@ -8,18 +8,18 @@
 
 #include <fmt/format.h>
 
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/core/axis_names.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/estimate/estimator_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/build_parts.hpp"
-#include "sinew/sim/estimator_model.hpp"
 #include "sinew/sim/linearisation.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::scene {
@@ -67,7 +67,7 @@ void add_forces(SceneDescription& known, const UnknownDescription& unknown) {
     force.type = ActuatorDescription::Type::force;
     force.body = unknown.body;
     force.body_place = unknown.place;
-    sim::ForceSettings own;
+    builder::ForceSettings own;
     own.point = unknown.point;
     own.direction = Vector3::Unit(static_cast<Eigen::Index>(axis));
     own.outside = unknown.outside;
@@ -136,7 +136,7 @@ SceneDescription known_robot(const SceneDescription& scene, const EstimatorDescr
   return known;
 }
 
-SharedMeshes meshes_of(const sim::ModelBuilder& builder, const SceneDescription& scene) {
+SharedMeshes meshes_of(const builder::ModelBuilder& builder, const SceneDescription& scene) {
   SharedMeshes meshes;
   for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
     const auto* made =
@@ -147,9 +147,9 @@ SharedMeshes meshes_of(const sim::ModelBuilder& builder, const SceneDescription&
   return meshes;
 }
 
-std::shared_ptr<const sim::Model> build_known(const SceneDescription& known,
-                                              const EstimatorDescription& estimator,
-                                              const SharedMeshes& meshes) {
+std::shared_ptr<const model::Model> build_known(const SceneDescription& known,
+                                                const EstimatorDescription& estimator,
+                                                const SharedMeshes& meshes) {
   try {
     return build(known, meshes).model;
   } catch (const Error& error) {
@@ -190,7 +190,7 @@ void check_type(const SceneDescription& scene, const EstimatorDescription& estim
   const auto on = std::ranges::find(scene.actuators, sensor.actuator, &ActuatorDescription::name);
   if (on == scene.actuators.end() || is_driven(scene, on->name)) return;
   if (is_unknown(estimator, on->name)) return;
-  if (on->command.kind != sim::CommandKind::motion) return;
+  if (on->command.kind != model::CommandKind::motion) return;
   throw Error(ErrorKind::conflicting_keys, place,
               fmt::format("'{}' measures what '{}' is commanded, which nothing unknown changes",
                           sensor.name, on->name),
@@ -239,7 +239,7 @@ bool has_known_force(const SceneDescription& scene, const EstimatorDescription& 
                          std::ranges::find(scene.actuators, one.name, &ActuatorDescription::name) ==
                              scene.actuators.end();
     return !unknown && !is_unknown(estimator, one.name) &&
-           (one.command.kind != sim::CommandKind::motion || is_driven(scene, one.name));
+           (one.command.kind != model::CommandKind::motion || is_driven(scene, one.name));
   });
   const bool tied = std::ranges::any_of(
       scene.actuators, [](const ActuatorDescription& one) { return bodies_of(one).size() > 1; });
@@ -282,7 +282,7 @@ void check_efforts(const SceneDescription& scene, const EstimatorDescription& es
     if (unknown.is_force() || unknown.is_stiffness()) continue;
     const auto on =
         std::ranges::find(scene.actuators, unknown.actuator, &ActuatorDescription::name);
-    const sim::ActuatorWords& words = sim::actuator_words(on->type);
+    const model::ActuatorWords& words = model::actuator_words(on->type);
     const bool found = unknown.quantity == "pressure"
                            ? on->type == ActuatorDescription::Type::chamber
                            : on->type == ActuatorDescription::Type::cable;
@@ -303,7 +303,7 @@ void check_efforts(const SceneDescription& scene, const EstimatorDescription& es
 /// The linear response of rows to unknowns, for the robot at rest.
 class RestResponse {
  public:
-  explicit RestResponse(const std::shared_ptr<const sim::Model>& robot) {
+  explicit RestResponse(const std::shared_ptr<const model::Model>& robot) {
     sim::Simulation simulation(robot);
     const bool statics = robot->step().integrator == mechanics::Integrator::quasi_static;
     at_rest_ = sim::linearise(simulation, {.of_statics = statics});
@@ -387,12 +387,12 @@ void check_response(const SceneDescription& scene, const EstimatorDescription& e
 }
 
 // The unknowns. Actuators of unknown forces follow those of the scene, see add_forces().
-std::vector<sim::Unknown> unknowns_of(const SceneDescription& scene,
-                                      const EstimatorDescription& estimator) {
-  std::vector<sim::Unknown> all;
+std::vector<estimate::Unknown> unknowns_of(const SceneDescription& scene,
+                                           const EstimatorDescription& estimator) {
+  std::vector<estimate::Unknown> all;
   auto next = static_cast<int>(scene.actuators.size());
   for (const UnknownDescription& unknown : estimator.unknowns) {
-    sim::Unknown& one = all.emplace_back();
+    estimate::Unknown& one = all.emplace_back();
     one.name = unknown.name;
     one.prior = unknown.prior;
     one.walk = unknown.walk;
@@ -402,24 +402,24 @@ std::vector<sim::Unknown> unknowns_of(const SceneDescription& scene,
     }
     if (unknown.is_stiffness()) {
       const auto body = std::ranges::find(scene.bodies, unknown.body, &BodyDescription::name);
-      one.kind = sim::Unknown::Kind::stiffness;
+      one.kind = estimate::Unknown::Kind::stiffness;
       one.body = static_cast<int>(body - scene.bodies.begin());
       one.unit = "";
       continue;
     }
     const auto on =
         std::ranges::find(scene.actuators, unknown.actuator, &ActuatorDescription::name);
-    one.kind = sim::Unknown::Kind::effort;
+    one.kind = estimate::Unknown::Kind::effort;
     one.first_actuator = static_cast<int>(on - scene.actuators.begin());
     one.command_known = unknown.command_known;
-    one.unit = sim::actuator_words(on->type).effort.unit;
+    one.unit = model::actuator_words(on->type).effort.unit;
   }
   return all;
 }
 
 }  // namespace
 
-void add_estimator(sim::ModelBuilder& builder, const SceneDescription& scene,
+void add_estimator(builder::ModelBuilder& builder, const SceneDescription& scene,
                    const EstimatorDescription& estimator) {
   for (std::size_t k = 0; k < estimator.sensors.size(); ++k) {
     check_type(scene, estimator,
@@ -429,7 +429,7 @@ void add_estimator(sim::ModelBuilder& builder, const SceneDescription& scene,
   check_efforts(scene, estimator);
   const SceneDescription known = known_robot(scene, estimator);
   check_stiffness(scene, estimator, known);
-  sim::EstimatorSettings settings;
+  estimate::EstimatorSettings settings;
   settings.name = estimator.name;
   settings.place = estimator.place;
   settings.robot = build_known(known, estimator, meshes_of(builder, scene));
@@ -437,11 +437,11 @@ void add_estimator(sim::ModelBuilder& builder, const SceneDescription& scene,
   settings.sensor_places = estimator.sensor_places;
   settings.unknowns = unknowns_of(scene, estimator);
   settings.rank = estimator.rank;
-  for (const sim::LoadModel& load : settings.robot->loads()) {
+  for (const model::LoadModel& load : settings.robot->loads()) {
     const auto same = std::ranges::find(scene.loads, load.name, &LoadDescription::name);
     settings.loads.push_back(static_cast<int>(same - scene.loads.begin()));
   }
-  sim::add_estimator(builder, settings);
+  estimate::add_estimator(builder, settings);
   check_response(scene, estimator, RestResponse(settings.robot));
 }
 

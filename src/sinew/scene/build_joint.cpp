@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "sinew/builder/joint_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
@@ -9,8 +11,6 @@
 #include "sinew/mesh/topology.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/readers.hpp"
-#include "sinew/sim/joint_settings.hpp"
-#include "sinew/sim/model_builder.hpp"
 
 namespace sinew::scene {
 
@@ -41,9 +41,9 @@ std::vector<NodeId> nodes_on(const mesh::Mesh& first, const BuiltBody& second,
 }
 
 // Adds a joint between rigid bodies.
-int add_rigid_joint(sim::ModelBuilder& builder, const JointDescription& joint,
+int add_rigid_joint(builder::ModelBuilder& builder, const JointDescription& joint,
                     const BuiltBody& first, const BuiltBody& second) {
-  sim::JointSettings settings;
+  builder::JointSettings settings;
   settings.name = joint.name;
   settings.place = joint.place;
   settings.type = joint.type;
@@ -64,9 +64,9 @@ int add_rigid_joint(sim::ModelBuilder& builder, const JointDescription& joint,
   return builder.add_joint(settings);
 }
 
-int add_weld(sim::ModelBuilder& builder, const JointDescription& joint, const BuiltBody& first,
+int add_weld(builder::ModelBuilder& builder, const JointDescription& joint, const BuiltBody& first,
              const BuiltBody& second) {
-  sim::WeldSettings weld;
+  builder::WeldSettings weld;
   weld.name = joint.name;
   weld.place = joint.place;
   weld.first = first.number;
@@ -91,7 +91,8 @@ bool is_rigid(const BuiltBody& body) {
   return body.model == nullptr || mechanics::as<const mechanics::HasShape>(*body.model) != nullptr;
 }
 
-int add_joint(sim::ModelBuilder& builder, const JointDescription& joint, const BodyOf& body_of) {
+int add_joint(builder::ModelBuilder& builder, const JointDescription& joint,
+              const BodyOf& body_of) {
   BuiltBody first = body_of(joint.first), second = body_of(joint.second);
   if (joint.type != constraint::JointType::weld || (is_rigid(first) && is_rigid(second))) {
     return add_rigid_joint(builder, joint, first, second);

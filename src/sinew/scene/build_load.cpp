@@ -5,14 +5,14 @@
 #include <set>
 #include <vector>
 
+#include "sinew/builder/load_settings.hpp"
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/bears_loads.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/patch.hpp"
 #include "sinew/scene/build_parts.hpp"
-#include "sinew/sim/load_settings.hpp"
-#include "sinew/sim/model_builder.hpp"
 
 namespace sinew::scene {
 
@@ -102,10 +102,10 @@ double water_head(const SceneDescription& scene, const std::string& body,
   return head;
 }
 
-void add_load(sim::ModelBuilder& builder, const LoadDescription& load, const BodyOf& body_of) {
+void add_load(builder::ModelBuilder& builder, const LoadDescription& load, const BodyOf& body_of) {
   const auto [body, model] = body_of(load.body);
   const auto* bears = mechanics::as<const mechanics::BearsLoads>(*model);
-  sim::LoadSettings settings;
+  builder::LoadSettings settings;
   settings.name = load.name;
   settings.place = load.place;
   settings.body = body;
@@ -117,22 +117,22 @@ void add_load(sim::ModelBuilder& builder, const LoadDescription& load, const Bod
   };
   switch (load.type) {
     case LoadDescription::Type::force:
-      settings.load = sim::PointLoadSettings{load.point, load.vector};
+      settings.load = builder::PointLoadSettings{load.point, load.vector};
       break;
     case LoadDescription::Type::line:
-      settings.load = sim::LineLoadSettings{load.points.points, load.vector};
+      settings.load = builder::LineLoadSettings{load.points.points, load.vector};
       break;
     case LoadDescription::Type::traction:
-      settings.load = sim::SurfaceLoadSettings{faces(), load.vector};
+      settings.load = builder::SurfaceLoadSettings{faces(), load.vector};
       break;
     case LoadDescription::Type::acceleration:
-      settings.load = sim::BodyLoadSettings{load.vector};
+      settings.load = builder::BodyLoadSettings{load.vector};
       break;
     case LoadDescription::Type::pressure:
-      settings.load = sim::PressureLoadSettings{faces()};
+      settings.load = builder::PressureLoadSettings{faces()};
       break;
     case LoadDescription::Type::water: {
-      sim::WaterSettings water = load.water;
+      builder::WaterSettings water = load.water;
       water.faces = faces();
       settings.load = std::move(water);
       break;

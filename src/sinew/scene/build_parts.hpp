@@ -20,10 +20,13 @@ class BodyModel;
 namespace sinew::mesh {
 class Embedder;
 }
-namespace sinew::sim {
-class Model;
+namespace sinew::builder {
 class ModelBuilder;
-}  // namespace sinew::sim
+}
+
+namespace sinew::model {
+class Model;
+}
 
 namespace sinew::scene {
 
@@ -105,28 +108,28 @@ Robot build(SceneDescription description, const SharedMeshes& shared);
 /// Notices about bodies of linear elements that are stiffer than the same mesh in quadratic ones by
 /// a tenth or more (element_stiffness.cpp), in the order of the bodies.
 /// @param scene expanded. @param model of it. @param shared bodies whose meshes are not judged.
-std::vector<Notice> locking_notices(const SceneDescription& scene, const sim::Model& model,
+std::vector<Notice> locking_notices(const SceneDescription& scene, const model::Model& model,
                                     const SharedMeshes& shared);
 
 /// Adds a body of a scene. @param builder,scene,body which. @param shared its mesh; null: makes the
 /// mesh.
-void add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
+void add_body(builder::ModelBuilder& builder, const SceneDescription& scene,
               const BodyDescription& body, const SharedMesh* shared);
 
 /// Adds an actuator. @param builder that has the bodies. @param scene of the actuator.
 /// @param actuator to be added. @param body_of,joint_of find what it acts on.
-void add_actuator(sim::ModelBuilder& builder, const SceneDescription& scene,
+void add_actuator(builder::ModelBuilder& builder, const SceneDescription& scene,
                   const ActuatorDescription& actuator, const BodyOf& body_of,
                   const JointOf& joint_of);
 
 /// Adds an effector. @param builder that has the bodies. @param effector to be added.
 /// @param body_of finds bodies.
-void add_effector(sim::ModelBuilder& builder, const EffectorDescription& effector,
+void add_effector(builder::ModelBuilder& builder, const EffectorDescription& effector,
                   const BodyOf& body_of);
 
 /// Adds a load. @param builder that has the bodies. @param load to be added.
 /// @param body_of finds bodies.
-void add_load(sim::ModelBuilder& builder, const LoadDescription& load, const BodyOf& body_of);
+void add_load(builder::ModelBuilder& builder, const LoadDescription& load, const BodyOf& body_of);
 
 /// The pressure of water with a level on faces that it wets, all of them: without tension in their
 /// wall, the fluid behind them has this pressure more than the air above the water.
@@ -148,16 +151,17 @@ std::vector<SceneContact> contact_pairs(const SceneDescription& scene);
 /// Adds a contact. @param builder that has the bodies. @param contact to be added.
 /// @param body_of finds bodies.
 /// @return a notice if the surface is so small that it may pass between the nodes that touch it.
-std::optional<Notice> add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
+std::optional<Notice> add_contact(builder::ModelBuilder& builder, const ContactDescription& contact,
                                   const BodyOf& body_of);
 
 /// Adds a joint. @param builder that has the bodies. @param joint to be added.
 /// @param body_of finds bodies. @return the number of the joint.
-int add_joint(sim::ModelBuilder& builder, const JointDescription& joint, const BodyOf& body_of);
+int add_joint(builder::ModelBuilder& builder, const JointDescription& joint, const BodyOf& body_of);
 
 /// Adds a probe. @param builder that has the bodies. @param probe to be added.
 /// @param body_of finds bodies.
-void add_probe(sim::ModelBuilder& builder, const ProbeDescription& probe, const BodyOf& body_of);
+void add_probe(builder::ModelBuilder& builder, const ProbeDescription& probe,
+               const BodyOf& body_of);
 
 /// The parts of a scene that its sensors refer to.
 struct SensorSurroundings {
@@ -168,7 +172,7 @@ struct SensorSurroundings {
 /// Adds a sensor. Throws Error: unknown-name (a contact, or an entry without pairs).
 /// @param builder that has the bodies, actuators and contacts. @param surroundings of the sensor.
 /// @param sensor to be added.
-void add_sensor(sim::ModelBuilder& builder, const SensorSurroundings& surroundings,
+void add_sensor(builder::ModelBuilder& builder, const SensorSurroundings& surroundings,
                 const SensorDescription& sensor);
 
 /// Builds the estimator's own model of the robot, and adds the estimator. Throws what build() of
@@ -176,7 +180,7 @@ void add_sensor(sim::ModelBuilder& builder, const SensorSurroundings& surroundin
 /// unknown that moves nothing), conflicting-keys (a sensor that responds to no unknown).
 /// @param builder that has the sensors. @param scene of the estimator, after expand_urdf().
 /// @param estimator to be added.
-void add_estimator(sim::ModelBuilder& builder, const SceneDescription& scene,
+void add_estimator(builder::ModelBuilder& builder, const SceneDescription& scene,
                    const EstimatorDescription& estimator);
 
 }  // namespace sinew::scene

@@ -1,12 +1,12 @@
 #include <numeric>
 
+#include "sinew/builder/model_builder.hpp"
+#include "sinew/builder/probe_settings.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/selection.hpp"
 #include "sinew/mesh/topology.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/readers.hpp"
-#include "sinew/sim/model_builder.hpp"
-#include "sinew/sim/probe_settings.hpp"
 
 namespace sinew::scene {
 
@@ -28,17 +28,17 @@ class Parts {
       return mesh::select_nodes(mesh, region_of(*part.region), part.region->place.item);
     });
   }
-  sim::ProbeSpot spot(std::size_t k) const {
+  builder::ProbeSpot spot(std::size_t k) const {
     const Part& part = probe_.parts[k];
-    sim::ProbeSpot spot;
+    builder::ProbeSpot spot;
     spot.body = body(k);
     spot.points = part.points.points;
     if (part.region) spot.nodes = nodes(k);
     return spot;
   }
-  sim::ProbeBend::Face face(std::size_t k) const {
+  builder::ProbeBend::Face face(std::size_t k) const {
     const FixedRegion& region = *probe_.parts[k].region;
-    sim::ProbeBend::Face face{body(k), nodes(k), {}};
+    builder::ProbeBend::Face face{body(k), nodes(k), {}};
     if (region.kind == FixedRegion::Kind::plane) face.normal = region.normal;
     return face;
   }
@@ -59,9 +59,10 @@ class Parts {
 
 }  // namespace
 
-void add_probe(sim::ModelBuilder& builder, const ProbeDescription& probe, const BodyOf& body_of) {
+void add_probe(builder::ModelBuilder& builder, const ProbeDescription& probe,
+               const BodyOf& body_of) {
   const Parts parts(probe, body_of);
-  sim::ProbeSettings settings;
+  builder::ProbeSettings settings;
   settings.name = probe.name;
   settings.place = probe.place;
   settings.outside = probe.outside;
@@ -71,16 +72,16 @@ void add_probe(sim::ModelBuilder& builder, const ProbeDescription& probe, const 
       break;
     case ProbeDescription::Kind::line:
       settings.what =
-          sim::ProbeLine{parts.body(0), probe.parts.front().points.points, probe.samples};
+          builder::ProbeLine{parts.body(0), probe.parts.front().points.points, probe.samples};
       break;
     case ProbeDescription::Kind::bend:
-      settings.what = sim::ProbeBend{{parts.face(0), parts.face(1)}, probe.about};
+      settings.what = builder::ProbeBend{{parts.face(0), parts.face(1)}, probe.about};
       break;
     case ProbeDescription::Kind::distance:
-      settings.what = sim::ProbeDistance{{parts.spot(0), parts.spot(1)}};
+      settings.what = builder::ProbeDistance{{parts.spot(0), parts.spot(1)}};
       break;
     case ProbeDescription::Kind::extent:
-      settings.what = sim::ProbeExtent{parts.body(0), parts.nodes(0), probe.axis, probe.way};
+      settings.what = builder::ProbeExtent{parts.body(0), parts.nodes(0), probe.axis, probe.way};
       break;
   }
   builder.add_probe(settings);

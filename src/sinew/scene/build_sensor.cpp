@@ -2,19 +2,19 @@
 #include <map>
 #include <numeric>
 
+#include "sinew/builder/model_builder.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/selection.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/readers.hpp"
-#include "sinew/sim/model_builder.hpp"
-#include "sinew/sim/sensor_settings.hpp"
+#include "sinew/sense/sensor_settings.hpp"
 
 namespace sinew::scene {
 
 namespace {
 
-using What = decltype(sim::SensorSettings::what);
+using What = decltype(sense::SensorSettings::what);
 
 /// Builds the measured quantity of a sensor on the bodies of a scene.
 class Measured {
@@ -53,7 +53,7 @@ class Measured {
   int body() const { return body_of_(sensor_.body).number; }
 
   What marker() const {
-    sim::ProbeSpot spot;
+    builder::ProbeSpot spot;
     spot.body = body();
     spot.points = sensor_.points.points;
     if (sensor_.region) spot.nodes = nodes(sensor_.body);
@@ -61,45 +61,45 @@ class Measured {
   }
 
   What motion() const {
-    using Kind = sim::SensorMotion::What;
+    using Kind = sense::SensorMotion::What;
     const Kind kind = sensor_.type == "orientation" ? Kind::orientation
                       : sensor_.type == "gyroscope" ? Kind::gyroscope
                                                     : Kind::accelerometer;
-    return sim::SensorMotion{kind, body(), sensor_.points.points, scene_.gravity};
+    return sense::SensorMotion{kind, body(), sensor_.points.points, scene_.gravity};
   }
 
   What drive() const {
-    using Kind = sim::SensorDrive::What;
+    using Kind = sense::SensorDrive::What;
     static const std::map<std::string, Kind> kinds = {{"cable-length", Kind::cable_length},
                                                       {"cable-tension", Kind::cable_tension},
                                                       {"pressure", Kind::pressure},
                                                       {"volume", Kind::volume},
                                                       {"flow", Kind::flow},
                                                       {"motor-current", Kind::motor_current}};
-    return sim::SensorDrive{kinds.at(sensor_.type), sensor_.actuator, sensor_.motor_constant,
-                            sensor_.turns, sensor_.radius};
+    return sense::SensorDrive{kinds.at(sensor_.type), sensor_.actuator, sensor_.motor_constant,
+                              sensor_.turns, sensor_.radius};
   }
 
   What line() const {
-    using Kind = sim::SensorLine::What;
+    using Kind = sense::SensorLine::What;
     const Kind kind = sensor_.type == "stretch"      ? Kind::stretch
                       : sensor_.type == "resistance" ? Kind::resistance
                                                      : Kind::attenuation;
-    return sim::SensorLine{kind,
-                           {body(), sensor_.points.points, sensor_.samples},
-                           sensor_.gauge_factor,
-                           sensor_.resistance,
-                           sensor_.loss_per_length,
-                           sensor_.loss_per_turn};
+    return sense::SensorLine{kind,
+                             {body(), sensor_.points.points, sensor_.samples},
+                             sensor_.gauge_factor,
+                             sensor_.resistance,
+                             sensor_.loss_per_length,
+                             sensor_.loss_per_turn};
   }
 
   What curvature() const {
-    return sim::SensorCurvature{body(), sensor_.points.points, sensor_.places, sensor_.gauge,
-                                sensor_.about};
+    return sense::SensorCurvature{body(), sensor_.points.points, sensor_.places, sensor_.gauge,
+                                  sensor_.about};
   }
 
   What capacitance() const {
-    sim::SensorCapacitance capacitance;
+    sense::SensorCapacitance capacitance;
     capacitance.relative_permittivity = sensor_.permittivity;
     for (std::size_t k = 0; k < 2; ++k) {
       const BuiltBody on = body_of_(sensor_.electrode_bodies[k]);
@@ -109,7 +109,7 @@ class Measured {
   }
 
   What contact() const {
-    sim::SensorContact touch{contacts(), -1, {}, {}};
+    sense::SensorContact touch{contacts(), -1, {}, {}};
     if (sensor_.type == "touch") touch.threshold = sensor_.threshold;
     if (!sensor_.region) return touch;
     const std::string name = sensor_.patch_body.empty() ? first_body() : sensor_.patch_body;
@@ -145,9 +145,9 @@ class Measured {
 
 }  // namespace
 
-void add_sensor(sim::ModelBuilder& builder, const SensorSurroundings& surroundings,
+void add_sensor(builder::ModelBuilder& builder, const SensorSurroundings& surroundings,
                 const SensorDescription& sensor) {
-  sim::SensorSettings settings;
+  sense::SensorSettings settings;
   settings.name = sensor.name;
   settings.place = sensor.place;
   settings.rate_place = sensor.rate_place;
@@ -156,7 +156,7 @@ void add_sensor(sim::ModelBuilder& builder, const SensorSurroundings& surroundin
   settings.channel = sensor.channel;
   settings.record = sensor.record;
   settings.what = Measured(surroundings, sensor).what();
-  sim::add_sensor(builder, settings);
+  sense::add_sensor(builder, settings);
 }
 
 }  // namespace sinew::scene

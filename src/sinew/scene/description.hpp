@@ -15,43 +15,43 @@
 #include <variant>
 #include <vector>
 
+#include "sinew/builder/cable_settings.hpp"
+#include "sinew/builder/chamber_settings.hpp"
+#include "sinew/builder/force_settings.hpp"
+#include "sinew/builder/load_settings.hpp"
+#include "sinew/builder/motor_settings.hpp"
+#include "sinew/builder/spring_line_settings.hpp"
+#include "sinew/builder/torque_settings.hpp"
 #include "sinew/constraint/joint_type.hpp"
 #include "sinew/constraint/probe.hpp"
 #include "sinew/constraint/smooth_surface.hpp"
+#include "sinew/control/inverse_settings.hpp"
+#include "sinew/control/target.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/notice.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/fem/mass_matrix.hpp"
-#include "sinew/inverse/inverse_settings.hpp"
-#include "sinew/inverse/target.hpp"
 #include "sinew/linalg/factorisation.hpp"
 #include "sinew/material/elastic_constants.hpp"
 #include "sinew/material/hyperelastic.hpp"
 #include "sinew/mesh/embedding.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/base_motion.hpp"
+#include "sinew/model/signal.hpp"
+#include "sinew/model/step_settings.hpp"
 #include "sinew/pcc/arm.hpp"
 #include "sinew/rigid/rigid_settings.hpp"
 #include "sinew/scene/node.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/base_motion.hpp"
-#include "sinew/sim/cable_settings.hpp"
-#include "sinew/sim/chamber_settings.hpp"
-#include "sinew/sim/force_settings.hpp"
-#include "sinew/sim/load_settings.hpp"
-#include "sinew/sim/motor_settings.hpp"
-#include "sinew/sim/sensor_set.hpp"
-#include "sinew/sim/signal.hpp"
-#include "sinew/sim/spring_line_settings.hpp"
-#include "sinew/sim/step_settings.hpp"
-#include "sinew/sim/torque_settings.hpp"
+#include "sinew/sense/sensor_set.hpp"
 
 namespace sinew::scene {
 
+using control::Regularisation;
 using fem::MassMatrix;
-using inverse::Regularisation;
 using mechanics::Integrator;
 using mechanics::Tangent;
-using sim::Equilibrium;
-using sim::Method;
+using model::Equilibrium;
+using model::Method;
 enum class MaterialModel { linear, corotational, hyperelastic };
 enum class Element { any, tet4, tet4_patch, tet10, hex8 };
 enum class MassDistribution { volume, even };
@@ -61,7 +61,7 @@ struct SolverDescription {
   Location place;
   Method method = Method::newton;
   Tangent tangent = Tangent::exact;
-  std::optional<sim::AdaptiveStep> adaptive;
+  std::optional<model::AdaptiveStep> adaptive;
   std::optional<Equilibrium> equilibrium;  ///< when quasi-static steps end
   std::optional<double> tolerance;         ///< of Newton's method: residual relative to the loads
   int max_iterations = 50;                 ///< of Newton's method
@@ -167,7 +167,7 @@ struct BodyDescription {
   double mass_damping = 0.0;       ///< 1/s, Rayleigh: damping matrix = mass_damping M + ...
   double stiffness_damping = 0.0;  ///< s, ... + stiffness_damping K
   std::vector<FixedRegion> fixed;
-  std::optional<sim::BaseMotion> base;  ///< of the fixed nodes; its body number is set later
+  std::optional<model::BaseMotion> base;  ///< of the fixed nodes; its body number is set later
   Location base_place;
   std::optional<InitialVelocityDescription> initial_velocity;
 };
@@ -194,7 +194,7 @@ struct SurfaceDescription {
 
 /// A cable. The bodies of its points are given by name and not yet by number.
 struct CableDescription {
-  sim::CableSettings settings;
+  builder::CableSettings settings;
   Location points_place;
   std::vector<std::string> point_bodies;  ///< (n,) or (0,); an empty name means the actuator's body
   bool guide_radius_given = false;
@@ -202,29 +202,29 @@ struct CableDescription {
 
 /// A chamber. Its surface is not yet resolved to faces.
 struct ChamberDescription {
-  sim::ChamberSettings settings;
+  builder::ChamberSettings settings;
   SurfaceDescription surface;
 };
 
 /// A motor. Its joint is given by name and not yet by number.
 struct MotorDescription {
-  sim::MotorSettings settings;
+  builder::MotorSettings settings;
   std::string joint;
   Location joint_place;
 };
 
 struct ActuatorDescription {
-  using Type = sim::ActuatorType;
+  using Type = model::ActuatorType;
   std::string name;
   Location place;
   Type type = Type::cable;
   std::string body;  ///< empty for a motor, which acts on a joint
   Location body_place;
-  sim::Command command;  ///< default: zero effort (slack)
+  model::Command command;  ///< default: zero effort (slack)
   /// Settings of the type. The builder adds to them what all types have: name, location, body and
   /// command.
-  std::variant<CableDescription, sim::ForceSettings, ChamberDescription, sim::SpringLineSettings,
-               sim::TorqueSettings, MotorDescription>
+  std::variant<CableDescription, builder::ForceSettings, ChamberDescription,
+               builder::SpringLineSettings, builder::TorqueSettings, MotorDescription>
       own;
 };
 
@@ -240,8 +240,8 @@ struct LoadDescription {
   Vector3 vector = Vector3::Zero();  ///< N, N/m, Pa or m/s^2, by type
   std::optional<SurfaceDescription> surface;
   mesh::Outside outside = mesh::Outside::error;
-  sim::WaterSettings water;                         ///< its faces are set later
-  sim::Signal factor = sim::Signal::constant(1.0);  ///< for pressure: Pa
+  builder::WaterSettings water;                         ///< its faces are set later
+  model::Signal factor = model::Signal::constant(1.0);  ///< for pressure: Pa
 };
 
 /// A thin elastic layer on faces of a body.
@@ -329,8 +329,8 @@ struct SensorDescription {
   bool turns = true;                            ///< motor_constant is a torque constant
   double radius = 0.0;                          ///< m, of the drum; 0: none
   double threshold = 0.0;                       ///< touch: N
-  sim::ChannelSettings channel;
-  std::shared_ptr<const sim::SensorRecord> record;  ///< samples from a file
+  sense::ChannelSettings channel;
+  std::shared_ptr<const sense::SensorRecord> record;  ///< samples from a file
 };
 
 /// An unknown of an estimator: an external force, the effort of an actuator, or the stiffness of a
@@ -343,7 +343,7 @@ struct UnknownDescription {
   mesh::Outside outside = mesh::Outside::error;
   std::string actuator;       ///< whose effort it is
   std::string quantity;       ///< "pressure", "tension", "stiffness"; empty: a force
-  bool command_known = true;  ///< see sim::Unknown
+  bool command_known = true;  ///< see estimate::Unknown
   double prior = 0.0;         ///< N or Pa, > 0; of a stiffness, of the logarithm of its factor
   double walk = 0.0;          ///< the unit of the prior over sqrt(s), >= 0
 
@@ -360,7 +360,7 @@ struct EstimatorDescription {
   std::vector<UnknownDescription> unknowns;
   std::vector<std::string> unknown_loads;
   bool inertia = true;  ///< whether its model has the scene's integrator; else it is quasi-static
-  int rank = 12;        ///< see sim::EstimatorModel
+  int rank = 12;        ///< see estimate::EstimatorModel
 };
 
 /// Contact of a body with an analytic surface, or contact between bodies.
@@ -376,19 +376,19 @@ struct ContactDescription {
   std::vector<FixedRegion> nodes;  ///< outer nodes that may touch; none, and no points: all
   PointList points;
   mesh::Outside outside = mesh::Outside::error;
-  double friction = 0.0;                   ///< Coulomb's coefficient, >= 0
-  std::optional<double> kinetic_friction;  ///< of sliding points; none: `friction`
-  std::optional<double> restitution;       ///< 0 to 1; none: that of the scene
-  double aggregate = 0.0;                  ///< m, size of contact zones; 0: single points
-  std::optional<sim::BaseMotion> motion;   ///< of the surface
+  double friction = 0.0;                    ///< Coulomb's coefficient, >= 0
+  std::optional<double> kinetic_friction;   ///< of sliding points; none: `friction`
+  std::optional<double> restitution;        ///< 0 to 1; none: that of the scene
+  double aggregate = 0.0;                   ///< m, size of contact zones; 0: single points
+  std::optional<model::BaseMotion> motion;  ///< of the surface
 };
 
 /// A body of type rigid whose shape is a plane. Only contacts can name it.
 struct PlaneDescription {
   std::string name;
   Location place;
-  constraint::Plane plane;                ///< at the start
-  std::optional<sim::BaseMotion> motion;  ///< none: fixed
+  constraint::Plane plane;                  ///< at the start
+  std::optional<model::BaseMotion> motion;  ///< none: fixed
 };
 
 /// A joint between two bodies, or between a body and the world.
@@ -402,7 +402,7 @@ struct JointDescription {
   Vector3 point = Vector3::Zero();         ///< m
   Vector3 axis = Vector3::UnitZ();         ///< unit length
   Vector3 second_axis = Vector3::UnitX();  ///< of a universal joint
-  sim::Limits angle, displacement;         ///< rad, m
+  model::Limits angle, displacement;       ///< rad, m
   double friction = 0.0;                   ///< N m, N
   // weld
   std::optional<FixedRegion> region;  ///< of the first body; none, and no points: where both touch
@@ -417,7 +417,7 @@ inline constexpr std::string_view kWorldName = "world";
 struct TaskDescription {
   std::string effector;
   Location place;
-  inverse::Target target;               ///< m; for an orientation effector a rotation vector (rad)
+  control::Target target;               ///< m; for an orientation effector a rotation vector (rad)
   std::vector<double> weights = {1.0};  ///< (1,) or one per direction of the effector; >= 0
   int priority = 1;
 };
@@ -426,13 +426,13 @@ struct TaskDescription {
 struct ContactTaskDescription {
   std::string contact;
   Location place;
-  inverse::ContactTask asked;  ///< its contact number is set later
+  control::ContactTask asked;  ///< its contact number is set later
 };
 
 struct ControllerDescription {
   std::string name;
   Location place;
-  std::optional<inverse::Feedback> feedback;  ///< of a closed loop; sensor numbers are set later
+  std::optional<control::Feedback> feedback;  ///< of a closed loop; sensor numbers are set later
   std::vector<std::string> sensors;           ///< (tasks,) of a closed loop: sensor of each task
   std::vector<std::string> actuators;         ///< empty: all
   std::vector<Location> actuator_places;

@@ -28,9 +28,9 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/split_hexahedra.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/build_parts.hpp"
-#include "sinew/sim/model.hpp"
 #include "sinew/sim/rest_fields.hpp"
 
 namespace sinew::scene {
@@ -62,7 +62,7 @@ constexpr double kKept = 0.1;
 constexpr const char* kKeptAs = "locking-1";
 
 /// Under which the comparison of a body is kept.
-std::string kept_name(const sim::Model& model, const std::string& body) {
+std::string kept_name(const model::Model& model, const std::string& body) {
   ValueHash hash;
   for (const NamedHash& part : model.parts()) hash.add(part.name, part.hash);
   return fmt::format("{}/{:016x}", kKeptAs, hash.add(body).value());
@@ -130,7 +130,7 @@ class Comparison {
  public:
   /// Throws what build() throws. @param scene,model to be compared. @param bodies indices of those
   /// that get quadratic elements if something acts on them.
-  Comparison(const SceneDescription& scene, const sim::Model& model,
+  Comparison(const SceneDescription& scene, const model::Model& model,
              const std::vector<std::size_t>& bodies) {
     SceneDescription own = only_acting(scene);
     SharedMeshes meshes;
@@ -177,7 +177,7 @@ class Comparison {
 
  private:
   std::map<int, std::vector<sim::RestField>> linear_;  // of the bodies on which something acts
-  std::shared_ptr<const sim::Model> quadratic_;
+  std::shared_ptr<const model::Model> quadratic_;
 };
 
 Excess as_one_beam(const BodyDescription& body, const mesh::Mesh& mesh) {
@@ -234,7 +234,7 @@ std::optional<Notice> notice_of(const BodyDescription& body, const mesh::Mesh& m
 
 }  // namespace
 
-std::vector<Notice> locking_notices(const SceneDescription& scene, const sim::Model& model,
+std::vector<Notice> locking_notices(const SceneDescription& scene, const model::Model& model,
                                     const SharedMeshes& shared) {
   std::vector<std::size_t> linear, comparable;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {

@@ -41,7 +41,7 @@ JointDescription joint_of(const UrdfJoint& from, int number, const UrdfBodies& b
       from.type == Type::prismatic ? constraint::JointType::slider : constraint::JointType::hinge;
   joint.point = bodies.frame(from.child).translation();
   joint.axis = bodies.frame(from.child).linear() * from.axis;
-  sim::Limits& limits = from.type == Type::prismatic ? joint.displacement : joint.angle;
+  model::Limits& limits = from.type == Type::prismatic ? joint.displacement : joint.angle;
   limits.min = from.lower - bodies.start(number);
   limits.max = from.upper - bodies.start(number);
   joint.friction = from.friction;
@@ -148,7 +148,7 @@ void resolve_joints(SceneDescription& scene, const Names& names) {
       throw_unknown(motor->joint, motor->joint_place, "joint", keys_of(names.joints));
     }
     const UrdfJoint& joint = found->second;
-    sim::Limits &effort = motor->settings.effort, &motion = motor->settings.motion;
+    model::Limits &effort = motor->settings.effort, &motion = motor->settings.motion;
     if (std::isinf(effort.min) && std::isinf(effort.max)) {
       effort.min = -joint.effort;
       effort.max = joint.effort;

@@ -40,7 +40,7 @@ std::shared_ptr<const KeyTable> limit_table(const Measure& measure, const Measur
 }  // namespace
 
 std::vector<Key> drive_keys(const DriveWords& w) {
-  const sim::ActuatorWords& words = sim::actuator_words(w.type);
+  const model::ActuatorWords& words = model::actuator_words(w.type);
   const std::string effort = words.effort.name, motion = words.motion.name, kind = w.kind;
   const auto effort_limits =
       limit_table(w.effort_measure, w.effort_rate, words.effort.name, w.effort_range, w.min_default,
@@ -110,9 +110,9 @@ Key outside_key() {
 namespace {
 
 // Words of an actuator that acts along a line.
-DriveWords line_words(sim::ActuatorType type, Range range, const char* min_default,
+DriveWords line_words(model::ActuatorType type, Range range, const char* min_default,
                       const char* motion_text, const char* undriven) {
-  DriveWords words{.kind = sim::actuator_words(type).type, .type = type};
+  DriveWords words{.kind = model::actuator_words(type).type, .type = type};
   words.effort_measure = force();
   words.effort_rate = force_rate();
   words.effort_range = range;
@@ -179,7 +179,7 @@ std::shared_ptr<const KeyTable> cable_table() {
            .description =
                "Adds the cable's geometric stiffness (from tension) to every step. If false, steps "
                "with highly loaded cables converge slowly or not at all."}}};
-  const DriveWords words = line_words(sim::ActuatorType::cable, non_negative(), "0 N",
+  const DriveWords words = line_words(model::ActuatorType::cable, non_negative(), "0 N",
                                       "Length of cable pulled in at the pull point.",
                                       "Command. Default: slack until commanded.");
   for (Key& key : drive_keys(words)) cable.keys.push_back(std::move(key));
@@ -202,7 +202,7 @@ std::shared_ptr<const KeyTable> force_table() {
                           .required = true},
                          outside_key()}};
   const DriveWords words =
-      line_words(sim::ActuatorType::force, any(), "", "Motion of the point along the direction.",
+      line_words(model::ActuatorType::force, any(), "", "Motion of the point along the direction.",
                  "Command. Default: no force until commanded.");
   for (Key& key : drive_keys(words)) push.keys.push_back(std::move(key));
   return make_table(std::move(push));

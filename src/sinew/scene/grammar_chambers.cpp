@@ -1,7 +1,7 @@
 // The tables of chambers and springs.
+#include "sinew/model/fluid_drive.hpp"
+#include "sinew/model/spring_drive.hpp"
 #include "sinew/scene/grammar_forms.hpp"
-#include "sinew/sim/fluid_drive.hpp"
-#include "sinew/sim/spring_drive.hpp"
 
 namespace sinew::scene::forms {
 
@@ -259,7 +259,7 @@ std::shared_ptr<const KeyTable> chamber_table() {
             .description = "Liquid in the chamber."},
            outside_key()},
       .alternatives = {{{"gas", "liquid"}, false}}};
-  DriveWords words{.kind = "chamber", .type = sim::ActuatorType::chamber};
+  DriveWords words{.kind = "chamber", .type = model::ActuatorType::chamber};
   words.effort_measure = pressure();
   words.effort_rate = pressure_rate();
   words.effort_range = any();
@@ -272,9 +272,9 @@ std::shared_ptr<const KeyTable> chamber_table() {
   words.motion_rate_example = "5 ml/s";
   words.motion_value = "2 ml";
   words.motion_text = "Volume gained by the chamber.";
-  words.inputs = {input(sim::GasDrive::kInput.name, volume(), "5 ml",
+  words.inputs = {input(model::GasDrive::kInput.name, volume(), "5 ml",
                         "Gas added, as volume at ambient pressure. Only for chambers with `gas`."),
-                  input(sim::LiquidDrive::kInput.name, volume(), "5 ml",
+                  input(model::LiquidDrive::kInput.name, volume(), "5 ml",
                         "Liquid added. Only for chambers with `liquid`.")};
   words.undriven = "Command. Default: no pressure until commanded.";
   for (Key& key : drive_keys(words)) chamber.keys.push_back(std::move(key));
@@ -285,13 +285,13 @@ std::shared_ptr<const KeyTable> spring_table() {
   const auto command = make_table(
       {.name = "command of a spring",
        .description = "Only for shape-memory springs: heating power, or a prescribed phase.",
-       .keys = {input(sim::SmaDrive::kPower.name, power(), "2 W", "Electric power into the wire.",
+       .keys = {input(model::SmaDrive::kPower.name, power(), "2 W", "Electric power into the wire.",
                       non_negative()),
-                {.name = sim::SmaDrive::kPhase.name,
+                {.name = model::SmaDrive::kPhase.name,
                  .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
                  .example = "1",
                  .description = "Austenite fraction of the wire, 0 to 1."}},
-       .alternatives = {{{sim::SmaDrive::kPower.name, sim::SmaDrive::kPhase.name}, true}}});
+       .alternatives = {{{model::SmaDrive::kPower.name, model::SmaDrive::kPhase.name}, true}}});
   return make_table(
       {.name = "actuator: type spring",
        .description = "A spring or elastic band routed through points of a body without friction. "

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "sinew/model/actuator.hpp"
 #include "sinew/scene/grammar.hpp"
-#include "sinew/sim/actuator.hpp"
 
 namespace sinew::scene::forms {
 
@@ -100,7 +100,7 @@ std::shared_ptr<const KeyTable> make_table(KeyTable table);
 /// Words, measures and examples for the limits and commands of one type of actuator.
 struct DriveWords {
   const char* kind = "";
-  sim::ActuatorType type = sim::ActuatorType::cable;  ///< whose words name effort and motion
+  model::ActuatorType type = model::ActuatorType::cable;  ///< whose words name effort and motion
   Measure effort_measure{}, effort_rate{};
   Range effort_range;
   const char* min_default = "";

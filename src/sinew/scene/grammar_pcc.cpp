@@ -120,7 +120,7 @@ std::shared_ptr<const KeyTable> torque_table() {
                 .example = "across",
                 .default_text = "side",
                 .description = "Direction in which a positive torque bends the segment."}}};
-  DriveWords words{.kind = "torque", .type = sim::ActuatorType::torque};
+  DriveWords words{.kind = "torque", .type = model::ActuatorType::torque};
   words.effort_measure = torque();
   words.effort_rate = torque_rate();
   words.effort_range = any();

@@ -237,7 +237,7 @@ std::shared_ptr<const KeyTable> urdf_table() {
 
 std::shared_ptr<const KeyTable> motor_table() {
   DriveWords words;
-  words.type = sim::ActuatorType::motor;
+  words.type = model::ActuatorType::motor;
   words.effort_measure = torque();
   words.effort_rate = torque_rate();
   words.effort_range = any();
@@ -258,7 +258,7 @@ std::shared_ptr<const KeyTable> motor_table() {
 
 std::shared_ptr<const KeyTable> linear_motor_table() {
   DriveWords words;
-  words.type = sim::ActuatorType::linear_motor;
+  words.type = model::ActuatorType::linear_motor;
   words.effort_measure = force();
   words.effort_rate = force_rate();
   words.effort_range = any();

@@ -8,7 +8,7 @@ namespace sinew::scene {
 
 namespace {
 
-void read_limit(const Fields& fields, std::string_view key, sim::Limits& limit) {
+void read_limit(const Fields& fields, std::string_view key, model::Limits& limit) {
   const Fields values = fields.below(key);
   values.read("min", limit.min);
   values.read("max", limit.max);
@@ -19,9 +19,9 @@ void read_limit(const Fields& fields, std::string_view key, sim::Limits& limit) 
               "give a max that is at least min");
 }
 
-void read_limits(const Fields& fields, sim::ActuatorType type, sim::Limits& effort,
-                 sim::Limits& motion) {
-  const sim::ActuatorWords& words = sim::actuator_words(type);
+void read_limits(const Fields& fields, model::ActuatorType type, model::Limits& effort,
+                 model::Limits& motion) {
+  const model::ActuatorWords& words = model::actuator_words(type);
   const Fields limits = fields.below("limits");
   read_limit(limits, words.effort.name, effort);
   read_limit(limits, words.motion.name, motion);
@@ -33,7 +33,7 @@ void read_outside(const Fields& fields, mesh::Outside& outside) {
 }
 
 // Checks that the chamber has the fluid to which an input refers.
-void check_input(const sim::ChamberSettings& chamber, std::string_view input,
+void check_input(const builder::ChamberSettings& chamber, std::string_view input,
                  const Location& place) {
   const bool has = (input != "gas" || chamber.gas) && (input != "liquid" || chamber.liquid);
   if (has) return;
@@ -47,17 +47,17 @@ void read_command(const Fields& fields, ActuatorDescription& actuator, const Rea
   if (fields.find("command") == nullptr) return;
   const Fields command = fields.below("command");
   const std::string& key = command.map().entries().front().key;
-  const sim::ActuatorWords& words = sim::actuator_words(actuator.type);
-  using Kind = sim::CommandKind;
+  const model::ActuatorWords& words = model::actuator_words(actuator.type);
+  using Kind = model::CommandKind;
   actuator.command.kind = key == words.effort.name   ? Kind::effort
                           : key == words.motion.name ? Kind::motion
                                                      : Kind::input;
   if (const auto* chamber = std::get_if<ChamberDescription>(&actuator.own)) {
     check_input(chamber->settings, key, command.place(key));
   }
-  if (auto* line = std::get_if<sim::SpringLineSettings>(&actuator.own)) {
-    auto* wire = std::get_if<sim::SmaSettings>(&line->spring);
-    if (wire != nullptr) wire->by_phase = key == sim::SmaDrive::kPhase.name;
+  if (auto* line = std::get_if<builder::SpringLineSettings>(&actuator.own)) {
+    auto* wire = std::get_if<model::SmaSettings>(&line->spring);
+    if (wire != nullptr) wire->by_phase = key == model::SmaDrive::kPhase.name;
   }
   actuator.command.signal = read_signal(command, key, context);
 }
@@ -93,35 +93,35 @@ CableDescription read_cable(const Fields& fields, const ReadContext& context) {
   const PointList points = read_line_points(fields, context);
   cable.points_place = points.place;
   cable.point_bodies = points.bodies;
-  sim::CableSettings& settings = cable.settings;
+  builder::CableSettings& settings = cable.settings;
   set_line(fields, points, settings);
   fields.read("geometric_stiffness", settings.geometric_stiffness);
   fields.read("friction", settings.friction);
   cable.guide_radius_given = fields.read("guide_radius", settings.guide_radius);
   fields.read("guide_spacing", settings.guide_spacing);
-  read_limits(fields, sim::ActuatorType::cable, settings.tension, settings.displacement);
+  read_limits(fields, model::ActuatorType::cable, settings.tension, settings.displacement);
   return cable;
 }
 
-sim::ForceSettings read_force(const Fields& fields) {
-  sim::ForceSettings force;
+builder::ForceSettings read_force(const Fields& fields) {
+  builder::ForceSettings force;
   fields.read("point", force.point);
   fields.read_direction("direction", force.direction);
   read_outside(fields, force.outside);
-  read_limits(fields, sim::ActuatorType::force, force.force, force.displacement);
+  read_limits(fields, model::ActuatorType::force, force.force, force.displacement);
   return force;
 }
 
-std::optional<sim::Supply> read_supply(const Fields& fields) {
+std::optional<model::Supply> read_supply(const Fields& fields) {
   if (fields.find("supply") == nullptr) return std::nullopt;
-  sim::Supply supply;
+  model::Supply supply;
   const Fields values = fields.below("supply");
   values.read("conductance", supply.conductance);
   values.read("leak", supply.leak);
   return supply;
 }
 
-void read_ambient(const Fields& fields, const Fields& gas, sim::ChamberSettings& chamber) {
+void read_ambient(const Fields& fields, const Fields& gas, builder::ChamberSettings& chamber) {
   double own = 0.0, of_gas = 0.0;
   const bool given = fields.read("ambient_pressure", own);
   const bool gas_given = fields.find("gas") != nullptr && gas.read("ambient_pressure", of_gas);
@@ -135,10 +135,10 @@ void read_ambient(const Fields& fields, const Fields& gas, sim::ChamberSettings&
   if (given) chamber.ambient_pressure = own;
 }
 
-void read_filling(const Fields& fields, sim::ChamberSettings& chamber) {
+void read_filling(const Fields& fields, builder::ChamberSettings& chamber) {
   if (fields.find("gas") != nullptr) {
     const Fields values = fields.below("gas");
-    sim::GasSettings& gas = chamber.gas.emplace();
+    model::GasSettings& gas = chamber.gas.emplace();
     values.read("ambient_pressure", gas.ambient_pressure);
     values.read("polytropic_exponent", gas.exponent);
     values.read("dead_volume", gas.dead_volume);
@@ -147,7 +147,7 @@ void read_filling(const Fields& fields, sim::ChamberSettings& chamber) {
   }
   if (fields.find("liquid") != nullptr) {
     const Fields values = fields.below("liquid");
-    sim::LiquidSettings& liquid = chamber.liquid.emplace();
+    model::LiquidSettings& liquid = chamber.liquid.emplace();
     values.read("bulk_modulus", liquid.bulk_modulus);
     values.read("density", liquid.density);
     values.read("dead_volume", liquid.dead_volume);
@@ -158,13 +158,13 @@ void read_filling(const Fields& fields, sim::ChamberSettings& chamber) {
 ChamberDescription read_chamber(const Fields& fields, const ReadContext& context) {
   ChamberDescription chamber;
   read_surface(fields.below("surface"), chamber.surface, context);
-  sim::ChamberSettings& settings = chamber.settings;
+  builder::ChamberSettings& settings = chamber.settings;
   fields.read("cap", settings.cap);
   fields.read("load_stiffness", settings.load_stiffness);
   read_outside(fields, settings.outside);
   read_filling(fields, settings);
   read_ambient(fields, fields.below("gas"), settings);
-  read_limits(fields, sim::ActuatorType::chamber, settings.pressure, settings.volume_growth);
+  read_limits(fields, model::ActuatorType::chamber, settings.pressure, settings.volume_growth);
   return chamber;
 }
 
@@ -180,11 +180,11 @@ double read_stiffness(const Fields& fields) {
   coil.read("wire_diameter", wire);
   coil.read("mean_diameter", diameter);
   coil.read("coils", coils);
-  return sim::coil_stiffness(modulus, wire, diameter, coils);
+  return model::coil_stiffness(modulus, wire, diameter, coils);
 }
 
-sim::SmaSettings read_wire(const Fields& values) {
-  sim::SmaSettings wire;
+model::SmaSettings read_wire(const Fields& values) {
+  model::SmaSettings wire;
   values.read("wire_diameter", wire.wire);
   values.read("mean_diameter", wire.mean_diameter);
   values.read("coils", wire.coils);
@@ -200,11 +200,11 @@ sim::SmaSettings read_wire(const Fields& values) {
   return wire;
 }
 
-sim::SpringLineSettings read_spring(const Fields& fields, const ReadContext& context) {
-  sim::SpringLineSettings line;
+builder::SpringLineSettings read_spring(const Fields& fields, const ReadContext& context) {
+  builder::SpringLineSettings line;
   set_line(fields, read_line_points(fields, context), line);
   if (fields.find("stiffness") != nullptr) {
-    auto& spring = line.spring.emplace<sim::SpringSettings>();
+    auto& spring = line.spring.emplace<model::SpringSettings>();
     spring.stiffness = read_stiffness(fields);
     fields.read("tension_only", spring.tension_only);
   } else {
@@ -219,28 +219,28 @@ sim::SpringLineSettings read_spring(const Fields& fields, const ReadContext& con
   return line;
 }
 
-sim::TorqueSettings read_torque(const Fields& fields) {
-  using Towards = sim::TorqueSettings::Towards;
-  sim::TorqueSettings torque;
+builder::TorqueSettings read_torque(const Fields& fields) {
+  using Towards = builder::TorqueSettings::Towards;
+  builder::TorqueSettings torque;
   fields.read("segment", torque.segment);
   fields.read_choice("towards", torque.towards,
                      {{"side", Towards::side}, {"across", Towards::across}});
-  read_limits(fields, sim::ActuatorType::torque, torque.torque, torque.angle);
+  read_limits(fields, model::ActuatorType::torque, torque.torque, torque.angle);
   return torque;
 }
 
-MotorDescription read_motor(const Fields& fields, sim::ActuatorType type) {
+MotorDescription read_motor(const Fields& fields, model::ActuatorType type) {
   MotorDescription motor;
   fields.read("joint", motor.joint);
   motor.joint_place = fields.place("joint");
-  motor.settings.linear = type == sim::ActuatorType::linear_motor;
+  motor.settings.linear = type == model::ActuatorType::linear_motor;
   read_limits(fields, type, motor.settings.effort, motor.settings.motion);
   return motor;
 }
 
-decltype(ActuatorDescription::own) read_own(const Fields& fields, sim::ActuatorType type,
+decltype(ActuatorDescription::own) read_own(const Fields& fields, model::ActuatorType type,
                                             const ReadContext& context) {
-  using sim::ActuatorType;
+  using model::ActuatorType;
   switch (type) {
     case ActuatorType::cable:
       return read_cable(fields, context);
@@ -289,7 +289,7 @@ ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& c
   const Form& form = form_of(grammar(), "actuators", Shape::names).items.front();
   const Fields fields(entry.value, form);
   // The grammar allows no other word.
-  actuator.type = sim::actuator_type(read_text(*entry.value.find(form.telltale))).value();
+  actuator.type = model::actuator_type(read_text(*entry.value.find(form.telltale))).value();
   actuator.own = read_own(fields, actuator.type, context);
   if (!std::holds_alternative<MotorDescription>(actuator.own)) {
     fields.read("body", actuator.body);

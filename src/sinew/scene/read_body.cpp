@@ -369,8 +369,8 @@ std::vector<FixedRegion> read_regions(const Fields& fields, std::string_view key
   return regions;
 }
 
-sim::BaseMotion read_motion(const Fields& fields, const ReadContext& context) {
-  sim::BaseMotion motion;
+model::BaseMotion read_motion(const Fields& fields, const ReadContext& context) {
+  model::BaseMotion motion;
   for (std::size_t c = 0; c < 3; ++c) {
     if (fields.find(kAxisNames[c]) != nullptr) {
       motion.translation[c] = read_signal(fields, kAxisNames[c], context);

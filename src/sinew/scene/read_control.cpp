@@ -8,18 +8,18 @@ namespace sinew::scene {
 
 namespace {
 
-inverse::Target read_circle(const Fields& fields) {
-  inverse::Circle circle;
+control::Target read_circle(const Fields& fields) {
+  control::Circle circle;
   fields.read("centre", circle.centre);
   fields.read("radius", circle.radius);
   fields.read("normal", circle.normal);
   fields.read("period", circle.period);
   fields.read("start_angle", circle.start_angle);
-  return inverse::Target::circle(circle);
+  return control::Target::circle(circle);
 }
 
-inverse::Target read_polyline(const Fields& fields, const ReadContext& context) {
-  inverse::Polyline polyline;
+control::Target read_polyline(const Fields& fields, const ReadContext& context) {
+  control::Polyline polyline;
   const PointList points = read_points(fields, "points", context);
   if (points.points.rows() == 0 && context.files == Files::ignore) return {};
   polyline.points = points.points;
@@ -27,27 +27,27 @@ inverse::Target read_polyline(const Fields& fields, const ReadContext& context) 
   fields.read("period", polyline.period);
   double speed = 0.0;
   if (fields.read("speed", speed)) {
-    const double length = inverse::Target::length(polyline.points, polyline.closed);
+    const double length = control::Target::length(polyline.points, polyline.closed);
     if (length == 0.0) {
       throw Error(ErrorKind::out_of_range, points.place, "the polyline has no length",
                   "give points that differ, or a fixed target");
     }
     polyline.period = length / speed;
   }
-  return inverse::Target::polyline(polyline);
+  return control::Target::polyline(polyline);
 }
 
-inverse::Target read_trajectory(const Fields& fields, const ReadContext& context) {
+control::Target read_trajectory(const Fields& fields, const ReadContext& context) {
   TimeTable table = read_time_table(fields, 3, context);
   if (context.files == Files::ignore) return {};
-  return inverse::Target::trajectory(std::move(table.times), Points(table.values));
+  return control::Target::trajectory(std::move(table.times), Points(table.values));
 }
 
-inverse::Target read_target(const Fields& task, const char* key, const ReadContext& context) {
+control::Target read_target(const Fields& task, const char* key, const ReadContext& context) {
   Vector3 position;
   if (task.form(key).shape == Shape::quantity) {
     task.read(key, position);
-    return inverse::Target::fixed(position);
+    return control::Target::fixed(position);
   }
   const Fields fields = task.below(key);
   for (const Node::Entry& entry : fields.map().entries()) {
@@ -100,7 +100,7 @@ ContactTaskDescription read_contact_task(const Node::Entry& entry, const Form& f
   task.contact = entry.key;
   task.place = entry.key_place;
   const Fields fields(entry.value, form);
-  inverse::ContactTask& asked = task.asked;
+  control::ContactTask& asked = task.asked;
   if (const Node* force = fields.find("normal_force")) {
     if (fields.form("normal_force").shape == Shape::quantity) {
       fields.read("normal_force", asked.normal_min);

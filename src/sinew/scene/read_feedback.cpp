@@ -189,7 +189,7 @@ class Assignment {
 
 void read_feedback(const Fields& fields, const SceneDescription& scene,
                    ControllerDescription& controller) {
-  inverse::Feedback& feedback = controller.feedback.emplace();
+  control::Feedback& feedback = controller.feedback.emplace();
   fields.read("gain", feedback.gain);
   fields.read("integral", feedback.integral);
   fields.read("timeout", feedback.timeout);

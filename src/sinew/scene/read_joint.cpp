@@ -37,7 +37,7 @@ void read_axes_of(const Fields& fields, JointDescription& joint) {
 
 void read_limits(const Fields& fields, JointDescription& joint) {
   const Fields limits = fields.below("limits");
-  const auto read = [&](const char* motion, sim::Limits& limit) {
+  const auto read = [&](const char* motion, model::Limits& limit) {
     if (limits.table().find(motion) == nullptr) return;
     const Fields stops = limits.below(motion);
     stops.read("min", limit.min);

@@ -123,7 +123,7 @@ std::vector<std::string> read_measured(const Fields& fields, SensorDescription& 
 }
 
 void read_channel(const Fields& fields, SensorDescription& sensor) {
-  sim::ChannelSettings& channel = sensor.channel;
+  sense::ChannelSettings& channel = sensor.channel;
   fields.read("rate", channel.rate);
   sensor.rate_place = fields.place("rate");
   fields.read("delay", channel.delay);
@@ -148,7 +148,7 @@ void read_channel(const Fields& fields, SensorDescription& sensor) {
 }
 
 // Refuses simulated errors for recorded samples, since a real sensor has its own errors.
-void check_record(const Fields& fields, const sim::ChannelSettings& channel) {
+void check_record(const Fields& fields, const sense::ChannelSettings& channel) {
   const std::pair<const char*, bool> simulated[] = {
       {"bias", channel.bias != 0.0},       {"drift", channel.drift != 0.0},
       {"quantum", channel.quantum != 0.0}, {"range", has(fields, "range")},

@@ -36,13 +36,13 @@ class RecordReader {
     table_.values.col(0) *= time_unit(fields, table_, 0);
   }
 
-  sim::SensorRecord read() {
+  sense::SensorRecord read() {
     const std::vector<Eigen::Index> columns = choose();
     // sensors.csv has the time of each sample, which also shows whether a row has a new sample.
     const Eigen::Index taken = find_column(table_, sensor_.name + ".sample_time");
     if (taken > 0) table_.values.col(taken) *= time_unit(fields_, table_, taken);
     std::vector<Eigen::Index> rows;
-    sim::SensorRecord record;
+    sense::SensorRecord record;
     for (Eigen::Index row = 0; row < table_.values.rows(); ++row) {
       const double time = table_.values(row, taken < 0 ? 0 : taken);
       if (taken >= 0 && (std::isnan(time) || (!rows.empty() && time == record.times.back()))) {
@@ -142,12 +142,11 @@ class RecordReader {
 
 }  // namespace
 
-std::shared_ptr<const sim::SensorRecord> read_sensor_record(const Fields& fields,
-                                                            const SensorDescription& sensor,
-                                                            const std::vector<std::string>& numbers,
-                                                            const ReadContext& context) {
+std::shared_ptr<const sense::SensorRecord> read_sensor_record(
+    const Fields& fields, const SensorDescription& sensor, const std::vector<std::string>& numbers,
+    const ReadContext& context) {
   if (context.files == Files::ignore) return nullptr;
-  return std::make_shared<const sim::SensorRecord>(
+  return std::make_shared<const sense::SensorRecord>(
       RecordReader(fields, sensor, numbers, context).read());
 }
 

@@ -1,55 +1,55 @@
 #include <utility>
 #include <vector>
 
+#include "sinew/model/signal.hpp"
 #include "sinew/scene/readers.hpp"
-#include "sinew/sim/signal.hpp"
 
 namespace sinew::scene {
 
 namespace {
 
-sim::Signal read_ramp(const Fields& fields) {
-  sim::Ramp ramp;
+model::Signal read_ramp(const Fields& fields) {
+  model::Ramp ramp;
   fields.read("from", ramp.from);
   fields.read("to", ramp.to);
   fields.read("start", ramp.start);
   fields.read("duration", ramp.duration);
-  return sim::Signal::ramp(ramp);
+  return model::Signal::ramp(ramp);
 }
 
-sim::Signal read_sine(const Fields& fields) {
-  sim::Sine sine;
+model::Signal read_sine(const Fields& fields) {
+  model::Sine sine;
   fields.read("mean", sine.mean);
   fields.read("amplitude", sine.amplitude);
   fields.read("period", sine.period);
   fields.read("phase", sine.phase);
   double frequency = 0.0;
   if (fields.read("frequency", frequency)) sine.period = 1.0 / frequency;
-  return sim::Signal::sine(sine);
+  return model::Signal::sine(sine);
 }
 
-sim::Signal read_steps(const Fields& fields) {
+model::Signal read_steps(const Fields& fields) {
   std::vector<std::pair<double, double>> steps;
   for (const Sample& sample : read_samples(*fields.find("steps"), fields.form("steps"))) {
     steps.emplace_back(sample.time, sample.value);
   }
-  return sim::Signal::steps(steps);
+  return model::Signal::steps(steps);
 }
 
-sim::Signal read_sampled(const Fields& fields, const ReadContext& context) {
+model::Signal read_sampled(const Fields& fields, const ReadContext& context) {
   TimeTable table = read_time_table(fields, 1, context);
   if (context.files == Files::ignore) return {};
   std::vector<double> values(table.values.data(), table.values.data() + table.values.size());
-  return sim::Signal::sampled(std::move(table.times), std::move(values));
+  return model::Signal::sampled(std::move(table.times), std::move(values));
 }
 
 }  // namespace
 
-sim::Signal read_signal(const Fields& fields, std::string_view key, const ReadContext& context) {
+model::Signal read_signal(const Fields& fields, std::string_view key, const ReadContext& context) {
   double value = 0.0;
   if (fields.form(key).shape == Shape::quantity) {
     fields.read(key, value);
-    return sim::Signal::constant(value);
+    return model::Signal::constant(value);
   }
   const Fields signal = fields.below(key);
   if (signal.find("file") != nullptr) {

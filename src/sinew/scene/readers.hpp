@@ -60,7 +60,7 @@ EffectorDescription read_effector(const Node::Entry& entry, const ReadContext& c
 ContactDescription read_contact(const Node::Entry& entry, const ReadContext& context);
 JointDescription read_joint(const Node::Entry& entry, const ReadContext& context);
 /// Reads a prescribed motion. @param fields of its map. @param context of the scene.
-sim::BaseMotion read_motion(const Fields& fields, const ReadContext& context);
+model::BaseMotion read_motion(const Fields& fields, const ReadContext& context);
 ProbeDescription read_probe(const Node::Entry& entry, const ReadContext& context);
 SensorDescription read_sensor(const Node::Entry& entry, const ReadContext& context);
 EstimatorDescription read_estimator(const Node::Entry& entry);
@@ -70,10 +70,9 @@ EstimatorDescription read_estimator(const Node::Entry& entry);
 /// @param fields of the sensor, with the key `file`. @param sensor whose name, rate and delay have
 /// been read. @param numbers names of its components, such as "x", "y", "z"; empty for a scalar.
 /// @param context of the scene.
-std::shared_ptr<const sim::SensorRecord> read_sensor_record(const Fields& fields,
-                                                            const SensorDescription& sensor,
-                                                            const std::vector<std::string>& numbers,
-                                                            const ReadContext& context);
+std::shared_ptr<const sense::SensorRecord> read_sensor_record(
+    const Fields& fields, const SensorDescription& sensor, const std::vector<std::string>& numbers,
+    const ReadContext& context);
 /// Reads an axis: the world axis x, y or z, or a vector, which is normalised.
 /// @param node,forms the value, and the forms that it may have.
 Vector3 read_axis(const Node& node, const std::vector<Form>& forms);
@@ -89,7 +88,7 @@ void read_feedback(const Fields& fields, const SceneDescription& scene,
                    ControllerDescription& controller);
 
 /// Reads the signal under `key`: a value, or a map of the signal table.
-sim::Signal read_signal(const Fields& fields, std::string_view key, const ReadContext& context);
+model::Signal read_signal(const Fields& fields, std::string_view key, const ReadContext& context);
 
 /// Reads the points under `key`: a list of vectors, or a CSV table.
 PointList read_points(const Fields& fields, std::string_view key, const ReadContext& context);

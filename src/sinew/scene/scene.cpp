@@ -219,9 +219,9 @@ double SceneDescription::run_duration() const {
   for (const ActuatorDescription& actuator : actuators) {
     end = std::max(end, actuator.command.signal.end_time());
   }
-  const auto include = [&](const std::optional<sim::BaseMotion>& motion) {
+  const auto include = [&](const std::optional<model::BaseMotion>& motion) {
     if (!motion) return;
-    for (const sim::Signal& signal : motion->translation) end = std::max(end, signal.end_time());
+    for (const model::Signal& signal : motion->translation) end = std::max(end, signal.end_time());
     end = std::max(end, motion->angle.end_time());
   };
   for (const BodyDescription& body : bodies) include(body.base);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <variant>
 
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
 
 namespace sinew::scene {
 

@@ -14,7 +14,7 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/quality.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::sim {
@@ -78,7 +78,7 @@ struct RestPath {
   std::vector<int> bodies;
 };
 
-RestPath rest_path(const Model& model, const constraint::Cable& cable) {
+RestPath rest_path(const model::Model& model, const constraint::Cable& cable) {
   RestPath path;
   const auto& own = cable.material_points();
   const auto& pull = cable.pull_point();
@@ -95,7 +95,7 @@ RestPath rest_path(const Model& model, const constraint::Cable& cable) {
   return path;
 }
 
-const fem::HasElements* elements_of(const Model& model, int body) {
+const fem::HasElements* elements_of(const model::Model& model, int body) {
   return body < 0 ? nullptr : mechanics::as<const fem::HasElements>(model.body(body));
 }
 
@@ -103,7 +103,7 @@ const fem::HasElements* elements_of(const Model& model, int body) {
 
 CablePath::CablePath(const Simulation& simulation, const constraint::Cable& cable,
                      Embedders& embedders) {
-  const Model& model = simulation.model();
+  const model::Model& model = simulation.model();
   const auto [rest, bodies] = rest_path(model, cable);
   const EmbedderOf embedder = [&](int body) -> const mesh::Embedder& {
     auto& made = embedders[body];

@@ -7,10 +7,10 @@
 
 #include "sinew/constraint/cable.hpp"
 #include "sinew/mesh/embedding.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/cable_path.hpp"
-#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/world/world.hpp"
 
 namespace sinew::sim {
 
@@ -49,9 +49,9 @@ void CableWatch::after_step() {
   ++steps_;
   const auto& configuration = simulation_.world().configuration();
   for (Watched& one : cables_) {
-    const ActuatorState& state = simulation_.actuator(one.cable.actuator);
+    const model::ActuatorState& state = simulation_.actuator(one.cable.actuator);
     one.slack = one.slack && state.slack;
-    const bool told = state.command.kind == CommandKind::motion && !state.chosen;
+    const bool told = state.command.kind == model::CommandKind::motion && !state.chosen;
     one.commanded = one.commanded && told;
     if (told) {
       one.least = std::min(one.least, state.setpoint);

@@ -4,27 +4,28 @@
 #include <vector>
 
 #include "sinew/constraint/effector.hpp"
+#include "sinew/contact/row_numbering.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
+#include "sinew/law/response.hpp"
 #include "sinew/linalg/scratch.hpp"
-#include "sinew/sim/actuation.hpp"
-#include "sinew/sim/inputs.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/actuation.hpp"
+#include "sinew/run/inputs.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/query.hpp"
-#include "sinew/sim/row_numbering.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
-#include "sinew/sim/world.hpp"
-#include "sinew/step/response.hpp"
+#include "sinew/world/world.hpp"
 
 namespace sinew::sim {
 
 namespace {
 
 // Present commands of all actuators, without rate limits; the controlled ones are marked as owned.
-void write_blocks(Simulation& simulation, const State& state, std::span<const int> controlled) {
-  const Model& model = simulation.model();
-  Actuation actuation(model);
+void write_blocks(Simulation& simulation, const run::State& state,
+                  std::span<const int> controlled) {
+  const model::Model& model = simulation.model();
+  run::Actuation actuation(model);
   actuation.load(state);
   actuation.set_commands(simulation.inputs().commands);
   actuation.own(&actuation, controlled);
@@ -36,13 +37,13 @@ void write_blocks(Simulation& simulation, const State& state, std::span<const in
 // Open contact points have no effort and do not take part. @param effort (rows,) N, in and out.
 void condense(Simulation& simulation, const LinearisationChoice& choice,
               std::vector<double>& effort) {
-  const Model& model = simulation.model();
+  const model::Model& model = simulation.model();
   const std::vector<int> geometric =
       choice.geometric_stiffness ? model.geometric_stiffness().all : std::vector<int>{};
   const auto weights =
       choice.of_statics ? mechanics::StepWeights{}
                         : mechanics::step_weights(model.step().integrator, model.step().time_step);
-  World& world = simulation.world();
+  world::World& world = simulation.world();
   world.begin_query(simulation.time(), effort);
   world.linearise({weights, choice.tangent, !geometric.empty(), false});
   world.form_rows(effort, geometric);
@@ -55,17 +56,17 @@ void condense(Simulation& simulation, const LinearisationChoice& choice,
 }
 
 // Does not restore the simulation's state.
-ControlledResponse respond(Simulation& simulation, const State& state,
+ControlledResponse respond(Simulation& simulation, const run::State& state,
                            std::span<const int> controlled, const LinearisationChoice& choice) {
-  const Model& model = simulation.model();
-  World& world = simulation.world();
+  const model::Model& model = simulation.model();
+  world::World& world = simulation.world();
   std::vector<double> all(simulation.efforts().begin(), simulation.efforts().end());
   condense(simulation, choice, all);
   write_blocks(simulation, state, controlled);
   world.hold_friction();
   linalg::AlignedNumbers effort;
   world.numbering().gather_efforts(all, effort);
-  step::Response response;
+  law::Response response;
   response.form(world.problem(), effort);
 
   // The response contains the controlled rows in the order of the actuators.
@@ -90,8 +91,9 @@ ControlledResponse respond(Simulation& simulation, const State& state,
 
 ControlledResponse controlled_response(Simulation& simulation, std::span<const int> controlled,
                                        const LinearisationChoice& choice) {
-  return query(simulation,
-               [&](const State& state) { return respond(simulation, state, controlled, choice); });
+  return query(simulation, [&](const run::State& state) {
+    return respond(simulation, state, controlled, choice);
+  });
 }
 
 }  // namespace sinew::sim

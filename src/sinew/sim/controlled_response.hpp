@@ -14,7 +14,7 @@ namespace sinew::sim {
 class Simulation;
 
 /// d delta = W d lambda_a for the efforts lambda_a of the controlled actuators, at one state: the
-/// condensed compliance of step::Response. Other actuators keep their commands (an effort is
+/// condensed compliance of law::Response. Other actuators keep their commands (an effort is
 /// constant, a motion is held, a drive follows its curve), contact points and cables at their
 /// guides continue to stick or slide, and joints hold.
 struct ControlledResponse {

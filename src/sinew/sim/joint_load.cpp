@@ -7,10 +7,10 @@
 #include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/joint.hpp"
 #include "sinew/constraint/tie.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/row_efforts.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/world/world.hpp"
 
 namespace sinew::sim {
 
@@ -52,7 +52,7 @@ double effort_of(const Simulation& simulation, int constraint) {
 }  // namespace
 
 JointLoad joint_load(const Simulation& simulation, int joint) {
-  const Model& model = simulation.model();
+  const model::Model& model = simulation.model();
   if (const constraint::Tie* tie = model.tie(joint)) return load_of(simulation, *tie);
   return load_of(simulation, *model.joint(joint));
 }
@@ -62,7 +62,7 @@ double joint_motion(const Simulation& simulation, int joint, std::size_t motion)
 }
 
 double joint_limit_effort(const Simulation& simulation, int joint, std::size_t motion) {
-  const JointModel& model = simulation.model().joints()[static_cast<std::size_t>(joint)];
+  const model::JointModel& model = simulation.model().joints()[static_cast<std::size_t>(joint)];
   return effort_of(simulation, model.motions.at(motion));
 }
 

@@ -10,17 +10,17 @@
 #include "sinew/constraint/constraint.hpp"
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/effector.hpp"
+#include "sinew/contact/row_numbering.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/law/followers.hpp"
 #include "sinew/linalg/dense_factor.hpp"
 #include "sinew/linalg/scratch.hpp"
 #include "sinew/mechanics/capabilities.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/query.hpp"
-#include "sinew/sim/row_numbering.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
-#include "sinew/sim/world.hpp"
-#include "sinew/step/followers.hpp"
+#include "sinew/world/world.hpp"
 
 namespace sinew::sim {
 
@@ -36,22 +36,22 @@ std::string direction_name(const Vector3& direction, int index) {
 // Rows of the problem without those of joints.
 struct FreeRows {
   std::vector<int> rows;
-  step::Followers joints;  // efforts of the joints in response to the other rows
+  law::Followers joints;  // efforts of the joints in response to the other rows
 };
 
 // Eliminates the rows of the joints.
-FreeRows take_joints_out(const step::StepProblem& problem, Linearisation& result) {
-  std::vector<step::HeldRow> held;
-  step::append_joints(problem, held);
+FreeRows take_joints_out(const law::StepProblem& problem, Linearisation& result) {
+  std::vector<law::HeldRow> held;
+  law::append_joints(problem, held);
   if (!held.empty()) {
-    const auto own = step::held_compliance(problem, held);
+    const auto own = law::held_compliance(problem, held);
     const int negative = linalg::spectral_inverse(own.matrix).negative;
-    result.negative_pivots = step::negative_directions(result.negative_pivots, negative, held);
+    result.negative_pivots = law::negative_directions(result.negative_pivots, negative, held);
   }
   FreeRows left;
-  step::Followers& joints = left.joints;
+  law::Followers& joints = left.joints;
   std::vector<char> is_joint(static_cast<std::size_t>(problem.delta.size()), 0);
-  for (const step::HeldRow& row : held) {
+  for (const law::HeldRow& row : held) {
     const double motion = row.compliance == 0.0 ? 0.0 : problem.delta[row.row];
     joints.add_held(row.row, motion, row.compliance);
     is_joint[static_cast<std::size_t>(row.row)] = 1;
@@ -78,7 +78,7 @@ FreeRows take_joints_out(const step::StepProblem& problem, Linearisation& result
 }
 
 // Names of all rows; those that joints hold have empty names.
-std::vector<std::string> all_names(const Model& model) {
+std::vector<std::string> all_names(const model::Model& model) {
   std::vector<std::string> names(static_cast<std::size_t>(model.rows().rows()));
   const auto name = [&](int row) -> std::string& { return names[static_cast<std::size_t>(row)]; };
   for (const auto& actuator : model.actuators()) name(actuator.row) = actuator.name;
@@ -109,7 +109,7 @@ std::vector<std::string> all_names(const Model& model) {
     const constraint::Constraint& motion = model.constraint(constraint);
     names[static_cast<std::size_t>(motion.first_row())] = motion.name() + suffix;
   };
-  for (const JointModel& joint : model.joints()) {
+  for (const model::JointModel& joint : model.joints()) {
     for (const int motion : joint.motions) name_motion(motion, "");
     name_motion(joint.brake, ".friction");
   }
@@ -118,7 +118,7 @@ std::vector<std::string> all_names(const Model& model) {
 
 }  // namespace
 
-std::vector<std::string> row_names(const Model& model) {
+std::vector<std::string> row_names(const model::Model& model) {
   std::vector<std::string> names = all_names(model);
   std::erase(names, "");
   return names;
@@ -129,12 +129,12 @@ namespace {
 // Present delta and effort of the rows; W and delta_free from the world's problem.
 // @param effort (rows,) N.
 FreeRows gather(Simulation& simulation, std::span<const double> effort, Linearisation& result) {
-  const Model& model = simulation.model();
-  World& world = simulation.world();
-  const step::StepProblem& problem = world.problem();
+  const model::Model& model = simulation.model();
+  world::World& world = simulation.world();
+  const law::StepProblem& problem = world.problem();
   result.compliance = problem.compliance;
   result.delta_free = problem.delta_free;
-  const RowNumbering& numbering = world.numbering();
+  const contact::RowNumbering& numbering = world.numbering();
   const std::vector<std::string> names = all_names(model);
   const auto count = result.delta_free.size();
   numbering.gather_motions(world.delta(), result.delta);
@@ -156,8 +156,8 @@ FreeRows gather(Simulation& simulation, std::span<const double> effort, Linearis
 }
 
 // A unit effort of one row, and the joint efforts that it causes.
-void unit_effort(const World& world, FreeRows& free, int row, std::vector<double>& effort) {
-  const step::StepProblem& problem = world.problem();
+void unit_effort(const world::World& world, FreeRows& free, int row, std::vector<double>& effort) {
+  const law::StepProblem& problem = world.problem();
   const auto rows = static_cast<std::size_t>(problem.delta_free.size());
   linalg::AlignedNumbers own(rows, 0.0);
   own[static_cast<std::size_t>(row)] = 1.0;
@@ -167,12 +167,12 @@ void unit_effort(const World& world, FreeRows& free, int row, std::vector<double
 }
 
 // Sets the targets of the joints to zero, so their efforts are linear in those of the other rows.
-void forget_motions(const World& world, FreeRows& free) {
-  const step::StepProblem& problem = world.problem();
-  std::vector<step::HeldRow> held;
-  step::append_joints(problem, held);
+void forget_motions(const world::World& world, FreeRows& free) {
+  const law::StepProblem& problem = world.problem();
+  std::vector<law::HeldRow> held;
+  law::append_joints(problem, held);
   free.joints.clear();
-  for (const step::HeldRow& row : held) free.joints.add_held(row.row, 0.0, row.compliance);
+  for (const law::HeldRow& row : held) free.joints.add_held(row.row, 0.0, row.compliance);
   const auto count = static_cast<Eigen::Index>(free.rows.size());
   MatrixX compliance(count, count);
   VectorX motion(count);
@@ -180,8 +180,8 @@ void forget_motions(const World& world, FreeRows& free) {
                        motion);
 }
 
-void find_fields(World& world, FreeRows& free, Linearisation& result) {
-  Bodies& bodies = world.bodies();
+void find_fields(world::World& world, FreeRows& free, Linearisation& result) {
+  world::Bodies& bodies = world.bodies();
   forget_motions(world, free);
   std::vector<double> effort(static_cast<std::size_t>(world.delta().size()), 0.0);
   VectorX without(static_cast<Eigen::Index>(bodies.size()));
@@ -206,13 +206,13 @@ void find_fields(World& world, FreeRows& free, Linearisation& result) {
 
 // Does not restore the simulation's state.
 Linearisation linearise_here(Simulation& simulation, const LinearisationChoice& choice) {
-  const Model& model = simulation.model();
+  const model::Model& model = simulation.model();
   const std::vector<int> geometric =
       choice.geometric_stiffness ? model.geometric_stiffness().all : std::vector<int>{};
   const auto weights =
       choice.of_statics ? mechanics::StepWeights{}
                         : mechanics::step_weights(model.step().integrator, model.step().time_step);
-  World& world = simulation.world();
+  world::World& world = simulation.world();
   std::vector<double> effort(simulation.efforts().begin(), simulation.efforts().end());
   if (choice.every_point) {
     world.begin_query(simulation.time());
@@ -236,7 +236,7 @@ Linearisation linearise_here(Simulation& simulation, const LinearisationChoice& 
 }  // namespace
 
 Linearisation linearise(Simulation& simulation, const LinearisationChoice& choice) {
-  return query(simulation, [&](const State&) { return linearise_here(simulation, choice); });
+  return query(simulation, [&](const run::State&) { return linearise_here(simulation, choice); });
 }
 
 Linearisation last_linearisation(Simulation& simulation) {

@@ -8,14 +8,17 @@
 #include "sinew/core/types.hpp"
 #include "sinew/mechanics/tangent.hpp"
 
+namespace sinew::model {
+class Model;
+}
+
 namespace sinew::sim {
 
-class Model;
 class Simulation;
 
 /// Names of all rows of H, without duplicates: "long_0", "long_0 point 2", "tip.x", "floor point 3
 /// normal". Rows that joints hold have no names.
-std::vector<std::string> row_names(const Model& model);
+std::vector<std::string> row_names(const model::Model& model);
 
 /// W and the related quantities at one state. Joints hold: their rows are eliminated.
 struct Linearisation {

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "sinew/mechanics/body_model.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::sim {
@@ -30,7 +30,7 @@ void Observables::sort() {
   std::vector<std::size_t> order(list_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return list_[k].kind; });
-  std::vector<Observable> list;
+  std::vector<run::Observable> list;
   std::vector<Entry> entries;
   list.reserve(order.size());
   entries.reserve(order.size());
@@ -42,9 +42,9 @@ void Observables::sort() {
   entries_ = std::move(entries);
 }
 
-void Observables::add(std::vector<Observable> parts, Fill fill) {
+void Observables::add(std::vector<run::Observable> parts, Fill fill) {
   std::size_t size = 0;
-  for (const Observable& part : parts) size += part.size();
+  for (const run::Observable& part : parts) size += part.size();
   add_view(std::move(parts),
            [numbers = std::vector<double>(size), fill = std::move(fill)]() mutable {
              fill(numbers);
@@ -52,13 +52,13 @@ void Observables::add(std::vector<Observable> parts, Fill fill) {
            });
 }
 
-void Observables::add_view(std::vector<Observable> parts, Read read) {
+void Observables::add_view(std::vector<run::Observable> parts, Read read) {
   sources_.push_back({std::move(read), {}, false});
   Entry entry{sources_.size() - 1, 0, {}};
-  for (Observable& part : parts) {
-    const auto behind = gathering_
-                            ? list_.end()
-                            : std::ranges::upper_bound(list_, part.kind, {}, &Observable::kind);
+  for (run::Observable& part : parts) {
+    const auto behind =
+        gathering_ ? list_.end()
+                   : std::ranges::upper_bound(list_, part.kind, {}, &run::Observable::kind);
     const auto at = behind - list_.begin();
     const std::size_t size = part.size();
     list_.insert(behind, std::move(part));
@@ -70,7 +70,7 @@ void Observables::add_view(std::vector<Observable> parts, Read read) {
 // The name with a link that is part of a body replaced by the body.
 std::string Observables::with_body(std::string_view name) const {
   for (const auto& [link, body] : simulation_->model().body_names()) {
-    if (body == kWorld || !name.starts_with(link + ".")) continue;
+    if (body == model::kWorld || !name.starts_with(link + ".")) continue;
     return simulation_->model().body(body).name() + std::string(name.substr(link.size()));
   }
   return std::string(name);
@@ -78,11 +78,11 @@ std::string Observables::with_body(std::string_view name) const {
 
 std::size_t Observables::find(std::string_view asked_name, const Location& asked) const {
   const std::string name = with_body(asked_name);
-  const auto found = std::ranges::find(list_, name, &Observable::name);
+  const auto found = std::ranges::find(list_, name, &run::Observable::name);
   if (found != list_.end()) return static_cast<std::size_t>(found - list_.begin());
   std::vector<std::string> known;
   known.reserve(list_.size());
-  for (const Observable& one : list_) known.push_back(one.name);
+  for (const run::Observable& one : list_) known.push_back(one.name);
   const std::string nearest = nearest_word(name, known);
   throw Error(ErrorKind::unknown_name, asked, fmt::format("there is no '{}' to observe", name),
               nearest.empty() ? fmt::format("one of {}", fmt::join(known, ", "))
@@ -118,23 +118,24 @@ void Observables::release() {
   for (Entry& entry : entries_) entry.held.clear();
 }
 
-double commanded(const Simulation& simulation, int actuator, CommandKind kind) {
-  const ActuatorState& state = simulation.actuator(actuator);
-  if (kind != (state.chosen ? CommandKind::effort : state.command.kind)) {
+double commanded(const Simulation& simulation, int actuator, model::CommandKind kind) {
+  const model::ActuatorState& state = simulation.actuator(actuator);
+  if (kind != (state.chosen ? model::CommandKind::effort : state.command.kind)) {
     return std::numeric_limits<double>::quiet_NaN();
   }
   return state.chosen ? state.effort : state.command.signal.value(simulation.time());
 }
 
-std::vector<CommandKind> command_kinds(const ActuatorModel& actuator) {
-  std::vector<CommandKind> kinds;
-  for (const CommandKind kind : {CommandKind::effort, CommandKind::motion, CommandKind::input}) {
+std::vector<model::CommandKind> command_kinds(const model::ActuatorModel& actuator) {
+  std::vector<model::CommandKind> kinds;
+  for (const model::CommandKind kind :
+       {model::CommandKind::effort, model::CommandKind::motion, model::CommandKind::input}) {
     if (actuator.kind_of(actuator.quantity(kind).name) == kind) kinds.push_back(kind);
   }
   return kinds;
 }
 
-std::string command_name(const ActuatorModel& actuator, CommandKind kind) {
+std::string command_name(const model::ActuatorModel& actuator, model::CommandKind kind) {
   return fmt::format("{}.{}_command", actuator.name, actuator.quantity(kind).name);
 }
 

@@ -11,14 +11,16 @@
 #include <vector>
 
 #include "sinew/core/error.hpp"
-#include "sinew/sim/observable.hpp"
-#include "sinew/step/drive.hpp"
+#include "sinew/law/drive.hpp"
+#include "sinew/run/observable.hpp"
+
+namespace sinew::model {
+struct ActuatorModel;
+}
 
 namespace sinew::sim {
 
-struct ActuatorModel;
 class Simulation;
-using step::CommandKind;
 
 /// The observables of one simulation and their values. Observables may share a reading, which is
 /// evaluated at most once per time, and only if one of them is read. Reading allocates nothing.
@@ -72,15 +74,15 @@ class Observables {
   Observables& operator=(Observables&&) noexcept = default;
 
   Simulation& simulation() const { return *simulation_; }
-  const std::vector<Observable>& list() const { return list_; }
+  const std::vector<run::Observable>& list() const { return list_; }
 
   /// Adds observables that share a reading, each after the last one of its kind; indices of later
   /// observables change.
   /// @param parts in the order in which `fill` writes them. @param fill writes their values.
-  void add(std::vector<Observable> parts, Fill fill);
+  void add(std::vector<run::Observable> parts, Fill fill);
   /// The same for values that are stored elsewhere. @param parts in the order of the values.
   /// @param read returns the stored values.
-  void add_view(std::vector<Observable> parts, Read read);
+  void add_view(std::vector<run::Observable> parts, Read read);
 
   /// Index of an observable in list(); if an actuator and a contact share a name, the first one. A
   /// link that is part of a body (Model::body_names()) stands for the body. Throws
@@ -119,7 +121,7 @@ class Observables {
 
   Simulation* simulation_;
   bool gathering_ = false;  // whether the list is sorted later
-  std::vector<Observable> list_;
+  std::vector<run::Observable> list_;
   std::vector<Entry> entries_;  // of each observable
   std::vector<Source> sources_;
 };
@@ -128,10 +130,10 @@ class Observables {
 /// while another quantity is commanded. For an actuator owned by a controller, the effort is the
 /// one chosen for the last step.
 /// @param simulation,actuator which. @param kind of the quantity.
-double commanded(const Simulation& simulation, int actuator, CommandKind kind);
+double commanded(const Simulation& simulation, int actuator, law::CommandKind kind);
 /// The kinds of commands that an actuator accepts; none for a passive spring.
-std::vector<CommandKind> command_kinds(const ActuatorModel& actuator);
+std::vector<law::CommandKind> command_kinds(const model::ActuatorModel& actuator);
 /// The name of the observable of a command: "long_0.displacement_command".
-std::string command_name(const ActuatorModel& actuator, CommandKind kind);
+std::string command_name(const model::ActuatorModel& actuator, law::CommandKind kind);
 
 }  // namespace sinew::sim

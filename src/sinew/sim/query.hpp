@@ -4,9 +4,9 @@
 
 #include <utility>
 
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/world/world.hpp"
 
 namespace sinew::sim {
 
@@ -15,8 +15,8 @@ namespace sinew::sim {
 /// State before the query. @return the result of `look`.
 template <class Look>
 auto query(Simulation& simulation, Look&& look) {
-  const State state = simulation.state();
-  World::Solved solved = simulation.world().keep_solved();
+  const run::State state = simulation.state();
+  world::World::Solved solved = simulation.world().keep_solved();
   const auto put_back = [&] {  // no destructor, since restore() may throw
     simulation.restore(state);
     simulation.world().put_back(std::move(solved));

@@ -12,8 +12,8 @@
 #include "sinew/linalg/dense.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/world/world.hpp"
 
 namespace sinew::sim {
 
@@ -26,7 +26,7 @@ constexpr double kDeforming = 1e-6;
 
 class BodyAtRest {
  public:
-  BodyAtRest(const std::shared_ptr<const Model>& model, int body)
+  BodyAtRest(const std::shared_ptr<const model::Model>& model, int body)
       : model_(*model),
         body_(body),
         pool_(1),
@@ -42,19 +42,19 @@ class BodyAtRest {
   }
 
   std::vector<RestField> solve() {
-    for (const LoadModel& load : model_.loads()) set(load, 0.0);
+    for (const model::LoadModel& load : model_.loads()) set(load, 0.0);
     world_.begin_query(0.0);
     world_.linearise(request_);
     world_.form_rows(effort_, {});
     const VectorX weight = imbalance();
     std::vector<std::pair<std::string, VectorX>> forces;
-    for (const ActuatorModel& actuator : model_.actuators()) {
+    for (const model::ActuatorModel& actuator : model_.actuators()) {
       double& effort = effort_[static_cast<std::size_t>(actuator.row)];
       effort = 1.0;
       forces.emplace_back(actuator.name, imbalance() - weight);
       effort = 0.0;
     }
-    for (const LoadModel& load : model_.loads()) {
+    for (const model::LoadModel& load : model_.loads()) {
       if (load.body != body_) continue;
       set(load, 1.0);
       system_.linearise(request_);
@@ -91,7 +91,7 @@ class BodyAtRest {
                                    kSteps * size * std::sqrt(density / modulus));
   }
 
-  void set(const LoadModel& load, double factor) {
+  void set(const model::LoadModel& load, double factor) {
     if (load.body != body_) return;
     for (const int number : load.numbers) {
       mechanics::as<mechanics::TakesLoads>(own_)->set_load_factor(number, factor);
@@ -133,10 +133,10 @@ class BodyAtRest {
     force -= heavy * linalg::solve_symmetric(rigid.transpose() * heavy, rigid.transpose() * force);
   }
 
-  const Model& model_;
+  const model::Model& model_;
   int body_;
   ThreadPool pool_;
-  World world_;
+  world::World world_;
   mechanics::Body& own_;
   mechanics::StepSystem& system_;
   const fem::HasElements& elements_;
@@ -147,7 +147,7 @@ class BodyAtRest {
 
 }  // namespace
 
-std::vector<RestField> rest_fields(const std::shared_ptr<const Model>& model, int body) {
+std::vector<RestField> rest_fields(const std::shared_ptr<const model::Model>& model, int body) {
   return BodyAtRest(model, body).solve();
 }
 

@@ -8,9 +8,11 @@
 
 #include "sinew/core/types.hpp"
 
-namespace sinew::sim {
-
+namespace sinew::model {
 class Model;
+}
+
+namespace sinew::sim {
 
 /// Displacements for a unit of one cause.
 struct RestField {
@@ -28,6 +30,6 @@ struct RestField {
 /// @param model,body with elements; its index.
 /// @return one field per cause, in the order above, without those that exert no force; empty if K
 ///   is not positive definite.
-std::vector<RestField> rest_fields(const std::shared_ptr<const Model>& model, int body);
+std::vector<RestField> rest_fields(const std::shared_ptr<const model::Model>& model, int body);
 
 }  // namespace sinew::sim

@@ -3,11 +3,11 @@
 #include <algorithm>
 
 #include "sinew/constraint/constraint.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/end_efforts.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/model/actuator.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/world/end_efforts.hpp"
+#include "sinew/world/world.hpp"
 
 namespace sinew::sim {
 
@@ -25,16 +25,17 @@ RowEfforts split_efforts(const Simulation& simulation) {
   const std::vector<double> all = end_efforts(simulation);
   const std::vector<double> none(all.size(), 0.0);
   RowEfforts result{none, none};
-  const Model& model = simulation.model();
+  const model::Model& model = simulation.model();
   const auto take = [&](int index, std::vector<double>& efforts) {
     const constraint::Constraint& constraint = model.constraint(index);
     const int row = constraint.first_row();
     std::copy_n(all.begin() + row, constraint.row_count(), efforts.begin() + row);
   };
-  for (const ActuatorModel& actuator : model.actuators()) {
+  for (const model::ActuatorModel& actuator : model.actuators()) {
     take(actuator.constraint, result.actuation);
   }
-  for (const ContactModel& contact : model.contacts()) take(contact.constraint, result.contact);
+  for (const model::ContactModel& contact : model.contacts())
+    take(contact.constraint, result.contact);
   return result;
 }
 

@@ -10,35 +10,35 @@
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/probe.hpp"
+#include "sinew/contact/contact_state.hpp"
 #include "sinew/core/axis_names.hpp"
 #include "sinew/core/rotation.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
-#include "sinew/sim/contact_reader.hpp"
-#include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/instruments.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/run/contact_reader.hpp"
+#include "sinew/run/instruments.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/joint_load.hpp"
-#include "sinew/sim/model.hpp"
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/row_efforts.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 namespace sinew::sim {
 
 namespace {
 
 // An observable of the whole robot.
-Observable number(ObservableKind kind, const char* name, const char* unit = "") {
+run::Observable number(run::ObservableKind kind, const char* name, const char* unit = "") {
   return {name, unit, {}, kind, {}, name, {name}, {}};
 }
 
 // Pose of a rigid body's frame, and velocity of its centre of mass.
 void add_pose(Observables& list, const std::string& name, const mechanics::HasPose& body) {
-  std::vector<Observable> parts;
+  std::vector<run::Observable> parts;
   const auto add = [&](const char* quantity, const char* unit, std::string_view axes) {
-    parts.push_back(observable_of(ObservableKind::body, name, quantity, unit, {axes.size()}));
+    parts.push_back(observable_of(run::ObservableKind::body, name, quantity, unit, {axes.size()}));
     for (const char axis : axes) {
       parts.back().components.push_back(fmt::format("{}.{}_{}", name, quantity, axis));
     }
@@ -48,7 +48,7 @@ void add_pose(Observables& list, const std::string& name, const mechanics::HasPo
   add("velocity", "m/s", "xyz");
   add("angular_velocity", "rad/s", "xyz");
   list.add(std::move(parts), [&body](std::span<double> all) {
-    Numbers to(all);
+    run::Numbers to(all);
     to.put(body.origin());
     for (const double part : unit_quaternion(body.axes())) to.put(part);
     to.put(body.linear_velocity());
@@ -65,11 +65,12 @@ void add_bodies(Observables& list) {
     const std::vector<std::size_t> shape = {static_cast<std::size_t>(body.positions().rows()), 3};
     const auto add = [&](const char* quantity, const char* unit, auto numbers,
                          const std::vector<std::size_t>& extent) {
-      list.add_view(
-          {observable_of(ObservableKind::body, name, quantity, unit, extent)}, [&body, numbers] {
-            const auto& array = numbers(body);
-            return std::span<const double>(array.data(), static_cast<std::size_t>(array.size()));
-          });
+      list.add_view({observable_of(run::ObservableKind::body, name, quantity, unit, extent)},
+                    [&body, numbers] {
+                      const auto& array = numbers(body);
+                      return std::span<const double>(array.data(),
+                                                     static_cast<std::size_t>(array.size()));
+                    });
     };
     add(
         "positions", "m", [](const mechanics::Body& b) -> const Points& { return b.positions(); },
@@ -99,48 +100,50 @@ void add_actuators(Observables& list) {
   const Simulation& simulation = list.simulation();
   const auto& actuators = simulation.model().actuators();
   for (std::size_t i = 0; i < actuators.size(); ++i) {
-    const ActuatorModel& actuator = actuators[i];
-    std::vector<Observable> parts;
-    const auto add = [&](const QuantityName& quantity, const char* suffix, const char* role) {
-      parts.push_back(observable_of(ObservableKind::actuator, actuator.name,
+    const model::ActuatorModel& actuator = actuators[i];
+    std::vector<run::Observable> parts;
+    const auto add = [&](const model::QuantityName& quantity, const char* suffix,
+                         const char* role) {
+      parts.push_back(observable_of(run::ObservableKind::actuator, actuator.name,
                                     fmt::format("{}{}", quantity.name, suffix), quantity.unit));
       parts.back().quantity = fmt::format("{}{}", role, suffix);
     };
-    const auto role = [](CommandKind kind) {
-      return kind == CommandKind::effort   ? "effort"
-             : kind == CommandKind::motion ? "motion"
-                                           : "input";
+    const auto role = [](model::CommandKind kind) {
+      return kind == model::CommandKind::effort   ? "effort"
+             : kind == model::CommandKind::motion ? "motion"
+                                                  : "input";
     };
-    add(actuator.words().effort, "", role(CommandKind::effort));
-    add(actuator.words().motion, "", role(CommandKind::motion));
-    const std::vector<CommandKind> kinds = command_kinds(actuator);
-    for (const CommandKind kind : kinds) add(actuator.quantity(kind), "_command", role(kind));
+    add(actuator.words().effort, "", role(model::CommandKind::effort));
+    add(actuator.words().motion, "", role(model::CommandKind::motion));
+    const std::vector<model::CommandKind> kinds = command_kinds(actuator);
+    for (const model::CommandKind kind : kinds)
+      add(actuator.quantity(kind), "_command", role(kind));
     list.add(std::move(parts), [&simulation, kinds, i, row = actuator.row](std::span<double> all) {
-      Numbers to(all);
+      run::Numbers to(all);
       const auto index = static_cast<int>(i);
       to.put(end_effort(simulation, row));
       to.put(simulation.actuator(index).motion);
-      for (const CommandKind kind : kinds) to.put(commanded(simulation, index, kind));
+      for (const model::CommandKind kind : kinds) to.put(commanded(simulation, index, kind));
     });
   }
 }
 
 void add_effectors(Observables& list) {
   const Simulation& simulation = list.simulation();
-  const Model& model = simulation.model();
+  const model::Model& model = simulation.model();
   for (std::size_t i = 0; i < model.effectors().size(); ++i) {
     const auto index = static_cast<int>(i);
     const std::string& name = model.effectors()[i].name;
     const constraint::Effector& effector = model.effector(index);
     const bool turns = effector.kind() == constraint::EffectorKind::orientation;
-    Observable one = observable_of(ObservableKind::effector, name, turns ? "rotation" : "position",
-                                   effector.unit(), {3});
+    run::Observable one = observable_of(run::ObservableKind::effector, name,
+                                        turns ? "rotation" : "position", effector.unit(), {3});
     one.quantity = "position";
     for (const char* axis : kAxisNames) {
       one.components.push_back(fmt::format("{}.{}{}", name, turns ? "r" : "", axis));
     }
     list.add({std::move(one)}, [&simulation, index](std::span<double> to) {
-      Numbers(to).put(simulation.effector_value(index));
+      run::Numbers(to).put(simulation.effector_value(index));
     });
   }
 }
@@ -153,8 +156,8 @@ void add_probes(Observables& list) {
     const std::size_t first = line ? 1 : numbers.size();
     const auto part = [&](const char* quantity, std::vector<std::size_t> shape, std::size_t from,
                           std::size_t to) {
-      Observable one = observable_of(ObservableKind::probe, probe.name(), quantity,
-                                     numbers[from].unit, std::move(shape));
+      run::Observable one = observable_of(run::ObservableKind::probe, probe.name(), quantity,
+                                          numbers[from].unit, std::move(shape));
       one.components.clear();
       for (std::size_t k = from; k < to; ++k) {
         const std::string& own = numbers[k].name;
@@ -163,7 +166,7 @@ void add_probes(Observables& list) {
       }
       return one;
     };
-    std::vector<Observable> parts;
+    std::vector<run::Observable> parts;
     parts.push_back(part("value",
                          first == 1 ? std::vector<std::size_t>{} : std::vector<std::size_t>{first},
                          0, first));
@@ -178,18 +181,18 @@ void put_contact(const Simulation& simulation, int index, std::span<double> all)
   const std::size_t n = simulation.model().contact(index).size();
   using Pose = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
   const auto part = [&all](std::size_t size) {
-    Numbers numbers(all.first(size));
+    run::Numbers numbers(all.first(size));
     all = all.subspan(size);
     return numbers;
   };
   const Eigen::Isometry3d pose = simulation.contacts().pose(index);
   Eigen::Map<Pose>(all.data()) = pose.affine();
   part(12);
-  Numbers position = part(3 * n), gap = part(n), normal = part(3 * n), normal_force = part(n),
-          friction_force = part(3 * n), state = part(n), sums = part(9);
-  ContactResultant resultant;
+  run::Numbers position = part(3 * n), gap = part(n), normal = part(3 * n), normal_force = part(n),
+               friction_force = part(3 * n), state = part(n), sums = part(9);
+  contact::ContactResultant resultant;
   for (std::size_t k = 0; k < n; ++k) {
-    const ContactPoint point = simulation.contacts().point(index, k, pose);
+    const contact::ContactPoint point = simulation.contacts().point(index, k, pose);
     position.put(point.position);
     gap.put(point.gap);
     normal.put(point.normal);
@@ -201,7 +204,7 @@ void put_contact(const Simulation& simulation, int index, std::span<double> all)
   sums.put(resultant.force);
   sums.put(resultant.normal_force);
   sums.put(resultant.friction_force);
-  const ContactGap whole = simulation.contacts().gap(index, resultant);
+  const contact::ContactGap whole = simulation.contacts().gap(index, resultant);
   sums.put(whole.value);
   sums.put(whole.above);
   sums.put(resultant.sticking);
@@ -210,20 +213,20 @@ void put_contact(const Simulation& simulation, int index, std::span<double> all)
 
 void add_contacts(Observables& list) {
   const Simulation& simulation = list.simulation();
-  const Model& model = simulation.model();
+  const model::Model& model = simulation.model();
   for (std::size_t c = 0; c < model.contacts().size(); ++c) {
     const auto index = static_cast<int>(c);
     const std::string& name = model.contacts()[c].name;
     const std::size_t n = model.contact(index).size();
-    std::vector<Observable> parts;
+    std::vector<run::Observable> parts;
     const auto add_point = [&](const char* quantity, const char* unit,
                                std::vector<std::size_t> shape) {
-      parts.push_back(
-          observable_of(ObservableKind::contact_point, name, quantity, unit, std::move(shape)));
+      parts.push_back(observable_of(run::ObservableKind::contact_point, name, quantity, unit,
+                                    std::move(shape)));
       parts.back().name = fmt::format("{}.points.{}", name, quantity);
     };
     const auto add_sum = [&](const char* quantity, const char* unit) {
-      parts.push_back(observable_of(ObservableKind::contact, name, quantity, unit));
+      parts.push_back(observable_of(run::ObservableKind::contact, name, quantity, unit));
     };
     add_point("pose", "1, m", {3, 4});
     parts.back().name = name + ".pose";
@@ -256,28 +259,28 @@ void add_contacts(Observables& list) {
 
 void add_joints(Observables& list) {
   const Simulation& simulation = list.simulation();
-  const Model& model = simulation.model();
+  const model::Model& model = simulation.model();
   for (std::size_t j = 0; j < model.joints().size(); ++j) {
-    const JointModel& joint = model.joints()[j];
+    const model::JointModel& joint = model.joints()[j];
     const std::string& name = joint.name;
-    std::vector<Observable> parts;
+    std::vector<run::Observable> parts;
     const auto add_vector = [&](const char* quantity, const char* unit) {
-      parts.push_back(observable_of(ObservableKind::joint, name, quantity, unit, {3}));
+      parts.push_back(observable_of(run::ObservableKind::joint, name, quantity, unit, {3}));
       for (const char* axis : kAxisNames) {
         parts.back().components.push_back(fmt::format("{}.{}_{}", name, quantity, axis));
       }
     };
     add_vector("force", "N");
     add_vector("moment", "N m");
-    parts.push_back(observable_of(ObservableKind::joint, name, "gap", "m"));
+    parts.push_back(observable_of(run::ObservableKind::joint, name, "gap", "m"));
     if (joint.motions[0] >= 0)
-      parts.push_back(observable_of(ObservableKind::joint, name, "angle", "rad"));
+      parts.push_back(observable_of(run::ObservableKind::joint, name, "angle", "rad"));
     if (joint.motions[1] >= 0)
-      parts.push_back(observable_of(ObservableKind::joint, name, "displacement", "m"));
+      parts.push_back(observable_of(run::ObservableKind::joint, name, "displacement", "m"));
     list.add(std::move(parts), [&simulation, &joint, j](std::span<double> all) {
       const auto index = static_cast<int>(j);
       const JointLoad load = joint_load(simulation, index);
-      Numbers to(all);
+      run::Numbers to(all);
       to.put(load.force);
       to.put(load.moment);
       to.put(load.gap);
@@ -290,7 +293,7 @@ void add_joints(Observables& list) {
 
 void add_instruments(Observables& list) {
   for (const auto& instrument : list.simulation().instruments().all()) {
-    for (Reading& reading : instrument->readings()) {
+    for (run::Reading& reading : instrument->readings()) {
       list.add(std::move(reading.parts), std::move(reading.fill));
     }
   }
@@ -303,7 +306,7 @@ class Ledger {
   explicit Ledger(Simulation& simulation) : simulation_(simulation) {}
 
   void operator()(std::span<double> all) {
-    Numbers to(all);
+    run::Numbers to(all);
     const mechanics::Energies energies = simulation_.energies();
     const Balance now{energies.total(), simulation_.ledger().actuators,
                       simulation_.ledger().outside, simulation_.ledger().dissipated};
@@ -326,12 +329,12 @@ class Ledger {
 };
 
 void add_energies(Observables& list) {
-  std::vector<Observable> parts;
+  std::vector<run::Observable> parts;
   for (const char* name : {"strain_energy", "kinetic_energy", "gravity_energy"}) {
-    parts.push_back(number(ObservableKind::energy, name, "J"));
+    parts.push_back(number(run::ObservableKind::energy, name, "J"));
   }
   for (const char* name : {"actuator_work", "outside_work", "dissipation", "numerical_loss"}) {
-    parts.push_back(number(ObservableKind::ledger, name, "J"));
+    parts.push_back(number(run::ObservableKind::ledger, name, "J"));
   }
   list.add(std::move(parts), Ledger(list.simulation()));
 }
@@ -340,41 +343,46 @@ constexpr int kStart = -1;  // the status before any step
 
 // The words of a step's status by the number that stands for them in recordings, so that recordings
 // of older versions keep their meaning.
-constexpr std::array kStatusByCode = {
-    StepStatus::solved,        StepStatus::limits_conflict,    StepStatus::command_not_reached,
-    StepStatus::cut_back,      StepStatus::not_in_equilibrium, StepStatus::gaining_energy,
-    StepStatus::after_failure, StepStatus::cavitates,          StepStatus::unphysical};
-static_assert(kStatusByCode.size() == static_cast<std::size_t>(kLastStepStatus) + 1);
+constexpr std::array kStatusByCode = {run::StepStatus::solved,
+                                      run::StepStatus::limits_conflict,
+                                      run::StepStatus::command_not_reached,
+                                      run::StepStatus::cut_back,
+                                      run::StepStatus::not_in_equilibrium,
+                                      run::StepStatus::gaining_energy,
+                                      run::StepStatus::after_failure,
+                                      run::StepStatus::cavitates,
+                                      run::StepStatus::unphysical};
+static_assert(kStatusByCode.size() == static_cast<std::size_t>(run::kLastStepStatus) + 1);
 
-int code_of(StepStatus status) {
+int code_of(run::StepStatus status) {
   return static_cast<int>(std::ranges::find(kStatusByCode, status) - kStatusByCode.begin());
 }
 
 void add_report(Observables& list) {
   const Simulation& simulation = list.simulation();
-  std::vector<Observable> parts = {number(ObservableKind::report, "residual", "N"),
-                                   number(ObservableKind::report, "relative_residual"),
-                                   number(ObservableKind::report, "distance", "m")};
+  std::vector<run::Observable> parts = {number(run::ObservableKind::report, "residual", "N"),
+                                        number(run::ObservableKind::report, "relative_residual"),
+                                        number(run::ObservableKind::report, "distance", "m")};
   for (const char* name : {"iterations", "substeps", "scale", "smallest_volume_ratio", "snapped"}) {
-    parts.push_back(number(ObservableKind::report, name));
+    parts.push_back(number(run::ObservableKind::report, name));
   }
   const bool touches = !simulation.model().contacts().empty();
   if (touches) {
-    parts.push_back(number(ObservableKind::report, "contact_residual"));
-    parts.push_back(number(ObservableKind::report, "contact_signorini", "m"));
-    parts.push_back(number(ObservableKind::report, "contact_coulomb", "m"));
+    parts.push_back(number(run::ObservableKind::report, "contact_residual"));
+    parts.push_back(number(run::ObservableKind::report, "contact_signorini", "m"));
+    parts.push_back(number(run::ObservableKind::report, "contact_coulomb", "m"));
   }
   const bool zones = std::ranges::any_of(
       simulation.model().contacts(), [](const auto& contact) { return contact.aggregate > 0.0; });
-  if (zones) parts.push_back(number(ObservableKind::report, "contact_aggregation"));
-  parts.push_back(number(ObservableKind::status, "status"));
+  if (zones) parts.push_back(number(run::ObservableKind::report, "contact_aggregation"));
+  parts.push_back(number(run::ObservableKind::status, "status"));
   parts.back().words = {{kStart, "start"}};
-  for (const StepStatus status : kStatusByCode) {
+  for (const run::StepStatus status : kStatusByCode) {
     parts.back().words.push_back({code_of(status), step_status_name(status)});
   }
   list.add(std::move(parts), [&simulation, touches, zones](std::span<double> all) {
-    const StepReport& report = simulation.report();
-    Numbers to(all);
+    const run::StepReport& report = simulation.report();
+    run::Numbers to(all);
     to.put(report.residual);
     to.put(report.relative_residual);
     to.put(report.distance);
@@ -395,13 +403,14 @@ void add_report(Observables& list) {
 
 void add_timing(Observables& list) {
   const Simulation& simulation = list.simulation();
-  std::vector<Observable> parts = {observable_of(ObservableKind::timing, "time", "step", "s")};
-  for (const char* stage : kStageNames) {
-    parts.push_back(observable_of(ObservableKind::timing, "time", stage, "s"));
+  std::vector<run::Observable> parts = {
+      observable_of(run::ObservableKind::timing, "time", "step", "s")};
+  for (const char* stage : world::kStageNames) {
+    parts.push_back(observable_of(run::ObservableKind::timing, "time", stage, "s"));
   }
   list.add(std::move(parts), [&simulation](std::span<double> all) {
-    const StageTimes& times = simulation.report().times;
-    Numbers to(all);
+    const world::StageTimes& times = simulation.report().times;
+    run::Numbers to(all);
     to.put(times.total);
     for (const double seconds : times.seconds) to.put(seconds);
   });
@@ -411,7 +420,7 @@ void add_timing(Observables& list) {
 
 void list_standard_observables(Observables& list) {
   const Simulation& simulation = list.simulation();
-  list.add({number(ObservableKind::time, "time", "s")},
+  list.add({number(run::ObservableKind::time, "time", "s")},
            [&simulation](std::span<double> to) { to[0] = simulation.time(); });
   add_bodies(list);
   add_actuators(list);

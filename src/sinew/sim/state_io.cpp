@@ -13,10 +13,10 @@
 #include "sinew/core/error.hpp"
 #include "sinew/core/file.hpp"
 #include "sinew/core/state_hash.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/sim/model_parts.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/model/model_parts.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/state.hpp"
 
 namespace sinew::sim {
 
@@ -143,7 +143,7 @@ class Reader {
 
 struct SavedState {
   StateHeader header;
-  State state;
+  run::State state;
 };
 
 SavedState read(std::string_view bytes, const std::string& name) {
@@ -178,7 +178,7 @@ SavedState read(std::string_view bytes, const std::string& name) {
     part.hash = reader.word();
     part.name = reader.text();
   }
-  State& state = saved.state;
+  run::State& state = saved.state;
   state.steps = saved.header.steps;
   state.bodies.resize(reader.count());
   const std::uint32_t from = saved.header.version;
@@ -186,7 +186,7 @@ SavedState read(std::string_view bytes, const std::string& name) {
                            : from >= kEstimators ? 2
                            : from >= kSensors    ? 1
                                                  : 0);
-  State::visit(state, [&](std::string_view part, auto& numbers) {
+  run::State::visit(state, [&](std::string_view part, auto& numbers) {
     if (!lacks(saved.header.version, part)) reader.number(numbers);
   });
   std::erase_if(state.instruments, [](const auto& memory) { return memory.empty(); });
@@ -201,7 +201,7 @@ std::string format_state(const Simulation& simulation) {
   return format_state(simulation.state(), simulation.model());
 }
 
-std::string format_state(const State& state, const Model& model) {
+std::string format_state(const run::State& state, const model::Model& model) {
   Writer writer;
   writer.append(kMagic.data(), kMagic.size());
   const std::uint32_t version[2] = {kStateVersion, 0};
@@ -215,7 +215,7 @@ std::string format_state(const State& state, const Model& model) {
   }
   writer.word(state.bodies.size());
   writer.word(state.instruments.size());
-  State::visit(state, [&](std::string_view, const auto& numbers) { writer.number(numbers); });
+  run::State::visit(state, [&](std::string_view, const auto& numbers) { writer.number(numbers); });
   return writer.finish();
 }
 
@@ -225,19 +225,19 @@ StateHeader read_state_header(std::string_view bytes, const std::string& name) {
   return read(bytes, name).header;
 }
 
-State read_state(std::string_view bytes, const Model& model, const std::string& name) {
+run::State read_state(std::string_view bytes, const model::Model& model, const std::string& name) {
   SavedState saved = read(bytes, name);
   if (saved.header.fingerprint != model.fingerprint()) {
     throw Error(ErrorKind::state_mismatch, {.file = name},
                 "the state is of another robot, which differs in: " +
-                    describe_difference(saved.header.parts, model.parts()),
+                    model::describe_difference(saved.header.parts, model.parts()),
                 "load it into a simulation of the scene that it was saved from");
   }
   return std::move(saved.state);
 }
 
 void parse_state(Simulation& simulation, std::string_view bytes, const std::string& name) {
-  const State state = read_state(bytes, simulation.model(), name);
+  const run::State state = read_state(bytes, simulation.model(), name);
   try {
     simulation.restore(state);
   } catch (const Error& error) {

@@ -10,11 +10,17 @@
 
 #include "sinew/core/named_hash.hpp"
 
+namespace sinew::model {
+class Model;
+}
+
+namespace sinew::run {
+struct State;
+}
+
 namespace sinew::sim {
 
-class Model;
 class Simulation;
-struct State;
 
 /// Version of the layout. A file consists of little-endian words of 8 bytes: "SINEWST\n"; format
 /// version (uint32) and 4 zero bytes; the model's fingerprint (uint64); step count (int64); the
@@ -46,14 +52,14 @@ StateHeader read_state_header(std::string_view bytes, const std::string& name);
 bool is_state(std::string_view bytes);
 
 /// Formats a state of a model as bytes.
-std::string format_state(const State& state, const Model& model);
+std::string format_state(const run::State& state, const model::Model& model);
 /// Formats the present state as bytes.
 std::string format_state(const Simulation& simulation);
 
 /// Parses a state for simulations of a model.
 /// @param bytes the whole file. @param model must be the one that was saved.
 /// @param name of the file, for messages. Throws as parse_state() does.
-State read_state(std::string_view bytes, const Model& model, const std::string& name);
+run::State read_state(std::string_view bytes, const model::Model& model, const std::string& name);
 
 /// Restores a state, after which the run continues bit for bit as it would have. Solver settings
 /// (tolerances, tangent, factorisation) may differ from those of the saved run; the simulation's

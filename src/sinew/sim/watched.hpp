@@ -4,8 +4,8 @@
 
 #include <utility>
 
+#include "sinew/run/step_progress.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/step_progress.hpp"
 
 namespace sinew::sim {
 
@@ -13,7 +13,7 @@ namespace sinew::sim {
 class Watched {
  public:
   /// @param simulation must outlive it. @param watcher see Simulation::watch().
-  Watched(Simulation& simulation, StepWatcher watcher) : simulation_(simulation) {
+  Watched(Simulation& simulation, run::StepWatcher watcher) : simulation_(simulation) {
     simulation_.watch(std::move(watcher));
   }
   ~Watched() { simulation_.watch({}); }

@@ -1,0 +1,90 @@
+/// @file
+/// Settings for add_sensor().
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "sinew/builder/probe_settings.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/mesh/embedding.hpp"
+#include "sinew/mesh/topology.hpp"
+#include "sinew/sense/channel.hpp"
+#include "sinew/sense/sensor_set.hpp"
+
+namespace sinew::sense {
+
+/// Rotation since rest, angular velocity or specific force, of the frame through three points or of
+/// the rigid section in which one point lies.
+struct SensorMotion {
+  enum class What { orientation, gyroscope, accelerometer };
+  What what = What::orientation;
+  int body = 0;
+  Points points = Points(0, 3);       ///< (3, 3) or (1, 3) m
+  Vector3 gravity = Vector3::Zero();  ///< m/s^2
+};
+
+/// A quantity of an actuator.
+struct SensorDrive {
+  enum class What { cable_length, cable_tension, pressure, volume, flow, motor_current };
+  What what = What::cable_length;
+  std::string actuator;
+  double motor_constant = 0.0;  ///< for motor_current: N m/A, or N/A
+  bool turns = true;            ///< for motor_current: whether the constant refers to a torque
+  double radius = 0.0;          ///< for motor_current of a cable: radius of the drum, m; 0: none
+};
+
+/// A sensor along a polyline of a body at rest.
+struct SensorLine {
+  enum class What { stretch, resistance, attenuation };
+  What what = What::stretch;
+  builder::ProbeLine line;
+  double gauge_factor = 0.0;                          ///< for resistance
+  double resistance = 0.0;                            ///< for resistance: ohm, at rest
+  double loss_per_length = 0.0, loss_per_turn = 0.0;  ///< for attenuation: dB/m, dB/rad
+};
+
+/// Curvature at given positions along a polyline.
+struct SensorCurvature {
+  int body = 0;
+  Points corners;              ///< (n, 3) m, n >= 2
+  std::vector<double> places;  ///< m along the line at rest
+  double gauge = 0.0;          ///< m, length over which it is measured; 0: a tenth of the line
+  std::optional<Vector3> about;
+};
+
+/// Capacitance between two electrodes.
+struct SensorCapacitance {
+  struct Electrode {
+    int body = 0;
+    std::vector<mesh::Face> faces;
+  };
+  std::array<Electrode, 2> electrodes;
+  double relative_permittivity = 1.0;
+};
+
+/// Normal force of contacts.
+struct SensorContact {
+  std::vector<std::string> contacts;  ///< one or more
+  int body = -1;                      ///< of the patch; -1: the first body of the first contact
+  std::vector<NodeId> patch;          ///< of its mesh; empty: no restriction
+  std::optional<double> threshold;    ///< N, for a switch
+};
+
+struct SensorSettings {
+  std::string name;
+  Location place, rate_place;
+  std::string kind;  ///< name of its type
+  mesh::Outside outside = mesh::Outside::error;
+  ChannelSettings channel;  ///< the stream is replaced by a hash of the sensor's name
+  std::shared_ptr<const SensorRecord> record;
+  std::variant<builder::ProbeSpot, SensorMotion, SensorDrive, SensorLine, SensorCurvature,
+               SensorCapacitance, SensorContact>
+      what;
+};
+
+}  // namespace sinew::sense
