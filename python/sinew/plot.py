@@ -11,7 +11,10 @@ import re
 import sys
 import warnings
 
-from .plot_style import COLOURS, DASHES, DATA, LEGEND_ROWS, OURS, QUIET, SECOND, SHOWN, pyplot, save
+if __package__:
+    from .plot_style import COLOURS, DASHES, DATA, LEGEND_ROWS, OURS, QUIET, SECOND, SHOWN, pyplot, save
+else:  # the program runs this file by its path: plots do not need the compiled package
+    from plot_style import COLOURS, DASHES, DATA, LEGEND_ROWS, OURS, QUIET, SECOND, SHOWN, pyplot, save
 
 
 def read_run(folder, table="run.csv") -> dict[str, list[float]]:
