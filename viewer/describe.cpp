@@ -67,29 +67,28 @@ Ends motion_ends(const model::Model& model, int index) {
     return {-0.5 * volume, volume};
   }
   const double far = kFarPull * model.size();
-  const auto type = model.actuators()[static_cast<std::size_t>(index)].type;
-  if (type == model::ActuatorType::torque || type == model::ActuatorType::motor) {
-    return {-kFarBend, kFarBend};
-  }
-  return {type == model::ActuatorType::cable ? 0.0 : -far, far};
+  const model::ActuatorKind& kind = *model.actuators()[static_cast<std::size_t>(index)].kind;
+  if (kind.turns()) return {-kFarBend, kFarBend};
+  return {kind.pulls_only ? 0.0 : -far, far};
 }
 
-Ends effort_ends(const model::ActuatorModel& actuator) {
-  if (actuator.type == model::ActuatorType::chamber) return {-kStrongPressure, kStrongPressure};
-  if (actuator.type == model::ActuatorType::torque || actuator.type == model::ActuatorType::motor) {
-    return {-kStrongTorque, kStrongTorque};
-  }
-  return {actuator.type == model::ActuatorType::cable ? 0.0 : -kStrongPull, kStrongPull};
+Ends effort_ends(const model::ActuatorKind& kind) {
+  if (kind.swells()) return {-kStrongPressure, kStrongPressure};
+  if (kind.turns()) return {-kStrongTorque, kStrongTorque};
+  return {kind.pulls_only ? 0.0 : -kStrongPull, kStrongPull};
 }
 
 Ends input_ends(const model::Model& model, int index) {
   const model::ActuatorModel& actuator = model.actuators()[static_cast<std::size_t>(index)];
-  if (actuator.type == model::ActuatorType::motor) return {-kFastTurn, kFastTurn};
-  if (actuator.type == model::ActuatorType::linear_motor) return {-model.size(), model.size()};
+  if (actuator.joint >= 0) {
+    const double fast = actuator.kind->turns() ? kFastTurn : model.size();
+    return {-fast, fast};
+  }
   const std::string_view name = actuator.input_name().name;
   if (name == "power") return {0.0, kStrongPower};
   if (name == "phase") return {0.0, 1.0};
-  const double volume = std::abs(model.chamber(index)->rest_volume());
+  const auto* chamber = model.chamber(index);
+  const double volume = chamber != nullptr ? std::abs(chamber->rest_volume()) : 1.0;
   return {-0.5 * volume, 2.0 * volume};
 }
 
@@ -99,10 +98,10 @@ Json quantities_json(const model::Model& model, int index) {
   Json quantities = Json::array();
   if (actuator.controllable()) {
     const auto [low, high] = motion_ends(model, index);
-    quantities.push_back(quantity_json(actuator.words().motion, actuator.motion, low, high));
-    const auto [least, most] = effort_ends(actuator);
+    quantities.push_back(quantity_json(actuator.kind->motion, actuator.motion, low, high));
+    const auto [least, most] = effort_ends(*actuator.kind);
     quantities.push_back(quantity_json(
-        actuator.words().effort, actuator.effort_limits(model::CommandKind::motion), least, most));
+        actuator.kind->effort, actuator.effort_limits(model::CommandKind::motion), least, most));
     if (actuator.command.kind == model::CommandKind::effort) {
       std::swap(quantities[0], quantities[1]);
     }
@@ -123,7 +122,7 @@ Json actuator_json(const model::Model& model, const scene::Robot& robot, int ind
   // Number of points in frames, including guide points added between those in the scene.
   const auto points = static_cast<std::size_t>(wire ? model.cable(index)->via_count() + 2 : 0);
   return {{"name", actuator.name},
-          {"type", actuator.words().type},
+          {"type", actuator.kind->word},
           {"body", description.body},
           {"quantities", quantities_json(model, index)},
           {"points", points}};

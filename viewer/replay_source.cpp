@@ -13,6 +13,7 @@
 
 #include "sinew/core/whole.hpp"
 #include "sinew/record/run_layout.hpp"
+#include "sinew/scene/body_kind.hpp"
 #include "sinew/scene/scene.hpp"
 
 #include "recording.hpp"
@@ -45,8 +46,7 @@ bool is_needed(const run::Observable& observable) {
 // keep the linear tetrahedra that the file has.
 void keep_linear_elements(const record::RunFile& file, scene::SceneDescription& description) {
   for (scene::BodyDescription& body : description.bodies) {
-    const bool is_default = body.element == scene::Element::any && !body.arm && !body.rigid &&
-                            !body.urdf &&
+    const bool is_default = body.element == scene::Element::any && body.kind->has_elements &&
                             std::ranges::find(file.bodies(), body.name) != file.bodies().end();
     if (!is_default) continue;
     const mesh::Mesh mesh = file.rest_mesh(body.name);

@@ -140,7 +140,7 @@ void RobotState::command(const SetCommand& command) {
   const std::optional<model::CommandKind> kind = actuator.kind_of(command.quantity);
   if (!kind) {
     throw Error(ErrorKind::wrong_actuator_type, {.item = command.actuator},
-                fmt::format("a {} is not commanded by {}", actuator.words().type, command.quantity),
+                fmt::format("a {} is not commanded by {}", actuator.kind->word, command.quantity),
                 "use one of the actuator's quantities");
   }
   const model::Limits limits = *kind == model::CommandKind::motion   ? actuator.motion

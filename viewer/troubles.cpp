@@ -36,16 +36,16 @@ void add_limits(const model::ActuatorModel& model, const model::ActuatorState& s
   const bool most = state.effort > 0.0 && at(state.effort, model.effort.max, 1e-3);
   if (most) {
     list.push_back(trouble("warning", "effort-limit", model.name,
-                           fmt::format("{} is at its limit, {:.3g} {}", model.words().effort.name,
-                                       model.effort.max, model.words().effort.unit)));
+                           fmt::format("{} is at its limit, {:.3g} {}", model.kind->effort.name,
+                                       model.effort.max, model.kind->effort.unit)));
   }
   const double travel = state.motion * model.motion_scale;
   const bool far = at(travel, model.motion.max * model.motion_scale, 1e-4) ||
                    at(travel, model.motion.min * model.motion_scale, 1e-4);
   if (far && state.motion != 0.0) {
     list.push_back(trouble("warning", "motion-limit", model.name,
-                           fmt::format("{} is at its limit, {:.3g} {}", model.words().motion.name,
-                                       state.motion, model.words().motion.unit)));
+                           fmt::format("{} is at its limit, {:.3g} {}", model.kind->motion.name,
+                                       state.motion, model.kind->motion.unit)));
   }
   // A cable without command, or the antagonist of a pulled cable, may be slack.
   if (state.slack && state.command.signal.value(time) != 0.0) {

@@ -9,6 +9,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/pcc/arm.hpp"
+#include "sinew/scene/actuator_kind.hpp"
 #include "sinew/scene/build.hpp"
 
 #include "command_line.hpp"
@@ -25,7 +26,7 @@ const BodyDescription& choose(const SceneDescription& scene, const std::string& 
   std::vector<std::string> names, arms;
   for (const BodyDescription& body : scene.bodies) {
     names.push_back(body.name);
-    if (body.arm) arms.push_back(body.name);
+    if (body.as<pcc::ArmSettings>() != nullptr) arms.push_back(body.name);
   }
   if (arms.empty()) {
     throw Error(ErrorKind::wrong_type, {.item = "bodies"},
@@ -46,7 +47,7 @@ const BodyDescription& choose(const SceneDescription& scene, const std::string& 
                 near.empty() ? fmt::format("its arms are {}", fmt::join(arms, ", "))
                              : fmt::format("did you mean '{}'?", near));
   }
-  if (!found->arm) {
+  if (found->as<pcc::ArmSettings>() == nullptr) {
     throw Error(ErrorKind::wrong_type, {.item = "--body"},
                 fmt::format("body '{}' is not an arm of type pcc", wanted),
                 fmt::format("name one of {}", fmt::join(arms, ", ")));
@@ -58,7 +59,7 @@ std::vector<const ActuatorDescription*> torques_on(const SceneDescription& scene
                                                    const std::string& body) {
   std::vector<const ActuatorDescription*> torques;
   for (const ActuatorDescription& actuator : scene.actuators) {
-    if (actuator.body == body && actuator.type == ActuatorDescription::Type::torque) {
+    if (actuator.body == body && actuator.as<builder::TorqueSettings>() != nullptr) {
       torques.push_back(&actuator);
     }
   }
@@ -69,9 +70,8 @@ std::vector<std::string> left_out(const SceneDescription& scene, const std::stri
                                   bool takes_contacts) {
   std::vector<std::string> names;
   for (const ActuatorDescription& actuator : scene.actuators) {
-    if (actuator.body != body || actuator.type == ActuatorDescription::Type::torque) continue;
-    names.push_back(
-        fmt::format("{} '{}'", model::actuator_words(actuator.type).type, actuator.name));
+    if (actuator.body != body || actuator.as<builder::TorqueSettings>() != nullptr) continue;
+    names.push_back(fmt::format("{} '{}'", actuator.kind->word(), actuator.name));
   }
   for (const auto& joint : scene.joints) {
     if (joint.first != body && joint.second != body) continue;
@@ -100,7 +100,7 @@ void take_inputs(ArmScene& scene, pcc::ArmSettings settings,
   scene.angle_upper = scene.rate = VectorX::Constant(n, kInfinity);
   for (Eigen::Index u = 0; u < inputs; ++u) {
     const ActuatorDescription& actuator = *torques[static_cast<std::size_t>(u)];
-    const auto& torque = std::get<builder::TorqueSettings>(actuator.own);
+    const auto& torque = *actuator.as<builder::TorqueSettings>();
     const Eigen::Index bend = plain.first(torque.segment) + static_cast<int>(torque.towards);
     settings.actuation(bend, u) = 1.0;
     scene.inputs.push_back(actuator.name);
@@ -122,7 +122,7 @@ ArmScene load_arm_scene(const ArmSceneOptions& options) {
   result.description = scene::load(options.file, options.overrides).description;
   try {
     const BodyDescription& body = choose(result.description, options.body);
-    pcc::ArmSettings settings = *body.arm;
+    pcc::ArmSettings settings = *body.as<pcc::ArmSettings>();
     settings.gravity = result.description.gravity;
     take_inputs(result, std::move(settings), torques_on(result.description, body.name));
     result.left_out = left_out(result.description, body.name, options.takes_contacts);

@@ -140,10 +140,10 @@ nlohmann::ordered_json to_json(const Samples& samples, Session& session, int war
       {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
       {"tangent", mechanics::tangent_name(model.step().tangent)}};
   for (const auto& body : model.bodies()) {
-    const mesh::Mesh& mesh = body.mesh();
+    const mesh::Mesh* mesh = body.has_mesh() ? &body.mesh() : nullptr;
     json["bodies"].push_back({{"name", body.name()},
-                              {"nodes", mesh.node_count()},
-                              {"tetrahedra", mesh.tetrahedra.size()}});
+                              {"nodes", mesh != nullptr ? mesh->node_count() : 0},
+                              {"tetrahedra", mesh != nullptr ? mesh->tetrahedra.size() : 0}});
   }
   for (std::size_t s = 0; s < samples.stages.size(); ++s) {
     json["stages"][stage_name(s)] = {{"median_us", 1e6 * quantile(samples.stages[s], 0.5)},

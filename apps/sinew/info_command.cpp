@@ -225,7 +225,7 @@ Facts scene_facts(const InfoOptions& options) {
   for (std::size_t a = 0; a < model.actuators().size(); ++a) {
     const model::ActuatorModel& actuator = model.actuators()[a];
     const constraint::Cable* cable = model.cable(static_cast<int>(a));
-    ordered_json entry = {{"name", actuator.name}, {"type", actuator.words().type}};
+    ordered_json entry = {{"name", actuator.name}, {"type", actuator.kind->word}};
     const constraint::Chamber* chamber = model.chamber(static_cast<int>(a));
     std::string size;
     if (cable != nullptr) {
@@ -240,7 +240,7 @@ Facts scene_facts(const InfoOptions& options) {
                          chamber->faces().size());
     }
     facts.json["actuators"].push_back(entry);
-    facts.text += fmt::format("  {} {}{}\n", actuator.words().type, actuator.name, size);
+    facts.text += fmt::format("  {} {}{}\n", actuator.kind->word, actuator.name, size);
   }
   for (const model::MassModel& mass : model.masses()) {
     const std::string& body = model.body(mass.body).name();

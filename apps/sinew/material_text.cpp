@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "sinew/scene/body_kind.hpp"
 #include "sinew/scene/description.hpp"
 
 namespace sinew::cli {
@@ -35,7 +36,7 @@ void add_laws(nlohmann::ordered_json& json, std::string& text, const scene::Body
         "  material of {}: {}, E = {:.4g} kPa at small strain, tested stretch {}, error {}\n", name,
         law.name, 1e-3 * modulus, tested_text(law), error_text(law));
   };
-  if (body.arm || body.rigid || body.urdf) return;
+  if (!body.kind->has_elements) return;
   add(body.name, body.material);
   for (const scene::PartDescription& part : body.parts) {
     add(body.name + "." + part.name, part.material);

@@ -74,11 +74,11 @@ void Batch::command(const std::string& quantity, const Rows& values, std::span<c
       if (!kind) {
         throw Error(ErrorKind::wrong_actuator_type, {.item = "Batch.command(quantity)"},
                     fmt::format("'{}' is a {}, which takes no {}", actuators[k].name,
-                                actuators[k].words().type, quantity),
-                    fmt::format("it takes {} and {}", actuators[k].words().effort.name,
-                                actuators[k].words().motion.name));
+                                actuators[k].kind->word, quantity),
+                    fmt::format("it takes {} and {}", actuators[k].kind->effort.name,
+                                actuators[k].kind->motion.name));
       }
-      if (actuators[k].type == model::ActuatorType::cable && quantity == "tension" && value < 0.0) {
+      if (actuators[k].kind->pulls_only && *kind == model::CommandKind::effort && value < 0.0) {
         throw Error(ErrorKind::out_of_range, {.item = "Batch.command(values)"},
                     fmt::format("a tension of {:g} N of '{}' would push", value, actuators[k].name),
                     "give zero or more; a cable can only pull");

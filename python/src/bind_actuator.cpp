@@ -21,7 +21,6 @@ namespace sinew::python {
 
 namespace {
 
-using model::ActuatorType;
 using model::CommandKind;
 
 const model::ActuatorModel& model(const Actuator& self) {
@@ -34,12 +33,12 @@ std::string place(const Actuator& self, const char* what) {
 
 [[noreturn]] void fail_type(const Actuator& self, const char* what) {
   const model::ActuatorModel& own = model(self);
-  std::string has = fmt::format(".{} and .{}", own.words().effort.name, own.words().motion.name);
+  std::string has = fmt::format(".{} and .{}", own.kind->effort.name, own.kind->motion.name);
   if (own.drive != nullptr && *own.drive->input().name != '\0') {
     has += fmt::format(" and .{}", own.drive->input().name);
   }
   throw Error(ErrorKind::wrong_actuator_type, {.item = place(self, what)},
-              fmt::format("'{}' is a {}, which has no {}", own.name, own.words().type, what),
+              fmt::format("'{}' is a {}, which has no {}", own.name, own.kind->word, what),
               fmt::format("it has {}", has));
 }
 
@@ -66,7 +65,7 @@ void tell(const Actuator& self, const char* what, const py::object& value) {
   if (!kind) fail_type(self, what);
   const model::Signal signal =
       to_signal(value, place(self, what), model(self).quantity(*kind).unit);
-  const bool pushes = model(self).type == ActuatorType::cable && *kind == CommandKind::effort &&
+  const bool pushes = model(self).kind->pulls_only && *kind == CommandKind::effort &&
                       signal.is_constant() && signal.value(0.0) < 0.0;
   if (pushes) {
     throw Error(ErrorKind::out_of_range, {.item = place(self, what)},
@@ -81,13 +80,13 @@ void tell(const Actuator& self, const char* what, const py::object& value) {
 }
 
 double effort(const Actuator& self, const char* what) {
-  if (std::string_view(model(self).words().effort.name) != what) fail_type(self, what);
+  if (std::string_view(model(self).kind->effort.name) != what) fail_type(self, what);
   const Session::Use use(*self.session);
   return sim::end_effort(self.session->simulation(), model(self).row);
 }
 
 double motion(const Actuator& self, const char* what) {
-  if (std::string_view(model(self).words().motion.name) != what) fail_type(self, what);
+  if (std::string_view(model(self).kind->motion.name) != what) fail_type(self, what);
   return read(self, [](const model::ActuatorState& state) { return state.motion; });
 }
 
@@ -134,8 +133,8 @@ py::tuple command(const Actuator& self) {
 
 py::dict limits(const Actuator& self) {
   py::dict result;
-  result[model(self).words().effort.name] = py::cast(model(self).effort);
-  result[model(self).words().motion.name] = py::cast(model(self).motion);
+  result[model(self).kind->effort.name] = py::cast(model(self).effort);
+  result[model(self).kind->motion.name] = py::cast(model(self).motion);
   return result;
 }
 
@@ -163,6 +162,39 @@ void bind_quantity(py::class_<Actuator>& type, const char* name, Get get, const 
   type.def_property(
       name, [name, get](const Actuator& self) { return get(self, name); },
       [name](const Actuator& self, const py::object& value) { tell(self, name, value); }, text);
+}
+
+/// The conjugate quantities that every kind of actuator has, under whichever names.
+void bind_conjugates(py::class_<Actuator>& type) {
+  type.def_property(
+          "effort",
+          [](const Actuator& self) { return effort(self, model(self).kind->effort.name); },
+          [](const Actuator& self, const py::object& value) {
+            tell(self, model(self).kind->effort.name, value);
+          },
+          "float: effort of an actuator of any type: tension, force (N), pressure (Pa) or torque "
+          "(N "
+          "m). Assignment sets the command, as for `displacement`.")
+      .def_property(
+          "motion",
+          [](const Actuator& self) { return motion(self, model(self).kind->motion.name); },
+          [](const Actuator& self, const py::object& value) {
+            tell(self, model(self).kind->motion.name, value);
+          },
+          "float: motion of an actuator of any type: displacement (m), growth of volume (m^3) or "
+          "angle (rad). Assignment sets the command, as for `displacement`. Effort times motion is "
+          "work.")
+      .def_property_readonly(
+          "quantities",
+          [](const Actuator& self) {
+            const model::ActuatorKind& kind = *model(self).kind;
+            py::dict units;
+            units[kind.effort.name] = kind.effort.unit;
+            units[kind.motion.name] = kind.motion.unit;
+            return units;
+          },
+          "dict: name and unit of the effort, then of the motion: {'tension': 'N', 'displacement': "
+          "'m'}.");
 }
 
 void bind_commands(py::class_<Actuator>& type) {
@@ -296,12 +328,12 @@ void bind_actuator(py::module_& module) {
   type.def_property_readonly(
           "name", [](const Actuator& self) { return model(self).name; }, "str: name in the scene.")
       .def_property_readonly(
-          "type", [](const Actuator& self) { return model(self).words().type; },
+          "type", [](const Actuator& self) { return model(self).kind->word; },
           "str: 'cable', 'force', 'chamber', 'spring', 'torque', 'motor' or 'linear-motor'.")
       .def("__repr__", [](const Actuator& self) {
-        return fmt::format("<sinew.Actuator '{}', a {}>", model(self).name,
-                           model(self).words().type);
+        return fmt::format("<sinew.Actuator '{}', a {}>", model(self).name, model(self).kind->word);
       });
+  bind_conjugates(type);
   bind_commands(type);
   bind_measures(type);
 }

@@ -115,6 +115,7 @@ parallel.)");
   bind_simulation_state(type);
   bind_simulation_reports(type);
   bind_simulation_linearisation(type);
+  bind_simulation_linear_model(type);
   bind_simulation_response(type);
   bind_control(type);
   bind_contact_problem(module, type);

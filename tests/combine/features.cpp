@@ -7,6 +7,7 @@
 
 #include "sinew/scene/grammar.hpp"
 
+#include "../toys/scene_kinds.hpp"
 #include "random.hpp"
 
 namespace sinew::combine {
@@ -51,12 +52,15 @@ const std::vector<Form>& items(std::string_view section) {
   return form_of(scene::grammar(), section, Shape::names).items;
 }
 
-const KeyTable& variant_table(std::string_view section, std::string_view word) {
-  for (const scene::Choice& choice : variants(items(section), "type").choices) {
-    if (choice.word == word) return *choice.table;
-  }
-  throw std::logic_error("the grammar has no " + std::string(section) + " of type " +
-                         std::string(word));
+// The registered kinds of a section that this generator does not know. It writes them from the
+// examples of their keys.
+std::vector<std::string> other_kinds(std::string_view section,
+                                     const std::vector<std::string>& known) {
+  std::vector<std::string> kinds = words(variants(items(section), "type"));
+  std::erase_if(kinds, [&](const std::string& kind) {
+    return std::ranges::find(known, kind) != known.end();
+  });
+  return kinds;
 }
 
 // The alternatives of `key`, including itself.
@@ -174,6 +178,9 @@ std::vector<Feature> list_features() {
       {"estimator", {"none", "force", "effort", "stiffness"}},
       {"equilibrium", or_none(words(solver, "equilibrium"))},
       {"ambient", switched},
+      {"other_body", or_none(other_kinds("bodies", {"fem", "pcc", "rigid", "urdf"}))},
+      {"other_actuator", or_none(other_kinds("actuators", {"cable", "force", "torque", "motor",
+                                                           "linear-motor", "chamber", "spring"}))},
   };
 }
 
@@ -285,8 +292,16 @@ class OpenPairs {
 
 }  // namespace
 
+const KeyTable& variant_table(std::string_view section, std::string_view word) {
+  for (const scene::Choice& choice : variants(items(section), "type").choices) {
+    if (choice.word == word) return *choice.table;
+  }
+  throw std::logic_error("the grammar has no " + std::string(section) + " of type " +
+                         std::string(word));
+}
+
 const std::vector<Feature>& features() {
-  static const std::vector<Feature> all = list_features();
+  static const std::vector<Feature> all = (testing::register_toys(), list_features());
   return all;
 }
 

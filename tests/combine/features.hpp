@@ -8,6 +8,10 @@
 #include <string_view>
 #include <vector>
 
+namespace sinew::scene {
+struct KeyTable;
+}
+
 namespace sinew::combine {
 
 /// A feature of scenes. Its levels are the forms it can take, or "none".
@@ -18,6 +22,10 @@ struct Feature {
 
 /// All features; built at the first call.
 const std::vector<Feature>& features();
+
+/// The keys of the kind with a word in a section such as "bodies". Throws std::logic_error if there
+/// is none.
+const scene::KeyTable& variant_table(std::string_view section, std::string_view word);
 
 /// A level of each feature, (features,).
 using Selection = std::vector<int>;

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "sinew/scene/grammar.hpp"
+
 #include "random.hpp"
 
 namespace sinew::combine {
@@ -124,6 +126,8 @@ class Drafter {
     add_membrane();
     add_contact();
     add_loads_of_rigid_bodies();
+    add_other_body();
+    add_other_actuator();
     add_effector();
     add_probe();
     add_sensor();
@@ -497,6 +501,56 @@ class Drafter {
                     on.id, vector_text(on.shape.at(0.9, 0.0, 0.0)), within("1 0 1", "1 1 0"),
                     told));
     steerable_.push_back({"push", on.id});
+  }
+
+  // The keys that a kind requires, with the values of their examples. @param body to which the key
+  // `body` refers. @param place of the first key that is a place; receives it, if it is not empty.
+  std::string example_of(const char* section, const std::string& kind, const std::string& body,
+                         std::string* place) const {
+    std::string text = "type: " + kind;
+    for (const scene::Key& key : variant_table(section, kind).keys) {
+      if (!key.required) continue;
+      const scene::Form& form = key.forms.front();
+      const bool is_body = form.shape == scene::Shape::reference && form.refers_to == "bodies";
+      text += fmt::format(", {}: {}", key.name, is_body ? "<" + body + ">" : key.example);
+      const bool is_place = form.shape == scene::Shape::quantity && form.max_count == 3;
+      if (is_place && place != nullptr && place->empty()) *place = key.example;
+    }
+    return text;
+  }
+
+  // A body of a kind that only the registry knows, pushed and observed, half a millimetre above a
+  // floor.
+  void add_other_body() {
+    if (!has("other_body")) return;
+    std::string place;
+    add("bodies", "other", "{" + example_of("bodies", of("other_body"), "", &place) + "}");
+    if (place.empty()) unknown("other_body", of("other_body"));
+    add("actuators", "nudge",
+        fmt::format("{{type: force, body: <other>, point: {}, direction: 1 0 -2, outside: nearest, "
+                    "command: {{force: {}}}, limits: {{force: {{min: -1 N, max: 1 N}}}}}}",
+                    place, signal(draw(0.02, 0.1), "N")));
+    steerable_.push_back({"nudge", "other"});
+    add("effectors", "other_place",
+        fmt::format("{{body: <other>, point: {}, outside: nearest}}", place));
+    add("contacts", "other_floor",
+        fmt::format("{{body: <other>, points: [{0}], surface: {{plane: {{point: {0}, normal: 0 0 "
+                    "1}}}}, outside: nearest{1}}}",
+                    place, has("contact_friction") ? ", friction: 0.5" : ""));
+  }
+
+  // An actuator of a kind that only the registry knows, with a command in the unit of its effort.
+  void add_other_actuator() {
+    if (!has("other_actuator")) return;
+    const std::string id = has("other_body") ? "other" : some_body().id;
+    const scene::KeyTable& keys = variant_table("actuators", of("other_actuator"));
+    const scene::KeyTable& command = *form_of(keys, "command", scene::Shape::table).table;
+    const scene::Key& effort = command.keys[1];  // after the motion, see drive_keys()
+    add("actuators", "drive",
+        fmt::format("{{{}, command: {{{}: {:.3g} {}}}}}",
+                    example_of("actuators", of("other_actuator"), id, nullptr), effort.name,
+                    draw(0.02, 0.1), effort.forms.front().unit));
+    steerable_.push_back({"drive", id});
   }
 
   void add_torque() {
@@ -896,7 +950,8 @@ SceneDraft draft_scene(const Selection& selection, std::uint64_t seed) {
 SceneDraft draft_symmetric_scene(Selection selection, std::uint64_t seed) {
   set_level(selection, "bodies", "fem");
   set_level(selection, "mesh", seed % 2 == 0 ? "block" : "ribbed-finger");
-  for (const char* one : {"chamber", "link", "controller", "estimator", "contact_zones"}) {
+  for (const char* one : {"chamber", "link", "controller", "estimator", "contact_zones",
+                          "other_body", "other_actuator"}) {
     set_level(selection, one, "none");
   }
   if (level(selection, "element") == "tet4-patch") set_level(selection, "element", "tet10");

@@ -409,7 +409,7 @@ std::string find_asymmetry(const sim::Simulation& simulation) {
   }
   std::optional<double> first;
   for (std::size_t i = 0; i < simulation.model().actuators().size(); ++i) {
-    if (simulation.model().actuators()[i].type != model::ActuatorType::cable) continue;
+    if (!simulation.model().actuators()[i].kind->pulls_only) continue;
     const double tension = simulation.actuator(static_cast<int>(i)).effort;
     if (!first) first = tension;
     if (std::abs(tension - *first) <= kForceSymmetry * std::abs(*first)) continue;

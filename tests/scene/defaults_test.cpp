@@ -116,13 +116,13 @@ class Dump {
     add(sensor.permittivity, sensor.threshold, sensor.electrodes[0].angle);
   }
   void add_actuator(const ActuatorDescription& actuator) {
-    if (const auto* cable = std::get_if<CableDescription>(&actuator.own)) {
+    if (const auto* cable = actuator.as<CableDescription>()) {
       const builder::CableSettings& settings = cable->settings;
       add(settings.outside, settings.pull_from_world, settings.geometric_stiffness);
       add(settings.friction, settings.guide_radius, settings.guide_spacing);
       add_limits(settings.tension, settings.displacement);
     } else {
-      const auto& force = std::get<builder::ForceSettings>(actuator.own);
+      const auto& force = *actuator.as<builder::ForceSettings>();
       add(force.outside);
       add_limits(force.force, force.displacement);
     }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/mesh/embedding.hpp"
+#include "sinew/scene/actuator_kind.hpp"
 
 #include "scene_fixture.hpp"
 
@@ -46,9 +47,9 @@ TEST(Scene, TheDocumentedExampleParsesAsWritten) {
   ASSERT_EQ(scene.actuators.size(), 1u);
   const ActuatorDescription& actuator = scene.actuators[0];
   EXPECT_EQ(actuator.name, "long_0");
-  EXPECT_EQ(actuator.type, ActuatorDescription::Type::cable);
+  EXPECT_EQ(actuator.kind, &cable_kind());
   EXPECT_EQ(actuator.body, "trunk");
-  const auto& cable = std::get<CableDescription>(actuator.own).settings;
+  const auto& cable = actuator.as<CableDescription>()[0].settings;
   ASSERT_EQ(cable.points.rows(), 3);
   EXPECT_LT((cable.points.row(2) - Vector3(0, 0.011, 0.027).transpose()).norm(), 1e-15);
   EXPECT_EQ(cable.point_places[1].line, 2);
@@ -207,7 +208,7 @@ TEST(Scene, TablesHaveUnitsInTheirHeadings) {
     EXPECT_DOUBLE_EQ(scene.actuators[0].command.signal.value(0.5), 0.005) << pull;
     EXPECT_LT((scene.controllers[0].tasks[0].target.at(1.0) - Vector3(0.005, 0, 0.19)).norm(),
               1e-15);
-    const auto& cable = std::get<CableDescription>(scene.actuators[0].own);
+    const auto& cable = *scene.actuators[0].as<CableDescription>();
     EXPECT_LT((cable.settings.points.row(1) - Eigen::RowVector3d(0, 0.01, 0.021)).norm(), 1e-15);
   }
 }
@@ -246,8 +247,8 @@ TEST(Scene, ForceActuatorsAreRead) {
         "{min: -1 N}}, command: {force: 0.5 N}}\neffectors:\n"}});
   ASSERT_EQ(scene.actuators.size(), 2u);
   const ActuatorDescription& actuator = scene.actuators[1];
-  EXPECT_EQ(actuator.type, ActuatorDescription::Type::force);
-  const auto& force = std::get<builder::ForceSettings>(actuator.own);
+  EXPECT_EQ(actuator.kind, &force_kind());
+  const auto& force = *actuator.as<builder::ForceSettings>();
   EXPECT_EQ(force.direction, Vector3::UnitX().eval());
   EXPECT_EQ(force.force.min, -1.0);
   EXPECT_EQ(actuator.command.signal.value(0), 0.5);

@@ -127,12 +127,12 @@ class Robot:
     @property
     def efforts(self) -> np.ndarray:
         """(actuators,) N, Pa or N m."""
-        return np.array([getattr(a, name) for a, name in zip(self.actuators.values(), self._effort_names)])
+        return np.array([actuator.effort for actuator in self.actuators.values()])
 
     @property
     def motions(self) -> np.ndarray:
         """(actuators,) m, m^3 or rad."""
-        return np.array([getattr(a, name) for a, name in zip(self.actuators.values(), self._motion_names)])
+        return np.array([actuator.motion for actuator in self.actuators.values()])
 
     @property
     def slack(self) -> np.ndarray:

@@ -31,9 +31,13 @@ int add_actuator(model::ModelData& data, model::ActuatorModel actuator,
                  std::unique_ptr<constraint::Constraint> constraint, Location place) {
   model::check_new_name(data.actuators, &model::ActuatorModel::name, "actuators", actuator.name,
                         place);
+  if (actuator.kind == nullptr) {
+    throw Error(ErrorKind::internal, place, "an actuator without a kind",
+                "set ActuatorModel::kind");
+  }
   if (place.item.empty()) place.item = "actuator '" + actuator.name + "'";
-  check_limits(actuator.effort, actuator.words().effort.name, place);
-  check_limits(actuator.motion, actuator.words().motion.name, place);
+  check_limits(actuator.effort, actuator.kind->effort.name, place);
+  check_limits(actuator.motion, actuator.kind->motion.name, place);
   if (actuator.drive) {
     actuator.first_state = data.drive_states;
     data.drive_states += actuator.drive->state_size();

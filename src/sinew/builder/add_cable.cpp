@@ -67,8 +67,8 @@ int add_cable(model::ModelData& data, const CableSettings& settings) {
                                     .guide_radius = settings.guide_radius});
     const int vias = friction ? cable->via_count() : 0;
     const int index = add_actuator(data,
-                                   {settings.name, model::ActuatorType::cable, -1, -1,
-                                    settings.tension, settings.displacement, settings.command},
+                                   {settings.name, &kCableKind, -1, -1, settings.tension,
+                                    settings.displacement, settings.command},
                                    std::move(cable), settings.place);
     const model::ActuatorModel& actuator = data.actuators.back();
     for (int via = 0; via < vias; ++via) {

@@ -81,13 +81,9 @@ int add_chamber(model::ModelData& data, const ChamberSettings& settings) {
                   "give one of them");
     }
     auto chamber = attach_surface(data, settings);
-    model::ActuatorModel actuator{settings.name,
-                                  model::ActuatorType::chamber,
-                                  -1,
-                                  -1,
-                                  settings.pressure,
-                                  settings.volume_growth,
-                                  settings.command};
+    model::ActuatorModel actuator{
+        settings.name,          &kChamberKind,   -1, -1, settings.pressure,
+        settings.volume_growth, settings.command};
     actuator.motion_scale = 1.0 / chamber->rest_area();
     actuator.drive = drive_of(settings, chamber->rest_volume());
     actuator.vacuum = -ambient_pressure(settings);

@@ -22,8 +22,8 @@ int add_force(model::ModelData& data, const ForceSettings& settings) {
         settings.name, mechanics::MaterialPoint{settings.body, point}, settings.direction,
         on.rest_position(point));
     return add_actuator(data,
-                        {settings.name, model::ActuatorType::force, -1, -1, settings.force,
-                         settings.displacement, settings.command},
+                        {settings.name, &kForceKind, -1, -1, settings.force, settings.displacement,
+                         settings.command},
                         std::move(force), settings.place);
   } catch (const Error& error) {
     throw error.at(settings.place);

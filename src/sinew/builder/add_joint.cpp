@@ -159,8 +159,7 @@ int add_motor(model::ModelData& data, const MotorSettings& settings) {
                 turns ? "a motor moves a hinge; a linear-motor moves a slider"
                       : "a linear-motor moves a slider; a motor moves a hinge");
   }
-  model::ActuatorModel motor{
-      settings.name, turns ? model::ActuatorType::motor : model::ActuatorType::linear_motor};
+  model::ActuatorModel motor{settings.name, turns ? &kMotorKind : &kLinearMotorKind};
   motor.effort = settings.effort;
   motor.motion = settings.motion;
   motor.command = settings.command;

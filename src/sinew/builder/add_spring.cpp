@@ -26,8 +26,7 @@ int add_spring(model::ModelData& data, const SpringLineSettings& settings) {
                                             std::vector<int>(count, settings.body)},
                                    .from_world = settings.pull_from_world,
                                    .outside = settings.outside});
-    model::ActuatorModel actuator{settings.name,   model::ActuatorType::spring, -1, -1, {}, {},
-                                  settings.command};
+    model::ActuatorModel actuator{settings.name, &kSpringKind, -1, -1, {}, {}, settings.command};
     const double length = line->rest_length();
     std::visit(
         [&](auto spring) {

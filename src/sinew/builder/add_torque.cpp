@@ -5,6 +5,7 @@
 
 #include "sinew/builder/add_parts.hpp"
 #include "sinew/builder/find_body.hpp"
+#include "sinew/builder/force_settings.hpp"
 #include "sinew/builder/torque_settings.hpp"
 #include "sinew/constraint/coordinate_force.hpp"
 #include "sinew/core/error.hpp"
@@ -51,11 +52,10 @@ int add_torque(model::ModelData& data, const TorqueSettings& settings) {
     const int site = bends->attach_coordinate(coordinate_of(settings, bends->arm(), on.name()));
     auto torque = std::make_unique<constraint::CoordinateForce>(
         settings.name, mechanics::Coordinate{{settings.body, site}});
-    const auto type = settings.towards == TorqueSettings::Towards::along
-                          ? model::ActuatorType::force
-                          : model::ActuatorType::torque;
+    const model::ActuatorKind& kind =
+        settings.towards == TorqueSettings::Towards::along ? kForceKind : kTorqueKind;
     return add_actuator(
-        data, {settings.name, type, -1, -1, settings.torque, settings.angle, settings.command},
+        data, {settings.name, &kind, -1, -1, settings.torque, settings.angle, settings.command},
         std::move(torque), settings.place);
   } catch (const Error& error) {
     throw error.at(settings.place);

@@ -118,9 +118,7 @@ class Holding {
       if (contact.body() == index || contact.other_body() == index) return true;
     }
     return std::ranges::any_of(data_.actuators, [&](const model::ActuatorModel& actuator) {
-      const bool line = actuator.type == model::ActuatorType::cable ||
-                        actuator.type == model::ActuatorType::spring;
-      return line && acts_on(data_.constraint(actuator.constraint), body, part);
+      return actuator.kind->is_line && acts_on(data_.constraint(actuator.constraint), body, part);
     });
   }
 

@@ -12,6 +12,14 @@
 
 namespace sinew::builder {
 
+/// The kind of cables.
+inline constexpr model::ActuatorKind kCableKind{.word = "cable",
+                                                .effort = {"tension", "N"},
+                                                .motion = {"displacement", "m"},
+                                                .pulls_only = true,
+                                                .is_line = true,
+                                                .number = 0};
+
 /// A cable through points given by rest positions.
 struct CableSettings {
   std::string name;

@@ -15,6 +15,15 @@
 
 namespace sinew::builder {
 
+/// The kind of chambers.
+inline constexpr model::ActuatorKind kChamberKind{
+    .word = "chamber",
+    .effort = {"pressure", "Pa"},
+    .motion = {"volume_growth", "m^3"},
+    .inputs = {model::GasDrive::kInput, model::LiquidDrive::kInput},
+    .regulates_effort = true,
+    .number = 2};
+
 /// A chamber of a body, filled with a fluid under pressure.
 struct ChamberSettings {
   std::string name;

@@ -11,6 +11,10 @@
 
 namespace sinew::builder {
 
+/// The kind of forces.
+inline constexpr model::ActuatorKind kForceKind{
+    .word = "force", .effort = {"force", "N"}, .motion = {"displacement", "m"}, .number = 1};
+
 /// A force along a fixed direction on a point.
 struct ForceSettings {
   std::string name;

@@ -9,6 +9,18 @@
 
 namespace sinew::builder {
 
+/// The kinds of motors of hinges and of sliders.
+inline constexpr model::ActuatorKind kMotorKind{.word = "motor",
+                                                .effort = {"torque", "N m"},
+                                                .motion = {"angle", "rad"},
+                                                .inputs = {{{"velocity", "rad/s"}}},
+                                                .number = 5};
+inline constexpr model::ActuatorKind kLinearMotorKind{.word = "linear-motor",
+                                                      .effort = {"force", "N"},
+                                                      .motion = {"displacement", "m"},
+                                                      .inputs = {{{"velocity", "m/s"}}},
+                                                      .number = 6};
+
 /// A motor of a hinge or slider.
 struct MotorSettings {
   std::string name;

@@ -14,6 +14,15 @@
 
 namespace sinew::builder {
 
+/// The kind of springs and shape-memory springs.
+inline constexpr model::ActuatorKind kSpringKind{
+    .word = "spring",
+    .effort = {"tension", "N"},
+    .motion = {"displacement", "m"},
+    .inputs = {model::SmaDrive::kPower, model::SmaDrive::kPhase},
+    .is_line = true,
+    .number = 3};
+
 /// A spring, a tendon, or a shape-memory spring.
 struct SpringLineSettings {
   std::string name;

@@ -9,6 +9,10 @@
 
 namespace sinew::builder {
 
+/// The kind of torques on segments of arms.
+inline constexpr model::ActuatorKind kTorqueKind{
+    .word = "torque", .effort = {"torque", "N m"}, .motion = {"angle", "rad"}, .number = 4};
+
 /// A torque on a segment of a constant-curvature arm.
 struct TorqueSettings {
   enum class Towards { side, across, along };  ///< the segment's coordinates u, v, e

@@ -147,7 +147,7 @@ bool ClosedLoop::note_silence() {
 // Winches take lengths as commands; pressure regulators take pressures.
 bool ClosedLoop::is_told_motion(std::size_t actuator) const {
   const auto& model = simulation_.model().actuators()[at(settings_.actuators[actuator])];
-  return model.type != model::ActuatorType::chamber;
+  return !model.kind->regulates_effort;
 }
 
 // Motion from a measured value of the effector to its target at a time.
@@ -225,7 +225,7 @@ RateLimits ClosedLoop::limits() const {
     const model::ActuatorState& state = simulation_.actuator(index);
     const run::Interval effort = run::reachable(model.effort, state.effort, time_step_);
     const run::Interval motion = run::reachable(model.motion, state.setpoint, time_step_);
-    const bool pulls = model.type == model::ActuatorType::cable;
+    const bool pulls = model.kind->pulls_only;
     limits.effort[k] = state.effort;
     limits.motion[k] = state.motion;
     limits.effort_min[k] = pulls ? std::max(0.0, effort.min) : effort.min;

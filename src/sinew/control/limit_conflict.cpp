@@ -31,7 +31,7 @@ std::string describe_conflict(const model::Model& model, const law::Response& re
     const auto i = static_cast<Eigen::Index>(k);
     if (nearest.violation[i] == 0.0) continue;
     const double free = response.free()[actuator(k).row];
-    const model::QuantityName what = actuator(k).words().motion;
+    const model::QuantityName what = actuator(k).kind->motion;
     append(text,
            fmt::format("{} of '{}' leaves {:.4g}..{:.4g} {} by {:.3g} {}", what.name,
                        actuator(k).name, program.row_lower[i] + free, program.row_upper[i] + free,
@@ -47,7 +47,7 @@ std::string describe_conflict(const model::Model& model, const law::Response& re
           blocks || (pull > 0.0 && x == program.lower[i]) || (pull < 0.0 && x == program.upper[i]);
     }
     if (!blocks) continue;
-    const model::QuantityName what = actuator(k).words().effort;
+    const model::QuantityName what = actuator(k).kind->effort;
     append(text, fmt::format("{} of '{}' is at its limit, {:.4g} {}", what.name, actuator(k).name,
                              scale[i] * x, what.unit));
   }

@@ -119,6 +119,31 @@ mechanics::Inertia FemStep::condense() {
   return inertia;
 }
 
+void FemStep::add_matrix(int first, std::vector<mechanics::MatrixEntry>& entries) const {
+  const SystemWorkspace& workspace = elements_.active();
+  const linalg::BlockPattern& pattern = workspace.system.elements->pattern();
+  const auto matrix = workspace.assembly.matrix();
+  const auto held = state_.model.elements().held();
+  const auto add = [&](int i, int j, double value) {
+    if (value == 0.0) return;
+    if (std::ranges::binary_search(held, i) || std::ranges::binary_search(held, j)) return;
+    entries.emplace_back(first + i, first + j, value);
+  };
+  for (int j = 0; j < pattern.nodes; ++j) {
+    const auto begin = static_cast<std::size_t>(j);
+    for (auto b = pattern.column_start[begin]; b < pattern.column_start[begin + 1]; ++b) {
+      const int i = pattern.row[static_cast<std::size_t>(b)];
+      const double* block = matrix.data() + linalg::kBlockStride * static_cast<std::size_t>(b);
+      for (int c = 0; c < 3; ++c) {
+        for (int r = 0; r < 3; ++r) {
+          add(3 * i + r, 3 * j + c, block[4 * c + r]);
+          if (i != j) add(3 * j + c, 3 * i + r, block[4 * c + r]);
+        }
+      }
+    }
+  }
+}
+
 void FemStep::add_compliance(std::span<const int> problem_row, MatrixX& compliance,
                              VectorX& free_motion) const {
   rows_.add_compliance(problem_row, elements_.active(), compliance, free_motion);

@@ -28,6 +28,7 @@ class FemStep : public mechanics::StepSystem {
   void take_rows(const mechanics::RowValues& rows) override;
   void retake_rows(const mechanics::RowValues& rows) override { take_rows(rows); }
   mechanics::Inertia condense() override;
+  void add_matrix(int first, std::vector<mechanics::MatrixEntry>& entries) const override;
   void add_compliance(std::span<const int> problem_row, MatrixX& compliance,
                       VectorX& free_motion) const override;
 

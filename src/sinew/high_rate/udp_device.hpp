@@ -1,5 +1,5 @@
 /// @file
-/// A device that is connected by UDP, with the packets of control/packet.hpp.
+/// A device that is connected by UDP, with the packets of high_rate/packet.hpp.
 #pragma once
 
 #include <array>

@@ -181,6 +181,14 @@ Inertia DenseStep::condense() {
   return inertia;
 }
 
+void DenseStep::add_matrix(int first, std::vector<MatrixEntry>& entries) const {
+  for (int j = 0; j < motion_.size(); ++j) {
+    for (int i = 0; i < motion_.size(); ++i) {
+      if (matrix_(i, j) != 0.0) entries.emplace_back(first + i, first + j, matrix_(i, j));
+    }
+  }
+}
+
 void DenseStep::respond() {
   if (columns_ == 0 || motion_.size() == 0) return;
   const auto rows = rows_.leftCols(columns_);

@@ -22,6 +22,7 @@ class DenseStep : public StepSystem {
   void take_rows(const RowValues& rows) final;
   void retake_rows(const RowValues& rows) final;
   Inertia condense() final;
+  void add_matrix(int first, std::vector<MatrixEntry>& entries) const final;
   void add_compliance(std::span<const int> problem_row, MatrixX& compliance,
                       VectorX& free_motion) const final;
 

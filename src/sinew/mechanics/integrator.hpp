@@ -55,7 +55,7 @@ struct StepWeights {
 ///   alpha_m = (2 rho - 1)/(rho + 1), alpha_f = rho/(rho + 1), gamma = 1/2 - alpha_m + alpha_f,
 ///   beta = (1 - alpha_m + alpha_f)^2 / 4;
 /// it keeps the algorithmic acceleration a' and the true one a. rho = 1 conserves the energy of
-/// linear motion, but keeps every error of the efforts of held rows (sim/held_rows.hpp); rho = 0
+/// linear motion, but keeps every error of the efforts of held rows (model/held_rows.hpp); rho = 0
 /// annihilates fast motion in one step. The first step of BDF2 and
 /// generalized-alpha is a backward Euler step, which preserves the second order.
 /// For event-driven integration, these are the backward Euler weights of the half step that is

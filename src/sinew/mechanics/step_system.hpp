@@ -16,6 +16,9 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
+
+#include <Eigen/SparseCore>
 
 #include "sinew/core/types.hpp"
 #include "sinew/linalg/factor_status.hpp"
@@ -95,6 +98,9 @@ struct Wrench {
   }
 };
 
+/// An entry of a sparse matrix, as Eigen takes it.
+using MatrixEntry = Eigen::Triplet<double>;
+
 /// The equations of one body in a step. A step does not allocate memory, unless it needs more than
 /// any step before.
 class StepSystem {
@@ -116,6 +122,9 @@ class StepSystem {
   virtual void retake_rows(const RowValues& rows) = 0;
   /// Factorises A bordered by the rows taken.
   virtual Inertia condense() = 0;
+  /// Appends the entries of A of the last condensation, of both triangles; none in the rows and
+  /// columns of coordinates that a region holds. @param first added to the numbers of coordinates.
+  virtual void add_matrix(int first, std::vector<MatrixEntry>& entries) const = 0;
   /// Adds this body's part of W and of H A^-1 b to the problem of a step. @param problem_row (all
   /// rows,) number of each row in the problem; inactive rows have none. @param compliance (rows of
   /// the problem, rows of the problem). @param free_motion (rows of the problem,).

@@ -3,23 +3,20 @@
 /// or follows a drive.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "sinew/law/drive.hpp"
+#include "sinew/model/actuator_kind.hpp"
 #include "sinew/model/signal.hpp"
 
 namespace sinew::model {
 
 using law::CommandKind;
 using law::Drive;
-using law::QuantityName;
 
 /// Inclusive limits on an effort (N, Pa) or a motion (m, m^3) and on its change per second.
 struct Limits {
@@ -27,21 +24,6 @@ struct Limits {
   double max = std::numeric_limits<double>::infinity();
   double rate = std::numeric_limits<double>::infinity();  ///< >= 0, per second
 };
-
-enum class ActuatorType { cable, force, chamber, spring, torque, motor, linear_motor };
-inline constexpr std::size_t kActuatorTypes = 7;
-
-/// Names of an actuator type and its quantities in scenes, Python, recordings and the view.
-struct ActuatorWords {
-  const char* type = "";
-  QuantityName effort, motion;
-  std::array<QuantityName, 2> inputs = {};  ///< of its drives, see Drive::input(), or of a motor
-};
-const ActuatorWords& actuator_words(ActuatorType type);
-/// The type with this ActuatorWords::type; none if there is no such type.
-std::optional<ActuatorType> actuator_type(std::string_view word);
-/// All quantities that can be commanded on some actuator, without duplicates.
-const std::vector<std::string_view>& command_quantities();
 
 /// A command: the quantity and its value over time.
 struct Command {
@@ -52,9 +34,9 @@ struct Command {
 /// The immutable part of an actuator.
 struct ActuatorModel {
   std::string name;
-  ActuatorType type = ActuatorType::cable;
-  int constraint = -1;  ///< index in Model::constraints()
-  int row = -1;         ///< of H
+  const ActuatorKind* kind = nullptr;  ///< a constant, see ActuatorKind
+  int constraint = -1;                 ///< index in Model::constraints()
+  int row = -1;                        ///< of H
   Limits effort, motion;
   Command command;                          ///< at the start of a run
   std::shared_ptr<const Drive> drive = {};  ///< none: the commands act directly
@@ -65,18 +47,17 @@ struct ActuatorModel {
   /// limit effort.min is never below this. No liquid and no gas transmits less.
   std::optional<double> vacuum = {};
 
-  const ActuatorWords& words() const { return actuator_words(type); }
   /// Name of the drive's input, or "velocity" of a motor, rad/s or m/s; otherwise empty.
   QuantityName input_name() const;
   /// The quantity to which a command of this kind refers.
-  QuantityName quantity(CommandKind kind) const;
+  QuantityName quantity(CommandKind by) const;
   /// The kind of command for this quantity; none if the actuator does not accept it.
   std::optional<CommandKind> kind_of(std::string_view quantity) const;
   /// Whether a command of this kind prescribes the motion, and any effort that it takes.
-  bool holds_motion(CommandKind kind) const;
+  bool holds_motion(CommandKind by) const;
   /// Limits of the effort for commands of a kind. A commanded volume holds whatever pressure that
   /// takes, unless the scene limits it; the step says if it would take less than vacuum.
-  Limits effort_limits(CommandKind kind) const;
+  Limits effort_limits(CommandKind by) const;
   /// Throws Error(out-of-range) for a commanded effort below vacuum at any time. @param told any
   /// command.
   void check_command(const Command& told) const;

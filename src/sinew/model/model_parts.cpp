@@ -43,7 +43,10 @@ void add_motion(ValueHash& hash, const BaseMotion& motion) {
 std::uint64_t actuator_hash(const ModelData& data, std::size_t index) {
   const ActuatorModel& actuator = data.actuators[index];
   ValueHash hash;
-  hash.add(actuator.type, actuator.motion_scale, actuator.drive != nullptr);
+  const ActuatorKind& kind = *actuator.kind;
+  kind.number >= 0 ? hash.add(static_cast<std::uint64_t>(kind.number))
+                   : hash.add(std::string(kind.word));
+  hash.add(actuator.motion_scale, actuator.drive != nullptr);
   add_limits(hash, actuator.effort_limits(CommandKind::motion));
   add_limits(hash, actuator.motion);
   if (actuator.vacuum && *actuator.vacuum != -kAtmosphere) hash.add(*actuator.vacuum);

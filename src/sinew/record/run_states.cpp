@@ -7,6 +7,7 @@
 
 #include "sinew/constraint/probe.hpp"
 #include "sinew/core/build_info.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/mesh.hpp"
 #include "sinew/model/actuator.hpp"
@@ -46,9 +47,12 @@ void RunStates::describe(const RecordSettings& settings) {
 }
 
 void RunStates::write_meshes() {
-  for (const auto& body : observables_.simulation().model().bodies()) {
-    if (!body.has_mesh()) continue;
-    const mesh::Mesh& mesh = body.mesh();
+  const sim::Simulation& simulation = observables_.simulation();
+  for (int k = 0; k < static_cast<int>(simulation.model().bodies().size()); ++k) {
+    const mechanics::BodyModel& body = simulation.model().body(k);
+    mesh::Mesh points;  // of a body without a mesh
+    if (!body.has_mesh()) points.nodes = simulation.body(k).positions();
+    const mesh::Mesh& mesh = body.has_mesh() ? body.mesh() : points;
     const auto nodes = static_cast<std::uint64_t>(mesh.node_count());
     const std::string folder = "/mesh/" + body.name();
     file_.dataset(folder + "/nodes", {nodes, 3},
@@ -83,7 +87,7 @@ void RunStates::describe_owners() {
   if (model.actuators().empty()) file_.group("/actuators");
   if (model.effectors().empty()) file_.group("/effectors");
   for (const model::ActuatorModel& actuator : model.actuators()) {
-    file_.attribute("/actuators/" + actuator.name, "type", std::string_view(actuator.words().type));
+    file_.attribute("/actuators/" + actuator.name, "type", std::string_view(actuator.kind->word));
   }
   for (const auto& probe : model.probes()) {
     file_.attribute("/probes/" + probe.name(), "kind", std::string_view(probe.kind()));

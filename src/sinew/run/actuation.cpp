@@ -58,7 +58,7 @@ law::ActuatorBlock actuator_block(const model::ActuatorModel& model,
 }
 
 bool is_slack(const model::ActuatorModel& model, double effort) {
-  return model.type == model::ActuatorType::cable && !(effort > 0.0);
+  return model.kind->pulls_only && !(effort > 0.0);
 }
 
 bool is_limited_motor(const model::ActuatorModel& model, const law::ActuatorBlock& block) {
@@ -138,9 +138,8 @@ void Actuation::release(const void* owner) {
     if (state.owner != owner) continue;
     state.owner = nullptr;
     if (!std::exchange(state.chosen, false)) continue;
-    const bool regulator = model_.actuators()[i].type == model::ActuatorType::chamber;
     state.command =
-        regulator
+        model_.actuators()[i].kind->regulates_effort
             ? model::Command{model::CommandKind::effort, model::Signal::constant(state.effort)}
             : model::Command{model::CommandKind::motion, model::Signal::constant(state.motion)};
   }

@@ -37,7 +37,7 @@ struct EnergyLedger {
 };
 
 /// The state as a value: it can be copied, compared, sent and saved. A simulation that restores it
-/// continues bit for bit like the original. Inputs (sim/inputs.hpp) are not part of it.
+/// continues bit for bit like the original. Inputs (run/inputs.hpp) are not part of it.
 struct State {
   std::vector<std::vector<double>> bodies;  ///< of each body, see mechanics::Body::save_state()
   std::vector<double> efforts;              ///< (rows,) N or Pa

@@ -1,6 +1,5 @@
 // The notice about cables whose points dent the material.
 #include <cmath>
-#include <variant>
 
 #include <fmt/format.h>
 
@@ -26,7 +25,7 @@ constexpr double kDent = 0.01;
 // section of the body by a tenth.
 std::optional<Notice> bare_points_notice(const ActuatorDescription& actuator,
                                          const mechanics::BodyModel& body) {
-  const auto& cable = std::get<CableDescription>(actuator.own);
+  const auto& cable = *actuator.as<CableDescription>();
   const auto* own = mechanics::as<const fem::HasElements>(body);
   if (own == nullptr || body.mesh().quadratic.empty() || cable.settings.guide_radius > 0.0) {
     return std::nullopt;

@@ -10,6 +10,8 @@
 #include "sinew/builder/model_builder.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/model/model.hpp"
+#include "sinew/scene/actuator_kind.hpp"
+#include "sinew/scene/body_kind.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/scene.hpp"
 #include "sinew/sense/sensor_set.hpp"
@@ -71,7 +73,8 @@ std::optional<Notice> replace_tangent(const SceneDescription& scene, model::Step
     const auto is_rubber = [](const auto& of) {
       return of.material.model == MaterialModel::hyperelastic;
     };
-    return !body.arm && (is_rubber(body) || std::ranges::any_of(body.parts, is_rubber));
+    return body.kind->has_elements &&
+           (is_rubber(body) || std::ranges::any_of(body.parts, is_rubber));
   });
   if (scene.solver.tangent != Tangent::corotated || rubber == scene.bodies.end())
     return std::nullopt;
@@ -145,8 +148,8 @@ Robot build(SceneDescription description, const SharedMeshes& shared) {
   add_joints(false);
   const JointOf joint_of = [&](const std::string& name) { return joints.at(name); };
   for (const ActuatorDescription& actuator : description.actuators) {
-    add_actuator(builder, description, actuator, body_of, joint_of);
-    if (actuator.type != ActuatorDescription::Type::cable) continue;
+    actuator.kind->add({builder, description, actuator, body_of, joint_of});
+    if (actuator.as<CableDescription>() == nullptr) continue;
     const mechanics::BodyModel& body = builder.added_body(body_of(actuator.body).number);
     if (auto notice = bare_points_notice(actuator, body)) {
       robot.notices.push_back(std::move(*notice));

@@ -17,6 +17,8 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/model/model.hpp"
+#include "sinew/scene/actuator_kind.hpp"
+#include "sinew/scene/body_kind.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/sim/linearisation.hpp"
@@ -64,14 +66,14 @@ void add_forces(SceneDescription& known, const UnknownDescription& unknown) {
     ActuatorDescription force;
     force.name = force_name(unknown, axis);
     force.place = unknown.where_place;
-    force.type = ActuatorDescription::Type::force;
+    force.kind = &force_kind();
     force.body = unknown.body;
     force.body_place = unknown.place;
     builder::ForceSettings own;
     own.point = unknown.point;
     own.direction = Vector3::Unit(static_cast<Eigen::Index>(axis));
     own.outside = unknown.outside;
-    force.own = std::move(own);
+    force.own = own;
     known.actuators.push_back(std::move(force));
   }
 }
@@ -81,14 +83,7 @@ void free_effort(SceneDescription& known, const UnknownDescription& unknown) {
   ActuatorDescription& actuator =
       *std::ranges::find(known.actuators, unknown.actuator, &ActuatorDescription::name);
   actuator.command = {};
-  if (auto* cable = std::get_if<CableDescription>(&actuator.own)) {
-    cable->settings.tension = {.min = 0.0};
-    cable->settings.displacement = {};
-  } else if (auto* chamber = std::get_if<ChamberDescription>(&actuator.own)) {
-    chamber->settings.pressure = chamber->settings.volume_growth = {};
-    if (chamber->settings.gas) chamber->settings.gas->supply.reset();
-    if (chamber->settings.liquid) chamber->settings.liquid->supply.reset();
-  }
+  actuator.kind->free_effort(actuator.own);
 }
 
 bool has_inertia(const SceneDescription& scene, const EstimatorDescription& estimator) {
@@ -201,10 +196,8 @@ void check_type(const SceneDescription& scene, const EstimatorDescription& estim
 std::set<std::string> bodies_of(const ActuatorDescription& actuator) {
   std::set<std::string> bodies;
   if (!actuator.body.empty()) bodies.insert(actuator.body);
-  if (const auto* cable = std::get_if<CableDescription>(&actuator.own)) {
-    for (const std::string& name : cable->point_bodies) {
-      if (!name.empty()) bodies.insert(name);
-    }
+  for (const std::string& name : further_bodies(actuator)) {
+    if (!name.empty()) bodies.insert(name);
   }
   return bodies;
 }
@@ -235,9 +228,8 @@ bool has_known_force(const SceneDescription& scene, const EstimatorDescription& 
     return std::ranges::find(kShapes, of.type) == kShapes.end();
   });
   const bool pulled = std::ranges::any_of(known.actuators, [&](const ActuatorDescription& one) {
-    const bool unknown = one.type == ActuatorDescription::Type::force &&
-                         std::ranges::find(scene.actuators, one.name, &ActuatorDescription::name) ==
-                             scene.actuators.end();
+    const bool unknown = std::ranges::find(scene.actuators, one.name, &ActuatorDescription::name) ==
+                         scene.actuators.end();
     return !unknown && !is_unknown(estimator, one.name) &&
            (one.command.kind != model::CommandKind::motion || is_driven(scene, one.name));
   });
@@ -255,10 +247,10 @@ void check_stiffness(const SceneDescription& scene, const EstimatorDescription& 
   for (const UnknownDescription& unknown : estimator.unknowns) {
     if (!unknown.is_stiffness()) continue;
     const auto body = std::ranges::find(scene.bodies, unknown.body, &BodyDescription::name);
-    if (body->arm || body->rigid) {
+    if (!body->kind->has_elements) {
       throw Error(ErrorKind::wrong_type, unknown.where_place,
                   fmt::format("'{}' is of type {}, whose stiffness is not estimated", body->name,
-                              body->arm ? "pcc" : "rigid"),
+                              body->kind->word),
                   "name a body of type fem");
     }
     if (!taken.insert(unknown.body).second) {
@@ -282,13 +274,10 @@ void check_efforts(const SceneDescription& scene, const EstimatorDescription& es
     if (unknown.is_force() || unknown.is_stiffness()) continue;
     const auto on =
         std::ranges::find(scene.actuators, unknown.actuator, &ActuatorDescription::name);
-    const model::ActuatorWords& words = model::actuator_words(on->type);
-    const bool found = unknown.quantity == "pressure"
-                           ? on->type == ActuatorDescription::Type::chamber
-                           : on->type == ActuatorDescription::Type::cable;
-    if (!found) {
+    const model::ActuatorKind& words = *on->kind->words;
+    if (unknown.quantity != words.effort.name || on->kind->free_effort == nullptr) {
       throw Error(ErrorKind::wrong_type, unknown.where_place,
-                  fmt::format("'{}' is of type {}, whose {} is not estimated", on->name, words.type,
+                  fmt::format("'{}' is of type {}, whose {} is not estimated", on->name, words.word,
                               unknown.quantity),
                   unknown.quantity == "pressure" ? "name an actuator of type chamber"
                                                  : "name an actuator of type cable");
@@ -412,7 +401,7 @@ std::vector<estimate::Unknown> unknowns_of(const SceneDescription& scene,
     one.kind = estimate::Unknown::Kind::effort;
     one.first_actuator = static_cast<int>(on - scene.actuators.begin());
     one.command_known = unknown.command_known;
-    one.unit = model::actuator_words(on->type).effort.unit;
+    one.unit = on->kind->words->effort.unit;
   }
   return all;
 }

@@ -116,12 +116,6 @@ std::vector<Notice> locking_notices(const SceneDescription& scene, const model::
 void add_body(builder::ModelBuilder& builder, const SceneDescription& scene,
               const BodyDescription& body, const SharedMesh* shared);
 
-/// Adds an actuator. @param builder that has the bodies. @param scene of the actuator.
-/// @param actuator to be added. @param body_of,joint_of find what it acts on.
-void add_actuator(builder::ModelBuilder& builder, const SceneDescription& scene,
-                  const ActuatorDescription& actuator, const BodyOf& body_of,
-                  const JointOf& joint_of);
-
 /// Adds an effector. @param builder that has the bodies. @param effector to be added.
 /// @param body_of finds bodies.
 void add_effector(builder::ModelBuilder& builder, const EffectorDescription& effector,

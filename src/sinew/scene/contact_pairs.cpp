@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/scene/body_kind.hpp"
 #include "sinew/scene/build_parts.hpp"
 
 namespace sinew::scene {
@@ -32,7 +33,7 @@ std::set<Pair> named_pairs(const SceneDescription& scene) {
 }
 
 bool can_touch(const BodyDescription& one, const BodyDescription& other) {
-  return !one.arm && !other.arm;
+  return one.kind->is_searched && other.kind->is_searched;
 }
 
 const PlaneDescription* plane_named(const SceneDescription& scene, const std::string& name) {
@@ -65,7 +66,9 @@ ContactDescription own_contact(const ContactDescription& written, const SceneDes
   return contact;
 }
 
-bool is_fixed(const BodyDescription& body) { return body.rigid && body.rigid->fixed; }
+bool is_fixed(const BodyDescription& body) {
+  return body.kind->is_fixed != nullptr && body.kind->is_fixed(body);
+}
 
 // Throws for pairs of a `between: all` whose contact is not in this version.
 void refuse_pairs(const std::vector<Pair>& pairs, const Location& place) {
@@ -88,7 +91,7 @@ std::vector<SceneContact> pairs_of(const ContactDescription& contact, const Scen
   std::vector<Pair> refused;
   for (auto one = scene.bodies.begin(); one != scene.bodies.end(); ++one) {
     for (auto other = one; other != scene.bodies.end(); ++other) {
-      if ((one == other && one->rigid) || (is_fixed(*one) && is_fixed(*other))) continue;
+      if ((one == other && one->kind->is_rigid) || (is_fixed(*one) && is_fixed(*other))) continue;
       const Pair pair = ordered(one->name, other->name);
       if (excepted.contains(pair) || !settled.insert(pair).second) continue;
       if (!can_touch(*one, *other)) {
@@ -100,14 +103,15 @@ std::vector<SceneContact> pairs_of(const ContactDescription& contact, const Scen
       added.name = fmt::format("{}-{}-{}", contact.name, one->name, other->name);
       added.body = one->name;
       added.other = other->name;
-      if (!one->rigid || !other->rigid) added.restitution.reset();  // of rigid pairs alone
-      if (one->rigid && other->rigid) added.aggregate = 0.0;        // of deformable bodies
+      const bool rigid = one->kind->is_rigid && other->kind->is_rigid;
+      if (!rigid) added.restitution.reset();  // of rigid pairs alone
+      if (rigid) added.aggregate = 0.0;       // of deformable bodies
     }
     if (is_fixed(*one)) continue;
     for (const PlaneDescription& plane : scene.planes) {
       const Pair pair = ordered(one->name, plane.name);
       if (excepted.contains(pair) || !settled.insert(pair).second) continue;
-      if (one->arm) {
+      if (!one->kind->is_searched) {
         refused.emplace_back(one->name, plane.name);
         continue;
       }
@@ -115,8 +119,8 @@ std::vector<SceneContact> pairs_of(const ContactDescription& contact, const Scen
           contacts.emplace_back(SceneContact{contact, contact.name}).contact;
       added.name = fmt::format("{}-{}-{}", contact.name, one->name, plane.name);
       touch_plane(added, one->name, plane);
-      if (!one->rigid) added.restitution.reset();
-      if (one->rigid) added.aggregate = 0.0;
+      if (!one->kind->is_rigid) added.restitution.reset();
+      if (one->kind->is_rigid) added.aggregate = 0.0;
     }
   }
   refuse_pairs(refused, contact.between_place);

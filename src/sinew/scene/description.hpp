@@ -6,13 +6,13 @@
 /// order.
 #pragma once
 
+#include <any>
 #include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "sinew/builder/cable_settings.hpp"
@@ -52,6 +52,9 @@ using mechanics::Integrator;
 using mechanics::Tangent;
 using model::Equilibrium;
 using model::Method;
+struct ActuatorKind;
+struct BodyKind;
+
 enum class MaterialModel { linear, corotational, hyperelastic };
 enum class Element { any, tet4, tet4_patch, tet10, hex8 };
 enum class MassDistribution { volume, even };
@@ -148,10 +151,12 @@ struct PartDescription {
 struct BodyDescription {
   std::string name;
   Location place;
-  std::optional<UrdfDescription> urdf;        ///< of type urdf: members below are unused
-  std::optional<pcc::ArmSettings> arm;        ///< of type pcc: members below are unused
-  bool convex = false;                        ///< rigid with a mesh: contacts use its hull
-  std::optional<rigid::RigidSettings> rigid;  ///< of type rigid: only mesh and base are used
+  const BodyKind* kind = nullptr;  ///< never null in a scene that was read
+  /// Settings of the kind, of the type that it reads: UrdfDescription, pcc::ArmSettings,
+  /// rigid::RigidSettings. Empty for type fem, whose settings are the members below. Of those,
+  /// rigid bodies use mesh, convex and base.
+  std::any own;
+  bool convex = false;  ///< rigid with a mesh: contacts use its hull
   MeshDescription mesh;
   Vector3 position = Vector3::Zero();  ///< m, of the origin of the mesh
   Vector3 rotation = Vector3::Zero();  ///< rad, rotation vector about that origin
@@ -170,6 +175,16 @@ struct BodyDescription {
   std::optional<model::BaseMotion> base;  ///< of the fixed nodes; its body number is set later
   Location base_place;
   std::optional<InitialVelocityDescription> initial_velocity;
+
+  /// The settings of the kind, if they are of this type; else null.
+  template <class Own>
+  const Own* as() const {
+    return std::any_cast<Own>(&own);
+  }
+  template <class Own>
+  Own* as() {
+    return std::any_cast<Own>(&own);
+  }
 };
 
 /// Points, each with the location where it was written (a line of the scene or of a CSV file).
@@ -214,18 +229,25 @@ struct MotorDescription {
 };
 
 struct ActuatorDescription {
-  using Type = model::ActuatorType;
   std::string name;
   Location place;
-  Type type = Type::cable;
-  std::string body;  ///< empty for a motor, which acts on a joint
+  const ActuatorKind* kind = nullptr;  ///< never null in a scene that was read
+  std::string body;                    ///< empty for a motor, which acts on a joint
   Location body_place;
   model::Command command;  ///< default: zero effort (slack)
-  /// Settings of the type. The builder adds to them what all types have: name, location, body and
-  /// command.
-  std::variant<CableDescription, builder::ForceSettings, ChamberDescription,
-               builder::SpringLineSettings, builder::TorqueSettings, MotorDescription>
-      own;
+  /// Settings of the kind, of the type that it reads, such as CableDescription. Building adds to
+  /// them what all kinds have: name, location, body and command.
+  std::any own;
+
+  /// The settings, if they are of this type; else null.
+  template <class Own>
+  const Own* as() const {
+    return std::any_cast<Own>(&own);
+  }
+  template <class Own>
+  Own* as() {
+    return std::any_cast<Own>(&own);
+  }
 };
 
 /// A load that the environment exerts on a body.

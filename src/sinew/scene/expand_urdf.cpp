@@ -11,6 +11,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/file.hpp"
+#include "sinew/scene/actuator_kind.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/readers.hpp"
 #include "sinew/scene/urdf.hpp"
@@ -51,7 +52,7 @@ JointDescription joint_of(const UrdfJoint& from, int number, const UrdfBodies& b
 // Expands one robot. @param scene to which its joints are added. @return its bodies.
 std::vector<BodyDescription> expand(const BodyDescription& body, SceneDescription& scene,
                                     Names& names, std::vector<Notice>& notices) {
-  const UrdfDescription& description = *body.urdf;
+  const UrdfDescription& description = *body.as<UrdfDescription>();
   const UrdfRobot robot =
       parse_urdf(at_place(description.file_place, [&] { return read_file(description.file); }),
                  description.file.string());
@@ -90,9 +91,9 @@ template <class Rename>
 void for_each_body_name(SceneDescription& scene, Rename&& rename) {
   for (ActuatorDescription& actuator : scene.actuators) {
     rename(actuator.body, actuator.body_place);
-    if (auto* cable = std::get_if<CableDescription>(&actuator.own)) {
-      for (std::string& name : cable->point_bodies) rename(name, cable->points_place);
-    }
+    if (actuator.kind->bodies == nullptr) continue;
+    const FurtherBodies further = actuator.kind->bodies(actuator.own);
+    for (std::string& name : *further.names) rename(name, further.place);
   }
   for (LoadDescription& load : scene.loads) rename(load.body, load.place);
   for (MassDescription& mass : scene.masses) rename(mass.body, mass.body_place);
@@ -141,7 +142,7 @@ void resolve_bodies(SceneDescription& scene, const Names& names,
 // Resolves the joints of motors. Motors without limits get those of the file.
 void resolve_joints(SceneDescription& scene, const Names& names) {
   for (ActuatorDescription& actuator : scene.actuators) {
-    auto* motor = std::get_if<MotorDescription>(&actuator.own);
+    auto* motor = actuator.as<MotorDescription>();
     if (motor == nullptr || motor->joint.find('.') == std::string::npos) continue;
     const auto found = names.joints.find(motor->joint);
     if (found == names.joints.end()) {
@@ -167,7 +168,7 @@ std::vector<Notice> expand_urdf(SceneDescription& scene) {
   std::vector<JointDescription> own = std::move(scene.joints);
   scene.joints.clear();
   for (BodyDescription& body : scene.bodies) {
-    if (body.urdf) {
+    if (body.as<UrdfDescription>() != nullptr) {
       robots.push_back(body.name);
       std::ranges::move(expand(body, scene, names, notices), std::back_inserter(bodies));
     } else {

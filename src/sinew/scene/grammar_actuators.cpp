@@ -40,8 +40,8 @@ std::shared_ptr<const KeyTable> limit_table(const Measure& measure, const Measur
 }  // namespace
 
 std::vector<Key> drive_keys(const DriveWords& w) {
-  const model::ActuatorWords& words = model::actuator_words(w.type);
-  const std::string effort = words.effort.name, motion = words.motion.name, kind = w.kind;
+  const model::ActuatorKind& words = *w.kind;
+  const std::string effort = words.effort.name, motion = words.motion.name, kind = words.word;
   const auto effort_limits =
       limit_table(w.effort_measure, w.effort_rate, words.effort.name, w.effort_range, w.min_default,
                   w.effort_example, w.effort_rate_example);
@@ -88,6 +88,34 @@ std::vector<Key> drive_keys(const DriveWords& w) {
            .description = w.undriven}};
 }
 
+DriveWords line_words(const model::ActuatorKind& kind, Range range, const char* min_default,
+                      const char* motion_text, const char* undriven) {
+  DriveWords words{.kind = &kind};
+  words.effort_measure = force();
+  words.effort_rate = force_rate();
+  words.effort_range = range;
+  words.min_default = min_default;
+  words.effort_example = "20 N";
+  words.effort_rate_example = "100 N/s";
+  words.effort_value = "2 N";
+  words.motion_measure = length();
+  words.motion_rate = speed();
+  words.motion_example = "70 mm";
+  words.motion_rate_example = "100 mm/s";
+  words.motion_value = "10 mm";
+  words.motion_text = motion_text;
+  words.undriven = undriven;
+  return words;
+}
+
+Key input_key(const char* name, const Measure& measure, const char* example,
+              const char* description, Range range) {
+  return {.name = name,
+          .forms = {quantity(measure, range), table(signal_table(measure, example))},
+          .example = example,
+          .description = description};
+}
+
 Key body_key() {
   return {.name = "body",
           .forms = {reference("bodies")},
@@ -107,109 +135,6 @@ Key outside_key() {
           .description = "Treatment of points outside the mesh."};
 }
 
-namespace {
-
-// Words of an actuator that acts along a line.
-DriveWords line_words(model::ActuatorType type, Range range, const char* min_default,
-                      const char* motion_text, const char* undriven) {
-  DriveWords words{.kind = model::actuator_words(type).type, .type = type};
-  words.effort_measure = force();
-  words.effort_rate = force_rate();
-  words.effort_range = range;
-  words.min_default = min_default;
-  words.effort_example = "20 N";
-  words.effort_rate_example = "100 N/s";
-  words.effort_value = "2 N";
-  words.motion_measure = length();
-  words.motion_rate = speed();
-  words.motion_example = "70 mm";
-  words.motion_rate_example = "100 mm/s";
-  words.motion_value = "10 mm";
-  words.motion_text = motion_text;
-  words.undriven = undriven;
-  return words;
-}
-
-std::shared_ptr<const KeyTable> cable_table() {
-  KeyTable cable{
-      .name = "actuator: type cable",
-      .description =
-          "A cable that slides through points of a body, with or without friction. It can only "
-          "pull.",
-      .keys = {
-          body_key(),
-          {.name = "points",
-           .forms = {table(point_file_table()),
-                     list({vector(length()), table(body_point_table())}, 2)},
-           .example = "[0 10 0 mm, 0 10 60 mm, 0 10 120 mm]",
-           .description =
-               "Routing points in the mesh at rest. The first is the pull point and the last is "
-               "the fixed end. A point in another body: {body: upper, point: 0 10 80 mm}.",
-           .required = true},
-          {.name = "pull",
-           .forms = {choice({{"world", "Does not move."}, {"body", "Moves with the body."}})},
-           .example = "world",
-           .default_text = "world",
-           .description = "Attachment of the pull point."},
-          outside_key(),
-          {.name = "friction",
-           .forms = {quantity(plain_number(), non_negative())},
-           .example = "0.2",
-           .default_text = "0",
-           .description = "Coulomb friction coefficient at every point between the ends: the "
-                          "tension changes there by a factor of at most e^(friction angle)."},
-          {.name = "guide_radius",
-           .forms = {quantity(length(), non_negative())},
-           .example = "2 mm",
-           .default_text = "0 m",
-           .description = "Radius of the guide tubes or rings embedded in the material: each point "
-                          "is the average over a ball. With 0 the cable acts on bare points, whose "
-                          "local indentation grows without limit as the mesh is refined."},
-          {.name = "guide_spacing",
-           .forms = {quantity(length(), non_negative())},
-           .example = "10 mm",
-           .default_text = "0 m",
-           .description = "Adds evenly spaced guides between the points, at most this far apart, "
-                          "as in a conduit. 0: only the points, between which the cable runs "
-                          "straight also where the body bends."},
-          {.name = "geometric_stiffness",
-           .forms = {boolean()},
-           .example = "false",
-           .default_text = "true",
-           .description =
-               "Adds the cable's geometric stiffness (from tension) to every step. If false, steps "
-               "with highly loaded cables converge slowly or not at all."}}};
-  const DriveWords words = line_words(model::ActuatorType::cable, non_negative(), "0 N",
-                                      "Length of cable pulled in at the pull point.",
-                                      "Command. Default: slack until commanded.");
-  for (Key& key : drive_keys(words)) cable.keys.push_back(std::move(key));
-  return make_table(std::move(cable));
-}
-
-std::shared_ptr<const KeyTable> force_table() {
-  KeyTable push{.name = "actuator: type force",
-                .description = "A force along a fixed direction of the world on a point of a body.",
-                .keys = {body_key(),
-                         {.name = "point",
-                          .forms = {vector(length())},
-                          .example = "0 0 195 mm",
-                          .description = "Point of application, in the mesh at rest.",
-                          .required = true},
-                         {.name = "direction",
-                          .forms = {vector(plain_number())},
-                          .example = "1 0 0",
-                          .description = "Direction; any non-zero length.",
-                          .required = true},
-                         outside_key()}};
-  const DriveWords words =
-      line_words(model::ActuatorType::force, any(), "", "Motion of the point along the direction.",
-                 "Command. Default: no force until commanded.");
-  for (Key& key : drive_keys(words)) push.keys.push_back(std::move(key));
-  return make_table(std::move(push));
-}
-
-}  // namespace
-
 std::shared_ptr<const KeyTable> point_file_table() {
   return make_table({.name = "points: file",
                      .description = "A CSV table with three columns, x y z, one point per line.",
@@ -223,18 +148,6 @@ std::shared_ptr<const KeyTable> point_file_table() {
                                .example = "mm",
                                .default_text = "m",
                                .description = "Unit of the numbers."}}});
-}
-
-Form actuator_form() {
-  return variants(
-      "type",
-      {{.word = "cable", .description = "A sliding cable.", .table = cable_table()},
-       {.word = "force", .description = "A point force.", .table = force_table()},
-       {.word = "torque", .description = "On a bend.", .table = torque_table()},
-       {.word = "motor", .description = "In a hinge.", .table = motor_table()},
-       {.word = "linear-motor", .description = "On a slider.", .table = linear_motor_table()},
-       {.word = "chamber", .description = "A chamber under pressure.", .table = chamber_table()},
-       {.word = "spring", .description = "A spring.", .table = spring_table()}});
 }
 
 std::vector<Form> axis_forms() {

@@ -97,10 +97,9 @@ Form later(Form form);
 
 std::shared_ptr<const KeyTable> make_table(KeyTable table);
 
-/// Words, measures and examples for the limits and commands of one type of actuator.
+/// Measures and examples for the limits and commands of one kind of actuator.
 struct DriveWords {
-  const char* kind = "";
-  model::ActuatorType type = model::ActuatorType::cable;  ///< whose words name effort and motion
+  const model::ActuatorKind* kind = nullptr;  ///< names effort and motion
   Measure effort_measure{}, effort_rate{};
   Range effort_range;
   const char* min_default = "";
@@ -117,6 +116,15 @@ struct DriveWords {
 };
 /// The keys `limits` and `command`.
 std::vector<Key> drive_keys(const DriveWords& words);
+/// Words of an actuator that acts along a line, in N and m. @param kind of the actuator.
+/// @param range of the effort. @param min_default of the effort, as text; may be empty.
+/// @param motion_text describes the motion. @param undriven describes the lack of a command.
+DriveWords line_words(const model::ActuatorKind& kind, Range range, const char* min_default,
+                      const char* motion_text, const char* undriven);
+/// A quantity that can be commanded besides effort and motion. @param name,measure of it.
+/// @param example of its value. @param description of it. @param range of its values.
+Key input_key(const char* name, const Measure& measure, const char* example,
+              const char* description, Range range = any());
 Key body_key();
 /// A length of a shape, positive and required.
 Key shape_length(const char* name, const char* example, const char* description);
@@ -140,14 +148,9 @@ std::vector<Key> motion_keys();
 
 // Tables and forms of each part of a scene, defined in the file of that part.
 std::shared_ptr<const KeyTable> surface_table();
-std::shared_ptr<const KeyTable> chamber_table();
-std::shared_ptr<const KeyTable> spring_table();
-std::shared_ptr<const KeyTable> pcc_table();
-std::shared_ptr<const KeyTable> torque_table();
+std::shared_ptr<const KeyTable> fem_table();
 std::shared_ptr<const KeyTable> rigid_table();
-std::shared_ptr<const KeyTable> urdf_table();
-std::shared_ptr<const KeyTable> motor_table();
-std::shared_ptr<const KeyTable> linear_motor_table();
+std::shared_ptr<const KeyTable> pose_table();
 std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char* value_example);
 std::shared_ptr<const KeyTable> point_file_table();
 std::shared_ptr<const KeyTable> body_point_table();

@@ -60,6 +60,21 @@ std::shared_ptr<const KeyTable> solid_table() {
                                 "always use the surface."}}});
 }
 
+std::shared_ptr<const KeyTable> velocity_table() {
+  return make_table({.name = "velocity",
+                     .description = "Motion of a rigid body at the start.",
+                     .keys = {{.name = "linear",
+                               .forms = {vector(speed())},
+                               .example = "0 0 -1 m/s",
+                               .default_text = "0 0 0 m/s",
+                               .description = "Velocity of the centre of mass."},
+                              {.name = "angular",
+                               .forms = {vector(angular_speed())},
+                               .example = "0 0 20 rad/s",
+                               .default_text = "0 0 0 rad/s",
+                               .description = "Angular velocity in world axes."}}});
+}
+
 std::shared_ptr<const KeyTable> pose_rotation_table() {
   return make_table({.name = "rotation",
                      .description = "A rotation about an axis.",
@@ -74,6 +89,8 @@ std::shared_ptr<const KeyTable> pose_rotation_table() {
                                .description = "Angle, right-handed about the axis.",
                                .required = true}}});
 }
+
+}  // namespace
 
 std::shared_ptr<const KeyTable> pose_table() {
   return make_table({.name = "pose",
@@ -90,45 +107,6 @@ std::shared_ptr<const KeyTable> pose_table() {
                                .description = "Rotation of the body's axes about its origin: an "
                                               "axis and an angle, or a rotation vector."}}});
 }
-
-std::shared_ptr<const KeyTable> velocity_table() {
-  return make_table({.name = "velocity",
-                     .description = "Motion of a rigid body at the start.",
-                     .keys = {{.name = "linear",
-                               .forms = {vector(speed())},
-                               .example = "0 0 -1 m/s",
-                               .default_text = "0 0 0 m/s",
-                               .description = "Velocity of the centre of mass."},
-                              {.name = "angular",
-                               .forms = {vector(angular_speed())},
-                               .example = "0 0 20 rad/s",
-                               .default_text = "0 0 0 rad/s",
-                               .description = "Angular velocity in world axes."}}});
-}
-
-KeyTable motor_table(const char* word, const char* description, const char* joint_text,
-                     DriveWords words) {
-  KeyTable table{.name = std::string("actuator: type ") + word,
-                 .description = description,
-                 .keys = {{.name = "joint",
-                           .forms = {reference("joints")},
-                           .example = "lid",
-                           .description = joint_text,
-                           .required = true}}};
-  words.kind = word;
-  words.undriven = "Command. Default: no effort until commanded.";
-  for (Key& key : drive_keys(words)) table.keys.push_back(std::move(key));
-  return table;
-}
-
-Key velocity_key(const Measure& measure, const char* example, const char* description) {
-  return {.name = "velocity",
-          .forms = {quantity(measure), table(signal_table(measure, example))},
-          .example = example,
-          .description = description};
-}
-
-}  // namespace
 
 std::shared_ptr<const KeyTable> rigid_table() {
   return make_table(
@@ -187,93 +165,6 @@ std::shared_ptr<const KeyTable> rigid_table() {
                  .description = "Prescribed motion of the body, regardless of the forces on it; it "
                                 "then needs no mass. Default: it moves freely, or is fixed."}},
        .alternatives = {{{"shape", "mesh"}, true}, {{"density", "mass"}, false}}});
-}
-
-std::shared_ptr<const KeyTable> urdf_table() {
-  return make_table(
-      {.name = "body: type urdf",
-       .description =
-           "The links and joints of a robot in a URDF file. They become rigid bodies ROBOT.LINK "
-           "and joints ROBOT.JOINT, which other parts of the scene can refer to.",
-       .keys = {{.name = "file",
-                 .forms = {file()},
-                 .example = "arm.urdf",
-                 .description = "Path of the URDF file, relative to the scene file.",
-                 .required = true},
-                {.name = "packages",
-                 .forms = {names(file())},
-                 .example = "{arm_description: ../arm_description}",
-                 .default_text = "{}",
-                 .description = "Folders of the packages that package:// paths of the file name."},
-                {.name = "pose",
-                 .forms = {table(pose_table())},
-                 .example = "{position: 0 0 100 mm, rotation: {axis: z, angle: 90 deg}}",
-                 .default_text = "{}",
-                 .description = "Position and rotation of the root link at the start."},
-                {.name = "fixed",
-                 .forms = {boolean()},
-                 .example = "false",
-                 .default_text = "true",
-                 .description = "Whether the root link is fixed in the world."},
-                {.name = "angles",
-                 .forms = {names(quantity(angle()))},
-                 .example = "{elbow: -90 deg}",
-                 .default_text = "{}",
-                 .description =
-                     "Angles of revolute and continuous joints at the start, by their names in the "
-                     "file; 0 by default. The joint's `angle` is measured from there."},
-                {.name = "displacements",
-                 .forms = {names(quantity(length()))},
-                 .example = "{finger: 10 mm}",
-                 .default_text = "{}",
-                 .description = "Displacements of prismatic joints at the start, by their names in "
-                                "the file; 0 by default."},
-                {.name = "density",
-                 .forms = {quantity(density(), positive())},
-                 .example = "1200 kg/m^3",
-                 .description = "Density of the collision geometry of moving links without "
-                                "`<inertial>`. Default: such links are an error."}}});
-}
-
-std::shared_ptr<const KeyTable> motor_table() {
-  DriveWords words;
-  words.type = model::ActuatorType::motor;
-  words.effort_measure = torque();
-  words.effort_rate = torque_rate();
-  words.effort_range = any();
-  words.effort_example = "1 N m";
-  words.effort_rate_example = "10 Nm/s";
-  words.effort_value = "0.2 N m";
-  words.motion_measure = angle();
-  words.motion_rate = frequency();
-  words.motion_example = "90 deg";
-  words.motion_rate_example = "1 1/s";
-  words.motion_value = "30 deg";
-  words.motion_text = "Angle of the hinge, 0 at rest.";
-  words.inputs = {
-      velocity_key(angular_speed(), "60 deg/s",
-                   "Angular velocity: each step advances the hinge from its present angle.")};
-  return make_table(motor_table("motor", "A motor in a hinge.", "The hinge.", words));
-}
-
-std::shared_ptr<const KeyTable> linear_motor_table() {
-  DriveWords words;
-  words.type = model::ActuatorType::linear_motor;
-  words.effort_measure = force();
-  words.effort_rate = force_rate();
-  words.effort_range = any();
-  words.effort_example = "5 N";
-  words.effort_rate_example = "10 N/s";
-  words.effort_value = "1 N";
-  words.motion_measure = length();
-  words.motion_rate = speed();
-  words.motion_example = "20 mm";
-  words.motion_rate_example = "50 mm/s";
-  words.motion_value = "10 mm";
-  words.motion_text = "Displacement of the slider, 0 at rest.";
-  words.inputs = {velocity_key(
-      speed(), "5 mm/s", "Velocity: each step advances the slider from its present position.")};
-  return make_table(motor_table("linear-motor", "A motor on a slider.", "The slider.", words));
 }
 
 }  // namespace sinew::scene::forms

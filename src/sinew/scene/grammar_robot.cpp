@@ -332,6 +332,8 @@ std::shared_ptr<const KeyTable> part_table() {
                            "or else of the body. It cannot be combined with the body's `mass`."}}});
 }
 
+}  // namespace
+
 std::shared_ptr<const KeyTable> fem_table() {
   KeyTable fem{.name = "body: type fem",
                .description = "A deformable body of finite elements.",
@@ -405,19 +407,6 @@ std::shared_ptr<const KeyTable> fem_table() {
                       .example = "{box: -20 -20 0 20 20 20 mm}",
                       .description = "Fixed nodes: one region, or a list of regions."});
   return make_table(std::move(fem));
-}
-
-}  // namespace
-
-Form body_form() {
-  return variants(
-      "type",
-      {{.word = "fem", .description = "Finite elements.", .table = fem_table()},
-       {.word = "reduced", .description = "Reduced elements.", .later = true},
-       {.word = "rod", .description = "A slender rod.", .later = true},
-       {.word = "pcc", .description = "An arm of constant curvatures.", .table = pcc_table()},
-       {.word = "rigid", .description = "A rigid body.", .table = rigid_table()},
-       {.word = "urdf", .description = "A robot in a URDF file.", .table = urdf_table()}});
 }
 
 }  // namespace sinew::scene::forms

@@ -5,6 +5,7 @@
 
 #include "sinew/material/instability.hpp"
 #include "sinew/material/library.hpp"
+#include "sinew/scene/body_kind.hpp"
 #include "sinew/scene/build_parts.hpp"
 
 namespace sinew::scene {
@@ -41,7 +42,7 @@ std::optional<Notice> soft_remark(const MaterialDescription& material) {
 
 std::vector<Notice> law_notices(const BodyDescription& body) {
   std::vector<Notice> notices;
-  if (body.arm || body.rigid || body.urdf) return notices;
+  if (!body.kind->has_elements) return notices;
   const auto judge = [&](const MaterialDescription& material) {
     if (auto notice = unstable_notice(material)) notices.push_back(std::move(*notice));
     if (auto notice = soft_remark(material)) notices.push_back(std::move(*notice));

@@ -32,6 +32,8 @@ void read_scale(const Fields& fields, Vector3& scale) {
               "write factors other than 0; -1 mirrors");
 }
 
+}  // namespace
+
 MeshDescription read_mesh_file(const Fields& fields, const ReadContext& context) {
   MeshDescription mesh;
   mesh.file = context.path(fields, "file");
@@ -41,6 +43,8 @@ MeshDescription read_mesh_file(const Fields& fields, const ReadContext& context)
   read_scale(fields, mesh.scale);
   return mesh;
 }
+
+namespace {
 
 // Reads the given measures of a shape.
 void read_measures(const Fields& fields, MeshDescription& mesh) {
@@ -351,18 +355,6 @@ void read_fixed(const Fields& fields, BodyDescription& body) {
 
 }  // namespace
 
-void refuse_free(const Fields& fields) {
-  bool fixed = true;
-  fields.read("fixed", fixed);
-  if (!fixed) {
-    throw Error(ErrorKind::conflicting_keys, fields.place("fixed"),
-                "the body has a motion, and is to be free", "leave one of the two out");
-  }
-  if (fields.find("velocity") == nullptr) return;
-  throw Error(ErrorKind::conflicting_keys, fields.place("velocity"),
-              "the body has a motion, which says how fast it is", "leave `velocity` out");
-}
-
 std::vector<FixedRegion> read_regions(const Fields& fields, std::string_view key) {
   std::vector<FixedRegion> regions;
   for (const Fields& region : tables_of(fields, key)) regions.push_back(read_region(region));
@@ -429,41 +421,7 @@ MeshDescription read_shape(const std::string& shape, const std::vector<std::stri
   return mesh;
 }
 
-void refuse_world(const Node::Entry& body) {
-  if (body.key != kWorldName) return;
-  throw Error(ErrorKind::bad_argument, body.key_place, "`world` is what joints call the world",
-              "give the body another name");
-}
-
-BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) {
-  BodyDescription body;
-  body.name = entry.key;
-  body.place = entry.key_place;
-  refuse_world(entry);
-  const Form& form = form_of(grammar(), "bodies", Shape::names).items.front();
-  const Fields fields(entry.value, form);
-  if (read_text(*entry.value.find(form.telltale)) == "pcc") {
-    body.arm = read_arm(fields, body.name);
-    return body;
-  }
-  if (read_text(*entry.value.find(form.telltale)) == "urdf") {
-    body.urdf = read_urdf(fields, context);
-    return body;
-  }
-  if (read_text(*entry.value.find(form.telltale)) == "rigid") {
-    body.rigid = read_rigid(fields, body.name);
-    if (fields.find("mesh") != nullptr) {
-      body.mesh = read_mesh_file(fields.below("mesh"), context);
-      fields.below("mesh").read_choice("use", body.convex, {{"surface", false}, {"convex", true}});
-    }
-    if (fields.find("motion") != nullptr) {
-      refuse_free(fields);
-      body.rigid->fixed = true;
-      body.base = read_motion(fields.below("motion"), context);
-      body.base_place = fields.place("motion");
-    }
-    return body;
-  }
+void read_fem_body(const Fields& fields, const ReadContext& context, BodyDescription& body) {
   body.mesh = read_mesh(fields, context);
   fields.read("position", body.position);
   fields.read("rotation", body.rotation);
@@ -491,7 +449,6 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
     body.base = read_motion(fields.below("base"), context);
     body.base_place = fields.place("base");
   }
-  return body;
 }
 
 }  // namespace sinew::scene

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/scene/actuator_kind.hpp"
 #include "sinew/scene/readers.hpp"
 
 namespace sinew::scene {
@@ -90,10 +91,8 @@ class Reach {
  private:
   void add(const ActuatorDescription& actuator) {
     if (!actuator.body.empty()) bodies_.insert(body_of(actuator.body));
-    if (const auto* cable = std::get_if<CableDescription>(&actuator.own)) {
-      for (const std::string& body : cable->point_bodies) bodies_.insert(body_of(body));
-    }
-    if (const auto* motor = std::get_if<MotorDescription>(&actuator.own)) {
+    for (const std::string& body : further_bodies(actuator)) bodies_.insert(body_of(body));
+    if (const auto* motor = actuator.as<MotorDescription>()) {
       bodies_.insert(body_of(motor->joint));  // of a robot from a file
       const auto joint = std::ranges::find(scene_.joints, motor->joint, &JointDescription::name);
       if (joint != scene_.joints.end())

@@ -27,12 +27,10 @@ struct ReadContext {
 };
 
 BodyDescription read_body(const Node::Entry& entry, const ReadContext& context);
-/// Reads a body of type pcc. @param fields of the body. @param name of the body.
-pcc::ArmSettings read_arm(const Fields& fields, const std::string& name);
-/// Reads a body of type rigid. @param fields of the body. @param name of the body.
-rigid::RigidSettings read_rigid(const Fields& fields, const std::string& name);
 /// Throws Error(bad-argument) if a body has the name of the world.
 void refuse_world(const Node::Entry& body);
+/// Reads the mesh of a rigid body. @param fields of the key `mesh`. @param context of the scene.
+MeshDescription read_mesh_file(const Fields& fields, const ReadContext& context);
 /// Throws Error(conflicting-keys) if a body with a prescribed motion is to be free or has a
 /// velocity.
 /// @param fields of a body of type rigid.
@@ -41,8 +39,6 @@ void refuse_free(const Fields& fields);
 bool is_plane(const Node::Entry& body);
 /// Reads such a body. Throws Error(conflicting-keys) if it has a mass or a velocity or is free.
 PlaneDescription read_plane(const Node::Entry& entry, const ReadContext& context);
-/// Reads a body of type urdf. @param fields of the body. @param context of the scene.
-UrdfDescription read_urdf(const Fields& fields, const ReadContext& context);
 /// Reads the rotation of a pose. @param pose fields of the pose.
 Matrix3 read_rotation(const Fields& pose);
 /// Reads a region from one of the keys box, sphere, plane and set.

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/scene/body_kind.hpp"
 #include "sinew/scene/check.hpp"
 #include "sinew/scene/readers.hpp"
 #include "sinew/scene/renamed_words.hpp"
@@ -99,8 +100,7 @@ void check_mass(const SceneDescription& scene) {
       scene.gravity != Vector3::Zero() || scene.integrator != Integrator::quasi_static;
   if (!needed) return;
   for (const BodyDescription& body : scene.bodies) {
-    if (body.arm || body.rigid || body.urdf || body.mass || body.density ||
-        body.material.density > 0.0)
+    if (!body.kind->has_elements || body.mass || body.density || body.material.density > 0.0)
       continue;
     throw Error(ErrorKind::missing_mass, body.place,
                 fmt::format("'{}' has no mass, but there is {}", body.name,
@@ -112,22 +112,19 @@ void check_mass(const SceneDescription& scene) {
 // Checks that point masses and membranes are on finite-element bodies.
 void check_carriers(const SceneDescription& scene) {
   const auto check = [&](const std::string& name, const Location& place, const char* what,
-                         const char* of_arms, const char* of_rigid) {
+                         const char* remedy) {
     const auto body = std::ranges::find(scene.bodies, name, &BodyDescription::name);
-    if (body == scene.bodies.end() || (!body->arm && !body->rigid)) return;
+    if (body == scene.bodies.end() || body->kind->has_elements) return;
     throw Error(ErrorKind::wrong_type, place,
-                fmt::format("'{}' is {}, which carries no {}", name,
-                            body->arm ? "an arm of constant curvature" : "a rigid body", what),
-                body->arm ? of_arms : of_rigid);
+                fmt::format("'{}' is {}, which carries no {}", name, body->kind->noun, what),
+                remedy != nullptr ? remedy : body->kind->carry_masses);
   };
   for (const MassDescription& mass : scene.masses) {
-    check(mass.body, mass.body_place, "point masses",
-          "add the mass to that of its last segment, or make the body of type fem",
-          "weld a rigid body of that mass to it");
+    check(mass.body, mass.body_place, "point masses", nullptr);
   }
   for (const MembraneDescription& layer : scene.membranes) {
-    constexpr const char* kRemedy = "make the body of type fem, or leave the membrane out";
-    check(layer.body, layer.body_place, "membranes", kRemedy, kRemedy);
+    check(layer.body, layer.body_place, "membranes",
+          "make the body of type fem, or leave the membrane out");
   }
 }
 

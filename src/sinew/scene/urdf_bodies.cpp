@@ -10,6 +10,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/core/rotation.hpp"
 #include "sinew/mesh/topology.hpp"
+#include "sinew/scene/body_kind.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/readers.hpp"
@@ -274,7 +275,8 @@ std::vector<BodyDescription> UrdfBodies::make(std::vector<Notice>& notices) cons
     BodyDescription& body = bodies.emplace_back();
     body.name = body_of(link);
     body.place = robot_.links[k].place;
-    rigid::RigidSettings& settings = body.rigid.emplace();
+    body.kind = &rigid_kind();
+    auto& settings = body.own.emplace<rigid::RigidSettings>();
     settings.name = body.name;
     settings.position = frame(link).translation();
     settings.rotation = frame(link).linear();

@@ -1,7 +1,6 @@
 #include "sinew/scene/watched_cables.hpp"
 
 #include <algorithm>
-#include <variant>
 
 #include "sinew/model/model.hpp"
 
@@ -10,7 +9,7 @@ namespace sinew::scene {
 std::vector<sim::WatchedCable> watched_cables(const Robot& robot) {
   std::vector<sim::WatchedCable> cables;
   for (const ActuatorDescription& actuator : robot.description.actuators) {
-    const auto* cable = std::get_if<CableDescription>(&actuator.own);
+    const auto* cable = actuator.as<CableDescription>();
     if (cable == nullptr) continue;
     const bool told = std::ranges::any_of(robot.notices, [&](const Notice& notice) {
       return notice.kind == NoticeKind::bare_points && notice.place.text() == actuator.place.text();

@@ -89,8 +89,8 @@ class MakeSensor {
   }
   std::shared_ptr<const constraint::OrientationEffector> orientation(
       const SensorMotion& motion, std::vector<MaterialPoint>& points);
-  void require_type(const model::ActuatorModel& actuator,
-                    std::initializer_list<model::ActuatorType> allowed, const char* measures) const;
+  void require(bool has, const model::ActuatorModel& actuator, const char* measures,
+               const char* allowed) const;
   double current_factor(const model::ActuatorModel& actuator, const SensorDrive& drive) const;
   double length_of(const Points& corners) const;
   const constraint::Contact& contact_of(int index) const;
@@ -139,23 +139,21 @@ SourcePtr MakeSensor::operator()(const SensorMotion& motion) {
   return std::make_unique<AccelerometerSource>(std::move(frame), std::move(points), motion.gravity);
 }
 
-void MakeSensor::require_type(const model::ActuatorModel& actuator,
-                              std::initializer_list<model::ActuatorType> allowed,
-                              const char* measures) const {
-  if (std::ranges::find(allowed, actuator.type) != allowed.end()) return;
-  std::vector<const char*> types;
-  for (const model::ActuatorType type : allowed) types.push_back(actuator_words(type).type);
+// @param has whether the actuator has what the sensor measures. @param allowed types that have it.
+void MakeSensor::require(bool has, const model::ActuatorModel& actuator, const char* measures,
+                         const char* allowed) const {
+  if (has) return;
   throw Error(ErrorKind::wrong_actuator_type, settings_.place,
-              fmt::format("'{}' is of type {}, which has no {}", actuator.name,
-                          actuator.words().type, measures),
-              fmt::format("name an actuator of type {}", fmt::join(types, " or ")));
+              fmt::format("'{}' is of type {}, which has no {}", actuator.name, actuator.kind->word,
+                          measures),
+              fmt::format("name an actuator of type {}", allowed));
 }
 
 // A/(N m) or A/N: the motor current is the torque over the motor constant; a drum converts tension
 // to torque.
 double MakeSensor::current_factor(const model::ActuatorModel& actuator,
                                   const SensorDrive& drive) const {
-  const bool winds = actuator.type == model::ActuatorType::cable;
+  const bool winds = actuator.kind->pulls_only;
   if (winds && !(drive.radius > 0.0)) {
     throw Error(ErrorKind::missing_key, settings_.place,
                 "the radius of the cable's drum is missing", "add radius: 8 mm");
@@ -164,7 +162,7 @@ double MakeSensor::current_factor(const model::ActuatorModel& actuator,
     throw Error(ErrorKind::conflicting_keys, settings_.place,
                 fmt::format("'{}' winds no cable on a drum", actuator.name), "leave `radius` out");
   }
-  if (drive.turns != (actuator.type != model::ActuatorType::linear_motor)) {
+  if (drive.turns != (winds || actuator.kind->turns())) {
     throw Error(ErrorKind::conflicting_keys, settings_.place,
                 fmt::format("'{}' exerts a {}", actuator.name, drive.turns ? "force" : "torque"),
                 drive.turns ? "give force_constant: 10 N/A" : "give torque_constant: 0.05 N m/A");
@@ -177,37 +175,33 @@ SourcePtr MakeSensor::operator()(const SensorDrive& drive) {
   const int index = named_part(data_.actuators, drive.actuator, "actuator",
                                &model::ActuatorModel::name, settings_.place);
   const model::ActuatorModel& actuator = data_.actuators[static_cast<std::size_t>(index)];
-  const auto lines = {model::ActuatorType::cable, model::ActuatorType::spring};
-  const auto chambers = {model::ActuatorType::chamber};
-  const model::QuantityName& effort = actuator.words().effort;
-  const model::QuantityName& motion = actuator.words().motion;
+  const model::ActuatorKind& kind = *actuator.kind;
+  const model::QuantityName &effort = kind.effort, &motion = kind.motion;
   switch (drive.what) {
     case What::cable_length:
-      require_type(actuator, lines, "length");
+      require(kind.is_line, actuator, "length", "cable or spring");
       observable = fmt::format("{}.{}", actuator.name, motion.name);
       return std::make_unique<MotionSource>(index, motion.unit);
     case What::cable_tension:
-      require_type(actuator, lines, "tension");
+      require(kind.is_line, actuator, "tension", "cable or spring");
       observable = fmt::format("{}.{}", actuator.name, effort.name);
       return std::make_unique<EffortSource>(index, 1.0, effort.unit);
     case What::pressure:
-      require_type(actuator, chambers, "pressure");
+      require(kind.swells(), actuator, "pressure", "chamber");
       observable = fmt::format("{}.{}", actuator.name, effort.name);
       return std::make_unique<EffortSource>(index, 1.0, effort.unit);
     case What::volume:
-      require_type(actuator, chambers, "volume");
+      require(kind.swells(), actuator, "volume", "chamber");
       observable = fmt::format("{}.{}", actuator.name, motion.name);
       return std::make_unique<MotionSource>(index, motion.unit);
     case What::flow:
-      require_type(actuator, chambers, "flow");
+      require(kind.swells(), actuator, "flow", "chamber");
       return std::make_unique<FlowSource>(index);
     case What::motor_current:
       break;
   }
-  require_type(
-      actuator,
-      {model::ActuatorType::motor, model::ActuatorType::linear_motor, model::ActuatorType::cable},
-      "motor");
+  require(actuator.joint >= 0 || kind.pulls_only, actuator, "motor",
+          "motor or linear-motor or cable");
   return std::make_unique<EffortSource>(index, current_factor(actuator, drive), "A");
 }
 

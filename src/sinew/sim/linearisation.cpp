@@ -118,6 +118,13 @@ std::vector<std::string> all_names(const model::Model& model) {
 
 }  // namespace
 
+std::vector<std::string> row_names(const model::Model& model, std::span<const int> rows) {
+  const std::vector<std::string> all = all_names(model);
+  std::vector<std::string> names;
+  for (const int row : rows) names.push_back(all[static_cast<std::size_t>(row)]);
+  return names;
+}
+
 std::vector<std::string> row_names(const model::Model& model) {
   std::vector<std::string> names = all_names(model);
   std::erase(names, "");

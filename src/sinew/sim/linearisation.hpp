@@ -2,6 +2,7 @@
 /// Linearisation of a robot at its present state.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ class Simulation;
 /// Names of all rows of H, without duplicates: "long_0", "long_0 point 2", "tip.x", "floor point 3
 /// normal". Rows that joints hold have no names.
 std::vector<std::string> row_names(const model::Model& model);
+/// Names of some rows. @param model of the robot. @param rows of H.
+std::vector<std::string> row_names(const model::Model& model, std::span<const int> rows);
 
 /// W and the related quantities at one state. Joints hold: their rows are eliminated.
 struct Linearisation {

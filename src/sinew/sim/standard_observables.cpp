@@ -113,8 +113,8 @@ void add_actuators(Observables& list) {
              : kind == model::CommandKind::motion ? "motion"
                                                   : "input";
     };
-    add(actuator.words().effort, "", role(model::CommandKind::effort));
-    add(actuator.words().motion, "", role(model::CommandKind::motion));
+    add(actuator.kind->effort, "", role(model::CommandKind::effort));
+    add(actuator.kind->motion, "", role(model::CommandKind::motion));
     const std::vector<model::CommandKind> kinds = command_kinds(actuator);
     for (const model::CommandKind kind : kinds)
       add(actuator.quantity(kind), "_command", role(kind));

@@ -19,8 +19,7 @@ constexpr double kFlat = 5.0;
 std::string describe_limit_point(const run::Run& run, std::span<const law::ActuatorBlock> goal) {
   for (std::size_t i = 0; i < run.model->actuators().size(); ++i) {
     const model::ActuatorModel& model = run.model->actuators()[i];
-    if (model.type != model::ActuatorType::chamber || goal[i].kind != model::CommandKind::effort)
-      continue;
+    if (!model.kind->swells() || goal[i].kind != model::CommandKind::effort) continue;
     const double reached = run.effort[static_cast<std::size_t>(model.row)];
     const double grown = run.world.delta()[model.row];
     const double compliance = run.world.problem().compliance(model.row, model.row);

@@ -247,7 +247,7 @@ std::string NewtonStep::describe_efforts(std::span<const law::ActuatorBlock> goa
     const double reached = run_.effort[static_cast<std::size_t>(model.row)];
     if (reached == goal[i].value) continue;
     text += fmt::format("{}'{}' at {:.4g} of {:.4g} {}", text.empty() ? ", with " : ", ",
-                        model.name, reached, goal[i].value, model.words().effort.unit);
+                        model.name, reached, goal[i].value, model.kind->effort.unit);
   }
   return text;
 }
@@ -259,7 +259,7 @@ std::string NewtonStep::describe_choice() const {
     if (!run_.actuation.states()[i].chosen) continue;
     const model::ActuatorModel& model = run_.model->actuators()[i];
     text += fmt::format("{}{:.4g} {} for '{}'", text.empty() ? "; its controller chose " : ", ",
-                        run_.effort[static_cast<std::size_t>(model.row)], model.words().effort.unit,
+                        run_.effort[static_cast<std::size_t>(model.row)], model.kind->effort.unit,
                         model.name);
   }
   return text;

@@ -120,10 +120,9 @@ struct Lack {
   }
 };
 
-Unit unit_of(model::ActuatorType type) {
-  if (type == model::ActuatorType::chamber) return Unit::volume;
-  const bool turns = type == model::ActuatorType::motor || type == model::ActuatorType::torque;
-  return turns ? Unit::angle : Unit::length;
+Unit unit_of(const model::ActuatorKind& kind) {
+  if (kind.swells()) return Unit::volume;
+  return kind.turns() ? Unit::angle : Unit::length;
 }
 
 class Names {
@@ -136,7 +135,7 @@ class Names {
     }
     for (const model::ActuatorModel& actuator : model_.actuators()) {
       if (actuator.row != row.held.row) continue;
-      add("the command of '" + actuator.name + "'", false, row, unit_of(actuator.type));
+      add("the command of '" + actuator.name + "'", false, row, unit_of(*actuator.kind));
     }
   }
 

@@ -1,8 +1,20 @@
-// The tables of constant-curvature arms: the body and the torques on its bends.
+// Bodies of type pcc: arms of constant curvature.
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "sinew/pcc/arm.hpp"
+#include "sinew/pcc/arm_body_model.hpp"
+#include "sinew/scene/body_kind.hpp"
+#include "sinew/scene/check.hpp"
 #include "sinew/scene/grammar_forms.hpp"
 
-namespace sinew::scene::forms {
+namespace sinew::scene {
 
+namespace forms {
 namespace {
 
 std::shared_ptr<const KeyTable> segment_table() {
@@ -59,8 +71,6 @@ std::shared_ptr<const KeyTable> segment_table() {
        }});
 }
 
-}  // namespace
-
 std::shared_ptr<const KeyTable> pcc_table() {
   return make_table({.name = "body: type pcc",
                      .description =
@@ -104,38 +114,81 @@ std::shared_ptr<const KeyTable> pcc_table() {
                      }});
 }
 
-std::shared_ptr<const KeyTable> torque_table() {
-  KeyTable table{
-      .name = "actuator: type torque",
-      .description = "A torque on the bend of a segment of a constant-curvature arm.",
-      .keys = {body_key(),
-               {.name = "segment",
-                .forms = {integer(0, 10000)},
-                .example = "1",
-                .description = "Index of the segment from the base; the first is 0.",
-                .required = true},
-               {.name = "towards",
-                .forms = {choice({{"side", "Towards a section's x."},
-                                  {"across", "Towards a section's y; spatial segments only."}})},
-                .example = "across",
-                .default_text = "side",
-                .description = "Direction in which a positive torque bends the segment."}}};
-  DriveWords words{.kind = "torque", .type = model::ActuatorType::torque};
-  words.effort_measure = torque();
-  words.effort_rate = torque_rate();
-  words.effort_range = any();
-  words.effort_example = "0.18 N m";
-  words.effort_rate_example = "1 Nm/s";
-  words.effort_value = "0.05 N m";
-  words.motion_measure = angle();
-  words.motion_rate = frequency();
-  words.motion_example = "90 deg";
-  words.motion_rate_example = "1 1/s";
-  words.motion_value = "20 deg";
-  words.motion_text = "Bending angle of the segment.";
-  words.undriven = "Command. Default: no torque until commanded.";
-  for (Key& key : drive_keys(words)) table.keys.push_back(std::move(key));
-  return make_table(std::move(table));
+}  // namespace
+}  // namespace forms
+
+namespace {
+
+pcc::Segment read_segment(const Fields& fields) {
+  pcc::Segment segment;
+  fields.read("length", segment.length);
+  fields.read("mass", segment.mass);
+  fields.read("stiffness", segment.stiffness);
+  fields.read("damping", segment.damping);
+  fields.read("gamma", segment.gamma);
+  fields.read("dead_length", segment.dead_length);
+  fields.read_choice("bending", segment.bending,
+                     {{"planar", pcc::Bending::planar}, {"spatial", pcc::Bending::spatial}});
+  segment.extensible = fields.read("axial_stiffness", segment.axial_stiffness);
+  fields.read("axial_damping", segment.axial_damping);
+  if (segment.extensible && segment.bending == pcc::Bending::planar) {
+    throw Error(ErrorKind::conflicting_keys, fields.place("axial_stiffness"),
+                "a planar segment cannot be extensible",
+                "write `bending: spatial`, or leave axial_stiffness out");
+  }
+  return segment;
 }
 
-}  // namespace sinew::scene::forms
+pcc::ArmSettings read_arm(const Fields& fields, const std::string& name) {
+  pcc::ArmSettings arm;
+  arm.name = name;
+  fields.read_choice("centre", arm.centre,
+                     {{"arc", pcc::MassCentre::arc},
+                      {"chord", pcc::MassCentre::chord},
+                      {"distributed", pcc::MassCentre::distributed}});
+  fields.read("radius", arm.radius);
+  fields.read("position", arm.base);
+  Vector3 direction = arm.frame.col(2), side = arm.frame.col(0);
+  fields.read_direction("direction", direction);
+  const bool given = fields.read_direction("side", side);
+  Vector3 across = direction.cross(side);
+  if (!(across.norm() > 1e-6)) {
+    if (given) {
+      throw Error(ErrorKind::out_of_range, fields.place("side"),
+                  "side points along the arm's own direction",
+                  "give one across: towards it, positive angles bend");
+    }
+    across = direction.cross(Vector3::UnitY());
+  }
+  across.normalize();
+  arm.frame << across.cross(direction), across, direction;
+  for (const Node& item : fields.find("segments")->items()) {
+    arm.segments.push_back(
+        read_segment(Fields(item, select_form(item, fields.form("segments").items, {}))));
+  }
+  return arm;
+}
+
+std::unique_ptr<mechanics::BodyModel> make_arm(const BodySite& site) {
+  pcc::ArmSettings settings = *site.body.as<pcc::ArmSettings>();
+  settings.gravity = site.scene.gravity;
+  return std::make_unique<pcc::ArmBodyModel>(std::move(settings));
+}
+
+}  // namespace
+
+const BodyKind& pcc_kind() {
+  static const BodyKind kind{
+      .word = "pcc",
+      .description = "An arm of constant curvature.",
+      .noun = "an arm of constant curvature",
+      .table = forms::pcc_table,
+      .read = [](const Fields& fields, const ReadContext&,
+                 BodyDescription& body) { body.own = read_arm(fields, body.name); },
+      .make = make_arm,
+      .is_searched = false,
+      .carry_masses = "add the mass to that of its last segment, or make the body of type fem"};
+  return kind;
+}
+
+}  // namespace sinew::scene

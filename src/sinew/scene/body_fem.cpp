@@ -1,3 +1,4 @@
+// Bodies of type fem: finite elements.
 #include <algorithm>
 #include <functional>
 #include <memory>
@@ -5,16 +6,12 @@
 
 #include <fmt/format.h>
 
-#include "sinew/builder/model_builder.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/solid_elements.hpp"
 #include "sinew/mesh/selection.hpp"
-#include "sinew/pcc/arm_body_model.hpp"
-#include "sinew/rigid/rigid_body_model.hpp"
-#include "sinew/scene/build.hpp"
-#include "sinew/scene/build_parts.hpp"
-#include "sinew/scene/readers.hpp"
+#include "sinew/scene/body_kind.hpp"
+#include "sinew/scene/grammar_forms.hpp"
 
 namespace sinew::scene {
 
@@ -156,48 +153,21 @@ fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescr
   return settings;
 }
 
-void add_arm(builder::ModelBuilder& builder, const SceneDescription& scene,
-             const BodyDescription& body) {
-  pcc::ArmSettings settings = *body.arm;
-  settings.gravity = scene.gravity;
-  builder.add_body<pcc::ArmBodyModel>(std::move(settings));
-}
-
-void add_base(builder::ModelBuilder& builder, int number, const BodyDescription& body) {
-  if (!body.base) return;
-  model::BaseMotion motion = *body.base;
-  motion.body = number;
-  builder.add_base_motion(motion, body.base_place);
-}
-
-void add_rigid(builder::ModelBuilder& builder, const SceneDescription& scene,
-               const BodyDescription& body) {
-  rigid::RigidSettings settings = *body.rigid;
-  settings.gravity = scene.gravity;
-  if (!body.mesh.file.empty()) settings.shape = make_solid(make_surface(body.mesh), body.convex);
-  add_base(builder, builder.add_body<rigid::RigidBodyModel>(std::move(settings), body.place), body);
+std::unique_ptr<mechanics::BodyModel> make_fem(const BodySite& site) {
+  return std::make_unique<fem::FemBodyModel>(fem_settings(site.scene, site.body, site.shared));
 }
 
 }  // namespace
 
-rigid::Solid make_solid(mesh::Surface surface, bool convex) {
-  rigid::Solid solid;
-  solid.surface = std::make_shared<const mesh::Surface>(std::move(surface));
-  if (convex) solid.hull = std::make_shared<const collision::Polyhedron>(solid.surface->nodes);
-  return solid;
-}
-
-void add_body(builder::ModelBuilder& builder, const SceneDescription& scene,
-              const BodyDescription& body, const SharedMesh* shared) {
-  try {
-    if (body.arm) return add_arm(builder, scene, body);
-    if (body.rigid) return add_rigid(builder, scene, body);
-    const int number =
-        builder.add_body<fem::FemBodyModel>(fem_settings(scene, body, shared), body.place);
-    add_base(builder, number, body);
-  } catch (const Error& error) {
-    throw error.at(body.place);
-  }
+const BodyKind& fem_kind() {
+  static const BodyKind kind{.word = "fem",
+                             .description = "Finite elements.",
+                             .noun = "a body of finite elements",
+                             .table = forms::fem_table,
+                             .read = read_fem_body,
+                             .make = make_fem,
+                             .has_elements = true};
+  return kind;
 }
 
 }  // namespace sinew::scene

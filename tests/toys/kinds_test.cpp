@@ -1,0 +1,158 @@
+// Kinds of bodies and actuators that the library does not know, in scenes.
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "sinew/contact/contact_state.hpp"
+#include "sinew/control/target_controller.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/model/model.hpp"
+#include "sinew/record/run_file.hpp"
+#include "sinew/record/run_recorder.hpp"
+#include "sinew/run/contact_reader.hpp"
+#include "sinew/run/state.hpp"
+#include "sinew/scene/actuator_kind.hpp"
+#include "sinew/scene/body_kind.hpp"
+#include "sinew/scene/build.hpp"
+#include "sinew/scene/scene.hpp"
+#include "sinew/sim/observables.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state_io.hpp"
+
+#include "scene_kinds.hpp"
+#include "support/error_kind.hpp"
+
+namespace sinew::testing {
+namespace {
+
+constexpr double kMass = 0.1, kStiffness = 50.0, kGravity = 9.81;
+const Vector3 kAt{0.0, 0.0, 0.1}, kAnchor{0.1, 0.0, 0.1};  // m
+
+scene::Robot robot(const std::string& command, const std::string& more = {},
+                   const char* integrator = "quasi-static") {
+  register_toys();
+  const std::string text = fmt::format(
+      "sinew: 1\ntime_step: 2 ms\nintegrator: {}\ngravity: 0 0 -9.81 m/s^2\n"
+      "bodies: {{point: {{type: spring-point, at: 0 0 100 mm, mass: 100 g, stiffness: 50 N/m}}}}\n"
+      "actuators: {{rod: {{type: strut, body: point, point: 0 0 100 mm, anchor: 100 0 100 mm, "
+      "limits: {{pull: {{min: -5 N, max: 5 N}}}}, command: {{{}}}}}}}\n"
+      "effectors: {{place: {{body: point, point: 0 0 100 mm}}}}\n{}",
+      integrator, command, more);
+  return scene::build(scene::parse_scene_text(text, "scene.yaml", {}));
+}
+
+Vector3 place(const sim::Simulation& simulation) { return simulation.body(0).position(0); }
+
+TEST(Kinds, ABodyAndAnActuatorStandWhereTheirForcesBalance) {
+  sim::Simulation simulation(robot("pull: 0.5 N").model);
+  simulation.solve_static();
+  const Vector3 p = place(simulation);
+  const Vector3 force = kStiffness * (kAt - p) + Vector3(0.0, 0.0, -kMass * kGravity) +
+                        0.5 * (kAnchor - p).normalized();
+  EXPECT_LT(force.norm(), 1e-6);
+  EXPECT_GT(p.x(), 0.009);
+  EXPECT_EQ(simulation.model().actuators()[0].kind->word, std::string("strut"));
+}
+
+TEST(Kinds, AMotionIsHeldByWhateverEffortItTakes) {
+  sim::Simulation simulation(robot("shortening: 4 mm").model);
+  simulation.solve_static();
+  const Vector3 p = place(simulation);
+  EXPECT_NEAR((p - kAnchor).norm(), 0.096, 1e-9);
+  const Vector3 held = kStiffness * (kAt - p) + Vector3(0.0, 0.0, -kMass * kGravity);
+  EXPECT_NEAR(simulation.actuator(0).effort, held.norm(), 1e-6);
+}
+
+TEST(Kinds, LimitsOfItsQuantitiesHold) {
+  sim::Simulation simulation(robot("shortening: 200 mm").model);
+  simulation.step();
+  EXPECT_LE(simulation.actuator(0).effort, 5.0 + 1e-9);
+}
+
+TEST(Kinds, RecordsAndObservablesHaveItsWordsAndUnits) {
+  const scene::Robot made = robot("pull: 0.5 N");
+  sim::Simulation simulation(made.model);
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / fmt::format("sinew_kinds_{}", getpid());
+  record::RecordSettings settings;
+  settings.folder = folder;
+  record::RunRecorder recorder(sim::Observables(simulation), settings);
+  for (int k = 0; k < 3; ++k) {
+    simulation.step();
+    recorder.after_step();
+  }
+  recorder.finish();
+  std::ostringstream table;
+  table << std::ifstream(folder / "run.csv").rdbuf();
+  EXPECT_NE(table.str().find("rod.pull [N]"), std::string::npos);
+  EXPECT_NE(table.str().find("rod.shortening [m]"), std::string::npos);
+  const record::RunFile file(folder / "run.h5");
+  EXPECT_EQ(file.frames(), 4);
+  EXPECT_EQ(Vector3(file.positions("point", 3).row(0)), place(simulation));
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Kinds, ASavedStateContinuesBitForBit) {
+  const scene::Robot made = robot("pull: {sine: {amplitude: 0.5 N, period: 50 ms}}", {}, "bdf2");
+  sim::Simulation first(made.model), second(made.model);
+  for (int k = 0; k < 20; ++k) first.step();
+  sim::parse_state(second, sim::format_state(first), "state");
+  for (int k = 0; k < 20; ++k) {
+    first.step();
+    second.step();
+  }
+  EXPECT_EQ(place(first), place(second));
+  EXPECT_NE(place(first), kAt);
+}
+
+TEST(Kinds, AFloorHoldsItAsAPoint) {
+  sim::Simulation simulation(
+      robot("pull: 0.2 N",
+            "contacts: {floor: {body: point, points: [0 0 100 mm], surface: {plane: {point: 0 0 "
+            "100 mm, normal: 0 0 1}}, friction: 0.5}}\n")
+          .model);
+  simulation.solve_static();
+  EXPECT_NEAR(place(simulation).z(), 0.1, 1e-9);
+  EXPECT_NEAR(place(simulation).x(), 0.0, 1e-6) << "0.2 N do not overcome friction";
+  EXPECT_NEAR(simulation.contacts().point(0, 0).normal_force, kMass * kGravity, 1e-5);
+}
+
+TEST(Kinds, AControllerSteersABodyThroughAnActuatorThatItDoesNotKnow) {
+  const scene::Robot made =
+      robot("pull: 0 N",
+            "controllers: {steer: {type: inverse, effectors: {place: {target: 5 0 80 mm, "
+            "weight: 1 0 0}}}}\n");
+  sim::Simulation simulation(made.model);
+  const auto controller = control::make_controller(simulation, made.first_controller()->settings);
+  for (int k = 0; k < 200; ++k) simulation.step();
+  EXPECT_NEAR(place(simulation).x(), 0.005, 1e-6);
+}
+
+TEST(Kinds, ErrorsNameItsKeys) {
+  try {
+    robot("tension: 1 N");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::unknown_key);
+    EXPECT_NE(std::string(error.what()).find("shortening"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Kinds, WordsAreTakenOnce) {
+  register_toys();
+  EXPECT_EQ(kind_of([] { scene::register_body_kind(scene::fem_kind()); }),
+            ErrorKind::duplicate_key);
+  EXPECT_EQ(kind_of([] { scene::register_actuator_kind(scene::cable_kind()); }),
+            ErrorKind::duplicate_key);
+}
+
+}  // namespace
+}  // namespace sinew::testing

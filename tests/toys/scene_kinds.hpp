@@ -1,0 +1,11 @@
+/// @file
+/// Kinds of parts in scenes that the library does not know.
+#pragma once
+
+namespace sinew::testing {
+
+/// Adds the toys to the kinds of scenes: bodies of type spring-point, actuators of type strut. Call
+/// it before a scene is read; again, it does nothing.
+void register_toys();
+
+}  // namespace sinew::testing
