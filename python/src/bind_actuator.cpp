@@ -194,7 +194,18 @@ void bind_conjugates(py::class_<Actuator>& type) {
             return units;
           },
           "dict: name and unit of the effort, then of the motion: {'tension': 'N', 'displacement': "
-          "'m'}.");
+          "'m'}.")
+      .def_property_readonly(
+          "pulls_only", [](const Actuator& self) { return model(self).kind->pulls_only; },
+          "bool: whether its effort is never negative, as a cable's; it may be slack.")
+      .def_property_readonly(
+          "regulates_effort",
+          [](const Actuator& self) { return model(self).kind->regulates_effort; },
+          "bool: whether it regulates its effort, as a valve does a pressure; others, such as "
+          "winches, regulate their motion.")
+      .def_property_readonly(
+          "controllable", [](const Actuator& self) { return model(self).controllable(); },
+          "bool: whether a controller may choose its effort; false for a spring.");
 }
 
 void bind_commands(py::class_<Actuator>& type) {

@@ -146,6 +146,15 @@ TEST(Kinds, ErrorsNameItsKeys) {
   }
 }
 
+TEST(Kinds, AreRegisteredBeforeTheGrammarIsUsed) {
+  robot("pull: 0 N");
+  static const scene::BodyKind late{.word = "late"};
+  EXPECT_EQ(kind_of([] { scene::register_body_kind(late); }), ErrorKind::bad_argument);
+  static constexpr model::ActuatorKind words{.word = "late"};
+  static const scene::ActuatorKind late_actuator{.words = &words};
+  EXPECT_EQ(kind_of([] { scene::register_actuator_kind(late_actuator); }), ErrorKind::bad_argument);
+}
+
 TEST(Kinds, WordsAreTakenOnce) {
   register_toys();
   EXPECT_EQ(kind_of([] { scene::register_body_kind(scene::fem_kind()); }),

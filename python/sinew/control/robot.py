@@ -76,7 +76,7 @@ class Robot:
                  command: Union[str, Mapping[str, str], None], place: str) -> None:
         self.sim = sim
         self.effectors = {name: sim.effector(name) for name in effectors}
-        names = [n for n, a in sim.actuators.items() if a.type != "spring"] if actuators is None else list(actuators)
+        names = [n for n, a in sim.actuators.items() if a.controllable] if actuators is None else list(actuators)
         if isinstance(actuators, str):
             raise Error("wrong-type", f"{place}(actuators)", f"{actuators!r} is not a list of names",
                         "give a list of names")
@@ -86,9 +86,9 @@ class Robot:
             raise Error("bad-argument", f"{place}(actuators)", f"a name comes twice in {names}", "name each once")
         self.actuators = {name: sim.actuator(name) for name in names}
         for name, actuator in self.actuators.items():
-            if actuator.type == "spring":
+            if not actuator.controllable:
                 raise Error("wrong-actuator-type", f"{place}(actuators)",
-                            f"'{name}' is a spring, which takes no command", "name actuators that can be commanded")
+                            f"'{name}' is a {actuator.type}, whose effort no controller chooses", "name actuators that can be commanded")
         self.by_motion = np.array([kind == "motion" for kind in self._kinds(command, place)])
         # actuator.limits: {name of the effort: Limits, name of the motion: Limits}, in this order
         limits = [tuple(actuator.limits.items()) for actuator in self.actuators.values()]
@@ -96,12 +96,12 @@ class Robot:
         self._motion_names = [each[1][0] for each in limits]
         self.effort_limits = np.array([[each[0][1].min, each[0][1].max, each[0][1].rate] for each in limits]).T
         self.motion_limits = np.array([[each[1][1].min, each[1][1].max, each[1][1].rate] for each in limits]).T
-        self.is_cable = np.array([actuator.type == "cable" for actuator in self.actuators.values()])
-        self.effort_limits[0][self.is_cable] = np.maximum(self.effort_limits[0][self.is_cable], 0.0)
+        self.pulls_only = np.array([actuator.pulls_only for actuator in self.actuators.values()])
+        self.effort_limits[0][self.pulls_only] = np.maximum(self.effort_limits[0][self.pulls_only], 0.0)
         self.directions = [np.array(effector.directions) for effector in self.effectors.values()]
 
     def _kinds(self, command: Union[str, Mapping[str, str], None], place: str) -> list[str]:
-        kinds = {name: "effort" if a.type == "chamber" else "motion" for name, a in self.actuators.items()}
+        kinds = {name: "effort" if a.regulates_effort else "motion" for name, a in self.actuators.items()}
         given = {name: command for name in kinds} if isinstance(command, str) else dict(command or {})
         for name, kind in given.items():
             if name not in kinds:
@@ -137,7 +137,7 @@ class Robot:
     @property
     def slack(self) -> np.ndarray:
         """(actuators,) bool: cables without tension that are commanded in length."""
-        return self.is_cable & self.by_motion & (self.efforts <= 0.0)
+        return self.pulls_only & self.by_motion & (self.efforts <= 0.0)
 
     def positions(self) -> dict[str, np.ndarray]:
         """(3,) position (m) or rotation vector (rad) of each effector."""

@@ -73,7 +73,7 @@ class Response:
         least = _CLOSED * max(self._scale, 1e-12)
         for drive in actuators:
             row = self.rows[drive.name]
-            slack = drive.is_cable and self._effort[row] <= least
+            slack = drive.pulls_only and self._effort[row] <= least
             if drive.holds_motion and not slack and self._effort[row] < drive.most - least:
                 self._hold(row, {row: 1.0})
 
@@ -132,7 +132,7 @@ class DrivenActuator(NamedTuple):
     """Data of an actuator that Response needs."""
 
     name: str
-    is_cable: bool
+    pulls_only: bool
     holds_motion: bool  # commanded in motion
     most: float  # N, upper limit of its effort
 
@@ -142,7 +142,7 @@ def drives(sim: _core.Simulation) -> list[DrivenActuator]:
     found = []
     for name, actuator in sim.actuators.items():
         most = next((limit.max for quantity, limit in actuator.limits.items() if quantity not in _MOTIONS), math.inf)
-        found.append(DrivenActuator(name, actuator.type == "cable", actuator.command[0] in _MOTIONS, most))
+        found.append(DrivenActuator(name, actuator.pulls_only, actuator.command[0] in _MOTIONS, most))
     return found
 
 
@@ -178,7 +178,7 @@ class StandingRows:
     def __init__(self, rows: list[str], actuators: list[DrivenActuator], by_effort, by_motion, motions, efforts) -> None:
         at = {name: k for k, name in enumerate(rows)}
         self._holds = np.array([at[d.name] for d in actuators if d.holds_motion], int)
-        self._cables = np.array([d.is_cable for d in actuators if d.holds_motion], bool)
+        self._cables = np.array([d.pulls_only for d in actuators if d.holds_motion], bool)
         self._most = np.array([d.most for d in actuators if d.holds_motion], float)
         self._effort_inputs, self._effort_rows = [k for k, _ in by_effort], np.array([at[r] for _, r in by_effort], int)
         self._motion_inputs = np.array([k for k, _ in by_motion], int)

@@ -124,6 +124,7 @@ class StepSystem {
   virtual Inertia condense() = 0;
   /// Appends the entries of A of the last condensation, of both triangles; none in the rows and
   /// columns of coordinates that a region holds. @param first added to the numbers of coordinates.
+  /// @param entries receives them.
   virtual void add_matrix(int first, std::vector<MatrixEntry>& entries) const = 0;
   /// Adds this body's part of W and of H A^-1 b to the problem of a step. @param problem_row (all
   /// rows,) number of each row in the problem; inactive rows have none. @param compliance (rows of

@@ -11,6 +11,12 @@ namespace sinew::scene {
 
 namespace {
 
+// Whether the grammar has been made, in which later kinds would be missing.
+bool& actuator_form_is_made() {
+  static bool made = false;
+  return made;
+}
+
 std::vector<const ActuatorKind*>& list_of_actuators() {
   static std::vector<const ActuatorKind*> all = {
       &cable_kind(),        &force_kind(),   &torque_kind(), &motor_kind(),
@@ -29,6 +35,10 @@ void register_actuator_kind(const ActuatorKind& kind) {
     throw Error(ErrorKind::duplicate_key, {.item = fmt::format("the kind of actuator '{}'", word)},
                 "there is a kind of this word", "choose another word");
   }
+  if (actuator_form_is_made()) {
+    throw Error(ErrorKind::bad_argument, {.item = fmt::format("the kind '{}'", word)},
+                "the grammar is in use", "register kinds before the first scene is read");
+  }
   list_of_actuators().push_back(&kind);
 }
 
@@ -45,6 +55,7 @@ std::vector<std::string> further_bodies(const ActuatorDescription& actuator) {
 }
 
 Form forms::actuator_form() {
+  actuator_form_is_made() = true;
   std::vector<Choice> choices;
   for (const ActuatorKind* kind : actuator_kinds()) {
     choices.push_back(

@@ -73,7 +73,8 @@ struct ActuatorKind {
 /// The kinds, in the order of the reference.
 const std::vector<const ActuatorKind*>& actuator_kinds();
 /// Adds a kind from outside the library. Call it before the grammar is first used, from one thread.
-/// @param kind must outlive the program. Throws Error(duplicate-key) if its word is taken.
+/// @param kind must outlive the program. Throws Error: duplicate-key (its word is taken),
+/// bad-argument (the grammar is in use).
 void register_actuator_kind(const ActuatorKind& kind);
 /// The kind with a word. Throws Error(internal) if there is none.
 const ActuatorKind& actuator_kind(std::string_view word);

@@ -14,6 +14,12 @@ namespace sinew::scene {
 
 namespace {
 
+// Whether the grammar has been made, in which later kinds would be missing.
+bool& body_form_is_made() {
+  static bool made = false;
+  return made;
+}
+
 std::vector<const BodyKind*>& list_of_bodies() {
   static std::vector<const BodyKind*> all = {&fem_kind(), &pcc_kind(), &rigid_kind(), &urdf_kind()};
   return all;
@@ -35,10 +41,15 @@ void register_body_kind(const BodyKind& kind) {
     throw Error(ErrorKind::duplicate_key, {.item = fmt::format("the kind of body '{}'", word)},
                 "there is a kind of this word", "choose another word");
   }
+  if (body_form_is_made()) {
+    throw Error(ErrorKind::bad_argument, {.item = fmt::format("the kind '{}'", word)},
+                "the grammar is in use", "register kinds before the first scene is read");
+  }
   list_of_bodies().push_back(&kind);
 }
 
 Form forms::body_form() {
+  body_form_is_made() = true;
   std::vector<Choice> choices;
   for (const BodyKind* kind : body_kinds()) {
     choices.push_back(

@@ -48,7 +48,8 @@ struct BodyKind {
 /// The kinds, in the order of the reference.
 const std::vector<const BodyKind*>& body_kinds();
 /// Adds a kind from outside the library. Call it before the grammar is first used, from one thread.
-/// @param kind must outlive the program. Throws Error(duplicate-key) if its word is taken.
+/// @param kind must outlive the program. Throws Error: duplicate-key (its word is taken),
+/// bad-argument (the grammar is in use).
 void register_body_kind(const BodyKind& kind);
 
 /// Reads the keys of a finite-element body. @param fields,context,body see BodyKind::read.

@@ -44,6 +44,7 @@ int named_part(const std::vector<Part>& parts, const std::string& name, const ch
   const auto found = std::ranges::find(parts, name, name_of);
   if (found != parts.end()) return static_cast<int>(found - parts.begin());
   std::vector<std::string> known;
+  known.reserve(parts.size());
   for (const Part& part : parts) known.push_back(part.*name_of);
   throw Error(ErrorKind::unknown_name, place, fmt::format("no {} is called '{}'", what, name),
               known.empty() ? fmt::format("the robot has no {}", what)
