@@ -32,7 +32,7 @@ def scene(request, tmp_path):
     if not os.path.exists(COMBINATIONS):
         pytest.skip("the generator of scenes is not built")
     path = tmp_path / "scene.yaml"
-    printed = subprocess.run([COMBINATIONS, "--pairs", "--print", str(request.param)],
+    printed = subprocess.run([COMBINATIONS, "--pairs", "--known", "--print", str(request.param)],
                              capture_output=True, text=True, check=True)
     path.write_text(printed.stdout)
     return path

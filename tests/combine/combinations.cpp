@@ -24,7 +24,8 @@ constexpr const char* kUsage =
     "combinations --symmetric [--from SEED] [--count N]  symmetric robots of random selections\n"
     "combinations --changed [--from SEED] [--count N]  states of random scenes with a changed "
     "number\n"
-    "combinations [--pairs | --symmetric] --print SEED   the scene of a seed\n";
+    "combinations [--pairs | --symmetric] [--known] --print SEED   the scene of a seed; --known: "
+    "without the kinds of tests/toys, for programs that do not know them\n";
 
 enum class Trial { scene, symmetric, changed };
 
@@ -68,7 +69,7 @@ std::string try_apart(Trial trial, const Selection& selection, std::uint64_t see
 int main(int count, char** words) {
   std::uint64_t from = 0, printed = 0;
   int number = 300;
-  bool pairs = false, prints = false;
+  bool pairs = false, prints = false, known = false;
   Trial trial = Trial::scene;
   for (int k = 1; k < count; ++k) {
     const std::string word = words[k];
@@ -79,6 +80,8 @@ int main(int count, char** words) {
       trial = Trial::symmetric;
     } else if (word == "--changed") {
       trial = Trial::changed;
+    } else if (word == "--known") {
+      known = true;
     } else if (word == "--from" && has_value) {
       from = std::stoull(words[++k]);
     } else if (word == "--count" && has_value) {
@@ -92,7 +95,11 @@ int main(int count, char** words) {
     }
   }
   if (prints) {
-    const Selection selection = pairs ? pairwise_cover().at(printed) : random_selection(printed);
+    Selection selection = pairs ? pairwise_cover().at(printed) : random_selection(printed);
+    if (known) {
+      set_level(selection, "other_body", "none");
+      set_level(selection, "other_actuator", "none");
+    }
     std::cout << write_scene(trial == Trial::symmetric ? draft_symmetric_scene(selection, printed)
                                                        : draft_scene(selection, printed));
     return 0;

@@ -28,7 +28,7 @@ for (const number of SAMPLE) {
     const folder = mkdtempSync(join(tmpdir(), 'sinew-view-'));
     t.after(() => rmSync(folder, {recursive: true}));
     const scene = join(folder, 'scene.yaml');
-    writeFileSync(scene, execFileSync(COMBINATIONS, ['--pairs', '--print', String(number)]));
+    writeFileSync(scene, execFileSync(COMBINATIONS, ['--pairs', '--known', '--print', String(number)]));
     const served = await serve(scene, 0, '--paused');
     t.after(() => stop(served));
     const errors = [];

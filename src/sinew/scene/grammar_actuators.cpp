@@ -1,4 +1,4 @@
-// The tables of actuators, their limits and commands, and of effectors.
+// Limits and commands of actuators, keys that several kinds share, and effectors.
 #include "sinew/scene/grammar_forms.hpp"
 
 namespace sinew::scene::forms {

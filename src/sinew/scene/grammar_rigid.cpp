@@ -1,4 +1,4 @@
-// The tables of rigid bodies and of motors.
+// The tables of rigid bodies and of poses.
 #include "sinew/scene/grammar_forms.hpp"
 
 namespace sinew::scene::forms {

@@ -288,7 +288,7 @@ std::string NewtonStep::describe(const run::NewtonReport& result,
 std::string NewtonStep::remedy(run::NewtonStatus status) const {
   const bool dynamic = run_.model->step().dynamic();
   std::string common = dynamic ? "take a smaller time step, or change commands more slowly"
-                                     : "change commands more slowly";
+                               : "change commands more slowly";
   if (status != run::NewtonStatus::inverted) return common;
   return common +
          "; if that does not help, the robot cannot bear the command or load: lessen it, "
