@@ -227,3 +227,58 @@ def test_what_slides_is_named(friction):
         with pytest.raises(sinew.Error, match="body 'b' .*moves freely"):
             getattr(sim, act)()
         assert np.abs(sim.body("b").position - np.array(sloped(0.3, friction)["bodies"]["b"]["pose"]["position"])).max() < 1e-12
+
+
+# A motor that is told an effort holds nothing: its joint is as free as without it.
+
+
+WHEEL = """sinew: 1
+time_step: 10 ms
+gravity: {gravity} m/s^2
+bodies:
+  wheel: {{type: rigid, shape: {{box: 10 10 10 mm}}, mass: 10 g, pose: {{position: 0 80 0 mm}}}}
+joints:
+  axle: {{type: {kind}, bodies: [world, wheel], point: {point}, axis: z}}
+actuators:
+  turn: {{type: {motor}, joint: axle{told}}}
+"""
+
+
+def wheel(kind="hinge", point="0 70 0 mm", gravity="0 0 0", told=""):
+    motor = "motor" if kind == "hinge" else "linear-motor"
+    return sinew.loads(WHEEL.format(kind=kind, point=point, gravity=gravity, motor=motor, told=told))
+
+
+def test_a_wheel_that_an_idle_motor_may_turn_rests():
+    sim = wheel(point="0 80 0 mm")
+    report = sim.solve_static()
+    assert report.stable and report.negative_pivots == 0
+    assert sim.body("wheel").position == pytest.approx([0.0, 0.08, 0.0], abs=1e-9)
+
+
+@pytest.mark.parametrize("gravity, height", [("0 -9.81 0", 0.06), ("0 9.81 0", 0.08)])
+def test_an_idle_motor_lets_it_hang(gravity, height):
+    sim = wheel(gravity=gravity)
+    assert sim.solve_static().stable
+    assert sim.body("wheel").position[:2] == pytest.approx([0.0, height], abs=1e-5)
+
+
+def test_a_motor_holds_against_weight_where_its_torque_balances():
+    torque, lever = 2e-4, 0.01
+    sim = wheel(gravity="0 9.81 0", told=", command: {torque: 0.2 N mm}")
+    assert sim.solve_static().stable
+    sine = torque / (0.01 * 9.81 * lever)
+    assert abs(sim.body("wheel").position[0]) == pytest.approx(lever * sine, rel=1e-6)
+
+
+@pytest.mark.parametrize("options, words", [
+    ({}, "the equilibrium is neutral: body 'wheel' turns freely about the axis"),
+    ({"kind": "slider"}, "the equilibrium is neutral: body 'wheel' moves freely along"),
+    ({"point": "0 80 0 mm", "told": ", command: {torque: 1 N mm}"}, "nothing holds a part: body 'wheel' turns freely"),
+    ({"kind": "slider", "gravity": "0 0 -9.81"}, "nothing holds a part: body 'wheel' moves freely along"),
+    ({"kind": "slider", "told": ", command: {force: 1 N}"}, "nothing holds a part: body 'wheel' moves freely along"),
+])
+def test_a_motor_that_holds_nothing_leaves_it_free(options, words):
+    with pytest.raises(sinew.RunError) as caught:
+        wheel(**options).solve_static()
+    assert words in str(caught.value)

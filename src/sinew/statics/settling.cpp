@@ -117,6 +117,11 @@ void Settling::settle() {
     report.negative_pivots = stability.negative_pivots();
     report.stable = report.negative_pivots == 0;
     if (report.stable || search_.settings().stability == StabilityChoice::any) return;
+    if (departures == 0 && is_neutral()) {
+      report.stable = true;
+      report.negative_pivots = 0;
+      return require_held();
+    }
     const Pushed pushed = touch(stability.mode());
     report.stable = pushed == Pushed::returns || pushed == Pushed::stays;
     if (report.stable) return;
@@ -137,6 +142,16 @@ void Settling::settle() {
     if (ended == OverdampedMotion::End::arrived) follow_surfaces();
     disturbance *= kLargerDisturbance;
   }
+}
+
+// Whether a robot that joints do not leave free, but whose motor is told an effort that holds
+// nothing, is unstable by rounding alone: with the little inertia of a loose robot it is not.
+bool Settling::is_neutral() {
+  if (run_.model->is_loose() || run_.model->joints().empty()) return false;
+  const bool neutral = condense_nearly_at_rest(search_) > 0.0 &&
+                       world::Stability(run_.world, run_.effort).negative_pivots() == 0;
+  if (!neutral) condense();
+  return neutral;
 }
 
 void Settling::fail_unstable() {

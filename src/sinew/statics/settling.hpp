@@ -45,6 +45,7 @@ class Settling {
   enum class Pushed { returns, stays, leaves, lost };
   Pushed push(const VectorX& motion);
   Pushed touch(const VectorX& motion);
+  bool is_neutral();
   [[noreturn]] void fail_unstable();
   bool condense();
   bool leave_unheld();

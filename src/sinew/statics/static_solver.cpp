@@ -97,7 +97,16 @@ void StaticSolver::find() {
   if (!search_.equilibrate(0.0, max_idle(*run_.model))) approach();
   settling_.follow_surfaces();
   settling_.settle();
-  if (run_.model->is_loose()) settling_.require_held();
+  if (run_.model->is_loose() || has_idle_motor()) settling_.require_held();
+}
+
+// Whether a motor is told an effort: it may hold nothing, though it could.
+bool StaticSolver::has_idle_motor() const {
+  const auto& actuators = run_.model->actuators();
+  for (std::size_t i = 0; i < actuators.size(); ++i) {
+    if (actuators[i].joint >= 0 && !run_.world.problem().actuators[i].holds_motion()) return true;
+  }
+  return false;
 }
 
 void StaticSolver::read_goal() {

@@ -39,6 +39,7 @@ class StaticSolver {
   void search();
   bool find_without_limits();
   void find();
+  bool has_idle_motor() const;
   void read_goal();
   void approach();
   world::JointConflict find_conflict() const;
