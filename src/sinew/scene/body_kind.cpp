@@ -1,6 +1,5 @@
 #include "sinew/scene/body_kind.hpp"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -9,20 +8,15 @@
 #include "sinew/builder/model_builder.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/scene/grammar_forms.hpp"
+#include "sinew/scene/kind_list.hpp"
 
 namespace sinew::scene {
 
 namespace {
 
-// Whether the grammar has been made, in which later kinds would be missing.
-bool& body_form_is_made() {
-  static bool made = false;
-  return made;
-}
-
-std::vector<const BodyKind*>& list_of_bodies() {
-  static std::vector<const BodyKind*> all = {&fem_kind(), &pcc_kind(), &rigid_kind(), &urdf_kind()};
-  return all;
+KindList<BodyKind>& kinds_of_bodies() {
+  static KindList<BodyKind> list("body", {&fem_kind(), &pcc_kind(), &rigid_kind(), &urdf_kind()});
+  return list;
 }
 
 }  // namespace
@@ -33,28 +27,12 @@ void refuse_world(const Node::Entry& body) {
               "give the body another name");
 }
 
-const std::vector<const BodyKind*>& body_kinds() { return list_of_bodies(); }
+const std::vector<const BodyKind*>& body_kinds() { return kinds_of_bodies().all(); }
 
-void register_body_kind(const BodyKind& kind) {
-  const std::string_view word = kind.word;
-  if (std::ranges::find(list_of_bodies(), word, &BodyKind::word) != list_of_bodies().end()) {
-    throw Error(ErrorKind::duplicate_key, {.item = fmt::format("the kind of body '{}'", word)},
-                "there is a kind of this word", "choose another word");
-  }
-  if (body_form_is_made()) {
-    throw Error(ErrorKind::bad_argument, {.item = fmt::format("the kind '{}'", word)},
-                "the grammar is in use", "register kinds before the first scene is read");
-  }
-  list_of_bodies().push_back(&kind);
-}
+void register_body_kind(const BodyKind& kind) { kinds_of_bodies().add(kind); }
 
 Form forms::body_form() {
-  body_form_is_made() = true;
-  std::vector<Choice> choices;
-  for (const BodyKind* kind : body_kinds()) {
-    choices.push_back(
-        {.word = kind->word, .description = kind->description, .table = kind->table()});
-  }
+  std::vector<Choice> choices = kinds_of_bodies().choices();
   choices.push_back({.word = "reduced", .description = "Reduced elements.", .later = true});
   choices.push_back({.word = "rod", .description = "A slender rod.", .later = true});
   return variants("type", std::move(choices));
@@ -69,7 +47,7 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
   const Fields fields(entry.value, form);
   const std::string word = read_text(*entry.value.find(form.telltale));
   // The grammar allows no other word.
-  body.kind = *std::ranges::find(list_of_bodies(), word, &BodyKind::word);
+  body.kind = kinds_of_bodies().find(word);
   body.kind->read(fields, context, body);
   return body;
 }

@@ -121,6 +121,21 @@ struct InitialVelocityDescription {
   Vector3 angular = Vector3::Zero();  ///< rad/s, about the centre of mass
 };
 
+/// Settings of a kind of part, of the type that the kind reads.
+struct OwnSettings {
+  std::any own;
+
+  /// The settings, if they are of this type; else null.
+  template <class Own>
+  const Own* as() const {
+    return std::any_cast<Own>(&own);
+  }
+  template <class Own>
+  Own* as() {
+    return std::any_cast<Own>(&own);
+  }
+};
+
 /// A robot in a URDF file. expand_urdf() replaces it by its bodies and joints.
 struct UrdfDescription {
   struct Start {
@@ -148,14 +163,12 @@ struct PartDescription {
   std::optional<double> density;  ///< kg/m^3; none: that of the material or the body
 };
 
-struct BodyDescription {
+struct BodyDescription : OwnSettings {
   std::string name;
   Location place;
   const BodyKind* kind = nullptr;  ///< never null in a scene that was read
-  /// Settings of the kind, of the type that it reads: UrdfDescription, pcc::ArmSettings,
-  /// rigid::RigidSettings. Empty for type fem, whose settings are the members below. Of those,
-  /// rigid bodies use mesh, convex and base.
-  std::any own;
+  // `own` has UrdfDescription, pcc::ArmSettings or rigid::RigidSettings. It is empty for type fem,
+  // whose settings are the members below. Of those, rigid bodies use mesh, convex and base.
   bool convex = false;  ///< rigid with a mesh: contacts use its hull
   MeshDescription mesh;
   Vector3 position = Vector3::Zero();  ///< m, of the origin of the mesh
@@ -175,16 +188,6 @@ struct BodyDescription {
   std::optional<model::BaseMotion> base;  ///< of the fixed nodes; its body number is set later
   Location base_place;
   std::optional<InitialVelocityDescription> initial_velocity;
-
-  /// The settings of the kind, if they are of this type; else null.
-  template <class Own>
-  const Own* as() const {
-    return std::any_cast<Own>(&own);
-  }
-  template <class Own>
-  Own* as() {
-    return std::any_cast<Own>(&own);
-  }
 };
 
 /// Points, each with the location where it was written (a line of the scene or of a CSV file).
@@ -228,26 +231,14 @@ struct MotorDescription {
   Location joint_place;
 };
 
-struct ActuatorDescription {
+struct ActuatorDescription : OwnSettings {
   std::string name;
   Location place;
   const ActuatorKind* kind = nullptr;  ///< never null in a scene that was read
   std::string body;                    ///< empty for a motor, which acts on a joint
   Location body_place;
   model::Command command;  ///< default: zero effort (slack)
-  /// Settings of the kind, of the type that it reads, such as CableDescription. Building adds to
-  /// them what all kinds have: name, location, body and command.
-  std::any own;
-
-  /// The settings, if they are of this type; else null.
-  template <class Own>
-  const Own* as() const {
-    return std::any_cast<Own>(&own);
-  }
-  template <class Own>
-  Own* as() {
-    return std::any_cast<Own>(&own);
-  }
+  // Building adds to `own` what all kinds have: name, location, body and command.
 };
 
 /// A load that the environment exerts on a body.

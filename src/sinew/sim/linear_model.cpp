@@ -69,11 +69,14 @@ class Linear {
   // H^T of a row of the model, (n,).
   VectorX column(int row) {
     std::vector<double> effort(effort_.size(), 0.0);
-    VectorX without(static_cast<Eigen::Index>(world_.bodies().size())), force(without.size());
-    world_.bodies().imbalance(effort, without);
+    VectorX force(static_cast<Eigen::Index>(world_.bodies().size()));
+    if (without_.size() != force.size()) {
+      without_.resize(force.size());
+      world_.bodies().imbalance(effort, without_);
+    }
     effort[static_cast<std::size_t>(row)] = 1.0;
     world_.bodies().imbalance(effort, force);
-    return force - without;
+    return force - without_;
   }
 
   // The geometric stiffness between bodies, which no body's matrix has.
@@ -112,8 +115,7 @@ class Linear {
     take(result.held, joints);
     result.output.transposeInPlace();
     result.held.transposeInPlace();
-    const std::vector<std::string> names = row_names(model_, effectors);
-    result.outputs = names;
+    result.outputs = row_names(model_, effectors);
     result.first.push_back(0);
     for (const auto& body : world_.bodies().all()) {
       result.first.push_back(result.first.back() + static_cast<int>(body->system().size()));
@@ -158,6 +160,7 @@ class Linear {
   world::World& world_;
   double time_;
   std::vector<double> effort_;  // (rows,) present
+  VectorX without_;             // the residual without efforts, N; empty until it is needed
 };
 
 }  // namespace
