@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -194,27 +193,34 @@ Vector3 FemBodyModel::rest_position(int point) const {
 
 void FemBodyModel::finish(int body, const mechanics::RowPattern& rows,
                           std::span<const mechanics::StiffnessPair> stiffness_pairs) {
-  body_ = body;
-  world_rows_ = rows;
   loads_ = std::make_unique<const mechanics::LoadSet>(std::move(added_loads_), mesh().nodes);
-  rows_.clear();
-  for (int row = 0; row < rows.rows(); ++row) {
-    const auto begin = rows.row_start[static_cast<std::size_t>(row)];
-    const auto end = rows.row_start[static_cast<std::size_t>(row) + 1];
-    const bool mine = std::any_of(rows.site.begin() + begin, rows.site.begin() + end,
-                                  [&](const auto& point) { return point.body == body; });
-    if (mine) rows_.push_back(row);
-  }
-  const auto transient = std::stable_partition(rows_.begin(), rows_.end(), [&](std::int32_t row) {
-    return rows.transient[static_cast<std::size_t>(row)] == 0;
-  });
-  fixed_rows_ = static_cast<std::size_t>(transient - rows_.begin());
+  row_plan_ = mechanics::SparseRowPlan(body, rows, block_sites());
   for (const auto& pair : stiffness_pairs) {
     const bool mine = pair.first.body == body && pair.second.body == body;
     if (mine && !couples(pair.first.number, pair.second.number)) {
       coupled_points_.push_back({pair.first.number, pair.second.number});
     }
   }
+}
+
+// The free nodes of the attached points, and each node of the surface alone.
+mechanics::BlockSites FemBodyModel::block_sites() const {
+  const auto free = elements_->free_index();
+  mechanics::BlockSites sites;
+  for (const mechanics::Attachment& at : attachments_) {
+    for (std::size_t k = 0; k < at.nodes.size(); ++k) {
+      const auto block = free[static_cast<std::size_t>(at.nodes[k])];
+      if (block >= 0) sites.attached.add({.block = block, .weight = at.weights[k]});
+    }
+    sites.attached.next();
+  }
+  sites.surface_site = surface_site_;
+  if (surface_site_ < 0) return sites;
+  for (const std::int32_t block : free) {
+    if (block >= 0) sites.surface_nodes.add({.block = block});
+    sites.surface_nodes.next();
+  }
+  return sites;
 }
 
 bool FemBodyModel::couples(int first, int second) const {
@@ -255,37 +261,8 @@ FemSystem FemBodyModel::make_system(const FemModelSettings& elements) const {
   system.elements = elements.couplings.empty()
                         ? elements_
                         : std::make_shared<const FemModel>(settings_.mesh, elements);
-  const auto free = system.elements->free_index();
-  for (const auto row : std::span(rows_).first(fixed_rows_)) {
-    const auto begin = world_rows_.row_start[static_cast<std::size_t>(row)];
-    const auto end = world_rows_.row_start[static_cast<std::size_t>(row) + 1];
-    // Position of every free node that the row touches, ascending by node.
-    std::map<std::int32_t, std::int32_t> position;
-    for (auto entry = begin; entry < end; ++entry) {
-      const auto& site = world_rows_.site[static_cast<std::size_t>(entry)];
-      if (site.body != body_) continue;
-      for (const NodeId node : attachment(site.number).nodes) {
-        if (free[static_cast<std::size_t>(node)] >= 0) {
-          position[free[static_cast<std::size_t>(node)]] = 0;
-        }
-      }
-    }
-    for (auto& [node, place] : position) {
-      place = system.border.entries();
-      system.border.node.push_back(node);
-    }
-    system.border.row_start.push_back(system.border.entries());
-    for (auto entry = begin; entry < end; ++entry) {
-      const auto& site = world_rows_.site[static_cast<std::size_t>(entry)];
-      if (site.body != body_) continue;
-      const mechanics::Attachment& a = attachment(site.number);
-      for (std::size_t k = 0; k < a.nodes.size(); ++k) {
-        const auto node = free[static_cast<std::size_t>(a.nodes[k])];
-        if (node >= 0) system.scatter.push_back({entry, position.at(node), a.weights[k]});
-      }
-    }
-  }
-  system.plan = linalg::analyse(system.elements->pattern(), system.border, settings_.factorisation);
+  system.plan =
+      linalg::analyse(system.elements->pattern(), row_plan_.border(), settings_.factorisation);
   return system;
 }
 

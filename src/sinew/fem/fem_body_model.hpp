@@ -15,22 +15,15 @@
 #include "sinew/mechanics/bears_loads.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mechanics/sparse_row_plan.hpp"
 
 namespace sinew::fem {
 
-/// The bordered matrix that a body factorises: the elements on one pattern, and the persistent
-/// rows. A body model has two systems, since the geometric stiffness of constraints needs a wider
-/// pattern than most steps use.
+/// The matrix that a body factorises: the elements on one pattern, bordered by the persistent rows
+/// (FemBodyModel::row_plan()). A body model has two systems, since the geometric stiffness of
+/// constraints needs a wider pattern than most steps use.
 struct FemSystem {
-  /// border[3 position ..] += weight * direction[entry], for every free node of every entry.
-  struct Scatter {
-    std::int32_t entry = 0;     ///< in the RowValues of the world
-    std::int32_t position = 0;  ///< in the entries of the border
-    double weight = 0.0;
-  };
   std::shared_ptr<const FemModel> elements;
-  linalg::BorderPattern border;  ///< of the persistent rows
-  std::vector<Scatter> scatter;
   std::shared_ptr<const linalg::FactorisationPlan> plan;
 };
 
@@ -110,15 +103,8 @@ class FemBodyModel final : public mechanics::BodyModel,
   const mechanics::Attachment& attachment(int point) const override {
     return attachments_[static_cast<std::size_t>(point)];
   }
-  /// World rows that touch this body: persistent rows, then transient rows, each ascending.
-  const std::vector<std::int32_t>& rows() const { return rows_; }
-  /// Number of persistent rows among them.
-  std::size_t fixed_rows() const { return fixed_rows_; }
-  /// Rows of all constraints of the world.
-  const mechanics::RowPattern& world_rows() const { return world_rows_; }
-  int body() const { return body_; }  ///< position of this body in the world
-  /// The result of attach_surface(); -1 if nothing touches the surface of the body.
-  int surface_site() const { return surface_site_; }
+  /// The rows that touch this body, on its free nodes. Only after finish().
+  const mechanics::SparseRowPlan& row_plan() const { return row_plan_; }
   bool leaves_rows_out() const override { return true; }
   /// The plain system, or the one whose pattern has room for the geometric stiffness. Each is made
   /// on first use, since most robots need only one; thread-safe.
@@ -126,6 +112,7 @@ class FemBodyModel final : public mechanics::BodyModel,
   bool is_plain(const FemSystem& system) const { return &system == &plain_; }
 
  private:
+  mechanics::BlockSites block_sites() const;
   FemSystem make_system(const FemModelSettings& elements) const;
   void attach_mass(const PointMassSettings& mass);
 
@@ -139,10 +126,7 @@ class FemBodyModel final : public mechanics::BodyModel,
   std::vector<mechanics::Load> added_loads_;  // until finish()
   std::unique_ptr<const mechanics::LoadSet> loads_;
 
-  int body_ = -1;
-  std::vector<std::int32_t> rows_;
-  std::size_t fixed_rows_ = 0;
-  mechanics::RowPattern world_rows_;
+  mechanics::SparseRowPlan row_plan_;
   std::vector<std::array<std::int32_t, 2>> coupled_points_;
   std::shared_ptr<const FemModel> elements_;
   mutable std::once_flag plain_once_, curved_once_;

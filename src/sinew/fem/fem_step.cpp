@@ -23,17 +23,16 @@ std::span<double> span_of(VectorX& v) { return {v.data(), static_cast<std::size_
 }  // namespace
 
 FemStep::FemStep(FemState& state, ThreadPool& pool, bool with_geometric_stiffness)
-    : state_(state),
+    : SparseStep(3 * state.model.elements().free_nodes().size(), state.model.row_plan(),
+                 state.model.elements().held()),
+      state_(state),
       elements_(state, pool, with_geometric_stiffness),
       loads_(state),
-      rows_(state.model),
-      touched_blocks_(state.model),
       turns_(state.model.elements()),
       inertia_(state) {
   const FemBodyModel& model = state.model;
   const auto nodes = model.elements().free_nodes();
-  const auto size = 3 * static_cast<Eigen::Index>(nodes.size());
-  for (VectorX* v : {&right_, &motion_, &from_, &imbalance_}) v->setZero(size);
+  for (VectorX* v : {&from_, &scratch_}) v->setZero(static_cast<Eigen::Index>(size()));
   const double modulus = stiffest_modulus(model.settings().elements);
   min_force_ = kMinStrain * modulus * std::pow(model.elements().volume(), 2.0 / 3.0);
   const Points& positions = state.positions;
@@ -55,18 +54,22 @@ void FemStep::begin_query() {
   elements_.begin_step();
 }
 
-void FemStep::linearise(const mechanics::LinearisationRequest& request) {
+double FemStep::form(const mechanics::LinearisationRequest& request, VectorX& right,
+                     mechanics::SparseSystem& system) {
   tangent_ = request.tangent;
   elements_.linearise(request, first_linearisation_);
   loads_.linearise(request);
-  form_right_side(request.weights);
-  content_ = Content::other;
+  const double force_scale = form_right_side(request.weights, right);
   first_linearisation_ = false;
+  SystemWorkspace& workspace = elements_.active();
+  system = {&workspace.system.elements->pattern(), workspace.assembly.matrix(),
+            workspace.factorisation.get()};
+  return force_scale;
 }
 
 // b = p - f - M a - C v, where a and v are combinations of the motion since the start of the step
 // and of the state at its start (mechanics::StepWeights).
-void FemStep::form_right_side(const mechanics::StepWeights& weights) {
+double FemStep::form_right_side(const mechanics::StepWeights& weights, VectorX& right) {
   const FemModel& elements = state_.model.elements();
   const auto nodes = elements.free_nodes();
   const auto forces = elements_.active().assembly.forces();
@@ -80,92 +83,41 @@ void FemStep::form_right_side(const mechanics::StepWeights& weights) {
         state_.model.weight(node) +
         (state_.external_forces.row(node) + loads_.forces().row(node) + loads_.drag().row(node))
             .transpose();
-    right_.segment<3>(k) = p - f;
+    right.segment<3>(k) = p - f;
     internal += f.squaredNorm();
     outside += p.squaredNorm();
   }
-  force_scale_ = state_.stiffness_factor * min_force_ + std::sqrt(internal) + std::sqrt(outside);
-  if (state_.tether) force_scale_ += pull(*state_.tether, state_.positions, elements, right_);
-  if (subtracts_) right_ -= subtracted_;
+  double scale = state_.stiffness_factor * min_force_ + std::sqrt(internal) + std::sqrt(outside);
+  if (state_.tether) scale += pull(*state_.tether, state_.positions, elements, right);
   if (weights.dynamic()) {
-    force_scale_ += inertia_.add(weights, elements_.active(), first_linearisation_, right_);
+    scale += inertia_.add(weights, elements_.active(), first_linearisation_, right);
   }
-  for (const std::int32_t held : elements.held()) right_[held] = 0.0;
+  return scale;
 }
 
-void FemStep::add_geometric_stiffness(const mechanics::StiffnessPair& pair) {
-  SystemWorkspace& workspace = elements_.active();
-  touched_blocks_.add(workspace.system, pair.first.number, pair.second.number, pair.hessian,
-                      workspace.assembly.matrix());
-  elements_.moved();
-}
-
-void FemStep::take_rows(const mechanics::RowValues& rows) { rows_.take(rows, elements_.active()); }
-
-mechanics::Inertia FemStep::condense() {
+void FemStep::complete_matrix() {
   SystemWorkspace& workspace = elements_.active();
   if (state_.tether) stiffen(*state_.tether, state_.model.elements(), workspace.assembly);
   loads_.stiffen(tangent_, workspace.assembly);
   workspace.assembly.hold();
   workspace.present.reset();
-  mechanics::Inertia inertia;
-  inertia.status = workspace.factorisation->factorise(workspace.assembly.matrix(), workspace.border,
-                                                      span_of(right_));
-  content_ = Content::right;
-  turned_ = false;
-  turns_.start(state_.positions);
-  inertia.negative_pivots = workspace.factorisation->negative_pivots();
-  inertia.unsymmetric = !loads_.unsymmetric().empty();
-  return inertia;
 }
 
-void FemStep::add_matrix(int first, std::vector<mechanics::MatrixEntry>& entries) const {
-  const SystemWorkspace& workspace = elements_.active();
-  const linalg::BlockPattern& pattern = workspace.system.elements->pattern();
-  const auto matrix = workspace.assembly.matrix();
-  const auto held = state_.model.elements().held();
-  const auto add = [&](int i, int j, double value) {
-    if (value == 0.0) return;
-    if (std::ranges::binary_search(held, i) || std::ranges::binary_search(held, j)) return;
-    entries.emplace_back(first + i, first + j, value);
-  };
-  for (int j = 0; j < pattern.nodes; ++j) {
-    const auto begin = static_cast<std::size_t>(j);
-    for (auto b = pattern.column_start[begin]; b < pattern.column_start[begin + 1]; ++b) {
-      const int i = pattern.row[static_cast<std::size_t>(b)];
-      const double* block = matrix.data() + linalg::kBlockStride * static_cast<std::size_t>(b);
-      for (int c = 0; c < 3; ++c) {
-        for (int r = 0; r < 3; ++r) {
-          add(3 * i + r, 3 * j + c, block[4 * c + r]);
-          if (i != j) add(3 * j + c, 3 * i + r, block[4 * c + r]);
-        }
-      }
-    }
-  }
+void FemStep::correct(linalg::Factorisation& factor, VectorX& motion) const {
+  correct_for_open_pressure(loads_.unsymmetric(), state_.model.elements().held(), factor, motion);
 }
 
-void FemStep::add_compliance(std::span<const int> problem_row, MatrixX& compliance,
-                             VectorX& free_motion) const {
-  rows_.add_compliance(problem_row, elements_.active(), compliance, free_motion);
-}
-
-void FemStep::find_imbalance(std::span<const double> effort) {
-  imbalance_ = right_;
-  rows_.add_forces(effort, elements_.active(), imbalance_);
-}
-
-double FemStep::residual(std::span<const double> effort, std::span<double> imbalance) {
-  find_imbalance(effort);
-  if (!imbalance.empty()) std::copy_n(imbalance_.data(), imbalance_.size(), imbalance.data());
-  return imbalance_.norm();
+bool FemStep::measure_turns() {
+  turns_.measure(state_.positions);
+  return true;
 }
 
 mechanics::Wrench FemStep::unbalanced(std::span<const double> effort, const Vector3& about) {
-  find_imbalance(effort);
+  const VectorX& forces = imbalance(effort);
   mechanics::Wrench sum;
   const auto nodes = state_.model.elements().free_nodes();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const Vector3 force = imbalance_.segment<3>(3 * static_cast<Eigen::Index>(i));
+    const Vector3 force = forces.segment<3>(3 * static_cast<Eigen::Index>(i));
     sum += {force, (state_.positions.row(nodes[i]).transpose() - about).cross(force)};
   }
   return sum;
@@ -178,96 +130,17 @@ double FemStep::rounding_floor() const {
                              row_sums_);
 }
 
-void FemStep::subtract_residual(std::span<const double> force) {
-  subtracts_ = !force.empty();
-  if (subtracts_) subtracted_ = Eigen::Map<const VectorX>(force.data(), right_.size());
-}
-
-// Rows that are not in the border, and unsymmetric terms, need a solution for every right-hand
-// side.
-void FemStep::renew(std::span<const double> effort, bool turned) {
-  linalg::Factorisation& factor = *elements_.active().factorisation;
-  find_imbalance(effort);
-  turned_ = turned && loads_.unsymmetric().empty();
-  if (turned_) turns_.measure(state_.positions);
-  if (!rows_.has_transient() && loads_.unsymmetric().empty()) {
-    if (turned_) turns_.turn_back(imbalance_);
-    factor.renew(span_of(imbalance_));
-    const auto own = rows_.fixed_effort(effort);
-    base_effort_.assign(own.begin(), own.end());
-    content_ = Content::imbalance;
-    return;
-  }
-  content_ = Content::other;
-  solve_for_imbalance();
-}
-
-void FemStep::solve_for_imbalance() {
-  linalg::Factorisation& factor = *elements_.active().factorisation;
-  if (turned_) turns_.turn_back(imbalance_);
-  factor.solve(span_of(imbalance_), span_of(motion_));
-  if (turned_) turns_.turn(motion_);
-  correct_for_unsymmetric();
-}
-
-void FemStep::correct_for_unsymmetric() {
-  if (loads_.unsymmetric().empty()) return;
-  correct_for_open_pressure(loads_.unsymmetric(), state_.model.elements().held(),
-                            *elements_.active().factorisation, motion_);
-}
-
-void FemStep::solve_motion(std::span<const double> effort) {
-  linalg::Factorisation& factor = *elements_.active().factorisation;
-  const FemBodyModel& model = state_.model;
-  const bool in_border = model.rows().size() == model.fixed_rows();
-  if (content_ == Content::imbalance) {
-    const auto own = rows_.fixed_effort(effort);
-    effort_change_.resize(own.size());
-    for (std::size_t k = 0; k < own.size(); ++k) effort_change_[k] = own[k] - base_effort_[k];
-    factor.solve_with_effort(effort_change_, span_of(motion_));
-    if (turned_) turns_.turn(motion_);
-  } else if (content_ == Content::right && in_border) {
-    factor.solve_with_effort(rows_.fixed_effort(effort), span_of(motion_));
-    correct_for_unsymmetric();
-  } else {
-    find_imbalance(effort);
-    solve_for_imbalance();
-  }
-  leave_from_here();
-}
-
-void FemStep::add_row_motions(std::span<const int> problem_row, VectorX& row_motion) const {
-  const SystemWorkspace& workspace = elements_.active();
-  if (content_ == Content::imbalance) {
-    rows_.add_free_motion(problem_row, workspace, row_motion);
-  } else {
-    rows_.add_motions(problem_row, workspace, motion_, row_motion);
-  }
-}
-
-void FemStep::solve(std::span<const double> right, std::span<double> result) {
-  elements_.active().factorisation->solve(right, result);
-}
-
-void FemStep::propose_motion(std::span<const double> motion) {
-  std::ranges::copy(motion, motion_.data());
-  content_ = Content::other;  // the factor contains another motion
-  leave_from_here();
-}
-
-void FemStep::propose_drift(double time_step) {
-  const FemModel& elements = state_.model.elements();
-  const auto nodes = elements.free_nodes();
+void FemStep::drift(double time_step, VectorX& motion) {
+  const auto nodes = state_.model.elements().free_nodes();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    motion_.segment<3>(3 * static_cast<Eigen::Index>(i)) =
+    motion.segment<3>(3 * static_cast<Eigen::Index>(i)) =
         time_step * state_.velocities.row(nodes[i]).transpose();
   }
-  for (const std::int32_t held : elements.held()) motion_[held] = 0.0;
   keep_positions();
   departs_ = false;
 }
 
-void FemStep::leave_from_here() {
+void FemStep::depart() {
   keep_positions();
   departs_ = true;
 }
@@ -279,21 +152,10 @@ void FemStep::keep_positions() {
   }
 }
 
-Vector3 FemStep::proposed_motion(int point) const {
-  const mechanics::Attachment& a = state_.model.attachment(point);
-  const auto free = state_.model.elements().free_index();
-  Vector3 sum = Vector3::Zero();
-  for (std::size_t k = 0; k < a.nodes.size(); ++k) {
-    const auto node = free[static_cast<std::size_t>(a.nodes[k])];
-    if (node >= 0) sum += a.weights[k] * motion_.segment<3>(3 * node);
-  }
-  return sum;
-}
-
 void FemStep::add_proposed_motion(Points& nodes) const {
   const auto free = state_.model.elements().free_nodes();
   for (std::size_t i = 0; i < free.size(); ++i) {
-    nodes.row(free[i]) += motion_.segment<3>(3 * static_cast<Eigen::Index>(i)).transpose();
+    nodes.row(free[i]) += motion().segment<3>(3 * static_cast<Eigen::Index>(i)).transpose();
   }
 }
 
@@ -304,12 +166,12 @@ mechanics::MotionReport FemStep::apply_motion(double scale) {
   double sum = 0.0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const auto k = 3 * static_cast<Eigen::Index>(i);
-    const Vector3 moved = from_.segment<3>(k) + scale * motion_.segment<3>(k);
+    const Vector3 moved = from_.segment<3>(k) + scale * motion().segment<3>(k);
     state_.positions.row(nodes[i]) = moved;
     sum += moved.squaredNorm();
   }
   mechanics::MotionReport report;
-  report.largest_move = scale * motion_.cwiseAbs().maxCoeff();
+  report.largest_move = scale * motion().cwiseAbs().maxCoeff();
   report.finite = std::isfinite(sum) && sum < blow_up_;
   elements_.moved();
   return report;
@@ -317,8 +179,8 @@ mechanics::MotionReport FemStep::apply_motion(double scale) {
 
 void FemStep::find_acceleration(const mechanics::StepWeights& weights,
                                 std::span<double> acceleration) {
-  state_.combine(weights.acceleration, imbalance_);
-  std::copy_n(imbalance_.data(), imbalance_.size(), acceleration.data());
+  state_.combine(weights.acceleration, scratch_);
+  std::copy_n(scratch_.data(), scratch_.size(), acceleration.data());
 }
 
 void FemStep::apply_mass(std::span<const double> motion, std::span<double> result) {
@@ -336,15 +198,15 @@ mechanics::StepEnd FemStep::end_step(const mechanics::StepWeights& weights) {
   if (carries && weights.dynamic()) count_base_inertia(state_, weights, end);
   elements_.end_step(weights.time_step);
   end.error = state_.end_step(weights);
-  if (carries) count_base_force(state_, inertia_.base(), span_of(imbalance_), end);
+  if (carries) count_base_force(state_, inertia_.base(), span_of(scratch_), end);
   return end;
 }
 
-// Internal and damping forces of the last linearisation into imbalance_.
+// Internal and damping forces of the last linearisation into scratch_.
 void FemStep::carried_force(const mechanics::StepWeights& weights) {
   const auto forces = elements_.active().assembly.forces();
-  std::copy_n(forces.data(), imbalance_.size(), imbalance_.data());
-  if (weights.dynamic()) inertia_.add_stiffness_damping(weights, elements_.active(), imbalance_);
+  std::copy_n(forces.data(), scratch_.size(), scratch_.data());
+  if (weights.dynamic()) inertia_.add_stiffness_damping(weights, elements_.active(), scratch_);
 }
 
 bool FemStep::keeps_linearisation() const {
@@ -404,11 +266,21 @@ void FemStep::count_tether(const mechanics::StepWeights& weights, mechanics::Ste
   }
 }
 
+void FemStep::add_row_forces(std::span<const double> effort, Points& forces) const {
+  const auto nodes = state_.model.elements().free_nodes();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    scratch_.segment<3>(3 * static_cast<Eigen::Index>(i)) = forces.row(nodes[i]).transpose();
+  }
+  SparseStep::add_row_forces(effort, scratch_);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    forces.row(nodes[i]) = scratch_.segment<3>(3 * static_cast<Eigen::Index>(i)).transpose();
+  }
+}
+
 std::size_t FemStep::bytes() const {
-  const Eigen::Index numbers =
-      right_.size() + motion_.size() + from_.size() + imbalance_.size() + subtracted_.size();
-  return sizeof(double) * static_cast<std::size_t>(numbers) + inertia_.bytes() + elements_.bytes() +
-         touched_blocks_.bytes() + turns_.bytes();
+  const Eigen::Index numbers = from_.size() + scratch_.size() + row_sums_.size();
+  return SparseStep::bytes() + sizeof(double) * static_cast<std::size_t>(numbers) +
+         inertia_.bytes() + elements_.bytes() + turns_.bytes();
 }
 
 }  // namespace sinew::fem

@@ -11,24 +11,21 @@
 
 namespace sinew::fem {
 
-/// Assembly, border and factorisation of one FemSystem, shared by the parts of a body.
+/// Assembly and factorisation of one FemSystem, shared by the parts of a body.
 struct SystemWorkspace {
   /// @param system_in,pool must outlive this.
   SystemWorkspace(const FemSystem& system_in, ThreadPool& pool)
       : system(system_in),
         factorisation(system.plan->create(pool)),
-        assembly(system.elements, pool),
-        border(3 * static_cast<std::size_t>(system.border.entries()), 0.0) {}
+        assembly(system.elements, pool) {}
 
   std::size_t bytes() const {
-    return assembly.bytes() + factorisation->bytes() +
-           sizeof(double) * (border.size() + damping_stiffness.size());
+    return assembly.bytes() + factorisation->bytes() + sizeof(double) * damping_stiffness.size();
   }
 
   const FemSystem& system;
   std::unique_ptr<linalg::Factorisation> factorisation;
   Assembly assembly;
-  std::vector<double> border;
   std::vector<double> damping_stiffness;  ///< K against strain rates (Tangent::rates)
   bool damped = false;
   /// Weights of the forces and the matrix in `assembly` if they are valid at the current positions,
