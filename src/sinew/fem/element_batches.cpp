@@ -43,11 +43,12 @@ void check_volume(const mesh::Mesh& mesh, int tetrahedron, const Matrix3& edge) 
 std::vector<std::int32_t> slot_order(const mesh::Mesh& mesh,
                                      std::span<const MaterialRegion> regions,
                                      std::span<const std::int32_t> region_of,
+                                     std::span<const double> weights,
                                      std::span<const std::int32_t> rank) {
   std::vector<std::int32_t> order;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     const MaterialRegion& region = regions[static_cast<std::size_t>(region_of[t])];
-    if (!region.hyperelastic) order.push_back(static_cast<std::int32_t>(t));
+    if (!region.hyperelastic && weights[t] != 0.0) order.push_back(static_cast<std::int32_t>(t));
   }
   const auto lowest = [&](std::int32_t t) {
     std::int32_t result = std::numeric_limits<std::int32_t>::max();
@@ -74,12 +75,12 @@ std::vector<std::int32_t> slot_order(const mesh::Mesh& mesh,
 }
 
 void set_lane(BatchConstants& batch, std::size_t lane, const Matrix3& edge,
-              const MaterialRegion& region, bool filling) {
+              const MaterialRegion& region, double weight) {
   const Matrix3 inverse = edge.inverse();  // row a - 1 is g_a
   for (int a = 0; a < 3; ++a) {
     for (int c = 0; c < 3; ++c) batch.gradient[a][c].value[lane] = inverse(a, c);
   }
-  const double volume = filling ? 0.0 : edge.determinant() / 6.0;
+  const double volume = weight * (edge.determinant() / 6.0);
   batch.volume.value[lane] = volume;
   batch.mu.value[lane] = region.constants.shear_modulus();
   batch.lambda.value[lane] = region.constants.first_lame();
@@ -90,9 +91,10 @@ void set_lane(BatchConstants& batch, std::size_t lane, const Matrix3& edge,
 
 ElementBatches make_element_batches(const mesh::Mesh& mesh, std::span<const MaterialRegion> regions,
                                     std::span<const std::int32_t> region_of,
+                                    std::span<const double> weights,
                                     std::span<const std::int32_t> rank) {
   ElementBatches result;
-  result.tetrahedron = slot_order(mesh, regions, region_of, rank);
+  result.tetrahedron = slot_order(mesh, regions, region_of, weights, rank);
   const std::size_t slots = result.tetrahedron.size();
   result.constants.resize(slots / kLanes);
   result.nodes.resize(4 * slots);
@@ -107,7 +109,7 @@ ElementBatches make_element_batches(const mesh::Mesh& mesh, std::span<const Mate
     if (!filling) check_volume(mesh, last, edge);
     const MaterialRegion& region = regions[static_cast<std::size_t>(region_of[element])];
     result.region[slot] = region_of[element];
-    set_lane(result.constants[batch], lane, edge, region, filling);
+    set_lane(result.constants[batch], lane, edge, region, filling ? 0.0 : weights[element]);
     for (std::size_t a = 0; a < 4; ++a) {
       result.nodes[4 * kLanes * batch + kLanes * a + lane] = mesh.tetrahedra[element][a];
     }

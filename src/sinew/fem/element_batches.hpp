@@ -39,11 +39,13 @@ struct ElementBatches {
 
 /// Sorts the tetrahedra whose region is not hyperelastic into batches and computes their constants.
 /// @param mesh,regions the elements and their materials.
-/// @param region_of region of each tetrahedron of the mesh.
+/// @param region_of region of each tetrahedron of the mesh. @param weights (elements,) by which
+///   their volumes are multiplied; elements of weight 0 are left out.
 /// @param rank spatial rank of each node.
 /// Throws Error(zero-volume, inverted-element) with the number of the tetrahedron.
 ElementBatches make_element_batches(const mesh::Mesh& mesh, std::span<const MaterialRegion> regions,
                                     std::span<const std::int32_t> region_of,
+                                    std::span<const double> weights,
                                     std::span<const std::int32_t> rank);
 
 }  // namespace sinew::fem

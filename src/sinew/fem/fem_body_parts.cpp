@@ -42,6 +42,7 @@ std::vector<NamedHash> FemBodyModel::parts() const {
   const ValueHash nodes =
       ValueHash().add(mesh.nodes, mesh.tetrahedra, mesh.quadratic, mesh.hexahedra);
   const ValueHash damping = ValueHash().add(settings_.damping.mass, settings_.damping.stiffness);
+  if (elements.sample) material.add(elements.sample->elements, elements.sample->weights);
   std::vector<NamedHash> result = {{"mesh", nodes.value()},
                                    {"material", material.value()},
                                    {"mass", mass.value()},

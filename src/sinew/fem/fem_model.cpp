@@ -1,6 +1,7 @@
 #include "sinew/fem/fem_model.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <string>
 
@@ -113,15 +114,79 @@ void check_node(NodeId node, const mesh::Mesh& mesh, const char* what) {
               fmt::format("node {} of {}", node, mesh.node_count()), "nodes count from 0");
 }
 
-/// Mesh node -> free number, or -1 where fixed or unused.
-std::vector<NodeId> number_free_nodes(const mesh::Mesh& mesh,
-                                      const std::vector<NodeId>& fixed_nodes) {
+void check_sample(const mesh::Mesh& mesh, const FemModelSettings& settings) {
+  const ElementSample& sample = *settings.sample;
+  const Location place{.file = mesh.name, .item = "sample"};
+  if (sample.elements.empty()) {
+    throw Error(ErrorKind::empty_list, place, "no element is sampled", "give at least one");
+  }
+  if (sample.weights.size() != sample.elements.size()) {
+    throw Error(
+        ErrorKind::wrong_length, place,
+        fmt::format("{} weights for {} elements", sample.weights.size(), sample.elements.size()),
+        "give one weight for each element");
+  }
+  if (!settings.point_masses.empty()) {
+    throw Error(ErrorKind::conflicting_keys, place, "point masses cannot be sampled",
+                "add them to the mass matrix of the body that uses the sample");
+  }
+}
+
+/// (elements,) how often each element counts: 1, or its weight in the sample, or 0.
+std::vector<double> element_weights(const mesh::Mesh& mesh, const FemModelSettings& settings) {
+  const auto count = static_cast<std::size_t>(ElementList(mesh).count());
+  if (!settings.sample) return std::vector<double>(count, 1.0);
+  check_sample(mesh, settings);
+  const ElementSample& sample = *settings.sample;
+  std::vector<double> weights(count, 0.0);
+  for (std::size_t k = 0; k < sample.elements.size(); ++k) {
+    const NodeId e = sample.elements[k];
+    const auto fail = [&](ErrorKind kind, const std::string& message, const char* remedy) {
+      throw Error(kind, {.file = mesh.name, .item = "sample"}, message, remedy);
+    };
+    if (e < 0 || static_cast<std::size_t>(e) >= count) {
+      fail(ErrorKind::index_out_of_range, fmt::format("element {} of {}", e, count),
+           "count from 0");
+    }
+    const double weight = sample.weights[k];
+    if (!(weight > 0.0) || !std::isfinite(weight)) {
+      fail(ErrorKind::out_of_range, fmt::format("the weight of element {} is {:g}", e, weight),
+           "give a positive one, or leave the element out");
+    }
+    double& own = weights[static_cast<std::size_t>(e)];
+    if (own != 0.0) {
+      fail(ErrorKind::conflicting_keys, fmt::format("element {} is sampled twice", e),
+           "name it once");
+    }
+    own = weight;
+  }
+  return weights;
+}
+
+template <typename Visit>
+void each_membrane_face(const FemModelSettings& settings, Visit visit) {
+  for (const MembraneLayer& layer : settings.membranes) {
+    for (const mesh::Face& face : layer.faces) {
+      std::vector<NodeId> nodes(face.nodes().begin(), face.nodes().end());
+      if (face.is_quadratic()) nodes.insert(nodes.end(), face.middle.begin(), face.middle.end());
+      visit(nodes);
+    }
+  }
+}
+
+/// Mesh node -> free number, or -1 where fixed or unused. @param weights (elements,).
+std::vector<NodeId> number_free_nodes(const mesh::Mesh& mesh, const FemModelSettings& settings,
+                                      std::span<const double> weights) {
   std::vector<NodeId> result(static_cast<std::size_t>(mesh.node_count()), -1);
+  const auto use = [&](const auto& nodes) {
+    for (const NodeId node : nodes) result[static_cast<std::size_t>(node)] = 0;
+  };
   const ElementList list(mesh);
   for (int e = 0; e < list.count(); ++e) {
-    for (const NodeId node : list.nodes(e)) result[static_cast<std::size_t>(node)] = 0;
+    if (weights[static_cast<std::size_t>(e)] != 0.0) use(list.nodes(e));
   }
-  for (const NodeId node : fixed_nodes) {
+  each_membrane_face(settings, use);
+  for (const NodeId node : settings.fixed_nodes) {
     check_node(node, mesh, "fixed");
     result[static_cast<std::size_t>(node)] = -1;
   }
@@ -137,9 +202,10 @@ std::vector<NodeId> number_free_nodes(const mesh::Mesh& mesh,
   return result;
 }
 
-linalg::BlockPattern make_pattern(const mesh::Mesh& mesh, std::span<const NodeId> free_index,
-                                  int free_count, std::span<const SolidGroup> solids,
-                                  const std::vector<std::vector<NodeId>>& couplings) {
+linalg::BlockPattern make_pattern(const mesh::Mesh& mesh, const FemModelSettings& settings,
+                                  std::span<const double> weights,
+                                  std::span<const NodeId> free_index, int free_count,
+                                  std::span<const SolidGroup> solids) {
   std::vector<std::int32_t> starts{0}, members;
   const auto add = [&](const auto& clique) {
     for (const NodeId node : clique) {
@@ -150,7 +216,10 @@ linalg::BlockPattern make_pattern(const mesh::Mesh& mesh, std::span<const NodeId
     starts.push_back(static_cast<std::int32_t>(members.size()));
   };
   const ElementList list(mesh);
-  for (int e = 0; e < list.count(); ++e) add(list.nodes(e));
+  for (int e = 0; e < list.count(); ++e) {
+    if (weights[static_cast<std::size_t>(e)] != 0.0) add(list.nodes(e));
+  }
+  if (settings.sample) each_membrane_face(settings, add);
   for (const SolidGroup& group : solids) {
     const ElementPatches& patches = group.patches;
     for (std::size_t p = 0; p < patches.volume.size(); ++p) {
@@ -159,11 +228,11 @@ linalg::BlockPattern make_pattern(const mesh::Mesh& mesh, std::span<const NodeId
               .subspan(first, static_cast<std::size_t>(patches.first_row[p + 1]) - first));
     }
   }
-  for (const std::vector<NodeId>& coupling : couplings) add(coupling);
+  for (const std::vector<NodeId>& coupling : settings.couplings) add(coupling);
   return linalg::BlockPattern::from_cliques(free_count, starts, members);
 }
 
-/// (elements,) m^3.
+/// (elements,) m^3, times their weights.
 std::vector<double> element_volumes(const mesh::Mesh& mesh, const ElementBatches& elements,
                                     std::span<const SolidGroup> solids) {
   std::vector<double> result(static_cast<std::size_t>(ElementList(mesh).count()));
@@ -188,15 +257,16 @@ FemModel::FemModel(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSetting
     : mesh_(std::move(mesh)) {
   check_mesh(*mesh_);
   const std::vector<std::int32_t> region_of = assign_regions(*mesh_, settings.regions);
-  free_index_ = number_free_nodes(*mesh_, settings.fixed_nodes);
+  const std::vector<double> weights = element_weights(*mesh_, settings);
+  free_index_ = number_free_nodes(*mesh_, settings, weights);
   for (NodeId node = 0; node < mesh_->node_count(); ++node) {
     if (free_index_[static_cast<std::size_t>(node)] >= 0) free_nodes_.push_back(node);
   }
   const std::vector<std::int32_t> rank = spatial_ranks(mesh_->nodes);
   elements_ = std::make_unique<const ElementBatches>(
-      make_element_batches(*mesh_, settings.regions, region_of, rank));
-  solids_ = make_solid_groups(*mesh_, settings.regions, region_of, rank, *elements_);
-  pattern_ = make_pattern(*mesh_, free_index_, free_count(), solids_, settings.couplings);
+      make_element_batches(*mesh_, settings.regions, region_of, weights, rank));
+  solids_ = make_solid_groups(*mesh_, settings.regions, region_of, weights, rank, *elements_);
+  pattern_ = make_pattern(*mesh_, settings, weights, free_index_, free_count(), solids_);
   list_held(settings.held_axes);
   gather_ = std::make_unique<const GatherLists>(
       make_gather_lists(*elements_, solids_, settings.regions, free_index_, rank, pattern_));

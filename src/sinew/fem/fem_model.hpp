@@ -59,6 +59,18 @@ struct SupportMass {
   double mass = 0.0;  ///< kg
 };
 
+/// Elements that stand for all of a body, as in hyper-reduction: energy, forces, stiffness, volume
+/// and mass are the sums over them, each times its weight (C. Farhat, P. Avery, T. Chapman,
+/// J. Cortial, Int. J. Numer. Meth. Engng 98, 2014: energy-conserving sampling and weighting). The
+/// weights do not depend on positions, so the forces still derive from an energy. Nodes of other
+/// elements alone are not free, unless a membrane uses them.
+struct ElementSample {
+  /// Distinct numbers of elements: positions in mesh.tetrahedra, then in mesh.hexahedra. Of a patch
+  /// (MaterialRegion::patches) all members with the same weight, or none.
+  std::vector<NodeId> elements;
+  std::vector<double> weights;  ///< as many, > 0
+};
+
 /// Settings of a FemModel.
 struct FemModelSettings {
   std::vector<MaterialRegion> regions;  ///< every element belongs to exactly one
@@ -72,6 +84,8 @@ struct FemModelSettings {
   /// Further groups of nodes that are coupled, such as the nodes of a cable segment for its
   /// geometric stiffness. Mesh node numbers; fixed nodes are skipped.
   std::vector<std::vector<NodeId>> couplings;
+  /// None: every element counts once. Membranes are not sampled. Not together with point masses.
+  std::optional<ElementSample> sample = std::nullopt;
 };
 
 /// Young's modulus, at small strain, of the stiffest region, Pa.
@@ -90,8 +104,9 @@ class FemModel {
   /// hyperelastic), empty-list (no region), invalid-material, out-of-range (density, mass),
   /// index-out-of-range (element, node, axis), conflicting-keys (an element in two regions; equal
   /// nodal masses without a total mass or with a consistent matrix), bad-argument (nodes of a point
-  /// mass that do not share an element), empty-region (an element without a region), zero-volume,
-  /// inverted-element, everything-fixed.
+  /// mass that do not share an element; part of a patch in a sample), wrong-length (weights of a
+  /// sample), empty-region (an element without a region), zero-volume, inverted-element,
+  /// everything-fixed.
   FemModel(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSettings& settings);
   ~FemModel();
   FemModel(const FemModel&) = delete;

@@ -170,6 +170,7 @@ std::vector<double> consistent_mass_blocks(const mesh::Mesh& mesh,
   const ElementList list(mesh);
   for (int e = 0; e < list.count(); ++e) {
     const auto nodes = list.nodes(e);
+    if (masses[static_cast<std::size_t>(e)] == 0.0) continue;  // not sampled
     const ElementMass shares = element_mass(mesh, list, e);
     for (std::size_t a = 0; a < nodes.size(); ++a) {
       const NodeId i = free_index[static_cast<std::size_t>(nodes[a])];

@@ -99,7 +99,34 @@ std::map<std::pair<std::size_t, std::int32_t>, std::vector<std::int32_t>> sorted
   return result;
 }
 
-void fill_group(SolidGroup& group, const mesh::Mesh& mesh,
+/// Leaves out what is not sampled. @param elements in the order of slots. @param first_slot where
+/// each patch begins in it; empty without patches.
+void keep_sampled(const mesh::Mesh& mesh, std::span<const double> weights,
+                  std::vector<std::int32_t>& elements, std::vector<std::int32_t>& first_slot) {
+  const auto weight = [&](std::int32_t e) { return weights[static_cast<std::size_t>(e)]; };
+  std::vector<std::int32_t> kept_first{0};
+  std::int32_t kept = 0;
+  for (std::size_t p = 0; p + 1 < first_slot.size(); ++p) {
+    const std::int32_t begin = first_slot[p], end = first_slot[p + 1];
+    const std::int32_t first = elements[static_cast<std::size_t>(begin)];
+    for (std::int32_t s = begin; s < end; ++s) {
+      const std::int32_t e = elements[static_cast<std::size_t>(s)];
+      if (weight(e) == weight(first)) continue;
+      const ElementList list(mesh);
+      throw Error(ErrorKind::bad_argument, {.file = mesh.name, .item = "sample"},
+                  fmt::format("{} and {} share a patch, and have the weights {:g} and {:g}",
+                              list.name(first), list.name(e), weight(first), weight(e)),
+                  "sample whole patches, with one weight each");
+    }
+    if (weight(first) == 0.0) continue;
+    kept += end - begin;
+    kept_first.push_back(kept);
+  }
+  if (!first_slot.empty()) first_slot = std::move(kept_first);
+  std::erase_if(elements, [&](std::int32_t e) { return weight(e) == 0.0; });
+}
+
+void fill_group(SolidGroup& group, const mesh::Mesh& mesh, std::span<const double> weights,
                 const std::vector<std::int32_t>& elements) {
   const ElementList list(mesh);
   const std::size_t slots = (elements.size() + kLanes - 1) / kLanes * kLanes;
@@ -125,7 +152,8 @@ void fill_group(SolidGroup& group, const mesh::Mesh& mesh,
         row[k].value[lane] =
             points[q].gradients(static_cast<Eigen::Index>(k / 3), static_cast<Eigen::Index>(k % 3));
       }
-      row[3 * nodes].value[lane] = filling ? 0.0 : points[q].weight;
+      row[3 * nodes].value[lane] =
+          filling ? 0.0 : weights[static_cast<std::size_t>(element)] * points[q].weight;
     }
   }
 }
@@ -140,6 +168,7 @@ std::string ElementList::name(int element) const {
 std::vector<SolidGroup> make_solid_groups(const mesh::Mesh& mesh,
                                           std::span<const MaterialRegion> regions,
                                           std::span<const std::int32_t> region_of,
+                                          std::span<const double> weights,
                                           std::span<const std::int32_t> rank,
                                           const ElementBatches& batches) {
   std::vector<SolidGroup> groups;
@@ -156,7 +185,9 @@ std::vector<SolidGroup> make_solid_groups(const mesh::Mesh& mesh,
     std::vector<std::int32_t> order = elements, first_slot;
     const bool patches = group.nodes == 4 && regions[static_cast<std::size_t>(kind.second)].patches;
     if (patches) first_slot = group_elements(mesh, order);
-    fill_group(group, mesh, order);
+    keep_sampled(mesh, weights, order, first_slot);
+    if (order.empty()) continue;
+    fill_group(group, mesh, weights, order);
     if (patches) {
       make_patches(group, std::move(first_slot));
       group.patches.slots_before = patch_slots;

@@ -106,12 +106,15 @@ class ElementList {
 };
 
 /// Makes the groups of all elements whose region is hyperelastic.
-/// @param mesh,regions,region_of,rank as for make_element_batches(); region_of over ElementList.
+/// @param mesh,regions,region_of,weights,rank as for make_element_batches(); region_of over
+///   ElementList. Patches are those of the whole mesh.
 /// @param batches of the other elements, whose slots and force records come first.
-/// Throws Error(zero-volume, inverted-element) with the name of the element.
+/// Throws Error(zero-volume, inverted-element) with the name of the element, and
+/// Error(bad-argument) if the members of a patch have different weights.
 std::vector<SolidGroup> make_solid_groups(const mesh::Mesh& mesh,
                                           std::span<const MaterialRegion> regions,
                                           std::span<const std::int32_t> region_of,
+                                          std::span<const double> weights,
                                           std::span<const std::int32_t> rank,
                                           const ElementBatches& batches);
 
