@@ -56,6 +56,7 @@ struct InfoOptions {
   std::string file;
   std::optional<std::string> unit;
   bool json = false;
+  bool parameters = false;
 };
 
 std::string size_text(const Vector3& size) {
@@ -202,6 +203,21 @@ void add_membranes(Facts& facts, const mechanics::BodyModel& body) {
   }
 }
 
+// JSON always has them; the text, if they are asked for.
+void add_parameters(Facts& facts, const model::Model& model, bool as_text) {
+  const std::vector<Parameter> all = model.parameters();
+  std::size_t width = 0;
+  for (const Parameter& one : all) width = std::max(width, one.path.size());
+  facts.json["parameters"] = ordered_json::array();
+  for (const Parameter& one : all) {
+    facts.json["parameters"].push_back(
+        {{"path", one.path}, {"value", one.value}, {"unit", one.unit}});
+    if (!as_text) continue;
+    facts.text += fmt::format("  {:<{}}  {:g}{}{}\n", one.path, width, one.value,
+                              one.unit.empty() ? "" : " ", one.unit);
+  }
+}
+
 Facts scene_facts(const InfoOptions& options) {
   const scene::Robot robot = scene::load(options.file);
   const model::Model& model = *robot.model;
@@ -277,6 +293,7 @@ Facts scene_facts(const InfoOptions& options) {
     facts.json["controllers"].push_back(controller.name);
     facts.text += fmt::format("  controller {}\n", controller.name);
   }
+  add_parameters(facts, model, options.parameters);
   return facts;
 }
 
@@ -382,10 +399,14 @@ void add_info(CommandLine& line) {
                   "Length unit of a mesh or surface file, e.g. mm (default: m)")
       .type_name("UNIT");
   command.add_flag("--json", options->json, "Print JSON, in SI units");
+  command.add_flag("--parameters", options->parameters,
+                   "Also list the numbers on which the motion of a scene's robot depends, with the "
+                   "paths that --set and sweeps take");
   command.footer(
       "Defects of a mesh are listed; only an unreadable file is an error.\n\n"
       "Examples:\n"
       "  sinew info finger.vtk --unit mm\n"
+      "  sinew info examples/trunk/trunk.yaml --parameters\n"
       "  sinew info out/trunk --json");
   command.set_action([options] { return info(*options); });
 }

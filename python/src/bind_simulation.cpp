@@ -116,6 +116,7 @@ parallel.)");
   bind_simulation_reports(type);
   bind_simulation_linearisation(type);
   bind_simulation_linear_model(type);
+  bind_simulation_parameters(type);
   bind_simulation_response(type);
   bind_control(type);
   bind_contact_problem(module, type);

@@ -30,6 +30,7 @@ void bind_signals(py::module_& module);
 void bind_targets(py::module_& module);
 void bind_reports(py::module_& module);
 void bind_linear_model(py::module_& module);
+void bind_parameters(py::module_& module);
 void bind_actuator(py::module_& module);
 void bind_effector(py::module_& module);
 void bind_load(py::module_& module);

@@ -22,6 +22,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_targets(module);
   python::bind_reports(module);
   python::bind_linear_model(module);
+  python::bind_parameters(module);
   python::bind_mesh(module);
   python::bind_actuator(module);
   python::bind_effector(module);

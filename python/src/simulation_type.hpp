@@ -24,6 +24,7 @@ void bind_simulation_stepping(SimulationType& type);
 /// Binds the linearised response of motions to efforts.
 void bind_simulation_linearisation(SimulationType& type);
 void bind_simulation_linear_model(SimulationType& type);
+void bind_simulation_parameters(SimulationType& type);
 /// Binds the response of effectors to the efforts of controlled actuators.
 void bind_simulation_response(SimulationType& type);
 /// Binds contact problems: their files, and Simulation.contact_problem().

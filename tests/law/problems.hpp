@@ -29,7 +29,7 @@ class CubicDrive : public Drive {
             -slope_ - 3.0 * cubic_ * motion * motion};
   }
   void advance(const Step&, double, double, std::span<double>) const override {}
-  void add_to(ValueHash&) const override {}
+  void describe(PartVisitor&) const override {}
 
  private:
   double rest_, slope_, cubic_;

@@ -50,8 +50,12 @@ class SpringPointModel : public mechanics::BodyModel {
   bool has_inertia() const override { return own.mass > 0.0; }
   double size() const override { return 0.01; }
   bool has_few_coordinates() const override { return true; }
-  std::vector<NamedHash> parts() const override {
-    return {{"spring", ValueHash().add(own.at, own.mass, own.stiffness, own.gravity).value()}};
+  void describe(PartsVisitor& parts) const override {
+    parts.part("spring")
+        .add(own.at)
+        .number("mass", "kg", own.mass)
+        .number("stiffness", "N/m", own.stiffness)
+        .number("gravity", "m/s^2", own.gravity);
   }
   std::uint64_t site_hash(int) const override { return 0; }
   std::unique_ptr<mechanics::Body> create(ThreadPool&, bool, int histories) const override;

@@ -62,7 +62,7 @@ class Strut : public constraint::Constraint {
     pairs[0].hessian = -effort[static_cast<std::size_t>(first_row_)] *
                        (Matrix3::Identity() - u * u.transpose()) / along.norm();
   }
-  void add_to(ValueHash& hash) const override { hash.add(anchor_, length_); }
+  void describe(PartVisitor& visitor) const override { visitor.add(anchor_, length_); }
 
  private:
   mechanics::MaterialPoint point_;

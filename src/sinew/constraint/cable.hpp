@@ -46,7 +46,9 @@ class Cable : public Constraint {
   void geometric_stiffness(const Configuration& configuration, std::span<const double> effort,
                            std::span<mechanics::StiffnessPair> stiffness_pairs) const override;
 
-  void add_to(ValueHash& hash) const override { hash.add(pull_point_, rest_length_, friction_); }
+  void describe(PartVisitor& visitor) const override {
+    visitor.add(pull_point_, rest_length_).number("friction", "", friction_);
+  }
 
   /// True while every segment is under tension.
   bool stiffens(std::span<const double> effort) const override;

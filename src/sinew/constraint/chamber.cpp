@@ -203,8 +203,8 @@ void Chamber::geometric_stiffness(const Configuration& configuration,
   }
 }
 
-void Chamber::add_to(ValueHash& hash) const {
-  for (const ChamberFace& face : faces_) hash.add(face.corner, face.middle);
+void Chamber::describe(PartVisitor& visitor) const {
+  for (const ChamberFace& face : faces_) visitor.add(face.corner, face.middle);
 }
 
 }  // namespace sinew::constraint

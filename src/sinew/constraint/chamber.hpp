@@ -45,7 +45,7 @@ class Chamber : public Constraint {
   void geometric_stiffness(const Configuration& configuration, std::span<const double> effort,
                            std::span<mechanics::StiffnessPair> stiffness_pairs) const override;
 
-  void add_to(ValueHash& hash) const override;
+  void describe(PartVisitor& visitor) const override;
 
   /// V_0, m^3; negative if the surface is the outside of a body.
   double rest_volume() const { return rest_volume_; }

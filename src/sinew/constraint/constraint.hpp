@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "sinew/core/named_hash.hpp"
+#include "sinew/core/part_visitor.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/mechanics/rows.hpp"
 
@@ -43,8 +43,8 @@ class Constraint {
   /// cable is. The argument has the efforts of all rows of the world, (rows,) N or Pa.
   virtual bool stiffens(std::span<const double>) const { return false; }
 
-  /// Adds to the hash what its rows depend on, apart from the points that they touch.
-  virtual void add_to(ValueHash& hash) const = 0;
+  /// Visits what its rows depend on, apart from the points that they touch.
+  virtual void describe(PartVisitor& visitor) const = 0;
 
   const std::string& name() const { return name_; }
   int first_row() const { return first_row_; }

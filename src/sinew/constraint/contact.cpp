@@ -15,9 +15,9 @@ bool Friction::slides(const Vector3& effort) const {
   return sliding < sticking && qp::slides(effort, sliding) && qp::at_most(effort, sliding);
 }
 
-void Friction::add_to(ValueHash& hash) const {
-  hash.add(sticking);
-  if (sliding != sticking) hash.add(sliding);
+void Friction::describe(PartVisitor& visitor) const {
+  visitor.number("friction", "", sticking);
+  if (sliding != sticking) visitor.number("kinetic_friction", "", sliding);
 }
 
 Contact::Contact(std::string name, std::size_t count, Friction friction, std::size_t stride)

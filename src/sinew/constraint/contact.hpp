@@ -23,9 +23,8 @@ struct Friction {
   /// (A point that sticks with exactly the friction of sliding is taken to slide.)
   /// @param effort (3,) N, normal first, > 0.
   bool slides(const Vector3& effort) const;
-  /// Adds one number if both coefficients are equal, else two. @param hash of what affects the
-  /// motion.
-  void add_to(ValueHash& hash) const;
+  /// Visits one number if both coefficients are equal, else two.
+  void describe(PartVisitor& visitor) const;
 };
 
 /// A contact: three rows per point, the gap (m, negative inside) and two tangential motions (m)

@@ -17,7 +17,9 @@ class CoordinateForce : public Constraint {
                std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
   /// Hashed as a force along the first axis, so that fingerprints of saved states stay the same.
-  void add_to(ValueHash& hash) const override { hash.add(Vector3(1, 0, 0), Vector3(0, 0, 0)); }
+  void describe(PartVisitor& visitor) const override {
+    visitor.add(Vector3(1, 0, 0), Vector3(0, 0, 0));
+  }
 
  private:
   mechanics::Coordinate coordinate_;

@@ -17,7 +17,7 @@ class Coupling : public Constraint {
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
-  void add_to(ValueHash&) const override {}
+  void describe(PartVisitor&) const override {}
 
  private:
   mechanics::MaterialPoint first_, second_;

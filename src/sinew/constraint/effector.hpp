@@ -34,7 +34,7 @@ class Effector : public Constraint {
   virtual EffectorKind kind() const = 0;
   /// Unit of value(): "m" or "rad".
   const char* unit() const { return kind() == EffectorKind::point ? "m" : "rad"; }
-  void add_to(ValueHash& hash) const override { hash.add(directions_); }
+  void describe(PartVisitor& visitor) const override { visitor.add(directions_); }
 
  protected:
   Effector(std::string name, std::vector<Vector3> directions);
@@ -113,7 +113,7 @@ class TriangleOrientation : public OrientationEffector {
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
-  void add_to(ValueHash& hash) const override { hash.add(directions_, rest_frame_); }
+  void describe(PartVisitor& visitor) const override { visitor.add(directions_, rest_frame_); }
 
  private:
   Matrix3 rotation(const Configuration& configuration) const override;

@@ -147,9 +147,9 @@ std::vector<Vector3> Joint::rest_directions() const {
   return result;
 }
 
-void Joint::add_to(ValueHash& hash) const {
-  hash.add(static_cast<int>(type_));
-  place_.add_to(hash);
+void Joint::describe(PartVisitor& visitor) const {
+  visitor.add(static_cast<int>(type_));
+  place_.describe(visitor);
 }
 
 Joint::Load Joint::load(const Configuration& configuration, std::span<const double> effort) const {
@@ -194,9 +194,9 @@ void JointMotion::linearise(const Configuration& configuration,
   values.delta[first_row_] = frames.slide();
 }
 
-void JointMotion::add_to(ValueHash& hash) const {
-  hash.add(static_cast<int>(kind_));
-  place_.add_to(hash);
+void JointMotion::describe(PartVisitor& visitor) const {
+  visitor.add(static_cast<int>(kind_));
+  place_.describe(visitor);
 }
 
 }  // namespace sinew::constraint

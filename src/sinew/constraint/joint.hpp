@@ -51,7 +51,7 @@ class JointPlace {
   /// @return the next entry.
   Vector3* write_points(Vector3* entry, const Vector3& direction) const;
   Vector3* write_turns(Vector3* entry, const Vector3& second, const Vector3& first) const;
-  void add_to(ValueHash& hash) const { hash.add(axes_, sides_[0].rest); }
+  void describe(PartVisitor& visitor) const { visitor.add(axes_, sides_[0].rest); }
   const Matrix3& axes() const { return axes_; }  ///< at rest
 
  private:
@@ -75,7 +75,7 @@ class Joint : public Constraint {
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
-  void add_to(ValueHash& hash) const override;
+  void describe(PartVisitor& visitor) const override;
 
   JointType type() const { return type_; }
   const JointPlace& place() const { return place_; }
@@ -116,7 +116,7 @@ class JointMotion : public Constraint {
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
-  void add_to(ValueHash& hash) const override;
+  void describe(PartVisitor& visitor) const override;
   Kind kind() const { return kind_; }
 
  private:

@@ -21,7 +21,7 @@ class PointForce : public Constraint {
                std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
 
-  void add_to(ValueHash& hash) const override { hash.add(direction_, rest_position_); }
+  void describe(PartVisitor& visitor) const override { visitor.add(direction_, rest_position_); }
 
   const mechanics::MaterialPoint& point() const { return point_; }
   const Vector3& direction() const { return direction_; }

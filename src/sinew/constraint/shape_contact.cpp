@@ -294,29 +294,29 @@ void ShapeContact::prepare(mechanics::RowValues& values) {
 
 namespace {
 
-void hash_shape(const collision::Shape& shape, ValueHash& hash) {
-  hash.add(shape.index());
-  if (const auto* plane = std::get_if<Plane>(&shape)) hash.add(plane->point, plane->normal);
-  if (const auto* ball = std::get_if<Sphere>(&shape)) hash.add(ball->centre, ball->radius);
-  if (const auto* rod = std::get_if<Capsule>(&shape)) hash.add(rod->from, rod->to, rod->radius);
+void describe_shape(const collision::Shape& shape, PartVisitor& visitor) {
+  visitor.add(shape.index());
+  if (const auto* plane = std::get_if<Plane>(&shape)) visitor.add(plane->point, plane->normal);
+  if (const auto* ball = std::get_if<Sphere>(&shape)) visitor.add(ball->centre, ball->radius);
+  if (const auto* rod = std::get_if<Capsule>(&shape)) visitor.add(rod->from, rod->to, rod->radius);
   if (const auto* rod = std::get_if<collision::Cylinder>(&shape)) {
-    hash.add(rod->from, rod->to, rod->radius);
+    visitor.add(rod->from, rod->to, rod->radius);
   }
   if (const auto* box = std::get_if<collision::OrientedBox>(&shape)) {
-    hash.add(box->centre, box->axes, box->half_size);
+    visitor.add(box->centre, box->axes, box->half_size);
   }
   if (const auto* solid = std::get_if<collision::ConvexSolid>(&shape)) {
-    for (const Vector3& corner : solid->hull->corners()) hash.add(corner);
-    hash.add(solid->origin, solid->axes);
+    for (const Vector3& corner : solid->hull->corners()) visitor.add(corner);
+    visitor.add(solid->origin, solid->axes);
   }
 }
 
 }  // namespace
 
-void ShapeContact::add_to(ValueHash& hash) const {
-  friction().add_to(hash);
-  hash_shape(surface_, hash);
-  if (own_) hash_shape(own_->shape, hash);
+void ShapeContact::describe(PartVisitor& visitor) const {
+  friction().describe(visitor);
+  describe_shape(surface_, visitor);
+  if (own_) describe_shape(own_->shape, visitor);
 }
 
 }  // namespace sinew::constraint

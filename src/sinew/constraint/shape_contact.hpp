@@ -85,7 +85,7 @@ class ShapeContact : public Contact {
   Vector3 position(std::size_t point, const Vector3& row_values,
                    const mechanics::RowValues& values) const;
 
-  void add_to(ValueHash& hash) const override;
+  void describe(PartVisitor& visitor) const override;
 
   int body() const override { return own_ ? own_->centre.body : points_.front().body; }
   int other_body() const override { return carrier_ ? carrier_->centre.body : -1; }

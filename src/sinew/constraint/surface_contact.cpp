@@ -191,10 +191,10 @@ collision::ProximityPair SurfaceContact::load(std::size_t point, const double* f
   return pair;
 }
 
-void SurfaceContact::add_to(ValueHash& hash) const {
-  friction().add_to(hash);
-  hash.add(settings_.separation, settings_.depth);
-  hash.add(is_within());
+void SurfaceContact::describe(PartVisitor& visitor) const {
+  friction().describe(visitor);
+  visitor.number("separation", "m", settings_.separation).add(settings_.depth);
+  visitor.add(is_within());
 }
 
 }  // namespace sinew::constraint

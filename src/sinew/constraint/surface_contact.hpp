@@ -53,7 +53,7 @@ class SurfaceContact : public Contact {
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
-  void add_to(ValueHash& hash) const override;
+  void describe(PartVisitor& visitor) const override;
 
   int body() const override { return first_.site.body; }
   int other_body() const override { return second_.site.body; }

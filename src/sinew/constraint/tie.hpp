@@ -30,7 +30,7 @@ class Tie : public Constraint {
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::StiffnessPair>& stiffness_pairs) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
-  void add_to(ValueHash&) const override {}
+  void describe(PartVisitor&) const override {}
 
   const std::vector<Pair>& pairs() const { return pairs_; }
   /// First of the three rows of a pair.

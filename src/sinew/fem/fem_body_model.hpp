@@ -82,9 +82,9 @@ class FemBodyModel final : public mechanics::BodyModel,
   void finish(int body, const mechanics::RowPattern& rows,
               std::span<const mechanics::StiffnessPair> stiffness_pairs) override;
   bool couples(int first, int second) const override;
-  std::vector<NamedHash> parts() const override;
+  void describe(PartsVisitor& parts) const override;
   std::uint64_t site_hash(int site) const override;
-  std::uint64_t load_hash(int load) const override;
+  void describe_load(int load, PartVisitor& visitor) const override;
   std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_geometric_stiffness,
                                           int histories) const override;
 

@@ -1,57 +1,101 @@
-// Hashes of everything that the motion of a finite-element body depends on, by name.
+// Everything that the motion of a finite-element body depends on, by name.
+#include <fmt/format.h>
+
 #include "sinew/fem/fem_body_model.hpp"
 
 namespace sinew::fem {
 
 namespace {
 
-void add(ValueHash& hash, const material::Hyperelastic& energy) {
-  for (const auto& term : energy.powers) hash.add(term.coefficient, term.exponent);
-  hash.add(energy.polynomial, energy.bulk_modulus, energy.saint_venant_shear);
-  for (const auto& term : energy.prony) hash.add(term.relative_modulus, term.relaxation_time);
-  if (energy.mullins) hash.add(energy.mullins->r, energy.mullins->m, energy.mullins->beta);
+void visit(PartVisitor& visitor, const material::Hyperelastic& energy) {
+  int k = 0;
+  for (const auto& term : energy.powers) {
+    visitor.below(fmt::format("powers.{}", k++), [&] {
+      visitor.number("coefficient", "Pa", term.coefficient).number("exponent", "", term.exponent);
+    });
+  }
+  visitor.add(energy.polynomial);
+  for (std::size_t i = 0; i < energy.polynomial.size(); ++i) {
+    visitor.list(fmt::format("polynomial.{}", i), "Pa", energy.polynomial[i]);
+  }
+  visitor.number("bulk_modulus", "Pa", energy.bulk_modulus).add(energy.saint_venant_shear);
+  if (energy.saint_venant_shear != 0.0) {
+    visitor.list("shear_modulus", "Pa", energy.saint_venant_shear);
+  }
+  k = 0;
+  for (const auto& term : energy.prony) {
+    visitor.below(fmt::format("prony.{}", k++), [&] {
+      visitor.number("relative_modulus", "", term.relative_modulus)
+          .number("relaxation_time", "s", term.relaxation_time);
+    });
+  }
+  if (!energy.mullins) return;
+  visitor.below("mullins", [&] {
+    visitor.number("r", "", energy.mullins->r)
+        .number("m", "Pa", energy.mullins->m)
+        .number("beta", "", energy.mullins->beta);
+  });
 }
 
-void add(ValueHash& hash, const std::vector<mesh::Face>& faces) {
-  for (const mesh::Face& face : faces) hash.add(face.node, face.middle);
+void visit(PartVisitor& visitor, const MaterialRegion& region) {
+  const auto& [modulus, ratio] = region.constants;
+  if (region.hyperelastic) {
+    visitor.add(modulus, ratio);  // not used
+  } else {
+    visitor.number("young_modulus", "Pa", modulus).number("poisson_ratio", "", ratio);
+  }
+  visitor.add(region.law, region.elements, region.patches, region.hyperelastic.has_value());
+  if (region.hyperelastic) visit(visitor, *region.hyperelastic);
+}
+
+// The path of a region below its body: that of the scene's part, or of the body.
+std::string below_body(const MaterialRegion& region, const char* name) {
+  return region.name.empty() ? name : fmt::format("parts.{}.{}", region.name, name);
 }
 
 }  // namespace
 
-std::vector<NamedHash> FemBodyModel::parts() const {
+void FemBodyModel::describe(PartsVisitor& parts) const {
   const FemModelSettings& elements = settings_.elements;
   const mesh::Mesh& mesh = *settings_.mesh;
-  ValueHash material, mass, points;
-  mass.add(elements.mass, elements.total_mass, elements.equal_nodal_masses);
+  parts.part("mesh").add(mesh.nodes, mesh.tetrahedra, mesh.quadratic, mesh.hexahedra);
+  PartVisitor& material = parts.part("material");
+  PartVisitor& mass = parts.part("mass");
+  mass.add(elements.mass).number("mass", "kg", elements.total_mass);
+  mass.add(elements.equal_nodal_masses);
   for (const MaterialRegion& region : elements.regions) {
-    mass.add(region.density);
-    material.add(region.constants.young_modulus, region.constants.poisson_ratio, region.law,
-                 region.elements, region.patches, region.hyperelastic.has_value());
-    if (region.hyperelastic) add(material, *region.hyperelastic);
+    if (elements.total_mass) {
+      mass.add(region.density);  // scaled
+    } else {
+      mass.number(below_body(region, "density"), "kg/m^3", region.density);
+    }
+    material.below(below_body(region, "material"), [&] { visit(material, region); });
   }
-  for (const PointMass& point : elements.point_masses) {
-    points.add(point.nodes, point.weights, point.mass);
-  }
-  ValueHash membranes;
-  for (const MembraneLayer& layer : elements.membranes) {
-    add(membranes, layer.faces);
-    membranes.add(layer.thickness, layer.constants.young_modulus, layer.constants.poisson_ratio);
-  }
-  ValueHash held = ValueHash().add(elements.fixed_nodes);
-  for (const HeldAxis& axis : elements.held_axes) held.add(axis.node, axis.axis);
-  const ValueHash nodes =
-      ValueHash().add(mesh.nodes, mesh.tetrahedra, mesh.quadratic, mesh.hexahedra);
-  const ValueHash damping = ValueHash().add(settings_.damping.mass, settings_.damping.stiffness);
   if (elements.sample) material.add(elements.sample->elements, elements.sample->weights);
-  std::vector<NamedHash> result = {{"mesh", nodes.value()},
-                                   {"material", material.value()},
-                                   {"mass", mass.value()},
-                                   {"point masses", points.value()},
-                                   {"fixed nodes", held.value()},
-                                   {"damping", damping.value()},
-                                   {"gravity", ValueHash().add(settings_.gravity).value()}};
-  if (!elements.membranes.empty()) result.push_back({"membranes", membranes.value()});
-  return result;
+  // Masses given by name come last.
+  PartVisitor& points = parts.part("point masses", "masses");
+  const std::size_t unnamed = elements.point_masses.size() - settings_.masses.size();
+  for (std::size_t k = 0; k < elements.point_masses.size(); ++k) {
+    const PointMass& point = elements.point_masses[k];
+    points.add(point.nodes, point.weights, point.mass);
+    if (k >= unnamed) points.list(settings_.masses[k - unnamed].name + ".mass", "kg", point.mass);
+  }
+  PartVisitor& held = parts.part("fixed nodes").add(elements.fixed_nodes);
+  for (const HeldAxis& axis : elements.held_axes) held.add(axis.node, axis.axis);
+  parts.part("damping")
+      .number("damping.mass", "1/s", settings_.damping.mass)
+      .number("damping.stiffness", "s", settings_.damping.stiffness);
+  parts.part("gravity").number("gravity", "m/s^2", settings_.gravity);
+  if (elements.membranes.empty()) return;
+  PartVisitor& membranes = parts.part("membranes", "membranes");
+  for (const MembraneLayer& layer : elements.membranes) {
+    for (const mesh::Face& face : layer.faces) membranes.add(face.node, face.middle);
+    membranes.below(layer.name, [&] {
+      membranes.number("thickness", "m", layer.thickness)
+          .number("young_modulus", "Pa", layer.constants.young_modulus)
+          .number("poisson_ratio", "", layer.constants.poisson_ratio);
+    });
+  }
 }
 
 // Hashes the position of the site and the spread of its nodes, which distinguishes a ball from its
@@ -67,8 +111,8 @@ std::uint64_t FemBodyModel::site_hash(int site) const {
   return ValueHash().add(at, spread).value();
 }
 
-std::uint64_t FemBodyModel::load_hash(int load) const {
-  return mechanics::hash_of(loads_->loads()[static_cast<std::size_t>(load)]);
+void FemBodyModel::describe_load(int load, PartVisitor& visitor) const {
+  mechanics::describe(loads_->loads()[static_cast<std::size_t>(load)], visitor);
 }
 
 }  // namespace sinew::fem

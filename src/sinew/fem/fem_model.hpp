@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "sinew/core/types.hpp"
@@ -34,6 +35,8 @@ struct MaterialRegion {
   std::optional<material::Hyperelastic> hyperelastic = std::nullopt;
   /// Hyperelastic linear tetrahedra share dilatations in patches (element_patches.hpp).
   bool patches = false;
+  /// Of the part of the body in messages and paths of parameters; empty: the rest of the body.
+  std::string name = {};
 
   /// Young's modulus at small strain, Pa.
   double young_modulus() const {

@@ -7,7 +7,7 @@
 #include <array>
 #include <span>
 
-#include "sinew/core/named_hash.hpp"
+#include "sinew/core/part_visitor.hpp"
 
 namespace sinew::law {
 
@@ -64,8 +64,8 @@ class Drive {
   /// them.
   virtual void advance(const Step& step, double motion, double effort,
                        std::span<double> state) const = 0;
-  /// Adds to the hash all that its curve depends on.
-  virtual void add_to(ValueHash& hash) const = 0;
+  /// Visits all that its curve depends on.
+  virtual void describe(PartVisitor& visitor) const = 0;
 };
 
 }  // namespace sinew::law

@@ -2,9 +2,9 @@
 /// Capability of body models: loads of the environment.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
+#include "sinew/core/part_visitor.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/mechanics/loads.hpp"
 #include "sinew/mesh/embedding.hpp"
@@ -26,8 +26,8 @@ class BearsLoads {
   virtual const Vector3& gravity() const = 0;  ///< (3,) m/s^2
   /// Adds a load and returns its number. Building only.
   virtual int add_load(Load load) = 0;
-  /// Hash of a load, by its number. After finish().
-  virtual std::uint64_t load_hash(int load) const = 0;
+  /// Visits a load, by its number. After finish().
+  virtual void describe_load(int load, PartVisitor& visitor) const = 0;
 };
 
 }  // namespace sinew::mechanics

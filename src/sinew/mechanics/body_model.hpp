@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sinew/core/named_hash.hpp"
+#include "sinew/core/part_visitor.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/mechanics/rows.hpp"
 
@@ -102,8 +102,9 @@ class BodyModel {
   /// may then be redundant. Nodes of a mesh never are, and there are many.
   virtual bool has_few_coordinates() const = 0;
 
-  /// Hashes of everything that its motion depends on, except sites, by names such as "material".
-  virtual std::vector<NamedHash> parts() const = 0;
+  /// Visits everything that its motion depends on, except sites, in parts with names such as
+  /// "material".
+  virtual void describe(PartsVisitor& parts) const = 0;
   /// Hash of the location of a site in the body.
   virtual std::uint64_t site_hash(int site) const = 0;
 

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/core/named_hash.hpp"
 #include "sinew/core/rotation.hpp"
 #include "sinew/mesh/patch.hpp"
 
@@ -329,26 +328,28 @@ std::vector<double> half_thickness(const std::vector<mesh::Face>& faces, const P
   return result;
 }
 
-void add(ValueHash& hash, const std::vector<mesh::Face>& faces) {
-  for (const mesh::Face& face : faces) hash.add(face.node, face.middle);
+void visit(PartVisitor& visitor, const std::vector<mesh::Face>& faces) {
+  for (const mesh::Face& face : faces) visitor.add(face.node, face.middle);
 }
 
-void add(ValueHash& hash, const DeadLoad& load) { hash.add(load.nodes, load.forces); }
-void add(ValueHash& hash, const PressureLoad& load) {
-  add(hash, load.faces);
-  hash.add(load.pressure, load.gradient, load.level, load.only_positive);
+void visit(PartVisitor& visitor, const DeadLoad& load) { visitor.add(load.nodes, load.forces); }
+void visit(PartVisitor& visitor, const PressureLoad& load) {
+  visit(visitor, load.faces);
+  visitor.add(load.pressure, load.gradient, load.level, load.only_positive);
 }
-void add(ValueHash& hash, const WaterLoad& load) {
-  add(hash, load.faces);
-  hash.add(load.density, load.normal_drag, load.tangential_drag, load.added_mass, load.velocity);
+void visit(PartVisitor& visitor, const WaterLoad& load) {
+  visit(visitor, load.faces);
+  visitor.number("density", "kg/m^3", load.density)
+      .number("normal_drag", "", load.normal_drag)
+      .number("tangential_drag", "", load.tangential_drag)
+      .number("added_mass", "", load.added_mass)
+      .number("velocity", "m/s", load.velocity);
 }
 
 }  // namespace
 
-std::uint64_t hash_of(const Load& load) {
-  ValueHash hash;
-  std::visit([&](const auto& kind) { add(hash, kind); }, load);
-  return hash.value();
+void describe(const Load& load, PartVisitor& visitor) {
+  std::visit([&](const auto& kind) { visit(visitor, kind); }, load);
 }
 
 const std::vector<FacePoint>& face_points(const mesh::Face& face) {

@@ -51,8 +51,8 @@ struct WaterLoad {
 };
 
 using Load = std::variant<DeadLoad, PressureLoad, WaterLoad>;
-/// Hash of everything that a load depends on.
-std::uint64_t hash_of(const Load& load);
+/// Visits everything that a load depends on.
+void describe(const Load& load, PartVisitor& visitor);
 
 /// Shape functions of a face and the weight at one quadrature point; see face_points().
 struct FacePoint {

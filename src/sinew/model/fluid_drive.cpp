@@ -80,6 +80,15 @@ GasDrive::GasDrive(const GasSettings& settings, double rest_volume)
 
 void GasDrive::rest(std::span<double> state) const { state[0] = rest_volume_; }
 
+void GasDrive::describe(PartVisitor& visitor) const {
+  visitor.below("gas", [&] {
+    visitor.number("ambient_pressure", "Pa", settings_.ambient_pressure)
+        .number("polytropic_exponent", "", settings_.exponent);
+    visitor.optional(settings_.supply, [](PartVisitor& of, const Supply& s) { s.describe(of); });
+    visitor.add(rest_volume_).list("dead_volume", "m^3", settings_.dead_volume);
+  });
+}
+
 bool GasDrive::acts_on(CommandKind kind) const {
   return kind == CommandKind::input || (kind == CommandKind::effort && settings_.supply);
 }
@@ -152,6 +161,15 @@ LiquidDrive::LiquidDrive(const LiquidSettings& settings, double rest_volume)
           "give that of the liquid: 2.2 GPa for water");
   require(settings.density >= 0.0, "density", settings.density, "give zero or more");
   check(settings.supply);
+}
+
+void LiquidDrive::describe(PartVisitor& visitor) const {
+  visitor.below("liquid", [&] {
+    visitor.number("density", "kg/m^3", settings_.density);
+    visitor.optional(settings_.supply, [](PartVisitor& of, const Supply& s) { s.describe(of); });
+    visitor.add(stiffness_).list("bulk_modulus", "Pa", settings_.bulk_modulus);
+    visitor.list("dead_volume", "m^3", settings_.dead_volume);
+  });
 }
 
 bool LiquidDrive::acts_on(CommandKind kind) const {

@@ -22,7 +22,11 @@ struct Supply {
   double critical_ratio = 0.5;  ///< b, in [0, 1); gas only
   double leak = 0.0;            ///< C of the leak to ambient, >= 0
 
-  void add_to(ValueHash& hash) const { hash.add(conductance, critical_ratio, leak); }
+  void describe(PartVisitor& visitor) const {
+    visitor.number("supply.conductance", "m^3/(s Pa)", conductance)
+        .number("supply.critical_ratio", "", critical_ratio)
+        .number("supply.leak", "m^3/(s Pa)", leak);
+  }
 };
 
 /// p_abs = p_ambient (v / V)^k, where v is the chamber's content as a volume at ambient pressure
@@ -54,9 +58,7 @@ class GasDrive : public Drive {
   Response respond(const Step& step, double motion) const override;
   void advance(const Step& step, double motion, double effort,
                std::span<double> state) const override;
-  void add_to(ValueHash& hash) const override {
-    hash.add(settings_.ambient_pressure, settings_.exponent, settings_.supply, rest_volume_);
-  }
+  void describe(PartVisitor& visitor) const override;
 
  private:
   double volume(double motion) const;
@@ -92,9 +94,7 @@ class LiquidDrive : public Drive {
   Response respond(const Step& step, double motion) const override;
   void advance(const Step& step, double motion, double effort,
                std::span<double> state) const override;
-  void add_to(ValueHash& hash) const override {
-    hash.add(settings_.density, settings_.supply, stiffness_);
-  }
+  void describe(PartVisitor& visitor) const override;
 
  private:
   LiquidSettings settings_;

@@ -37,6 +37,8 @@ Model::Model(ModelData data)
       parts_(list_parts(data_)),
       fingerprint_(fingerprint_of(parts_)) {}
 
+std::vector<Parameter> Model::parameters() const { return list_parameters(data_); }
+
 int Model::body_index(std::string_view name) const {
   if (const auto other = data_.body_names.find(name); other != data_.body_names.end()) {
     if (other->second != kWorld) return other->second;

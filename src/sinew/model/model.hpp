@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sinew/core/named_hash.hpp"
+#include "sinew/core/part_visitor.hpp"
 #include "sinew/mechanics/rows.hpp"
 #include "sinew/model/model_data.hpp"
 #include "sinew/model/part_list.hpp"
@@ -101,6 +101,9 @@ class Model {
   /// Hashes of the parts that determine the motion, see list_parts(); saved states identify their
   /// model by them.
   const std::vector<NamedHash>& parts() const { return parts_; }
+  /// The numbers among the data of these parts, with paths and units; see list_parameters(). Lists
+  /// them anew at each call.
+  std::vector<Parameter> parameters() const;
   /// Hash of parts().
   std::uint64_t fingerprint() const { return fingerprint_; }
 

@@ -1,10 +1,10 @@
 /// @file
-/// Named hashes of all parts of a model on which its motion depends.
+/// The parts of a model on which its motion depends: their hashes, and their parameters.
 #pragma once
 
 #include <vector>
 
-#include "sinew/core/named_hash.hpp"
+#include "sinew/core/part_visitor.hpp"
 
 namespace sinew::model {
 
@@ -14,6 +14,9 @@ struct ModelData;
 /// integrator, bodies, actuators, loads, contacts, joints, motions of bases, effectors. Not
 /// included: inputs, initial commands, and solver settings.
 std::vector<NamedHash> list_parts(const ModelData& data);
+
+/// The parameters among them, in the same order.
+std::vector<Parameter> list_parameters(const ModelData& data);
 
 /// Names the first few parts in which two models differ: "body 'trunk': material, actuator
 /// 'long_0'".

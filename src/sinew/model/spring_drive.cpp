@@ -104,11 +104,26 @@ void SmaDrive::advance(const Step& step, double, double, std::span<double> state
   state[1] = wire.phase;
 }
 
-void SmaDrive::add_to(ValueHash& hash) const {
+void SmaDrive::describe(PartVisitor& visitor) const {
   const SmaSettings& s = settings_;
-  hash.add(s.wire, s.mean_diameter, s.coils, s.martensite_modulus, s.austenite_modulus,
-           s.free_length, s.damping, s.heat_capacity, s.heat_loss, s.ambient, s.austenite_start,
-           s.austenite_end, s.martensite_start, s.martensite_end, s.by_phase, rest_length_);
+  visitor.below("shape_memory", [&] {
+    visitor.number("wire_diameter", "m", s.wire)
+        .number("mean_diameter", "m", s.mean_diameter)
+        .number("coils", "", s.coils)
+        .number("martensite_modulus", "Pa", s.martensite_modulus)
+        .number("austenite_modulus", "Pa", s.austenite_modulus);
+  });
+  visitor.number("free_length", "m", s.free_length).number("damping", "N s/m", s.damping);
+  visitor.below("shape_memory", [&] {
+    visitor.number("heat_capacity", "J/K", s.heat_capacity)
+        .number("heat_loss", "W/K", s.heat_loss)
+        .number("ambient", "K", s.ambient)
+        .number("austenite_start", "K", s.austenite_start)
+        .number("austenite_end", "K", s.austenite_end)
+        .number("martensite_start", "K", s.martensite_start)
+        .number("martensite_end", "K", s.martensite_end);
+  });
+  visitor.add(s.by_phase, rest_length_);
 }
 
 }  // namespace sinew::model

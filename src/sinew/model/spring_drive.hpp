@@ -38,9 +38,11 @@ class SpringDrive : public Drive {
   bool controllable() const override { return false; }
   Response respond(const Step& step, double motion) const override;
   void advance(const Step&, double, double, std::span<double>) const override {}
-  void add_to(ValueHash& hash) const override {
-    hash.add(settings_.stiffness, settings_.free_length, settings_.damping, settings_.tension_only,
-             rest_length_);
+  void describe(PartVisitor& visitor) const override {
+    visitor.number("stiffness", "N/m", settings_.stiffness)
+        .number("free_length", "m", settings_.free_length)
+        .number("damping", "N s/m", settings_.damping)
+        .add(settings_.tension_only, rest_length_);
   }
 
  private:
@@ -91,7 +93,7 @@ class SmaDrive : public Drive {
   Response respond(const Step& step, double motion) const override;
   void advance(const Step& step, double motion, double effort,
                std::span<double> state) const override;
-  void add_to(ValueHash& hash) const override;
+  void describe(PartVisitor& visitor) const override;
 
  private:
   struct Wire {

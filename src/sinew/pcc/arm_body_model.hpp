@@ -60,7 +60,7 @@ class ArmBodyModel final : public mechanics::BodyModel,
   bool has_inertia() const override { return true; }  // every section has mass
   double size() const override { return arm_->length(); }
   bool has_few_coordinates() const override { return true; }
-  std::vector<NamedHash> parts() const override;
+  void describe(PartsVisitor& parts) const override;
   std::uint64_t site_hash(int site) const override;
   std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_geometric_stiffness,
                                           int histories) const override;

@@ -300,17 +300,18 @@ bool RigidBodyModel::is_open(int load) const {
   return pressure != nullptr && !mesh::open_loops(pressure->faces).empty();
 }
 
-std::uint64_t RigidBodyModel::load_hash(int load) const {
+void RigidBodyModel::describe_load(int load, PartVisitor& visitor) const {
   const auto k = static_cast<std::size_t>(load);
   const auto& [force, arm] = point_forces_[k];
   if (std::holds_alternative<mechanics::DeadLoad>(added_loads_[k])) {
-    return ValueHash().add(force, arm).value();
+    visitor.add(force, arm);
+  } else {
+    mechanics::describe(added_loads_[k], visitor);
   }
-  return mechanics::hash_of(added_loads_[k]);
 }
 
-std::vector<NamedHash> RigidBodyModel::parts() const {
-  ValueHash shape = ValueHash().add(skin_.nodes);
+void RigidBodyModel::describe(PartsVisitor& parts) const {
+  PartVisitor& shape = parts.part("shape").add(skin_.nodes);
   for (const mesh::Triangle& triangle : skin_.triangles) {
     shape.add(triangle[0], triangle[1], triangle[2]);
   }
@@ -320,11 +321,9 @@ std::vector<NamedHash> RigidBodyModel::parts() const {
   if (settings_.look != nullptr) {
     shape.add(skin(settings_.shape).nodes, shape_origin(), shape_axes());
   }
-  const ValueHash mass = ValueHash().add(mass_.mass, mass_.centre, mass_.inertia);
-  return {{"shape", shape.value()},
-          {"mass", mass.value()},
-          {"fixed", ValueHash().add(settings_.fixed).value()},
-          {"gravity", ValueHash().add(settings_.gravity).value()}};
+  parts.part("mass").number("mass", "kg", mass_.mass).add(mass_.centre, mass_.inertia);
+  parts.part("fixed").add(settings_.fixed);
+  parts.part("gravity").number("gravity", "m/s^2", settings_.gravity);
 }
 
 std::uint64_t RigidBodyModel::site_hash(int site) const {

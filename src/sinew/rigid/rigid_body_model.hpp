@@ -66,7 +66,7 @@ class RigidBodyModel final : public mechanics::BodyModel,
   }
   bool has_few_coordinates() const override { return true; }
   bool has_base() const override { return settings_.fixed; }
-  std::vector<NamedHash> parts() const override;
+  void describe(PartsVisitor& parts) const override;
   std::uint64_t site_hash(int site) const override;
   bool has_mesh() const override { return true; }
   const mesh::Mesh& mesh() const override { return skin_; }
@@ -109,7 +109,7 @@ class RigidBodyModel final : public mechanics::BodyModel,
   mechanics::DeadLoad inertial_load(const Vector3& acceleration) override;
   const Vector3& gravity() const override { return settings_.gravity; }
   int add_load(mechanics::Load load) override;
-  std::uint64_t load_hash(int load) const override;
+  void describe_load(int load, PartVisitor& visitor) const override;
   std::size_t load_count() const { return added_loads_.size(); }
   /// (loads,) the dead ones; zero for the others.
   const std::vector<PointForce>& point_forces() const { return point_forces_; }

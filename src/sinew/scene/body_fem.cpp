@@ -75,6 +75,7 @@ std::vector<fem::MaterialRegion> regions_of(const BodyDescription& body, const m
       static_cast<std::size_t>(fem::ElementList(mesh).count()), nullptr);
   for (const PartDescription& part : body.parts) {
     fem::MaterialRegion& region = regions.emplace_back(whole(body, part.material));
+    region.name = part.name;
     region.density = density_of(part, body);
     region.elements = elements_of(part, mesh);
     for (const NodeId e : region.elements) {
