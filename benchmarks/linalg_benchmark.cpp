@@ -17,6 +17,7 @@
 #include "sinew/linalg/factorisation.hpp"
 #include "sinew/mesh/read.hpp"
 
+#include "../tests/toys/solvers.hpp"
 #include "cholmod_matrix.hpp"
 #include "mesh_matrices.hpp"
 

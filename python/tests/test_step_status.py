@@ -89,11 +89,11 @@ def test_one_linearisation_follows_a_swing():
 
 
 def test_one_linearisation_passes_indefinite_tangents():
-    """A column with 60 times Euler's load as its weight: with all factorisations, the projected tangent takes over."""
+    """A column with 60 times Euler's load as its weight: in any elimination order, the projected tangent takes over."""
 
-    def tips(factorisation):
+    def tips(ordering):
         sim = sinew.load({"sinew": 1, "gravity": [0, 0, -9.81], "integrator": "quasi-static",
-                          "solver": {"method": "one-linearisation", "factorisation": factorisation}, "bodies": {"column": {
+                          "solver": {"method": "one-linearisation", "ordering": ordering}, "bodies": {"column": {
             "type": "fem", "density": 1000.0, "element": "hex8",
             "mesh": {"shape": "block", "length": 0.01, "width": 0.01, "height": 0.2, "element_size": 0.005},
             "material": {"model": "neo-hookean", "young_modulus": 2e4, "poisson_ratio": 0.3},
@@ -106,9 +106,9 @@ def test_one_linearisation_passes_indefinite_tangents():
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", sinew.SinewWarning)  # about the first step, which is not in equilibrium yet
-        expected = tips("block")
-        for factorisation in ("eigen-ldlt", "eigen-llt"):
-            for tip, other in zip(tips(factorisation), expected):
+        expected = tips("fastest")
+        for ordering in ("amd", "metis"):
+            for tip, other in zip(tips(ordering), expected):
                 assert tip == pytest.approx(other, abs=1e-6)
 
 

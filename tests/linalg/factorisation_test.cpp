@@ -9,6 +9,7 @@
 #include "sinew/linalg/dense.hpp"
 #include "sinew/linalg/factor_memory.hpp"
 
+#include "../toys/solvers.hpp"
 #include "mesh_matrices.hpp"
 
 namespace sinew::linalg {
@@ -24,6 +25,9 @@ FactorisationSettings settings_of(const std::string& backend,
   settings.ordering = ordering;
   return settings;
 }
+
+// Those that solve to rounding.
+std::vector<std::string> direct_backends() { return {"block", "eigen-ldlt"}; }
 
 FactorStatus factorise(Factorisation& factorisation, const BlockSystem& system) {
   return factorisation.factorise(system.matrix, system.rows, system.right);
@@ -237,7 +241,7 @@ TEST(Factorisation, AgreesWithDenseOnElasticMeshes) {
   for (const BlockSystem& system :
        {testing::elastic_block(1, 1, 3, 2), testing::elastic_block(2, 3, 9, 12),
         testing::elastic_block(4, 4, 6, 5), testing::elastic_half_tube(2, 9, 10, 11)}) {
-    for (const std::string& backend : backends()) {
+    for (const std::string& backend : direct_backends()) {
       SCOPED_TRACE(backend);
       const auto plan = analyse(system.pattern, system.border, settings_of(backend));
       EXPECT_EQ(plan->backend(), backend);
@@ -253,7 +257,7 @@ TEST(Factorisation, BackendsAgree) {
   ThreadPool pool(1);
   MatrixX reference;
   VectorX reference_motion;
-  for (const std::string& backend : backends()) {
+  for (const std::string& backend : direct_backends()) {
     const auto factorisation =
         analyse(system.pattern, system.border, settings_of(backend))->create(pool);
     ASSERT_EQ(factorise(*factorisation, system), FactorStatus::positive_definite);
@@ -264,6 +268,31 @@ TEST(Factorisation, BackendsAgree) {
     }
     EXPECT_LT(relative_error(factorisation->compliance(), reference), 1e-10) << backend;
     EXPECT_LT(relative_error(motion, reference_motion), 1e-10) << backend;
+  }
+}
+
+// A solver that only solves gives all that a factorisation does, and no inertia.
+TEST(Factorisation, OfASolverThatOnlySolves) {
+  const BlockSystem system = testing::elastic_block(2, 2, 5, 6);
+  ThreadPool pool(1);
+  const auto plan = analyse(system.pattern, system.border, settings_of("gradients"));
+  const auto factorisation = plan->create(pool);
+  ASSERT_EQ(factorise(*factorisation, system), FactorStatus::positive_definite);
+  EXPECT_FALSE(factorisation->negative_pivots().has_value());
+  expect_agrees_with_dense(*factorisation, system, 1e-7);
+}
+
+TEST(Factorisation, BackendsAreRegisteredOnce) {
+  const auto names = backends();
+  EXPECT_EQ(names.front().name, "block");
+  EXPECT_TRUE(std::ranges::any_of(names, [](const auto& one) { return one.name == "gradients"; }));
+  for (const char* taken : {"block", "gradients"}) {
+    try {
+      register_backend({.name = taken, .description = "", .make = {}});
+      FAIL() << taken;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::duplicate_key);
+    }
   }
 }
 
@@ -306,7 +335,7 @@ TEST(Factorisation, LargeIndefiniteSystemOnThreadsHasSmallResidual) {
     ThreadPool pool(threads);
     const auto factorisation = plan->create(pool);
     ASSERT_EQ(factorise(*factorisation, system), FactorStatus::indefinite);
-    if (negatives < 0) negatives = factorisation->negative_pivots();
+    if (negatives < 0) negatives = factorisation->negative_pivots().value();
     EXPECT_EQ(factorisation->negative_pivots(), negatives);
     VectorX x(system.size());
     factorisation->solve(system.right, view(x));
@@ -350,7 +379,7 @@ TEST(Factorisation, ZeroRowAndNanAreSingularAndDoNotStick) {
 
 TEST(Factorisation, TakesNoNodesAndNoRows) {
   ThreadPool pool(2);
-  for (const std::string& backend : backends()) {
+  for (const std::string& backend : direct_backends()) {
     const auto plan = analyse(BlockPattern{}, BorderPattern{}, settings_of(backend));
     const auto factorisation = plan->create(pool);
     EXPECT_EQ(factorisation->factorise({}, {}, {}), FactorStatus::positive_definite);

@@ -138,6 +138,9 @@ TEST_F(DenseSteps, SolveForTheMotion) {
   EXPECT_LT((step_->a * step_->proposed() - right).norm(), 1e-14);
   EXPECT_LT((step_->proposed_motion(2) - step_->sites[2] * step_->proposed()).norm(), 1e-15);
   std::vector<double> result(kSize);
+  step_->solve_transposed({right.data(), kSize}, result);
+  EXPECT_LT((step_->a.transpose() * Eigen::Map<VectorX>(result.data(), kSize) - right).norm(),
+            1e-14);
   step_->solve({right.data(), kSize}, result);
   EXPECT_LT((Eigen::Map<VectorX>(result.data(), kSize) - step_->proposed()).norm(), 1e-15);
 }

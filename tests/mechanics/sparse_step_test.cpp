@@ -178,8 +178,9 @@ class ChainStep : public SparseStep {
   void depart() override { ++departures; }
   void drift(double time_step, VectorX& motion) override { motion.setConstant(time_step); }
   bool is_symmetric() const override { return unsymmetric.size() == 0; }
-  void correct(linalg::Factorisation&, VectorX& motion) const override {
-    motion = (held_matrix() + unsymmetric).inverse() * (held_matrix() * motion).eval();
+  void correct(linalg::Factorisation&, VectorX& motion, bool transposed) const override {
+    const MatrixX rest = transposed ? MatrixX(unsymmetric.transpose()) : unsymmetric;
+    motion = (held_matrix() + rest).inverse() * (held_matrix() * motion).eval();
   }
   bool measure_turns() override { return knows_turns; }
   void turn(VectorX& v) const override {
@@ -411,6 +412,9 @@ TEST_F(SparseSteps, CorrectForTheUnsymmetricPart) {
   renew();
   step_->solve_motion(effort_);
   EXPECT_LT((whole * step_->motion() - sum).norm(), 1e-12) << "after renew()";
+  VectorX adjoint(kCoordinates);
+  step_->solve_transposed({sum.data(), kCoordinates}, {adjoint.data(), kCoordinates});
+  EXPECT_LT((whole.transpose() * adjoint - sum).norm(), 1e-12);
 }
 
 TEST_F(SparseSteps, SubtractAForce) {

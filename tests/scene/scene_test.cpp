@@ -259,7 +259,7 @@ TEST(Scene, SolverMayBeAWordOrAMap) {
   const SolverDescription solver =
       parse_edited({{"record:",
                      "solver: {method: newton, tangent: exact, tolerance: 1e-6, max_iterations: 7, "
-                     "contact_tolerance: 1e-7, threads: 4, factorisation: eigen-ldlt, ordering: "
+                     "contact_tolerance: 1e-7, threads: 4, factorisation: block, ordering: "
                      "metis}\nrecord:"}})
           .solver;
   EXPECT_EQ(solver.method, Method::newton);
@@ -268,7 +268,7 @@ TEST(Scene, SolverMayBeAWordOrAMap) {
   EXPECT_EQ(solver.max_iterations, 7);
   EXPECT_EQ(solver.contact_tolerance, 1e-7);
   EXPECT_EQ(solver.threads, 4);
-  EXPECT_EQ(solver.backend, "eigen-ldlt");
+  EXPECT_EQ(solver.backend, "block");
   EXPECT_EQ(solver.ordering, linalg::Ordering::metis);
 }
 

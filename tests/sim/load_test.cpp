@@ -13,6 +13,8 @@
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/fem/has_elements.hpp"
 #include "sinew/fem/has_material.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
@@ -205,14 +207,12 @@ TEST(Water, BodyAsHeavyAsWaterFloatsWhereItIs) {
   }
 }
 
-// Pressure on the upper side of a cantilever: with the full tangent, Newton's method converges
-// quadratically.
-TEST(Pressure, OpenSurfaceConvergesQuadraticallyInStatics) {
+// Pressure on the upper side of a cantilever.
+std::shared_ptr<const model::Model> cantilever_with_wind(
+    const std::shared_ptr<const mesh::Mesh>& mesh) {
   builder::ModelBuilder builder;
   fem::FemBodySettings body;
   body.name = "beam";
-  const auto mesh = std::make_shared<const mesh::Mesh>(
-      mesh::block({.size = {0.1, 0.01, 0.01}, .cells = {20, 2, 2}}, mesh::Cells::hexahedra));
   body.mesh = mesh;
   fem::MaterialRegion region;
   region.hyperelastic = material::neo_hookean(4e4);
@@ -225,7 +225,18 @@ TEST(Pressure, OpenSurfaceConvergesQuadraticallyInStatics) {
   builder.add_load({.name = "wind",
                     .load = builder::PressureLoadSettings{faces},
                     .factor = model::Signal::constant(60.0)});
-  Simulation simulation(builder.build());
+  return builder.build();
+}
+
+std::shared_ptr<const mesh::Mesh> cantilever_mesh() {
+  return std::make_shared<const mesh::Mesh>(
+      mesh::block({.size = {0.1, 0.01, 0.01}, .cells = {20, 2, 2}}, mesh::Cells::hexahedra));
+}
+
+// With the full tangent, Newton's method converges quadratically.
+TEST(Pressure, OpenSurfaceConvergesQuadraticallyInStatics) {
+  const auto mesh = cantilever_mesh();
+  Simulation simulation(cantilever_with_wind(mesh));
   simulation.solve_static();
   // Near the solution, a tangent without its unsymmetric part would gain one digit per iteration.
   simulation.set_load(0, model::Signal::constant(60.5));
@@ -241,6 +252,40 @@ TEST(Pressure, OpenSurfaceConvergesQuadraticallyInStatics) {
                            .sum()
                            .transpose();
   EXPECT_LT(load.x(), -0.01);
+}
+
+// <y, A^-1 b> = <A^-T y, b> with the unsymmetric A of a bent beam under pressure.
+TEST(Pressure, OpenSurfaceHasAnAdjoint) {
+  const auto mesh = cantilever_mesh();
+  Simulation simulation(cantilever_with_wind(mesh));
+  simulation.solve_static();
+  mechanics::StepSystem& system = simulation.body(0).system();
+  const auto size = static_cast<Eigen::Index>(system.size());
+  const VectorX force = VectorX::Random(size), y = VectorX::Random(size);
+  mechanics::LinearisationRequest request;
+  request.tangent = mechanics::Tangent::exact;
+  system.begin_query();
+  system.subtract_residual({force.data(), system.size()});
+  system.linearise(request);
+  system.take_rows(mechanics::RowValues(simulation.model().rows()));
+  ASSERT_TRUE(system.condense().unsymmetric);
+  VectorX b(size), adjoint(size), symmetric(size);
+  system.residual({}, {b.data(), system.size()});
+  system.solve_motion({});
+  Points moved = Points::Zero(mesh->node_count(), 3);
+  system.add_proposed_motion(moved);
+  system.subtract_residual({});
+  double product = 0.0;
+  const auto nodes =
+      mechanics::as<const fem::HasElements>(simulation.model().body(0))->elements().free_nodes();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    product += moved.row(nodes[i]).dot(y.segment<3>(3 * static_cast<Eigen::Index>(i)));
+  }
+  system.solve_transposed({y.data(), system.size()}, {adjoint.data(), system.size()});
+  EXPECT_NEAR(adjoint.dot(b), product, 1e-9 * std::abs(product));
+  system.solve({y.data(), system.size()}, {symmetric.data(), system.size()});
+  EXPECT_GT(std::abs(symmetric.dot(b) - product), 1e-6 * std::abs(product))
+      << "the unsymmetric part matters";
 }
 
 // Parameters of a line's entry into and exit from a tetrahedron, from its four planes; {1, 0} if it

@@ -103,8 +103,9 @@ void FemStep::complete_matrix() {
   workspace.present.reset();
 }
 
-void FemStep::correct(linalg::Factorisation& factor, VectorX& motion) const {
-  correct_for_open_pressure(loads_.unsymmetric(), state_.model.elements().held(), factor, motion);
+void FemStep::correct(linalg::Factorisation& factor, VectorX& motion, bool transposed) const {
+  correct_for_open_pressure(loads_.unsymmetric(), state_.model.elements().held(), factor, motion,
+                            transposed);
 }
 
 bool FemStep::measure_turns() {

@@ -56,7 +56,7 @@ class FemStep : public mechanics::SparseStep {
   void depart() override;
   void drift(double time_step, VectorX& motion) override;
   bool is_symmetric() const override { return loads_.unsymmetric().empty(); }
-  void correct(linalg::Factorisation& factor, VectorX& motion) const override;
+  void correct(linalg::Factorisation& factor, VectorX& motion, bool transposed) const override;
   void keep_directions() override { turns_.start(state_.positions); }
   bool measure_turns() override;
   void turn(VectorX& v) const override { turns_.turn(v); }

@@ -20,11 +20,12 @@ struct FreeBlock {
   Matrix3 value;
 };
 
-/// Solves (A + B) dq = r by GMRES, preconditioned by the factor of A. Allocates.
+/// Solves (A + B) dq = r, or (A + B^T) dq = r, by GMRES, preconditioned by the factor of A.
+/// Allocates.
 /// @param blocks non-zero blocks of B. @param held see FemModel::held().
-/// @param factor of A. @param motion (3 free,) in: A^-1 r; out: dq.
+/// @param factor of A. @param motion (3 free,) in: A^-1 r; out: dq. @param transposed B^T for B.
 void correct_for_open_pressure(std::span<const FreeBlock> blocks,
                                std::span<const std::int32_t> held, linalg::Factorisation& factor,
-                               VectorX& motion);
+                               VectorX& motion, bool transposed);
 
 }  // namespace sinew::fem

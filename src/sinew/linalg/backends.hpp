@@ -14,12 +14,4 @@ using PlanPointer = std::shared_ptr<const FactorisationPlan>;
 PlanPointer make_block_plan(const BlockPattern& pattern, const BorderPattern& border,
                             const FactorisationSettings& settings);
 
-/// Eigen's SimplicialLDLT, for reference; its solves allocate.
-PlanPointer make_eigen_ldlt_plan(const BlockPattern& pattern, const BorderPattern& border,
-                                 const FactorisationSettings& settings);
-
-/// Eigen's SimplicialLLT, for reference; reports indefinite matrices as singular.
-PlanPointer make_eigen_llt_plan(const BlockPattern& pattern, const BorderPattern& border,
-                                const FactorisationSettings& settings);
-
 }  // namespace sinew::linalg

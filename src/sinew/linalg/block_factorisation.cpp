@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "sinew/core/error.hpp"
@@ -87,7 +88,7 @@ class BlockFactorisation final : public Factorisation {
   const MatrixX& transient_compliance() const override { return transient_.compliance(); }
   const MatrixX& transient_coupling() const override { return transient_.coupling(); }
 
-  int negative_pivots() const override { return numeric_.negative_pivots(); }
+  std::optional<int> negative_pivots() const override { return numeric_.negative_pivots(); }
 
   std::size_t bytes() const override {
     const Eigen::Index rows = symbolic_->border_rows;

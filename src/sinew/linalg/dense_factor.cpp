@@ -8,6 +8,10 @@ void LuFactor::solve(const Eigen::Ref<const VectorX>& b, Eigen::Ref<VectorX> x) 
   x = lu_.solve(b);
 }
 
+void LuFactor::solve_transposed(const Eigen::Ref<const VectorX>& b, Eigen::Ref<VectorX> x) const {
+  x = lu_.transpose().solve(b);
+}
+
 void LuFactor::solve_columns(const Eigen::Ref<const MatrixX>& b, Eigen::Ref<MatrixX> x) const {
   // Eigen takes the address of the first entry, which must exist.
   if (b.size() == 0) {

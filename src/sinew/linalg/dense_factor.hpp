@@ -21,6 +21,8 @@ class LuFactor {
   void compute(const MatrixX& a);
   /// Solves A x = b. @param b (size,). @param x (size,), must not alias b.
   void solve(const Eigen::Ref<const VectorX>& b, Eigen::Ref<VectorX> x) const;
+  /// Solves A^T x = b; allocates. @param b (size,). @param x (size,), must not alias b.
+  void solve_transposed(const Eigen::Ref<const VectorX>& b, Eigen::Ref<VectorX> x) const;
   /// Solves for each column. @param b (size, k). @param x (size, k), must not alias b.
   void solve_columns(const Eigen::Ref<const MatrixX>& b, Eigen::Ref<MatrixX> x) const;
   /// Whether a pivot is zero to rounding, or not finite. A must be scaled to entries of order 1.

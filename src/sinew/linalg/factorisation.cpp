@@ -1,24 +1,65 @@
 #include "sinew/linalg/factorisation.hpp"
 
 #include <algorithm>
-#include <array>
 #include <mutex>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/linalg/backends.hpp"
+#include "sinew/linalg/linear_solver.hpp"
+#include "sinew/linalg/solved_rows.hpp"
 
 namespace sinew::linalg {
 
 namespace {
 
-struct Backend {
-  std::string_view name;
-  PlanPointer (*make)(const BlockPattern&, const BorderPattern&, const FactorisationSettings&);
+// Sinew's own, then those from outside.
+constexpr const char* kOwn = "block";
+
+std::vector<SolverBackend>& registered() {
+  static std::vector<SolverBackend> all;
+  return all;
+}
+
+const SolverBackend* find_registered(const std::string& name) {
+  const auto found = std::ranges::find(registered(), name, &SolverBackend::name);
+  return found == registered().end() ? nullptr : &*found;
+}
+
+// A plan that keeps the patterns for solvers that have no symbolic phase.
+class SolverPlan final : public FactorisationPlan {
+ public:
+  SolverPlan(const SolverBackend& backend, BlockPattern pattern, BorderPattern border,
+             FactorisationSettings settings)
+      : backend_(backend),
+        pattern_(std::move(pattern)),
+        border_(std::make_shared<const BorderPattern>(std::move(border))),
+        settings_(std::move(settings)) {}
+  std::string_view backend() const override { return backend_.name; }
+  std::string_view ordering() const override { return "none"; }
+  std::size_t factor_entries() const override { return 0; }
+  double factor_flops() const override { return 0.0; }
+  std::unique_ptr<Factorisation> create(ThreadPool& pool) const override {
+    return std::make_unique<SolvedRows>(border_, 3 * pattern_.nodes,
+                                        backend_.make(pattern_, settings_, pool));
+  }
+
+ private:
+  SolverBackend backend_;
+  BlockPattern pattern_;
+  std::shared_ptr<const BorderPattern> border_;
+  FactorisationSettings settings_;
 };
 
-constexpr std::array kBackends = {Backend{"block", make_block_plan},
-                                  Backend{"eigen-ldlt", make_eigen_ldlt_plan},
-                                  Backend{"eigen-llt", make_eigen_llt_plan}};
+PlanPointer make_plan(const BlockPattern& pattern, const BorderPattern& border,
+                      const FactorisationSettings& settings) {
+  if (settings.backend == kOwn) return make_block_plan(pattern, border, settings);
+  return std::make_shared<SolverPlan>(*find_registered(settings.backend), pattern, border,
+                                      settings);
+}
 
 [[noreturn]] void fail(ErrorKind kind, const char* item, const std::string& message,
                        const std::string& remedy) {
@@ -128,8 +169,7 @@ std::shared_ptr<const FactorisationPlan> analyse(const BlockPattern& pattern,
   check_settings(settings);
   PlansInUse& plans = plans_in_use();
   if (auto plan = plans.find(pattern, border, settings)) return plan;
-  const auto backend = std::ranges::find(kBackends, settings.backend, &Backend::name);
-  return plans.add(pattern, border, settings, backend->make(pattern, border, settings));
+  return plans.add(pattern, border, settings, make_plan(pattern, border, settings));
 }
 
 void check_settings(const FactorisationSettings& settings) {
@@ -137,17 +177,27 @@ void check_settings(const FactorisationSettings& settings) {
     fail(ErrorKind::out_of_range, "threads",
          "the number of threads is " + std::to_string(settings.threads), "give at least 1");
   }
-  if (std::ranges::find(kBackends, settings.backend, &Backend::name) != kBackends.end()) return;
-  const std::string near = nearest_word(settings.backend, backends());
+  if (settings.backend == kOwn || find_registered(settings.backend) != nullptr) return;
+  std::vector<std::string> names;
+  for (const BackendName& one : backends()) names.push_back(one.name);
+  const std::string near = nearest_word(settings.backend, names);
   fail(ErrorKind::unknown_choice, "backend", "unknown backend '" + settings.backend + "'",
-       near.empty() ? "choose block, eigen-ldlt or eigen-llt" : "did you mean '" + near + "'?");
+       near.empty() ? fmt::format("choose {}", fmt::join(names, " or "))
+                    : "did you mean '" + near + "'?");
 }
 
-std::vector<std::string> backends() {
-  std::vector<std::string> names;
-  names.reserve(kBackends.size());
-  for (const Backend& backend : kBackends) names.emplace_back(backend.name);
-  return names;
+std::vector<BackendName> backends() {
+  std::vector<BackendName> all{{kOwn, "Sinew's supernodal factorisation in 3x3 blocks."}};
+  for (const SolverBackend& one : registered()) all.push_back({one.name, one.description});
+  return all;
+}
+
+void register_backend(SolverBackend backend) {
+  if (backend.name == kOwn || find_registered(backend.name) != nullptr) {
+    fail(ErrorKind::duplicate_key, "backend", "there is a backend '" + backend.name + "'",
+         "choose another name");
+  }
+  registered().push_back(std::move(backend));
 }
 
 }  // namespace sinew::linalg

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,7 +29,7 @@ enum class Ordering { amd, metis, fastest };
 
 /// Settings of a factorisation.
 struct FactorisationSettings {
-  std::string backend = "block";  ///< "block" (Sinew's own), "eigen-ldlt" or "eigen-llt"
+  std::string backend = "block";  ///< "block" (Sinew's own), or a name of register_backend()
   Ordering ordering = Ordering::fastest;
   int threads = 1;  ///< number of threads of the pool of the numeric phase
 
@@ -80,8 +81,8 @@ class Factorisation {
   /// H_t A^-1 H^T and, as the last column, H_t A^-1 b, in the leading block (3 k, m + 1).
   virtual const MatrixX& transient_coupling() const = 0;
 
-  /// Number of negative pivots (inertia of A) of the last factorisation.
-  virtual int negative_pivots() const = 0;
+  /// Number of negative pivots (inertia of A) of the last factorisation, if the solver counts them.
+  virtual std::optional<int> negative_pivots() const = 0;
   /// Memory of this object in bytes, without the plan.
   virtual std::size_t bytes() const = 0;
 };
@@ -114,7 +115,12 @@ std::shared_ptr<const FactorisationPlan> analyse(const BlockPattern& pattern,
 /// (threads).
 void check_settings(const FactorisationSettings& settings);
 
-/// The possible values of FactorisationSettings::backend.
-std::vector<std::string> backends();
+/// A possible value of FactorisationSettings::backend.
+struct BackendName {
+  std::string name;
+  std::string description;  ///< in the reference of scenes
+};
+/// All of them, in the order in which they were registered.
+std::vector<BackendName> backends();
 
 }  // namespace sinew::linalg

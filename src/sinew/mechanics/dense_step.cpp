@@ -165,7 +165,7 @@ Inertia DenseStep::condense() {
   pivots_.compute(symmetric_);
   Inertia inertia;
   inertia.negative_pivots = pivots_.negative();
-  if (inertia.negative_pivots > 0 && definite_wanted_) {
+  if (pivots_.negative() > 0 && definite_wanted_) {
     make_definite();
     symmetric_ = 0.5 * (matrix_ + matrix_.transpose());
     inertia.negative_pivots = 0;
@@ -174,7 +174,7 @@ Inertia DenseStep::condense() {
   is_symmetric_ = symmetric_ == matrix_;
   if (!is_symmetric_ && !own_.empty()) symmetric_factor_.compute(symmetric_);
   respond();
-  if (inertia.negative_pivots > 0) inertia.status = linalg::FactorStatus::indefinite;
+  if (inertia.at_least() > 0) inertia.status = linalg::FactorStatus::indefinite;
   if (!moved_rows_.leftCols(columns_).allFinite() || pivots_.vanishes()) {
     inertia.status = linalg::FactorStatus::singular;
   }
@@ -277,6 +277,12 @@ void DenseStep::solve(std::span<const double> right, std::span<double> result) {
   if (motion_.size() == 0) return;
   scratch_ = Eigen::Map<const VectorX>(right.data(), motion_.size());
   decomposed_.solve(scratch_, Eigen::Map<VectorX>(result.data(), motion_.size()));
+}
+
+void DenseStep::solve_transposed(std::span<const double> right, std::span<double> result) {
+  if (motion_.size() == 0) return;
+  scratch_ = Eigen::Map<const VectorX>(right.data(), motion_.size());
+  decomposed_.solve_transposed(scratch_, Eigen::Map<VectorX>(result.data(), motion_.size()));
 }
 
 void DenseStep::propose_motion(std::span<const double> motion) {

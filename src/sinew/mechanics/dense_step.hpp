@@ -36,6 +36,7 @@ class DenseStep : public StepSystem {
   void add_row_motions(std::span<const int> problem_row, VectorX& row_motion) const final;
   Vector3 proposed_motion(int site) const final;
   void solve(std::span<const double> right, std::span<double> result) final;
+  void solve_transposed(std::span<const double> right, std::span<double> result) final;
   void propose_motion(std::span<const double> motion) final;
   void propose_drift(double time_step) final;
 

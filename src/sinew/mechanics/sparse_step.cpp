@@ -113,7 +113,7 @@ void SparseStep::solve_for_imbalance() {
   if (turned_) turn_back(imbalance_);
   system_.factor->solve(span_of(imbalance_), span_of(motion_));
   if (turned_) turn(motion_);
-  if (!is_symmetric()) correct(*system_.factor, motion_);
+  if (!is_symmetric()) correct(*system_.factor, motion_, false);
 }
 
 void SparseStep::solve_motion(std::span<const double> effort) {
@@ -126,7 +126,7 @@ void SparseStep::solve_motion(std::span<const double> effort) {
     if (turned_) turn(motion_);
   } else if (content_ == Content::right && rows_.plan().transient().empty()) {
     factor.solve_with_effort(rows_.persistent_effort(effort), span_of(motion_));
-    if (!is_symmetric()) correct(factor, motion_);
+    if (!is_symmetric()) correct(factor, motion_, false);
   } else {
     imbalance(effort);
     solve_for_imbalance();
@@ -144,6 +144,13 @@ void SparseStep::add_row_motions(std::span<const int> problem_row, VectorX& row_
 
 void SparseStep::solve(std::span<const double> right, std::span<double> result) {
   system_.factor->solve(right, result);
+}
+
+void SparseStep::solve_transposed(std::span<const double> right, std::span<double> result) {
+  VectorX solved(motion_.size());
+  system_.factor->solve(right, span_of(solved));
+  if (!is_symmetric()) correct(*system_.factor, solved, true);
+  std::copy_n(solved.data(), solved.size(), result.data());
 }
 
 void SparseStep::propose_motion(std::span<const double> motion) {
@@ -167,7 +174,7 @@ Vector3 SparseStep::proposed_motion(int site) const {
   return sum;
 }
 
-void SparseStep::correct(linalg::Factorisation&, VectorX&) const {
+void SparseStep::correct(linalg::Factorisation&, VectorX&, bool) const {
   throw Error(ErrorKind::internal, {}, "a symmetric body is asked for its unsymmetric part");
 }
 

@@ -46,6 +46,7 @@ class SparseStep : public StepSystem, protected SiteLevers {
   void solve_motion(std::span<const double> effort) final;
   void add_row_motions(std::span<const int> problem_row, VectorX& row_motion) const final;
   void solve(std::span<const double> right, std::span<double> result) final;
+  void solve_transposed(std::span<const double> right, std::span<double> result) final;
   void propose_motion(std::span<const double> motion) final;
   void propose_drift(double time_step) final;
   Vector3 proposed_motion(int site) const final;
@@ -79,8 +80,9 @@ class SparseStep : public StepSystem, protected SiteLevers {
 
   /// Whether A has no unsymmetric part B, which the factor leaves out.
   virtual bool is_symmetric() const { return true; }
-  /// Given A_s^-1 r in `motion`, computes (A_s + B)^-1 r. Only called unless is_symmetric().
-  virtual void correct(linalg::Factorisation& factor, VectorX& motion) const;
+  /// Given A_s^-1 r in `motion`, computes (A_s + B)^-1 r, or (A_s + B^T)^-1 r. Only called unless
+  /// is_symmetric().
+  virtual void correct(linalg::Factorisation& factor, VectorX& motion, bool transposed) const;
 
   /// Remembers the directions of the material, since A is factorised there.
   virtual void keep_directions() {}

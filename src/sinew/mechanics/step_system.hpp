@@ -46,10 +46,21 @@ struct LinearisationRequest {
 /// Result of a condensation.
 struct Inertia {
   linalg::FactorStatus status = linalg::FactorStatus::positive_definite;
-  int negative_pivots = 0;
+  /// Negative eigenvalues of A; none: the solver does not count them, see at_least().
+  std::optional<int> negative_pivots = 0;
   /// The linearisation has an unsymmetric part, which condense() omits and solve_motion() includes.
   /// The inertia of the factorised matrix is then not meaningful.
   bool unsymmetric = false;
+
+  /// A lower bound of the number of negative eigenvalues: the number itself, or one if the solver
+  /// only met some.
+  int at_least() const {
+    return negative_pivots.value_or(status == linalg::FactorStatus::indefinite ? 1 : 0);
+  }
+  /// Whether at_least() is the number itself.
+  bool is_counted() const {
+    return negative_pivots.has_value() || status == linalg::FactorStatus::positive_definite;
+  }
 };
 
 /// The smallest ratio of deformed to rest volume of any element.
@@ -174,6 +185,10 @@ class StepSystem {
   /// Solves for any right-hand side with the A of the last condensation. @param right,result
   /// (size(),).
   virtual void solve(std::span<const double> right, std::span<double> result) = 0;
+  /// Solves A^T x = right with the A of the last condensation, including its unsymmetric part
+  /// (Inertia::unsymmetric): the adjoint of the motion of solve_motion() without efforts, as
+  /// gradients need it. May allocate. @param right,result (size(),).
+  virtual void solve_transposed(std::span<const double> right, std::span<double> result) = 0;
   /// Sets the proposed motion, in place of solve_motion(). @param motion (size(),).
   virtual void propose_motion(std::span<const double> motion) = 0;
   /// Sets the proposed motion to `time_step` times the velocity at the start of the step.

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/linalg/factorisation.hpp"
 #include "sinew/scene/grammar_forms.hpp"
 
 namespace sinew::scene {
@@ -83,6 +84,14 @@ std::shared_ptr<const KeyTable> adaptive_table() {
             .required = true}}});
 }
 
+std::vector<Choice> factorisations() {
+  std::vector<Choice> choices;
+  for (const linalg::BackendName& one : linalg::backends()) {
+    choices.push_back({.word = one.name, .description = one.description});
+  }
+  return choices;
+}
+
 std::shared_ptr<const KeyTable> solver_table() {
   return make_table(
       {.name = "solver",
@@ -155,9 +164,7 @@ std::shared_ptr<const KeyTable> solver_table() {
             .default_text = "1",
             .description = "Threads per step; results do not depend on it."},
            {.name = "factorisation",
-            .forms = {choice({{"block", "Sinew's supernodal factorisation in 3x3 blocks."},
-                              {"eigen-ldlt", "Eigen's SimplicialLDLT, for reference."},
-                              {"eigen-llt", "Eigen's SimplicialLLT, for reference."}})},
+            .forms = {choice(factorisations())},
             .example = "block",
             .default_text = "block",
             .description = "Factorisation of the matrix."},

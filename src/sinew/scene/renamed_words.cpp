@@ -15,8 +15,9 @@ struct RenamedWord {
 
 // A word may still be in use elsewhere: loads and sensors are of type pressure.
 constexpr std::array kRenamedWords = {
-    RenamedWord{"center", "centre"}, RenamedWord{"pressure", "chamber"},  // type of an actuator
-    RenamedWord{"rotated", "corotated"},                                  // tangent
+    RenamedWord{"center", "centre"},     RenamedWord{"pressure", "chamber"},  // type of an actuator
+    RenamedWord{"rotated", "corotated"},                                      // tangent
+    RenamedWord{"eigen-ldlt", "block"},  RenamedWord{"eigen-llt", "block"},   // factorisation
 };
 
 void replace_in_value(Node& node, const std::vector<Form>& forms);

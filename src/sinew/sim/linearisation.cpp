@@ -152,7 +152,7 @@ FreeRows gather(Simulation& simulation, std::span<const double> effort, Linearis
     const auto row = static_cast<std::size_t>(numbering.model_row_of(static_cast<int>(k)));
     if (!names[row].empty()) result.rows.push_back(names[row]);
   }
-  result.negative_pivots = world.inertia().negative_pivots;
+  result.negative_pivots = world.inertia().at_least();
   if (!problem.bilaterals.empty() || !problem.stiffness.empty()) {
     return take_joints_out(problem, result);
   }

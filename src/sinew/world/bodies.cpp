@@ -90,8 +90,10 @@ mechanics::Inertia Bodies::condense() {
   mechanics::Inertia whole;
   for (auto* system : systems_) {
     const mechanics::Inertia part = system->condense();
+    const bool counted = whole.is_counted() && part.is_counted();
+    const int sum = whole.at_least() + part.at_least();
     whole.status = std::max(whole.status, part.status);
-    whole.negative_pivots += part.negative_pivots;
+    whole.negative_pivots = counted ? std::optional(sum) : std::nullopt;
     whole.unsymmetric = whole.unsymmetric || part.unsymmetric;
   }
   return whole;

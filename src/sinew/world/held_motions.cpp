@@ -13,7 +13,7 @@ HeldMotions::HeldMotions(World& world, std::vector<law::HeldRow> held)
     : world_(world), held_(std::move(held)), negative_(count()) {}
 
 int HeldMotions::count() {
-  const int pivots = world_.inertia().negative_pivots;
+  const int pivots = world_.inertia().at_least();
   const bool has_less =
       std::ranges::any_of(held_, [](const law::HeldRow& row) { return row.compliance < 0.0; });
   if (held_.empty() || (pivots == 0 && !has_less)) return pivots;

@@ -137,13 +137,13 @@ bool World::is_stable() const {
   const bool has_less = std::ranges::any_of(
       problem_.stiffness, [](const law::StiffnessBlock& block) { return block.stiffness < 0.0; });
   if (inertia_.status == linalg::FactorStatus::positive_definite && !has_less) return true;
-  return law::stabilised(problem_, inertia_.negative_pivots);
+  return inertia_.is_counted() && law::stabilised(problem_, inertia_.at_least());
 }
 
 bool World::brace(std::span<const double> effort) {
-  if (inertia_.status == linalg::FactorStatus::singular) return false;
+  if (inertia_.status == linalg::FactorStatus::singular || !inertia_.is_counted()) return false;
   numbering_.gather_efforts(effort, scratch_);
-  return law::brace(problem_, scratch_, inertia_.negative_pivots);
+  return law::brace(problem_, scratch_, inertia_.at_least());
 }
 
 linalg::FactorStatus World::condense() {

@@ -1,0 +1,118 @@
+/// @file
+/// Linear solvers that the library does not know: Eigen's factorisation, which counts negative
+/// pivots, and conjugate gradients, which do not.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+#include "sinew/linalg/factorisation.hpp"
+#include "sinew/linalg/linear_solver.hpp"
+
+namespace sinew::testing {
+
+using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+
+/// The lower triangle of scalars of a matrix of blocks.
+inline SparseMatrix lower_triangle(const linalg::BlockPattern& pattern,
+                                   std::span<const double> values) {
+  SparseMatrix matrix(3 * pattern.nodes, 3 * pattern.nodes);
+  for (int j = 0; j < pattern.nodes; ++j) {
+    const auto column = static_cast<std::size_t>(j);
+    for (int c = 0; c < 3; ++c) {
+      matrix.startVec(3 * j + c);
+      for (int b = pattern.column_start[column]; b < pattern.column_start[column + 1]; ++b) {
+        const int i = pattern.row[static_cast<std::size_t>(b)];
+        for (int r = i == j ? c : 0; r < 3; ++r) {
+          matrix.insertBack(3 * i + r, 3 * j + c) =
+              values[static_cast<std::size_t>(linalg::kBlockStride * b + 4 * c + r)];
+        }
+      }
+    }
+  }
+  matrix.finalize();
+  return matrix;
+}
+
+/// Eigen's SimplicialLDLT.
+class EigenSolver final : public linalg::LinearSolver {
+ public:
+  explicit EigenSolver(linalg::BlockPattern pattern) : pattern_(std::move(pattern)) {}
+
+  linalg::FactorStatus prepare(std::span<const double> matrix) override {
+    solver_.compute(lower_triangle(pattern_, matrix));
+    if (solver_.info() != Eigen::Success) return linalg::FactorStatus::singular;
+    const VectorX d = solver_.vectorD();
+    negative_ = static_cast<int>((d.array() < 0).count());
+    if (!(d.cwiseAbs().minCoeff() > 1e-14 * d.cwiseAbs().maxCoeff())) {
+      return linalg::FactorStatus::singular;
+    }
+    return negative_ > 0 ? linalg::FactorStatus::indefinite
+                         : linalg::FactorStatus::positive_definite;
+  }
+  void solve(std::span<const double> right, std::span<double> x, int count) override {
+    const Eigen::Map<const MatrixX> b(right.data(), 3 * pattern_.nodes, count);
+    Eigen::Map<MatrixX>(x.data(), b.rows(), count) = solver_.solve(b).eval();
+  }
+  std::optional<int> negative_pivots() const override { return negative_; }
+  std::size_t bytes() const override { return sizeof(double) * 3 * 3 * pattern_.row.size(); }
+
+ private:
+  linalg::BlockPattern pattern_;
+  Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> solver_;
+  int negative_ = 0;
+};
+
+/// Conjugate gradients with a diagonal preconditioner. It knows of a matrix that is not positive
+/// definite only what the diagonal shows.
+class GradientSolver final : public linalg::LinearSolver {
+ public:
+  explicit GradientSolver(linalg::BlockPattern pattern) : pattern_(std::move(pattern)) {
+    solver_.setTolerance(1e-13);
+  }
+
+  linalg::FactorStatus prepare(std::span<const double> matrix) override {
+    matrix_ = lower_triangle(pattern_, matrix);
+    solver_.compute(matrix_);
+    const VectorX diagonal = matrix_.diagonal();
+    if (!diagonal.allFinite() || diagonal.cwiseAbs().minCoeff() == 0.0) {
+      return linalg::FactorStatus::singular;
+    }
+    return diagonal.minCoeff() < 0.0 ? linalg::FactorStatus::indefinite
+                                     : linalg::FactorStatus::positive_definite;
+  }
+  void solve(std::span<const double> right, std::span<double> x, int count) override {
+    const Eigen::Map<const MatrixX> b(right.data(), 3 * pattern_.nodes, count);
+    Eigen::Map<MatrixX>(x.data(), b.rows(), count) = solver_.solve(b).eval();
+  }
+  std::size_t bytes() const override { return sizeof(double) * 3 * 3 * pattern_.row.size(); }
+
+ private:
+  linalg::BlockPattern pattern_;
+  SparseMatrix matrix_;
+  Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower> solver_;
+};
+
+/// Registers both before main() of a test program that includes this file.
+inline const bool kSolversRegistered = [] {
+  linalg::register_backend(
+      {.name = "eigen-ldlt",
+       .description = "Eigen's SimplicialLDLT, for tests.",
+       .make = [](const linalg::BlockPattern& pattern, const linalg::FactorisationSettings&,
+                  ThreadPool&) { return std::make_unique<EigenSolver>(pattern); }});
+  linalg::register_backend(
+      {.name = "gradients",
+       .description = "Conjugate gradients, for tests.",
+       .make = [](const linalg::BlockPattern& pattern, const linalg::FactorisationSettings&,
+                  ThreadPool&) { return std::make_unique<GradientSolver>(pattern); }});
+  return true;
+}();
+
+}  // namespace sinew::testing
