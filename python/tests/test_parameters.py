@@ -107,6 +107,7 @@ def test_values_are_those_of_the_scene(before):
     assert before["bodies.finger.stiffness_factor"].value == 1.0
     assert all(math.isfinite(one.value) for one in before.values())
     assert all(path == one.path for path, one in before.items())
+    assert "actuators.band.friction" not in before
     assert repr(before["time_step"]) == "<sinew.Parameter time_step = 0.005 s>"
 
 

@@ -242,6 +242,10 @@ TEST(ElementSamples, RefuseWhatIsNoSample) {
     EXPECT_EQ(kind_of({{5}, {weight}}), ErrorKind::out_of_range) << weight;
   }
   EXPECT_EQ(kind_of({{40}, {1.0}}, true), ErrorKind::conflicting_keys);
+  FemModelSettings weighed = solid_bodies::settings_of(*mesh, rubber());
+  weighed.sample = {{40}, {1.0}};
+  weighed.total_mass = 0.1;
+  EXPECT_THROW(FemModel(mesh, weighed), Error);
 }
 
 }  // namespace

@@ -286,6 +286,18 @@ TEST(Factorisation, BackendsAreRegisteredOnce) {
   const auto names = backends();
   EXPECT_EQ(names.front().name, "block");
   EXPECT_TRUE(std::ranges::any_of(names, [](const auto& one) { return one.name == "gradients"; }));
+  const auto refused = [](const std::string& name) {
+    try {
+      register_backend(
+          {.name = name, .description = "", .make = [](const auto&, const auto&, auto&) {
+             return std::unique_ptr<LinearSolver>();
+           }});
+    } catch (const Error& error) {
+      return error.kind();
+    }
+    return ErrorKind::internal;
+  };
+  EXPECT_EQ(refused("late"), ErrorKind::bad_argument) << "the list is in use";
   for (const char* taken : {"block", "gradients"}) {
     try {
       register_backend({.name = taken, .description = "", .make = {}});

@@ -412,9 +412,14 @@ TEST_F(SparseSteps, CorrectForTheUnsymmetricPart) {
   renew();
   step_->solve_motion(effort_);
   EXPECT_LT((whole * step_->motion() - sum).norm(), 1e-12) << "after renew()";
+  const VectorX any = random(kCoordinates, 1);  // also at the held coordinate
   VectorX adjoint(kCoordinates);
-  step_->solve_transposed({sum.data(), kCoordinates}, {adjoint.data(), kCoordinates});
-  EXPECT_LT((whole.transpose() * adjoint - sum).norm(), 1e-12);
+  step_->solve_transposed({any.data(), kCoordinates}, {adjoint.data(), kCoordinates});
+  VectorX free = any;
+  free[kHeld] = 0.0;
+  EXPECT_EQ(adjoint[kHeld], 0.0);
+  EXPECT_LT((whole.transpose() * adjoint - free).norm(), 1e-12);
+  EXPECT_NEAR(adjoint.dot(sum), any.dot(step_->motion()), 1e-12);
 }
 
 TEST_F(SparseSteps, SubtractAForce) {

@@ -338,8 +338,8 @@ TEST(Simulation, BackendsAgree) {
   EXPECT_LT((tips[0] - tips[2]).norm(), 1e-9) << "conjugate gradients";
 }
 
-// Newton's method and the search for equilibria work with a solver that does not count negative
-// directions.
+// Newton's method works with a solver that does not count negative directions; searches for
+// equilibria say that they need to know.
 TEST(Simulation, SolversNeedNotKnowTheInertia) {
   std::vector<Vector3> tips;
   for (const char* backend : {"block", "gradients"}) {
@@ -348,10 +348,10 @@ TEST(Simulation, SolversNeedNotKnowTheInertia) {
     options.step.method = model::Method::newton;
     Simulation simulation(beam(options));
     simulation.command(1, tension(0.3));
-    const statics::StaticReport report = simulation.solve_static();
-    EXPECT_TRUE(report.stable) << backend;
-    EXPECT_EQ(report.negative_pivots, 0) << backend;
     run(simulation, 3);
+    if (backend == std::string_view("gradients")) {
+      EXPECT_EQ(kind_of([&] { simulation.solve_static(); }), ErrorKind::not_in_this_version);
+    }
     tips.push_back(simulation.effector_value(0));
   }
   EXPECT_LT((tips[0] - tips[1]).norm(), 1e-8);

@@ -153,6 +153,9 @@ int add_load(model::ModelData& data, const LoadSettings& settings) {
   }
   try {
     model::LoadModel load{settings.name, settings.body, {}, settings.factor};
+    if (std::holds_alternative<PressureLoadSettings>(settings.load)) {
+      load.factor_name = {"pressure", "Pa"};
+    }
     for (mechanics::Load& part : std::visit(LoadMaker(*body, settings), settings.load)) {
       load.numbers.push_back(body->add_load(std::move(part)));
     }

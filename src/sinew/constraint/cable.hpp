@@ -47,7 +47,8 @@ class Cable : public Constraint {
                            std::span<mechanics::StiffnessPair> stiffness_pairs) const override;
 
   void describe(PartVisitor& visitor) const override {
-    visitor.add(pull_point_, rest_length_).number("friction", "", friction_);
+    visitor.add(pull_point_, rest_length_, friction_);
+    if (friction_ > 0.0) visitor.list("friction", "", friction_);
   }
 
   /// True while every segment is under tension.

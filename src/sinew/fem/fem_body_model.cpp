@@ -24,6 +24,11 @@ FemBodyModel::FemBodyModel(FemBodySettings settings) : settings_(std::move(setti
   }
   linalg::check_settings(settings_.factorisation);
   check_mesh(*settings_.mesh);
+  if (settings_.elements.sample) {
+    throw Error(ErrorKind::bad_argument, {.item = "body '" + settings_.name + "'"},
+                "a sample of elements is no body, since most nodes would lack mass and stiffness",
+                "evaluate it by an Assembly, for a body with other coordinates");
+  }
   if (!settings_.embedder) {
     settings_.embedder = std::make_shared<const mesh::Embedder>(*settings_.mesh);
   }

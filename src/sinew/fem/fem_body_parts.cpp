@@ -24,13 +24,13 @@ void visit(PartVisitor& visitor, const material::Hyperelastic& energy) {
   }
   k = 0;
   for (const auto& term : energy.prony) {
-    visitor.below(fmt::format("prony.{}", k++), [&] {
+    visitor.below(fmt::format("viscosity.{}", k++), [&] {
       visitor.number("relative_modulus", "", term.relative_modulus)
           .number("relaxation_time", "s", term.relaxation_time);
     });
   }
   if (!energy.mullins) return;
-  visitor.below("mullins", [&] {
+  visitor.below("softening", [&] {
     visitor.number("r", "", energy.mullins->r)
         .number("m", "Pa", energy.mullins->m)
         .number("beta", "", energy.mullins->beta);
@@ -48,10 +48,22 @@ void visit(PartVisitor& visitor, const MaterialRegion& region) {
   if (region.hyperelastic) visit(visitor, *region.hyperelastic);
 }
 
-// The path of a region below its body: that of the scene's part, or of the body.
-std::string below_body(const MaterialRegion& region, const char* name) {
-  return region.name.empty() ? name : fmt::format("parts.{}.{}", region.name, name);
-}
+// The paths of regions below their body: those of the scene's parts, or of the body.
+class RegionPaths {
+ public:
+  std::string of(const MaterialRegion& region, const char* name) {
+    if (!region.name.empty()) return fmt::format("parts.{}.{}", region.name, name);
+    if (rest_ == nullptr) rest_ = &region;
+    if (rest_ == &region) return name;
+    if (last_ != &region) ++further_;  // from programs that give no names
+    last_ = &region;
+    return fmt::format("regions.{}.{}", further_, name);
+  }
+
+ private:
+  const MaterialRegion *rest_ = nullptr, *last_ = nullptr;
+  int further_ = 0;
+};
 
 }  // namespace
 
@@ -63,15 +75,15 @@ void FemBodyModel::describe(PartsVisitor& parts) const {
   PartVisitor& mass = parts.part("mass");
   mass.add(elements.mass).number("mass", "kg", elements.total_mass);
   mass.add(elements.equal_nodal_masses);
+  RegionPaths paths;
   for (const MaterialRegion& region : elements.regions) {
     if (elements.total_mass) {
       mass.add(region.density);  // scaled
     } else {
-      mass.number(below_body(region, "density"), "kg/m^3", region.density);
+      mass.number(paths.of(region, "density"), "kg/m^3", region.density);
     }
-    material.below(below_body(region, "material"), [&] { visit(material, region); });
+    material.below(paths.of(region, "material"), [&] { visit(material, region); });
   }
-  if (elements.sample) material.add(elements.sample->elements, elements.sample->weights);
   // Masses given by name come last.
   PartVisitor& points = parts.part("point masses", "masses");
   const std::size_t unnamed = elements.point_masses.size() - settings_.masses.size();

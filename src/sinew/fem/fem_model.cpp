@@ -126,9 +126,10 @@ void check_sample(const mesh::Mesh& mesh, const FemModelSettings& settings) {
         fmt::format("{} weights for {} elements", sample.weights.size(), sample.elements.size()),
         "give one weight for each element");
   }
-  if (!settings.point_masses.empty()) {
-    throw Error(ErrorKind::conflicting_keys, place, "point masses cannot be sampled",
-                "add them to the mass matrix of the body that uses the sample");
+  if (!settings.point_masses.empty() || settings.total_mass || settings.equal_nodal_masses) {
+    throw Error(ErrorKind::conflicting_keys, place,
+                "masses of points and of the whole body cannot be sampled",
+                "give densities, and add point masses where the sample is used");
   }
 }
 
@@ -179,13 +180,16 @@ std::vector<NodeId> number_free_nodes(const mesh::Mesh& mesh, const FemModelSett
                                       std::span<const double> weights) {
   std::vector<NodeId> result(static_cast<std::size_t>(mesh.node_count()), -1);
   const auto use = [&](const auto& nodes) {
-    for (const NodeId node : nodes) result[static_cast<std::size_t>(node)] = 0;
+    for (const NodeId node : nodes) {
+      check_node(node, mesh, "membranes");
+      result[static_cast<std::size_t>(node)] = 0;
+    }
   };
   const ElementList list(mesh);
   for (int e = 0; e < list.count(); ++e) {
     if (weights[static_cast<std::size_t>(e)] != 0.0) use(list.nodes(e));
   }
-  each_membrane_face(settings, use);
+  if (settings.sample) each_membrane_face(settings, use);
   for (const NodeId node : settings.fixed_nodes) {
     check_node(node, mesh, "fixed");
     result[static_cast<std::size_t>(node)] = -1;

@@ -87,7 +87,8 @@ struct FemModelSettings {
   /// Further groups of nodes that are coupled, such as the nodes of a cable segment for its
   /// geometric stiffness. Mesh node numbers; fixed nodes are skipped.
   std::vector<std::vector<NodeId>> couplings;
-  /// None: every element counts once. Membranes are not sampled. Not together with point masses.
+  /// None: every element counts once. Membranes are not sampled. For an Assembly, not for a body;
+  /// not together with point masses, a total mass or equal nodal masses.
   std::optional<ElementSample> sample = std::nullopt;
 };
 

@@ -226,7 +226,8 @@ std::vector<SupportMass> support_masses(const mesh::Mesh& mesh, std::span<const 
     const ElementList list(mesh);
     for (int e = 0; e < list.count(); ++e) {
       const auto nodes = list.nodes(e);
-      if (std::ranges::none_of(nodes, is_fixed)) continue;
+      const bool sampled = masses[static_cast<std::size_t>(e)] != 0.0;
+      if (!sampled || std::ranges::none_of(nodes, is_fixed)) continue;
       const ElementMass shares = element_mass(mesh, list, e);
       for (std::size_t b = 0; b < nodes.size(); ++b) {
         if (!is_fixed(nodes[b])) continue;

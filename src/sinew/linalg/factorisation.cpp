@@ -24,6 +24,12 @@ std::vector<SolverBackend>& registered() {
   return all;
 }
 
+// Whether the list was asked for, as by the grammar, in which further solvers would be missing.
+bool& in_use() {
+  static bool asked = false;
+  return asked;
+}
+
 const SolverBackend* find_registered(const std::string& name) {
   const auto found = std::ranges::find(registered(), name, &SolverBackend::name);
   return found == registered().end() ? nullptr : &*found;
@@ -178,8 +184,8 @@ void check_settings(const FactorisationSettings& settings) {
          "the number of threads is " + std::to_string(settings.threads), "give at least 1");
   }
   if (settings.backend == kOwn || find_registered(settings.backend) != nullptr) return;
-  std::vector<std::string> names;
-  for (const BackendName& one : backends()) names.push_back(one.name);
+  std::vector<std::string> names{kOwn};
+  for (const SolverBackend& one : registered()) names.push_back(one.name);
   const std::string near = nearest_word(settings.backend, names);
   fail(ErrorKind::unknown_choice, "backend", "unknown backend '" + settings.backend + "'",
        near.empty() ? fmt::format("choose {}", fmt::join(names, " or "))
@@ -187,6 +193,7 @@ void check_settings(const FactorisationSettings& settings) {
 }
 
 std::vector<BackendName> backends() {
+  in_use() = true;
   std::vector<BackendName> all{{kOwn, "Sinew's supernodal factorisation in 3x3 blocks."}};
   for (const SolverBackend& one : registered()) all.push_back({one.name, one.description});
   return all;
@@ -196,6 +203,14 @@ void register_backend(SolverBackend backend) {
   if (backend.name == kOwn || find_registered(backend.name) != nullptr) {
     fail(ErrorKind::duplicate_key, "backend", "there is a backend '" + backend.name + "'",
          "choose another name");
+  }
+  if (backend.name.empty() || !backend.make) {
+    fail(ErrorKind::bad_argument, "backend", "a backend has no name or makes no solver",
+         "give both");
+  }
+  if (in_use()) {
+    fail(ErrorKind::bad_argument, "backend", "the list of backends is in use",
+         "register '" + backend.name + "' before the first scene is read");
   }
   registered().push_back(std::move(backend));
 }

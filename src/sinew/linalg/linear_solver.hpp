@@ -33,9 +33,11 @@ class LinearSolver {
   /// @return what the solver can tell: `indefinite` if it met a negative pivot or a direction of
   ///   negative curvature, `singular` if it cannot solve.
   virtual FactorStatus prepare(std::span<const double> matrix) = 0;
-  /// Solves x = A^-1 right for `count` contiguous right-hand sides (3 n,). x may be right.
+  /// Solves x = A^-1 right for `count` contiguous right-hand sides (3 n,). x may be right. A solver
+  /// that does not reach its accuracy writes NaN, which fails the step.
   virtual void solve(std::span<const double> right, std::span<double> x, int count = 1) = 0;
-  /// Number of negative eigenvalues of A, if the solver counts them.
+  /// Number of negative eigenvalues of A, if the solver counts them. Steps work without it, by the
+  /// projected tangent; searches for equilibria need it.
   virtual std::optional<int> negative_pivots() const { return {}; }
   /// Releases the memory of the factor until the next prepare().
   virtual void release() {}
@@ -53,7 +55,8 @@ struct SolverBackend {
 };
 
 /// Adds a solver from outside the library; bodies then choose it by its name. Call it before scenes
-/// are read, from one thread. Throws Error(duplicate-key) if the name is taken.
+/// are read, from one thread. Throws Error: duplicate-key (the name is taken), bad-argument (no
+/// name or function; scenes were read before).
 void register_backend(SolverBackend backend);
 
 }  // namespace sinew::linalg

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "sinew/core/error.hpp"
+
 namespace sinew::linalg {
 
 namespace {
@@ -48,17 +50,30 @@ FactorStatus SolvedRows::factorise(std::span<const double> matrix, std::span<con
                                    std::span<const double> right) {
   if (right_.size() == 0) return FactorStatus::positive_definite;
   const FactorStatus status = solver_->prepare(matrix);
+  prepared_ = true;
   if (status == FactorStatus::singular) return status;
   fill(*border_, border, rows_);
   solve_columns(rows_, solved_rows_);
   compliance_.noalias() = rows_.transpose() * solved_rows_;
   compliance_ = (0.5 * (compliance_ + compliance_.transpose())).eval();
   renew(right);
-  return status;
+  const bool solved = compliance_.allFinite() && solved_right_.allFinite();
+  return solved ? status : FactorStatus::singular;
+}
+
+void SolvedRows::release() {
+  prepared_ = false;
+  solver_->release();
+}
+
+void SolvedRows::check_factor() const {
+  if (prepared_) return;
+  throw Error(ErrorKind::internal, {}, "a factor is asked for that was given back");
 }
 
 void SolvedRows::renew(std::span<const double> right) {
   if (right_.size() == 0) return;
+  check_factor();
   right_ = Eigen::Map<const VectorX>(right.data(), right_.size());
   solver_->solve(right, span_of(solved_right_));
   free_motion_.noalias() = rows_.transpose() * solved_right_;
@@ -73,21 +88,26 @@ void SolvedRows::solve_with_effort(std::span<const double> effort, std::span<dou
 }
 
 void SolvedRows::solve(std::span<const double> right, std::span<double> x, int count) {
-  if (right_.size() > 0) solver_->solve(right, x, count);
+  if (right_.size() == 0) return;
+  check_factor();
+  solver_->solve(right, x, count);
 }
 
 void SolvedRows::condense_transient(const BorderPattern& pattern, std::span<const double> values) {
-  MatrixX rows(right_.size(), pattern.rows()), solved;
-  fill(pattern, values, rows);
-  solve_columns(rows, solved);
-  transient_compliance_.noalias() = rows.transpose() * solved;
-  transient_coupling_.resize(rows.cols(), rows_.cols() + 1);
-  transient_coupling_ << solved.transpose() * rows_, rows.transpose() * solved_right_;
+  check_factor();
+  transient_.resize(right_.size(), pattern.rows());
+  fill(pattern, values, transient_);
+  solve_columns(transient_, solved_transient_);
+  transient_compliance_.noalias() = transient_.transpose() * solved_transient_;
+  transient_coupling_.resize(transient_.cols(), rows_.cols() + 1);
+  transient_coupling_ << solved_transient_.transpose() * rows_,
+      transient_.transpose() * solved_right_;
 }
 
 std::size_t SolvedRows::bytes() const {
-  const Eigen::Index numbers = 2 * rows_.size() + 2 * right_.size() + compliance_.size() +
-                               transient_compliance_.size() + transient_coupling_.size();
+  const Eigen::Index numbers = 2 * (rows_.size() + right_.size() + transient_.size()) +
+                               compliance_.size() + transient_compliance_.size() +
+                               transient_coupling_.size();
   return sizeof(double) * static_cast<std::size_t>(numbers) + solver_->bytes();
 }
 

@@ -21,7 +21,7 @@ class SolvedRows final : public Factorisation {
 
   FactorStatus factorise(std::span<const double> matrix, std::span<const double> border,
                          std::span<const double> right) override;
-  void release() override { solver_->release(); }
+  void release() override;
   void renew(std::span<const double> right) override;
   const MatrixX& compliance() const override { return compliance_; }
   const VectorX& free_motion() const override { return free_motion_; }
@@ -35,6 +35,7 @@ class SolvedRows final : public Factorisation {
   std::size_t bytes() const override;
 
  private:
+  void check_factor() const;
   void solve_columns(const MatrixX& right, MatrixX& x);
 
   std::shared_ptr<const BorderPattern> border_;
@@ -44,6 +45,8 @@ class SolvedRows final : public Factorisation {
   MatrixX compliance_, transient_compliance_, transient_coupling_;
   VectorX free_motion_;
   double free_energy_ = 0.0;
+  MatrixX transient_, solved_transient_;  // (n, 3 k) as above, of transient rows
+  bool prepared_ = false;                 // since the last release()
 };
 
 }  // namespace sinew::linalg

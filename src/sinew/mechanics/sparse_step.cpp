@@ -147,8 +147,9 @@ void SparseStep::solve(std::span<const double> right, std::span<double> result) 
 }
 
 void SparseStep::solve_transposed(std::span<const double> right, std::span<double> result) {
-  VectorX solved(motion_.size());
-  system_.factor->solve(right, span_of(solved));
+  VectorX solved = Eigen::Map<const VectorX>(right.data(), motion_.size());
+  hold(solved);
+  system_.factor->solve(span_of(solved), span_of(solved));
   if (!is_symmetric()) correct(*system_.factor, solved, true);
   std::copy_n(solved.data(), solved.size(), result.data());
 }

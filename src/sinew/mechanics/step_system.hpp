@@ -57,10 +57,9 @@ struct Inertia {
   int at_least() const {
     return negative_pivots.value_or(status == linalg::FactorStatus::indefinite ? 1 : 0);
   }
-  /// Whether at_least() is the number itself.
-  bool is_counted() const {
-    return negative_pivots.has_value() || status == linalg::FactorStatus::positive_definite;
-  }
+  /// Whether at_least() is the number itself. If not, nothing tells whether A is definite: a solver
+  /// may meet negative curvature or not.
+  bool is_counted() const { return negative_pivots.has_value(); }
 };
 
 /// The smallest ratio of deformed to rest volume of any element.
@@ -185,9 +184,10 @@ class StepSystem {
   /// Solves for any right-hand side with the A of the last condensation. @param right,result
   /// (size(),).
   virtual void solve(std::span<const double> right, std::span<double> result) = 0;
-  /// Solves A^T x = right with the A of the last condensation, including its unsymmetric part
-  /// (Inertia::unsymmetric): the adjoint of the motion of solve_motion() without efforts, as
-  /// gradients need it. May allocate. @param right,result (size(),).
+  /// Solves A^T x = right with the A of the last condensation, including the unsymmetric part of
+  /// the last linearisation (Inertia::unsymmetric): the adjoint of solve_motion() without efforts,
+  /// as gradients need it. Zero at coordinates that a region holds. May allocate.
+  /// @param right,result (size(),).
   virtual void solve_transposed(std::span<const double> right, std::span<double> result) = 0;
   /// Sets the proposed motion, in place of solve_motion(). @param motion (size(),).
   virtual void propose_motion(std::span<const double> motion) = 0;

@@ -84,7 +84,8 @@ void GasDrive::describe(PartVisitor& visitor) const {
   visitor.below("gas", [&] {
     visitor.number("ambient_pressure", "Pa", settings_.ambient_pressure)
         .number("polytropic_exponent", "", settings_.exponent);
-    visitor.optional(settings_.supply, [](PartVisitor& of, const Supply& s) { s.describe(of); });
+    visitor.optional(settings_.supply,
+                     [](PartVisitor& of, const Supply& s) { s.describe(of, true); });
     visitor.add(rest_volume_).list("dead_volume", "m^3", settings_.dead_volume);
   });
 }
@@ -166,7 +167,8 @@ LiquidDrive::LiquidDrive(const LiquidSettings& settings, double rest_volume)
 void LiquidDrive::describe(PartVisitor& visitor) const {
   visitor.below("liquid", [&] {
     visitor.number("density", "kg/m^3", settings_.density);
-    visitor.optional(settings_.supply, [](PartVisitor& of, const Supply& s) { s.describe(of); });
+    visitor.optional(settings_.supply,
+                     [](PartVisitor& of, const Supply& s) { s.describe(of, false); });
     visitor.add(stiffness_).list("bulk_modulus", "Pa", settings_.bulk_modulus);
     visitor.list("dead_volume", "m^3", settings_.dead_volume);
   });

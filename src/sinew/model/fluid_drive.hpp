@@ -22,10 +22,11 @@ struct Supply {
   double critical_ratio = 0.5;  ///< b, in [0, 1); gas only
   double leak = 0.0;            ///< C of the leak to ambient, >= 0
 
-  void describe(PartVisitor& visitor) const {
-    visitor.number("supply.conductance", "m^3/(s Pa)", conductance)
-        .number("supply.critical_ratio", "", critical_ratio)
-        .number("supply.leak", "m^3/(s Pa)", leak);
+  /// @param visitor of the chamber. @param gas whether it supplies gas.
+  void describe(PartVisitor& visitor, bool gas) const {
+    visitor.number("supply.conductance", "m^3/(s Pa)", conductance).add(critical_ratio);
+    if (gas) visitor.list("supply.critical_ratio", "", critical_ratio);
+    visitor.number("supply.leak", "m^3/(s Pa)", leak);
   }
 };
 

@@ -106,6 +106,7 @@ struct LoadModel {
   int body = 0;
   std::vector<int> numbers;  ///< of mechanics::BearsLoads::add_load()
   Signal factor;
+  QuantityName factor_name{"factor", ""};  ///< of a pressure load, whose factor is the pressure
 };
 
 /// The data behind the accessors of Model.

@@ -60,6 +60,9 @@ void visit_actuator(PartVisitor& visitor, const ModelData& data, std::size_t ind
                fmt::format("limits.{}", kind.effort.name));
   visit_limits(visitor, actuator.motion, kind.motion, fmt::format("limits.{}", kind.motion.name));
   if (actuator.vacuum && *actuator.vacuum != -kAtmosphere) visitor.add(*actuator.vacuum);
+  if (actuator.vacuum && actuator.drive == nullptr) {
+    visitor.list("ambient_pressure", "Pa", -*actuator.vacuum);
+  }
   if (actuator.drive != nullptr) actuator.drive->describe(visitor);
   visit_constraint(visitor, data, actuator.constraint);
   for (const GuideModel& guide : data.guides) {

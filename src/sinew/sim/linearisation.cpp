@@ -40,10 +40,10 @@ struct FreeRows {
 };
 
 // Eliminates the rows of the joints.
-FreeRows take_joints_out(const law::StepProblem& problem, Linearisation& result) {
+FreeRows take_joints_out(const law::StepProblem& problem, bool counted, Linearisation& result) {
   std::vector<law::HeldRow> held;
   law::append_joints(problem, held);
-  if (!held.empty()) {
+  if (!held.empty() && counted) {
     const auto own = law::held_compliance(problem, held);
     const int negative = linalg::spectral_inverse(own.matrix).negative;
     result.negative_pivots = law::negative_directions(result.negative_pivots, negative, held);
@@ -154,7 +154,7 @@ FreeRows gather(Simulation& simulation, std::span<const double> effort, Linearis
   }
   result.negative_pivots = world.inertia().at_least();
   if (!problem.bilaterals.empty() || !problem.stiffness.empty()) {
-    return take_joints_out(problem, result);
+    return take_joints_out(problem, world.inertia().is_counted(), result);
   }
   FreeRows all;
   all.rows.resize(static_cast<std::size_t>(count));

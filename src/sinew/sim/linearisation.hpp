@@ -28,12 +28,14 @@ struct Linearisation {
   /// See row_names(); of contacts, only the active points. Points that share a row (ContactZones)
   /// have the name of one of them.
   std::vector<std::string> rows;
-  MatrixX compliance;       ///< W (rows, rows), m/N
-  VectorX delta;            ///< (rows,) m, present value
-  VectorX delta_free;       ///< (rows,) m, with all efforts zero, by the linearisation
-  VectorX effort;           ///< (rows,) N, present value
-  double residual = 0.0;    ///< N, |p - f + H^T lambda|
-  int negative_pivots = 0;  ///< of A with joints held; 0: the equilibrium is stable
+  MatrixX compliance;     ///< W (rows, rows), m/N
+  VectorX delta;          ///< (rows,) m, present value
+  VectorX delta_free;     ///< (rows,) m, with all efforts zero, by the linearisation
+  VectorX effort;         ///< (rows,) N, present value
+  double residual = 0.0;  ///< N, |p - f + H^T lambda|
+  /// Of A with joints held; 0: the equilibrium is stable. A lower bound with a solver that does not
+  /// count them.
+  int negative_pivots = 0;
   /// [body][row], (n, 3) m/N: displacements of all nodes of a finite-element body for a unit effort
   /// of the row, N A^-1 H^T. By reciprocity (Betti), also the motion of the row for a unit force on
   /// any node. Empty unless requested, and for bodies without elements.

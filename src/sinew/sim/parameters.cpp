@@ -38,8 +38,9 @@ void each_input(const Simulation& simulation, Visit visit) {
   for (int l = 0; std::cmp_less(l, model.loads().size()); ++l) {
     const model::Signal& factor = simulation.load_factor(l);
     if (!factor.is_constant()) continue;
-    visit(Parameter{fmt::format("loads.{}.factor", model.loads()[static_cast<std::size_t>(l)].name),
-                    "", factor.value(time)},
+    const model::LoadModel& load = model.loads()[static_cast<std::size_t>(l)];
+    visit(Parameter{fmt::format("loads.{}.{}", load.name, load.factor_name.name),
+                    load.factor_name.unit, factor.value(time)},
           [l](Simulation& of, double value) { of.set_load(l, model::Signal::constant(value)); });
   }
   for (int b = 0; b < simulation.bodies(); ++b) {
@@ -72,7 +73,7 @@ void set_parameter(Simulation& simulation, std::string_view path, double value) 
   if (std::ranges::find(fixed, path, &Parameter::path) != fixed.end()) {
     throw Error(ErrorKind::bad_argument, {.item = item},
                 "this parameter belongs to the model, which does not change during a run",
-                fmt::format("load the scene with another value: {}=VALUE", path));
+                "change what the scene states, and load it again");
   }
   for (const Parameter& parameter : fixed) paths.push_back(parameter.path);
   const std::string near = nearest_word(item, paths);

@@ -205,7 +205,7 @@ bool NewtonStep::is_unstable(double time_step) {
   };
   const auto status = condense(whole, run_.model->geometric_stiffness().all);
   const bool unstable = status == linalg::FactorStatus::indefinite &&
-                        !run_.world.inertia().unsymmetric &&
+                        !run_.world.inertia().unsymmetric && run_.world.inertia().is_counted() &&
                         world::Stability(run_.world, run_.effort).negative_pivots() > 0;
   if (!unstable) condense(own, own.geometric);  // which later queries read
   return unstable;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "sinew/core/error.hpp"
 #include "sinew/linalg/dense_factor.hpp"
 #include "sinew/world/row_motions.hpp"
 #include "sinew/world/world.hpp"
@@ -13,6 +14,12 @@ HeldMotions::HeldMotions(World& world, std::vector<law::HeldRow> held)
     : world_(world), held_(std::move(held)), negative_(count()) {}
 
 int HeldMotions::count() {
+  if (!world_.inertia().is_counted()) {
+    throw Error(ErrorKind::not_in_this_version, {.item = "solver.factorisation"},
+                "whether an equilibrium is stable is not known with a solver that does not count "
+                "negative eigenvalues",
+                "choose `factorisation: block`, or approach the load through time steps");
+  }
   const int pivots = world_.inertia().at_least();
   const bool has_less =
       std::ranges::any_of(held_, [](const law::HeldRow& row) { return row.compliance < 0.0; });

@@ -27,7 +27,8 @@ struct HeldAnswer {
 class HeldMotions {
  public:
   /// @param world linearised with the exact tangent, with rows formed, and condensed; must stay so.
-  /// @param held rows of its problem.
+  /// @param held rows of its problem. Throws Error(not-in-this-version) if the solver of a body
+  /// does not count negative eigenvalues.
   HeldMotions(World& world, std::vector<law::HeldRow> held);
 
   std::span<const law::HeldRow> rows() const { return held_; }
