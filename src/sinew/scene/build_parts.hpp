@@ -76,6 +76,9 @@ std::optional<Notice> bare_points_notice(const ActuatorDescription& actuator,
 
 /// Converts a region to the type of mesh/selection.hpp.
 mesh::Region region_of(const FixedRegion& region);
+/// The nodes in a region. Throws Error(empty-region) at its location.
+/// @param region,mesh which nodes of which mesh.
+std::vector<NodeId> nodes_of(const FixedRegion& region, const mesh::Mesh& mesh);
 
 /// The faces of the mesh that a surface selects. The surface may be of any kind except `file`.
 /// Throws Error at the location of the surface.

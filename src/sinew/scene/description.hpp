@@ -18,7 +18,6 @@
 #include "sinew/builder/cable_settings.hpp"
 #include "sinew/builder/chamber_settings.hpp"
 #include "sinew/builder/force_settings.hpp"
-#include "sinew/builder/load_settings.hpp"
 #include "sinew/builder/motor_settings.hpp"
 #include "sinew/builder/spring_line_settings.hpp"
 #include "sinew/builder/torque_settings.hpp"
@@ -54,6 +53,7 @@ using model::Equilibrium;
 using model::Method;
 struct ActuatorKind;
 struct BodyKind;
+struct LoadKind;
 
 enum class MaterialModel { linear, corotational, hyperelastic };
 enum class Element { any, tet4, tet4_patch, tet10, hex8 };
@@ -242,19 +242,13 @@ struct ActuatorDescription : OwnSettings {
 };
 
 /// A load that the environment exerts on a body.
-struct LoadDescription {
-  enum class Type { force, line, traction, acceleration, pressure, water };
+struct LoadDescription : OwnSettings {
   std::string name;
   Location place;
-  Type type = Type::force;
+  const LoadKind* kind = nullptr;  ///< never null in a scene that was read
   std::string body;
-  Vector3 point = Vector3::Zero();   ///< force: m
-  PointList points;                  ///< line
-  Vector3 vector = Vector3::Zero();  ///< N, N/m, Pa or m/s^2, by type
-  std::optional<SurfaceDescription> surface;
-  mesh::Outside outside = mesh::Outside::error;
-  builder::WaterSettings water;                         ///< its faces are set later
-  model::Signal factor = model::Signal::constant(1.0);  ///< for pressure: Pa
+  mesh::Outside outside = mesh::Outside::error;         ///< for points outside the mesh
+  model::Signal factor = model::Signal::constant(1.0);  ///< or its value, see LoadKind::signal
 };
 
 /// A thin elastic layer on faces of a body.

@@ -88,6 +88,9 @@ model::Signal read_signal(const Fields& fields, std::string_view key, const Read
 
 /// Reads the points under `key`: a list of vectors, or a CSV table.
 PointList read_points(const Fields& fields, std::string_view key, const ReadContext& context);
+/// Reads the key `outside`. @param fields that may have it. @param outside receives what happens to
+/// points outside the mesh.
+void read_outside(const Fields& fields, mesh::Outside& outside);
 
 /// The unit (SI) of a column: that under `unit`, else that of its heading, else the SI unit. Throws
 /// Error: conflicting-keys if they differ, and what heading_unit() throws.
