@@ -13,6 +13,7 @@
 #include "sinew/scene/actuator_kind.hpp"
 #include "sinew/scene/body_kind.hpp"
 #include "sinew/scene/build_parts.hpp"
+#include "sinew/scene/joint_kind.hpp"
 #include "sinew/scene/scene.hpp"
 #include "sinew/sense/sensor_set.hpp"
 
@@ -139,10 +140,10 @@ Robot build(SceneDescription description, const SharedMeshes& shared) {
   // Welds are added last, to match the order of rows in saved states. Motors need the other joints
   // first.
   std::map<std::string, int> joints;
-  const auto add_joints = [&](bool welds) {
+  const auto add_joints = [&](bool bonds) {
     for (const JointDescription& joint : description.joints) {
-      const bool weld = joint.type == constraint::JointType::weld;
-      if (weld == welds) joints[joint.name] = add_joint(builder, joint, body_of);
+      if (joint.kind->is_bond != bonds) continue;
+      joints[joint.name] = joint.kind->add({builder, joint, body_of});
     }
   };
   add_joints(false);

@@ -151,10 +151,6 @@ std::vector<SceneContact> contact_pairs(const SceneDescription& scene);
 std::optional<Notice> add_contact(builder::ModelBuilder& builder, const ContactDescription& contact,
                                   const BodyOf& body_of);
 
-/// Adds a joint. @param builder that has the bodies. @param joint to be added.
-/// @param body_of finds bodies. @return the number of the joint.
-int add_joint(builder::ModelBuilder& builder, const JointDescription& joint, const BodyOf& body_of);
-
 /// Adds a probe. @param builder that has the bodies. @param probe to be added.
 /// @param body_of finds bodies.
 void add_probe(builder::ModelBuilder& builder, const ProbeDescription& probe,

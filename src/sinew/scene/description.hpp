@@ -53,6 +53,7 @@ using model::Equilibrium;
 using model::Method;
 struct ActuatorKind;
 struct BodyKind;
+struct JointKind;
 struct LoadKind;
 
 enum class MaterialModel { linear, corotational, hyperelastic };
@@ -399,21 +400,18 @@ struct PlaneDescription {
 };
 
 /// A joint between two bodies, or between a body and the world.
-struct JointDescription {
+struct JointDescription : OwnSettings {
   std::string name;
   Location place;
-  constraint::JointType type = constraint::JointType::weld;
-  std::string first, second;  ///< bodies, or kWorldName
+  const JointKind* kind = nullptr;  ///< never null in a scene that was read
+  std::string first, second;        ///< bodies, or kWorldName
   Location bodies_place;
-  // all types except weld
-  Vector3 point = Vector3::Zero();         ///< m
-  Vector3 axis = Vector3::UnitZ();         ///< unit length
-  Vector3 second_axis = Vector3::UnitX();  ///< of a universal joint
-  model::Limits angle, displacement;       ///< rad, m
-  double friction = 0.0;                   ///< N m, N
-  // weld
-  std::optional<FixedRegion> region;  ///< of the first body; none, and no points: where both touch
-  PointList points;                   ///< of the first body
+};
+
+/// A weld: what it holds of the first body.
+struct WeldDescription {
+  std::optional<FixedRegion> region;  ///< none, and no points: where both touch
+  PointList points;
   mesh::Outside outside = mesh::Outside::error;
 };
 
