@@ -83,7 +83,7 @@ class Dump {
     for (const auto& actuator : scene.actuators) add_actuator(actuator);
     for (const auto& mass : scene.masses) add(mass.outside);
     for (const auto& effector : scene.effectors) add(effector.directions, effector.outside);
-    for (const auto& probe : scene.probes) add(probe.samples, probe.way, probe.outside);
+    for (const auto& probe : scene.probes) add_probe(probe);
     for (const auto& sensor : scene.sensors) add_sensor(sensor);
     for (const auto& contact : scene.contacts) {
       const auto& plane = std::get<constraint::Plane>(contact.surface);
@@ -108,6 +108,11 @@ class Dump {
     add(body.mass_damping, body.stiffness_damping, body.fixed[0].normal, body.fixed[0].within);
     const auto start = body.initial_velocity.value_or(InitialVelocityDescription{});
     add(start.linear, start.angular);
+  }
+  void add_probe(const ProbeDescription& probe) {
+    add(probe.outside);
+    if (const auto* line = probe.as<builder::ProbeLine>()) add(line->samples);
+    if (const auto* extent = probe.as<builder::ProbeExtent>()) add(extent->way);
   }
   void add_sensor(const SensorDescription& sensor) {
     const sense::ChannelSettings& channel = sensor.channel;

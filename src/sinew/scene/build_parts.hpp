@@ -22,7 +22,8 @@ class Embedder;
 }
 namespace sinew::builder {
 class ModelBuilder;
-}
+struct ProbeSpot;
+}  // namespace sinew::builder
 
 namespace sinew::model {
 class Model;
@@ -79,6 +80,9 @@ mesh::Region region_of(const FixedRegion& region);
 /// The nodes in a region. Throws Error(empty-region) at its location.
 /// @param region,mesh which nodes of which mesh.
 std::vector<NodeId> nodes_of(const FixedRegion& region, const mesh::Mesh& mesh);
+/// A spot on its body, with its points or nodes. @param spot of a scene. @param body_of finds
+/// bodies.
+builder::ProbeSpot spot_of(const SpotDescription& spot, const BodyOf& body_of);
 
 /// The faces of the mesh that a surface selects. The surface may be of any kind except `file`.
 /// Throws Error at the location of the surface.

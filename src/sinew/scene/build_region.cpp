@@ -1,4 +1,5 @@
-// Regions and faces of the bodies that are built.
+// Regions, faces and spots of the bodies that are built.
+#include "sinew/builder/probe_settings.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/patch.hpp"
@@ -46,6 +47,15 @@ std::vector<mesh::Face> faces_of(const SurfaceDescription& surface, const mesh::
 std::vector<NodeId> nodes_of(const FixedRegion& region, const mesh::Mesh& mesh) {
   return at_place(region.place,
                   [&] { return mesh::select_nodes(mesh, region_of(region), region.place.item); });
+}
+
+builder::ProbeSpot spot_of(const SpotDescription& spot, const BodyOf& body_of) {
+  const BuiltBody body = body_of(spot.body);
+  builder::ProbeSpot built;
+  built.body = body.number;
+  built.points = spot.points.points;
+  if (spot.region) built.nodes = nodes_of(*spot.region, body.model->mesh());
+  return built;
 }
 
 }  // namespace sinew::scene

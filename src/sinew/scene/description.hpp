@@ -55,6 +55,7 @@ struct ActuatorKind;
 struct BodyKind;
 struct JointKind;
 struct LoadKind;
+struct ProbeKind;
 
 enum class MaterialModel { linear, corotational, hyperelastic };
 enum class Element { any, tet4, tet4_patch, tet10, hex8 };
@@ -291,24 +292,20 @@ struct EffectorDescription {
   Points directions = Points(Matrix3::Identity());
 };
 
+/// A point of a body, the mean of several, or nodes of a region.
+struct SpotDescription {
+  Location place;
+  std::string body;
+  PointList points;
+  std::optional<FixedRegion> region;  ///< none: `points`, or the whole body
+};
+
 /// A quantity that is computed and recorded exactly. It exerts no force.
-struct ProbeDescription {
-  enum class Kind { point, line, bend, distance, extent };
-  /// Points, of which a point probe takes the mean, or the nodes of a region.
-  struct Part {
-    Location place;
-    std::string body;
-    PointList points;
-    std::optional<FixedRegion> region;  ///< none: `points`, or the whole body for an extent
-  };
+struct ProbeDescription : OwnSettings {
   std::string name;
   Location place;
-  Kind kind = Kind::point;
-  std::vector<Part> parts;         ///< bend, distance: 2; else 1
-  int samples = 21;                ///< line
-  std::optional<Vector3> about;    ///< bend: unit length
-  Vector3 axis = Vector3::Zero();  ///< extent: unit length
-  constraint::ExtentProbe::Way way = constraint::ExtentProbe::Way::along;
+  const ProbeKind* kind = nullptr;     ///< never null in a scene that was read
+  std::vector<SpotDescription> parts;  ///< what it measures, as many as its kind needs
   mesh::Outside outside = mesh::Outside::error;
 };
 

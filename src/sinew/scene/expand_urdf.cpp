@@ -110,7 +110,7 @@ void for_each_body_name(SceneDescription& scene, Rename&& rename) {
   for (MembraneDescription& layer : scene.membranes) rename(layer.body, layer.body_place);
   for (EffectorDescription& effector : scene.effectors) rename(effector.body, effector.body_place);
   for (ProbeDescription& probe : scene.probes) {
-    for (ProbeDescription::Part& part : probe.parts) rename(part.body, part.place);
+    for (SpotDescription& part : probe.parts) rename(part.body, part.place);
   }
   for (SensorDescription& sensor : scene.sensors) {
     rename(sensor.body, sensor.place);

@@ -88,6 +88,11 @@ model::Signal read_signal(const Fields& fields, std::string_view key, const Read
 
 /// Reads the points under `key`: a list of vectors, or a CSV table.
 PointList read_points(const Fields& fields, std::string_view key, const ReadContext& context);
+/// Reads the point under a key. @param fields that have it. @param key of a vector.
+PointList read_point(const Fields& fields, std::string_view key);
+/// Reads one of the keys point, points and set. @param fields of a map that has one.
+/// @param context of the scene.
+SpotDescription read_spot(const Fields& fields, const ReadContext& context);
 /// Reads the key `outside`. @param fields that may have it. @param outside receives what happens to
 /// points outside the mesh.
 void read_outside(const Fields& fields, mesh::Outside& outside);
