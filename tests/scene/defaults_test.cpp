@@ -12,6 +12,7 @@
 #include "sinew/scene/grammar.hpp"
 #include "sinew/scene/scene.hpp"
 #include "sinew/scene/values.hpp"
+#include "sinew/sense/sensor_settings.hpp"
 
 #include "scene_fixture.hpp"
 
@@ -117,8 +118,14 @@ class Dump {
   void add_sensor(const SensorDescription& sensor) {
     const sense::ChannelSettings& channel = sensor.channel;
     add(channel.noise, channel.bias, channel.drift, channel.delay, channel.dropout, channel.seed);
-    add(sensor.samples, sensor.outside, sensor.loss_per_length, sensor.loss_per_turn);
-    add(sensor.permittivity, sensor.threshold, sensor.electrodes[0].angle);
+    add(sensor.outside);
+    if (const auto* line = sensor.as<sense::SensorLine>()) {
+      add(line->line.samples, line->loss_per_length, line->loss_per_turn);
+    } else if (const auto* plates = sensor.as<CapacitanceDescription>()) {
+      add(plates->permittivity, plates->electrodes[0].angle);
+    } else if (const auto* contact = sensor.as<ContactSensorDescription>()) {
+      add(contact->threshold.value_or(-1.0));
+    }
   }
   void add_actuator(const ActuatorDescription& actuator) {
     if (const auto* cable = actuator.as<CableDescription>()) {

@@ -15,6 +15,7 @@
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/joint_kind.hpp"
 #include "sinew/scene/scene.hpp"
+#include "sinew/scene/sensor_kind.hpp"
 #include "sinew/sense/sensor_set.hpp"
 
 namespace sinew::scene {
@@ -169,7 +170,7 @@ Robot build(SceneDescription description, const SharedMeshes& shared) {
   }
   add_joints(true);
   for (const SensorDescription& sensor : description.sensors) {
-    add_sensor(builder, {description, contacts, body_of}, sensor);
+    add_sensor(builder, {description, contacts, body_of, sensor});
   }
   for (const EstimatorDescription& estimator : description.estimators) {
     add_estimator(builder, description, estimator);

@@ -160,17 +160,10 @@ std::optional<Notice> add_contact(builder::ModelBuilder& builder, const ContactD
 void add_probe(builder::ModelBuilder& builder, const ProbeDescription& probe,
                const BodyOf& body_of);
 
-/// The parts of a scene that its sensors refer to.
-struct SensorSurroundings {
-  const SceneDescription& scene;
-  const std::vector<SceneContact>& contacts;  ///< see contact_pairs()
-  const BodyOf& body_of;
-};
+struct SensorSite;
 /// Adds a sensor. Throws Error: unknown-name (a contact, or an entry without pairs).
-/// @param builder that has the bodies, actuators and contacts. @param surroundings of the sensor.
-/// @param sensor to be added.
-void add_sensor(builder::ModelBuilder& builder, const SensorSurroundings& surroundings,
-                const SensorDescription& sensor);
+/// @param builder that has the bodies, actuators and contacts. @param site of the sensor.
+void add_sensor(builder::ModelBuilder& builder, const SensorSite& site);
 
 /// Builds the estimator's own model of the robot, and adds the estimator. Throws what build() of
 /// that model throws, and Error: wrong-type and out-of-range (a sensor), everything-fixed (an

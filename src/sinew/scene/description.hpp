@@ -21,8 +21,6 @@
 #include "sinew/builder/motor_settings.hpp"
 #include "sinew/builder/spring_line_settings.hpp"
 #include "sinew/builder/torque_settings.hpp"
-#include "sinew/constraint/joint_type.hpp"
-#include "sinew/constraint/probe.hpp"
 #include "sinew/constraint/smooth_surface.hpp"
 #include "sinew/control/inverse_settings.hpp"
 #include "sinew/control/target.hpp"
@@ -56,6 +54,7 @@ struct BodyKind;
 struct JointKind;
 struct LoadKind;
 struct ProbeKind;
+struct SensorKind;
 
 enum class MaterialModel { linear, corotational, hyperelastic };
 enum class Element { any, tet4, tet4_patch, tet10, hex8 };
@@ -309,31 +308,28 @@ struct ProbeDescription : OwnSettings {
   mesh::Outside outside = mesh::Outside::error;
 };
 
+/// A capacitive sensor. The bodies of its electrodes are SensorDescription::further_bodies.
+struct CapacitanceDescription {
+  std::array<SurfaceDescription, 2> electrodes;
+  double permittivity = 1.0;  ///< relative
+};
+
+/// A sensor of contacts. The body of its patch is the first of SensorDescription::further_bodies;
+/// without, it is the first body of the contact.
+struct ContactSensorDescription {
+  std::string contact;
+  std::optional<FixedRegion> patch;
+  std::optional<double> threshold;  ///< N, of a switch
+};
+
 /// A sensor with noise, delay and sample rate. It exerts no force.
-struct SensorDescription {
+struct SensorDescription : OwnSettings {
   std::string name;
   Location place, rate_place;
-  std::string type;  ///< word of the scene file: "marker"
-  std::string body, actuator, contact;
-  PointList points;  ///< of a marker or line, or the points that define an orientation
-  std::optional<FixedRegion> region;  ///< set of a marker, or patch of a contact
-  std::string patch_body;             ///< empty: the first body of the contact
+  const SensorKind* kind = nullptr;         ///< never null in a scene that was read
+  std::string body, actuator;               ///< that it measures; empty: it has no such key
+  std::vector<std::string> further_bodies;  ///< empty names mean `body`
   mesh::Outside outside = mesh::Outside::error;
-  int samples = 21;              ///< of a line
-  std::vector<double> places;    ///< curvature: arc lengths along the line, m
-  double gauge = 0.0;            ///< curvature: gauge length, m; 0: a tenth of the line
-  std::optional<Vector3> about;  ///< curvature: unit length
-  double resistance = 0.0;       ///< Ohm
-  double gauge_factor = 0.0;     ///< of a resistance
-  double loss_per_length = 0.0;  ///< attenuation: dB/m
-  double loss_per_turn = 0.0;    ///< attenuation: dB/rad
-  double permittivity = 1.0;     ///< relative
-  std::array<SurfaceDescription, 2> electrodes;
-  std::array<std::string, 2> electrode_bodies;  ///< empty: the body of the sensor
-  double motor_constant = 0.0;                  ///< N m/A or N/A
-  bool turns = true;                            ///< motor_constant is a torque constant
-  double radius = 0.0;                          ///< m, of the drum; 0: none
-  double threshold = 0.0;                       ///< touch: N
   sense::ChannelSettings channel;
   std::shared_ptr<const sense::SensorRecord> record;  ///< samples from a file
 };

@@ -114,8 +114,7 @@ void for_each_body_name(SceneDescription& scene, Rename&& rename) {
   }
   for (SensorDescription& sensor : scene.sensors) {
     rename(sensor.body, sensor.place);
-    rename(sensor.patch_body, sensor.place);
-    for (std::string& body : sensor.electrode_bodies) rename(body, sensor.place);
+    for (std::string& body : sensor.further_bodies) rename(body, sensor.place);
   }
   for (EstimatorDescription& estimator : scene.estimators) {
     for (UnknownDescription& unknown : estimator.unknowns) rename(unknown.body, unknown.place);
