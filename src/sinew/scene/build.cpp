@@ -72,9 +72,7 @@ model::StepSettings step_settings(const SceneDescription& scene) {
 // which needs ten iterations for one with the exact tangent, so the robot uses the exact one.
 std::optional<Notice> replace_tangent(const SceneDescription& scene, model::StepSettings& step) {
   const auto rubber = std::ranges::find_if(scene.bodies, [](const BodyDescription& body) {
-    const auto is_rubber = [](const auto& of) {
-      return of.material.model == MaterialModel::hyperelastic;
-    };
+    const auto is_rubber = [](const auto& of) { return of.material.is_hyperelastic(); };
     return body.kind->has_elements &&
            (is_rubber(body) || std::ranges::any_of(body.parts, is_rubber));
   });

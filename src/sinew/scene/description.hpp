@@ -98,6 +98,8 @@ struct MaterialDescription {
   bool scaled = false;   ///< whether the scene scales its moduli
   double density = 0.0;  ///< kg/m^3, of a material from the library; else 0
   Location young_modulus_place, poisson_ratio_place;
+
+  bool is_hyperelastic() const { return model == MaterialModel::hyperelastic; }
 };
 
 /// A choice of nodes, such as those that are fixed.

@@ -39,6 +39,9 @@ void refuse_free(const Fields& fields);
 bool is_plane(const Node::Entry& body);
 /// Reads such a body. Throws Error(conflicting-keys) if it has a mass or a velocity or is free.
 PlaneDescription read_plane(const Node::Entry& entry, const ReadContext& context);
+/// Reads the material under `material`. @param body fields with that key. @param context of the
+/// scene.
+MaterialDescription read_material(const Fields& body, const ReadContext& context);
 /// Reads the rotation of a pose. @param pose fields of the pose.
 Matrix3 read_rotation(const Fields& pose);
 /// Reads a region from one of the keys box, sphere, plane and set.
