@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "sinew/model/model.hpp"
 #include "sinew/model/signal.hpp"
+#include "sinew/scene/load_kind.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "arrays.hpp"
@@ -14,8 +17,6 @@
 namespace sinew::python {
 
 namespace {
-
-using Type = scene::LoadDescription::Type;
 
 const model::LoadModel& model(const Load& self) {
   return self.session->model().loads()[static_cast<std::size_t>(self.index)];
@@ -27,35 +28,18 @@ const scene::LoadDescription& description(const Load& self) {
                             &scene::LoadDescription::name);
 }
 
-// The attribute that has the value of a load of this type.
-const char* quantity(Type type) {
-  switch (type) {
-    case Type::force:
-      return "force";
-    case Type::line:
-      return "force_per_length";
-    case Type::traction:
-      return "traction";
-    case Type::acceleration:
-      return "acceleration";
-    case Type::pressure:
-      return "pressure";
-    case Type::water:
-      return "factor";
-  }
-  return "factor";
-}
+const scene::LoadKind& kind(const Load& self) { return *description(self).kind; }
 
 std::string place(const Load& self, const char* attribute) {
   return fmt::format("load('{}').{}", model(self).name, attribute);
 }
 
-void require(const Load& self, Type type) {
-  const Type own = description(self).type;
-  if (own == type) return;
-  throw Error(ErrorKind::wrong_type, {.item = place(self, quantity(type))},
-              fmt::format("this load has a {}", quantity(own)),
-              fmt::format("use .{}", quantity(own)));
+// Requires a load whose value is called `quantity`, which is the name of an attribute.
+void require(const Load& self, const char* quantity) {
+  const char* own = kind(self).quantity;
+  if (std::string_view(own) == quantity) return;
+  throw Error(ErrorKind::wrong_type, {.item = place(self, quantity)},
+              fmt::format("this load has a {}", own), fmt::format("use .{}", own));
 }
 
 // The signal of the model at the present time: a factor, or the pressure in Pa.
@@ -83,12 +67,12 @@ double unit_pressure(const Load& self) {
 
 double factor(const Load& self) {
   const double value = present(self);
-  return description(self).type == Type::pressure ? value / unit_pressure(self) : value;
+  return kind(self).signal_is_value() ? value / unit_pressure(self) : value;
 }
 
 void set_factor(const Load& self, const py::object& value) {
   const std::string where = place(self, "factor");
-  if (description(self).type != Type::pressure) return set(self, to_signal(value, where, ""));
+  if (!kind(self).signal_is_value()) return set(self, to_signal(value, where, ""));
   const double unit = unit_pressure(self);
   const model::Signal signal = to_signal(value, where, "");
   if (!signal.is_constant()) {
@@ -99,19 +83,19 @@ void set_factor(const Load& self, const py::object& value) {
   set(self, model::Signal::constant(unit * signal.value(0.0)));
 }
 
-template <Type type>
-Array vector(const Load& self) {
-  require(self, type);
-  return reading(Vector3(present(self) * description(self).vector));
+const Vector3& written_vector(const Load& self) { return kind(self).vector(description(self)); }
+
+Array vector(const Load& self, const char* quantity) {
+  require(self, quantity);
+  return reading(Vector3(present(self) * written_vector(self)));
 }
 
 // A load keeps its direction; the factor along it is set.
-template <Type type>
-void set_vector(const Load& self, const py::object& value) {
-  require(self, type);
-  const std::string where = place(self, quantity(type));
+void set_vector(const Load& self, const char* quantity, const py::object& value) {
+  require(self, quantity);
+  const std::string where = place(self, quantity);
   const Vector3 wanted = to_vector3(value, where, "(3,)");
-  const Vector3& own = description(self).vector;
+  const Vector3& own = written_vector(self);
   const double along = own.squaredNorm() > 0.0 ? wanted.dot(own) / own.squaredNorm() : 0.0;
   constexpr double kParallel = 1e-9;
   if ((wanted - along * own).norm() > kParallel * wanted.norm()) {
@@ -126,12 +110,12 @@ void set_vector(const Load& self, const py::object& value) {
 }
 
 double pressure(const Load& self) {
-  require(self, Type::pressure);
+  require(self, "pressure");
   return present(self);
 }
 
 void set_pressure(const Load& self, const py::object& value) {
-  require(self, Type::pressure);
+  require(self, "pressure");
   const std::string where = place(self, "pressure");
   const model::Signal signal = to_signal(value, where, "Pa");
   self.session->note_pressure(where, signal);
@@ -148,8 +132,8 @@ void bind_load(py::module_& module) {
   const auto text = [&](const char* unit) {
     return fmt::format("(3,) ndarray: present value ({}) of a load{}", unit, kVector);
   };
-  py::class_<Load>(module, "Load", "An external load of the scene. From Simulation.load().")
-      .def_property_readonly(
+  py::class_<Load> load(module, "Load", "An external load of the scene. From Simulation.load().");
+  load.def_property_readonly(
           "name", [](const Load& self) { return model(self).name; }, "str: name in the scene.")
       .def_property(
           "factor", &factor, &set_factor,
@@ -164,15 +148,18 @@ void bind_load(py::module_& module) {
                     "step on: a number, a signal, or (n, 2) samples of time and value. Error "
                     "(wrong-type) for "
                     "other loads.")
-      .def_property("force", &vector<Type::force>, &set_vector<Type::force>, text("N").c_str())
-      .def_property("force_per_length", &vector<Type::line>, &set_vector<Type::line>,
-                    text("N/m").c_str())
-      .def_property("traction", &vector<Type::traction>, &set_vector<Type::traction>,
-                    text("Pa").c_str())
-      .def_property("acceleration", &vector<Type::acceleration>, &set_vector<Type::acceleration>,
-                    text("m/s^2").c_str())
       .def("__repr__",
            [](const Load& self) { return fmt::format("<sinew.Load '{}'>", model(self).name); });
+  const std::pair<const char*, const char*> vectors[] = {
+      {"force", "N"}, {"force_per_length", "N/m"}, {"traction", "Pa"}, {"acceleration", "m/s^2"}};
+  for (const auto& [quantity, unit] : vectors) {
+    load.def_property(
+        quantity, [quantity = quantity](const Load& self) { return vector(self, quantity); },
+        [quantity = quantity](const Load& self, const py::object& value) {
+          set_vector(self, quantity, value);
+        },
+        text(unit).c_str());
+  }
 }
 
 }  // namespace sinew::python

@@ -33,7 +33,7 @@ Material read_material(const py::object& spec) {
   tree["bodies"] = bodies;
   const auto scene = scene::parse_scene_tree(to_tree(tree), {});
   const scene::MaterialDescription& read = scene.bodies.front().material;
-  if (read.model != scene::MaterialModel::hyperelastic) {
+  if (!read.is_hyperelastic()) {
     throw Error(ErrorKind::wrong_type, {.item = "material(spec)"},
                 "linear and corotational materials are not large-strain laws",
                 "its constants are Young's modulus and Poisson's ratio");

@@ -12,6 +12,7 @@
 #include "sinew/scene/grammar.hpp"
 #include "sinew/scene/scene.hpp"
 #include "sinew/scene/values.hpp"
+#include "sinew/sense/sensor_settings.hpp"
 
 #include "scene_fixture.hpp"
 
@@ -83,7 +84,7 @@ class Dump {
     for (const auto& actuator : scene.actuators) add_actuator(actuator);
     for (const auto& mass : scene.masses) add(mass.outside);
     for (const auto& effector : scene.effectors) add(effector.directions, effector.outside);
-    for (const auto& probe : scene.probes) add(probe.samples, probe.way, probe.outside);
+    for (const auto& probe : scene.probes) add_probe(probe);
     for (const auto& sensor : scene.sensors) add_sensor(sensor);
     for (const auto& contact : scene.contacts) {
       const auto& plane = std::get<constraint::Plane>(contact.surface);
@@ -109,11 +110,22 @@ class Dump {
     const auto start = body.initial_velocity.value_or(InitialVelocityDescription{});
     add(start.linear, start.angular);
   }
+  void add_probe(const ProbeDescription& probe) {
+    add(probe.outside);
+    if (const auto* line = probe.as<builder::ProbeLine>()) add(line->samples);
+    if (const auto* extent = probe.as<builder::ProbeExtent>()) add(extent->way);
+  }
   void add_sensor(const SensorDescription& sensor) {
     const sense::ChannelSettings& channel = sensor.channel;
     add(channel.noise, channel.bias, channel.drift, channel.delay, channel.dropout, channel.seed);
-    add(sensor.samples, sensor.outside, sensor.loss_per_length, sensor.loss_per_turn);
-    add(sensor.permittivity, sensor.threshold, sensor.electrodes[0].angle);
+    add(sensor.outside);
+    if (const auto* line = sensor.as<sense::SensorLine>()) {
+      add(line->line.samples, line->loss_per_length, line->loss_per_turn);
+    } else if (const auto* plates = sensor.as<CapacitanceDescription>()) {
+      add(plates->permittivity, plates->electrodes[0].angle);
+    } else if (const auto* contact = sensor.as<ContactSensorDescription>()) {
+      add(contact->threshold.value_or(-1.0));
+    }
   }
   void add_actuator(const ActuatorDescription& actuator) {
     if (const auto* cable = actuator.as<CableDescription>()) {

@@ -120,7 +120,7 @@ TEST_F(SensorBlock, CapacitanceOfPlatesIsThatOfAnAffineLayer) {
 TEST_F(SensorBlock, MarkersAndOrientationsFollowARigidMotion) {
   Points frame(3, 3);
   frame << 0.09, 0.0, 0.0, 0.1, 0.0, 0.0, 0.09, 0.01, 0.0;
-  add("marker", builder::ProbeSpot{0, {}, mesh_->node_sets.at("x_max")});
+  add("marker", sense::SensorMarker{{0, {}, mesh_->node_sets.at("x_max")}});
   add("imu", sense::SensorMotion{sense::SensorMotion::What::orientation, 0, frame, {}});
   add("level",
       sense::SensorMotion{sense::SensorMotion::What::accelerometer, 0, frame, {0.0, 0.0, -9.81}});
@@ -146,7 +146,7 @@ TEST_F(SensorBlock, SamplingAndReadingAllocateNothing) {
   Points frame(3, 3);
   frame << 0.09, 0.0, 0.0, 0.1, 0.0, 0.0, 0.09, 0.01, 0.0;
   using What = sense::SensorMotion::What;
-  add("marker", builder::ProbeSpot{0, {}, mesh_->node_sets.at("x_max")});
+  add("marker", sense::SensorMarker{{0, {}, mesh_->node_sets.at("x_max")}});
   add("spin", sense::SensorMotion{What::gyroscope, 0, frame, {}});
   add("shake", sense::SensorMotion{What::accelerometer, 0, frame, {}});
   add("axis", sense::SensorCurvature{0, line(0.0), {0.03, 0.05, 0.08}, 0.04, {}});

@@ -15,6 +15,7 @@
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/model/model.hpp"
 #include "sinew/run/contact_reader.hpp"
+#include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/world/row_motions.hpp"
 #include "sinew/world/world.hpp"
@@ -90,6 +91,19 @@ TEST(SurfaceContact, RowsPushEquallyAndOppositely) {
   EXPECT_LT(force.cwiseAbs().maxCoeff(), 1e-12);
   // The two points of a pair are apart by the separation, 1e-7 of the body's size.
   EXPECT_LT(moment.cwiseAbs().maxCoeff(), 1e-8);
+}
+
+TEST(SurfaceContact, ARestoredStateIsTheSavedOne) {
+  const auto model = two_blocks(false);
+  Simulation first(model), second(model);
+  for (int k = 0; k < 20; ++k) first.step();
+  ASSERT_GT(first.contacts().resultant(0).normal_force, 0.0);
+  const run::State saved = first.state();
+  second.restore(saved);
+  EXPECT_EQ(second.state(), saved);
+  first.step();
+  second.step();
+  EXPECT_EQ(second.state(), first.state());
 }
 
 class Steady : public ::testing::TestWithParam<int> {};

@@ -22,7 +22,13 @@
 #include "sinew/scene/actuator_kind.hpp"
 #include "sinew/scene/body_kind.hpp"
 #include "sinew/scene/build.hpp"
+#include "sinew/scene/joint_kind.hpp"
+#include "sinew/scene/load_kind.hpp"
+#include "sinew/scene/material_kind.hpp"
+#include "sinew/scene/probe_kind.hpp"
 #include "sinew/scene/scene.hpp"
+#include "sinew/scene/sensor_kind.hpp"
+#include "sinew/sense/sensors.hpp"
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state_io.hpp"
@@ -100,6 +106,64 @@ TEST(Kinds, RecordsAndObservablesHaveItsWordsAndUnits) {
   std::filesystem::remove_all(folder);
 }
 
+// A finger of rubber, fixed at one end. @param more sections of the scene.
+scene::Robot finger(const std::string& more, const char* integrator = "quasi-static") {
+  register_toys();
+  const std::string text = fmt::format(
+      "sinew: 1\ntime_step: 2 ms\nintegrator: {}\nbodies: {{finger: {{type: fem, mesh: {{shape: "
+      "block, length: 60 mm, width: 10 mm, height: 10 mm, element_size: 10 mm}}, material: "
+      "{{young_modulus: 100 kPa, poisson_ratio: 0.3}}, density: 1000 kg/m^3, fixed: {{set: "
+      "x_min}}}}}}\n{}",
+      integrator, more);
+  return scene::build(scene::parse_scene_text(text, "scene.yaml", {}));
+}
+
+Points at_rest(const std::string& loads) {
+  sim::Simulation simulation(finger("loads: " + loads).model);
+  simulation.solve_static();
+  return simulation.body(0).positions();
+}
+
+TEST(Kinds, ALoadActsAsTheForcesOfWhichItConsists) {
+  const Points moved = at_rest(
+      "{turn: {type: couple, body: finger, first: 60 5 10 mm, second: 60 5 0 mm, force: 0.02 0 0 "
+      "N, factor: 0.5}}");
+  const Points forced = at_rest(
+      "{up: {type: force, body: finger, point: 60 5 10 mm, force: 0.01 0 0 N}, "
+      "down: {type: force, body: finger, point: 60 5 0 mm, force: -0.01 0 0 N}}");
+  EXPECT_LT((moved - forced).norm(), 1e-12);
+  EXPECT_GT((moved - at_rest("{}")).rowwise().norm().maxCoeff(), 1e-4);
+}
+
+TEST(Kinds, ASensorIsRecordedAndReadsTheSpeedOfItsPoint) {
+  const scene::Robot made = finger(
+      "loads: {turn: {type: couple, body: finger, first: 60 5 10 mm, second: 60 5 0 mm, force: "
+      "0.02 0 0 N}}\n"
+      "sensors: {speed: {type: speedometer, body: finger, at: 60 10 10 mm, delay: 2 ms}}\n",
+      "bdf2");
+  sim::Simulation simulation(made.model);
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / fmt::format("sinew_speed_{}", getpid());
+  record::RecordSettings settings;
+  settings.folder = folder;
+  record::RunRecorder recorder(sim::Observables(simulation), settings);
+  for (int k = 0; k < 5; ++k) {
+    simulation.step();
+    recorder.after_step();
+  }
+  recorder.finish();
+  std::ostringstream table;
+  table << std::ifstream(folder / "sensors.csv").rdbuf();
+  EXPECT_NE(table.str().find("speed.measured [m/s]"), std::string::npos) << table.str();
+  std::filesystem::remove_all(folder);
+  const Points& nodes = simulation.body(0).positions();
+  Eigen::Index corner = 0;
+  (nodes.rowwise() - Eigen::RowVector3d(0.06, 0.01, 0.01)).rowwise().norm().minCoeff(&corner);
+  const double speed = simulation.body(0).velocities().row(corner).norm();
+  EXPECT_GT(speed, 1e-3);
+  EXPECT_NEAR(sense::sensors_of(simulation).truth(0)[0], speed, 1e-12);
+}
+
 TEST(Kinds, ASavedStateContinuesBitForBit) {
   const scene::Robot made = robot("pull: {sine: {amplitude: 0.5 N, period: 50 ms}}", {}, "bdf2");
   sim::Simulation first(made.model), second(made.model);
@@ -152,7 +216,17 @@ TEST(Kinds, AreRegisteredBeforeTheGrammarIsUsed) {
   EXPECT_EQ(kind_of([] { scene::register_body_kind(late); }), ErrorKind::bad_argument);
   static constexpr model::ActuatorKind words{.word = "late"};
   static const scene::ActuatorKind late_actuator{.words = &words};
+  static const scene::SensorKind late_sensor{.word = "late"};
+  static const scene::LoadKind late_load{.word = "late"};
+  static const scene::ProbeKind late_probe{.word = "late"};
+  static const scene::JointKind late_joint{.word = "late"};
+  static const scene::MaterialKind late_material{.word = "late"};
   EXPECT_EQ(kind_of([] { scene::register_actuator_kind(late_actuator); }), ErrorKind::bad_argument);
+  EXPECT_EQ(kind_of([] { scene::register_sensor_kind(late_sensor); }), ErrorKind::bad_argument);
+  EXPECT_EQ(kind_of([] { scene::register_load_kind(late_load); }), ErrorKind::bad_argument);
+  EXPECT_EQ(kind_of([] { scene::register_probe_kind(late_probe); }), ErrorKind::bad_argument);
+  EXPECT_EQ(kind_of([] { scene::register_joint_kind(late_joint); }), ErrorKind::bad_argument);
+  EXPECT_EQ(kind_of([] { scene::register_material_kind(late_material); }), ErrorKind::bad_argument);
 }
 
 TEST(Kinds, WordsAreTakenOnce) {
@@ -160,6 +234,16 @@ TEST(Kinds, WordsAreTakenOnce) {
   EXPECT_EQ(kind_of([] { scene::register_body_kind(scene::fem_kind()); }),
             ErrorKind::duplicate_key);
   EXPECT_EQ(kind_of([] { scene::register_actuator_kind(scene::cable_kind()); }),
+            ErrorKind::duplicate_key);
+  EXPECT_EQ(kind_of([] { scene::register_sensor_kind(scene::touch_kind()); }),
+            ErrorKind::duplicate_key);
+  EXPECT_EQ(kind_of([] { scene::register_load_kind(scene::water_kind()); }),
+            ErrorKind::duplicate_key);
+  EXPECT_EQ(kind_of([] { scene::register_probe_kind(scene::bend_probe_kind()); }),
+            ErrorKind::duplicate_key);
+  EXPECT_EQ(kind_of([] { scene::register_joint_kind(scene::hinge_kind()); }),
+            ErrorKind::duplicate_key);
+  EXPECT_EQ(kind_of([] { scene::register_material_kind(scene::yeoh_kind()); }),
             ErrorKind::duplicate_key);
 }
 

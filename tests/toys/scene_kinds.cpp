@@ -10,6 +10,8 @@
 #include "sinew/scene/body_kind.hpp"
 #include "sinew/scene/grammar_forms.hpp"
 
+#include "couple.hpp"
+#include "speedometer.hpp"
 #include "spring_point.hpp"
 #include "strut.hpp"
 
@@ -106,7 +108,8 @@ constexpr scene::ActuatorKind kStrut{.words = &kStrutKind,
 
 void register_toys() {
   static const bool done =
-      (scene::register_body_kind(kSpringPoint), scene::register_actuator_kind(kStrut), true);
+      (scene::register_body_kind(kSpringPoint), scene::register_actuator_kind(kStrut),
+       scene::register_sensor_kind(kSpeedometer), scene::register_load_kind(kCouple), true);
   static_cast<void>(done);
 }
 

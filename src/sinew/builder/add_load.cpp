@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -33,17 +32,16 @@ constexpr std::array<std::array<double, 2>, 3> kGauss = {
 /// Makes the loads of one entry; there are two if both pressure and motion matter.
 class LoadMaker {
  public:
-  LoadMaker(mechanics::BearsLoads& body, const LoadSettings& settings)
-      : body_(body), settings_(settings) {}
+  explicit LoadMaker(const LoadSite& site) : body_(site.body), settings_(site.settings) {}
 
-  std::vector<mechanics::Load> operator()(const PointLoadSettings& load) {
+  std::vector<mechanics::Load> make(const PointLoadSettings& load) {
     spread(load.point, load.force, "the point");
     return {dead()};
   }
 
   // Integrates element by element, where the shape functions along the line are polynomials, of
   // degree 3 at most in undistorted elements; three Gauss points are exact to degree 5.
-  std::vector<mechanics::Load> operator()(const LineLoadSettings& load) {
+  std::vector<mechanics::Load> make(const LineLoadSettings& load) {
     if (load.points.rows() < 2) {
       throw Error(ErrorKind::too_few_points, settings_.place,
                   fmt::format("a line needs two points, got {}", load.points.rows()),
@@ -60,7 +58,7 @@ class LoadMaker {
     return {dead()};
   }
 
-  std::vector<mechanics::Load> operator()(const SurfaceLoadSettings& load) {
+  std::vector<mechanics::Load> make(const SurfaceLoadSettings& load) {
     const Points forces = mechanics::traction_forces(mesh().nodes, load.faces, load.traction);
     for (NodeId node = 0; node < static_cast<NodeId>(forces.rows()); ++node) {
       if (!forces.row(node).isZero(0.0)) forces_[node] = forces.row(node).transpose();
@@ -68,15 +66,15 @@ class LoadMaker {
     return {dead()};
   }
 
-  std::vector<mechanics::Load> operator()(const BodyLoadSettings& load) {
+  std::vector<mechanics::Load> make(const BodyLoadSettings& load) {
     return {body_.inertial_load(load.acceleration)};
   }
 
-  std::vector<mechanics::Load> operator()(const PressureLoadSettings& load) {
+  std::vector<mechanics::Load> make(const PressureLoadSettings& load) {
     return {mechanics::PressureLoad{.faces = load.faces, .pressure = 1.0}};
   }
 
-  std::vector<mechanics::Load> operator()(const WaterSettings& water) {
+  std::vector<mechanics::Load> make(const WaterSettings& water) {
     const std::vector<std::pair<const char*, double>> numbers{
         {"density", water.density},
         {"normal_drag", water.normal_drag},
@@ -143,6 +141,25 @@ class LoadMaker {
 
 }  // namespace
 
+std::vector<mechanics::Load> PointLoadSettings::operator()(const LoadSite& site) const {
+  return LoadMaker(site).make(*this);
+}
+std::vector<mechanics::Load> LineLoadSettings::operator()(const LoadSite& site) const {
+  return LoadMaker(site).make(*this);
+}
+std::vector<mechanics::Load> SurfaceLoadSettings::operator()(const LoadSite& site) const {
+  return LoadMaker(site).make(*this);
+}
+std::vector<mechanics::Load> BodyLoadSettings::operator()(const LoadSite& site) const {
+  return LoadMaker(site).make(*this);
+}
+std::vector<mechanics::Load> PressureLoadSettings::operator()(const LoadSite& site) const {
+  return LoadMaker(site).make(*this);
+}
+std::vector<mechanics::Load> WaterSettings::operator()(const LoadSite& site) const {
+  return LoadMaker(site).make(*this);
+}
+
 int add_load(model::ModelData& data, const LoadSettings& settings) {
   model::check_new_name(data.loads, &model::LoadModel::name, "loads", settings.name,
                         settings.place);
@@ -152,11 +169,8 @@ int add_load(model::ModelData& data, const LoadSettings& settings) {
                 "name a finite-element or a rigid body");
   }
   try {
-    model::LoadModel load{settings.name, settings.body, {}, settings.factor};
-    if (std::holds_alternative<PressureLoadSettings>(settings.load)) {
-      load.factor_name = {"pressure", "Pa"};
-    }
-    for (mechanics::Load& part : std::visit(LoadMaker(*body, settings), settings.load)) {
+    model::LoadModel load{settings.name, settings.body, {}, settings.factor, settings.factor_name};
+    for (mechanics::Load& part : settings.load({*body, settings})) {
       load.numbers.push_back(body->add_load(std::move(part)));
     }
     data.loads.push_back(std::move(load));

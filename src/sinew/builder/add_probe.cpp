@@ -1,7 +1,6 @@
 #include <array>
 #include <memory>
 #include <utility>
-#include <variant>
 
 #include "sinew/builder/add_parts.hpp"
 #include "sinew/builder/attacher.hpp"
@@ -13,48 +12,40 @@
 
 namespace sinew::builder {
 
-namespace {
+std::unique_ptr<constraint::Probe> ProbeSpot::operator()(const ProbeSite& site) const {
+  return std::make_unique<constraint::PointProbe>(site.name, site.attacher.mean(*this));
+}
 
-/// Makes the probe for the settings.
-struct Make {
-  Attacher attacher;
-  const ProbeSettings& settings;
+std::unique_ptr<constraint::Probe> ProbeLine::operator()(const ProbeSite& site) const {
+  return std::make_unique<constraint::LineProbe>(site.name, site.attacher.line(*this));
+}
 
-  std::unique_ptr<constraint::Probe> operator()(const ProbeSpot& spot) {
-    return std::make_unique<constraint::PointProbe>(settings.name, attacher.mean(spot));
+std::unique_ptr<constraint::Probe> ProbeBend::operator()(const ProbeSite& site) const {
+  std::array<constraint::ProbeFace, 2> ends;
+  for (std::size_t k = 0; k < 2; ++k) {
+    ends[k].points = site.attacher.nodes(faces[k].body, faces[k].nodes);
+    ends[k].rest = site.attacher.rest(ends[k].points);
+    ends[k].normal = faces[k].normal;
   }
-  std::unique_ptr<constraint::Probe> operator()(const ProbeLine& line) {
-    return std::make_unique<constraint::LineProbe>(settings.name, attacher.line(line));
-  }
-  std::unique_ptr<constraint::Probe> operator()(const ProbeBend& bend) {
-    std::array<constraint::ProbeFace, 2> faces;
-    for (std::size_t k = 0; k < 2; ++k) {
-      faces[k].points = attacher.nodes(bend.faces[k].body, bend.faces[k].nodes);
-      faces[k].rest = attacher.rest(faces[k].points);
-      faces[k].normal = bend.faces[k].normal;
-    }
-    return std::make_unique<constraint::BendProbe>(settings.name, std::move(faces), bend.about);
-  }
-  std::unique_ptr<constraint::Probe> operator()(const ProbeDistance& distance) {
-    return std::make_unique<constraint::DistanceProbe>(
-        settings.name,
-        std::array{attacher.mean(distance.ends[0]), attacher.mean(distance.ends[1])});
-  }
-  std::unique_ptr<constraint::Probe> operator()(const ProbeExtent& extent) {
-    return std::make_unique<constraint::ExtentProbe>(
-        settings.name, attacher.nodes(extent.body, extent.nodes), extent.axis, extent.way);
-  }
-};
+  return std::make_unique<constraint::BendProbe>(site.name, std::move(ends), about);
+}
 
-}  // namespace
+std::unique_ptr<constraint::Probe> ProbeDistance::operator()(const ProbeSite& site) const {
+  return std::make_unique<constraint::DistanceProbe>(
+      site.name, std::array{site.attacher.mean(ends[0]), site.attacher.mean(ends[1])});
+}
+
+std::unique_ptr<constraint::Probe> ProbeExtent::operator()(const ProbeSite& site) const {
+  return std::make_unique<constraint::ExtentProbe>(site.name, site.attacher.nodes(body, nodes),
+                                                   axis, way);
+}
 
 int add_probe(model::ModelData& data, const ProbeSettings& settings) {
   const auto name_of = [](const auto& other) { return other->name(); };
   model::check_new_name(data.probes, name_of, "probes", settings.name, settings.place);
   try {
-    data.probes.push_back(std::visit(
-        Make{{data, "probe '" + settings.name + "'", settings.place, settings.outside}, settings},
-        settings.what));
+    Attacher attacher(data, "probe '" + settings.name + "'", settings.place, settings.outside);
+    data.probes.push_back(settings.what({settings.name, attacher}));
   } catch (const Error& error) {
     throw error.at(settings.place);
   }

@@ -182,7 +182,9 @@ collision::ProximityPair SurfaceContact::load(std::size_t point, const double* f
   from += 9;
   collision::ProximityPair pair;
   for (collision::SurfacePoint* place : {&pair.first, &pair.second}) {
-    for (NodeId& node : place->nodes) node = whole<NodeId>(*from++, 0);
+    for (std::size_t k = 0; k < place->nodes.size(); ++k) {
+      place->nodes[k] = whole<NodeId>(*from++, k == 0 ? 0 : -1);  // a feature has at least one node
+    }
     place->weights = Eigen::Map<const Vector3>(from);
     from += 3;
   }

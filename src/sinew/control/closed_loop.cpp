@@ -15,6 +15,7 @@
 #include "sinew/run/actuation.hpp"
 #include "sinew/sense/channel.hpp"
 #include "sinew/sense/sensor_set.hpp"
+#include "sinew/sense/sensor_source.hpp"
 #include "sinew/sense/sensors.hpp"
 #include "sinew/sim/controlled_response.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -33,12 +34,12 @@ std::size_t at(int index) { return static_cast<std::size_t>(index); }
 // A marker measures a point, an orientation sensor a rotation.
 void check_kind(const sense::SensorModel& sensor, const constraint::Effector& effector) {
   const bool turns = effector.kind() == constraint::EffectorKind::orientation;
-  const char* kind = turns ? "orientation" : "marker";
-  if (sensor.kind == kind) return;
-  throw Error(ErrorKind::wrong_type, {.item = "sensor '" + sensor.name + "'"},
-              fmt::format("the effector '{}' is {}, and the sensor is of type {}", effector.name(),
-                          turns ? "an orientation" : "a point", sensor.kind),
-              fmt::format("measure the effector by a sensor of type {}", kind));
+  if (sensor.source->effector_kind() == effector.kind()) return;
+  throw Error(
+      ErrorKind::wrong_type, {.item = "sensor '" + sensor.name + "'"},
+      fmt::format("the effector '{}' is {}, and the sensor is of type {}", effector.name(),
+                  turns ? "an orientation" : "a point", sensor.kind),
+      fmt::format("measure the effector by a sensor of type {}", turns ? "orientation" : "marker"));
 }
 
 // Time between two samples of a healthy sensor.

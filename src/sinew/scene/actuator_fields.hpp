@@ -14,8 +14,6 @@ namespace sinew::scene {
 /// motion. @param effort,motion receive the limits. Throws Error(contradictory-limits).
 void read_limits(const Fields& fields, const model::ActuatorKind& kind, model::Limits& effort,
                  model::Limits& motion);
-/// Reads the key `outside`, what happens to points outside the mesh.
-void read_outside(const Fields& fields, mesh::Outside& outside);
 /// Reads the points of a line. @param fields of the actuator. @param context of the scene.
 /// Throws Error: too-few-points, degenerate-cable.
 PointList read_line_points(const Fields& fields, const ReadContext& context);

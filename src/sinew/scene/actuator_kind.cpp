@@ -1,8 +1,5 @@
 #include "sinew/scene/actuator_kind.hpp"
 
-#include <fmt/format.h>
-
-#include "sinew/core/error.hpp"
 #include "sinew/scene/grammar_forms.hpp"
 #include "sinew/scene/kind_list.hpp"
 
@@ -23,10 +20,7 @@ const std::vector<const ActuatorKind*>& actuator_kinds() { return kinds_of_actua
 
 void register_actuator_kind(const ActuatorKind& kind) { kinds_of_actuators().add(kind); }
 
-const ActuatorKind& actuator_kind(std::string_view word) {
-  if (const ActuatorKind* found = kinds_of_actuators().find(word)) return *found;
-  throw Error(ErrorKind::internal, {}, fmt::format("no kind of actuator has the word '{}'", word));
-}
+const ActuatorKind& actuator_kind(std::string_view word) { return kinds_of_actuators().get(word); }
 
 std::vector<std::string> further_bodies(const ActuatorDescription& actuator) {
   if (actuator.kind->bodies == nullptr) return {};

@@ -20,7 +20,7 @@ namespace {
 // A region of one material for the whole body.
 fem::MaterialRegion whole(const BodyDescription& body, const MaterialDescription& material) {
   fem::MaterialRegion region;
-  if (material.model == MaterialModel::hyperelastic) {
+  if (material.is_hyperelastic()) {
     region.hyperelastic = material.energy;
   } else {
     region.constants = {material.young_modulus, material.poisson_ratio};

@@ -13,7 +13,9 @@
 #include "sinew/scene/actuator_kind.hpp"
 #include "sinew/scene/body_kind.hpp"
 #include "sinew/scene/build_parts.hpp"
+#include "sinew/scene/joint_kind.hpp"
 #include "sinew/scene/scene.hpp"
+#include "sinew/scene/sensor_kind.hpp"
 #include "sinew/sense/sensor_set.hpp"
 
 namespace sinew::scene {
@@ -70,9 +72,7 @@ model::StepSettings step_settings(const SceneDescription& scene) {
 // which needs ten iterations for one with the exact tangent, so the robot uses the exact one.
 std::optional<Notice> replace_tangent(const SceneDescription& scene, model::StepSettings& step) {
   const auto rubber = std::ranges::find_if(scene.bodies, [](const BodyDescription& body) {
-    const auto is_rubber = [](const auto& of) {
-      return of.material.model == MaterialModel::hyperelastic;
-    };
+    const auto is_rubber = [](const auto& of) { return of.material.is_hyperelastic(); };
     return body.kind->has_elements &&
            (is_rubber(body) || std::ranges::any_of(body.parts, is_rubber));
   });
@@ -139,10 +139,10 @@ Robot build(SceneDescription description, const SharedMeshes& shared) {
   // Welds are added last, to match the order of rows in saved states. Motors need the other joints
   // first.
   std::map<std::string, int> joints;
-  const auto add_joints = [&](bool welds) {
+  const auto add_joints = [&](bool bonds) {
     for (const JointDescription& joint : description.joints) {
-      const bool weld = joint.type == constraint::JointType::weld;
-      if (weld == welds) joints[joint.name] = add_joint(builder, joint, body_of);
+      if (joint.kind->is_bond != bonds) continue;
+      joints[joint.name] = joint.kind->add({builder, joint, body_of});
     }
   };
   add_joints(false);
@@ -168,7 +168,7 @@ Robot build(SceneDescription description, const SharedMeshes& shared) {
   }
   add_joints(true);
   for (const SensorDescription& sensor : description.sensors) {
-    add_sensor(builder, {description, contacts, body_of}, sensor);
+    add_sensor(builder, {description, contacts, body_of, sensor});
   }
   for (const EstimatorDescription& estimator : description.estimators) {
     add_estimator(builder, description, estimator);

@@ -18,13 +18,9 @@ void each_material(const BodyDescription& body, Visit visit) {
   for (const PartDescription& part : body.parts) visit(part.material);
 }
 
-bool is_hyperelastic(const MaterialDescription& material) {
-  return material.model == MaterialModel::hyperelastic;
-}
-
 bool is_hyperelastic(const BodyDescription& body) {
   bool all = true;
-  each_material(body, [&](const MaterialDescription& one) { all = all && is_hyperelastic(one); });
+  each_material(body, [&](const MaterialDescription& one) { all = all && one.is_hyperelastic(); });
   return all;
 }
 
@@ -44,7 +40,7 @@ void check_kind(const BodyDescription& body, const mesh::Mesh& mesh) {
 
 void check_law(const BodyDescription& body, const MaterialDescription& material,
                const mesh::Mesh& mesh) {
-  const bool split = is_hyperelastic(material) && material.energy.saint_venant_shear == 0.0;
+  const bool split = material.is_hyperelastic() && material.energy.saint_venant_shear == 0.0;
   if (body.element == Element::tet4_patch && !split) {
     throw Error(ErrorKind::unsupported_element, material.place,
                 "tet4-patch needs a law whose volumetric part stands apart",
@@ -52,7 +48,7 @@ void check_law(const BodyDescription& body, const MaterialDescription& material,
                 "neo-hookean, or take tet4");
   }
   const bool hexahedra = !mesh.hexahedra.empty();
-  if ((hexahedra || !mesh.quadratic.empty()) && !is_hyperelastic(material)) {
+  if ((hexahedra || !mesh.quadratic.empty()) && !material.is_hyperelastic()) {
     throw Error(ErrorKind::unsupported_element, material.place,
                 fmt::format("the mesh has {}, and the material is linear or corotational",
                             hexahedra ? "hexahedra" : "quadratic tetrahedra"),

@@ -1,8 +1,8 @@
 // Builds the model of an estimator, and checks that its sensors respond to the unknowns.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -21,6 +21,7 @@
 #include "sinew/scene/body_kind.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/build_parts.hpp"
+#include "sinew/scene/sensor_kind.hpp"
 #include "sinew/sim/linearisation.hpp"
 #include "sinew/sim/simulation.hpp"
 
@@ -28,32 +29,16 @@ namespace sinew::scene {
 
 namespace {
 
-constexpr std::array kTypes = {"marker",   "orientation", "cable-length", "cable-tension",
-                               "pressure", "volume",      "motor-current"};
-constexpr const char* kSwitch = "touch";
-// Types of sensors that do not measure forces.
-constexpr std::array kShapes = {"marker", "orientation", "cable-length", "volume"};
 // Of what the compliances of two rows allow: less is rounding.
 constexpr double kResponds = 1e-12;
 
-bool reads_shape(const SensorDescription& sensor) {
-  return sensor.type == "marker" || sensor.type == "orientation";
-}
-
 // An effector at a sensor, whose rows give the response of the robot.
 EffectorDescription effector_of(const SensorDescription& sensor) {
-  using Kind = EffectorDescription::Kind;
-  EffectorDescription effector;
+  EffectorDescription effector = sensor.kind->effector(sensor);
   effector.name = sensor.name;
   effector.place = effector.body_place = effector.set_place = sensor.place;
   effector.body = sensor.body;
-  effector.points = sensor.points;
   effector.outside = sensor.outside;
-  effector.kind = sensor.type == "orientation"       ? Kind::orientation
-                  : sensor.region                    ? Kind::set
-                  : sensor.points.points.rows() == 1 ? Kind::point
-                                                     : Kind::points;
-  if (sensor.region) effector.set = sensor.region->set;
   return effector;
 }
 
@@ -113,7 +98,7 @@ SceneDescription known_robot(const SceneDescription& scene, const EstimatorDescr
     SensorDescription sensor = *std::ranges::find(scene.sensors, name, &SensorDescription::name);
     sensor.channel = {};
     sensor.record.reset();
-    if (reads_shape(sensor)) known.effectors.push_back(effector_of(sensor));
+    if (sensor.kind->effector != nullptr) known.effectors.push_back(effector_of(sensor));
     known.sensors.push_back(std::move(sensor));
   }
   std::erase_if(known.loads, [&](const LoadDescription& load) {
@@ -169,19 +154,27 @@ bool is_unknown(const EstimatorDescription& estimator, const std::string& actuat
          estimator.unknowns.end();
 }
 
+std::vector<std::string_view> words_in_statics() {
+  std::vector<std::string_view> words;
+  for (const SensorKind* kind : sensor_kinds()) {
+    if (kind->in_statics) words.emplace_back(kind->word);
+  }
+  return words;
+}
+
 void check_type(const SceneDescription& scene, const EstimatorDescription& estimator,
                 const SensorDescription& sensor, const Location& place) {
   const bool moves = has_inertia(scene, estimator);
-  const bool fits =
-      moves ? sensor.type != kSwitch : std::ranges::find(kTypes, sensor.type) != kTypes.end();
-  if (!fits) {
+  const SensorKind& kind = *sensor.kind;
+  if (moves ? kind.is_switch : !kind.in_statics) {
     throw Error(ErrorKind::wrong_type, place,
-                fmt::format("'{}' is of type {}, which {} do not read", sensor.name, sensor.type,
+                fmt::format("'{}' is of type {}, which {} do not read", sensor.name, kind.word,
                             moves ? "estimators" : "estimators with a quasi-static robot"),
-                moves ? "measure the force of the contact"
-                      : fmt::format("name sensors of type {}", fmt::join(kTypes, ", ")));
+                moves
+                    ? "measure the force of the contact"
+                    : fmt::format("name sensors of type {}", fmt::join(words_in_statics(), ", ")));
   }
-  if (sensor.type != "cable-length" && sensor.type != "volume") return;
+  if (!kind.reads_motion) return;
   const auto on = std::ranges::find(scene.actuators, sensor.actuator, &ActuatorDescription::name);
   if (on == scene.actuators.end() || is_driven(scene, on->name)) return;
   if (is_unknown(estimator, on->name)) return;
@@ -189,7 +182,7 @@ void check_type(const SceneDescription& scene, const EstimatorDescription& estim
   throw Error(ErrorKind::conflicting_keys, place,
               fmt::format("'{}' measures what '{}' is commanded, which nothing unknown changes",
                           sensor.name, on->name),
-              sensor.type == "volume" ? "measure its pressure" : "measure its tension");
+              fmt::format("measure its {}", on->kind->words->effort.name));
 }
 
 // The bodies on which an actuator acts.
@@ -225,7 +218,7 @@ bool has_known_force(const SceneDescription& scene, const EstimatorDescription& 
   const bool weighs = !scene.gravity.isZero(0.0);
   const bool measures = std::ranges::any_of(estimator.sensors, [&](const std::string& name) {
     const auto& of = *std::ranges::find(scene.sensors, name, &SensorDescription::name);
-    return std::ranges::find(kShapes, of.type) == kShapes.end();
+    return of.kind->reads_force;
   });
   const bool pulled = std::ranges::any_of(known.actuators, [&](const ActuatorDescription& one) {
     const bool unknown = std::ranges::find(scene.actuators, one.name, &ActuatorDescription::name) ==
@@ -327,7 +320,7 @@ class RestResponse {
     return rows_named({force_name(unknown, 0), force_name(unknown, 1), force_name(unknown, 2)});
   }
   std::vector<Eigen::Index> rows_of(const SensorDescription& sensor) const {
-    if (!reads_shape(sensor)) return rows_named({sensor.actuator});
+    if (sensor.kind->effector == nullptr) return rows_named({sensor.actuator});
     return rows_named({sensor.name + ".x", sensor.name + ".y", sensor.name + ".z"});
   }
 

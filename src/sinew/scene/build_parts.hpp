@@ -22,7 +22,8 @@ class Embedder;
 }
 namespace sinew::builder {
 class ModelBuilder;
-}
+struct ProbeSpot;
+}  // namespace sinew::builder
 
 namespace sinew::model {
 class Model;
@@ -76,6 +77,12 @@ std::optional<Notice> bare_points_notice(const ActuatorDescription& actuator,
 
 /// Converts a region to the type of mesh/selection.hpp.
 mesh::Region region_of(const FixedRegion& region);
+/// The nodes in a region. Throws Error(empty-region) at its location.
+/// @param region,mesh which nodes of which mesh.
+std::vector<NodeId> nodes_of(const FixedRegion& region, const mesh::Mesh& mesh);
+/// A spot on its body, with its points or nodes. @param spot of a scene. @param body_of finds
+/// bodies.
+builder::ProbeSpot spot_of(const SpotDescription& spot, const BodyOf& body_of);
 
 /// The faces of the mesh that a surface selects. The surface may be of any kind except `file`.
 /// Throws Error at the location of the surface.
@@ -148,26 +155,15 @@ std::vector<SceneContact> contact_pairs(const SceneDescription& scene);
 std::optional<Notice> add_contact(builder::ModelBuilder& builder, const ContactDescription& contact,
                                   const BodyOf& body_of);
 
-/// Adds a joint. @param builder that has the bodies. @param joint to be added.
-/// @param body_of finds bodies. @return the number of the joint.
-int add_joint(builder::ModelBuilder& builder, const JointDescription& joint, const BodyOf& body_of);
-
 /// Adds a probe. @param builder that has the bodies. @param probe to be added.
 /// @param body_of finds bodies.
 void add_probe(builder::ModelBuilder& builder, const ProbeDescription& probe,
                const BodyOf& body_of);
 
-/// The parts of a scene that its sensors refer to.
-struct SensorSurroundings {
-  const SceneDescription& scene;
-  const std::vector<SceneContact>& contacts;  ///< see contact_pairs()
-  const BodyOf& body_of;
-};
+struct SensorSite;
 /// Adds a sensor. Throws Error: unknown-name (a contact, or an entry without pairs).
-/// @param builder that has the bodies, actuators and contacts. @param surroundings of the sensor.
-/// @param sensor to be added.
-void add_sensor(builder::ModelBuilder& builder, const SensorSurroundings& surroundings,
-                const SensorDescription& sensor);
+/// @param builder that has the bodies, actuators and contacts. @param site of the sensor.
+void add_sensor(builder::ModelBuilder& builder, const SensorSite& site);
 
 /// Builds the estimator's own model of the robot, and adds the estimator. Throws what build() of
 /// that model throws, and Error: wrong-type and out-of-range (a sensor), everything-fixed (an

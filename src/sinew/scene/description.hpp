@@ -18,12 +18,9 @@
 #include "sinew/builder/cable_settings.hpp"
 #include "sinew/builder/chamber_settings.hpp"
 #include "sinew/builder/force_settings.hpp"
-#include "sinew/builder/load_settings.hpp"
 #include "sinew/builder/motor_settings.hpp"
 #include "sinew/builder/spring_line_settings.hpp"
 #include "sinew/builder/torque_settings.hpp"
-#include "sinew/constraint/joint_type.hpp"
-#include "sinew/constraint/probe.hpp"
 #include "sinew/constraint/smooth_surface.hpp"
 #include "sinew/control/inverse_settings.hpp"
 #include "sinew/control/target.hpp"
@@ -54,6 +51,10 @@ using model::Equilibrium;
 using model::Method;
 struct ActuatorKind;
 struct BodyKind;
+struct JointKind;
+struct LoadKind;
+struct ProbeKind;
+struct SensorKind;
 
 enum class MaterialModel { linear, corotational, hyperelastic };
 enum class Element { any, tet4, tet4_patch, tet10, hex8 };
@@ -97,6 +98,8 @@ struct MaterialDescription {
   bool scaled = false;   ///< whether the scene scales its moduli
   double density = 0.0;  ///< kg/m^3, of a material from the library; else 0
   Location young_modulus_place, poisson_ratio_place;
+
+  bool is_hyperelastic() const { return model == MaterialModel::hyperelastic; }
 };
 
 /// A choice of nodes, such as those that are fixed.
@@ -242,19 +245,13 @@ struct ActuatorDescription : OwnSettings {
 };
 
 /// A load that the environment exerts on a body.
-struct LoadDescription {
-  enum class Type { force, line, traction, acceleration, pressure, water };
+struct LoadDescription : OwnSettings {
   std::string name;
   Location place;
-  Type type = Type::force;
+  const LoadKind* kind = nullptr;  ///< never null in a scene that was read
   std::string body;
-  Vector3 point = Vector3::Zero();   ///< force: m
-  PointList points;                  ///< line
-  Vector3 vector = Vector3::Zero();  ///< N, N/m, Pa or m/s^2, by type
-  std::optional<SurfaceDescription> surface;
-  mesh::Outside outside = mesh::Outside::error;
-  builder::WaterSettings water;                         ///< its faces are set later
-  model::Signal factor = model::Signal::constant(1.0);  ///< for pressure: Pa
+  mesh::Outside outside = mesh::Outside::error;         ///< for points outside the mesh
+  model::Signal factor = model::Signal::constant(1.0);  ///< or its value, see LoadKind::signal
 };
 
 /// A thin elastic layer on faces of a body.
@@ -296,52 +293,45 @@ struct EffectorDescription {
   Points directions = Points(Matrix3::Identity());
 };
 
+/// A point of a body, the mean of several, or nodes of a region.
+struct SpotDescription {
+  Location place;
+  std::string body;
+  PointList points;
+  std::optional<FixedRegion> region;  ///< none: `points`, or the whole body
+};
+
 /// A quantity that is computed and recorded exactly. It exerts no force.
-struct ProbeDescription {
-  enum class Kind { point, line, bend, distance, extent };
-  /// Points, of which a point probe takes the mean, or the nodes of a region.
-  struct Part {
-    Location place;
-    std::string body;
-    PointList points;
-    std::optional<FixedRegion> region;  ///< none: `points`, or the whole body for an extent
-  };
+struct ProbeDescription : OwnSettings {
   std::string name;
   Location place;
-  Kind kind = Kind::point;
-  std::vector<Part> parts;         ///< bend, distance: 2; else 1
-  int samples = 21;                ///< line
-  std::optional<Vector3> about;    ///< bend: unit length
-  Vector3 axis = Vector3::Zero();  ///< extent: unit length
-  constraint::ExtentProbe::Way way = constraint::ExtentProbe::Way::along;
+  const ProbeKind* kind = nullptr;     ///< never null in a scene that was read
+  std::vector<SpotDescription> parts;  ///< what it measures, as many as its kind needs
   mesh::Outside outside = mesh::Outside::error;
 };
 
+/// A capacitive sensor. The bodies of its electrodes are SensorDescription::further_bodies.
+struct CapacitanceDescription {
+  std::array<SurfaceDescription, 2> electrodes;
+  double permittivity = 1.0;  ///< relative
+};
+
+/// A sensor of contacts. The body of its patch is the first of SensorDescription::further_bodies;
+/// without, it is the first body of the contact.
+struct ContactSensorDescription {
+  std::string contact;
+  std::optional<FixedRegion> patch;
+  std::optional<double> threshold;  ///< N, of a switch
+};
+
 /// A sensor with noise, delay and sample rate. It exerts no force.
-struct SensorDescription {
+struct SensorDescription : OwnSettings {
   std::string name;
   Location place, rate_place;
-  std::string type;  ///< word of the scene file: "marker"
-  std::string body, actuator, contact;
-  PointList points;  ///< of a marker or line, or the points that define an orientation
-  std::optional<FixedRegion> region;  ///< set of a marker, or patch of a contact
-  std::string patch_body;             ///< empty: the first body of the contact
+  const SensorKind* kind = nullptr;         ///< never null in a scene that was read
+  std::string body, actuator;               ///< that it measures; empty: it has no such key
+  std::vector<std::string> further_bodies;  ///< empty names mean `body`
   mesh::Outside outside = mesh::Outside::error;
-  int samples = 21;              ///< of a line
-  std::vector<double> places;    ///< curvature: arc lengths along the line, m
-  double gauge = 0.0;            ///< curvature: gauge length, m; 0: a tenth of the line
-  std::optional<Vector3> about;  ///< curvature: unit length
-  double resistance = 0.0;       ///< Ohm
-  double gauge_factor = 0.0;     ///< of a resistance
-  double loss_per_length = 0.0;  ///< attenuation: dB/m
-  double loss_per_turn = 0.0;    ///< attenuation: dB/rad
-  double permittivity = 1.0;     ///< relative
-  std::array<SurfaceDescription, 2> electrodes;
-  std::array<std::string, 2> electrode_bodies;  ///< empty: the body of the sensor
-  double motor_constant = 0.0;                  ///< N m/A or N/A
-  bool turns = true;                            ///< motor_constant is a torque constant
-  double radius = 0.0;                          ///< m, of the drum; 0: none
-  double threshold = 0.0;                       ///< touch: N
   sense::ChannelSettings channel;
   std::shared_ptr<const sense::SensorRecord> record;  ///< samples from a file
 };
@@ -405,21 +395,18 @@ struct PlaneDescription {
 };
 
 /// A joint between two bodies, or between a body and the world.
-struct JointDescription {
+struct JointDescription : OwnSettings {
   std::string name;
   Location place;
-  constraint::JointType type = constraint::JointType::weld;
-  std::string first, second;  ///< bodies, or kWorldName
+  const JointKind* kind = nullptr;  ///< never null in a scene that was read
+  std::string first, second;        ///< bodies, or kWorldName
   Location bodies_place;
-  // all types except weld
-  Vector3 point = Vector3::Zero();         ///< m
-  Vector3 axis = Vector3::UnitZ();         ///< unit length
-  Vector3 second_axis = Vector3::UnitX();  ///< of a universal joint
-  model::Limits angle, displacement;       ///< rad, m
-  double friction = 0.0;                   ///< N m, N
-  // weld
-  std::optional<FixedRegion> region;  ///< of the first body; none, and no points: where both touch
-  PointList points;                   ///< of the first body
+};
+
+/// A weld: what it holds of the first body.
+struct WeldDescription {
+  std::optional<FixedRegion> region;  ///< none, and no points: where both touch
+  PointList points;
   mesh::Outside outside = mesh::Outside::error;
 };
 

@@ -87,8 +87,7 @@ bool is_comparable(const mesh::Mesh& mesh) {
 }
 
 double poisson_ratio(const MaterialDescription& material) {
-  return material.model == MaterialModel::hyperelastic ? material.energy.poisson_ratio()
-                                                       : material.poisson_ratio;
+  return material.is_hyperelastic() ? material.energy.poisson_ratio() : material.poisson_ratio;
 }
 
 double largest_poisson_ratio(const BodyDescription& body) {
@@ -102,7 +101,7 @@ double largest_poisson_ratio(const BodyDescription& body) {
 /// Gives a linear or corotational material the hyperelastic law with the same moduli at rest, which
 /// quadratic elements support.
 void make_hyperelastic(MaterialDescription& material) {
-  if (material.model == MaterialModel::hyperelastic) return;
+  if (material.is_hyperelastic()) return;
   const material::ElasticConstants constants{material.young_modulus, material.poisson_ratio};
   material.model = MaterialModel::hyperelastic;
   material.energy = material::neo_hookean(constants.shear_modulus());
@@ -197,9 +196,7 @@ std::string stiffness_remedy(const BodyDescription& body, const mesh::Mesh& mesh
     return is_shape ? "write element: tet10, or a smaller element_size"
                     : "refine the mesh, or give one of tetrahedra alone with element: tet10";
   }
-  const auto is_hyperelastic = [](const auto& owner) {
-    return owner.material.model == MaterialModel::hyperelastic;
-  };
+  const auto is_hyperelastic = [](const auto& owner) { return owner.material.is_hyperelastic(); };
   if (is_hyperelastic(body) && std::ranges::all_of(body.parts, is_hyperelastic)) {
     return "write element: tet10, or leave `element` out";
   }

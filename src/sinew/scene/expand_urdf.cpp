@@ -9,10 +9,13 @@
 
 #include <fmt/format.h>
 
+#include "sinew/builder/joint_settings.hpp"
+#include "sinew/constraint/joint_type.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/file.hpp"
 #include "sinew/scene/actuator_kind.hpp"
 #include "sinew/scene/build_parts.hpp"
+#include "sinew/scene/joint_kind.hpp"
 #include "sinew/scene/readers.hpp"
 #include "sinew/scene/urdf.hpp"
 #include "sinew/scene/urdf_bodies.hpp"
@@ -37,15 +40,22 @@ JointDescription joint_of(const UrdfJoint& from, int number, const UrdfBodies& b
   joint.place = joint.bodies_place = from.place;
   joint.first = bodies.body_of(from.parent);
   joint.second = bodies.body_of(from.child);
-  if (from.type == Type::fixed) return joint;
-  joint.type =
-      from.type == Type::prismatic ? constraint::JointType::slider : constraint::JointType::hinge;
-  joint.point = bodies.frame(from.child).translation();
-  joint.axis = bodies.frame(from.child).linear() * from.axis;
-  model::Limits& limits = from.type == Type::prismatic ? joint.displacement : joint.angle;
+  if (from.type == Type::fixed) {
+    joint.kind = &weld_kind();
+    joint.own = WeldDescription{};
+    return joint;
+  }
+  const bool slides = from.type == Type::prismatic;
+  joint.kind = slides ? &slider_kind() : &hinge_kind();
+  builder::JointSettings own;
+  own.type = slides ? constraint::JointType::slider : constraint::JointType::hinge;
+  own.point = bodies.frame(from.child).translation();
+  own.axis = bodies.frame(from.child).linear() * from.axis;
+  model::Limits& limits = slides ? own.displacement : own.angle;
   limits.min = from.lower - bodies.start(number);
   limits.max = from.upper - bodies.start(number);
-  joint.friction = from.friction;
+  own.friction = from.friction;
+  joint.own = std::move(own);
   return joint;
 }
 
@@ -100,12 +110,11 @@ void for_each_body_name(SceneDescription& scene, Rename&& rename) {
   for (MembraneDescription& layer : scene.membranes) rename(layer.body, layer.body_place);
   for (EffectorDescription& effector : scene.effectors) rename(effector.body, effector.body_place);
   for (ProbeDescription& probe : scene.probes) {
-    for (ProbeDescription::Part& part : probe.parts) rename(part.body, part.place);
+    for (SpotDescription& part : probe.parts) rename(part.body, part.place);
   }
   for (SensorDescription& sensor : scene.sensors) {
     rename(sensor.body, sensor.place);
-    rename(sensor.patch_body, sensor.place);
-    for (std::string& body : sensor.electrode_bodies) rename(body, sensor.place);
+    for (std::string& body : sensor.further_bodies) rename(body, sensor.place);
   }
   for (EstimatorDescription& estimator : scene.estimators) {
     for (UnknownDescription& unknown : estimator.unknowns) rename(unknown.body, unknown.place);

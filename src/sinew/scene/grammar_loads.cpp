@@ -1,9 +1,7 @@
-// The tables of loads, point masses and membranes.
-#include "sinew/scene/grammar_forms.hpp"
+// The keys that loads share, and the tables of point masses and membranes.
+#include "sinew/scene/load_fields.hpp"
 
 namespace sinew::scene::forms {
-
-namespace {
 
 Key factor_key() {
   return {.name = "factor",
@@ -21,12 +19,12 @@ Key surface_key(const char* description, bool required) {
           .required = required};
 }
 
-std::shared_ptr<const KeyTable> load_table(const char* name, const char* description,
-                                           std::vector<Key> keys) {
-  KeyTable load{.name = std::string("load: type ") + name, .description = description};
-  load.keys.push_back(body_key());
-  for (Key& key : keys) load.keys.push_back(std::move(key));
-  return make_table(std::move(load));
+std::shared_ptr<const KeyTable> load_table(const char* type, const char* description,
+                                           std::vector<Key> own) {
+  own.insert(own.begin(), body_key());
+  return make_table({.name = std::string("load: type ") + type,
+                     .description = description,
+                     .keys = std::move(own)});
 }
 
 Key vector_key(const char* name, const Measure& measure, const char* example,
@@ -36,105 +34,6 @@ Key vector_key(const char* name, const Measure& measure, const char* example,
           .example = example,
           .description = description,
           .required = true};
-}
-
-Key coefficient(const char* name, const char* value, const char* description) {
-  return {.name = name,
-          .forms = {quantity(plain_number(), non_negative())},
-          .example = value,
-          .default_text = value,
-          .description = description};
-}
-
-std::shared_ptr<const KeyTable> force_load_table() {
-  return load_table(
-      "force", "A force of fixed direction on a point of the body.",
-      {vector_key("point", length(), "0 0 195 mm", "Position in the mesh at rest."),
-       vector_key("force", force(), "0 0 -1 N", "The force."), outside_key(), factor_key()});
-}
-
-std::shared_ptr<const KeyTable> line_table() {
-  return load_table("line", "A force of fixed direction spread evenly along a line in the body.",
-                    {{.name = "points",
-                      .forms = {table(point_file_table()), list({vector(length())}, 2)},
-                      .example = "[0 0 0 mm, 0 0 100 mm]",
-                      .description = "The line, in the mesh at rest.",
-                      .required = true},
-                     vector_key("force_per_length", force_per_length(), "0 0 -2 N/m",
-                                "Force per length at rest."),
-                     outside_key(),
-                     factor_key()});
-}
-
-std::shared_ptr<const KeyTable> traction_table() {
-  return load_table(
-      "traction", "A force of fixed direction spread evenly over faces.",
-      {surface_key("The faces.", true),
-       vector_key("traction", force_per_area(), "0 0 -100 Pa", "Force per area at rest."),
-       factor_key()});
-}
-
-std::shared_ptr<const KeyTable> acceleration_table() {
-  return load_table("acceleration", "A force proportional to mass, as on a shaker or a turntable.",
-                    {vector_key("acceleration", acceleration(), "2 0 0 m/s^2",
-                                "Acceleration in addition to gravity."),
-                     factor_key()});
-}
-
-std::shared_ptr<const KeyTable> pressure_load_table() {
-  return load_table("pressure",
-                    "Follower pressure on faces, open or closed. Steps use the symmetric part of "
-                    "its stiffness; static solutions use all of it.",
-                    {surface_key("The faces; pressure pushes into the body.", true),
-                     {.name = "pressure",
-                      .forms = {quantity(pressure()), table(signal_table(pressure(), "1 kPa"))},
-                      .example = "1 kPa",
-                      .description = "Pressure, constant or over time.",
-                      .required = true}});
-}
-
-std::shared_ptr<const KeyTable> water_table() {
-  return load_table(
-      "water",
-      "Surrounding water: buoyancy under the scene's gravity, drag on every face, and added mass.",
-      {surface_key("The wet faces. Default: the whole outer surface of the body.", false),
-       {.name = "density",
-        .forms = {quantity(density(), non_negative())},
-        .example = "1000 kg/m^3",
-        .default_text = "1000 kg/m^3",
-        .description = "Density of the water."},
-       {.name = "level",
-        .forms = {quantity(length())},
-        .example = "100 mm",
-        .description = "Height of the water's surface above the origin, against gravity. Default: "
-                       "far above the body."},
-       {.name = "velocity",
-        .forms = {vector(speed())},
-        .example = "0.1 0 0 m/s",
-        .default_text = "0 0 0 m/s",
-        .description = "Velocity of the water far from the body."},
-       coefficient("normal_drag", "0.9",
-                   "Drag coefficient of a face moving along its normal. Referred to the width, a "
-                   "cylinder in cross flow then has a drag coefficient of 4/3 of this value, and a "
-                   "sphere of this value."),
-       coefficient("tangential_drag", "0.01", "Drag coefficient of a face moving tangentially."),
-       coefficient("added_mass", "1",
-                   "Added mass as a fraction of the displaced water: 1 for a cylinder in cross "
-                   "flow, 0.5 for a sphere."),
-       factor_key()});
-}
-
-}  // namespace
-
-Form load_form() {
-  return variants(
-      "type",
-      {{.word = "force", .description = "On a point.", .table = force_load_table()},
-       {.word = "line", .description = "Along a line.", .table = line_table()},
-       {.word = "traction", .description = "Over faces.", .table = traction_table()},
-       {.word = "acceleration", .description = "On all mass.", .table = acceleration_table()},
-       {.word = "pressure", .description = "Normal to faces.", .table = pressure_load_table()},
-       {.word = "water", .description = "Buoyancy, drag and added mass.", .table = water_table()}});
 }
 
 Form mass_form() {

@@ -1,9 +1,9 @@
-// The tables of materials: laws, their moduli, viscosity and softening.
+// The keys that laws share: moduli, viscosity and softening; the forms of a material.
 
 #include <fmt/format.h>
 
 #include "sinew/material/library.hpp"
-#include "sinew/scene/grammar_forms.hpp"
+#include "sinew/scene/material_fields.hpp"
 
 namespace sinew::scene::forms {
 
@@ -15,10 +15,8 @@ Range material_range(double min, double max) {
           .kind = ErrorKind::invalid_material};
 }
 
-namespace {
-
-Key modulus(const char* name, const char* example, const char* description, bool required = true,
-            bool any_sign = false) {
+Key modulus_key(const char* name, const char* example, const char* description, bool required,
+                bool any_sign) {
   const Range range = any_sign ? any() : material_range(0.0);
   return {.name = name,
           .forms = {quantity(elastic_modulus(), range)},
@@ -27,7 +25,9 @@ Key modulus(const char* name, const char* example, const char* description, bool
           .required = required};
 }
 
-Key poisson_ratio(bool required, const char* description) {
+namespace {
+
+Key poisson_ratio_key(bool required, const char* description) {
   return {.name = "poisson_ratio",
           .forms = {quantity(plain_number(), material_range(-1.0, 0.5))},
           .example = "0.45",
@@ -35,11 +35,15 @@ Key poisson_ratio(bool required, const char* description) {
           .required = required};
 }
 
+}  // namespace
+
 std::vector<Key> small_strain_keys() {
-  return {
-      modulus("young_modulus", "450 kPa", "Young's modulus."),
-      poisson_ratio(true, "Poisson's ratio, between -1 and 0.5. Linear tetrahedra lock near 0.5.")};
+  return {modulus_key("young_modulus", "450 kPa", "Young's modulus."),
+          poisson_ratio_key(
+              true, "Poisson's ratio, between -1 and 0.5. Linear tetrahedra lock near 0.5.")};
 }
+
+namespace {
 
 std::shared_ptr<const KeyTable> prony_table() {
   return make_table(
@@ -82,7 +86,8 @@ std::shared_ptr<const KeyTable> softening_table() {
                  .description = "Energy scale as a fraction of Wm, added to m."}}});
 }
 
-/// Keys of all hyperelastic laws: viscoelasticity and softening.
+}  // namespace
+
 std::vector<Key> history_keys() {
   Form series = list({table(prony_table())});
   return {{.name = "viscosity",
@@ -102,7 +107,6 @@ std::vector<Key> history_keys() {
            .description = "The Mullins effect. Default: unloading follows loading."}};
 }
 
-// A table of these keys, used only for the reference.
 std::shared_ptr<const KeyTable> history_table() {
   static const auto table = make_table({.name = "keys of all hyperelastic laws",
                                         .description = "Viscoelasticity and softening.",
@@ -110,100 +114,22 @@ std::shared_ptr<const KeyTable> history_table() {
   return table;
 }
 
-/// A hyperelastic law, with its own keys and one of the two keys for its compressibility.
-Choice energy(const char* word, const char* description, std::vector<Key> keys,
-              std::vector<Alternatives> alternatives = {}) {
-  keys.push_back(poisson_ratio(
+std::shared_ptr<const KeyTable> energy_table(const MaterialKind& kind, std::vector<Key> own,
+                                             std::vector<Alternatives> alternatives) {
+  own.push_back(poisson_ratio_key(
       false, "Initial Poisson's ratio, below 0.5: 0.49 to 0.4999 for rubbers on hexahedra."));
-  keys.push_back(
-      modulus("bulk_modulus", "1 MPa", "Bulk modulus, in place of `poisson_ratio`.", false));
-  for (Key& key : history_keys()) keys.push_back(std::move(key));
+  own.push_back(
+      modulus_key("bulk_modulus", "1 MPa", "Bulk modulus, in place of `poisson_ratio`.", false));
+  for (Key& key : history_keys()) own.push_back(std::move(key));
   alternatives.push_back({{"poisson_ratio", "bulk_modulus"}, true});
-  return {.word = word,
-          .description = description,
-          .table = make_table({.name = std::string("material: model ") + word,
-                               .description = description,
-                               .keys = std::move(keys),
-                               .alternatives = std::move(alternatives),
-                               .shared = history_table()})};
+  return make_table({.name = std::string("material: model ") + kind.word,
+                     .description = kind.description,
+                     .keys = std::move(own),
+                     .alternatives = std::move(alternatives),
+                     .shared = history_table()});
 }
 
-Choice small_strain(const char* word, const char* description) {
-  return {.word = word,
-          .description = description,
-          .table = make_table({.name = std::string("material: model ") + word,
-                               .description = description,
-                               .keys = small_strain_keys()})};
-}
-
-std::vector<Key> ogden_keys() {
-  constexpr int kMaxTerms = 6;
-  Form moduli = quantity(elastic_modulus(), any());
-  moduli.max_count = kMaxTerms;
-  return {
-      {.name = "mu",
-       .forms = {moduli},
-       .example = "24.361 0.066703 -0.45381 kPa",
-       .description = "Moduli, one to six.",
-       .required = true},
-      {.name = "alpha",
-       .forms = {numbers(1, kMaxTerms, any())},
-       .example = "1.7138 7.0679 -3.3659",
-       .description = "Exponents, one per modulus.",
-       .required = true},
-      {.name = "convention",
-       .forms = {choice({{"mu-over-alpha", "sum mu/alpha (...), Ogden's own form."},
-                         {"two-mu-over-alpha-squared",
-                          "sum 2 mu/alpha^2 (...): mu adds up to the initial shear modulus."}})},
-       .example = "mu-over-alpha",
-       .description = "Convention of the moduli. Sources differ, and the wrong convention gives a "
-                      "wrong stiffness.",
-       .required = true}};
-}
-
-std::vector<Key> saint_venant_keys() {
-  std::vector<Key> keys = small_strain_keys();
-  for (Key& key : history_keys()) keys.push_back(std::move(key));
-  return keys;
-}
-
-/// All laws, selected by the key `model`.
-Form law_form() {
-  const Key shear = modulus("shear_modulus", "24.4 kPa", "Initial shear modulus.", false);
-  Key c20 = modulus("c20", "-0.2 kPa", "Coefficient of (I - 3)^2.", false, true);
-  Key c30 = modulus("c30", "0.03 kPa", "Coefficient of (I - 3)^3.", false, true);
-  c20.default_text = c30.default_text = "0 Pa";
-  return variants(
-      "model",
-      {small_strain("corotational",
-                    "Corotational linear elasticity: large rotation, small strain."),
-       small_strain("linear", "Small displacements and strains."),
-       energy("neo-hookean", "mu/2 (I - 3) and kappa/2 (J - 1)^2.",
-              {shear, modulus("young_modulus", "72 kPa",
-                              "Initial Young's modulus, in place of `shear_modulus`.", false)},
-              {{{"shear_modulus", "young_modulus"}, true}}),
-       energy("mooney-rivlin", "C10 (I - 3) + C01 (II - 3).",
-              {modulus("c10", "12.18 kPa", "Coefficient of I - 3.", true, true),
-               modulus("c01", "1 kPa", "Coefficient of II - 3.", true, true)}),
-       energy("yeoh", "C10 (I - 3) + C20 (I - 3)^2 + C30 (I - 3)^3.",
-              {modulus("c10", "12 kPa", "Coefficient of I - 3; half the initial shear modulus."),
-               c20, c30}),
-       energy("ogden", "A sum of powers of the principal stretches.", ogden_keys()),
-       energy("arruda-boyce", "Eight-chain model, five terms of its series.",
-              {modulus("shear_modulus", "20 kPa", "Modulus mu of the series."),
-               {.name = "locking_stretch",
-                .forms = {quantity(plain_number(), material_range(1.0))},
-                .example = "3.5",
-                .description = "Locking stretch, at which the chains are straight.",
-                .required = true}}),
-       {.word = "saint-venant-kirchhoff",
-        .description = "Linear in the Green strain: large rotation, small strain; softens and "
-                       "collapses in compression.",
-        .table = make_table({.name = "material: model saint-venant-kirchhoff",
-                             .description = "Linear in the Green strain.",
-                             .keys = saint_venant_keys(),
-                             .shared = history_table()})}});
-}
+namespace {
 
 Key stiffness_scale() {
   return {.name = "scale",

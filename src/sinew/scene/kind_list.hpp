@@ -30,8 +30,14 @@ class KindList {
     const auto found = std::ranges::find(kinds_, word, &Kind::word);
     return found == kinds_.end() ? nullptr : *found;
   }
-  /// Appends a kind. Throws Error: duplicate-key (its word is taken), bad-argument (choices() was
-  /// called, and the kind would be missing there).
+  /// The kind with a word. Throws Error(internal) if there is none.
+  const Kind& get(std::string_view word) const {
+    if (const Kind* found = find(word)) return *found;
+    throw Error(ErrorKind::internal, {},
+                fmt::format("no kind of {} has the word '{}'", sort_, word));
+  }
+  /// Appends a kind. Throws Error: duplicate-key (its word is taken), bad-argument (use() or
+  /// choices() was called, and the kind would be missing there).
   void add(const Kind& kind) {
     const std::string_view word = std::invoke(&Kind::word, kind);
     if (find(word) != nullptr) {
@@ -45,11 +51,15 @@ class KindList {
     }
     kinds_.push_back(&kind);
   }
+  /// The kinds for the grammar, to which no more are added.
+  const std::vector<const Kind*>& use() {
+    in_use_ = true;
+    return kinds_;
+  }
   /// The words of the grammar, with their tables.
   std::vector<Choice> choices() {
-    in_use_ = true;
     std::vector<Choice> choices;
-    for (const Kind* kind : kinds_) {
+    for (const Kind* kind : use()) {
       choices.push_back({.word = std::string(std::invoke(&Kind::word, *kind)),
                          .description = kind->description,
                          .table = kind->table()});

@@ -14,7 +14,7 @@ namespace {
 
 // Saint Venant-Kirchhoff is for small strain, which its name says; the others promise more.
 std::optional<Notice> unstable_notice(const MaterialDescription& material) {
-  if (material.model != MaterialModel::hyperelastic) return std::nullopt;
+  if (!material.is_hyperelastic()) return std::nullopt;
   const std::string where = material::instability(material.energy);
   if (where.empty()) return std::nullopt;
   const std::string better =

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "sinew/mesh/embedding.hpp"
 #include "sinew/scene/readers.hpp"
 #include "sinew/scene/values.hpp"
 
@@ -83,8 +82,7 @@ ContactDescription read_contact(const Node::Entry& entry, const ReadContext& con
   }
   contact.nodes = read_regions(fields, "nodes");
   if (fields.find("points") != nullptr) contact.points = read_points(fields, "points", context);
-  fields.read_choice("outside", contact.outside,
-                     {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
+  read_outside(fields, contact.outside);
   fields.read("friction", contact.friction);
   if (fields.find("kinetic_friction") != nullptr) {
     fields.read("kinetic_friction", contact.kinetic_friction.emplace());

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "sinew/mesh/embedding.hpp"
 #include "sinew/scene/readers.hpp"
 
 namespace sinew::scene {
@@ -28,13 +27,6 @@ void read_orientation(const Fields& fields, EffectorDescription& effector) {
   if (first.cross(second).norm() > kDegenerate * size && size > 0.0) return;
   throw Error(ErrorKind::degenerate_orientation, fields.place("orientation"),
               "the three points lie on one line", "give three points that span a triangle");
-}
-
-PointList read_point(const Fields& fields, std::string_view key) {
-  Vector3 point;
-  fields.read(key, point);
-  const Location place = fields.place(key);
-  return {.place = place, .points = point.transpose(), .places = {place}};
 }
 
 void read_measured(const Fields& fields, EffectorDescription& effector,
@@ -95,8 +87,7 @@ EffectorDescription read_effector(const Node::Entry& entry, const ReadContext& c
   const Fields fields(entry.value, form_of(grammar(), "effectors", Shape::names).items.front());
   fields.read("body", effector.body);
   effector.body_place = fields.place("body");
-  fields.read_choice("outside", effector.outside,
-                     {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
+  read_outside(fields, effector.outside);
   read_measured(fields, effector, context);
   read_directions(fields, effector);
   return effector;

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "sinew/mesh/embedding.hpp"
 #include "sinew/scene/readers.hpp"
 
 namespace sinew::scene {
@@ -17,8 +16,7 @@ void read_force_place(const Fields& force, UnknownDescription& unknown) {
   force.read("body", unknown.body);
   force.read("point", unknown.point);
   unknown.where_place = force.place("point");
-  force.read_choice("outside", unknown.outside,
-                    {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
+  read_outside(force, unknown.outside);
 }
 
 void read_effort_place(const Fields& effort, UnknownDescription& unknown) {

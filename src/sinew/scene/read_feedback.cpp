@@ -2,11 +2,14 @@
 #include <algorithm>
 #include <ranges>
 #include <set>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "sinew/scene/actuator_kind.hpp"
 #include "sinew/scene/readers.hpp"
+#include "sinew/scene/sensor_kind.hpp"
 
 namespace sinew::scene {
 
@@ -23,41 +26,42 @@ std::string point_text(const Points& points) {
   return text + " mm";
 }
 
-const char* type_for(const EffectorDescription& effector) {
-  return effector.kind == Kind::orientation ? "orientation" : "marker";
-}
+bool turns(const EffectorDescription& effector) { return effector.kind == Kind::orientation; }
 
 // A sensor that would measure an effector, as written in a scene.
 std::string sensor_for(const EffectorDescription& effector) {
-  const std::string spot = effector.kind == Kind::set ? "set: " + effector.set
-                           : effector.points.points.rows() == 1
-                               ? (effector.kind == Kind::orientation ? "at: " : "point: ") +
-                                     point_text(effector.points.points)
-                               : (effector.kind == Kind::orientation ? "at: [" : "points: [") +
-                                     point_text(effector.points.points) + "]";
-  return fmt::format("{{type: {}, body: {}, {}}}", type_for(effector), effector.body, spot);
+  const std::string spot =
+      effector.kind == Kind::set ? "set: " + effector.set
+      : effector.points.points.rows() == 1
+          ? (turns(effector) ? "at: " : "point: ") + point_text(effector.points.points)
+          : (turns(effector) ? "at: [" : "points: [") + point_text(effector.points.points) + "]";
+  return fmt::format("{{type: {}, body: {}, {}}}",
+                     turns(effector) ? orientation_kind().word : marker_kind().word, effector.body,
+                     spot);
 }
 
 bool measures(const SensorDescription& sensor, const EffectorDescription& effector) {
-  if (sensor.body != effector.body || sensor.type != type_for(effector)) return false;
-  if (effector.kind == Kind::set) {
-    return sensor.region && sensor.region->kind == FixedRegion::Kind::set &&
-           sensor.region->set == effector.set;
-  }
-  const Points &own = sensor.points.points, &other = effector.points.points;
-  return !sensor.region && own.rows() == other.rows() && own == other;
+  if (sensor.body != effector.body || sensor.kind->effector == nullptr) return false;
+  const EffectorDescription own = sensor.kind->effector(sensor);
+  const Points &points = own.points.points, &others = effector.points.points;
+  return turns(own) == turns(effector) && own.set == effector.set &&
+         points.rows() == others.rows() && points == others;
 }
 
 const EffectorDescription& effector_of(const SceneDescription& scene, const TaskDescription& task) {
   return *std::ranges::find(scene.effectors, task.effector, &EffectorDescription::name);
 }
 
-void check_type(const SensorDescription& sensor, const Location& place) {
-  if (sensor.type == "marker" || sensor.type == "orientation") return;
+void check_kind(const SensorDescription& sensor, const Location& place) {
+  if (sensor.kind->effector != nullptr) return;
+  std::vector<std::string_view> fitting;
+  for (const SensorKind* kind : sensor_kinds()) {
+    if (kind->effector != nullptr) fitting.emplace_back(kind->word);
+  }
   throw Error(ErrorKind::wrong_type, place,
               fmt::format("'{}' is of type {}, and a closed loop goes by what effectors do",
-                          sensor.name, sensor.type),
-              "name sensors of type marker or orientation");
+                          sensor.name, sensor.kind->word),
+              fmt::format("name sensors of type {}", fmt::join(fitting, " or ")));
 }
 
 // Checks the rate, since a sample may be as old as its period before the next one arrives.
@@ -148,7 +152,7 @@ class Assignment {
   }
 
   void add(const SensorDescription& sensor, const Location& place) {
-    check_type(sensor, place);
+    check_kind(sensor, place);
     for (std::size_t t = 0; t < controller_.tasks.size(); ++t) {
       if (!measures(sensor, effector_of(scene_, controller_.tasks[t]))) continue;
       std::string& own = controller_.sensors[t];

@@ -39,6 +39,9 @@ void refuse_free(const Fields& fields);
 bool is_plane(const Node::Entry& body);
 /// Reads such a body. Throws Error(conflicting-keys) if it has a mass or a velocity or is free.
 PlaneDescription read_plane(const Node::Entry& entry, const ReadContext& context);
+/// Reads the material under `material`. @param body fields with that key. @param context of the
+/// scene.
+MaterialDescription read_material(const Fields& body, const ReadContext& context);
 /// Reads the rotation of a pose. @param pose fields of the pose.
 Matrix3 read_rotation(const Fields& pose);
 /// Reads a region from one of the keys box, sphere, plane and set.
@@ -88,6 +91,14 @@ model::Signal read_signal(const Fields& fields, std::string_view key, const Read
 
 /// Reads the points under `key`: a list of vectors, or a CSV table.
 PointList read_points(const Fields& fields, std::string_view key, const ReadContext& context);
+/// Reads the point under a key. @param fields that have it. @param key of a vector.
+PointList read_point(const Fields& fields, std::string_view key);
+/// Reads one of the keys point, points and set. @param fields of a map that has one.
+/// @param context of the scene.
+SpotDescription read_spot(const Fields& fields, const ReadContext& context);
+/// Reads the key `outside`. @param fields that may have it. @param outside receives what happens to
+/// points outside the mesh.
+void read_outside(const Fields& fields, mesh::Outside& outside);
 
 /// The unit (SI) of a column: that under `unit`, else that of its heading, else the SI unit. Throws
 /// Error: conflicting-keys if they differ, and what heading_unit() throws.

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <memory>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -67,24 +66,28 @@ Vector3 point_along(const Points& corners, double length) {
 /// Makes the source of a sensor, and determines the observable of the same quantity.
 class MakeSensor {
  public:
-  MakeSensor(model::ModelData& data, const SensorSettings& settings)
-      : data_(data),
-        settings_(settings),
-        attacher_(data, "sensor '" + settings.name + "'", settings.place, settings.outside) {}
+  explicit MakeSensor(const SourceSite& site)
+      : data_(site.data), settings_(site.settings), attacher_(site.attacher) {}
 
-  std::string observable;
-
-  SourcePtr operator()(const builder::ProbeSpot& spot) {
-    return read(std::make_unique<constraint::PointProbe>(settings_.name, attacher_.mean(spot)));
+  template <class What>
+  static MadeSource of(const What& what, const SourceSite& site) {
+    MakeSensor make(site);
+    SourcePtr source = make.source(what);
+    return {std::move(source), std::move(make.observable_)};
   }
-  SourcePtr operator()(const SensorMotion& motion);
-  SourcePtr operator()(const SensorDrive& drive);
-  SourcePtr operator()(const SensorLine& line);
-  SourcePtr operator()(const SensorCurvature& curvature);
-  SourcePtr operator()(const SensorCapacitance& capacitance);
-  SourcePtr operator()(const SensorContact& touch);
 
  private:
+  SourcePtr source(const SensorMarker& marker) {
+    return std::make_unique<PositionSource>(
+        std::make_unique<constraint::PointProbe>(settings_.name, attacher_.mean(marker.spot)));
+  }
+  SourcePtr source(const SensorMotion& motion);
+  SourcePtr source(const SensorDrive& drive);
+  SourcePtr source(const SensorLine& line);
+  SourcePtr source(const SensorCurvature& curvature);
+  SourcePtr source(const SensorCapacitance& capacitance);
+  SourcePtr source(const SensorContact& touch);
+
   static SourcePtr read(std::unique_ptr<const constraint::Probe> probe) {
     return std::make_unique<ProbeSource>(std::move(probe));
   }
@@ -99,7 +102,8 @@ class MakeSensor {
 
   model::ModelData& data_;
   const SensorSettings& settings_;
-  builder::Attacher attacher_;
+  builder::Attacher& attacher_;
+  std::string observable_;
 };
 
 std::shared_ptr<const constraint::OrientationEffector> MakeSensor::orientation(
@@ -126,7 +130,7 @@ std::shared_ptr<const constraint::OrientationEffector> MakeSensor::orientation(
               "give three points that span a triangle or, of an arm or a rigid body, one");
 }
 
-SourcePtr MakeSensor::operator()(const SensorMotion& motion) {
+SourcePtr MakeSensor::source(const SensorMotion& motion) {
   std::vector<MaterialPoint> points;
   auto frame = orientation(motion, points);
   switch (motion.what) {
@@ -171,7 +175,7 @@ double MakeSensor::current_factor(const model::ActuatorModel& actuator,
   return (winds ? drive.radius : 1.0) / drive.motor_constant;
 }
 
-SourcePtr MakeSensor::operator()(const SensorDrive& drive) {
+SourcePtr MakeSensor::source(const SensorDrive& drive) {
   using What = SensorDrive::What;
   const int index = named_part(data_.actuators, drive.actuator, "actuator",
                                &model::ActuatorModel::name, settings_.place);
@@ -181,19 +185,19 @@ SourcePtr MakeSensor::operator()(const SensorDrive& drive) {
   switch (drive.what) {
     case What::cable_length:
       require(kind.is_line, actuator, "length", "cable or spring");
-      observable = fmt::format("{}.{}", actuator.name, motion.name);
+      observable_ = fmt::format("{}.{}", actuator.name, motion.name);
       return std::make_unique<MotionSource>(index, motion.unit);
     case What::cable_tension:
       require(kind.is_line, actuator, "tension", "cable or spring");
-      observable = fmt::format("{}.{}", actuator.name, effort.name);
+      observable_ = fmt::format("{}.{}", actuator.name, effort.name);
       return std::make_unique<EffortSource>(index, 1.0, effort.unit);
     case What::pressure:
       require(kind.swells(), actuator, "pressure", "chamber");
-      observable = fmt::format("{}.{}", actuator.name, effort.name);
+      observable_ = fmt::format("{}.{}", actuator.name, effort.name);
       return std::make_unique<EffortSource>(index, 1.0, effort.unit);
     case What::volume:
       require(kind.swells(), actuator, "volume", "chamber");
-      observable = fmt::format("{}.{}", actuator.name, motion.name);
+      observable_ = fmt::format("{}.{}", actuator.name, motion.name);
       return std::make_unique<MotionSource>(index, motion.unit);
     case What::flow:
       require(kind.swells(), actuator, "flow", "chamber");
@@ -216,7 +220,7 @@ double MakeSensor::length_of(const Points& corners) const {
               "give the ends of a line");
 }
 
-SourcePtr MakeSensor::operator()(const SensorLine& line) {
+SourcePtr MakeSensor::source(const SensorLine& line) {
   using What = SensorLine::What;
   const double length = length_of(line.line.corners);
   std::vector<MaterialPoint> points = attacher_.line(line.line);
@@ -237,7 +241,7 @@ SourcePtr MakeSensor::operator()(const SensorLine& line) {
       constraint::AttenuationProbe::Loss{line.loss_per_length, line.loss_per_turn}));
 }
 
-SourcePtr MakeSensor::operator()(const SensorCurvature& curvature) {
+SourcePtr MakeSensor::source(const SensorCurvature& curvature) {
   const double length = length_of(curvature.corners);
   const double half = 0.5 * (curvature.gauge > 0.0 ? curvature.gauge : 0.1 * length);
   std::vector<constraint::CurvatureProbe::Triple> places;
@@ -261,7 +265,7 @@ SourcePtr MakeSensor::operator()(const SensorCurvature& curvature) {
                                                            curvature.about));
 }
 
-SourcePtr MakeSensor::operator()(const SensorCapacitance& capacitance) {
+SourcePtr MakeSensor::source(const SensorCapacitance& capacitance) {
   const auto& [first, second] = capacitance.electrodes;
   std::array electrodes{attach_electrode(attacher_, first, second, settings_.place),
                         attach_electrode(attacher_, second, first, settings_.place)};
@@ -284,7 +288,7 @@ const constraint::Contact& MakeSensor::contact_of(int index) const {
   return dynamic_cast<const constraint::Contact&>(data_.constraint(contact.constraint));
 }
 
-SourcePtr MakeSensor::operator()(const SensorContact& touch) {
+SourcePtr MakeSensor::source(const SensorContact& touch) {
   std::vector<int> contacts;
   for (const std::string& name : touch.contacts) {
     contacts.push_back(
@@ -312,7 +316,7 @@ SourcePtr MakeSensor::operator()(const SensorContact& touch) {
                   "no node of the surface is in the patch", "choose a region that holds some");
     }
   } else if (!touch.threshold && contacts.size() == 1) {
-    observable = touch.contacts.front() + ".normal_force";
+    observable_ = touch.contacts.front() + ".normal_force";
   }
   return std::make_unique<TouchSource>(std::move(contacts), std::move(patch), touch.threshold);
 }
@@ -337,16 +341,43 @@ std::uint64_t stream_of(const std::string& name) { return ValueHash().add(name).
 
 }  // namespace
 
+MadeSource SensorMarker::operator()(const SourceSite& site) const {
+  return MakeSensor::of(*this, site);
+}
+MadeSource SensorMotion::operator()(const SourceSite& site) const {
+  return MakeSensor::of(*this, site);
+}
+MadeSource SensorDrive::operator()(const SourceSite& site) const {
+  return MakeSensor::of(*this, site);
+}
+MadeSource SensorLine::operator()(const SourceSite& site) const {
+  return MakeSensor::of(*this, site);
+}
+MadeSource SensorCurvature::operator()(const SourceSite& site) const {
+  return MakeSensor::of(*this, site);
+}
+MadeSource SensorCapacitance::operator()(const SourceSite& site) const {
+  return MakeSensor::of(*this, site);
+}
+MadeSource SensorContact::operator()(const SourceSite& site) const {
+  return MakeSensor::of(*this, site);
+}
+
 int add_sensor(builder::ModelBuilder& builder, const SensorSettings& settings) {
   model::ModelData& data = builder.data();
   model::check_new_name(sensors_of(data), &SensorModel::name, "sensors", settings.name,
                         settings.place);
   try {
     check_rate(settings, data.step.time_step);
-    MakeSensor make(data, settings);
-    SensorModel sensor{settings.name,    settings.kind,  {}, std::visit(make, settings.what),
-                       settings.channel, settings.record};
-    sensor.observable = make.observable.empty() ? settings.name + ".true" : make.observable;
+    builder::Attacher attacher(data, "sensor '" + settings.name + "'", settings.place,
+                               settings.outside);
+    MadeSource made = settings.what({data, settings, attacher});
+    SensorModel sensor{settings.name,
+                       settings.kind,
+                       made.observable.empty() ? settings.name + ".true" : made.observable,
+                       std::move(made.source),
+                       settings.channel,
+                       settings.record};
     sensor.channel.stream = stream_of(settings.name);
     Channel checked(sensor.channel, sensor.source->size());
     builder::instrument_in<SensorSet>(data).sensors.push_back(std::move(sensor));

@@ -40,8 +40,16 @@ void ProbeSource::read(const run::Run& run, std::span<const double> /*memory*/,
   probe_->measure(run.world.configuration(), values);
 }
 
+std::optional<constraint::EffectorKind> PositionSource::effector_kind() const {
+  return constraint::EffectorKind::point;
+}
+
 RotationSource::RotationSource(std::shared_ptr<const constraint::OrientationEffector> orientation)
     : SensorSource(axes("rad", "r")), orientation_(std::move(orientation)) {}
+
+std::optional<constraint::EffectorKind> RotationSource::effector_kind() const {
+  return constraint::EffectorKind::orientation;
+}
 
 void RotationSource::read(const run::Run& run, std::span<const double> /*memory*/,
                           std::span<double> values) const {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -11,8 +12,9 @@
 #include "sinew/constraint/probe.hpp"
 
 namespace sinew::constraint {
+enum class EffectorKind;
 class OrientationEffector;
-}
+}  // namespace sinew::constraint
 
 namespace sinew::run {
 struct Run;
@@ -30,6 +32,8 @@ class SensorSource {
   std::size_t size() const { return components_.size(); }
   /// The probe for a quantity measured on the shape; null for other quantities.
   virtual const constraint::Probe* probe() const { return nullptr; }
+  /// The kind of effectors that have the same value where they have the same place; none: no kind.
+  virtual std::optional<constraint::EffectorKind> effector_kind() const { return std::nullopt; }
 
   virtual std::size_t memory_size() const { return 0; }  ///< number of values
   /// Initialises the memory as if the run had been at rest. @param run at its present time.
@@ -64,10 +68,19 @@ class ProbeSource : public SensorSource {
   std::unique_ptr<const constraint::Probe> probe_;
 };
 
+/// The position of a point.
+class PositionSource : public ProbeSource {
+ public:
+  explicit PositionSource(std::unique_ptr<const constraint::PointProbe> probe)
+      : ProbeSource(std::move(probe)) {}
+  std::optional<constraint::EffectorKind> effector_kind() const override;
+};
+
 /// Rotation since rest: the rotation vector, rad, in world axes.
 class RotationSource : public SensorSource {
  public:
   explicit RotationSource(std::shared_ptr<const constraint::OrientationEffector> orientation);
+  std::optional<constraint::EffectorKind> effector_kind() const override;
   void read(const run::Run& run, std::span<const double> memory,
             std::span<double> values) const override;
 
