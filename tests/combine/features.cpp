@@ -166,9 +166,10 @@ std::vector<Feature> list_features() {
       {"effector", or_none(without(alternatives(effector, "point"), "points"))},
       {"probe", or_none(without(alternatives(probe, "point"), "points"))},
       {"sensor", or_none(words(variants(items("sensors"), "type")))},
-      // With feedback, a closed loop replaces it.
+      // With feedback, a closed loop replaces it. The toys' own law is tested beside them.
       {"controller",
-       or_none(without(words(variants(items("controllers"), "type")), "closed-loop"))},
+       or_none(without(without(words(variants(items("controllers"), "type")), "closed-loop"),
+                       "proportional"))},
       {"regularisation", words(map_of(controller, "regularisation"), "of")},
       {"membrane", switched},
       {"contact_zones", switched},

@@ -4,8 +4,8 @@
 
 namespace sinew::testing {
 
-/// Adds the toys to the kinds of scenes: bodies of type spring-point, actuators of type strut. Call
-/// it before a scene is read; again, it does nothing.
+/// Adds the toys to the kinds of scenes: bodies of type spring-point, actuators of type strut,
+/// controllers of type proportional. Call it before a scene is read; again, it does nothing.
 void register_toys();
 
 }  // namespace sinew::testing

@@ -69,8 +69,8 @@ void read_rigid_body(const Fields& fields, const ReadContext& context, BodyDescr
   if (fields.find("motion") != nullptr) {
     refuse_free(fields);
     settings.fixed = true;
-    body.base = read_motion(fields.below("motion"), context);
-    body.base_place = fields.place("motion");
+    body.motion = read_motion(fields.below("motion"), context);
+    body.motion_place = fields.place("motion");
   }
   body.own = std::move(settings);
 }

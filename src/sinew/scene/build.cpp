@@ -13,40 +13,23 @@
 #include "sinew/scene/actuator_kind.hpp"
 #include "sinew/scene/body_kind.hpp"
 #include "sinew/scene/build_parts.hpp"
+#include "sinew/scene/controller_kind.hpp"
 #include "sinew/scene/scene.hpp"
-#include "sinew/sense/sensor_set.hpp"
 
 namespace sinew::scene {
 
 namespace {
 
-// Error below which an effector of a closed loop counts as on target, m or rad.
-constexpr double kMeasuredTolerance = 5e-4;
-
 SceneController controller_of(const ControllerDescription& description, const model::Model& model) {
-  SceneController controller{description.name, {}};
-  auto& settings = controller.settings;
+  control::TargetSettings targets;
   for (const TaskDescription& task : description.tasks) {
-    settings.tasks.push_back(
+    targets.tasks.push_back(
         {model.effector_index(task.effector), task.target, task.weights, task.priority});
   }
-  for (const ContactTaskDescription& task : description.contacts) {
-    settings.contacts.push_back(task.asked);
-    settings.contacts.back().contact = model.contact_index(task.contact);
-  }
   for (const std::string& name : description.actuators) {
-    settings.actuators.push_back(model.actuator_index(name));
+    targets.actuators.push_back(model.actuator_index(name));
   }
-  if (description.feedback) {
-    settings.tolerance = kMeasuredTolerance;
-    settings.feedback = description.feedback;
-    for (const std::string& name : description.sensors) {
-      settings.feedback->sensors.push_back(sense::sensor_index(model, name));
-    }
-  }
-  settings.regularisation = description.regularisation;
-  if (description.epsilon) settings.epsilon = *description.epsilon;
-  return controller;
+  return {description.name, description.kind->build({description, model, std::move(targets)})};
 }
 
 model::StepSettings step_settings(const SceneDescription& scene) {

@@ -126,6 +126,10 @@ DriveWords line_words(const model::ActuatorKind& kind, Range range, const char* 
 Key input_key(const char* name, const Measure& measure, const char* example,
               const char* description, Range range = any());
 Key body_key();
+/// Key `effectors` of a controller: the target of each. @param required whether it needs one.
+Key tasks_key(bool required);
+/// Key `actuators` of a controller: those that it drives.
+Key driven_key();
 /// A length of a shape, positive and required.
 Key shape_length(const char* name, const char* example, const char* description);
 /// Keys point, points and set, which give a location on a body.

@@ -440,14 +440,14 @@ void read_fem_body(const Fields& fields, const ReadContext& context, BodyDescrip
   read_fixed(fields, body);
   if (fields.find("initial_velocity") != nullptr) {
     const Fields start = fields.below("initial_velocity");
-    auto& velocity = body.initial_velocity.emplace();
+    auto& velocity = body.velocity.emplace();
     velocity.place = fields.place("initial_velocity");
     start.read("linear", velocity.linear);
     start.read("angular", velocity.angular);
   }
   if (fields.find("base") != nullptr) {
-    body.base = read_motion(fields.below("base"), context);
-    body.base_place = fields.place("base");
+    body.motion = read_motion(fields.below("base"), context);
+    body.motion_place = fields.place("base");
   }
 }
 

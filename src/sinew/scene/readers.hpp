@@ -77,12 +77,6 @@ Vector3 read_axis(const Node& node, const std::vector<Form>& forms);
 ControllerDescription read_controller(const Node::Entry& entry, const ReadContext& context,
                                       const SceneDescription& scene);
 
-/// Reads the sensors and gains of a closed loop. @param fields of the loop. @param scene with
-/// bodies, actuators, effectors, sensors, contacts and joints. @param controller whose tasks and
-/// actuators have been read.
-void read_feedback(const Fields& fields, const SceneDescription& scene,
-                   ControllerDescription& controller);
-
 /// Reads the signal under `key`: a value, or a map of the signal table.
 model::Signal read_signal(const Fields& fields, std::string_view key, const ReadContext& context);
 

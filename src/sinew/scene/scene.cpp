@@ -131,7 +131,7 @@ void check_carriers(const SceneDescription& scene) {
 void check_initial_velocities(const SceneDescription& scene) {
   if (scene.integrator != Integrator::quasi_static) return;
   for (const BodyDescription& body : scene.bodies) {
-    const auto& start = body.initial_velocity;
+    const auto& start = body.velocity;
     if (!start || (start->linear.isZero(0.0) && start->angular.isZero(0.0))) continue;
     throw Error(ErrorKind::conflicting_keys, start->place,
                 fmt::format("'{}' has an initial velocity, but the integrator is quasi-static, "
@@ -221,7 +221,7 @@ double SceneDescription::run_duration() const {
     for (const model::Signal& signal : motion->translation) end = std::max(end, signal.end_time());
     end = std::max(end, motion->angle.end_time());
   };
-  for (const BodyDescription& body : bodies) include(body.base);
+  for (const BodyDescription& body : bodies) include(body.motion);
   for (const PlaneDescription& plane : planes) include(plane.motion);
   for (const ContactDescription& contact : contacts) include(contact.motion);
   for (const LoadDescription& load : loads) end = std::max(end, load.factor.end_time());
