@@ -168,9 +168,8 @@ Robot build(SceneDescription description, const SharedMeshes& shared) {
 
 Robot load(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
   if (overrides.empty()) return build(parse_scene(path));
-  Node tree = read_yaml(path);
-  for (const std::string& assignment : overrides) apply_override(tree, assignment);
-  SceneDescription description = parse_scene_tree(std::move(tree), path.parent_path());
+  SceneDescription description =
+      parse_changed_scene(read_yaml(path), overrides, path.parent_path());
   description.name = path.stem().string();
   return build(std::move(description));
 }

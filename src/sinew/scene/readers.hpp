@@ -41,6 +41,8 @@ bool is_plane(const Node::Entry& body);
 PlaneDescription read_plane(const Node::Entry& entry, const ReadContext& context);
 /// Reads the rotation of a pose. @param pose fields of the pose.
 Matrix3 read_rotation(const Fields& pose);
+/// The same as a rotation vector, rad. @param pose fields of the pose.
+Vector3 read_rotation_vector(const Fields& pose);
 /// Reads a region from one of the keys box, sphere, plane and set.
 FixedRegion read_region(const Fields& fields);
 /// Reads one region or a list of them; empty without the key.
