@@ -2,8 +2,8 @@
 /// A controller that the library does not know: it descends the error of its first effector. Before
 /// each step it changes the efforts of its actuators by
 ///   u = gain W^T e / |W|^2,
-/// where e is the error, (rows,), and W the compliance of the effector to these efforts, both times
-/// the weights of the task.
+/// where e is the error, (rows,), and W the compliance of the effector to these efforts; products
+/// and norms are weighted by the task.
 #pragma once
 
 #include <algorithm>
@@ -52,20 +52,29 @@ class Proportional : public control::TargetController, public run::Commander {
   const std::vector<run::Observable>& observables() const override { return change_; }
   void read(std::span<double> to) const override { to[0] = memory_[1]; }
 
+  // The products are loops: the linker may take a kernel of Eigen that is compiled here, without
+  // the library's optimisation, for all of the program, which then rounds differently.
   void command() override {
-    const MatrixX w = weights().asDiagonal() *
-                      sim::controlled_response(simulation_, settings_.actuators).effectors[own()];
-    const VectorX wanted = own_.gain / std::max(w.squaredNorm(), 1e-300) * (w.transpose() * gap());
+    const MatrixX w = sim::controlled_response(simulation_, settings_.actuators).effectors[own()];
+    const VectorX gap = this->gap();
+    double size = 1e-300;
+    for (Eigen::Index r = 0; r < w.rows(); ++r) {
+      for (Eigen::Index k = 0; k < w.cols(); ++k) size += weight(r) * w(r, k) * w(r, k);
+    }
     memory_[1] = 0.0;
-    for (Eigen::Index k = 0; k < wanted.size(); ++k) {
+    for (Eigen::Index k = 0; k < w.cols(); ++k) {
       const int index = settings_.actuators[static_cast<std::size_t>(k)];
       const model::ActuatorModel& model =
           simulation_.model().actuators()[static_cast<std::size_t>(index)];
       const double before = memory_[k + 2];
+      double wanted = 0.0;
+      for (Eigen::Index r = 0; r < w.rows(); ++r) {
+        wanted += own_.gain / size * weight(r) * w(r, k) * gap[r];
+      }
       const run::Interval may =
           run::reachable(model.effort, before, simulation_.model().step().time_step);
       const double least = model.kind->pulls_only ? std::max(0.0, may.min) : may.min;
-      memory_[k + 2] = std::clamp(before + wanted[k], least, std::max(least, may.max));
+      memory_[k + 2] = std::clamp(before + wanted, least, std::max(least, may.max));
       memory_[1] = std::max(memory_[1], std::abs(memory_[k + 2] - before));
     }
     tell();
@@ -89,13 +98,7 @@ class Proportional : public control::TargetController, public run::Commander {
 
  private:
   std::size_t own() const { return static_cast<std::size_t>(settings_.tasks.front().effector); }
-  VectorX weights() const {
-    VectorX weights(simulation_.model().effector(static_cast<int>(own())).row_count());
-    for (Eigen::Index k = 0; k < weights.size(); ++k) {
-      weights[k] = settings_.tasks.front().weight(k);
-    }
-    return weights;
-  }
+  double weight(Eigen::Index row) const { return settings_.tasks.front().weight(row); }
   VectorX gap() const {
     const constraint::Effector& effector = simulation_.model().effector(static_cast<int>(own()));
     const auto& present = simulation_.configuration();
@@ -103,7 +106,7 @@ class Proportional : public control::TargetController, public run::Commander {
     const Vector3 target = settings_.tasks.front().target.at(simulation_.time());
     effector.target_delta(present, target, goal);
     effector.target_delta(present, effector.value(present), now);
-    return weights().cwiseProduct(goal - now);
+    return goal - now;
   }
   void tell() {
     for (std::size_t k = 0; k < settings_.actuators.size(); ++k) {
